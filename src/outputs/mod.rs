@@ -1,0 +1,5 @@
+//! What a run gives: the variables of the output groups and their values.
+
+mod variables;
+
+pub use variables::{Kind, Output, Variable, variables};

@@ -1,0 +1,208 @@
+//! What one FMU simulates: a scene, read from one TOML file and checked.
+//!
+//! Every field is in SI units. A feature that the scene does not name is `None` or empty, and costs nothing at run time.
+
+mod error;
+mod parameters;
+mod reader;
+mod unit;
+
+use std::path::PathBuf;
+
+pub use error::SceneError;
+pub use parameters::{Parameter, ParameterError, Value};
+pub use unit::Unit;
+
+/// A whole scene, checked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// The scene's name; becomes the model's name.
+    pub name: String,
+    /// What the scene is, in a sentence.
+    pub description: Option<String>,
+    /// The elastic layer.
+    pub layer: Layer,
+    /// The rigid surface below it.
+    pub surface: Surface,
+    /// Friction in the contacts; `None` is frictionless.
+    pub friction: Option<Friction>,
+    /// The integrator's settings.
+    pub solver: Solver,
+    /// How the carrier moves on when a master gives no rates.
+    pub extrapolation: Extrapolation,
+    /// The output groups, in the order of [`OutputGroup::ALL`], each once.
+    pub outputs: Vec<OutputGroup>,
+    /// The motion of the carrier in runs without a master.
+    pub excitation: Vec<Phase>,
+    /// The files that the scene reads, as the scene names them: relative to its folder.
+    pub files: Vec<PathBuf>,
+    /// What is worth telling though the scene is valid.
+    pub warnings: Vec<String>,
+}
+
+/// The elastic layer: k point masses and their links.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layer {
+    /// Number of point masses k ≥ 1.
+    pub masses: usize,
+    /// Distance Δx of the masses at rest, m.
+    pub spacing: f64,
+    /// Place X_1 of the first mass at rest, m.
+    pub origin: f64,
+    /// Height of the layer above the profile's datum at w = 0, m.
+    pub clearance: f64,
+    /// Mass of one point mass, kg.
+    pub mass: f64,
+    /// How the dashpots start.
+    pub initial: Initial,
+    /// Heights h_i of the elastic body's roughness, m: k values, or none for a smooth body.
+    pub roughness: Vec<f64>,
+    /// Carrier to mass, along z.
+    pub vertical: Option<Link>,
+    /// Carrier to mass, along x.
+    pub horizontal: Option<Link>,
+    /// Mass to mass, along x.
+    pub lateral_x: Option<Link>,
+    /// Mass to mass, along z.
+    pub lateral_z: Option<Link>,
+}
+
+/// A spring, a damper and Maxwell elements in parallel. A key that the scene does not name is `None`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Link {
+    /// Stiffness c of the spring, N/m.
+    pub stiffness: Option<f64>,
+    /// Damping d, N s/m.
+    pub damping: Option<f64>,
+    /// The Maxwell elements (c_j, τ_j).
+    pub maxwell: Vec<MaxwellElement>,
+}
+
+/// A spring in series with a dashpot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MaxwellElement {
+    /// Stiffness c_j of the spring, N/m.
+    pub stiffness: f64,
+    /// Relaxation time τ_j = d_j/c_j, s.
+    pub relaxation_time: f64,
+}
+
+/// How the dashpots stand at the start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Initial {
+    /// y_j = e_j: pressed long ago.
+    Relaxed,
+    /// y_j = 0: pressed just now.
+    Undeformed,
+}
+
+/// The data points of the rigid profile; the spline through them is the model's business.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surface {
+    /// Places of the data points, m, strictly rising; at least two.
+    pub x: Vec<f64>,
+    /// Heights of the data points, m. Periodic: the last equals the first.
+    pub z: Vec<f64>,
+    /// Repeated for ever, or continued along its end tangents.
+    pub periodic: bool,
+}
+
+/// The parts of the friction law that the scene names.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Friction {
+    /// Coulomb's coefficient μ, 1.
+    pub coulomb: Option<f64>,
+    /// Adhesive shear force A τ_0 of one mass in contact, N.
+    pub shear_force: Option<f64>,
+}
+
+/// The integrator's settings.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solver {
+    /// How mode changes are treated.
+    pub method: Method,
+    /// Relative tolerance of the local error, 1.
+    pub relative_tolerance: f64,
+    /// Absolute tolerance, m; `None` follows the relative tolerance and the scene's height.
+    pub absolute_tolerance: Option<f64>,
+    /// Steps that one communication step or one phase may take.
+    pub max_steps: u64,
+}
+
+/// How mode changes are treated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Every mode change is located.
+    Event,
+}
+
+/// How the carrier moves when a master gives values alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extrapolation {
+    /// On, as it came.
+    Linear,
+    /// To the value given, reached at the end of the step.
+    Hold,
+}
+
+/// The groups of output variables that a scene may ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum OutputGroup {
+    /// F_x, F_z.
+    Forces,
+    /// Dissipated power and energy, whole and by channel.
+    Dissipation,
+    /// The tangential force split at the surface.
+    Friction,
+    /// Counts and contact forces.
+    Contact,
+    /// The energy balance.
+    Energy,
+    /// Steps, events, estimated error, processor time.
+    Solver,
+    /// Place, forces and mode of each mass.
+    Elements,
+}
+
+impl OutputGroup {
+    /// All groups, in the order of the variables.
+    pub const ALL: [Self; 7] =
+        [Self::Forces, Self::Dissipation, Self::Friction, Self::Contact, Self::Energy, Self::Solver, Self::Elements];
+
+    /// The group's name in a scene file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Forces => "forces",
+            Self::Dissipation => "dissipation",
+            Self::Friction => "friction",
+            Self::Contact => "contact",
+            Self::Energy => "energy",
+            Self::Solver => "solver",
+            Self::Elements => "elements",
+        }
+    }
+}
+
+/// One phase of the carrier's motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Phase {
+    /// Duration, s.
+    pub duration: f64,
+    /// Motion along x from the phase's start on.
+    pub u: Path,
+    /// Motion along z from the phase's start on.
+    pub w: Path,
+    /// The phase ends when F_z rises to this force, N.
+    pub until_force: Option<f64>,
+}
+
+/// A displacement from where it stood: rate · s + amplitude · sin(2π frequency s), s the time since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Path {
+    /// Constant rate, m/s.
+    pub rate: f64,
+    /// Amplitude of the sine, m.
+    pub amplitude: f64,
+    /// Frequency of the sine, Hz.
+    pub frequency: f64,
+}

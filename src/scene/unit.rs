@@ -1,0 +1,56 @@
+//! The units of parameters and variables.
+
+/// An SI unit, as a variable or parameter names it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Unit {
+    /// 1, a plain number.
+    One,
+    /// m.
+    Meter,
+    /// s.
+    Second,
+    /// kg.
+    Kilogram,
+    /// N.
+    Newton,
+    /// N/m.
+    NewtonPerMeter,
+    /// N s/m.
+    NewtonSecondPerMeter,
+    /// J.
+    Joule,
+    /// W.
+    Watt,
+}
+
+impl Unit {
+    /// The unit's name in the model description.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::One => "1",
+            Self::Meter => "m",
+            Self::Second => "s",
+            Self::Kilogram => "kg",
+            Self::Newton => "N",
+            Self::NewtonPerMeter => "N/m",
+            Self::NewtonSecondPerMeter => "N.s/m",
+            Self::Joule => "J",
+            Self::Watt => "W",
+        }
+    }
+
+    /// The exponents of kg, m and s in the unit.
+    pub fn exponents(self) -> [i32; 3] {
+        match self {
+            Self::One => [0, 0, 0],
+            Self::Meter => [0, 1, 0],
+            Self::Second => [0, 0, 1],
+            Self::Kilogram => [1, 0, 0],
+            Self::Newton => [1, 1, -2],
+            Self::NewtonPerMeter => [1, 0, -2],
+            Self::NewtonSecondPerMeter => [1, 0, -1],
+            Self::Joule => [1, 2, -2],
+            Self::Watt => [1, 2, -3],
+        }
+    }
+}
