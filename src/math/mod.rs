@@ -1,1 +1,5 @@
-//! math
+//! Numerical tools that know nothing of the model.
+
+mod spline;
+
+pub use spline::{Bounds, Spline};
