@@ -226,3 +226,38 @@ fn count(output: Output) -> Variable {
         description: String::new(),
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, clippy::panic)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    fn instance() -> Instance {
+        let text = "name = \"a\"\nlayer = { masses = 1, spacing = 1.0, mass = 1.0 }\nsurface = { kind = \"flat\" }";
+        let scene = Arc::new(Scene::parse(text, Path::new("scene.toml")).unwrap());
+        let catalogue = Catalogue::new(&scene);
+        Instance::of(scene, catalogue, false)
+    }
+
+    #[test]
+    fn a_panic_poisons_the_instance_and_is_told() {
+        let mut instance = instance();
+        assert_eq!(instance.call(Function::Reset, |_| panic!("lost a mass")), Status::Fatal);
+        let told = Message {
+            status: Status::Fatal,
+            category: Category::Error,
+            text: "fmi2Reset: internal error, the instance is lost: lost a mass".into(),
+        };
+        assert_eq!(instance.take_messages(), [told]);
+        assert_eq!(instance.call(Function::Reset, Instance::reset), Status::Error);
+        assert_eq!(instance.take_messages()[0].text, "fmi2Reset: not allowed in the state fatal");
+    }
+
+    #[test]
+    fn mode_changes_are_told_in_words() {
+        let change = ModeChange { time: 0.5, mass: 2, from: 0, to: -1 };
+        assert_eq!(event(&change), "t = 0.5 s: mass 3 from free to slipping backwards");
+    }
+}
