@@ -1,7 +1,13 @@
-//! Mathematics that knows nothing of the model.
+//! Numerical tools that know nothing of the model.
 
-pub mod polynomial;
-pub mod relaxation;
-pub mod root;
-pub mod spline;
-pub mod tridiagonal;
+mod polynomial;
+mod relaxation;
+mod root;
+mod spline;
+mod tridiagonal;
+
+pub use polynomial::{Jet, Quintic};
+pub use relaxation::Relaxation;
+pub use root::bracketed_root;
+pub use spline::{Bounds, Spline};
+pub use tridiagonal::BlockTridiagonal;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::math::spline::Spline;
+use crate::math::Spline;
 use crate::scene::Path;
 
 /// The carrier on a smooth piece of its motion. Within the piece all is counted from its start, so that a carrier that

@@ -1,7 +1,6 @@
 //! Forces of the links and of the contacts at one instant.
 
-use super::{CarrierPoint, LinkKind, Mode, Model, State};
-use crate::math::spline::SurfacePoint;
+use super::{CarrierPoint, LinkKind, Mode, Model, State, SurfacePoint};
 
 /// Forces at one instant, and room for them.
 #[derive(Clone, Debug, Default)]

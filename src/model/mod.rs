@@ -11,8 +11,21 @@ pub use forces::{ContactForces, Forces};
 pub use link::{LinkKind, LinkLaw, MaxwellRow};
 pub use state::{Mode, State};
 
-use crate::math::spline::Spline;
-use crate::scene::{Initial, Scene};
+use crate::math::Spline;
+use crate::scene::{Initial, Scene, Surface};
+
+/// The profile at one place.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SurfacePoint {
+    /// z_r, m.
+    pub height: f64,
+    /// s = z_r', 1.
+    pub slope: f64,
+    /// κ = z_r'', 1/m.
+    pub curvature: f64,
+    /// z_r''', 1/m²: constant between two data points.
+    pub third: f64,
+}
 
 /// A scene as numbers: what stays the same through a run.
 #[derive(Clone, Debug)]
@@ -53,7 +66,7 @@ impl Model {
             rest_z: (0..k).map(|i| layer.clearance + roughness(i)).collect(),
             links: links.map(|link| LinkLaw::new(link.as_ref())),
             rows: link::maxwell_rows(links, k),
-            profile: scene.surface.spline(),
+            profile: profile(&scene.surface),
             friction_coefficient: friction.and_then(|f| f.coulomb).unwrap_or(0.0),
             shear_force: friction.and_then(|f| f.shear_force).unwrap_or(0.0),
             has_friction: friction.is_some(),
@@ -64,6 +77,13 @@ impl Model {
     /// Number of masses k.
     pub fn masses(&self) -> usize {
         self.rest_x.len()
+    }
+
+    /// The profile at the place `x`, m.
+    #[inline]
+    pub fn ground(&self, x: f64) -> SurfacePoint {
+        let (height, slope, curvature, third) = self.profile.evaluate(x);
+        SurfacePoint { height, slope, curvature, third }
     }
 
     /// Number of Maxwell variables of the whole layer.
@@ -88,5 +108,13 @@ impl Model {
         let frequency = (self.glassy_stiffness() / self.mass).sqrt();
         let damping = self.links.iter().map(|link| link.damping).fold(0.0, f64::max) / self.mass;
         [frequency, damping].into_iter().find(|&rate| rate > 0.0).unwrap_or(1.0)
+    }
+}
+
+fn profile(surface: &Surface) -> Spline {
+    if surface.periodic {
+        Spline::periodic(&surface.x, &surface.z)
+    } else {
+        Spline::natural(&surface.x, &surface.z)
     }
 }

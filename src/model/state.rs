@@ -1,6 +1,6 @@
 //! The layer's state.
 
-use crate::math::spline::SurfacePoint;
+use super::SurfacePoint;
 
 /// How a mass stands to the surface. Each mode's inequality is what holds as long as the mode lasts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
