@@ -61,7 +61,7 @@ mod tests {
 
     /// The same integral by Gauss's rule with two points on many intervals.
     fn quadrature(z: f64, theta: f64, m: i32) -> f64 {
-        let n = 4000;
+        let n = 20_000;
         let h = theta / f64::from(n);
         let half = 0.5 / 3.0_f64.sqrt();
         let f = |s: f64| (-z * (theta - s)).exp() * s.powi(m);

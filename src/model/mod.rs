@@ -4,11 +4,13 @@
 mod carrier;
 mod forces;
 mod link;
+mod power;
 mod state;
 
 pub use carrier::{Carrier, CarrierPoint};
 pub use forces::{ContactForces, Forces};
 pub use link::{LinkKind, LinkLaw, MaxwellRow};
+pub use power::{Power, elastic_energy, kinetic_energy};
 pub use state::{Mode, State};
 
 use crate::math::Spline;
@@ -46,7 +48,7 @@ pub struct Model {
     pub friction_coefficient: f64,
     /// Adhesive shear force A τ_0 of a mass in contact, N.
     pub shear_force: f64,
-    /// Whether contacts can stick: the scene names a friction law.
+    /// Whether contacts can stick: a part of the friction law is not zero.
     pub has_friction: bool,
     /// How the dashpots start.
     pub initial: Initial,
@@ -69,7 +71,7 @@ impl Model {
             profile: profile(&scene.surface),
             friction_coefficient: friction.and_then(|f| f.coulomb).unwrap_or(0.0),
             shear_force: friction.and_then(|f| f.shear_force).unwrap_or(0.0),
-            has_friction: friction.is_some(),
+            has_friction: friction.is_some_and(|f| [f.coulomb, f.shear_force].iter().flatten().any(|&part| part > 0.0)),
             initial: layer.initial,
         }
     }
