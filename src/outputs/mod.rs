@@ -2,4 +2,4 @@
 
 mod variables;
 
-pub use variables::{Kind, Output, Variable, variables};
+pub use variables::{Kind, Output, Variable, unit_of, variables};

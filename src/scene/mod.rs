@@ -7,6 +7,7 @@ mod parameters;
 mod reader;
 mod unit;
 
+use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 pub use error::SceneError;
@@ -205,4 +206,17 @@ pub struct Path {
     pub amplitude: f64,
     /// Frequency of the sine, Hz.
     pub frequency: f64,
+}
+
+impl Path {
+    /// How far the motion has come a time `s` (s) after its start, m.
+    pub fn displacement(self, s: f64) -> f64 {
+        self.rate * s + self.amplitude * (TAU * self.frequency * s).sin()
+    }
+
+    /// The velocity a time `s` (s) after the start, m/s.
+    pub fn velocity(self, s: f64) -> f64 {
+        let omega = TAU * self.frequency;
+        self.rate + self.amplitude * omega * (omega * s).cos()
+    }
 }
