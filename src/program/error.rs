@@ -13,28 +13,16 @@ pub(crate) enum ProgramError {
     Scene(#[from] SceneError),
     /// A parameter of the command line is refused.
     #[error("--set {key}={value}: {source}")]
-    Parameter {
-        key: String,
-        value: String,
-        source: ParameterError,
-    },
+    Parameter { key: String, value: String, source: ParameterError },
     /// The run cannot begin.
     #[error("the run cannot start: {0}")]
     Start(SimulationError),
     /// The run could not go on.
     #[error("{source}; the rows so far, up to t = {time} s, are in {}", .output.display())]
-    Run {
-        source: SimulationError,
-        time: f64,
-        output: PathBuf,
-    },
+    Run { source: SimulationError, time: f64, output: PathBuf },
     /// A file cannot be read or written.
     #[error("cannot {action} {}: {source}", .path.display())]
-    File {
-        action: &'static str,
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    File { action: &'static str, path: PathBuf, source: std::io::Error },
     /// A result file is not one.
     #[error("{}: {message}", .path.display())]
     ResultFile { path: PathBuf, message: String },
@@ -59,10 +47,7 @@ pub(crate) enum ProgramError {
     Archive(#[from] zip::result::ZipError),
     /// A document of the archive cannot be written.
     #[error("cannot write {document}: {source}")]
-    Document {
-        document: &'static str,
-        source: std::io::Error,
-    },
+    Document { document: &'static str, source: std::io::Error },
 }
 
 impl ProgramError {

@@ -1,6 +1,6 @@
 //! The excitation of a scene, followed phase by phase.
 
-use asperity::scene::{Path, Phase, Scene};
+use asperity::scene::{Phase, Scene};
 use asperity::simulation::{Motion, Simulation, SimulationError, Start};
 
 use super::warn;
@@ -86,10 +86,6 @@ impl Run {
 impl Carrier {
     /// The carrier a time `s` after the start of `phase`, which began here.
     fn moved(self, phase: &Phase, s: f64) -> Self {
-        Self {
-            time: self.time + s,
-            u: self.u + phase.u.displacement(s),
-            w: self.w + phase.w.displacement(s),
-        }
+        Self { time: self.time + s, u: self.u + phase.u.displacement(s), w: self.w + phase.w.displacement(s) }
     }
 }

@@ -42,9 +42,8 @@ fn set_parameters(scene: &mut Scene, set: &[(String, String)]) -> Result<(), Pro
 fn record(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<(), ProgramError> {
     let shown = recorder.history.as_ref().map_or_else(|| scene.clone(), |history| history.scene().clone());
     let mut run = Run::new(&shown, command.points).map_err(ProgramError::Start)?;
-    run.follow(&scene.excitation, |carrier, simulation| recorder.row(carrier, simulation)).map_err(|source| {
-        ProgramError::Run { source, time: recorder.time, output: command.output.clone() }
-    })
+    run.follow(&scene.excitation, |carrier, simulation| recorder.row(carrier, simulation))
+        .map_err(|source| ProgramError::Run { source, time: recorder.time, output: command.output.clone() })
 }
 
 /// Takes the rows of a run: into the file, the plot and the progress bar.

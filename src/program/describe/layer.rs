@@ -52,9 +52,10 @@ fn link((name, link, count): LinkKind<'_>) -> String {
 }
 
 fn elements(link: &Link) -> String {
-    let texts = link.maxwell.iter().map(|element| {
-        format!("{} N/m at {} s", number(element.stiffness), number(element.relaxation_time))
-    });
+    let texts = link
+        .maxwell
+        .iter()
+        .map(|element| format!("{} N/m at {} s", number(element.stiffness), number(element.relaxation_time)));
     let texts: Vec<_> = texts.collect();
     if texts.is_empty() { String::new() } else { format!(": {}", texts.join(", ")) }
 }

@@ -64,7 +64,10 @@ fn friction(scene: &Scene) -> Vec<Row> {
 }
 
 fn outputs(scene: &Scene) -> Vec<Row> {
-    under("Outputs", OutputGroup::ALL.into_iter().map(|group| format!("{:<13}{}", group.name(), group_text(scene, group))))
+    under(
+        "Outputs",
+        OutputGroup::ALL.into_iter().map(|group| format!("{:<13}{}", group.name(), group_text(scene, group))),
+    )
 }
 
 fn group_text(scene: &Scene, group: OutputGroup) -> String {

@@ -61,9 +61,7 @@ fn table(head: &[&str], rows: &[[String; 4]]) -> io::Result<String> {
 
 fn row<'a>(html: &mut Xml, cell: &str, mut texts: impl Iterator<Item = &'a str>) -> io::Result<()> {
     html.create_element("tr").write_inner_content(|html| {
-        texts.try_for_each(|text| {
-            html.create_element(cell).write_text_content(BytesText::new(text)).map(drop)
-        })
+        texts.try_for_each(|text| html.create_element(cell).write_text_content(BytesText::new(text)).map(drop))
     })?;
     Ok(())
 }

@@ -14,7 +14,8 @@ pub(super) fn write(xml: &mut Xml, variables: &[Variable], parameters: &[Paramet
         .chain(parameters.iter().map(|parameter| parameter.unit()))
         .chain([Unit::Meter])
         .collect();
-    xml.create_element("UnitDefinitions").write_inner_content(|xml| used.into_iter().try_for_each(|unit| one(xml, unit)))?;
+    xml.create_element("UnitDefinitions")
+        .write_inner_content(|xml| used.into_iter().try_for_each(|unit| one(xml, unit)))?;
     Ok(())
 }
 

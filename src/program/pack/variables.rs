@@ -29,10 +29,8 @@ pub(super) fn write(xml: &mut Xml, scene: &Scene, variables: &[Variable], parame
 }
 
 fn input(xml: &mut Xml, reference: u32, name: &str, description: &str) -> io::Result<()> {
-    let element = scalar(xml, reference, name, description).with_attributes([
-        ("causality", "input"),
-        ("variability", "continuous"),
-    ]);
+    let element = scalar(xml, reference, name, description)
+        .with_attributes([("causality", "input"), ("variability", "continuous")]);
     element.write_inner_content(|xml| real_type(xml, Unit::Meter, Some(0.0)))?;
     Ok(())
 }
@@ -64,7 +62,7 @@ fn fixed(xml: &mut Xml, reference: u32, scene: &Scene, parameter: Parameter) -> 
     Ok(())
 }
 
-fn scalar<'a>(xml: &'a mut Xml, reference: u32, name: &'a str, description: &str) -> ElementWriter<'a, Vec<u8>> {
+fn scalar<'a>(xml: &'a mut Xml, reference: u32, name: &str, description: &str) -> ElementWriter<'a, Vec<u8>> {
     xml.create_element("ScalarVariable")
         .with_attribute(("name", name))
         .with_attribute(("valueReference", reference.to_string().as_str()))

@@ -69,7 +69,7 @@ impl Chart {
         let mut context = ChartBuilder::on(&plot)
             .margin(6)
             .margin_right(24)
-            .x_label_area_size(52)
+            .x_label_area_size(44)
             .y_label_area_size(LEFT_MARGIN)
             .build_cartesian_2d(self.x.low..self.x.high, self.y.low..self.y.high)?;
         self.draw_axes(&mut context)?;

@@ -20,10 +20,8 @@ pub(crate) fn plot_files(command: &Plot) -> Result<(), ProgramError> {
     }
     let lines = command.files.iter().enumerate().map(|(i, path)| file_lines(command, i, path));
     let lines: Vec<Vec<Line>> = lines.collect::<Result<_, _>>()?;
-    draw(command, &chart(command, lines.concat())).map_err(|error| ProgramError::Picture {
-        path: command.output.clone(),
-        message: error.to_string(),
-    })
+    draw(command, &chart(command, lines.concat()))
+        .map_err(|error| ProgramError::Picture { path: command.output.clone(), message: error.to_string() })
 }
 
 fn file_lines(command: &Plot, index: usize, path: &Path) -> Result<Vec<Line>, ProgramError> {
@@ -96,8 +94,9 @@ mod tests {
 
     #[test]
     fn columns_have_the_units_of_their_variables() {
-        assert_eq!([unit("u"), unit("F_x"), unit("element[12].z"), unit("contact.count"), unit("?")], [
-            "m", "N", "m", "", ""
-        ]);
+        assert_eq!(
+            [unit("u"), unit("F_x"), unit("element[12].z"), unit("contact.count"), unit("?")],
+            ["m", "N", "m", "", ""]
+        );
     }
 }

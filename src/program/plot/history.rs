@@ -83,9 +83,11 @@ impl History {
     }
 
     fn lines(&self, shows: fn(&Output) -> bool) -> impl Iterator<Item = Line> {
-        self.variables.iter().enumerate().filter(move |(_, variable)| shows(&variable.output)).map(|(i, variable)| Line {
-            name: variable.name.clone(),
-            points: self.times.iter().zip(&self.rows).map(|(&time, row)| (time, row[i])).collect(),
+        self.variables.iter().enumerate().filter(move |(_, variable)| shows(&variable.output)).map(|(i, variable)| {
+            Line {
+                name: variable.name.clone(),
+                points: self.times.iter().zip(&self.rows).map(|(&time, row)| (time, row[i])).collect(),
+            }
         })
     }
 }
