@@ -12,8 +12,8 @@ pub(crate) enum ProgramError {
     #[error(transparent)]
     Scene(#[from] SceneError),
     /// A parameter of the command line is refused.
-    #[error("--set {key}={value}: {source}")]
-    Parameter { key: String, value: String, source: ParameterError },
+    #[error("--set: {0}")]
+    Parameter(#[from] ParameterError),
     /// The run cannot begin.
     #[error("the run cannot start: {0}")]
     Start(SimulationError),

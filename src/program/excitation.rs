@@ -86,6 +86,6 @@ impl Run {
 impl Carrier {
     /// The carrier a time `s` after the start of `phase`, which began here.
     fn moved(self, phase: &Phase, s: f64) -> Self {
-        Self { time: self.time + s, u: self.u + phase.u.displacement(s), w: self.w + phase.w.displacement(s) }
+        Self { time: self.time + s, u: self.u + phase.u.at(s), w: self.w + phase.w.at(s) }
     }
 }

@@ -29,14 +29,7 @@ pub(crate) fn simulate(command: &Simulate) -> Result<(), ProgramError> {
 }
 
 fn set_parameters(scene: &mut Scene, set: &[(String, String)]) -> Result<(), ProgramError> {
-    for (key, value) in set {
-        scene.set_by_name(key, value).map_err(|source| ProgramError::Parameter {
-            key: key.clone(),
-            value: value.clone(),
-            source,
-        })?;
-    }
-    Ok(())
+    Ok(set.iter().try_for_each(|(key, value)| scene.set_by_name(key, value))?)
 }
 
 fn record(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<(), ProgramError> {

@@ -212,14 +212,14 @@ pub struct Path {
 }
 
 impl Path {
-    /// How far the motion has come a time `s` (s) after its start, m.
-    pub fn displacement(self, s: f64) -> f64 {
-        self.rate * s + self.amplitude * (TAU * self.frequency * s).sin()
+    /// The displacement since the start at `time` (s) after it, m.
+    pub fn at(&self, time: f64) -> f64 {
+        self.rate * time + self.amplitude * (TAU * self.frequency * time).sin()
     }
 
-    /// The velocity a time `s` (s) after the start, m/s.
-    pub fn velocity(self, s: f64) -> f64 {
+    /// The velocity at `time` (s) after the start, m/s.
+    pub fn velocity(&self, time: f64) -> f64 {
         let omega = TAU * self.frequency;
-        self.rate + self.amplitude * omega * (omega * s).cos()
+        self.rate + self.amplitude * omega * (omega * time).cos()
     }
 }

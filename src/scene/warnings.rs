@@ -51,11 +51,6 @@ impl Reach {
 }
 
 impl Path {
-    /// The displacement since the start at `time` (s) after it, m.
-    pub fn at(&self, time: f64) -> f64 {
-        self.rate * time + self.amplitude * (std::f64::consts::TAU * self.frequency * time).sin()
-    }
-
     /// Bounds of the displacement up to `duration`, s.
     fn reach(&self, duration: f64) -> Reach {
         let drift = self.rate * duration;

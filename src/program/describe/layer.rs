@@ -1,8 +1,8 @@
 //! The layer, its order and the profile in a description.
 
-use asperity::scene::{Link, Scene, Surface};
+use asperity::scene::{Link, Parameter, Scene, Surface};
 
-use super::{LEFT_OUT, Row, initial, number, or_left_out, under};
+use super::{LEFT_OUT, Row, number, or_left_out, under, word};
 
 /// A kind of link: its name, the links of that kind, their number.
 type LinkKind<'a> = (&'static str, Option<&'a Link>, usize);
@@ -25,7 +25,7 @@ fn masses(scene: &Scene) -> String {
         number(layer.spacing),
         number(layer.origin),
         number(layer.clearance),
-        initial(layer.initial)
+        word(scene, Parameter::Initial)
     )
 }
 

@@ -6,7 +6,7 @@ use std::io::Write as _;
 use std::path::Path as FilePath;
 
 use asperity::outputs::variables;
-use asperity::scene::{Extrapolation, Initial, Method, OutputGroup, Path, Phase, Scene};
+use asperity::scene::{Extrapolation, OutputGroup, Parameter, Path, Phase, Scene, Value};
 use asperity::simulation::{Simulation, Start};
 
 use super::arguments::Describe;
@@ -82,18 +82,12 @@ fn group_text(scene: &Scene, group: OutputGroup) -> String {
 }
 
 fn solver(scene: &Scene) -> String {
-    let solver = &scene.solver;
-    let method = match solver.method {
-        Method::Event => "event",
-    };
-    let absolute = solver.absolute_tolerance.map_or_else(
-        || "relative_tolerance times the scene's height".into(),
-        |tolerance| format!("{} m", number(tolerance)),
-    );
     format!(
-        "method {method}, relative_tolerance {}, absolute_tolerance {absolute}, max_steps {}",
-        number(solver.relative_tolerance),
-        solver.max_steps
+        "method {}, relative_tolerance {}, absolute_tolerance {} m, max_steps {}",
+        word(scene, Parameter::Method),
+        number(scene.solver.relative_tolerance),
+        number(scene.absolute_tolerance()),
+        scene.solver.max_steps
     )
 }
 
@@ -130,10 +124,10 @@ fn path_text(name: &str, path: &Path) -> String {
     text
 }
 
-/// How the dashpots start, in a word.
-fn initial(initial: Initial) -> &'static str {
-    match initial {
-        Initial::Relaxed => "relaxed",
-        Initial::Undeformed => "undeformed",
+/// The word that the scene gives for `parameter`.
+fn word(scene: &Scene, parameter: Parameter) -> String {
+    match scene.parameter(parameter) {
+        Value::Text(word) => word,
+        other => other.to_string(),
     }
 }

@@ -2,64 +2,58 @@
 
 use std::io;
 
-use asperity::outputs::variables;
-use asperity::scene::{Scene, Unit, Value};
+use asperity::fmi::{Catalogue, Entry, Kind};
+use asperity::scene::Scene;
 use quick_xml::Writer;
 use quick_xml::escape::escape;
 use quick_xml::events::BytesText;
 
-use super::model_description::{Xml, clean, real};
+use super::model_description::{Xml, clean};
 use super::parts::PAGE;
+use super::{units, variables};
 
 /// Fills the page in: `{{name}}`, `{{description}}`, `{{variables}}` and `{{parameters}}` stand for what they say.
-pub(super) fn write(scene: &Scene) -> io::Result<Vec<u8>> {
+pub(super) fn write(scene: &Scene, catalogue: &Catalogue) -> io::Result<Vec<u8>> {
     let description = clean(scene.description.as_deref().unwrap_or_default());
     let fields = [
         ("{{name}}", escape(clean(&scene.name)).into_owned()),
         ("{{description}}", escape(description).into_owned()),
         ("{{version}}", env!("CARGO_PKG_VERSION").to_owned()),
-        ("{{variables}}", table(&["Name", "Causality", "Unit", "Description"], &variable_rows(scene))?),
-        ("{{parameters}}", table(&["Name", "Start", "Unit", "Description"], &parameter_rows(scene))?),
+        ("{{variables}}", table(&["Name", "Causality", "Unit", "Description"], &variable_rows(catalogue))?),
+        ("{{parameters}}", table(&["Name", "Start", "Unit", "Description"], &parameter_rows(scene, catalogue))?),
     ];
     Ok(fields.iter().fold(PAGE.to_owned(), |page, (field, text)| page.replace(field, text)).into_bytes())
 }
 
-fn variable_rows(scene: &Scene) -> Vec<[String; 4]> {
-    let inputs = [("u", "Displacement of the carrier along x"), ("w", "Displacement of the carrier along z")];
-    let inputs = inputs.map(|(name, text)| [name.into(), "input".into(), "m".into(), text.into()]);
-    let outputs = variables(scene).into_iter().map(|variable| {
-        let causality = if super::variables::is_output(&variable) { "output" } else { "local" };
-        [variable.name, causality.into(), unit(variable.unit), variable.description]
-    });
-    inputs.into_iter().chain(outputs).collect()
+fn variable_rows(catalogue: &Catalogue) -> Vec<[String; 4]> {
+    let entries = catalogue.entries().map(|(_, entry)| entry).filter(|entry| !is_parameter(entry));
+    entries.map(|entry| row(&entry, variables::causality(&entry).into())).collect()
 }
 
-fn parameter_rows(scene: &Scene) -> Vec<[String; 4]> {
-    let row = |parameter: asperity::scene::Parameter| {
-        let (start, unit) = match scene.parameter(parameter) {
-            Value::Real(value) => (real(value), unit(parameter.unit())),
-            Value::Integer(value) => (value.to_string(), String::new()),
-            Value::Text(value) => (value, String::new()),
-        };
-        [parameter.name(), start, unit, parameter.description()]
-    };
-    scene.parameters().into_iter().map(row).collect()
+fn parameter_rows(scene: &Scene, catalogue: &Catalogue) -> Vec<[String; 4]> {
+    let entries = catalogue.entries().map(|(_, entry)| entry).filter(is_parameter);
+    entries.map(|entry| row(&entry, variables::start(scene, &entry).unwrap_or_default())).collect()
 }
 
-fn unit(unit: Unit) -> String {
-    unit.name().to_owned()
+fn is_parameter(entry: &Entry<'_>) -> bool {
+    matches!(entry, Entry::Parameter(..))
+}
+
+fn row(entry: &Entry<'_>, second: String) -> [String; 4] {
+    let unit = if entry.kind() == Kind::Real { units::of(entry).name() } else { "" };
+    [entry.name(), second, unit.into(), variables::description(entry)]
 }
 
 fn table(head: &[&str], rows: &[[String; 4]]) -> io::Result<String> {
     let mut html = Writer::new_with_indent(Vec::new(), b' ', 1);
     html.create_element("table").write_inner_content(|html| {
-        row(html, "th", head.iter().copied())?;
-        rows.iter().try_for_each(|cells| row(html, "td", cells.iter().map(String::as_str)))
+        table_row(html, "th", head.iter().copied())?;
+        rows.iter().try_for_each(|cells| table_row(html, "td", cells.iter().map(String::as_str)))
     })?;
     String::from_utf8(html.into_inner()).map_err(io::Error::other)
 }
 
-fn row<'a>(html: &mut Xml, cell: &str, mut texts: impl Iterator<Item = &'a str>) -> io::Result<()> {
+fn table_row<'a>(html: &mut Xml, cell: &str, mut texts: impl Iterator<Item = &'a str>) -> io::Result<()> {
     html.create_element("tr").write_inner_content(|html| {
         texts.try_for_each(|text| html.create_element(cell).write_text_content(BytesText::new(text)).map(drop))
     })?;

@@ -11,6 +11,7 @@ mod variables;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
+use asperity::fmi::{Catalogue, SCENE_FILE, Sources, guid};
 use asperity::scene::Scene;
 
 use super::arguments::Pack;
@@ -32,7 +33,7 @@ pub(crate) fn pack(command: &Pack) -> Result<(), ProgramError> {
     let scene = super::load(&command.scene)?;
     let mut entries = vec![binary(&scene, command.library.as_deref())?];
     entries.extend(resources(&scene, &command.scene)?);
-    entries.extend(documents(&scene)?);
+    entries.extend(documents(&scene, &command.scene)?);
     let bytes = archive::zip(entries)?;
     fs::write(&command.output, bytes).map_err(ProgramError::file("write", &command.output))
 }
@@ -56,7 +57,7 @@ fn default_library() -> PathBuf {
 /// The scene, under a fixed name, and what it reads.
 fn resources(scene: &Scene, path: &Path) -> Result<Vec<Entry>, ProgramError> {
     let folder = path.parent().unwrap_or(Path::new(""));
-    let mut entries = vec![Entry::new("resources/scene.toml".into(), read(path)?)];
+    let mut entries = vec![Entry::new(format!("resources/{SCENE_FILE}"), read(path)?)];
     for file in &scene.files {
         entries.push(Entry::new(format!("resources/{}", archive_path(file)?), read(&folder.join(file))?));
     }
@@ -72,10 +73,14 @@ fn archive_path(file: &Path) -> Result<String, ProgramError> {
     Ok(parts.collect::<Result<Vec<_>, _>>()?.join("/"))
 }
 
-fn documents(scene: &Scene) -> Result<Vec<Entry>, ProgramError> {
+fn documents(scene: &Scene, path: &Path) -> Result<Vec<Entry>, ProgramError> {
     let document = |document, source| ProgramError::Document { document, source };
-    let description = model_description::write(scene).map_err(|error| document("modelDescription.xml", error))?;
-    let index = documentation::write(scene).map_err(|error| document("documentation/index.html", error))?;
+    let catalogue = Catalogue::new(scene);
+    let guid = guid(&Sources::read(path, scene).map_err(ProgramError::file("read", path))?, &catalogue);
+    let description = model_description::write(scene, &catalogue, &guid);
+    let description = description.map_err(|error| document("modelDescription.xml", error))?;
+    let index = documentation::write(scene, &catalogue);
+    let index = index.map_err(|error| document("documentation/index.html", error))?;
     let parts = PARTS.iter().map(|(name, text)| Entry::new((*name).into(), text.as_bytes().to_vec()));
     let written = [("modelDescription.xml", description), ("documentation/index.html", index)];
     Ok(written.into_iter().map(|(name, bytes)| Entry::new(name.into(), bytes)).chain(parts).collect())

@@ -2,9 +2,8 @@
 
 use std::io;
 
-use asperity::fmi::{LOG_CATEGORIES, guid};
-use asperity::outputs::{Variable, variables};
-use asperity::scene::{Parameter, Scene};
+use asperity::fmi::{CAPABILITIES, Catalogue, Category, Entry};
+use asperity::scene::Scene;
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 
@@ -14,36 +13,24 @@ use super::{units, variables as scalar_variables};
 /// A document in the making.
 pub(super) type Xml = Writer<Vec<u8>>;
 
-/// What the unit can do, beyond the standard's defaults.
-const CAPABILITIES: [&str; 4] = [
-    "canHandleVariableCommunicationStepSize",
-    "canInterpolateInputs",
-    "canNotUseMemoryManagementFunctions",
-    "canGetAndSetFMUstate",
-];
-
 /// Communication steps that the default experiment takes, roughly.
 const DEFAULT_STEPS: f64 = 500.0;
 
-/// Position of the first output in `ModelVariables`, counted from 1: u and w come first.
-const FIRST_OUTPUT: usize = 3;
-
-/// Writes the description of `scene`.
-pub(super) fn write(scene: &Scene) -> io::Result<Vec<u8>> {
+/// Writes the description of `scene`, whose variables are in `catalogue`.
+pub(super) fn write(scene: &Scene, catalogue: &Catalogue, guid: &str) -> io::Result<Vec<u8>> {
     let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
     xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
-    let (variables, parameters) = (variables(scene), scene.parameters());
     let description = clean(scene.description.as_deref().unwrap_or_default());
     let root = xml
         .create_element("fmiModelDescription")
         .with_attribute(("fmiVersion", "2.0"))
         .with_attribute(("modelName", clean(&scene.name).as_str()))
-        .with_attribute(("guid", guid(scene).as_str()))
+        .with_attribute(("guid", guid))
         .with_attributes(Some(("description", description.as_str())).filter(|_| !description.is_empty()))
         .with_attribute(("generationTool", concat!("asperity ", env!("CARGO_PKG_VERSION"))))
         .with_attribute(("variableNamingConvention", "structured"))
         .with_attribute(("numberOfEventIndicators", "0"));
-    root.write_inner_content(|xml| content(xml, scene, &variables, &parameters))?;
+    root.write_inner_content(|xml| content(xml, scene, catalogue))?;
     let mut bytes = xml.into_inner();
     bytes.push(b'\n');
     Ok(bytes)
@@ -54,28 +41,28 @@ pub(super) fn clean(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
-fn content(xml: &mut Xml, scene: &Scene, variables: &[Variable], parameters: &[Parameter]) -> io::Result<()> {
+fn content(xml: &mut Xml, scene: &Scene, catalogue: &Catalogue) -> io::Result<()> {
     co_simulation(xml, scene)?;
-    units::write(xml, variables, parameters)?;
+    units::write(xml, catalogue)?;
     log_categories(xml)?;
     default_experiment(xml, scene)?;
-    scalar_variables::write(xml, scene, variables, parameters)?;
-    model_structure(xml, scene, variables)
+    scalar_variables::write(xml, scene, catalogue)?;
+    model_structure(xml, scene, catalogue)
 }
 
 fn co_simulation(xml: &mut Xml, scene: &Scene) -> io::Result<()> {
     xml.create_element("CoSimulation")
         .with_attribute(("modelIdentifier", scene.model_identifier().as_str()))
-        .with_attributes(CAPABILITIES.map(|name| (name, "true")))
+        .with_attributes(CAPABILITIES)
         .write_empty()?;
     Ok(())
 }
 
 fn log_categories(xml: &mut Xml) -> io::Result<()> {
     xml.create_element("LogCategories").write_inner_content(|xml| {
-        LOG_CATEGORIES.iter().try_for_each(|(name, description)| {
-            let category = xml.create_element("Category").with_attribute(("name", *name));
-            category.with_attribute(("description", *description)).write_empty().map(drop)
+        Category::ALL.into_iter().try_for_each(|category| {
+            let element = xml.create_element("Category").with_attribute(("name", category.name()));
+            element.with_attribute(("description", category.description())).write_empty().map(drop)
         })
     })?;
     Ok(())
@@ -111,31 +98,38 @@ pub(super) fn real(value: f64) -> String {
     if near { format!("{value}") } else { format!("{value:e}") }
 }
 
-fn model_structure(xml: &mut Xml, scene: &Scene, variables: &[Variable]) -> io::Result<()> {
-    let unknowns = || (FIRST_OUTPUT..).zip(variables).filter(|(_, variable)| scalar_variables::is_output(variable));
+fn model_structure(xml: &mut Xml, scene: &Scene, catalogue: &Catalogue) -> io::Result<()> {
+    let outputs = |(reference, entry)| match entry {
+        Entry::Output(_, variable) if scalar_variables::is_output(variable) => Some((reference, variable)),
+        _ => None,
+    };
+    let unknowns = || catalogue.entries().filter_map(outputs);
     let structure = xml.create_element("ModelStructure");
     if unknowns().next().is_none() {
         return structure.write_empty().map(drop);
     }
     structure.write_inner_content(|xml| {
         xml.create_element("Outputs").write_inner_content(|xml| {
-            unknowns().try_for_each(|(index, variable)| output(xml, index, dependencies::of(scene, variable.output)))
+            unknowns()
+                .try_for_each(|(reference, variable)| output(xml, reference, dependencies::of(scene, variable.output)))
         })?;
         // Without dependencies named: at the start everything may depend on inputs and parameters alike.
         xml.create_element("InitialUnknowns")
-            .write_inner_content(|xml| unknowns().try_for_each(|(index, _)| unknown(xml, index, None)))?;
+            .write_inner_content(|xml| unknowns().try_for_each(|(reference, _)| unknown(xml, reference, None)))?;
         Ok(())
     })?;
     Ok(())
 }
 
-fn output(xml: &mut Xml, index: usize, dependencies: Dependencies) -> io::Result<()> {
+fn output(xml: &mut Xml, reference: u32, dependencies: Dependencies) -> io::Result<()> {
     let names = [("1", dependencies.on_u), ("2", dependencies.on_w)];
     let names: Vec<_> = names.into_iter().filter(|(_, depends)| *depends).map(|(name, _)| name).collect();
-    unknown(xml, index, Some(&names.join(" ")))
+    unknown(xml, reference, Some(&names.join(" ")))
 }
 
-fn unknown(xml: &mut Xml, index: usize, dependencies: Option<&str>) -> io::Result<()> {
+/// The standard counts the variables from 1 here; value references count them from 0.
+fn unknown(xml: &mut Xml, reference: u32, dependencies: Option<&str>) -> io::Result<()> {
+    let index = reference + 1;
     let unknown = xml.create_element("Unknown").with_attribute(("index", index.to_string().as_str()));
     unknown.with_attributes(dependencies.map(|names| ("dependencies", names))).write_empty().map(drop)
 }

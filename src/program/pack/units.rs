@@ -3,20 +3,27 @@
 use std::collections::BTreeSet;
 use std::io;
 
-use asperity::outputs::Variable;
-use asperity::scene::{Parameter, Unit};
+use asperity::fmi::{Catalogue, Entry, Kind};
+use asperity::scene::Unit;
 
 use super::model_description::Xml;
 
 /// Writes `UnitDefinitions`: each unit that a variable has, by its exponents of the SI's base units.
-pub(super) fn write(xml: &mut Xml, variables: &[Variable], parameters: &[Parameter]) -> io::Result<()> {
-    let used: BTreeSet<Unit> = (variables.iter().map(|variable| variable.unit))
-        .chain(parameters.iter().map(|parameter| parameter.unit()))
-        .chain([Unit::Meter])
-        .collect();
+pub(super) fn write(xml: &mut Xml, catalogue: &Catalogue) -> io::Result<()> {
+    let reals = catalogue.entries().map(|(_, entry)| entry).filter(|entry| entry.kind() == Kind::Real);
+    let used: BTreeSet<Unit> = reals.map(|entry| of(&entry)).collect();
     xml.create_element("UnitDefinitions")
         .write_inner_content(|xml| used.into_iter().try_for_each(|unit| one(xml, unit)))?;
     Ok(())
+}
+
+/// The unit of a variable.
+pub(super) fn of(entry: &Entry<'_>) -> Unit {
+    match entry {
+        Entry::Input(_) => Unit::Meter,
+        Entry::Output(_, variable) => variable.unit,
+        Entry::Parameter(parameter, _) => parameter.unit(),
+    }
 }
 
 fn one(xml: &mut Xml, unit: Unit) -> io::Result<()> {
