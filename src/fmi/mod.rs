@@ -1,1 +1,40 @@
-//! fmi
+//! The FMU: the C interface of FMI 2.0 for co-simulation around a [`Simulation`](crate::simulation::Simulation).
+//!
+//! The exports check what a C caller can get wrong and then call a method of an instance in safe Rust. What may be called
+//! when is one table, what a value reference means is one [`Catalogue`], which the writer of the model description uses
+//! too. Two files hold unsafe code: `exports` (raw pointers in) and `callbacks` (the master's logger).
+
+mod callbacks;
+mod carrier;
+mod catalogue;
+mod clock;
+mod exports;
+mod fault;
+mod guid;
+mod instance;
+mod lifecycle;
+mod log;
+mod memory;
+mod panics;
+mod resources;
+mod run;
+mod values;
+
+#[cfg_attr(feature = "verify-bindings", path = "verify.rs")]
+#[rustfmt::skip]
+pub mod bindings;
+
+pub use catalogue::{Catalogue, Entry, Input, Kind};
+pub use exports::*;
+pub use guid::{Sources, guid};
+pub use log::Category;
+pub use resources::SCENE_FILE;
+
+/// The capabilities that the model description claims, as attributes of its element `CoSimulation`; those left out are
+/// false.
+pub const CAPABILITIES: [(&str, &str); 4] = [
+    ("canHandleVariableCommunicationStepSize", "true"),
+    ("canInterpolateInputs", "true"),
+    ("canGetAndSetFMUstate", "true"),
+    ("canNotUseMemoryManagementFunctions", "true"),
+];

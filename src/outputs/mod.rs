@@ -4,4 +4,4 @@ mod moment;
 mod variables;
 
 pub use moment::{Accounts, Counters, Energies, Moment};
-pub use variables::{Kind, Output, Variable, variables};
+pub use variables::{Kind, Output, Variable, unit_of, variables};

@@ -2,15 +2,26 @@
 //!
 //! Every field is in SI units. A feature that the scene does not name is `None` or empty, and costs nothing at run time.
 
+mod allowed;
+mod derived;
 mod error;
+mod excitation;
+mod layer;
 mod parameters;
+mod points;
+mod profile_file;
 mod reader;
+mod settings;
+mod surface;
+mod table;
 mod unit;
+mod warnings;
 
+use std::f64::consts::TAU;
 use std::path::PathBuf;
 
-pub use error::SceneError;
-pub use parameters::{Parameter, ParameterError, Value};
+pub use error::{Problem, SceneError};
+pub use parameters::{LinkKind, Parameter, ParameterError, Value};
 pub use unit::Unit;
 
 /// A whole scene, checked.
@@ -137,9 +148,10 @@ pub enum Method {
 }
 
 /// How the carrier moves when a master gives values alone.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Extrapolation {
     /// On, as it came.
+    #[default]
     Linear,
     /// To the value given, reached at the end of the step.
     Hold,
@@ -171,15 +183,7 @@ impl OutputGroup {
 
     /// The group's name in a scene file.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Forces => "forces",
-            Self::Dissipation => "dissipation",
-            Self::Friction => "friction",
-            Self::Contact => "contact",
-            Self::Energy => "energy",
-            Self::Solver => "solver",
-            Self::Elements => "elements",
-        }
+        allowed::OUTPUTS.word(self)
     }
 }
 
@@ -205,4 +209,17 @@ pub struct Path {
     pub amplitude: f64,
     /// Frequency of the sine, Hz.
     pub frequency: f64,
+}
+
+impl Path {
+    /// The displacement since the start at `time` (s) after it, m.
+    pub fn at(&self, time: f64) -> f64 {
+        self.rate * time + self.amplitude * (TAU * self.frequency * time).sin()
+    }
+
+    /// The velocity at `time` (s) after the start, m/s.
+    pub fn velocity(&self, time: f64) -> f64 {
+        let omega = TAU * self.frequency;
+        self.rate + self.amplitude * omega * (omega * time).cos()
+    }
 }

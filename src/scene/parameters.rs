@@ -1,12 +1,58 @@
 //! The parameters of a scene by name: what an FMU or `--set` may change before a run.
 
-use super::{Scene, Unit};
+mod access;
+mod by_name;
+#[cfg(test)]
+mod tests;
+
+use std::fmt;
+
+use super::{Layer, Link, Problem, Scene, Unit};
 
 /// One settable number or word of a scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Parameter {
+    /// `layer.clearance`
+    Clearance,
     /// `layer.mass`
     Mass,
+    /// `layer.initial`
+    Initial,
+    /// `layer.vertical.stiffness` and so on
+    Stiffness(LinkKind),
+    /// `layer.vertical.damping` and so on
+    Damping(LinkKind),
+    /// `layer.vertical.maxwell[1].stiffness` and so on; the element counted from 0
+    MaxwellStiffness(LinkKind, usize),
+    /// `layer.vertical.maxwell[1].relaxation_time` and so on; the element counted from 0
+    RelaxationTime(LinkKind, usize),
+    /// `friction.coulomb`
+    Coulomb,
+    /// `friction.shear_force`
+    ShearForce,
+    /// `solver.method`
+    Method,
+    /// `solver.relative_tolerance`
+    RelativeTolerance,
+    /// `solver.absolute_tolerance`; follows the relative one until it is set itself
+    AbsoluteTolerance,
+    /// `solver.max_steps`
+    MaxSteps,
+    /// `input.extrapolation`
+    Extrapolation,
+}
+
+/// The four kinds of links.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum LinkKind {
+    /// Carrier to mass, along z.
+    Vertical,
+    /// Carrier to mass, along x.
+    Horizontal,
+    /// Mass to mass, along x.
+    LateralX,
+    /// Mass to mass, along z.
+    LateralZ,
 }
 
 /// A parameter's value.
@@ -20,44 +66,168 @@ pub enum Value {
     Text(String),
 }
 
-/// Why a parameter's value is refused.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("not yet")]
-pub struct ParameterError;
+/// Why a parameter's value, or its name, is refused.
+///
+/// It reads like `layer.mass = -1.0: expected a number > 0`.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}", problem.about(name))]
+pub struct ParameterError {
+    name: String,
+    problem: Problem,
+}
+
+impl ParameterError {
+    /// The name of the parameter, as it was given.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What was given and what is allowed.
+    pub fn problem(&self) -> &Problem {
+        &self.problem
+    }
+}
+
+impl LinkKind {
+    /// The kinds in the order of the scene's keys.
+    pub const ALL: [Self; 4] = [Self::Vertical, Self::Horizontal, Self::LateralX, Self::LateralZ];
+
+    /// The name of the link's table in `[layer]`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Vertical => "vertical",
+            Self::Horizontal => "horizontal",
+            Self::LateralX => "lateral_x",
+            Self::LateralZ => "lateral_z",
+        }
+    }
+
+    /// What the link joins, in a few words.
+    pub fn description(self) -> &'static str {
+        match self {
+            Self::Vertical => "vertical link (carrier to mass)",
+            Self::Horizontal => "horizontal link (carrier to mass)",
+            Self::LateralX => "lateral link along x (mass to mass)",
+            Self::LateralZ => "lateral link along z (mass to mass)",
+        }
+    }
+}
+
+impl Layer {
+    /// The link of a kind, if the scene has it.
+    pub fn link(&self, kind: LinkKind) -> Option<&Link> {
+        match kind {
+            LinkKind::Vertical => self.vertical.as_ref(),
+            LinkKind::Horizontal => self.horizontal.as_ref(),
+            LinkKind::LateralX => self.lateral_x.as_ref(),
+            LinkKind::LateralZ => self.lateral_z.as_ref(),
+        }
+    }
+
+    fn link_mut(&mut self, kind: LinkKind) -> Option<&mut Link> {
+        match kind {
+            LinkKind::Vertical => self.vertical.as_mut(),
+            LinkKind::Horizontal => self.horizontal.as_mut(),
+            LinkKind::LateralX => self.lateral_x.as_mut(),
+            LinkKind::LateralZ => self.lateral_z.as_mut(),
+        }
+    }
+}
 
 impl Parameter {
     /// The key's path, elements of lists counted from 1: `layer.vertical.maxwell[1].stiffness`.
     pub fn name(self) -> String {
-        String::new()
+        match self {
+            Self::Clearance => "layer.clearance".into(),
+            Self::Mass => "layer.mass".into(),
+            Self::Initial => "layer.initial".into(),
+            Self::Stiffness(link) => format!("layer.{}.stiffness", link.name()),
+            Self::Damping(link) => format!("layer.{}.damping", link.name()),
+            Self::MaxwellStiffness(link, j) => format!("layer.{}.maxwell[{}].stiffness", link.name(), j + 1),
+            Self::RelaxationTime(link, j) => format!("layer.{}.maxwell[{}].relaxation_time", link.name(), j + 1),
+            Self::Coulomb => "friction.coulomb".into(),
+            Self::ShearForce => "friction.shear_force".into(),
+            Self::Method => "solver.method".into(),
+            Self::RelativeTolerance => "solver.relative_tolerance".into(),
+            Self::AbsoluteTolerance => "solver.absolute_tolerance".into(),
+            Self::MaxSteps => "solver.max_steps".into(),
+            Self::Extrapolation => "input.extrapolation".into(),
+        }
     }
 
-    /// The unit of a Real parameter.
+    /// The unit of a Real parameter; 1 for the others.
     pub fn unit(self) -> Unit {
-        Unit::One
+        match self {
+            Self::Clearance | Self::AbsoluteTolerance => Unit::Meter,
+            Self::Mass => Unit::Kilogram,
+            Self::Stiffness(_) | Self::MaxwellStiffness(..) => Unit::NewtonPerMeter,
+            Self::Damping(_) => Unit::NewtonSecondPerMeter,
+            Self::RelaxationTime(..) => Unit::Second,
+            Self::ShearForce => Unit::Newton,
+            Self::Coulomb | Self::RelativeTolerance => Unit::One,
+            Self::Initial | Self::Method | Self::MaxSteps | Self::Extrapolation => Unit::One,
+        }
     }
 
     /// What it is, in a few words.
     pub fn description(self) -> String {
-        String::new()
+        match self {
+            Self::Clearance => "Rest height of the layer above the profile's datum at w = 0".into(),
+            Self::Mass => "Mass of one point mass".into(),
+            Self::Initial => "How the dashpots start: relaxed or undeformed".into(),
+            Self::Stiffness(link) => format!("Stiffness of the {}", link.description()),
+            Self::Damping(link) => format!("Damping of the {}", link.description()),
+            Self::MaxwellStiffness(link, j) => {
+                format!("Stiffness of Maxwell element {} of the {}", j + 1, link.description())
+            }
+            Self::RelaxationTime(link, j) => {
+                format!("Relaxation time of Maxwell element {} of the {}", j + 1, link.description())
+            }
+            Self::Coulomb => "Coulomb's friction coefficient".into(),
+            Self::ShearForce => "Adhesive shear force of one mass in contact".into(),
+            Self::Method => "How mode changes are treated: event locates every one".into(),
+            Self::RelativeTolerance => "Relative tolerance of the local error".into(),
+            Self::AbsoluteTolerance => {
+                "Absolute tolerance of places; follows the relative one until it is set itself".into()
+            }
+            Self::MaxSteps => "Steps that one communication step or one phase may take".into(),
+            Self::Extrapolation => "How the carrier moves when no rates are given: linear or hold".into(),
+        }
+    }
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Real(number) => write!(f, "{number:?}"),
+            Self::Integer(number) => write!(f, "{number}"),
+            Self::Text(word) => write!(f, "{word:?}"),
+        }
     }
 }
 
 impl Scene {
     /// The parameters that this scene has, in the order of the scene's keys.
     pub fn parameters(&self) -> Vec<Parameter> {
-        Vec::new()
+        use Parameter::{AbsoluteTolerance, Extrapolation, MaxSteps, Method, RelativeTolerance};
+        let mut parameters = vec![Parameter::Clearance, Parameter::Mass, Parameter::Initial];
+        for kind in LinkKind::ALL {
+            parameters.extend(self.layer.link(kind).into_iter().flat_map(|link| link_parameters(kind, link)));
+        }
+        let friction = self.friction.clone().unwrap_or_default();
+        parameters.extend(friction.coulomb.map(|_| Parameter::Coulomb));
+        parameters.extend(friction.shear_force.map(|_| Parameter::ShearForce));
+        parameters.extend([Method, RelativeTolerance, AbsoluteTolerance, MaxSteps, Extrapolation]);
+        parameters
     }
+}
 
-    /// The value of `parameter`.
-    pub fn parameter(&self, _parameter: Parameter) -> Value {
-        Value::Real(0.0)
+fn link_parameters(kind: LinkKind, link: &Link) -> Vec<Parameter> {
+    let mut parameters = Vec::new();
+    parameters.extend(link.stiffness.map(|_| Parameter::Stiffness(kind)));
+    parameters.extend(link.damping.map(|_| Parameter::Damping(kind)));
+    for j in 0..link.maxwell.len() {
+        parameters.extend([Parameter::MaxwellStiffness(kind, j), Parameter::RelaxationTime(kind, j)]);
     }
-
-    /// Gives `parameter` a value.
-    ///
-    /// # Errors
-    /// [`ParameterError`] where the value is of the wrong type or out of range; the scene is then as it was.
-    pub fn set_parameter(&mut self, _parameter: Parameter, _value: Value) -> Result<(), ParameterError> {
-        Ok(())
-    }
+    parameters
 }

@@ -1,15 +1,86 @@
 //! From TOML text to a [`Scene`].
 
+use std::fs;
 use std::path::Path;
 
-use super::{Scene, SceneError};
+use toml::de::DeTable;
+
+use super::error::Place;
+use super::surface::read_surface;
+use super::table::{Entry, Source, TableReader};
+use super::{Problem, Scene, SceneError, excitation, layer, settings, warnings};
+
+const KEYS: [&str; 9] = ["name", "description", "layer", "surface", "friction", "solver", "input", "fmu", "excitation"];
+const LATER: [&str; 1] = ["material"];
 
 impl Scene {
     /// Reads the scene file at `path` and the files that it names.
     ///
     /// # Errors
-    /// See [`SceneError`].
-    pub fn load(_path: &Path) -> Result<Self, SceneError> {
-        Err(SceneError)
+    /// [`SceneError`] with the file, the line, the key, what was given and what is allowed.
+    pub fn load(path: &Path) -> Result<Self, SceneError> {
+        Self::parse(&read_text(path)?, path)
     }
+
+    /// Reads a scene from `text` as if it stood in `file`, beside which the files that it names are looked for.
+    ///
+    /// # Errors
+    /// As for [`load`](Self::load).
+    pub fn parse(text: &str, file: &Path) -> Result<Self, SceneError> {
+        let source = Source { file, text: text.strip_prefix('\u{feff}').unwrap_or(text) };
+        let document = source.parse()?;
+        read_scene(source, document.get_ref())
+    }
+}
+
+fn read_text(path: &Path) -> Result<String, SceneError> {
+    fs::read_to_string(path).map_err(|error| {
+        let problem = Problem::Unreadable { given: String::new(), reason: error.to_string() };
+        SceneError::new(Place { file: path.to_owned(), line: None }, "", problem)
+    })
+}
+
+fn read_scene(source: Source<'_>, document: &DeTable<'_>) -> Result<Scene, SceneError> {
+    let mut root = TableReader::root(source, document);
+    root.allow(&KEYS, &LATER)?;
+    let name = read_name(&root.required("name", "a text")?)?;
+    let description = root.entry("description").map(|entry| read_description(&entry)).transpose()?;
+    let mut files = Vec::new();
+    let layer = layer::read_layer(&root.required("layer", "a table")?, &mut files)?;
+    let surface = read_surface(&root.required("surface", "a table")?, &mut files)?;
+    let friction = root.optional_table("friction", settings::read_friction)?;
+    let solver = root.optional_table("solver", settings::read_solver)?.unwrap_or_default();
+    let extrapolation = root.optional_table("input", settings::read_input)?.unwrap_or_default();
+    let outputs = root.optional_table("fmu", settings::read_fmu)?.unwrap_or_else(settings::default_outputs);
+    let excitation = root.tables("excitation", excitation::read_phase)?;
+    root.finish()?;
+    let warnings = warnings::warnings(&layer, &surface, &excitation);
+    Ok(Scene {
+        name,
+        description,
+        layer,
+        surface,
+        friction,
+        solver,
+        extrapolation,
+        outputs,
+        excitation,
+        files,
+        warnings,
+    })
+}
+
+/// The name ends up in XML attributes and, changed into an identifier, in file names.
+fn read_name(entry: &Entry<'_>) -> Result<String, SceneError> {
+    let expected = "a text, not empty and without control characters";
+    let name = entry.text(expected)?;
+    let legal = !name.trim().is_empty() && !name.contains(char::is_control);
+    if legal { Ok(name.to_owned()) } else { Err(entry.refuse(expected)) }
+}
+
+fn read_description(entry: &Entry<'_>) -> Result<String, SceneError> {
+    let expected = "a text without control characters but line breaks and tabs";
+    let description = entry.text(expected)?;
+    let illegal = |letter: char| letter.is_control() && !"\n\r\t".contains(letter);
+    if description.contains(illegal) { Err(entry.refuse(expected)) } else { Ok(description.to_owned()) }
 }

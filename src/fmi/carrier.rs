@@ -1,0 +1,186 @@
+//! The carrier's motion between communication points: û is continuous and runs straight to a target.
+
+use crate::scene::{Extrapolation, Path};
+use crate::simulation::{Motion, Start};
+
+use super::catalogue::Input;
+use super::fault::Fault;
+
+/// The carrier as the master moves it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Carrier {
+    axes: [Axis; 2],
+}
+
+/// One displacement of the carrier.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Axis {
+    /// u_n, m: the input's value.
+    value: f64,
+    /// u̇_n, m/s, if the master gave it for the next step.
+    rate: Option<f64>,
+    /// û, m: where the model's carrier stands.
+    position: f64,
+    /// The communication step before.
+    past: Option<Past>,
+}
+
+/// A communication step that is done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Past {
+    /// u_{n-1}, m: the input at its start.
+    value: f64,
+    /// h_{n-1}, s: its size.
+    step: f64,
+}
+
+impl Carrier {
+    /// The value of an input.
+    pub(super) fn input(&self, input: Input) -> f64 {
+        self.axes[input as usize].value
+    }
+
+    /// Gives an input a value.
+    pub(super) fn set_input(&mut self, input: Input, value: f64) {
+        self.axes[input as usize].value = value;
+    }
+
+    /// Gives an input a first derivative for the next step.
+    pub(super) fn set_rate(&mut self, input: Input, rate: f64) {
+        self.axes[input as usize].rate = Some(rate);
+    }
+
+    /// The carrier at the start: it stands where the inputs say and moves at the derivatives given, else not at all.
+    pub(super) fn start(&self, time: f64) -> Start {
+        let [u, w] = &self.axes;
+        Start { time, u: u.value, w: w.value, u_rate: u.rate.unwrap_or_default(), w_rate: w.rate.unwrap_or_default() }
+    }
+
+    /// The carrier once the run has started. The derivatives stay: they are those of the first step, too, unless the
+    /// master gives others.
+    pub(super) fn started(mut self) -> Self {
+        for axis in &mut self.axes {
+            axis.position = axis.value;
+        }
+        self
+    }
+
+    /// The motion over a step of `h` from `time`, and the carrier after it.
+    ///
+    /// # Errors
+    /// [`Fault::InputNotFinite`] where a value or a derivative is not a finite number.
+    pub(super) fn step(&self, time: f64, h: f64, rule: Extrapolation) -> Result<(Motion, Self), Fault> {
+        let mut after = *self;
+        let mut paths = [Path::default(); 2];
+        for input in Input::ALL {
+            let axis = &self.axes[input as usize];
+            let target = axis.finite_target(input, time, h, rule)?;
+            paths[input as usize].rate = (target - axis.position) / h;
+            after.axes[input as usize] = axis.moved(target, h);
+        }
+        let [u, w] = paths;
+        Ok((Motion { duration: h, u, w }, after))
+    }
+}
+
+impl Axis {
+    /// Where û stands at the end of a step of `h`.
+    fn target(&self, h: f64, rule: Extrapolation) -> f64 {
+        match (self.rate, rule, self.past) {
+            (Some(rate), _, _) => self.value + h * rate,
+            (None, Extrapolation::Linear, Some(past)) => self.value + (self.value - past.value) * (h / past.step),
+            (None, Extrapolation::Linear, None) | (None, Extrapolation::Hold, _) => self.value,
+        }
+    }
+
+    fn finite_target(&self, input: Input, time: f64, h: f64, rule: Extrapolation) -> Result<f64, Fault> {
+        let target = self.target(h, rule);
+        match [self.value, target].into_iter().find(|value| !value.is_finite()) {
+            Some(value) => Err(Fault::InputNotFinite { name: input.name(), value, time }),
+            None => Ok(target),
+        }
+    }
+
+    fn moved(&self, target: f64, h: f64) -> Self {
+        Self { value: self.value, rate: None, position: target, past: Some(Past { value: self.value, step: h }) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(value: f64) -> Carrier {
+        let mut carrier = Carrier::default();
+        carrier.set_input(Input::U, value);
+        carrier.started()
+    }
+
+    fn step(carrier: &mut Carrier, h: f64, rule: Extrapolation) -> Motion {
+        let (motion, after) = carrier.step(0.0, h, rule).unwrap();
+        *carrier = after;
+        motion
+    }
+
+    #[test]
+    fn the_first_step_without_rates_goes_to_the_value_given() {
+        let mut carrier = at(1.0);
+        carrier.set_input(Input::U, 3.0);
+        assert_eq!(step(&mut carrier, 0.5, Extrapolation::Linear).u.rate, 4.0);
+        assert_eq!(carrier.axes[0].position, 3.0);
+    }
+
+    #[test]
+    fn linear_extrapolation_follows_a_steady_motion_from_the_second_step_on() {
+        let mut carrier = at(0.0);
+        step(&mut carrier, 1.0, Extrapolation::Linear);
+        carrier.set_input(Input::U, 2.0);
+        step(&mut carrier, 0.5, Extrapolation::Linear);
+        assert_eq!(carrier.axes[0].position, 3.0);
+        carrier.set_input(Input::U, 3.0);
+        assert_eq!(step(&mut carrier, 0.5, Extrapolation::Linear).u.rate, 2.0);
+        assert_eq!(carrier.axes[0].position, 4.0);
+    }
+
+    #[test]
+    fn hold_lags_by_one_step_and_never_overshoots() {
+        let mut carrier = at(0.0);
+        for value in [1.0, 2.0, 2.0] {
+            carrier.set_input(Input::U, value);
+            step(&mut carrier, 1.0, Extrapolation::Hold);
+            assert_eq!(carrier.axes[0].position, value);
+        }
+    }
+
+    #[test]
+    fn a_rate_counts_for_one_step_and_its_own_input() {
+        let mut carrier = at(0.0);
+        carrier.set_rate(Input::U, 2.0);
+        let motion = step(&mut carrier, 0.5, Extrapolation::Linear);
+        assert_eq!((motion.u.rate, motion.w.rate), (2.0, 0.0));
+        carrier.set_input(Input::U, 1.0);
+        // 1 + (1 - 0)·0.25/0.5
+        assert_eq!(step(&mut carrier, 0.25, Extrapolation::Linear).u.rate, 2.0);
+        assert_eq!(carrier.axes[0].position, 1.5);
+    }
+
+    #[test]
+    fn rates_before_the_start_are_the_starting_velocity_and_those_of_the_first_step() {
+        let mut carrier = Carrier::default();
+        carrier.set_rate(Input::W, -0.1);
+        assert_eq!(carrier.start(2.0), Start { time: 2.0, w_rate: -0.1, ..Start::default() });
+        let mut carrier = carrier.started();
+        assert_eq!(step(&mut carrier, 0.5, Extrapolation::Linear).w.rate, -0.1);
+        assert_eq!(step(&mut carrier, 0.5, Extrapolation::Hold).w.rate, 0.1);
+    }
+
+    #[test]
+    fn values_and_rates_that_are_not_finite_stop_the_step() {
+        let mut carrier = at(f64::NAN);
+        assert!(carrier.step(0.0, 1.0, Extrapolation::Linear).is_err());
+        carrier.set_input(Input::U, 0.0);
+        carrier.set_rate(Input::U, f64::INFINITY);
+        let fault = carrier.step(0.0, 1.0, Extrapolation::Linear).unwrap_err();
+        assert_eq!(fault.to_string(), "the input u is inf at t = 0 s: no step can be done");
+    }
+}

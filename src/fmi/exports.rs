@@ -1,0 +1,591 @@
+//! The functions of FMI 2.0 for co-simulation, all 34, as a master calls them.
+//!
+//! # Safety
+//!
+//! All of them rest on the standard's contract: a component is NULL or came from [`fmi2Instantiate`] and is not freed, and
+//! one thread at a time uses it; a pointer to data is NULL or valid for as many elements as the call says; a string is NULL
+//! or ends with a zero. NULL is answered everywhere; nothing else that breaks the contract can be seen from here.
+#![allow(unsafe_code, non_snake_case, non_upper_case_globals, clippy::missing_safety_doc)]
+
+use std::ffi::{CStr, c_char};
+use std::{ptr, slice};
+
+use crate::scene::Value;
+
+use super::bindings::*;
+use super::callbacks::Callbacks;
+use super::fault::Fault;
+use super::instance::Instance;
+use super::lifecycle::Function;
+use super::log::Message;
+use super::panics::guard;
+
+/// What a component points to.
+struct Component {
+    instance: Instance,
+    callbacks: Callbacks,
+}
+
+/// The prologue of every function that takes an instance: NULL, the lifecycle and panics are dealt with here, and what
+/// there is to say is said at the end, when the instance is no longer borrowed.
+unsafe fn call(
+    component: fmi2Component,
+    function: Function,
+    body: impl FnOnce(&mut Instance) -> Result<(), Fault>,
+) -> fmi2Status {
+    let component = component.cast::<Component>();
+    if component.is_null() {
+        return fmi2Status_fmi2Error;
+    }
+    let (status, messages) = {
+        // SAFETY: not NULL, so a component that lives and that no other thread uses, by the contract.
+        let instance = unsafe { &mut (*component).instance };
+        (instance.call(function, body), instance.take_messages())
+    };
+    if !messages.is_empty() {
+        // SAFETY: as above; the callbacks are never borrowed mutably.
+        unsafe { &(*component).callbacks }.deliver(messages);
+    }
+    status.into()
+}
+
+/// An array that the master passes; NULL is an empty one.
+unsafe fn array<'a, T>(name: &'static str, pointer: *const T, length: usize) -> Result<&'a [T], Fault> {
+    match length {
+        0 => Ok(&[]),
+        _ if pointer.is_null() => Err(Fault::Null(name)),
+        // SAFETY: not NULL, so `length` elements by the contract.
+        _ => Ok(unsafe { slice::from_raw_parts(pointer, length) }),
+    }
+}
+
+/// An array that the master wants filled; NULL is an empty one.
+unsafe fn array_mut<'a, T>(name: &'static str, pointer: *mut T, length: usize) -> Result<&'a mut [T], Fault> {
+    match length {
+        0 => Ok(&mut []),
+        _ if pointer.is_null() => Err(Fault::Null(name)),
+        // SAFETY: not NULL, so `length` elements by the contract.
+        _ => Ok(unsafe { slice::from_raw_parts_mut(pointer, length) }),
+    }
+}
+
+/// A place for one value.
+unsafe fn place<'a, T>(name: &'static str, pointer: *mut T) -> Result<&'a mut T, Fault> {
+    // SAFETY: NULL or valid by the contract.
+    unsafe { pointer.as_mut() }.ok_or(Fault::Null(name))
+}
+
+/// Gives the master one value.
+unsafe fn put<T>(pointer: *mut T, value: T) -> Result<(), Fault> {
+    // SAFETY: the contract of this module.
+    *unsafe { place("value", pointer) }? = value;
+    Ok(())
+}
+
+/// A string that the master passes.
+unsafe fn text<'a>(name: &'static str, pointer: fmi2String) -> Result<&'a str, Fault> {
+    if pointer.is_null() {
+        return Err(Fault::Null(name));
+    }
+    // SAFETY: not NULL, so a string that ends with a zero by the contract.
+    unsafe { CStr::from_ptr(pointer) }.to_str().map_err(|_| Fault::NotText(name))
+}
+
+/// Strings that the master passes.
+unsafe fn texts<'a>(name: &'static str, pointer: *const fmi2String, length: usize) -> Result<Vec<&'a str>, Fault> {
+    // SAFETY: the contract holds for the array and for each of its strings.
+    unsafe { array(name, pointer, length)?.iter().map(|&string| text(name, string)).collect() }
+}
+
+/// The platform that the types belong to: "default".
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetTypesPlatform() -> *const c_char {
+    fmi2TypesPlatform.as_ptr().cast()
+}
+const _: fmi2GetTypesPlatformTYPE = Some(fmi2GetTypesPlatform);
+
+/// The version of the standard: "2.0".
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetVersion() -> *const c_char {
+    fmi2Version.as_ptr().cast()
+}
+const _: fmi2GetVersionTYPE = Some(fmi2GetVersion);
+
+/// Asks for categories of messages, or for none.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetDebugLogging(
+    c: fmi2Component,
+    loggingOn: fmi2Boolean,
+    nCategories: usize,
+    categories: *const fmi2String,
+) -> fmi2Status {
+    // SAFETY: the contract of this module.
+    unsafe {
+        call(c, Function::SetDebugLogging, |instance| {
+            instance.set_debug_logging(loggingOn != 0, &texts("categories", categories, nCategories)?)
+        })
+    }
+}
+const _: fmi2SetDebugLoggingTYPE = Some(fmi2SetDebugLogging);
+
+/// Makes an instance; NULL where that fails, with the reason told to the logger.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2Instantiate(
+    instanceName: fmi2String,
+    fmuType: fmi2Type,
+    fmuGUID: fmi2String,
+    fmuResourceLocation: fmi2String,
+    functions: *const fmi2CallbackFunctions,
+    _visible: fmi2Boolean,
+    loggingOn: fmi2Boolean,
+) -> fmi2Component {
+    // SAFETY: the contract of this module.
+    let (callbacks, instance) = unsafe {
+        let name = text("instanceName", instanceName).unwrap_or_default();
+        let instance = guard(|| instantiate(name, fmuType, fmuGUID, fmuResourceLocation, loggingOn != 0));
+        (Callbacks::new(functions, name), instance)
+    };
+    match instance.unwrap_or_else(|panic| Err(Fault::Panic(panic))) {
+        Ok(mut instance) => {
+            callbacks.deliver(instance.take_messages());
+            Box::into_raw(Box::new(Component { instance, callbacks })).cast()
+        }
+        Err(fault) => {
+            let text = format!("fmi2Instantiate: {fault}");
+            callbacks.deliver(vec![Message::of_status(fault.status(), text)]);
+            ptr::null_mut()
+        }
+    }
+}
+const _: fmi2InstantiateTYPE = Some(fmi2Instantiate);
+
+unsafe fn instantiate(
+    name: &str,
+    kind: fmi2Type,
+    guid: fmi2String,
+    location: fmi2String,
+    logging: bool,
+) -> Result<Instance, Fault> {
+    if name.is_empty() {
+        return Err(Fault::NoName);
+    }
+    if kind != fmi2Type_fmi2CoSimulation {
+        return Err(Fault::NotCoSimulation);
+    }
+    if location.is_null() {
+        return Err(Fault::NoLocation);
+    }
+    // SAFETY: the contract of this module.
+    unsafe { Instance::new(text("fmuGUID", guid)?, text("fmuResourceLocation", location)?, logging) }
+}
+
+/// Frees an instance and all FMU states it has handed out; NULL is ignored.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2FreeInstance(c: fmi2Component) {
+    if c.is_null() {
+        return;
+    }
+    // SAFETY: not NULL, so from Box::into_raw in fmi2Instantiate and not freed, by the contract.
+    let component = unsafe { Box::from_raw(c.cast::<Component>()) };
+    // Where a panic comes out of it there is no one left to tell.
+    let _ = guard(|| drop(component));
+}
+const _: fmi2FreeInstanceTYPE = Some(fmi2FreeInstance);
+
+/// Sets tolerance, start time and stop time.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetupExperiment(
+    c: fmi2Component,
+    toleranceDefined: fmi2Boolean,
+    tolerance: fmi2Real,
+    startTime: fmi2Real,
+    stopTimeDefined: fmi2Boolean,
+    stopTime: fmi2Real,
+) -> fmi2Status {
+    let tolerance = (toleranceDefined != 0).then_some(tolerance);
+    let stop = (stopTimeDefined != 0).then_some(stopTime);
+    // SAFETY: the contract of this module.
+    unsafe { call(c, Function::SetupExperiment, |instance| instance.setup_experiment(tolerance, startTime, stop)) }
+}
+const _: fmi2SetupExperimentTYPE = Some(fmi2SetupExperiment);
+
+/// Begins the initialisation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2EnterInitializationMode(c: fmi2Component) -> fmi2Status {
+    // SAFETY: the contract of this module.
+    unsafe { call(c, Function::EnterInitializationMode, Instance::enter_initialization_mode) }
+}
+const _: fmi2EnterInitializationModeTYPE = Some(fmi2EnterInitializationMode);
+
+/// Ends the initialisation: the run starts with the inputs and parameters as they are.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2ExitInitializationMode(c: fmi2Component) -> fmi2Status {
+    // SAFETY: the contract of this module.
+    unsafe { call(c, Function::ExitInitializationMode, Instance::exit_initialization_mode) }
+}
+const _: fmi2ExitInitializationModeTYPE = Some(fmi2ExitInitializationMode);
+
+/// Ends the run.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2Terminate(c: fmi2Component) -> fmi2Status {
+    // SAFETY: the contract of this module.
+    unsafe { call(c, Function::Terminate, Instance::terminate) }
+}
+const _: fmi2TerminateTYPE = Some(fmi2Terminate);
+
+/// Goes back to what fmi2Instantiate gave.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2Reset(c: fmi2Component) -> fmi2Status {
+    // SAFETY: the contract of this module.
+    unsafe { call(c, Function::Reset, Instance::reset) }
+}
+const _: fmi2ResetTYPE = Some(fmi2Reset);
+
+/// Gets Reals.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetReal(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    value: *mut fmi2Real,
+) -> fmi2Status {
+    // SAFETY: the contract of this module.
+    unsafe {
+        call(c, Function::GetReal, |instance| {
+            instance.get_reals(array("vr", vr, nvr)?, array_mut("value", value, nvr)?)
+        })
+    }
+}
+const _: fmi2GetRealTYPE = Some(fmi2GetReal);
+
+/// Gets Integers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetInteger(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    value: *mut fmi2Integer,
+) -> fmi2Status {
+    // SAFETY: the contract of this module.
+    unsafe {
+        call(c, Function::GetInteger, |instance| {
+            instance.get_integers(array("vr", vr, nvr)?, array_mut("value", value, nvr)?)
+        })
+    }
+}
+const _: fmi2GetIntegerTYPE = Some(fmi2GetInteger);
+
+/// Gets Booleans: there are none.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetBoolean(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    _value: *mut fmi2Boolean,
+) -> fmi2Status {
+    // SAFETY: the contract of this module.
+    unsafe { call(c, Function::GetBoolean, |instance| instance.refuse_booleans(array("vr", vr, nvr)?)) }
+}
+const _: fmi2GetBooleanTYPE = Some(fmi2GetBoolean);
+
+/// Gets Strings, which stay until the next call on this instance.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetString(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    value: *mut fmi2String,
+) -> fmi2Status {
+    // SAFETY: the contract of this module.
+    unsafe {
+        call(c, Function::GetString, |instance| {
+            let places = array_mut("value", value, nvr)?;
+            let texts = instance.get_strings(array("vr", vr, nvr)?)?;
+            places.iter_mut().zip(texts).for_each(|(place, text)| *place = text.as_ptr());
+            Ok(())
+        })
+    }
+}
+const _: fmi2GetStringTYPE = Some(fmi2GetString);
+
+/// Sets Reals: inputs, and parameters before the run.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetReal(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    value: *const fmi2Real,
+) -> fmi2Status {
+    // SAFETY: the contract of this module.
+    unsafe {
+        call(c, Function::SetReal, |instance| {
+            let values = array("value", value, nvr)?.iter().map(|&value| Value::Real(value));
+            instance.set(array("vr", vr, nvr)?, values)
+        })
+    }
+}
+const _: fmi2SetRealTYPE = Some(fmi2SetReal);
+
+/// Sets Integers: parameters before the run.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetInteger(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    value: *const fmi2Integer,
+) -> fmi2Status {
+    // SAFETY: the contract of this module.
+    unsafe {
+        call(c, Function::SetInteger, |instance| {
+            let values = array("value", value, nvr)?.iter().map(|&value| Value::Integer(value));
+            instance.set(array("vr", vr, nvr)?, values)
+        })
+    }
+}
+const _: fmi2SetIntegerTYPE = Some(fmi2SetInteger);
+
+/// Sets Booleans: there are none.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetBoolean(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    _value: *const fmi2Boolean,
+) -> fmi2Status {
+    // SAFETY: the contract of this module.
+    unsafe { call(c, Function::SetBoolean, |instance| instance.refuse_booleans(array("vr", vr, nvr)?)) }
+}
+const _: fmi2SetBooleanTYPE = Some(fmi2SetBoolean);
+
+/// Sets Strings: parameters before the run.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetString(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    value: *const fmi2String,
+) -> fmi2Status {
+    // SAFETY: the contract of this module.
+    unsafe {
+        call(c, Function::SetString, |instance| {
+            let values = texts("value", value, nvr)?.into_iter().map(|value| Value::Text(value.into()));
+            instance.set(array("vr", vr, nvr)?, values)
+        })
+    }
+}
+const _: fmi2SetStringTYPE = Some(fmi2SetString);
+
+/// Keeps the whole state of the instance, in a new FMU state or in the place of one.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetFMUstate(c: fmi2Component, FMUstate: *mut fmi2FMUstate) -> fmi2Status {
+    // SAFETY: the contract of this module.
+    unsafe {
+        call(c, Function::GetFmuState, |instance| {
+            let state = place("FMUstate", FMUstate)?;
+            *state = ptr::without_provenance_mut(instance.get_state(state.addr())?);
+            Ok(())
+        })
+    }
+}
+const _: fmi2GetFMUstateTYPE = Some(fmi2GetFMUstate);
+
+/// Goes back to an FMU state.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetFMUstate(c: fmi2Component, FMUstate: fmi2FMUstate) -> fmi2Status {
+    // SAFETY: the contract of this module.
+    unsafe { call(c, Function::SetFmuState, |instance| instance.set_state(FMUstate.addr())) }
+}
+const _: fmi2SetFMUstateTYPE = Some(fmi2SetFMUstate);
+
+/// Frees an FMU state; NULL is ignored.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2FreeFMUstate(c: fmi2Component, FMUstate: *mut fmi2FMUstate) -> fmi2Status {
+    // SAFETY: the contract of this module.
+    unsafe {
+        call(c, Function::FreeFmuState, |instance| {
+            let Some(state) = FMUstate.as_mut() else { return Ok(()) };
+            instance.free_state(state.addr())?;
+            *state = ptr::null_mut();
+            Ok(())
+        })
+    }
+}
+const _: fmi2FreeFMUstateTYPE = Some(fmi2FreeFMUstate);
+
+/// Not yet supported.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SerializedFMUstateSize(
+    c: fmi2Component,
+    _FMUstate: fmi2FMUstate,
+    _size: *mut usize,
+) -> fmi2Status {
+    // SAFETY: the contract of this module.
+    unsafe { call(c, Function::SerializedFmuStateSize, |_| Err(SERIALISATION)) }
+}
+const _: fmi2SerializedFMUstateSizeTYPE = Some(fmi2SerializedFMUstateSize);
+
+/// Not yet supported.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SerializeFMUstate(
+    c: fmi2Component,
+    _FMUstate: fmi2FMUstate,
+    _serializedState: *mut fmi2Byte,
+    _size: usize,
+) -> fmi2Status {
+    // SAFETY: the contract of this module.
+    unsafe { call(c, Function::SerializeFmuState, |_| Err(SERIALISATION)) }
+}
+const _: fmi2SerializeFMUstateTYPE = Some(fmi2SerializeFMUstate);
+
+/// Not yet supported.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
+    c: fmi2Component,
+    _serializedState: *const fmi2Byte,
+    _size: usize,
+    _FMUstate: *mut fmi2FMUstate,
+) -> fmi2Status {
+    // SAFETY: the contract of this module.
+    unsafe { call(c, Function::DeSerializeFmuState, |_| Err(SERIALISATION)) }
+}
+const _: fmi2DeSerializeFMUstateTYPE = Some(fmi2DeSerializeFMUstate);
+
+const SERIALISATION: Fault = Fault::Unsupported("serialising FMU states", "canSerializeFMUstate");
+
+/// Not yet supported.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
+    c: fmi2Component,
+    _vUnknown_ref: *const fmi2ValueReference,
+    _nUnknown: usize,
+    _vKnown_ref: *const fmi2ValueReference,
+    _nKnown: usize,
+    _dvKnown: *const fmi2Real,
+    _dvUnknown: *mut fmi2Real,
+) -> fmi2Status {
+    const FAULT: Fault = Fault::Unsupported("directional derivatives", "providesDirectionalDerivative");
+    // SAFETY: the contract of this module.
+    unsafe { call(c, Function::GetDirectionalDerivative, |_| Err(FAULT)) }
+}
+const _: fmi2GetDirectionalDerivativeTYPE = Some(fmi2GetDirectionalDerivative);
+
+/// Sets first derivatives of inputs for the next step.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    order: *const fmi2Integer,
+    value: *const fmi2Real,
+) -> fmi2Status {
+    // SAFETY: the contract of this module.
+    unsafe {
+        call(c, Function::SetRealInputDerivatives, |instance| {
+            instance.set_rates(array("vr", vr, nvr)?, array("order", order, nvr)?, array("value", value, nvr)?)
+        })
+    }
+}
+const _: fmi2SetRealInputDerivativesTYPE = Some(fmi2SetRealInputDerivatives);
+
+/// Not yet supported.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
+    c: fmi2Component,
+    _vr: *const fmi2ValueReference,
+    _nvr: usize,
+    _order: *const fmi2Integer,
+    _value: *mut fmi2Real,
+) -> fmi2Status {
+    const FAULT: Fault = Fault::Unsupported("a derivative of an output", "maxOutputDerivativeOrder");
+    // SAFETY: the contract of this module.
+    unsafe { call(c, Function::GetRealOutputDerivatives, |_| Err(FAULT)) }
+}
+const _: fmi2GetRealOutputDerivativesTYPE = Some(fmi2GetRealOutputDerivatives);
+
+/// Does a communication step.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2DoStep(
+    c: fmi2Component,
+    currentCommunicationPoint: fmi2Real,
+    communicationStepSize: fmi2Real,
+    _noSetFMUStatePriorToCurrentPoint: fmi2Boolean,
+) -> fmi2Status {
+    // SAFETY: the contract of this module.
+    unsafe { call(c, Function::DoStep, |instance| instance.do_step(currentCommunicationPoint, communicationStepSize)) }
+}
+const _: fmi2DoStepTYPE = Some(fmi2DoStep);
+
+/// Refused in every state: no step runs asynchronously.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2CancelStep(c: fmi2Component) -> fmi2Status {
+    // SAFETY: the contract of this module.
+    unsafe { call(c, Function::CancelStep, |_| Ok(())) }
+}
+const _: fmi2CancelStepTYPE = Some(fmi2CancelStep);
+
+/// What the last step returned.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetStatus(c: fmi2Component, s: fmi2StatusKind, value: *mut fmi2Status) -> fmi2Status {
+    // SAFETY: the contract of this module.
+    unsafe {
+        call(c, Function::GetStatus, |instance| match s {
+            fmi2StatusKind_fmi2DoStepStatus => put(value, instance.last_step().into()),
+            _ => Err(Fault::NoSuchStatus),
+        })
+    }
+}
+const _: fmi2GetStatusTYPE = Some(fmi2GetStatus);
+
+/// The end of the last step that succeeded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetRealStatus(c: fmi2Component, s: fmi2StatusKind, value: *mut fmi2Real) -> fmi2Status {
+    // SAFETY: the contract of this module.
+    unsafe {
+        call(c, Function::GetRealStatus, |instance| match s {
+            fmi2StatusKind_fmi2LastSuccessfulTime => put(value, instance.last_successful_time()),
+            _ => Err(Fault::NoSuchStatus),
+        })
+    }
+}
+const _: fmi2GetRealStatusTYPE = Some(fmi2GetRealStatus);
+
+/// There is no such status.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetIntegerStatus(
+    c: fmi2Component,
+    _s: fmi2StatusKind,
+    _value: *mut fmi2Integer,
+) -> fmi2Status {
+    // SAFETY: the contract of this module.
+    unsafe { call(c, Function::GetIntegerStatus, |_| Err(Fault::NoSuchStatus)) }
+}
+const _: fmi2GetIntegerStatusTYPE = Some(fmi2GetIntegerStatus);
+
+/// Whether the FMU wants the simulation to end: never.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetBooleanStatus(
+    c: fmi2Component,
+    s: fmi2StatusKind,
+    value: *mut fmi2Boolean,
+) -> fmi2Status {
+    // SAFETY: the contract of this module.
+    unsafe {
+        call(c, Function::GetBooleanStatus, |_| match s {
+            fmi2StatusKind_fmi2Terminated => put(value, 0),
+            _ => Err(Fault::NoSuchStatus),
+        })
+    }
+}
+const _: fmi2GetBooleanStatusTYPE = Some(fmi2GetBooleanStatus);
+
+/// There is no such status: no step is ever pending.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetStringStatus(
+    c: fmi2Component,
+    _s: fmi2StatusKind,
+    _value: *mut fmi2String,
+) -> fmi2Status {
+    // SAFETY: the contract of this module.
+    unsafe { call(c, Function::GetStringStatus, |_| Err(Fault::NoSuchStatus)) }
+}
+const _: fmi2GetStringStatusTYPE = Some(fmi2GetStringStatus);

@@ -1,0 +1,235 @@
+//! An instance of the FMU, in safe Rust: the exports call its methods.
+
+use std::ffi::CString;
+use std::sync::Arc;
+
+use crate::outputs::{self, Output, Variable};
+use crate::scene::{OutputGroup, Scene, Unit, Value};
+use crate::simulation::ModeChange;
+
+use super::catalogue::Catalogue;
+use super::clock::Clock;
+use super::fault::{Fault, Status};
+use super::guid::{Sources, guid};
+use super::lifecycle::{Function, State};
+use super::log::{Category, Log, Message};
+use super::memory::Memory;
+use super::panics;
+use super::resources::find_scene;
+use super::run::Run;
+use super::values::Outputs;
+
+/// An instance of the FMU.
+#[derive(Debug)]
+pub(super) struct Instance {
+    pub(super) catalogue: Catalogue,
+    pub(super) run: Run,
+    pub(super) outputs: Outputs,
+    /// What the last fmi2GetString returned.
+    pub(super) texts: Vec<CString>,
+    memory: Memory,
+    log: Log,
+    /// What fmi2Reset goes back to.
+    scene: Arc<Scene>,
+    logging: bool,
+}
+
+impl Instance {
+    /// Reads the scene from the resources at `location` and checks that it is the one that the master thinks it is.
+    pub(super) fn new(given_guid: &str, location: &str, logging: bool) -> Result<Self, Fault> {
+        let path = find_scene(location)?;
+        let scene = Arc::new(Scene::load(&path)?);
+        let catalogue = Catalogue::new(&scene);
+        let own = guid(&Sources::read_from(&path, &scene)?, &catalogue);
+        if given_guid != own {
+            return Err(Fault::Guid { given: given_guid.into(), own });
+        }
+        Ok(Self::of(scene, catalogue, logging))
+    }
+
+    fn of(scene: Arc<Scene>, catalogue: Catalogue, logging: bool) -> Self {
+        let mut log = Log::new(logging);
+        for warning in &scene.warnings {
+            log.add(Message::of_status(Status::Warning, warning.clone()));
+        }
+        Self {
+            catalogue,
+            run: Run::new(Arc::clone(&scene)),
+            outputs: Outputs::default(),
+            texts: Vec::new(),
+            memory: Memory::default(),
+            log,
+            scene,
+            logging,
+        }
+    }
+
+    /// What every call goes through: refused where it is out of place, and no panic leaves it.
+    pub(super) fn call(&mut self, function: Function, body: impl FnOnce(&mut Self) -> Result<(), Fault>) -> Status {
+        let result = panics::guard(|| {
+            function.check(self.run.state)?;
+            body(self)
+        });
+        let result = result.unwrap_or_else(|panic| {
+            self.run.state = State::Fatal;
+            Err(Fault::Panic(panic))
+        });
+        let Err(fault) = result else { return Status::Ok };
+        self.log.add(Message::of_status(fault.status(), format!("{function}: {fault}")));
+        fault.status()
+    }
+
+    /// The messages of the last call.
+    pub(super) fn take_messages(&mut self) -> Vec<Message> {
+        self.log.take()
+    }
+
+    /// fmi2SetDebugLogging
+    pub(super) fn set_debug_logging(&mut self, on: bool, categories: &[&str]) -> Result<(), Fault> {
+        self.log.ask_for(on, categories)?;
+        self.record_events();
+        Ok(())
+    }
+
+    /// fmi2SetupExperiment: the tolerance is the parameter `solver.relative_tolerance`, as if set now.
+    pub(super) fn setup_experiment(
+        &mut self,
+        tolerance: Option<f64>,
+        start: f64,
+        stop: Option<f64>,
+    ) -> Result<(), Fault> {
+        let clock = Clock::new(start, stop)?;
+        if let Some(tolerance) = tolerance {
+            self.set_tolerance(tolerance)?;
+        }
+        self.run.clock = clock;
+        self.run.start_anew();
+        Ok(())
+    }
+
+    fn set_tolerance(&mut self, tolerance: f64) -> Result<(), Fault> {
+        let name = "solver.relative_tolerance";
+        let Some(parameter) = self.catalogue.parameter(name) else { return Ok(()) };
+        let set = Arc::make_mut(&mut self.run.scene).set_parameter(parameter, Value::Real(tolerance));
+        set.map_err(|source| Fault::Parameter { name: name.into(), source })
+    }
+
+    /// fmi2EnterInitializationMode
+    pub(super) fn enter_initialization_mode(&mut self) -> Result<(), Fault> {
+        self.run.state = State::InitializationMode;
+        Ok(())
+    }
+
+    /// fmi2ExitInitializationMode: the layer is put under the carrier.
+    pub(super) fn exit_initialization_mode(&mut self) -> Result<(), Fault> {
+        self.run.start()?;
+        self.record_events();
+        Ok(())
+    }
+
+    /// fmi2DoStep
+    pub(super) fn do_step(&mut self, point: f64, h: f64) -> Result<(), Fault> {
+        self.run.step(point, h)?;
+        self.outputs.outdate();
+        self.tell_events();
+        self.tell_work();
+        Ok(())
+    }
+
+    /// fmi2Terminate
+    pub(super) fn terminate(&mut self) -> Result<(), Fault> {
+        self.run.state = State::Terminated;
+        Ok(())
+    }
+
+    /// fmi2Reset: back to what fmi2Instantiate gave. The FMU states handed out stay the master's to free.
+    pub(super) fn reset(&mut self) -> Result<(), Fault> {
+        self.run = Run::new(Arc::clone(&self.scene));
+        self.outputs.outdate();
+        self.texts.clear();
+        self.log = Log::new(self.logging);
+        Ok(())
+    }
+
+    /// fmi2GetFMUstate: takes and gives the state's handle, 0 for a new one.
+    pub(super) fn get_state(&mut self, handle: usize) -> Result<usize, Fault> {
+        self.memory.keep(handle, &self.run)
+    }
+
+    /// fmi2SetFMUstate
+    pub(super) fn set_state(&mut self, handle: usize) -> Result<(), Fault> {
+        self.run = self.memory.recall(handle)?.clone();
+        self.outputs.outdate();
+        self.record_events();
+        Ok(())
+    }
+
+    /// fmi2FreeFMUstate
+    pub(super) fn free_state(&mut self, handle: usize) -> Result<(), Fault> {
+        self.memory.forget(handle)
+    }
+
+    /// The status of the last step.
+    pub(super) fn last_step(&self) -> Status {
+        self.run.last_step
+    }
+
+    /// The end of the last step that succeeded, s.
+    pub(super) fn last_successful_time(&self) -> f64 {
+        self.run.clock.time
+    }
+
+    /// Mode changes are recorded only while someone listens.
+    fn record_events(&mut self) {
+        let on = self.log.tells(Category::Events);
+        if let (false, Ok(simulation)) = (self.run.state.before_run(), self.run.simulation()) {
+            simulation.record_mode_changes(on);
+        }
+    }
+
+    fn tell_events(&mut self) {
+        if !self.log.tells(Category::Events) {
+            return;
+        }
+        let changes = self.run.simulation().map(|simulation| simulation.take_mode_changes());
+        for change in changes.unwrap_or_default() {
+            self.log.add(Message { status: Status::Ok, category: Category::Events, text: event(&change) });
+        }
+    }
+
+    fn tell_work(&mut self) {
+        let (true, Ok(simulation)) = (self.log.tells(Category::Solver), self.run.simulation()) else { return };
+        let mut values = [0.0; 3];
+        simulation.evaluate(&[Output::Steps, Output::Rejected, Output::Events].map(count), &mut values);
+        let [steps, rejected, events] = values;
+        let time = self.run.clock.time;
+        let text = format!("t = {time} s: {steps} steps, {rejected} rejected, {events} mode changes since the start");
+        self.log.add(Message { status: Status::Ok, category: Category::Solver, text });
+    }
+}
+
+fn event(change: &ModeChange) -> String {
+    let ModeChange { time, mass, from, to } = change;
+    format!("t = {time} s: mass {} from {} to {}", mass + 1, mode(*from), mode(*to))
+}
+
+fn mode(number: i8) -> &'static str {
+    match number {
+        0 => "free",
+        1 => "slipping forwards",
+        -1 => "slipping backwards",
+        _ => "sticking",
+    }
+}
+
+/// A count that is told whether or not the scene has it as an output.
+fn count(output: Output) -> Variable {
+    Variable {
+        output,
+        group: OutputGroup::Solver,
+        name: String::new(),
+        unit: Unit::One,
+        kind: outputs::Kind::Integer,
+        description: String::new(),
+    }
+}

@@ -1,0 +1,90 @@
+//! One run of the FMU: all that an FMU state holds.
+
+use std::sync::Arc;
+
+use crate::scene::Scene;
+use crate::simulation::Simulation;
+
+use super::carrier::Carrier;
+use super::clock::Clock;
+use super::fault::{Fault, Status};
+use super::lifecycle::State;
+
+/// A run, from its parameters to where it stands.
+#[derive(Clone, Debug)]
+pub(super) struct Run {
+    /// The state of the lifecycle.
+    pub(super) state: State,
+    /// The scene with the parameters as set.
+    pub(super) scene: Arc<Scene>,
+    /// The carrier with the inputs as set.
+    pub(super) carrier: Carrier,
+    /// The time and the stop time.
+    pub(super) clock: Clock,
+    /// What the last step returned.
+    pub(super) last_step: Status,
+    /// The simulation; before the run, one that would start as things stand.
+    simulation: Option<Simulation>,
+}
+
+impl Run {
+    /// A run that has not begun.
+    pub(super) fn new(scene: Arc<Scene>) -> Self {
+        Self {
+            state: State::Instantiated,
+            scene,
+            carrier: Carrier::default(),
+            clock: Clock::default(),
+            last_step: Status::Ok,
+            simulation: None,
+        }
+    }
+
+    /// Forgets the simulation that would have started: something it starts from has changed.
+    pub(super) fn start_anew(&mut self) {
+        if self.state.before_run() {
+            self.simulation = None;
+        }
+    }
+
+    /// The simulation. Before the run, outputs are those of a run that starts as things stand.
+    pub(super) fn simulation(&mut self) -> Result<&mut Simulation, Fault> {
+        if self.simulation.is_none() && self.state.before_run() {
+            let start = self.carrier.start(self.clock.time);
+            self.simulation = Some(Simulation::new(&self.scene, &start)?);
+        }
+        self.simulation.as_mut().ok_or(Fault::NoRun)
+    }
+
+    /// Ends the initialisation.
+    pub(super) fn start(&mut self) -> Result<(), Fault> {
+        let result = self.simulation().map(|_| ());
+        self.state = if result.is_ok() { State::StepComplete } else { State::Error };
+        self.carrier = self.carrier.started();
+        result
+    }
+
+    /// Does a step of `h` from `point`. A call with a bad point or size is refused and changes nothing, the lifecycle
+    /// included; a step that fails leaves all but the lifecycle as it was.
+    pub(super) fn step(&mut self, point: f64, h: f64) -> Result<(), Fault> {
+        let result = match self.clock.step(point, h)? {
+            Some(clock) => self.advance(clock, h),
+            None => Ok(()),
+        };
+        self.last_step = result.as_ref().map_or_else(Fault::status, |()| Status::Ok);
+        self.state = match self.last_step {
+            Status::Ok | Status::Warning => State::StepComplete,
+            Status::Discard => State::StepFailed,
+            Status::Error | Status::Fatal => State::Error,
+        };
+        result
+    }
+
+    fn advance(&mut self, clock: Clock, h: f64) -> Result<(), Fault> {
+        let (motion, carrier) = self.carrier.step(self.clock.time, h, self.scene.extrapolation)?;
+        self.simulation()?.advance(&motion)?;
+        self.carrier = carrier;
+        self.clock = clock;
+        Ok(())
+    }
+}

@@ -1,0 +1,159 @@
+//! What is allowed: the ranges of numbers and the words to choose from, for the scene file and for parameters alike.
+
+use std::fmt;
+use std::ops::{Bound, RangeBounds};
+
+use super::{Extrapolation, Initial, Method, OutputGroup, Problem};
+
+/// Finite numbers between two bounds.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Range {
+    low: Bound<f64>,
+    high: Bound<f64>,
+}
+
+/// Whole numbers from `low` to `high`, both included.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct WholeRange {
+    low: i64,
+    high: i64,
+}
+
+/// Words to choose from, and words of features that are still to come.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Choices<T: 'static> {
+    words: &'static [(&'static str, T)],
+    later: &'static [&'static str],
+}
+
+const POSITIVE: Range = Range { low: Bound::Excluded(0.0), high: Bound::Unbounded };
+const NOT_NEGATIVE: Range = Range { low: Bound::Included(0.0), high: Bound::Unbounded };
+const FINITE: Range = Range { low: Bound::Unbounded, high: Bound::Unbounded };
+
+pub(super) const MASSES: WholeRange = WholeRange { low: 1, high: 10_000_000 };
+pub(super) const SPACING: Range = POSITIVE;
+pub(super) const PLACE: Range = FINITE;
+pub(super) const HEIGHT: Range = FINITE;
+pub(super) const MASS: Range = POSITIVE;
+pub(super) const STIFFNESS: Range = NOT_NEGATIVE;
+pub(super) const DAMPING: Range = NOT_NEGATIVE;
+pub(super) const RELAXATION_TIME: Range = POSITIVE;
+pub(super) const WAVELENGTH: Range = POSITIVE;
+pub(super) const POINTS_PER_WAVELENGTH: WholeRange = WholeRange { low: 4, high: 10_000_000 };
+pub(super) const FRICTION_COEFFICIENT: Range = NOT_NEGATIVE;
+pub(super) const SHEAR_FORCE: Range = NOT_NEGATIVE;
+pub(super) const RELATIVE_TOLERANCE: Range = Range { low: Bound::Excluded(0.0), high: Bound::Included(0.1) };
+pub(super) const ABSOLUTE_TOLERANCE: Range = POSITIVE;
+/// FMI's Integer has 32 bits.
+pub(super) const MAX_STEPS: WholeRange = WholeRange { low: 1, high: i32::MAX as i64 };
+pub(super) const DURATION: Range = POSITIVE;
+pub(super) const RATE: Range = FINITE;
+pub(super) const AMPLITUDE: Range = FINITE;
+pub(super) const FREQUENCY: Range = NOT_NEGATIVE;
+pub(super) const FORCE: Range = FINITE;
+
+pub(super) const INITIAL: Choices<Initial> =
+    Choices { words: &[("relaxed", Initial::Relaxed), ("undeformed", Initial::Undeformed)], later: &[] };
+pub(super) const METHOD: Choices<Method> = Choices { words: &[("event", Method::Event)], later: &["step", "auto"] };
+pub(super) const EXTRAPOLATION: Choices<Extrapolation> =
+    Choices { words: &[("linear", Extrapolation::Linear), ("hold", Extrapolation::Hold)], later: &[] };
+pub(super) const SURFACE: Choices<SurfaceKind> = Choices {
+    words: &[
+        ("flat", SurfaceKind::Flat),
+        ("sinusoid", SurfaceKind::Sinusoid),
+        ("points", SurfaceKind::Points),
+        ("file", SurfaceKind::File),
+    ],
+    later: &["self_affine"],
+};
+pub(super) const OUTPUTS: Choices<OutputGroup> = Choices {
+    words: &[
+        ("forces", OutputGroup::Forces),
+        ("dissipation", OutputGroup::Dissipation),
+        ("friction", OutputGroup::Friction),
+        ("contact", OutputGroup::Contact),
+        ("energy", OutputGroup::Energy),
+        ("solver", OutputGroup::Solver),
+        ("elements", OutputGroup::Elements),
+    ],
+    later: &["tangent"],
+};
+
+/// Where the heights of a surface come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum SurfaceKind {
+    Flat,
+    Sinusoid,
+    Points,
+    File,
+}
+
+impl Range {
+    pub(super) fn holds(&self, number: f64) -> bool {
+        number.is_finite() && (self.low, self.high).contains(&number)
+    }
+}
+
+impl WholeRange {
+    pub(super) fn holds(&self, number: i64) -> bool {
+        (self.low..=self.high).contains(&number)
+    }
+}
+
+impl<T: Copy + PartialEq> Choices<T> {
+    /// What `word` stands for, or what is wrong with it as it was `given`.
+    pub(super) fn find(&self, word: &str, given: &str) -> Result<T, Problem> {
+        match self.words.iter().find(|(name, _)| *name == word) {
+            Some(&(_, choice)) => Ok(choice),
+            None if self.later.contains(&word) => {
+                Err(Problem::NotYetSupported { given: given.to_owned(), allowed: self.quoted() })
+            }
+            None => Err(Problem::Value { given: given.to_owned(), expected: self.to_string() }),
+        }
+    }
+
+    /// The word for `choice`.
+    pub(super) fn word(&self, choice: T) -> &'static str {
+        self.words.iter().find(|(_, other)| *other == choice).map_or("", |(word, _)| word)
+    }
+}
+
+impl<T> Choices<T> {
+    fn quoted(&self) -> Vec<String> {
+        self.words.iter().map(|(word, _)| format!("\"{word}\"")).collect()
+    }
+}
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let low = match self.low {
+            Bound::Included(low) => format!(">= {low}"),
+            Bound::Excluded(low) => format!("> {low}"),
+            Bound::Unbounded => String::new(),
+        };
+        let high = match self.high {
+            Bound::Included(high) => format!("<= {high}"),
+            Bound::Excluded(high) => format!("< {high}"),
+            Bound::Unbounded => String::new(),
+        };
+        match (low.is_empty(), high.is_empty()) {
+            (true, true) => write!(f, "a finite number"),
+            (false, false) => write!(f, "a number {low} and {high}"),
+            _ => write!(f, "a number {low}{high}"),
+        }
+    }
+}
+
+impl fmt::Display for WholeRange {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "a whole number from {} to {}", self.low, self.high)
+    }
+}
+
+impl<T> fmt::Display for Choices<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let quoted = self.quoted();
+        let one_of = if quoted.len() > 1 { "one of " } else { "" };
+        write!(f, "{one_of}{}", quoted.join(", "))
+    }
+}

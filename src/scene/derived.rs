@@ -1,0 +1,26 @@
+//! What follows from a scene without a run.
+
+use super::points::peak_to_valley;
+use super::{Scene, Surface};
+
+impl Scene {
+    /// The scene's name as a C identifier: letters, digits and underscores, no digit first.
+    pub fn model_identifier(&self) -> String {
+        let legal = |letter: char| if letter.is_ascii_alphanumeric() { letter } else { '_' };
+        let identifier: String = self.name.chars().map(legal).collect();
+        if identifier.starts_with(|first: char| first.is_ascii_digit()) { format!("_{identifier}") } else { identifier }
+    }
+
+    /// The scene's height, m: the peak-to-valley heights of the profile's data points and of the layer's roughness together,
+    /// the spacing of the masses where both are flat.
+    pub fn height(&self) -> f64 {
+        let Surface { z, .. } = &self.surface;
+        let height = peak_to_valley(z) + peak_to_valley(&self.layer.roughness);
+        if height > 0.0 { height } else { self.layer.spacing }
+    }
+
+    /// The absolute tolerance, m: as it was set, or the relative one times the [`height`](Self::height).
+    pub fn absolute_tolerance(&self) -> f64 {
+        self.solver.absolute_tolerance.unwrap_or_else(|| self.solver.relative_tolerance * self.height())
+    }
+}

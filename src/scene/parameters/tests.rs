@@ -1,0 +1,182 @@
+#![allow(clippy::unwrap_used)]
+
+use std::path::Path;
+
+use super::{Parameter, Value};
+use crate::scene::{Scene, Unit};
+
+const SCENE: &str = r#"
+name = "all"
+[layer]
+masses = 2
+spacing = 1e-4
+mass = 1e-7
+roughness = { kind = "points", z = [0.0, 2e-6] }
+[layer.vertical]
+stiffness = 2000
+maxwell = [{ stiffness = 1000, relaxation_time = 1e-4 }, { stiffness = 500, relaxation_time = 1e-5 }]
+[layer.lateral_x]
+damping = 0.5
+[layer.lateral_z]
+[surface]
+kind = "sinusoid"
+amplitude = 1e-5
+wavelength = 1e-3
+[friction]
+shear_force = 0
+"#;
+
+fn scene() -> Scene {
+    Scene::parse(SCENE, Path::new("all.toml")).unwrap()
+}
+
+fn bare() -> Scene {
+    let text = "name='b'\nlayer = {masses = 1, spacing = 0.5, mass = 1}\nsurface = {kind = 'flat'}";
+    Scene::parse(text, Path::new("bare.toml")).unwrap()
+}
+
+fn refusal(scene: &mut Scene, name: &str, text: &str) -> String {
+    let before = scene.clone();
+    let message = scene.set_by_name(name, text).unwrap_err().to_string();
+    assert_eq!(*scene, before);
+    message
+}
+
+#[test]
+fn has_what_the_scene_names_in_its_order() {
+    let names: Vec<String> = scene().parameters().into_iter().map(Parameter::name).collect();
+    let expected = [
+        "layer.clearance",
+        "layer.mass",
+        "layer.initial",
+        "layer.vertical.stiffness",
+        "layer.vertical.maxwell[1].stiffness",
+        "layer.vertical.maxwell[1].relaxation_time",
+        "layer.vertical.maxwell[2].stiffness",
+        "layer.vertical.maxwell[2].relaxation_time",
+        "layer.lateral_x.damping",
+        "friction.shear_force",
+        "solver.method",
+        "solver.relative_tolerance",
+        "solver.absolute_tolerance",
+        "solver.max_steps",
+        "input.extrapolation",
+    ];
+    assert_eq!(names, expected);
+}
+
+#[test]
+fn a_bare_scene_has_few() {
+    assert_eq!(bare().parameters().len(), 8);
+}
+
+#[test]
+fn gives_values_units_and_descriptions() {
+    let scene = scene();
+    let [time, damping] = ["layer.vertical.maxwell[2].relaxation_time", "layer.lateral_x.damping"]
+        .map(|name| scene.parameter_named(name));
+    assert_eq!(scene.parameter(time.unwrap()), Value::Real(1e-5));
+    assert_eq!(time.unwrap().unit(), Unit::Second);
+    assert_eq!(damping.unwrap().unit(), Unit::NewtonSecondPerMeter);
+    assert_eq!(scene.parameter(Parameter::MaxSteps), Value::Integer(10_000_000));
+    assert_eq!(scene.parameter(Parameter::Method), Value::Text("event".into()));
+    assert_eq!(scene.parameter(Parameter::Initial), Value::Text("relaxed".into()));
+    assert_eq!(scene.parameter(Parameter::Extrapolation), Value::Text("linear".into()));
+    assert!(scene.parameters().iter().all(|parameter| !parameter.description().is_empty()));
+}
+
+#[test]
+fn sets_every_parameter() {
+    let mut scene = scene();
+    for parameter in scene.parameters() {
+        let other = match (parameter, scene.parameter(parameter)) {
+            (_, Value::Real(number)) => Value::Real(0.01 + 0.5 * number),
+            (_, Value::Integer(number)) => Value::Integer(number - 1),
+            (Parameter::Initial, _) => Value::Text("undeformed".into()),
+            (Parameter::Extrapolation, _) => Value::Text("hold".into()),
+            (_, text) => text,
+        };
+        scene.set_parameter(parameter, other.clone()).unwrap();
+        assert_eq!(scene.parameter(parameter), other, "{}", parameter.name());
+    }
+}
+
+#[test]
+fn the_absolute_tolerance_follows_until_it_is_set() {
+    let mut scene = scene();
+    let height = 2e-5 + 2e-6;
+    let absolute = |scene: &Scene| match scene.parameter(Parameter::AbsoluteTolerance) {
+        Value::Real(number) => number,
+        other => unreachable!("{other}"),
+    };
+    assert!((scene.height() - height).abs() < 1e-15);
+    assert!((absolute(&scene) - 1e-6 * height).abs() < 1e-20);
+    scene.set_by_name("solver.relative_tolerance", "1e-9").unwrap();
+    assert!((absolute(&scene) - 1e-9 * height).abs() < 1e-20);
+    scene.set_by_name("solver.absolute_tolerance", "1e-12").unwrap();
+    scene.set_by_name("solver.relative_tolerance", "1e-3").unwrap();
+    assert_eq!(absolute(&scene), 1e-12);
+    assert_eq!(bare().absolute_tolerance(), 1e-6 * 0.5);
+}
+
+#[test]
+fn refuses_what_the_reader_refuses() {
+    let cases = [
+        ("layer.mass", "0", "layer.mass = 0.0: expected a number > 0"),
+        ("layer.mass", "nan", "layer.mass = NaN: expected a number > 0"),
+        ("layer.mass", "heavy", "layer.mass = heavy: expected a number > 0"),
+        ("layer.clearance", "inf", "layer.clearance = inf: expected a finite number"),
+        ("layer.vertical.stiffness", "-1", "layer.vertical.stiffness = -1.0: expected a number >= 0"),
+        ("layer.lateral_x.damping", "-1", "layer.lateral_x.damping = -1.0: expected a number >= 0"),
+        (
+            "layer.vertical.maxwell[1].relaxation_time",
+            "0",
+            "layer.vertical.maxwell[1].relaxation_time = 0.0: expected a number > 0",
+        ),
+        ("solver.relative_tolerance", "1", "solver.relative_tolerance = 1.0: expected a number > 0 and <= 0.1"),
+        ("solver.absolute_tolerance", "0", "solver.absolute_tolerance = 0.0: expected a number > 0"),
+        ("solver.max_steps", "0", "solver.max_steps = 0: expected a whole number from 1 to 2147483647"),
+        ("solver.max_steps", "3e9", "solver.max_steps = 3e9: expected a whole number from 1 to 2147483647"),
+        ("solver.method", "auto", "solver.method = \"auto\": not yet supported; allowed: \"event\""),
+        ("solver.method", "fast", "solver.method = \"fast\": expected \"event\""),
+        ("layer.initial", "cold", "layer.initial = \"cold\": expected one of \"relaxed\", \"undeformed\""),
+        ("input.extrapolation", "no", "input.extrapolation = \"no\": expected one of \"linear\", \"hold\""),
+    ];
+    for (name, text, message) in cases {
+        assert_eq!(refusal(&mut scene(), name, text), message);
+    }
+}
+
+#[test]
+fn refuses_the_wrong_type() {
+    let mut scene = scene();
+    for value in [Value::Integer(1), Value::Text("1".into())] {
+        let message = scene.set_parameter(Parameter::Mass, value).unwrap_err().to_string();
+        assert!(message.ends_with("expected a number > 0"), "{message}");
+    }
+    assert!(scene.set_parameter(Parameter::MaxSteps, Value::Real(1.0)).is_err());
+    assert!(scene.set_parameter(Parameter::Method, Value::Real(1.0)).is_err());
+}
+
+#[test]
+fn an_unknown_name_gets_similar_ones_or_all() {
+    let scene = &mut scene();
+    assert_eq!(refusal(scene, "layer.mas", "1"), "layer.mas: unknown; allowed: layer.mass");
+    assert_eq!(refusal(scene, "max_steps", "1"), "max_steps: unknown; allowed: solver.max_steps");
+    assert!(refusal(scene, "layer.spacing", "1").contains("allowed: layer.clearance, layer.mass, layer.initial, "));
+    assert!(!refusal(scene, "friction.coulomb", "1").contains("= 1"));
+}
+
+#[test]
+fn a_parameter_that_the_scene_lacks_cannot_be_set() {
+    let mut bare = bare();
+    let before = bare.clone();
+    for parameter in scene().parameters() {
+        if !bare.parameters().contains(&parameter) {
+            assert_eq!(bare.parameter(parameter), Value::Real(0.0));
+            let error = bare.set_parameter(parameter, Value::Real(1.0)).unwrap_err();
+            assert_eq!(error.name(), parameter.name());
+        }
+    }
+    assert_eq!(bare, before);
+}

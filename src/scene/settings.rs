@@ -1,0 +1,61 @@
+//! Reading of `[friction]`, `[solver]`, `[input]` and `[fmu]`.
+
+use super::allowed;
+use super::table::{Entry, TableReader};
+use super::{Extrapolation, Friction, Method, OutputGroup, SceneError, Solver};
+
+impl Default for Solver {
+    /// The settings of a scene without `[solver]`.
+    fn default() -> Self {
+        Self { method: Method::Event, relative_tolerance: 1.0e-6, absolute_tolerance: None, max_steps: 10_000_000 }
+    }
+}
+
+pub(super) fn default_outputs() -> Vec<OutputGroup> {
+    vec![OutputGroup::Forces, OutputGroup::Dissipation]
+}
+
+pub(super) fn read_friction(table: &mut TableReader<'_>) -> Result<Friction, SceneError> {
+    table.allow(&["coulomb", "shear_force"], &["rate_shear", "shear_strength"])?;
+    Ok(Friction {
+        coulomb: table.optional_number("coulomb", &allowed::FRICTION_COEFFICIENT)?,
+        shear_force: table.optional_number("shear_force", &allowed::SHEAR_FORCE)?,
+    })
+}
+
+pub(super) fn read_solver(table: &mut TableReader<'_>) -> Result<Solver, SceneError> {
+    table.allow(&["method", "relative_tolerance", "absolute_tolerance", "max_steps"], &["reduce"])?;
+    let defaults = Solver::default();
+    let relative_tolerance = table.optional_number("relative_tolerance", &allowed::RELATIVE_TOLERANCE)?;
+    let max_steps = table.optional_whole("max_steps", &allowed::MAX_STEPS)?;
+    Ok(Solver {
+        method: table.optional_choice("method", &allowed::METHOD)?.unwrap_or(defaults.method),
+        relative_tolerance: relative_tolerance.unwrap_or(defaults.relative_tolerance),
+        absolute_tolerance: table.optional_number("absolute_tolerance", &allowed::ABSOLUTE_TOLERANCE)?,
+        max_steps: max_steps.map_or(defaults.max_steps, i64::unsigned_abs),
+    })
+}
+
+pub(super) fn read_input(table: &mut TableReader<'_>) -> Result<Extrapolation, SceneError> {
+    table.allow(&["extrapolation"], &[])?;
+    Ok(table.optional_choice("extrapolation", &allowed::EXTRAPOLATION)?.unwrap_or_default())
+}
+
+pub(super) fn read_fmu(table: &mut TableReader<'_>) -> Result<Vec<OutputGroup>, SceneError> {
+    table.allow(&["outputs"], &[])?;
+    table.entry("outputs").map_or_else(|| Ok(default_outputs()), |entry| read_outputs(&entry))
+}
+
+/// The groups in the order of the variables, whatever their order in the scene.
+fn read_outputs(entry: &Entry<'_>) -> Result<Vec<OutputGroup>, SceneError> {
+    let mut groups: Vec<OutputGroup> = Vec::new();
+    for element in entry.elements(&format!("an array, each {}", allowed::OUTPUTS))? {
+        let group = element.choice(&allowed::OUTPUTS)?;
+        if groups.contains(&group) {
+            return Err(element.refuse("each group once"));
+        }
+        groups.push(group);
+    }
+    groups.sort_unstable();
+    Ok(groups)
+}
