@@ -44,7 +44,8 @@ fn reads_links_and_keeps_what_they_name() {
 #[test]
 fn reads_settings() {
     let rest = "[friction]\ncoulomb = 1\n[solver]\nmethod = 'event'\nrelative_tolerance = 1e-3\n\
-                absolute_tolerance = 1e-9\nmax_steps = 1_000\n[input]\nextrapolation = 'hold'\n[fmu]\noutputs = ['elements', 'forces', 'solver']";
+                absolute_tolerance = 1e-9\nmax_steps = 1_000\n[input]\nextrapolation = 'hold'\n\
+                [fmu]\noutputs = ['elements', 'forces', 'solver']";
     let scene = scene("initial = 'undeformed'", &format!("{FLAT}\n{rest}"));
     let friction = scene.friction.clone().unwrap();
     assert_eq!((friction.coulomb, friction.shear_force), (Some(1.0), None));

@@ -44,8 +44,8 @@ impl Spline {
         }
     }
 
-    /// Bounds over the range from `x_low` to `x_high`, m: the true extremes over a few intervals, those of all intervals
-    /// where the range spans many. `x_low` ≤ `x_high`.
+    /// Bounds over the range from `x_low` to `x_high`, m: the true extremes over a few intervals, those of all
+    /// intervals where the range spans many. `x_low` ≤ `x_high`.
     pub fn local_bounds(&self, x_low: f64, x_high: f64) -> Bounds {
         match &self.ends {
             Ends::Periodic { period } => self.periodic_bounds(x_low, x_high - x_low, *period),
