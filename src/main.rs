@@ -1,3 +1,20 @@
-//! The command line program.
+//! The command line program: `asperity simulate`, `plot`, `describe` and `pack`.
 
-fn main() {}
+mod program;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use program::{Arguments, run};
+
+#[expect(clippy::print_stderr, reason = "the one place where the program says why it stopped")]
+fn main() -> ExitCode {
+    match run(Arguments::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("asperity: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}

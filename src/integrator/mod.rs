@@ -1,1 +1,272 @@
-//! integrator
+//! The implicit Runge-Kutta method: one step of the layer with its modes held, its error, and what lies within it.
+
+mod dense;
+mod rates;
+mod stage;
+mod tableau;
+mod tolerance;
+
+pub use dense::Dense;
+pub use rates::Rates;
+pub use stage::NoConvergence;
+pub use tableau::{ESDIRK4, ESDIRK5, Tableau};
+pub use tolerance::Tolerance;
+
+use crate::model::{Carrier, Forces, LinkKind, Mode, Model, Power, State};
+use stage::{StagePoint, StageSolver};
+
+/// The method that the integrator uses.
+pub const METHOD: Tableau<7> = ESDIRK5;
+
+/// Number of stages, the explicit one included.
+pub const STAGES: usize = METHOD.c.len();
+
+/// The stages of one step, and room for them.
+#[derive(Clone, Debug)]
+pub struct Integrator {
+    /// The rates of the stages; those of the first are the rates at the start of the step.
+    stages: Vec<Rates>,
+    /// The powers of the stages.
+    powers: [Power; STAGES],
+    solver: StageSolver,
+    predictor: [[f64; STAGES]; STAGES],
+    accounts_energy: bool,
+}
+
+/// A step that was tried.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Attempt {
+    /// The error estimate over the tolerance: at most 1 for a good step.
+    pub error: f64,
+    /// The error estimate of F_z, N.
+    pub force_error: f64,
+}
+
+impl Integrator {
+    /// Room for steps of `model`; the powers are followed where `accounts_energy`.
+    pub fn new(model: &Model, accounts_energy: bool) -> Self {
+        Self {
+            stages: vec![Rates::new(model); STAGES],
+            powers: [Power::default(); STAGES],
+            solver: StageSolver::new(model),
+            predictor: predictor(&METHOD.c),
+            accounts_energy,
+        }
+    }
+
+    /// The rates at the start of the step.
+    pub fn start_rates(&self) -> &Rates {
+        &self.stages[0]
+    }
+
+    /// Puts back the rates at the start of a step.
+    pub fn restore(&mut self, rates: &Rates, power: Power) {
+        self.stages[0].copy_from(rates);
+        self.powers[0] = power;
+    }
+
+    /// The powers at the start of the step.
+    pub fn start_power(&self) -> Power {
+        self.powers[0]
+    }
+
+    /// Newton's iterations since the start.
+    pub fn iterations(&self) -> u64 {
+        self.solver.iterations
+    }
+
+    /// Computes the rates at the start of a step afresh: needed at the start, after an event and at a kink.
+    pub fn begin(&mut self, model: &Model, state: &State, carrier: &Carrier, s: f64, forces: &mut Forces) {
+        let point = carrier.at(s);
+        forces.evaluate(model, state, &point);
+        self.stages[0].evaluate(model, state, &point, forces);
+        if self.accounts_energy {
+            self.powers[0] = Power::evaluate(model, state, &point, forces);
+        }
+    }
+
+    /// Tries a step of length `h` from `state`, `s` seconds after the start of the carrier's piece.
+    ///
+    /// # Errors
+    /// [`NoConvergence`] where a stage could not be solved.
+    pub fn attempt(
+        &mut self,
+        model: &Model,
+        state: &State,
+        carrier: &Carrier,
+        (s, h): (f64, f64),
+        tolerance: &Tolerance,
+    ) -> Result<Attempt, NoConvergence> {
+        self.solver.state.mode.copy_from_slice(&state.mode);
+        self.solver.state.ground.copy_from_slice(&state.ground);
+        let start = carrier.at(s);
+        for i in 1..STAGES {
+            let at = carrier.at(s + METHOD.c[i] * h);
+            let moved = (at.du - start.du, at.dw - start.dw);
+            self.collect_history(state, h, i, moved);
+            self.predict(model, h, i);
+            let point =
+                StagePoint { beta: METHOD.gamma() * h, carrier: at, place: carrier.place + at.du, w: carrier.w + at.dw };
+            self.solver.solve(model, &point, tolerance.newton(point.beta), &mut self.stages[i])?;
+            if self.accounts_energy {
+                self.powers[i] = Power::evaluate(model, &self.solver.state, &at, &self.solver.forces);
+            }
+        }
+        Ok(self.error(model, carrier, (s, h), tolerance))
+    }
+
+    /// The state at the end of the step tried last.
+    pub fn end(&self) -> &State {
+        &self.solver.state
+    }
+
+    /// F_z at the end of the step tried last, N.
+    pub fn end_force_z(&self) -> f64 {
+        self.solver.forces.on_carrier_z()
+    }
+
+    /// Bytes that the stages hold.
+    pub fn bytes(&self) -> usize {
+        let rates = &self.stages[0];
+        let floats = 6 * rates.velocity_x.len() + rates.maxwell.len() + rates.maxwell_force.iter().map(Vec::len).sum::<usize>();
+        STAGES * floats * size_of::<f64>()
+    }
+
+    /// The rates at the stages of the step tried last.
+    pub fn stages(&self) -> &[Rates] {
+        &self.stages
+    }
+
+    /// Energies through the channels over the step of length `h` tried last.
+    pub fn energies(&self, h: f64) -> Power {
+        let mut sum = Power::default();
+        for (weight, power) in METHOD.weights().iter().zip(&self.powers) {
+            sum.add(h * weight, power);
+        }
+        sum
+    }
+
+    /// Takes the step tried last: `state` becomes its end, and the rates there those at the start of the next step.
+    pub fn accept(&mut self, state: &mut State) {
+        std::mem::swap(state, &mut self.solver.state);
+        self.stages.swap(0, STAGES - 1);
+        self.powers.swap(0, STAGES - 1);
+    }
+
+    /// The starred values of stage `i`: what the earlier stages give.
+    fn collect_history(&mut self, state: &State, h: f64, i: usize, (du, dw): (f64, f64)) {
+        let history = &mut self.solver.history;
+        let earlier = &self.stages[..i];
+        let weights = &METHOD.a[i];
+        for (star, e) in history.elongation_x.iter_mut().zip(&state.elongation_x) {
+            *star = e - du;
+        }
+        for (star, e) in history.elongation_z.iter_mut().zip(&state.elongation_z) {
+            *star = e - dw;
+        }
+        history.velocity_x.copy_from_slice(&state.velocity_x);
+        history.velocity_z.copy_from_slice(&state.velocity_z);
+        for (stage, weight) in earlier.iter().zip(weights) {
+            let step = h * weight;
+            add(&mut history.elongation_x, step, &stage.velocity_x);
+            add(&mut history.elongation_z, step, &stage.velocity_z);
+            add(&mut history.velocity_x, step, &stage.acceleration_x);
+            add(&mut history.velocity_z, step, &stage.acceleration_z);
+        }
+        // Row by row, so that the sum stays in the nearest cache whatever the number of elements.
+        for start in (0..history.maxwell.len()).step_by(HISTORY_CHUNK) {
+            let range = start..(start + HISTORY_CHUNK).min(history.maxwell.len());
+            let star = &mut history.maxwell[range.clone()];
+            star.copy_from_slice(&state.maxwell[range.clone()]);
+            for (stage, weight) in earlier.iter().zip(weights) {
+                add(star, h * weight, &stage.maxwell[range.clone()]);
+            }
+        }
+    }
+
+    /// The velocities from which Newton's iterations start: the accelerations of the earlier stages, extrapolated.
+    fn predict(&mut self, model: &Model, h: f64, i: usize) {
+        let beta = METHOD.gamma() * h;
+        let solver = &mut self.solver;
+        let state = &mut solver.state;
+        state.velocity_x.copy_from_slice(&solver.history.velocity_x);
+        state.velocity_z.copy_from_slice(&solver.history.velocity_z);
+        for (stage, weight) in self.stages[..i].iter().zip(&self.predictor[i]) {
+            add(&mut state.velocity_x, beta * weight, &stage.acceleration_x);
+            add(&mut state.velocity_z, beta * weight, &stage.acceleration_z);
+        }
+        for i in 0..model.masses() {
+            if state.mode[i] == Mode::Stick {
+                (state.velocity_x[i], state.velocity_z[i]) = (0.0, 0.0);
+            }
+        }
+    }
+
+    /// The embedded estimate in the tolerance's norm, and of F_z.
+    fn error(&self, model: &Model, carrier: &Carrier, (s, h): (f64, f64), tolerance: &Tolerance) -> Attempt {
+        let rates = carrier.at(s + h);
+        let end = &self.solver.state;
+        let vertical = &model.links[LinkKind::Vertical as usize];
+        let (mut sum, mut force_error) = (0.0, 0.0);
+        for i in 0..model.masses() {
+            let of = |component: fn(&Rates) -> &Vec<f64>| h * self.weighed(|stage| component(stage)[i]);
+            let (x, v_x) = (of(|r| &r.velocity_x), of(|r| &r.acceleration_x));
+            let (z, v_z) = match end.mode[i] {
+                Mode::Free => (of(|r| &r.velocity_z), of(|r| &r.acceleration_z)),
+                _ => (end.ground[i].slope * x, end.ground[i].slope * v_x),
+            };
+            sum += tolerance.position(x, end.elongation_x[i]) + tolerance.position(z, end.elongation_z[i]);
+            sum += tolerance.velocity(v_x, end.velocity_x[i] - rates.u_rate);
+            sum += tolerance.velocity(v_z, end.velocity_z[i] - rates.w_rate);
+            force_error += vertical.stiffness * z + vertical.damping * v_z;
+        }
+        for kind in LinkKind::ALL {
+            let elongation = if matches!(kind, LinkKind::Vertical | LinkKind::LateralZ) {
+                &end.elongation_z
+            } else {
+                &end.elongation_x
+            };
+            for i in 0..self.stages[0].maxwell_force[kind as usize].len() {
+                let force = h * self.weighed(|stage| stage.maxwell_force[kind as usize][i]);
+                let e = if kind.is_lateral() { elongation[i + 1] - elongation[i] } else { elongation[i] };
+                sum += tolerance.maxwell(kind, force, e);
+                if kind == LinkKind::Vertical {
+                    force_error += force;
+                }
+            }
+        }
+        Attempt { error: (sum / model.masses() as f64).sqrt(), force_error }
+    }
+
+    /// Σ (b_i - b̂_i) of a quantity of the stages.
+    #[inline]
+    fn weighed(&self, quantity: impl Fn(&Rates) -> f64) -> f64 {
+        self.stages.iter().zip(&METHOD.error).map(|(stage, weight)| weight * quantity(stage)).sum()
+    }
+}
+
+/// Maxwell variables whose history is summed at a time: 16 KiB of sums.
+const HISTORY_CHUNK: usize = 2048;
+
+/// sum += factor · term.
+#[inline]
+fn add(sum: &mut [f64], factor: f64, term: &[f64]) {
+    if factor == 0.0 {
+        return;
+    }
+    for (sum, term) in sum.iter_mut().zip(term) {
+        *sum += factor * term;
+    }
+}
+
+/// Weights that extrapolate from the earlier stages to each stage: Lagrange's through the latest three of distinct place.
+fn predictor(c: &[f64; STAGES]) -> [[f64; STAGES]; STAGES] {
+    let mut weights = [[0.0; STAGES]; STAGES];
+    for i in 1..STAGES {
+        let nodes = i.saturating_sub(3)..i;
+        for j in nodes.clone() {
+            weights[i][j] = nodes.clone().filter(|&m| m != j).map(|m| (c[i] - c[m]) / (c[j] - c[m])).product();
+        }
+    }
+    weights
+}

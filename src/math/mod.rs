@@ -1,5 +1,13 @@
 //! Numerical tools that know nothing of the model.
 
+mod polynomial;
+mod relaxation;
+mod root;
 mod spline;
+mod tridiagonal;
 
+pub use polynomial::{Jet, Quintic};
+pub use relaxation::Relaxation;
+pub use root::bracketed_root;
 pub use spline::{Bounds, Spline};
+pub use tridiagonal::BlockTridiagonal;

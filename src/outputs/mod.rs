@@ -1,5 +1,7 @@
 //! What a run gives: the variables of the output groups and their values.
 
+mod moment;
 mod variables;
 
-pub use variables::{Kind, Output, Variable, variables};
+pub use moment::{Accounts, Counters, Energies, Moment};
+pub use variables::{Kind, Output, Variable, unit_of, variables};

@@ -194,3 +194,14 @@ fn element_variables(i: usize) -> [Variable; 5] {
         ),
     ]
 }
+
+/// The unit of the output variable called `name`, whatever the scene; `None` for a name that no scene can have.
+pub fn unit_of(name: &str) -> Option<Unit> {
+    match name.split_once("].") {
+        Some((_, field)) => {
+            let same = |variable: &Variable| variable.name == format!("element[1].{field}");
+            element_variables(0).into_iter().find(same).map(|variable| variable.unit)
+        }
+        None => TABLE.iter().find(|row| row.2 == name).map(|row| row.4),
+    }
+}

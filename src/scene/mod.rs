@@ -1,6 +1,7 @@
 //! What one FMU simulates: a scene, read from one TOML file and checked.
 //!
-//! Every field is in SI units. A feature that the scene does not name is `None` or empty, and costs nothing at run time.
+//! Every field is in SI units. A feature that the scene does not name is `None` or empty, and costs nothing at run
+//! time.
 
 mod allowed;
 mod derived;
@@ -17,6 +18,10 @@ mod table;
 mod unit;
 mod warnings;
 
+#[cfg(test)]
+mod tests;
+
+use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 pub use error::{Problem, SceneError};
@@ -208,4 +213,17 @@ pub struct Path {
     pub amplitude: f64,
     /// Frequency of the sine, Hz.
     pub frequency: f64,
+}
+
+impl Path {
+    /// The displacement since the start at `time` (s) after it, m.
+    pub fn at(&self, time: f64) -> f64 {
+        self.rate * time + self.amplitude * (TAU * self.frequency * time).sin()
+    }
+
+    /// The velocity at `time` (s) after the start, m/s.
+    pub fn velocity(&self, time: f64) -> f64 {
+        let omega = TAU * self.frequency;
+        self.rate + self.amplitude * omega * (omega * time).cos()
+    }
 }

@@ -1,0 +1,142 @@
+//! The first touch of a free mass within a step.
+
+use crate::math::{Quintic, Spline};
+
+/// Halvings of a step after which a dip of the gap is left undecided; a step over 2⁴⁰ is beyond the clock's digits.
+const MOST_HALVINGS: u32 = 40;
+
+/// The first fraction of a step at which the gap between a mass and the profile falls below -`tolerance` (m), located
+/// where it is -`tolerance`/2; `None` where it does not. `place` and `height` are the mass's motion through the step.
+///
+/// Nothing is sampled: a part of the step is passed over only when bounds of the motion and of the profile there show
+/// that the gap stays above, so that no dip is missed, however short. What the bounds leave open is halved.
+pub fn first_touch(profile: &Spline, place: &Quintic, height: &Quintic, tolerance: f64) -> Option<f64> {
+    Search { profile, tolerance }.first_touch(&Part { place: *place, height: *height, start: 0.0, length: 1.0 }, 0)
+}
+
+struct Search<'a> {
+    profile: &'a Spline,
+    tolerance: f64,
+}
+
+/// The motion through a part of the step.
+struct Part {
+    place: Quintic,
+    height: Quintic,
+    start: f64,
+    length: f64,
+}
+
+impl Search<'_> {
+    fn first_touch(&self, part: &Part, halvings: u32) -> Option<f64> {
+        let (x_low, x_high) = part.place.range();
+        let profile = self.profile.local_bounds(x_low, x_high);
+        if part.height.range().0 - profile.z_max > -self.tolerance {
+            return None;
+        }
+        // |g''| over the part: g = z - z_r(x), g'' = z̈ - s ẍ - κ ẋ².
+        let (speed_x, bend_x) = part.place.derivative_bounds();
+        let bend = part.height.derivative_bounds().1
+            + profile.slope_max_abs * bend_x
+            + profile.curvature_max_abs * speed_x * speed_x;
+        let (start, end) = (self.gap(part, 0.0), self.gap(part, 1.0));
+        if start.min(end) - bend / 8.0 > -self.tolerance {
+            return None;
+        }
+        let monotone = self.gap_rate(part, 0.5).abs() > 0.5 * bend;
+        if monotone || halvings == MOST_HALVINGS {
+            let crosses = start >= -self.tolerance && end < -self.tolerance;
+            return crosses.then(|| self.locate(part));
+        }
+        let (first, second) = part.halves();
+        self.first_touch(&first, halvings + 1).or_else(|| self.first_touch(&second, halvings + 1))
+    }
+
+    fn locate(&self, part: &Part) -> f64 {
+        let aim = 0.5 * self.tolerance;
+        if self.gap(part, 0.0) <= -aim {
+            return part.start;
+        }
+        part.start + part.length * crate::math::bracketed_root(|theta| self.gap(part, theta) + aim, (0.0, 1.0), 1e-15)
+    }
+
+    fn gap(&self, part: &Part, theta: f64) -> f64 {
+        part.height.evaluate(theta).place - self.profile.evaluate(part.place.evaluate(theta).place).0
+    }
+
+    fn gap_rate(&self, part: &Part, theta: f64) -> f64 {
+        let place = part.place.evaluate(theta);
+        part.height.evaluate(theta).speed - self.profile.evaluate(place.place).1 * place.speed
+    }
+}
+
+impl Part {
+    fn halves(&self) -> (Self, Self) {
+        let (place_first, place_second) = self.place.halves();
+        let (height_first, height_second) = self.height.halves();
+        let length = 0.5 * self.length;
+        (
+            Self { place: place_first, height: height_first, start: self.start, length },
+            Self { place: place_second, height: height_second, start: self.start + length, length },
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Jet;
+
+    fn straight(from: f64, to: f64) -> Quintic {
+        let at = |place| Jet { place, speed: to - from, acceleration: 0.0 };
+        Quintic::hermite(at(from), at(to), 1.0)
+    }
+
+    /// A fall and rise: height h0 at both ends, `depth` lower in the middle.
+    fn dip(top: f64, depth: f64) -> Quintic {
+        let end = |place, speed| Jet { place, speed, acceleration: 8.0 * depth };
+        Quintic::hermite(end(top, -4.0 * depth), end(top, 4.0 * depth), 1.0)
+    }
+
+    #[test]
+    fn finds_the_root_of_a_known_fall() {
+        let flat = Spline::natural(&[0.0, 1.0], &[0.0, 0.0]);
+        let theta = first_touch(&flat, &straight(0.0, 0.5), &straight(0.3, -0.7), 1e-12).unwrap();
+        // Located half a tolerance below the surface.
+        assert!((theta - 0.3).abs() < 1e-12, "{theta}");
+    }
+
+    /// A dip a thousandth of the step long and 1e-9 m deep: the mass enters and leaves again within the step.
+    #[test]
+    fn finds_a_dip_a_thousandth_of_the_step_long() {
+        let flat = Spline::natural(&[0.0, 1.0], &[0.0, 0.0]);
+        // A parabola whose part below 0 is a thousandth of the step: depth_below = depth (1/1000)².
+        let depth = 1e-9 * 1e6;
+        let motion = dip(depth - 1e-9, depth);
+        let theta = first_touch(&flat, &straight(0.0, 0.5), &motion, 1e-12).unwrap();
+        assert!((theta - 0.4995).abs() < 1e-6, "{theta}");
+        assert_eq!(first_touch(&flat, &straight(0.0, 0.5), &dip(depth + 1e-9, depth), 1e-12), None);
+    }
+
+    /// The same by the profile: a spike a thousandth of the way wide that reaches 1e-9 m into the mass's straight path.
+    #[test]
+    fn finds_a_spike_a_thousandth_of_the_way_wide() {
+        let x = [0.0, 0.3, 0.4, 0.4995, 0.5, 0.5005, 0.6, 0.7, 1.0];
+        let z = [0.0, 0.0, 0.0, 0.0, 1e-6, 0.0, 0.0, 0.0, 0.0];
+        let profile = Spline::natural(&x, &z);
+        let top = profile.bounds().z_max;
+        let over = |height: f64| first_touch(&profile, &straight(0.0, 1.0), &straight(height, height), 1e-12);
+        let theta = over(top - 1e-9).unwrap();
+        assert!((0.4995..0.5).contains(&theta), "{theta}");
+        assert_eq!(over(top + 1e-9), None);
+    }
+
+    #[test]
+    fn a_mass_that_leaves_the_surface_does_not_touch() {
+        let flat = Spline::natural(&[0.0, 1.0], &[0.0, 0.0]);
+        // A lift: the gap opens with the third power of time.
+        let still = Jet::default();
+        let lifted = Jet { place: 1e-9, speed: 3e-9, acceleration: 6e-9 };
+        assert_eq!(first_touch(&flat, &straight(0.0, 0.1), &Quintic::hermite(still, lifted, 1.0), 1e-13), None);
+    }
+}

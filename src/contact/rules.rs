@@ -1,0 +1,138 @@
+//! The rules of mode changes (`model.md` sections 4 and 5).
+
+use crate::model::{CarrierPoint, Forces, Mode, Model, State, SurfacePoint};
+use crate::scene::Initial;
+
+/// Where the carrier stands and how it moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CarrierPlace {
+    /// u as a place on the profile, m.
+    pub place: f64,
+    /// w, m.
+    pub w: f64,
+}
+
+/// Puts every mass at its rest place, moving with the carrier; one that would lie under the profile is lifted onto it
+/// and keeps the part of its velocity along t. Which contacts stay and which stick is for [`decide_modes`] to say.
+pub fn place_layer(model: &Model, state: &mut State, at: CarrierPlace, carrier: &CarrierPoint) {
+    for i in 0..model.masses() {
+        let ground = model.ground(model.rest_x[i] + at.place);
+        let gap = model.rest_z[i] + at.w - ground.height;
+        state.elongation_x[i] = 0.0;
+        state.elongation_z[i] = 0.0;
+        (state.velocity_x[i], state.velocity_z[i]) = (carrier.u_rate, carrier.w_rate);
+        let separation = carrier.w_rate - ground.slope * carrier.u_rate;
+        state.mode[i] = if gap < 0.0 {
+            let v_x = (carrier.u_rate + ground.slope * carrier.w_rate) / (1.0 + ground.slope * ground.slope);
+            touch_down(model, state, i, at.w, &ground, v_x);
+            Mode::along(v_x)
+        } else if gap == 0.0 && separation == 0.0 {
+            touch_down(model, state, i, at.w, &ground, carrier.u_rate);
+            Mode::along(carrier.u_rate)
+        } else {
+            Mode::Free
+        };
+    }
+    place_dashpots(model, state);
+}
+
+/// Puts mass `i` on the profile, moving along it.
+fn touch_down(model: &Model, state: &mut State, i: usize, w: f64, ground: &SurfacePoint, velocity_x: f64) {
+    state.ground[i] = *ground;
+    state.elongation_z[i] = ground.height - model.rest_z[i] - w;
+    (state.velocity_x[i], state.velocity_z[i]) = (velocity_x, ground.slope * velocity_x);
+}
+
+/// Relaxed: y = e, so a = 0. Undeformed: y = 0, so a = e.
+fn place_dashpots(model: &Model, state: &mut State) {
+    state.maxwell.fill(0.0);
+    if model.initial == Initial::Relaxed {
+        return;
+    }
+    for row in &model.rows {
+        use crate::model::LinkKind::{Horizontal, LateralX, LateralZ, Vertical};
+        let e = match row.kind {
+            Vertical | LateralZ => &state.elongation_z,
+            Horizontal | LateralX => &state.elongation_x,
+        };
+        for (i, a) in state.maxwell[row.range.clone()].iter_mut().enumerate() {
+            *a = if row.kind.is_lateral() { e[i + 1] - e[i] } else { e[i] };
+        }
+    }
+}
+
+/// At the start a mass that rests on the profile, lifted by nothing, is in contact only if F_N > 0.
+pub fn free_unloaded(model: &Model, state: &mut State, at: CarrierPlace, forces: &Forces) {
+    for i in 0..model.masses() {
+        let rests = state.mode[i].in_contact() && model.rest_z[i] + at.w == state.ground[i].height;
+        if rests && forces.contact(model, i, state.velocity_x[i], &state.ground[i]).normal <= 0.0 {
+            state.mode[i] = Mode::Free;
+        }
+    }
+}
+
+/// Applies the impacts due: every free mass within `reach` (m) of the profile that moves into it is stopped along n, with
+/// Coulomb's friction along t. Each uses its own velocity, so their order does not matter. Returns the energy lost, J.
+pub fn impacts_due(model: &Model, state: &mut State, at: CarrierPlace, reach: f64) -> f64 {
+    let mut lost = 0.0;
+    for i in 0..model.masses() {
+        if state.mode[i] != Mode::Free {
+            continue;
+        }
+        let ground = model.ground(model.rest_x[i] + (at.place + state.elongation_x[i]));
+        let gap = model.rest_z[i] + (at.w + state.elongation_z[i]) - ground.height;
+        if gap <= reach && state.velocity_z[i] < ground.slope * state.velocity_x[i] {
+            lost += impact(model, state, i, at.w, &ground);
+        }
+    }
+    lost
+}
+
+/// v_n⁺ = 0 with the impulse J = -m v_n; v_t⁺ = sign(v_t) max(|v_t| - μ J/m, 0).
+fn impact(model: &Model, state: &mut State, i: usize, w: f64, ground: &SurfacePoint) -> f64 {
+    let s = ground.slope;
+    let q = (1.0 + s * s).sqrt();
+    let (v_x, v_z) = (state.velocity_x[i], state.velocity_z[i]);
+    let v_n = (v_z - s * v_x) / q;
+    let v_t = (v_x + s * v_z) / q;
+    let after = (v_t.abs() + model.friction_coefficient * v_n).max(0.0).copysign(v_t);
+    touch_down(model, state, i, w, ground, after / q);
+    state.mode[i] = Mode::along(after);
+    0.5 * model.mass * (v_n * v_n + v_t * v_t - after * after)
+}
+
+/// Brings slipping masses whose velocity has passed 0 to rest, so that the rule for *stop* decides on them.
+pub fn stop_reversed(model: &Model, state: &mut State) {
+    if !model.has_friction {
+        return;
+    }
+    for i in 0..model.masses() {
+        if state.mode[i].slips() && state.mode[i].direction() * state.velocity_x[i] < 0.0 {
+            (state.velocity_x[i], state.velocity_z[i]) = (0.0, 0.0);
+        }
+    }
+}
+
+/// Decides every contact anew from the forces after a jump.
+///
+/// Neither the forces nor the velocities depend on the modes, so one pass decides: repeating it would change nothing,
+/// and a mass that breaks loose here is not stuck again.
+pub fn decide_modes(model: &Model, state: &mut State, forces: &Forces) {
+    for i in 0..model.masses() {
+        if state.mode[i].in_contact() {
+            state.mode[i] = decided(model, state, forces, i);
+        }
+    }
+}
+
+fn decided(model: &Model, state: &State, forces: &Forces, i: usize) -> Mode {
+    let (mode, v) = (state.mode[i], state.velocity_x[i]);
+    let contact = forces.contact(model, i, v, &state.ground[i]);
+    if contact.normal < 0.0 {
+        return Mode::Free;
+    }
+    if !model.has_friction || (mode.slips() && v != 0.0) {
+        return mode;
+    }
+    if contact.tangential.abs() <= contact.limit { Mode::Stick } else { Mode::along(contact.tangential) }
+}

@@ -1,0 +1,171 @@
+//! Coefficients of the Runge-Kutta method.
+
+/// A diagonally implicit Runge-Kutta method with an explicit first stage, the same γ in every other stage, and the end
+/// of the step as its last stage (stiffly accurate: b is the last row of A).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tableau<const STAGES: usize> {
+    /// a_ij; the diagonal is γ but for the first stage, where it is 0.
+    pub a: [[f64; STAGES]; STAGES],
+    /// c_i, the stages' places in the step.
+    pub c: [f64; STAGES],
+    /// b_i - b̂_i: the weights of the error estimate.
+    pub error: [f64; STAGES],
+    /// Order of the embedded method; that of the method itself is one higher.
+    pub embedded_order: i32,
+}
+
+impl<const STAGES: usize> Tableau<STAGES> {
+    /// A method from the part of A from its second column on, c, b̂ and the order of b̂. The first column of A follows
+    /// from Σ_j a_ij = c_i; the last row is b.
+    const fn new(
+        mut a: [[f64; STAGES]; STAGES],
+        c: [f64; STAGES],
+        embedded: [f64; STAGES],
+        embedded_order: i32,
+    ) -> Self {
+        let mut i = 1;
+        while i < STAGES - 1 {
+            let mut first = c[i];
+            let mut j = 1;
+            while j <= i {
+                first -= a[i][j];
+                j += 1;
+            }
+            a[i][0] = first;
+            i += 1;
+        }
+        let mut error = a[STAGES - 1];
+        let mut j = 0;
+        while j < STAGES {
+            error[j] -= embedded[j];
+            j += 1;
+        }
+        Self { a, c, error, embedded_order }
+    }
+
+    /// The weights b.
+    pub fn weights(&self) -> &[f64; STAGES] {
+        &self.a[STAGES - 1]
+    }
+
+    /// The coefficient γ of every implicit stage.
+    pub fn gamma(&self) -> f64 {
+        self.a[STAGES - 1][STAGES - 1]
+    }
+}
+
+/// ESDIRK4(3I)6L[2]SA of C. A. Kennedy and M. H. Carpenter, *Diagonally implicit Runge-Kutta methods for stiff ordinary
+/// differential equations* (Appl. Numer. Math. 146, 2019).
+pub const ESDIRK4: Tableau<6> = {
+    const GAMMA: f64 = 0.25;
+    const B: [f64; 6] = [
+        657241292721.0 / 9909463049845.0,
+        657241292721.0 / 9909463049845.0,
+        1290772910128.0 / 5804808736437.0,
+        1103522341516.0 / 2197678446715.0,
+        -3.0 / 28.0,
+        GAMMA,
+    ];
+    const EMBEDDED: [f64; 6] = [
+        -71925161075.0 / 3900939759889.0,
+        -71925161075.0 / 3900939759889.0,
+        2973346383745.0 / 8160025745289.0,
+        3972464885073.0 / 7694851252693.0,
+        -263368882881.0 / 4213126269514.0,
+        3295468053953.0 / 15064441987965.0,
+    ];
+    Tableau::new(
+        [
+            [0.0; 6],
+            [0.0, GAMMA, 0.0, 0.0, 0.0, 0.0],
+            [0.0, -1356991263433.0 / 26208533697614.0, GAMMA, 0.0, 0.0, 0.0],
+            [0.0, -1778551891173.0 / 14697912885533.0, 7325038566068.0 / 12797657924939.0, GAMMA, 0.0, 0.0],
+            [
+                0.0,
+                -24076725932807.0 / 39344244018142.0,
+                9344023789330.0 / 6876721947151.0,
+                11302510524611.0 / 18374767399840.0,
+                GAMMA,
+                0.0,
+            ],
+            B,
+        ],
+        [0.0, 0.5, 0.146_446_609_406_726_24, 2012122486997.0 / 3467029789466.0, 1.0, 1.0],
+        EMBEDDED,
+        3,
+    )
+};
+
+/// ESDIRK5(4)7L[2]SA2 of C. A. Kennedy and M. H. Carpenter, *Diagonally implicit Runge-Kutta methods for stiff ordinary
+/// differential equations* (Appl. Numer. Math. 146, 2019).
+pub const ESDIRK5: Tableau<7> = {
+    const GAMMA: f64 = 23.0 / 125.0;
+    const B: [f64; 7] = complete([
+        0.0,
+        -188593204321.0 / 4778616380481.0,
+        2809310203510.0 / 10304234040467.0,
+        1021729336898.0 / 2364210264653.0,
+        870612361811.0 / 2470410392208.0,
+        -1307970675534.0 / 8059683598661.0,
+        GAMMA,
+    ]);
+    const EMBEDDED: [f64; 7] = complete([
+        0.0,
+        -582099335757.0 / 7214068459310.0,
+        615023338567.0 / 3362626566945.0,
+        3192122436311.0 / 6174152374399.0,
+        6156034052041.0 / 14430468657929.0,
+        -1011318518279.0 / 9693750372484.0,
+        1914490192573.0 / 13754262428401.0,
+    ]);
+    Tableau::new(
+        [
+            [0.0; 7],
+            [0.0, GAMMA, 0.0, 0.0, 0.0, 0.0, 0.0],
+            [0.0, 791020047304.0 / 3561426431547.0, GAMMA, 0.0, 0.0, 0.0, 0.0],
+            [0.0, -158159076358.0 / 11257294102345.0, -85517644447.0 / 5003708988389.0, GAMMA, 0.0, 0.0, 0.0],
+            [
+                0.0,
+                -1653327111580.0 / 4048416487981.0,
+                1514767744496.0 / 9099671765375.0,
+                14283835447591.0 / 12247432691556.0,
+                GAMMA,
+                0.0,
+                0.0,
+            ],
+            [
+                0.0,
+                -4540011970825.0 / 8418487046959.0,
+                -1790937573418.0 / 7393406387169.0,
+                10819093665085.0 / 7266595846747.0,
+                4109463131231.0 / 7386972500302.0,
+                GAMMA,
+                0.0,
+            ],
+            B,
+        ],
+        [
+            0.0,
+            46.0 / 125.0,
+            7121331996143.0 / 11335814405378.0,
+            49.0 / 353.0,
+            3706679970760.0 / 5295570149437.0,
+            347.0 / 382.0,
+            1.0,
+        ],
+        EMBEDDED,
+        4,
+    )
+};
+
+/// Weights whose first makes their sum 1.
+const fn complete<const N: usize>(mut weights: [f64; N]) -> [f64; N] {
+    let mut i = 1;
+    let mut sum = 0.0;
+    while i < N {
+        sum += weights[i];
+        i += 1;
+    }
+    weights[0] = 1.0 - sum;
+    weights
+}

@@ -1,0 +1,60 @@
+//! What error a step may make.
+
+use crate::model::{LinkKind, Model};
+
+/// The tolerances of one step's error. Each quantity weighs as error over (absolute + relative · size).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tolerance {
+    /// Relative tolerance, 1.
+    pub relative: f64,
+    /// Absolute tolerance of positions, m.
+    pub position: f64,
+    /// Absolute tolerance of velocities, m/s: that of positions times the stiffest frequency.
+    pub velocity: f64,
+    /// c + Σ c_j of each kind of link, N/m: a Maxwell element's error counts by the force that it makes.
+    glassy: [f64; 4],
+}
+
+/// Newton's iterations are left to this share of the tolerance.
+///
+/// Recommended 0.001 to 0.1: larger spoils the error estimate, smaller costs iterations.
+const NEWTON_SHARE: f64 = 0.01;
+
+impl Tolerance {
+    /// The tolerances of `model` for a relative and an absolute (m) one.
+    pub fn new(model: &Model, relative: f64, absolute: f64) -> Self {
+        let glassy = LinkKind::ALL.map(|kind| {
+            let maxwell: f64 = model.rows.iter().filter(|row| row.kind == kind).map(|row| row.stiffness).sum();
+            model.links[kind as usize].stiffness + maxwell
+        });
+        Self { relative, position: absolute, velocity: absolute * model.stiffest_frequency(), glassy }
+    }
+
+    /// The square of a position's error over what is allowed.
+    #[inline]
+    pub fn position(&self, error: f64, size: f64) -> f64 {
+        square(error / (self.position + self.relative * size.abs()))
+    }
+
+    /// The square of a velocity's error over what is allowed.
+    #[inline]
+    pub fn velocity(&self, error: f64, size: f64) -> f64 {
+        square(error / (self.velocity + self.relative * size.abs()))
+    }
+
+    /// The square of the error of all Maxwell elements of one link, given as a force (N), at the elongation `size` (m).
+    #[inline]
+    pub fn maxwell(&self, kind: LinkKind, error: f64, size: f64) -> f64 {
+        let glassy = self.glassy[kind as usize];
+        if glassy > 0.0 { self.position(error / glassy, size) } else { 0.0 }
+    }
+
+    /// To what correction of the velocities, m/s, a stage with β = `beta` (s) is solved.
+    pub fn newton(&self, beta: f64) -> f64 {
+        NEWTON_SHARE * self.velocity.min(self.position / beta)
+    }
+}
+
+fn square(x: f64) -> f64 {
+    x * x
+}

@@ -1,0 +1,162 @@
+//! The quintic through place, speed and acceleration at both ends of a step.
+
+/// A polynomial of degree 5 on [0, 1] in Bernstein form: its values lie between the least and the largest coefficient.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quintic {
+    coefficients: [f64; 6],
+}
+
+/// Place, speed and acceleration at one instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Jet {
+    /// Place.
+    pub place: f64,
+    /// Its first derivative.
+    pub speed: f64,
+    /// Its second derivative.
+    pub acceleration: f64,
+}
+
+impl Quintic {
+    /// The Hermite interpolant over a step of length `h`: error O(h⁶) of the place.
+    pub fn hermite(start: Jet, end: Jet, h: f64) -> Self {
+        let (v0, v1) = (h / 5.0 * start.speed, h / 5.0 * end.speed);
+        let (a0, a1) = (h * h / 20.0 * start.acceleration, h * h / 20.0 * end.acceleration);
+        let (p0, p1) = (start.place, end.place);
+        Self { coefficients: [p0, p0 + v0, p0 + 2.0 * v0 + a0, p1 - 2.0 * v1 + a1, p1 - v1, p1] }
+    }
+
+    /// Place, and its derivatives with respect to the fraction, at the fraction `theta` of the step.
+    pub fn evaluate(&self, theta: f64) -> Jet {
+        let mut b = self.coefficients;
+        let complement = 1.0 - theta;
+        for degree in (3..=5).rev() {
+            for i in 0..degree {
+                b[i] = complement * b[i] + theta * b[i + 1];
+            }
+        }
+        let (d0, d1) = (b[1] - b[0], b[2] - b[1]);
+        Jet {
+            place: complement * (complement * b[0] + theta * b[1]) + theta * (complement * b[1] + theta * b[2]),
+            speed: 5.0 * (complement * d0 + theta * d1),
+            acceleration: 20.0 * (d1 - d0),
+        }
+    }
+
+    /// The least and the largest value that the polynomial can take.
+    pub fn range(&self) -> (f64, f64) {
+        range(&self.coefficients)
+    }
+
+    /// Bounds of the absolute first and second derivative with respect to the fraction.
+    pub fn derivative_bounds(&self) -> (f64, f64) {
+        let c = &self.coefficients;
+        let mut first = 0.0_f64;
+        let mut second = 0.0_f64;
+        for i in 0..5 {
+            first = first.max((c[i + 1] - c[i]).abs());
+        }
+        for i in 0..4 {
+            second = second.max((c[i + 2] - 2.0 * c[i + 1] + c[i]).abs());
+        }
+        (5.0 * first, 20.0 * second)
+    }
+
+    /// The two polynomials that together are this one, over the first and the second half.
+    pub fn halves(&self) -> (Self, Self) {
+        let mut work = self.coefficients;
+        let (mut left, mut right) = (work, work);
+        for degree in (1..=5).rev() {
+            left[5 - degree] = work[0];
+            right[degree] = work[degree];
+            for i in 0..degree {
+                work[i] = 0.5 * (work[i] + work[i + 1]);
+            }
+        }
+        left[5] = work[0];
+        right[0] = work[0];
+        (Self { coefficients: left }, Self { coefficients: right })
+    }
+
+    /// The derivative with respect to the fraction as coefficients of powers of the fraction, constant first.
+    pub fn derivative_monomials(&self) -> [f64; 5] {
+        let c = &self.coefficients;
+        let difference = |order: usize| -> f64 {
+            const BINOMIAL: [[f64; 6]; 6] = [
+                [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+                [-1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
+                [1.0, -2.0, 1.0, 0.0, 0.0, 0.0],
+                [-1.0, 3.0, -3.0, 1.0, 0.0, 0.0],
+                [1.0, -4.0, 6.0, -4.0, 1.0, 0.0],
+                [-1.0, 5.0, -10.0, 10.0, -5.0, 1.0],
+            ];
+            BINOMIAL[order].iter().zip(c).map(|(b, c)| b * c).sum()
+        };
+        // Monomial m of the place is binomial(5, m) times the m-th difference of the Bernstein coefficients.
+        [5.0 * difference(1), 20.0 * difference(2), 30.0 * difference(3), 20.0 * difference(4), 5.0 * difference(5)]
+    }
+}
+
+fn range(values: &[f64]) -> (f64, f64) {
+    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| (low.min(v), high.max(v)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn jet(f: impl Fn(f64) -> f64, f1: impl Fn(f64) -> f64, f2: impl Fn(f64) -> f64, t: f64) -> Jet {
+        Jet { place: f(t), speed: f1(t), acceleration: f2(t) }
+    }
+
+    fn sine(h: f64) -> Quintic {
+        let at = |t| jet(f64::sin, f64::cos, |t: f64| -t.sin(), t);
+        Quintic::hermite(at(0.3), at(0.3 + h), h)
+    }
+
+    #[test]
+    fn reproduces_a_quintic_with_its_derivatives() {
+        let at = |t: f64| jet(|t| t.powi(5) - t, |t| 5.0 * t.powi(4) - 1.0, |t| 20.0 * t.powi(3), t);
+        let (t0, h) = (0.4, 0.7);
+        let q = Quintic::hermite(at(t0), at(t0 + h), h);
+        let exact = at(t0 + 0.3 * h);
+        let found = q.evaluate(0.3);
+        // Exact but for roundings of numbers of size 1 to 20.
+        assert!((found.place - exact.place).abs() < 1e-14);
+        assert!((found.speed / h - exact.speed).abs() < 1e-13);
+        assert!((found.acceleration / (h * h) - exact.acceleration).abs() < 1e-12);
+    }
+
+    #[test]
+    fn converges_with_order_six() {
+        let error = |h: f64| (sine(h).evaluate(0.5).place - (0.3 + 0.5 * h).sin()).abs();
+        let order = (error(0.4) / error(0.2)).log2();
+        assert!((5.7..6.3).contains(&order), "{order}");
+    }
+
+    #[test]
+    fn halves_are_the_whole() {
+        let q = sine(1.3);
+        let (left, right) = q.halves();
+        for theta in [0.0, 0.2, 0.9, 1.0] {
+            assert!((left.evaluate(theta).place - q.evaluate(theta / 2.0).place).abs() < 1e-15);
+            assert!((right.evaluate(theta).place - q.evaluate(0.5 + theta / 2.0).place).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn bounds_hold_and_monomials_agree() {
+        let q = sine(2.0);
+        let (low, high) = q.range();
+        let (first, second) = q.derivative_bounds();
+        let m = q.derivative_monomials();
+        for i in 0..=50 {
+            let theta = f64::from(i) / 50.0;
+            let p = q.evaluate(theta);
+            assert!(low <= p.place && p.place <= high);
+            assert!(p.speed.abs() <= first && p.acceleration.abs() <= second);
+            let speed = m.iter().rev().fold(0.0, |sum, c| sum * theta + c);
+            assert!((speed - p.speed).abs() < 1e-12, "{speed} {}", p.speed);
+        }
+    }
+}

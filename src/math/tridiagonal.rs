@@ -1,0 +1,120 @@
+//! Block tridiagonal systems with 2×2 blocks, the shape that a chain of masses gives.
+
+use nalgebra::{Matrix2, Vector2};
+
+/// Lower_i δ_{i-1} + Diagonal_i δ_i + Upper_i δ_{i+1} = Right_i, i = 0 … n-1, and room to solve it.
+#[derive(Clone, Debug, Default)]
+pub struct BlockTridiagonal {
+    /// Blocks left of the diagonal; the first is not read.
+    pub lower: Vec<Matrix2<f64>>,
+    /// Diagonal blocks; destroyed by [`solve`](Self::solve).
+    pub diagonal: Vec<Matrix2<f64>>,
+    /// Blocks right of the diagonal; the last is not read.
+    pub upper: Vec<Matrix2<f64>>,
+    /// Right sides; [`solve`](Self::solve) puts the solution here.
+    pub right: Vec<Vector2<f64>>,
+}
+
+impl BlockTridiagonal {
+    /// Room for `n` block rows.
+    pub fn new(n: usize) -> Self {
+        let zero = vec![Matrix2::zeros(); n];
+        Self { lower: zero.clone(), diagonal: zero.clone(), upper: zero, right: vec![Vector2::zeros(); n] }
+    }
+
+    /// Solves by block elimination from both ends towards the middle, and back: two chains of divisions that do not
+    /// wait for each other. The solution stands in `right`; a singular block leaves values that are not finite.
+    pub fn solve(&mut self) {
+        let n = self.diagonal.len();
+        if n == 0 {
+            return;
+        }
+        let middle = n / 2;
+        let mirrored = n - 1 - middle;
+        for step in 0..middle.max(mirrored) {
+            if step < middle {
+                self.eliminate(step, step + 1);
+            }
+            if step < mirrored {
+                self.eliminate(n - 1 - step, n - 2 - step);
+            }
+        }
+        self.right[middle] = inverse(&self.diagonal[middle]) * self.right[middle];
+        for step in 1..=middle.max(mirrored) {
+            if step <= middle {
+                self.substitute(middle - step, middle - step + 1);
+            }
+            if step <= mirrored {
+                self.substitute(middle + step, middle + step - 1);
+            }
+        }
+    }
+
+    /// Takes unknown `from` out of the neighbouring row `into`; the inverse of its block stays in its place.
+    fn eliminate(&mut self, from: usize, into: usize) {
+        let inverse = inverse(&self.diagonal[from]);
+        let (there, back) = if from < into {
+            (self.lower[into], self.upper[from])
+        } else {
+            (self.upper[into], self.lower[from])
+        };
+        let factor = there * inverse;
+        let right = self.right[from];
+        self.diagonal[into] -= factor * back;
+        self.right[into] -= factor * right;
+        self.diagonal[from] = inverse;
+    }
+
+    /// The unknown of row `row` from that of its neighbour `known`, found before.
+    fn substitute(&mut self, row: usize, known: usize) {
+        let coupling = if row < known { self.upper[row] } else { self.lower[row] };
+        self.right[row] = self.diagonal[row] * (self.right[row] - coupling * self.right[known]);
+    }
+}
+
+/// The inverse of a 2×2 block, without a test for zero: a singular block must show in the result.
+fn inverse(m: &Matrix2<f64>) -> Matrix2<f64> {
+    let factor = 1.0 / (m.m11 * m.m22 - m.m12 * m.m21);
+    Matrix2::new(m.m22 * factor, -m.m12 * factor, -m.m21 * factor, m.m11 * factor)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, DVector};
+
+    use super::*;
+
+    /// A fixed sequence of numbers in [-1, 1].
+    fn noise(seed: &mut u64) -> f64 {
+        *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (*seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    #[test]
+    fn agrees_with_a_dense_solution() {
+        for n in [1, 2, 3, 4, 7, 20] {
+            let mut seed = n as u64;
+            let mut system = BlockTridiagonal::new(n);
+            let mut dense = DMatrix::zeros(2 * n, 2 * n);
+            for i in 0..n {
+                let mut block = |strength: f64| Matrix2::from_fn(|_, _| noise(&mut seed)) + Matrix2::identity() * strength;
+                (system.lower[i], system.diagonal[i], system.upper[i]) = (block(0.0), block(4.0), block(0.0));
+                system.right[i] = Vector2::from_fn(|_, _| noise(&mut seed));
+                dense.fixed_view_mut::<2, 2>(2 * i, 2 * i).copy_from(&system.diagonal[i]);
+                if i > 0 {
+                    dense.fixed_view_mut::<2, 2>(2 * i, 2 * i - 2).copy_from(&system.lower[i]);
+                }
+                if i + 1 < n {
+                    dense.fixed_view_mut::<2, 2>(2 * i, 2 * i + 2).copy_from(&system.upper[i]);
+                }
+            }
+            let right = DVector::from_fn(2 * n, |row, _| system.right[row / 2][row % 2]);
+            let expected = dense.lu().solve(&right).unwrap();
+            system.solve();
+            for row in 0..2 * n {
+                // Diagonally dominant, so a few roundings of numbers of size 1.
+                assert!((system.right[row / 2][row % 2] - expected[row]).abs() < 1e-14, "n = {n}, row {row}");
+            }
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! Forces of the links and of the contacts at one instant.
+
+use super::{CarrierPoint, LinkKind, Mode, Model, State, SurfacePoint};
+
+/// Forces at one instant, and room for them.
+#[derive(Clone, Debug, Default)]
+pub struct Forces {
+    /// Forces of the links by kind, N; empty where the scene has no such link.
+    pub link: [Vec<f64>; 4],
+    /// f_x,i of all links on mass i, N (3).
+    pub on_mass_x: Vec<f64>,
+    /// f_z,i of all links on mass i, N (4).
+    pub on_mass_z: Vec<f64>,
+}
+
+impl Forces {
+    /// Room for the forces of `model`.
+    pub fn new(model: &Model) -> Self {
+        let k = model.masses();
+        let room = |kind: LinkKind| if model.links[kind as usize].present { kind.count(k) } else { 0 };
+        Self {
+            link: LinkKind::ALL.map(|kind| vec![0.0; room(kind)]),
+            on_mass_x: vec![0.0; k],
+            on_mass_z: vec![0.0; k],
+        }
+    }
+
+    /// The forces in `state` under the carrier's rates.
+    pub fn evaluate(&mut self, model: &Model, state: &State, carrier: &CarrierPoint) {
+        for kind in LinkKind::ALL {
+            self.spring_and_damper(model, state, carrier, kind);
+        }
+        for row in &model.rows {
+            let elongations = &state.maxwell[row.range.clone()];
+            for (force, a) in self.link[row.kind as usize].iter_mut().zip(elongations) {
+                *force += row.stiffness * a;
+            }
+        }
+        self.sum_on_masses();
+    }
+
+    /// F = c e + d ė, the first two parts of every link's force.
+    fn spring_and_damper(&mut self, model: &Model, state: &State, carrier: &CarrierPoint, kind: LinkKind) {
+        let law = &model.links[kind as usize];
+        let force = &mut self.link[kind as usize];
+        let (place, velocity, carrier_rate) = match kind {
+            LinkKind::Vertical | LinkKind::LateralZ => (&state.elongation_z, &state.velocity_z, carrier.w_rate),
+            LinkKind::Horizontal | LinkKind::LateralX => (&state.elongation_x, &state.velocity_x, carrier.u_rate),
+        };
+        for (i, force) in force.iter_mut().enumerate() {
+            let (e, rate) = if kind.is_lateral() {
+                (place[i + 1] - place[i], velocity[i + 1] - velocity[i])
+            } else {
+                (place[i], velocity[i] - carrier_rate)
+            };
+            *force = law.stiffness * e + law.damping * rate;
+        }
+    }
+
+    /// f_x,i = -F_x,i + F_lx,i - F_lx,i-1, and alike along z (3), (4).
+    pub fn sum_on_masses(&mut self) {
+        let [vertical, horizontal, lateral_x, lateral_z] = &self.link;
+        sum_on_masses(&mut self.on_mass_x, horizontal, lateral_x);
+        sum_on_masses(&mut self.on_mass_z, vertical, lateral_z);
+    }
+
+    /// F_x of the layer on the carrier, N.
+    pub fn on_carrier_x(&self) -> f64 {
+        self.link[LinkKind::Horizontal as usize].iter().sum()
+    }
+
+    /// F_z of the layer on the carrier, N: positive when the layer is compressed.
+    ///
+    /// A compressed vertical link (e > 0: the mass is pushed up towards the carrier) pushes the carrier up.
+    pub fn on_carrier_z(&self) -> f64 {
+        self.link[LinkKind::Vertical as usize].iter().sum()
+    }
+
+    /// What the surface and the links do to mass `i`, which is in contact over `ground`.
+    pub fn contact(&self, model: &Model, i: usize, velocity_x: f64, ground: &SurfacePoint) -> ContactForces {
+        ContactForces::new(model, (self.on_mass_x[i], self.on_mass_z[i]), velocity_x, ground)
+    }
+}
+
+fn sum_on_masses(sum: &mut [f64], to_carrier: &[f64], lateral: &[f64]) {
+    if to_carrier.is_empty() {
+        sum.fill(0.0);
+    } else {
+        for (sum, force) in sum.iter_mut().zip(to_carrier) {
+            *sum = -force;
+        }
+    }
+    for (i, &force) in lateral.iter().enumerate() {
+        sum[i] += force;
+        sum[i + 1] -= force;
+    }
+}
+
+/// The forces in one contact (`model.md` section 3).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactForces {
+    /// F_N of the surface on the mass, N.
+    pub normal: f64,
+    /// f·t = (f_x + s f_z)/q of the links, N.
+    pub tangential: f64,
+    /// T = μ F_N + A τ_0: the largest friction force, N.
+    pub limit: f64,
+    /// q = √(1 + s²).
+    pub q: f64,
+}
+
+impl ContactForces {
+    /// Forces from those of the links on the mass, (f_x, f_z), its velocity ẋ and the ground under it.
+    #[inline]
+    pub fn new(model: &Model, (f_x, f_z): (f64, f64), velocity_x: f64, ground: &SurfacePoint) -> Self {
+        let s = ground.slope;
+        let q = (1.0 + s * s).sqrt();
+        // From (6)-(9): the normal force needs no acceleration.
+        let normal = (model.mass * ground.curvature * velocity_x * velocity_x - f_z + s * f_x) / q;
+        let limit = model.friction_coefficient * normal + model.shear_force;
+        Self { normal, tangential: (f_x + s * f_z) / q, limit, q }
+    }
+
+    /// F_T on a mass in `mode`, N, counted against v_t: what holds a sticking mass, T sign(v_t) of a slipping one.
+    pub fn friction(&self, mode: Mode) -> f64 {
+        match mode {
+            Mode::Free => 0.0,
+            Mode::Stick => self.tangential,
+            Mode::Forward | Mode::Backward => mode.direction() * self.limit,
+        }
+    }
+
+    /// ẍ of a mass in contact in `mode`: m q² ẍ + m s κ ẋ² = f_x + s f_z - F_T q.
+    pub fn acceleration(&self, model: &Model, mode: Mode, velocity_x: f64, ground: &SurfacePoint) -> f64 {
+        if mode == Mode::Stick {
+            return 0.0;
+        }
+        let centripetal = ground.slope * ground.curvature * velocity_x * velocity_x;
+        ((self.tangential - self.friction(mode)) / model.mass - centripetal / self.q) / self.q
+    }
+}

@@ -1,0 +1,86 @@
+//! Links: a spring, a damper and Maxwell elements in parallel.
+
+use std::ops::Range;
+
+use crate::scene::Link;
+
+/// The four kinds of link (`model.md` section 2).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LinkKind {
+    /// Carrier to mass, along z: elongation ζ_i - w.
+    Vertical,
+    /// Carrier to mass, along x: elongation ξ_i - u.
+    Horizontal,
+    /// Mass i to mass i+1, along x: elongation ξ_{i+1} - ξ_i.
+    LateralX,
+    /// Mass i to mass i+1, along z: elongation ζ_{i+1} - ζ_i.
+    LateralZ,
+}
+
+impl LinkKind {
+    /// All kinds, in the order in which arrays hold them.
+    pub const ALL: [Self; 4] = [Self::Vertical, Self::Horizontal, Self::LateralX, Self::LateralZ];
+
+    /// Whether the link joins two masses.
+    pub fn is_lateral(self) -> bool {
+        matches!(self, Self::LateralX | Self::LateralZ)
+    }
+
+    /// How many links of this kind a layer of `masses` masses has.
+    pub fn count(self, masses: usize) -> usize {
+        masses - usize::from(self.is_lateral())
+    }
+}
+
+/// The spring and the damper of one kind of link.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LinkLaw {
+    /// Whether the scene has the link at all; an absent one has no forces, no energy and no work.
+    pub present: bool,
+    /// Stiffness c, N/m.
+    pub stiffness: f64,
+    /// Damping d, N s/m.
+    pub damping: f64,
+}
+
+impl LinkLaw {
+    pub(super) fn new(link: Option<&Link>) -> Self {
+        link.map_or_else(Self::default, |link| Self {
+            present: true,
+            stiffness: link.stiffness.unwrap_or(0.0),
+            damping: link.damping.unwrap_or(0.0),
+        })
+    }
+}
+
+/// One Maxwell element of every link of a kind: its constants, and where the elongations a_j = e - y_j of its springs
+/// stand in [`State::maxwell`](super::State::maxwell).
+#[derive(Clone, Debug, PartialEq)]
+pub struct MaxwellRow {
+    /// The kind of link.
+    pub kind: LinkKind,
+    /// Stiffness c_j, N/m.
+    pub stiffness: f64,
+    /// Relaxation time τ_j, s.
+    pub relaxation_time: f64,
+    /// The elements of the row, link by link.
+    pub range: Range<usize>,
+}
+
+pub(super) fn maxwell_rows(links: [&Option<Link>; 4], masses: usize) -> Vec<MaxwellRow> {
+    let mut rows = Vec::new();
+    let mut start = 0;
+    for (kind, link) in LinkKind::ALL.into_iter().zip(links) {
+        for element in link.iter().flat_map(|link| &link.maxwell) {
+            let end = start + kind.count(masses);
+            rows.push(MaxwellRow {
+                kind,
+                stiffness: element.stiffness,
+                relaxation_time: element.relaxation_time,
+                range: start..end,
+            });
+            start = end;
+        }
+    }
+    rows
+}

@@ -1,0 +1,102 @@
+//! Power and energy of the layer (`model.md` section 6).
+
+use super::{CarrierPoint, Forces, LinkKind, Model, State};
+
+/// Power through the channels, W; or, summed over time, the energy, J.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Power {
+    /// P_damper = Σ d ė².
+    pub damper: f64,
+    /// P_maxwell = Σ_j c_j τ_j ẏ_j² = Σ_j c_j a_j²/τ_j.
+    pub maxwell: f64,
+    /// P_friction = Σ F_T v_t.
+    pub friction: f64,
+    /// P_in = -(F_x u̇ + F_z ẇ), of the carrier into the layer.
+    pub input: f64,
+}
+
+impl Power {
+    /// The powers in `state` with the forces there.
+    pub fn evaluate(model: &Model, state: &State, carrier: &CarrierPoint, forces: &Forces) -> Self {
+        Self {
+            damper: LinkKind::ALL.map(|kind| damper(model, state, carrier, kind)).iter().sum(),
+            maxwell: maxwell(model, state),
+            friction: if model.has_friction { friction(model, state, forces) } else { 0.0 },
+            input: -(forces.on_carrier_x() * carrier.u_rate + forces.on_carrier_z() * carrier.w_rate),
+        }
+    }
+
+    /// Power lost in all channels, W; impacts take no time and count in energy alone.
+    pub fn dissipated(&self) -> f64 {
+        self.damper + self.maxwell + self.friction
+    }
+
+    /// Adds `time` seconds of `power`.
+    pub fn add(&mut self, time: f64, power: &Self) {
+        self.damper += time * power.damper;
+        self.maxwell += time * power.maxwell;
+        self.friction += time * power.friction;
+        self.input += time * power.input;
+    }
+}
+
+fn damper(model: &Model, state: &State, carrier: &CarrierPoint, kind: LinkKind) -> f64 {
+    let damping = model.links[kind as usize].damping;
+    if damping == 0.0 {
+        return 0.0;
+    }
+    let sum: f64 = match kind {
+        LinkKind::Vertical => square_sum(state.velocity_z.iter().map(|v| v - carrier.w_rate)),
+        LinkKind::Horizontal => square_sum(state.velocity_x.iter().map(|v| v - carrier.u_rate)),
+        LinkKind::LateralX => square_sum(state.velocity_x.windows(2).map(|v| v[1] - v[0])),
+        LinkKind::LateralZ => square_sum(state.velocity_z.windows(2).map(|v| v[1] - v[0])),
+    };
+    damping * sum
+}
+
+fn square_sum(values: impl Iterator<Item = f64>) -> f64 {
+    values.map(|v| v * v).sum()
+}
+
+fn maxwell(model: &Model, state: &State) -> f64 {
+    let row_power = |row: &super::MaxwellRow| {
+        row.stiffness / row.relaxation_time * square_sum(state.maxwell[row.range.clone()].iter().copied())
+    };
+    model.rows.iter().map(row_power).sum()
+}
+
+fn friction(model: &Model, state: &State, forces: &Forces) -> f64 {
+    (0..model.masses())
+        .filter(|&i| state.mode[i].slips())
+        .map(|i| {
+            let v = state.velocity_x[i];
+            let contact = forces.contact(model, i, v, &state.ground[i]);
+            contact.friction(state.mode[i]) * v * contact.q
+        })
+        .sum()
+}
+
+/// T = Σ ½ m (ẋ² + ż²), J.
+pub fn kinetic_energy(model: &Model, state: &State) -> f64 {
+    0.5 * model.mass * (square_sum(state.velocity_x.iter().copied()) + square_sum(state.velocity_z.iter().copied()))
+}
+
+/// V = Σ ½ c e² + Σ_j ½ c_j (e - y_j)², J.
+pub fn elastic_energy(model: &Model, state: &State) -> f64 {
+    let springs: f64 = LinkKind::ALL.map(|kind| spring_energy(model, state, kind)).iter().sum();
+    let row_energy = |row: &super::MaxwellRow| {
+        0.5 * row.stiffness * square_sum(state.maxwell[row.range.clone()].iter().copied())
+    };
+    springs + model.rows.iter().map(row_energy).sum::<f64>()
+}
+
+fn spring_energy(model: &Model, state: &State, kind: LinkKind) -> f64 {
+    let sum = match kind {
+        LinkKind::Vertical => square_sum(state.elongation_z.iter().copied()),
+        LinkKind::Horizontal => square_sum(state.elongation_x.iter().copied()),
+        LinkKind::LateralX => square_sum(state.elongation_x.windows(2).map(|e| e[1] - e[0])),
+        // ζ is counted from rest, so roughness does not stretch the links between the masses.
+        LinkKind::LateralZ => square_sum(state.elongation_z.windows(2).map(|e| e[1] - e[0])),
+    };
+    0.5 * model.links[kind as usize].stiffness * sum
+}

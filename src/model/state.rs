@@ -1,0 +1,102 @@
+//! The layer's state.
+
+use super::SurfacePoint;
+
+/// How a mass stands to the surface. Each mode's inequality is what holds as long as the mode lasts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mode {
+    /// Gap g ≥ 0, no contact force.
+    #[default]
+    Free,
+    /// g = 0, F_N ≥ 0, v_t ≥ 0: slipping along +t, or, without friction, in contact at any speed.
+    Forward,
+    /// g = 0, F_N ≥ 0, v_t ≤ 0: slipping along -t.
+    Backward,
+    /// g = 0, F_N ≥ 0, ẋ = 0, |f·t| ≤ T(0).
+    Stick,
+}
+
+impl Mode {
+    /// Whether the mass is in contact.
+    pub fn in_contact(self) -> bool {
+        self != Self::Free
+    }
+
+    /// Whether the mass is in contact and may move along the surface.
+    pub fn slips(self) -> bool {
+        matches!(self, Self::Forward | Self::Backward)
+    }
+
+    /// The direction σ of slip along t: 1, -1, or 0 where there is none.
+    pub fn direction(self) -> f64 {
+        match self {
+            Self::Forward => 1.0,
+            Self::Backward => -1.0,
+            Self::Free | Self::Stick => 0.0,
+        }
+    }
+
+    /// The slip mode for a velocity or force along t of this sign.
+    pub fn along(tangential: f64) -> Self {
+        if tangential < 0.0 { Self::Backward } else { Self::Forward }
+    }
+
+    /// The number that stands for the mode outside: 0 free, 1 or -1 slipping, 2 sticking.
+    pub fn number(self) -> i8 {
+        match self {
+            Self::Free => 0,
+            Self::Forward => 1,
+            Self::Backward => -1,
+            Self::Stick => 2,
+        }
+    }
+}
+
+/// Positions relative to the carrier, velocities in the inertial frame, Maxwell elongations and modes of all masses.
+///
+/// In contact z = z_r(x) and ż = s ẋ are put in, not integrated, so the constraint can't drift.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct State {
+    /// ξ_i - u, m: the elongation of the horizontal link.
+    pub elongation_x: Vec<f64>,
+    /// ζ_i - w, m: the elongation of the vertical link.
+    pub elongation_z: Vec<f64>,
+    /// ẋ_i, m/s.
+    pub velocity_x: Vec<f64>,
+    /// ż_i, m/s.
+    pub velocity_z: Vec<f64>,
+    /// a_j = e - y_j of all Maxwell elements, m, as [`MaxwellRow::range`](super::MaxwellRow::range) says. The force of an
+    /// element is c_j a_j; da_j/dt = ė - a_j/τ_j keeps all its digits when τ_j is short, where e - y_j would cancel.
+    pub maxwell: Vec<f64>,
+    /// The modes.
+    pub mode: Vec<Mode>,
+    /// The profile under each mass in contact.
+    pub ground: Vec<SurfacePoint>,
+}
+
+impl State {
+    /// At rest and free.
+    pub fn new(masses: usize, maxwell_variables: usize) -> Self {
+        let zero = vec![0.0; masses];
+        Self {
+            elongation_x: zero.clone(),
+            elongation_z: zero.clone(),
+            velocity_x: zero.clone(),
+            velocity_z: zero,
+            maxwell: vec![0.0; maxwell_variables],
+            mode: vec![Mode::Free; masses],
+            ground: vec![SurfacePoint::default(); masses],
+        }
+    }
+
+    /// Takes over `other`, a state of the same model, without allocating.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.elongation_x.copy_from_slice(&other.elongation_x);
+        self.elongation_z.copy_from_slice(&other.elongation_z);
+        self.velocity_x.copy_from_slice(&other.velocity_x);
+        self.velocity_z.copy_from_slice(&other.velocity_z);
+        self.maxwell.copy_from_slice(&other.maxwell);
+        self.mode.copy_from_slice(&other.mode);
+        self.ground.copy_from_slice(&other.ground);
+    }
+}

@@ -1,0 +1,133 @@
+//! `asperity describe`: what is in a scene and what is left out.
+
+mod layer;
+
+use std::io::Write as _;
+use std::path::Path as FilePath;
+
+use asperity::outputs::variables;
+use asperity::scene::{Extrapolation, OutputGroup, Parameter, Path, Phase, Scene, Value};
+use asperity::simulation::{Simulation, Start};
+
+use super::arguments::Describe;
+use super::error::ProgramError;
+
+/// Stands where the scene names nothing.
+const LEFT_OUT: &str = "left out";
+
+/// Prints the description.
+pub(crate) fn describe(command: &Describe) -> Result<(), ProgramError> {
+    let scene = super::load(&command.scene)?;
+    let simulation = Simulation::new(&scene, &Start::default()).map_err(ProgramError::Start)?;
+    let text = text(&scene, simulation.bytes());
+    std::io::stdout().write_all(text.as_bytes()).map_err(ProgramError::file("write", FilePath::new("standard output")))
+}
+
+fn text(scene: &Scene, bytes: usize) -> String {
+    let mut rows = vec![("Scene", title(scene))];
+    rows.extend(layer::rows(scene));
+    rows.extend(friction(scene));
+    rows.extend(outputs(scene));
+    rows.extend([("Solver", solver(scene)), ("Input", input(scene))]);
+    rows.extend(excitation(scene));
+    rows.push(("Memory", format!("{bytes} bytes a run")));
+    rows.into_iter().map(|(name, text)| format!("{name:<12}{text}\n")).collect()
+}
+
+/// A row: its name, empty where the row goes on with the one above, and its text.
+type Row = (&'static str, String);
+
+fn title(scene: &Scene) -> String {
+    scene.description.as_ref().map_or_else(|| scene.name.clone(), |text| format!("{}: {text}", scene.name))
+}
+
+/// Names the first of `texts`, the others follow below it.
+fn under(name: &'static str, texts: impl IntoIterator<Item = String>) -> Vec<Row> {
+    texts.into_iter().enumerate().map(|(i, text)| (if i == 0 { name } else { "" }, text)).collect()
+}
+
+fn or_left_out(value: Option<f64>, unit: &str) -> String {
+    value.map_or_else(|| LEFT_OUT.into(), |value| format!("{}{unit}", number(value)))
+}
+
+/// A number for reading: short, with an exponent where it is far from 1.
+fn number(value: f64) -> String {
+    let near = value == 0.0 || (1e-3..1e6).contains(&value.abs());
+    if near { format!("{value}") } else { format!("{value:e}") }
+}
+
+fn friction(scene: &Scene) -> Vec<Row> {
+    let Some(friction) = &scene.friction else { return vec![("Friction", LEFT_OUT.into())] };
+    let coulomb = format!("coulomb      {}", or_left_out(friction.coulomb, ""));
+    let shear = format!("shear_force  {}", or_left_out(friction.shear_force, " N a mass in contact"));
+    under("Friction", [coulomb, shear])
+}
+
+fn outputs(scene: &Scene) -> Vec<Row> {
+    under(
+        "Outputs",
+        OutputGroup::ALL.into_iter().map(|group| format!("{:<13}{}", group.name(), group_text(scene, group))),
+    )
+}
+
+fn group_text(scene: &Scene, group: OutputGroup) -> String {
+    if !scene.outputs.contains(&group) {
+        return LEFT_OUT.into();
+    }
+    if group == OutputGroup::Elements {
+        return format!("element[1..{}].x, .z, .F_N, .F_T, .mode", scene.layer.masses);
+    }
+    let names = variables(scene).into_iter().filter(|variable| variable.group == group).map(|variable| variable.name);
+    names.collect::<Vec<_>>().join(", ")
+}
+
+fn solver(scene: &Scene) -> String {
+    format!(
+        "method {}, relative_tolerance {}, absolute_tolerance {} m, max_steps {}",
+        word(scene, Parameter::Method),
+        number(scene.solver.relative_tolerance),
+        number(scene.absolute_tolerance()),
+        scene.solver.max_steps
+    )
+}
+
+fn input(scene: &Scene) -> String {
+    match scene.extrapolation {
+        Extrapolation::Linear => "u, w; values without rates go on as they came (linear)".into(),
+        Extrapolation::Hold => "u, w; values without rates are reached at the end of the step (hold)".into(),
+    }
+}
+
+fn excitation(scene: &Scene) -> Vec<Row> {
+    if scene.excitation.is_empty() {
+        return vec![("Excitation", LEFT_OUT.into())];
+    }
+    under("Excitation", scene.excitation.iter().enumerate().map(|(i, phase)| phase_text(i + 1, phase)))
+}
+
+fn phase_text(index: usize, phase: &Phase) -> String {
+    let motions = [("u", &phase.u), ("w", &phase.w)].map(|(name, path)| path_text(name, path));
+    let motion = motions.concat();
+    let motion = if motion.is_empty() { ", held".into() } else { motion };
+    let end = phase.until_force.map_or_else(String::new, |force| format!(", until F_z = {} N", number(force)));
+    format!("{index}  {} s{motion}{end}", number(phase.duration))
+}
+
+fn path_text(name: &str, path: &Path) -> String {
+    let mut text = String::new();
+    if path.rate != 0.0 {
+        text += &format!(", {name} at {} m/s", number(path.rate));
+    }
+    if path.amplitude != 0.0 {
+        text += &format!(", {name} by {} m at {} Hz", number(path.amplitude), number(path.frequency));
+    }
+    text
+}
+
+/// The word that the scene gives for `parameter`.
+fn word(scene: &Scene, parameter: Parameter) -> String {
+    match scene.parameter(parameter) {
+        Value::Text(word) => word,
+        other => other.to_string(),
+    }
+}

@@ -1,0 +1,59 @@
+//! Why the program stops.
+
+use std::path::{Path, PathBuf};
+
+use asperity::scene::{ParameterError, SceneError};
+use asperity::simulation::SimulationError;
+
+/// Why the program stops; its text is the one line that the user sees.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum ProgramError {
+    /// The scene is refused.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A parameter of the command line is refused.
+    #[error("--set: {0}")]
+    Parameter(#[from] ParameterError),
+    /// The run cannot begin.
+    #[error("the run cannot start: {0}")]
+    Start(SimulationError),
+    /// The run could not go on.
+    #[error("{source}; the rows so far, up to t = {time} s, are in {}", .output.display())]
+    Run { source: SimulationError, time: f64, output: PathBuf },
+    /// A file cannot be read or written.
+    #[error("cannot {action} {}: {source}", .path.display())]
+    File { action: &'static str, path: PathBuf, source: std::io::Error },
+    /// A result file is not one.
+    #[error("{}: {message}", .path.display())]
+    ResultFile { path: PathBuf, message: String },
+    /// What the command line asks of `plot` cannot be.
+    #[error("--labels gives {labels} names for {files} files")]
+    Labels { labels: usize, files: usize },
+    /// A picture cannot be drawn.
+    #[error("cannot draw {}: {message}", .path.display())]
+    Picture { path: PathBuf, message: String },
+    /// The shared library is not there.
+    #[error(
+        "no shared library at {}: build it with `cargo build --release --lib --no-default-features` and name it with \
+         --library, or use build-fmu.sh, which does both",
+        .path.display()
+    )]
+    NoLibrary { path: PathBuf },
+    /// A file of the scene has no place in the archive.
+    #[error("the scene reads {}, which is not below the scene's folder: an FMU carries only what is", .path.display())]
+    Outside { path: PathBuf },
+    /// The archive cannot be written.
+    #[error("cannot pack: {0}")]
+    Archive(#[from] zip::result::ZipError),
+    /// A document of the archive cannot be written.
+    #[error("cannot write {document}: {source}")]
+    Document { document: &'static str, source: std::io::Error },
+}
+
+impl ProgramError {
+    /// For `map_err`: `action` ("read", "write") on `path` failed.
+    pub(crate) fn file(action: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Self + use<> {
+        let path = path.to_owned();
+        move |source| Self::File { action, path, source }
+    }
+}

@@ -1,0 +1,91 @@
+//! The excitation of a scene, followed phase by phase.
+
+use asperity::scene::{Phase, Scene};
+use asperity::simulation::{Motion, Simulation, SimulationError, Start};
+
+use super::warn;
+
+/// The carrier at one row of a result file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Carrier {
+    /// Time, s.
+    pub(crate) time: f64,
+    /// Displacement along x, m.
+    pub(crate) u: f64,
+    /// Displacement along z, m.
+    pub(crate) w: f64,
+}
+
+/// A run of a scene along its excitation.
+#[derive(Debug)]
+pub(crate) struct Run {
+    simulation: Simulation,
+    carrier: Carrier,
+    points: u32,
+}
+
+impl Run {
+    /// The layer under the carrier at time 0, moving as the first phase begins.
+    pub(crate) fn new(scene: &Scene, points: u32) -> Result<Self, SimulationError> {
+        let first = scene.excitation.first();
+        let start = Start {
+            u_rate: first.map_or(0.0, |phase| phase.u.velocity(0.0)),
+            w_rate: first.map_or(0.0, |phase| phase.w.velocity(0.0)),
+            ..Start::default()
+        };
+        let carrier = Carrier { time: start.time, u: start.u, w: start.w };
+        Ok(Self { simulation: Simulation::new(scene, &start)?, carrier, points })
+    }
+
+    /// Calls `observe` at the start and then at `points` even intervals of the time that each phase really takes.
+    pub(crate) fn follow(
+        &mut self,
+        phases: &[Phase],
+        mut observe: impl FnMut(Carrier, &mut Simulation),
+    ) -> Result<(), SimulationError> {
+        observe(self.carrier, &mut self.simulation);
+        phases.iter().enumerate().try_for_each(|(i, phase)| self.follow_phase(i, phase, &mut observe))
+    }
+
+    fn follow_phase(
+        &mut self,
+        index: usize,
+        phase: &Phase,
+        observe: &mut impl FnMut(Carrier, &mut Simulation),
+    ) -> Result<(), SimulationError> {
+        let duration = self.duration(index, phase)?;
+        if duration <= 0.0 {
+            return Ok(());
+        }
+        let motion = Motion { duration, u: phase.u, w: phase.w };
+        let times: Vec<f64> = (1..=self.points).map(|i| duration * f64::from(i) / f64::from(self.points)).collect();
+        let start = self.carrier;
+        let at = |s: f64| start.moved(phase, s);
+        self.simulation.advance_observed(&motion, &times, |s, simulation| observe(at(s), simulation))?;
+        self.carrier = Carrier { time: self.simulation.time(), ..at(duration) };
+        Ok(())
+    }
+
+    /// How long the phase really takes. A phase that ends at a force is run on a copy first, so that its rows can
+    /// divide it evenly.
+    fn duration(&self, index: usize, phase: &Phase) -> Result<f64, SimulationError> {
+        let Some(force) = phase.until_force else { return Ok(phase.duration) };
+        let motion = Motion { duration: phase.duration, u: phase.u, w: phase.w };
+        let reached = self.simulation.duration_until_force(&motion, force)?;
+        Ok(reached.unwrap_or_else(|| {
+            warn(&format!(
+                "phase {} of the excitation: F_z did not rise to until_force = {force} N within {} s",
+                index + 1,
+                phase.duration
+            ));
+            phase.duration
+        }))
+    }
+}
+
+impl Carrier {
+    /// The carrier a time `s` after the start of `phase`, which began here.
+    fn moved(self, phase: &Phase, s: f64) -> Self {
+        Self { time: self.time + s, u: self.u + phase.u.at(s), w: self.w + phase.w.at(s) }
+    }
+}

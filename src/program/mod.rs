@@ -1,0 +1,41 @@
+//! The commands of the program, one module each, and what they share.
+
+mod arguments;
+mod describe;
+mod error;
+mod excitation;
+mod pack;
+mod plot;
+mod result_file;
+mod simulate;
+
+use std::path::Path;
+
+use asperity::scene::Scene;
+
+pub(crate) use arguments::Arguments;
+use arguments::Command;
+use error::ProgramError;
+
+/// Does what the command line asks for.
+pub(crate) fn run(arguments: Arguments) -> Result<(), ProgramError> {
+    match arguments.command {
+        Command::Simulate(command) => simulate::simulate(&command),
+        Command::Plot(command) => plot::plot_files(&command),
+        Command::Describe(command) => describe::describe(&command),
+        Command::Pack(command) => pack::pack(&command),
+    }
+}
+
+/// Reads a scene and passes its warnings on.
+fn load(path: &Path) -> Result<Scene, ProgramError> {
+    let scene = Scene::load(path)?;
+    scene.warnings.iter().for_each(|warning| warn(warning));
+    Ok(scene)
+}
+
+/// Tells the user what is worth knowing though the program goes on.
+#[expect(clippy::print_stderr, reason = "warnings are for the terminal")]
+fn warn(message: &str) {
+    eprintln!("asperity: warning: {message}");
+}

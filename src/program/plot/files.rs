@@ -1,0 +1,102 @@
+//! `asperity plot`: columns of result files over each other.
+
+use std::path::Path;
+
+use asperity::outputs::unit_of;
+use plotters::prelude::*;
+
+use super::axis::{Axis, Fit};
+use super::chart::{Chart, Drawn, Line, title};
+use crate::program::arguments::Plot;
+use crate::program::error::ProgramError;
+use crate::program::result_file::ResultFile;
+
+const SIZE: (u32, u32) = (1000, 620);
+
+/// Draws one line for each file and y.
+pub(crate) fn plot_files(command: &Plot) -> Result<(), ProgramError> {
+    if !command.labels.is_empty() && command.labels.len() != command.files.len() {
+        return Err(ProgramError::Labels { labels: command.labels.len(), files: command.files.len() });
+    }
+    let lines = command.files.iter().enumerate().map(|(i, path)| file_lines(command, i, path));
+    let lines: Vec<Vec<Line>> = lines.collect::<Result<_, _>>()?;
+    draw(command, &chart(command, lines.concat()))
+        .map_err(|error| ProgramError::Picture { path: command.output.clone(), message: error.to_string() })
+}
+
+fn file_lines(command: &Plot, index: usize, path: &Path) -> Result<Vec<Line>, ProgramError> {
+    let file = ResultFile::read(path)?;
+    let x = file.column(&command.x)?;
+    let first = if command.from_motion { last_before_motion(&x) } else { 0 };
+    let sign = if command.negate { -1.0 } else { 1.0 };
+    let line = |column: &String| {
+        let y = file.column(column)?;
+        let points = x.iter().zip(&y).skip(first).map(|(&x, &y)| (x, sign * y)).collect();
+        Ok(Line { name: line_name(command, index, path, column), points })
+    };
+    command.y.iter().map(line).collect()
+}
+
+/// The last row at which x is still what it was in the first.
+fn last_before_motion(x: &[f64]) -> usize {
+    x.iter().position(|value| *value != x[0]).map_or(0, |moved| moved - 1)
+}
+
+fn line_name(command: &Plot, index: usize, path: &Path, column: &str) -> String {
+    let stem = || path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    let file = command.labels.get(index).cloned().unwrap_or_else(stem);
+    match (command.y.len(), command.files.len()) {
+        (1, _) => file,
+        (_, 1) => column.to_owned(),
+        _ => format!("{file}: {column}"),
+    }
+}
+
+fn chart(command: &Plot, lines: Vec<Line>) -> Chart {
+    let points = || lines.iter().flat_map(|line| &line.points);
+    let quantity = format!("{}{}", if command.negate { "-" } else { "" }, command.y.join(", "));
+    Chart {
+        x: Axis::new(&command.x, unit(&command.x), points().map(|point| point.0), Fit::Tight),
+        y: Axis::new(&quantity, unit(&command.y[0]), points().map(|point| point.1), Fit::Round),
+        lines,
+    }
+}
+
+/// The unit of a column; none for a plain number or a column that we do not know.
+fn unit(column: &str) -> &'static str {
+    match column {
+        "time" => "s",
+        "u" | "w" => "m",
+        _ => unit_of(column).map(|unit| unit.name()).filter(|&name| name != "1").unwrap_or_default(),
+    }
+}
+
+fn draw(command: &Plot, chart: &Chart) -> Drawn {
+    let root = SVGBackend::new(&command.output, SIZE).into_drawing_area();
+    root.fill(&WHITE)?;
+    match &command.title {
+        Some(text) => chart.draw(&title(&root, text)?)?,
+        None => chart.draw(&root)?,
+    }
+    Ok(root.present()?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_starts_where_its_x_begins_to_change() {
+        assert_eq!(last_before_motion(&[0.0, 0.0, 0.0, 1.0]), 2);
+        assert_eq!(last_before_motion(&[0.0, 1.0]), 0);
+        assert_eq!(last_before_motion(&[0.0, 0.0]), 0);
+    }
+
+    #[test]
+    fn columns_have_the_units_of_their_variables() {
+        assert_eq!(
+            [unit("u"), unit("F_x"), unit("element[12].z"), unit("contact.count"), unit("?")],
+            ["m", "N", "m", "", ""]
+        );
+    }
+}

@@ -1,0 +1,101 @@
+//! The picture of a run: forces, contacts and dissipation over time.
+
+use std::path::Path;
+
+use asperity::outputs::{Output, Variable, variables};
+use asperity::scene::{OutputGroup, Scene};
+use asperity::simulation::Simulation;
+use plotters::prelude::*;
+
+use super::axis::{Axis, Fit};
+use super::chart::{Chart, Drawn, Line, title};
+use crate::program::error::ProgramError;
+
+const SIZE: (u32, u32) = (1000, 1080);
+
+/// What the picture of a run shows, kept row by row.
+#[derive(Debug)]
+pub(crate) struct History {
+    scene: Scene,
+    variables: Vec<Variable>,
+    times: Vec<f64>,
+    rows: Vec<Vec<f64>>,
+}
+
+/// One chart of the picture: its quantity, its unit, which outputs it shows.
+type Panel = (&'static str, &'static str, fn(&Output) -> bool);
+
+const PANELS: [Panel; 3] = [
+    ("force on the carrier", "N", |output| matches!(output, Output::ForceX | Output::ForceZ)),
+    ("masses", "", |output| matches!(output, Output::ContactCount | Output::StickingCount)),
+    ("energy lost", "J", |output| {
+        use Output::{DamperEnergy, DissipatedEnergy, FrictionEnergy, ImpactEnergy, MaxwellEnergy};
+        matches!(output, DissipatedEnergy | DamperEnergy | MaxwellEnergy | FrictionEnergy | ImpactEnergy)
+    }),
+];
+
+impl History {
+    /// Nothing seen yet.
+    pub(crate) fn new(scene: &Scene) -> Self {
+        let scene = with_groups(scene);
+        let shown = |variable: &Variable| PANELS.iter().any(|(_, _, shows)| shows(&variable.output));
+        let variables = variables(&scene).into_iter().filter(shown).collect();
+        Self { scene, variables, times: Vec::new(), rows: Vec::new() }
+    }
+
+    /// The scene with the output groups that the picture needs.
+    pub(crate) fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Keeps a row.
+    pub(crate) fn add(&mut self, time: f64, simulation: &mut Simulation) {
+        let mut values = vec![0.0; self.variables.len()];
+        simulation.evaluate(&self.variables, &mut values);
+        self.times.push(time);
+        self.rows.push(values);
+    }
+
+    /// Draws the picture.
+    pub(crate) fn draw(&self, path: &Path, name: &str) -> Result<(), ProgramError> {
+        self.try_draw(path, name)
+            .map_err(|error| ProgramError::Picture { path: path.to_owned(), message: error.to_string() })
+    }
+
+    fn try_draw(&self, path: &Path, name: &str) -> Drawn {
+        let root = SVGBackend::new(path, SIZE).into_drawing_area();
+        root.fill(&WHITE)?;
+        let panels = title(&root, name)?.split_evenly((PANELS.len(), 1));
+        for (panel, canvas) in PANELS.iter().zip(&panels) {
+            self.chart(panel).draw(canvas)?;
+        }
+        Ok(root.present()?)
+    }
+
+    fn chart(&self, &(quantity, unit, shows): &Panel) -> Chart {
+        let lines: Vec<Line> = self.lines(shows).collect();
+        let values = lines.iter().flat_map(|line| &line.points).map(|point| point.1);
+        Chart {
+            x: Axis::new("time", "s", self.times.iter().copied(), Fit::Tight),
+            y: Axis::new(quantity, unit, values, Fit::Round),
+            lines,
+        }
+    }
+
+    fn lines(&self, shows: fn(&Output) -> bool) -> impl Iterator<Item = Line> {
+        self.variables.iter().enumerate().filter(move |(_, variable)| shows(&variable.output)).map(|(i, variable)| {
+            Line {
+                name: variable.name.clone(),
+                points: self.times.iter().zip(&self.rows).map(|(&time, row)| (time, row[i])).collect(),
+            }
+        })
+    }
+}
+
+fn with_groups(scene: &Scene) -> Scene {
+    let needed = |group: &OutputGroup| {
+        matches!(group, OutputGroup::Forces | OutputGroup::Contact | OutputGroup::Dissipation)
+            || scene.outputs.contains(group)
+    };
+    Scene { outputs: OutputGroup::ALL.into_iter().filter(needed).collect(), ..scene.clone() }
+}

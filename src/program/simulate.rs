@@ -1,0 +1,104 @@
+//! `asperity simulate`: runs a scene along its excitation.
+
+use asperity::outputs::{Variable, variables};
+use asperity::scene::Scene;
+use asperity::simulation::Simulation;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::arguments::Simulate;
+use super::error::ProgramError;
+use super::excitation::{Carrier, Run};
+use super::plot::History;
+use super::result_file::ResultWriter;
+
+/// Positions of the progress bar: fine enough to move at every row of a usual run.
+const PROGRESS_LENGTH: f64 = 1000.0;
+
+/// Runs the scene, writes the rows, draws the plot.
+pub(crate) fn simulate(command: &Simulate) -> Result<(), ProgramError> {
+    let mut scene = super::load(&command.scene)?;
+    set_parameters(&mut scene, &command.set)?;
+    let mut recorder = Recorder::new(&scene, command)?;
+    let result = record(&scene, command, &mut recorder);
+    let history = recorder.finish()?;
+    result?;
+    match (&command.plot, history) {
+        (Some(path), Some(history)) => history.draw(path, &scene.name),
+        _ => Ok(()),
+    }
+}
+
+fn set_parameters(scene: &mut Scene, set: &[(String, String)]) -> Result<(), ProgramError> {
+    Ok(set.iter().try_for_each(|(key, value)| scene.set_by_name(key, value))?)
+}
+
+fn record(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<(), ProgramError> {
+    let shown = recorder.history.as_ref().map_or_else(|| scene.clone(), |history| history.scene().clone());
+    let mut run = Run::new(&shown, command.points).map_err(ProgramError::Start)?;
+    run.follow(&scene.excitation, |carrier, simulation| recorder.row(carrier, simulation))
+        .map_err(|source| ProgramError::Run { source, time: recorder.time, output: command.output.clone() })
+}
+
+/// Takes the rows of a run: into the file, the plot and the progress bar.
+struct Recorder {
+    variables: Vec<Variable>,
+    values: Vec<f64>,
+    writer: ResultWriter,
+    history: Option<History>,
+    progress: ProgressBar,
+    duration: f64,
+    time: f64,
+    /// The first failure to write: the run itself cannot be stopped from a row.
+    failure: Option<ProgramError>,
+}
+
+impl Recorder {
+    fn new(scene: &Scene, command: &Simulate) -> Result<Self, ProgramError> {
+        let variables = variables(scene);
+        Ok(Self {
+            values: vec![0.0; variables.len()],
+            writer: ResultWriter::create(&command.output, &variables)?,
+            variables,
+            history: command.plot.is_some().then(|| History::new(scene)),
+            progress: progress_bar(),
+            duration: scene.excitation.iter().map(|phase| phase.duration).sum(),
+            time: 0.0,
+            failure: None,
+        })
+    }
+
+    fn row(&mut self, carrier: Carrier, simulation: &mut Simulation) {
+        if self.failure.is_some() {
+            return;
+        }
+        simulation.evaluate(&self.variables, &mut self.values);
+        self.failure = self.writer.write(carrier, &self.values).err();
+        if let Some(history) = &mut self.history {
+            history.add(carrier.time, simulation);
+        }
+        self.time = carrier.time;
+        self.show_progress();
+    }
+
+    fn show_progress(&self) {
+        if self.duration > 0.0 {
+            self.progress.set_position((PROGRESS_LENGTH * self.time / self.duration) as u64);
+            self.progress.set_message(format!("t = {:.4e} s", self.time));
+        }
+    }
+
+    fn finish(self) -> Result<Option<History>, ProgramError> {
+        self.progress.finish_and_clear();
+        self.writer.finish()?;
+        self.failure.map_or(Ok(self.history), Err)
+    }
+}
+
+/// On a terminal alone: elsewhere the bar stays hidden.
+fn progress_bar() -> ProgressBar {
+    let bar = ProgressBar::new(PROGRESS_LENGTH as u64);
+    match ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {eta} left") {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}

@@ -1,0 +1,237 @@
+//! The conductor: joins the integrator and the contact rules into a run.
+
+mod run;
+mod stepping;
+
+use std::sync::Arc;
+
+use crate::contact::EventTolerance;
+use crate::integrator::{Integrator, Tolerance};
+use crate::model::{Forces, Model, State};
+use crate::outputs::{self, Accounts, Variable};
+use crate::scene::{Path, Scene};
+use run::{Checkpoint, Run};
+
+/// The carrier at the start of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Start {
+    /// Time t_0, s.
+    pub time: f64,
+    /// Displacement along x, m.
+    pub u: f64,
+    /// Displacement along z, m; negative presses.
+    pub w: f64,
+    /// u̇ just after the start, m/s: the velocity that the layer starts with.
+    pub u_rate: f64,
+    /// ẇ just after the start, m/s.
+    pub w_rate: f64,
+}
+
+/// One smooth piece of the carrier's motion, from where the carrier stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion {
+    /// Duration, s.
+    pub duration: f64,
+    /// Displacement along x.
+    pub u: Path,
+    /// Displacement along z.
+    pub w: Path,
+}
+
+/// Why a run could not go on; the simulation is as it was before the call.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SimulationError {
+    /// The steps allowed were used up.
+    #[error("gave up at t = {time} s after {steps} steps, the limit solver.max_steps")]
+    TooManySteps {
+        /// Where the run stood, s.
+        time: f64,
+        /// The limit.
+        steps: u64,
+    },
+    /// The step size fell to the resolution of time.
+    #[error("the step size fell to {step} s at t = {time} s")]
+    StepTooSmall {
+        /// Where the run stood, s.
+        time: f64,
+        /// The step size, s.
+        step: f64,
+    },
+    /// The carrier's motion is not a number, or not finite.
+    #[error("the carrier's motion is not finite: {what} = {value}")]
+    NotFinite {
+        /// Which quantity.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+    },
+}
+
+/// What happened to one mass at one instant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModeChange {
+    /// When, s.
+    pub time: f64,
+    /// Which mass, from 0.
+    pub mass: usize,
+    /// Mode before: 0 free, 1 or -1 slipping, 2 sticking.
+    pub from: i8,
+    /// Mode after.
+    pub to: i8,
+}
+
+/// A run of a scene.
+///
+/// A clone is the whole of it: both go on alike, bit for bit.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    model: Arc<Model>,
+    settings: Settings,
+    run: Run,
+    /// The run as it was before the motion under way.
+    before: Checkpoint,
+    integrator: Integrator,
+    forces: Forces,
+    /// The state within a step, shown to observers.
+    within: State,
+    mode_changes: Option<Vec<ModeChange>>,
+}
+
+/// What of a scene the conductor needs beside the model.
+#[derive(Clone, Debug)]
+struct Settings {
+    tolerance: Tolerance,
+    events: EventTolerance,
+    max_steps: u64,
+    accounts: Accounts,
+}
+
+impl Settings {
+    fn new(scene: &Scene, model: &Model) -> Self {
+        let tolerance = Tolerance::new(model, scene.solver.relative_tolerance, scene.absolute_tolerance());
+        let events = EventTolerance::new(model, &tolerance);
+        Self { tolerance, events, max_steps: scene.solver.max_steps, accounts: Accounts::new(scene) }
+    }
+}
+
+impl Simulation {
+    /// Puts the layer under the carrier at rest or in motion (`model.md` section 5).
+    ///
+    /// # Errors
+    /// [`SimulationError::NotFinite`] where `start` is not finite.
+    pub fn new(scene: &Scene, start: &Start) -> Result<Self, SimulationError> {
+        start.check()?;
+        let model = Arc::new(Model::new(scene));
+        let settings = Settings::new(scene, &model);
+        let integrator = Integrator::new(&model, settings.accounts.energy);
+        let state = State::new(model.masses(), model.maxwell_variables());
+        let run = Run::new(&model, state.clone(), start);
+        let forces = Forces::new(&model);
+        let mut simulation = Self {
+            model,
+            settings,
+            before: Checkpoint {
+                run: run.clone(),
+                rates: integrator.start_rates().clone(),
+                power: integrator.start_power(),
+            },
+            run,
+            integrator,
+            forces,
+            within: state,
+            mode_changes: None,
+        };
+        simulation.place_layer();
+        Ok(simulation)
+    }
+
+    /// The time reached, s.
+    pub fn time(&self) -> f64 {
+        self.run.time()
+    }
+
+    /// Where the carrier stands: u and w, m.
+    pub fn carrier(&self) -> (f64, f64) {
+        self.run.displacement()
+    }
+
+    /// Bytes that the run holds.
+    pub fn bytes(&self) -> usize {
+        let state = |state: &State| {
+            let floats = 4 * state.mode.len() + state.maxwell.len();
+            floats * size_of::<f64>() + state.mode.len() * size_of_val(&state.ground[0])
+        };
+        3 * state(&self.run.state) + self.integrator.bytes()
+    }
+
+    /// Follows `motion` to its end.
+    ///
+    /// # Errors
+    /// [`SimulationError`]; the simulation is then as it was before the call.
+    pub fn advance(&mut self, motion: &Motion) -> Result<(), SimulationError> {
+        self.advance_observed(motion, &[], |_, _| ())
+    }
+
+    /// Follows `motion` to its end and calls `observe` at each of `times`, which rise from 0 to at most the duration:
+    /// with the time since the start of the motion (s) and the simulation as it stood then.
+    ///
+    /// # Errors
+    /// [`SimulationError`]; the simulation is then as it was before the call.
+    pub fn advance_observed(
+        &mut self,
+        motion: &Motion,
+        times: &[f64],
+        observe: impl FnMut(f64, &mut Self),
+    ) -> Result<(), SimulationError> {
+        motion.check()?;
+        self.keep_checkpoint();
+        let result = self.follow(motion, times, observe);
+        if result.is_err() {
+            self.run.copy_from(&self.before.run);
+            self.integrator.restore(&self.before.rates, self.before.power);
+        }
+        result
+    }
+
+    fn keep_checkpoint(&mut self) {
+        self.before.run.copy_from(&self.run);
+        self.before.rates.copy_from(self.integrator.start_rates());
+        self.before.power = self.integrator.start_power();
+    }
+
+    /// The time in `motion` (s) at which F_z first rises to `force` (N): 0 if it is there already, `None` if it does not
+    /// within the motion. The simulation itself stays where it is.
+    ///
+    /// # Errors
+    /// [`SimulationError`] where the motion could not be followed that far.
+    pub fn duration_until_force(&self, motion: &Motion, force: f64) -> Result<Option<f64>, SimulationError> {
+        motion.check()?;
+        self.clone().follow_until_force(motion, force)
+    }
+
+    /// Writes the values of `variables`, in their order, into `values`; Integers as whole numbers.
+    pub fn evaluate(&mut self, variables: &[Variable], values: &mut [f64]) {
+        let carrier = self.run.carrier.at(self.run.s);
+        self.forces.evaluate(&self.model, &self.run.state, &carrier);
+        let moment = outputs::Moment {
+            model: &self.model,
+            state: &self.run.state,
+            forces: &self.forces,
+            carrier: &carrier,
+            displacement: self.run.displacement(),
+            energies: &self.run.energies,
+            counters: &self.run.counters,
+        };
+        moment.evaluate(variables, values);
+    }
+
+    /// Keeps a record of mode changes from now on, or stops keeping it.
+    pub fn record_mode_changes(&mut self, on: bool) {
+        self.mode_changes = on.then(Vec::new);
+    }
+
+    /// The mode changes recorded since the last call.
+    pub fn take_mode_changes(&mut self) -> Vec<ModeChange> {
+        self.mode_changes.as_mut().map(std::mem::take).unwrap_or_default()
+    }
+}

@@ -1,0 +1,108 @@
+//! Everything of a run that changes.
+
+use super::{Motion, SimulationError, Start};
+use crate::contact::CarrierPlace;
+use crate::integrator::Rates;
+use crate::model::{Carrier, Model, Power, State};
+use crate::outputs::{Counters, Energies};
+use crate::scene::Path;
+
+/// The run: where it stands and what it has added up.
+#[derive(Clone, Debug)]
+pub(super) struct Run {
+    pub(super) carrier: Carrier,
+    /// Time since the start of the carrier's piece, s.
+    pub(super) s: f64,
+    pub(super) state: State,
+    pub(super) energies: Energies,
+    pub(super) counters: Counters,
+    /// The length of the next step to try, s.
+    pub(super) step_size: f64,
+    /// Whether the integrator's rates at the start of the next step hold.
+    pub(super) rates_hold: bool,
+}
+
+impl Run {
+    pub(super) fn new(model: &Model, state: State, start: &Start) -> Self {
+        let path = |rate| Path { rate, ..Path::default() };
+        let paths = (path(start.u_rate), path(start.w_rate));
+        Self {
+            carrier: Carrier::new(start.time, (start.u, start.w), paths, &model.profile),
+            s: 0.0,
+            state,
+            energies: Energies::default(),
+            counters: Counters::default(),
+            step_size: FIRST_STEP / model.stiffest_frequency(),
+            rates_hold: false,
+        }
+    }
+
+    /// Takes over `other`, a run of the same scene, without allocating.
+    pub(super) fn copy_from(&mut self, other: &Self) {
+        let Self { carrier, s, state, energies, counters, step_size, rates_hold } = self;
+        (*carrier, *s, *energies, *counters) = (other.carrier, other.s, other.energies, other.counters);
+        (*step_size, *rates_hold) = (other.step_size, other.rates_hold);
+        state.copy_from(&other.state);
+    }
+
+    pub(super) fn time(&self) -> f64 {
+        self.carrier.time + self.s
+    }
+
+    /// u and w, m.
+    pub(super) fn displacement(&self) -> (f64, f64) {
+        let point = self.carrier.at(self.s);
+        (self.carrier.u + point.du, self.carrier.w + point.dw)
+    }
+
+    pub(super) fn place(&self) -> CarrierPlace {
+        let point = self.carrier.at(self.s);
+        CarrierPlace { place: self.carrier.place + point.du, w: self.carrier.w + point.dw }
+    }
+}
+
+/// The first step to try, as a share of the stiffest period over 2π; the error test corrects it at once.
+const FIRST_STEP: f64 = 0.1;
+
+/// The run as it was before the motion under way.
+#[derive(Clone, Debug)]
+pub(super) struct Checkpoint {
+    pub(super) run: Run,
+    pub(super) rates: Rates,
+    pub(super) power: Power,
+}
+
+impl Start {
+    pub(super) fn check(&self) -> Result<(), SimulationError> {
+        let quantities = [
+            ("start time", self.time),
+            ("u", self.u),
+            ("w", self.w),
+            ("rate of u", self.u_rate),
+            ("rate of w", self.w_rate),
+        ];
+        check_finite(&quantities)
+    }
+}
+
+impl Motion {
+    pub(super) fn check(&self) -> Result<(), SimulationError> {
+        let quantities = [
+            ("duration", self.duration),
+            ("rate of u", self.u.rate),
+            ("amplitude of u", self.u.amplitude),
+            ("frequency of u", self.u.frequency),
+            ("rate of w", self.w.rate),
+            ("amplitude of w", self.w.amplitude),
+            ("frequency of w", self.w.frequency),
+        ];
+        check_finite(&quantities)
+    }
+}
+
+fn check_finite(quantities: &[(&'static str, f64)]) -> Result<(), SimulationError> {
+    match quantities.iter().find(|(_, value)| !value.is_finite()) {
+        Some(&(what, value)) => Err(SimulationError::NotFinite { what, value }),
+        None => Ok(()),
+    }
+}

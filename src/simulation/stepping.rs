@@ -1,0 +1,284 @@
+//! How a run goes on: step, event, new modes, step.
+
+use cpu_time::ThreadTime;
+
+use super::{ModeChange, Motion, Simulation, SimulationError};
+use crate::contact::{decide_modes, first_event, free_unloaded, impacts_due, is_due, place_layer, stop_reversed};
+use crate::integrator::{Attempt, Dense, METHOD, STAGES};
+use crate::math::bracketed_root;
+use crate::model::{Carrier, Power, elastic_energy, kinetic_energy};
+
+/// A new step is this share of what the error estimate allows, so that few are rejected.
+const SAFETY: f64 = 0.9;
+/// The most by which one step differs from the one before.
+const GROWTH: (f64, f64) = (0.2, 5.0);
+/// What is left of a step whose stages could not be solved.
+const AFTER_FAILURE: f64 = 0.25;
+
+impl Simulation {
+    pub(super) fn place_layer(&mut self) {
+        let at = self.run.place();
+        let carrier = self.run.carrier.at(0.0);
+        let (model, state) = (&*self.model, &mut self.run.state);
+        place_layer(model, state, at, &carrier);
+        self.forces.evaluate(model, state, &carrier);
+        free_unloaded(model, state, at, &self.forces);
+        decide_modes(model, state, &self.forces);
+        self.run.energies.initial = kinetic_energy(model, state) + elastic_energy(model, state);
+    }
+
+    /// Follows `motion` to its end; on an error the run stands anywhere within it.
+    pub(super) fn follow(
+        &mut self,
+        motion: &Motion,
+        times: &[f64],
+        mut observe: impl FnMut(f64, &mut Self),
+    ) -> Result<(), SimulationError> {
+        let clock = self.settings.accounts.solver.then(ThreadTime::now);
+        let mut rows = times.iter().copied().peekable();
+        while let Some(time) = rows.next_if(|&time| time <= 0.0) {
+            observe(time, self);
+        }
+        self.enter(motion);
+        let mut work = 0;
+        while self.run.s < motion.duration {
+            let h = self.step(motion.duration, &mut work)?;
+            let end = self.step_end(h, motion.duration);
+            while let Some(time) = rows.next_if(|&time| time < end) {
+                self.show_within(h, (time - self.run.s) / h, |simulation| observe(time, simulation));
+            }
+            self.accept(h, end);
+            while let Some(time) = rows.next_if(|&time| time <= end) {
+                observe(time, self);
+            }
+            self.change_modes_if_due();
+        }
+        if let Some(clock) = clock {
+            self.run.counters.run_time += clock.elapsed().as_secs_f64();
+        }
+        Ok(())
+    }
+
+    /// As [`follow`](Self::follow), until F_z rises to `force`.
+    pub(super) fn follow_until_force(&mut self, motion: &Motion, force: f64) -> Result<Option<f64>, SimulationError> {
+        if self.force_z() >= force {
+            return Ok(Some(0.0));
+        }
+        self.enter(motion);
+        let mut work = 0;
+        while self.run.s < motion.duration {
+            if self.force_z() >= force {
+                return Ok(Some(self.run.s));
+            }
+            let h = self.step(motion.duration, &mut work)?;
+            if self.force_z_within(h, 1.0) >= force {
+                let theta = bracketed_root(|theta| self.force_z_within(h, theta) - force, (0.0, 1.0), 1e-14);
+                return Ok(Some(self.run.s + theta * h));
+            }
+            self.accept(h, self.step_end(h, motion.duration));
+            self.change_modes_if_due();
+        }
+        Ok(None)
+    }
+
+    /// F_z now, N.
+    fn force_z(&mut self) -> f64 {
+        self.forces.evaluate(&self.model, &self.run.state, &self.run.carrier.at(self.run.s));
+        self.forces.on_carrier_z()
+    }
+
+    /// F_z at the fraction `theta` of the step of length `h` tried last, N.
+    fn force_z_within(&mut self, h: f64, theta: f64) -> f64 {
+        self.evaluate_within(h, theta);
+        self.forces.on_carrier_z()
+    }
+
+    /// Begins a smooth piece of the carrier's motion. At a kink the damper forces jump, so all modes are decided anew.
+    fn enter(&mut self, motion: &Motion) {
+        let run = &mut self.run;
+        let rates = |carrier: &Carrier, s: f64| (carrier.at(s).u_rate, carrier.at(s).w_rate);
+        let before = rates(&run.carrier, run.s);
+        run.carrier = Carrier::new(run.time(), run.displacement(), (motion.u, motion.w), &self.model.profile);
+        run.s = 0.0;
+        if !run.rates_hold || rates(&run.carrier, 0.0) != before {
+            self.change_modes(0.0);
+        }
+    }
+
+    /// Impacts due, stops, then every contact decided anew (`model.md`, Jumps); and the rates after it. Masses within
+    /// `reach` (m) of the profile count as touching.
+    fn change_modes(&mut self, reach: f64) {
+        let carrier = self.run.carrier.at(self.run.s);
+        let at = self.run.place();
+        let (model, state) = (&*self.model, &mut self.run.state);
+        self.within.mode.copy_from_slice(&state.mode);
+        self.run.energies.impact += impacts_due(model, state, at, reach);
+        stop_reversed(model, state);
+        self.forces.evaluate(model, state, &carrier);
+        decide_modes(model, state, &self.forces);
+        self.integrator.begin(model, state, &self.run.carrier, self.run.s, &mut self.forces);
+        self.run.rates_hold = true;
+        self.count_mode_changes();
+    }
+
+    fn count_mode_changes(&mut self) {
+        let time = self.run.time();
+        let modes = self.within.mode.iter().zip(&self.run.state.mode).enumerate();
+        for (mass, (from, to)) in modes.filter(|(_, (from, to))| from != to) {
+            self.run.counters.events += 1;
+            if let Some(record) = &mut self.mode_changes {
+                record.push(ModeChange { time, mass, from: from.number(), to: to.number() });
+            }
+        }
+    }
+
+    fn change_modes_if_due(&mut self) {
+        let at = self.run.place();
+        let rates = self.integrator.start_rates();
+        if is_due(&self.model, &self.run.state, rates, (at.place, at.w), &self.settings.events) {
+            self.change_modes(self.settings.events.gap);
+        }
+    }
+
+    /// Tries steps until one is good and ends no later than its first event; its length, s.
+    fn step(&mut self, duration: f64, work: &mut u64) -> Result<f64, SimulationError> {
+        let remaining = duration - self.run.s;
+        let shortest = 4.0 * f64::EPSILON * (self.run.s + 1e-3 * duration);
+        let mut h = fitted(self.run.step_size, remaining);
+        let mut proposal = None;
+        loop {
+            self.count_work(work)?;
+            let attempt = self.try_step(h);
+            let error = attempt.map_or(f64::NAN, |attempt| attempt.error);
+            if !(error <= 1.0) && h > shortest && proposal.is_none() {
+                self.run.counters.rejected += 1;
+                self.run.step_size = h * if error.is_nan() { AFTER_FAILURE } else { growth(error).min(SAFETY) };
+                h = self.run.step_size;
+                continue;
+            }
+            let Some(attempt) = attempt else {
+                return Err(SimulationError::StepTooSmall { time: self.run.time(), step: h });
+            };
+            // The step that an event cuts short says how long the next may be.
+            proposal = proposal.or(Some(self.proposal(h, remaining, error)));
+            match first_event(&self.dense(h), self.integrator.stages(), &self.settings.events) {
+                Some(theta) if theta < 1.0 && h > shortest => h = (theta * h).max(shortest),
+                _ => {
+                    self.run.step_size = proposal.unwrap_or(h);
+                    self.note_error(&attempt);
+                    return Ok(h);
+                }
+            }
+        }
+    }
+
+    fn try_step(&mut self, h: f64) -> Option<Attempt> {
+        let run = &self.run;
+        let tolerance = &self.settings.tolerance;
+        self.integrator.attempt(&self.model, &run.state, &run.carrier, (run.s, h), tolerance).ok()
+    }
+
+    /// The length of the next step after a good one of length `h`. The end of a piece cuts steps short; that says nothing.
+    fn proposal(&self, h: f64, remaining: f64, error: f64) -> f64 {
+        let grown = h * growth(error);
+        if h < remaining { grown } else { grown.max(self.run.step_size) }
+    }
+
+    fn count_work(&self, work: &mut u64) -> Result<(), SimulationError> {
+        if *work >= self.settings.max_steps {
+            return Err(SimulationError::TooManySteps { time: self.run.time(), steps: self.settings.max_steps });
+        }
+        *work += 1;
+        Ok(())
+    }
+
+    fn note_error(&mut self, attempt: &Attempt) {
+        if self.settings.accounts.solver {
+            self.run.counters.note_error(attempt.force_error, self.integrator.end_force_z());
+        }
+    }
+
+    /// The end of a step of length `h`: exactly that of the piece where it is the last.
+    fn step_end(&self, h: f64, duration: f64) -> f64 {
+        if h >= duration - self.run.s { duration } else { self.run.s + h }
+    }
+
+    fn accept(&mut self, h: f64, end: f64) {
+        if self.settings.accounts.energy {
+            self.run.energies.channels.add(1.0, &self.integrator.energies(h));
+        }
+        self.integrator.accept(&mut self.run.state);
+        self.run.counters.steps += 1;
+        self.run.s = end;
+    }
+
+    /// The step of length `h` tried last, seen from within.
+    fn dense(&self, h: f64) -> Dense<'_> {
+        let stages = self.integrator.stages();
+        Dense {
+            model: &self.model,
+            carrier: &self.run.carrier,
+            s: self.run.s,
+            h,
+            start: (&self.run.state, &stages[0]),
+            end: (self.integrator.end(), &stages[STAGES - 1]),
+        }
+    }
+
+    /// Calls `show` with the simulation as it stood at the fraction `theta` of the step of length `h` tried last.
+    fn show_within(&mut self, h: f64, theta: f64, show: impl FnOnce(&mut Self)) {
+        let (s, energies) = (self.run.s, self.run.energies);
+        if self.settings.accounts.energy {
+            let gain = self.energies_within(h, theta);
+            self.run.energies.channels.add(1.0, &gain);
+        }
+        let mut within = std::mem::take(&mut self.within);
+        self.dense(h).state_at(theta, &mut within);
+        self.run.s += theta * h;
+        std::mem::swap(&mut self.run.state, &mut within);
+        show(self);
+        std::mem::swap(&mut self.run.state, &mut within);
+        (self.run.s, self.run.energies, self.within) = (s, energies, within);
+    }
+
+    /// Energies through the channels from the start of the step of length `h` tried last to its fraction `theta`: Gauss's
+    /// rule with three points on the dense output, as exact as that.
+    fn energies_within(&mut self, h: f64, theta: f64) -> Power {
+        let mut sum = Power::default();
+        for (node, weight) in GAUSS {
+            self.evaluate_within(h, theta * node);
+            let carrier = self.run.carrier.at(self.run.s + theta * node * h);
+            sum.add(theta * h * weight, &Power::evaluate(&self.model, &self.within, &carrier, &self.forces));
+        }
+        sum
+    }
+
+    /// The state and the forces at the fraction `theta` of the step of length `h` tried last.
+    fn evaluate_within(&mut self, h: f64, theta: f64) {
+        let mut within = std::mem::take(&mut self.within);
+        self.dense(h).state_at(theta, &mut within);
+        self.within = within;
+        self.forces.evaluate(&self.model, &self.within, &self.run.carrier.at(self.run.s + theta * h));
+    }
+}
+
+/// Nodes and weights of Gauss's rule with three points on [0, 1].
+const GAUSS: [(f64, f64); 3] =
+    [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
+
+/// How much longer or shorter a step may be than one with this error over the tolerance.
+fn growth(error: f64) -> f64 {
+    let order = f64::from(METHOD.embedded_order + 1);
+    (SAFETY * error.powf(-1.0 / order)).clamp(GROWTH.0, GROWTH.1)
+}
+
+/// A step that leaves no scrap before the end of the piece.
+fn fitted(step_size: f64, remaining: f64) -> f64 {
+    if step_size >= remaining {
+        remaining
+    } else if step_size > 0.5 * remaining {
+        0.5 * remaining
+    } else {
+        step_size
+    }
+}
