@@ -84,9 +84,8 @@ pub fn kinetic_energy(model: &Model, state: &State) -> f64 {
 /// V = Σ ½ c e² + Σ_j ½ c_j (e - y_j)², J.
 pub fn elastic_energy(model: &Model, state: &State) -> f64 {
     let springs: f64 = LinkKind::ALL.map(|kind| spring_energy(model, state, kind)).iter().sum();
-    let row_energy = |row: &super::MaxwellRow| {
-        0.5 * row.stiffness * square_sum(state.maxwell[row.range.clone()].iter().copied())
-    };
+    let row_energy =
+        |row: &super::MaxwellRow| 0.5 * row.stiffness * square_sum(state.maxwell[row.range.clone()].iter().copied());
     springs + model.rows.iter().map(row_energy).sum::<f64>()
 }
 

@@ -8,6 +8,7 @@ mod derived;
 mod error;
 mod excitation;
 mod layer;
+mod link_kind;
 mod parameters;
 mod points;
 mod profile_file;
@@ -21,11 +22,11 @@ mod warnings;
 #[cfg(test)]
 mod tests;
 
-use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 pub use error::{Problem, SceneError};
-pub use parameters::{LinkKind, Parameter, ParameterError, Value};
+pub use link_kind::LinkKind;
+pub use parameters::{Parameter, ParameterError, Value};
 pub use unit::Unit;
 
 /// A whole scene, checked.
@@ -213,17 +214,4 @@ pub struct Path {
     pub amplitude: f64,
     /// Frequency of the sine, Hz.
     pub frequency: f64,
-}
-
-impl Path {
-    /// The displacement since the start at `time` (s) after it, m.
-    pub fn at(&self, time: f64) -> f64 {
-        self.rate * time + self.amplitude * (TAU * self.frequency * time).sin()
-    }
-
-    /// The velocity at `time` (s) after the start, m/s.
-    pub fn velocity(&self, time: f64) -> f64 {
-        let omega = TAU * self.frequency;
-        self.rate + self.amplitude * omega * (omega * time).cos()
-    }
 }
