@@ -122,9 +122,12 @@ impl Instance {
 
     /// fmi2DoStep
     pub(super) fn do_step(&mut self, point: f64, h: f64) -> Result<(), Fault> {
-        self.run.step(point, h)?;
+        let result = self.run.step(point, h);
+        let events = self.take_events();
+        // What a discarded step went through has not happened.
+        result?;
         self.outputs.outdate();
-        self.tell_events();
+        self.tell_events(&events);
         self.tell_work();
         Ok(())
     }
@@ -180,13 +183,16 @@ impl Instance {
         }
     }
 
-    fn tell_events(&mut self) {
-        if !self.log.tells(Category::Events) {
-            return;
+    fn take_events(&mut self) -> Vec<ModeChange> {
+        match self.run.simulation() {
+            Ok(simulation) => simulation.take_mode_changes(),
+            Err(_) => Vec::new(),
         }
-        let changes = self.run.simulation().map(|simulation| simulation.take_mode_changes());
-        for change in changes.unwrap_or_default() {
-            self.log.add(Message { status: Status::Ok, category: Category::Events, text: event(&change) });
+    }
+
+    fn tell_events(&mut self, events: &[ModeChange]) {
+        for change in events {
+            self.log.add(Message { status: Status::Ok, category: Category::Events, text: event(change) });
         }
     }
 

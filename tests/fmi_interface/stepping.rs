@@ -89,7 +89,6 @@ fn an_input_that_is_no_number_stops_the_step_and_is_named() {
 }
 
 #[test]
-#[ignore = "until the integrator is there"]
 fn a_start_that_is_no_number_is_an_error() {
     let fmu = Fmu::initialising();
     assert_eq!(fmu.set_real("u", f64::NAN), OK);
@@ -99,7 +98,6 @@ fn a_start_that_is_no_number_is_an_error() {
 }
 
 #[test]
-#[ignore = "until the integrator is there"]
 fn after_a_discarded_step_a_smaller_one_is_done() {
     let fmu = Fmu::initialising();
     assert_eq!(fmu.set_integers(&[fmu.reference("solver.max_steps")], &[2]), OK);
