@@ -48,8 +48,8 @@ struct Piece {
 }
 
 impl Spline {
-    /// The natural spline through the points (x, z), m: `x` finite and strictly rising, `z` finite and as long; two points
-    /// give a straight line.
+    /// The natural spline through the points (x, z), m: `x` finite and strictly rising, `z` finite and as long; two
+    /// points give a straight line.
     ///
     /// # Panics
     /// With fewer than two points.
@@ -62,8 +62,8 @@ impl Spline {
         Self::assemble(pieces, Ends::Tangents { left, right })
     }
 
-    /// The periodic spline through the points (x, z), m: as for [`natural`](Self::natural), with the last height equal to the
-    /// first. The period is the distance of the last point from the first.
+    /// The periodic spline through the points (x, z), m: as for [`natural`](Self::natural), with the last height equal
+    /// to the first. The period is the distance of the last point from the first.
     ///
     /// # Panics
     /// With fewer than two points.

@@ -1,7 +1,9 @@
 //! What follows from a scene without a run.
 
+use std::f64::consts::TAU;
+
 use super::points::peak_to_valley;
-use super::{Scene, Surface};
+use super::{Path, Scene};
 
 impl Scene {
     /// The scene's name as a C identifier: letters, digits and underscores, no digit first.
@@ -11,16 +13,22 @@ impl Scene {
         if identifier.starts_with(|first: char| first.is_ascii_digit()) { format!("_{identifier}") } else { identifier }
     }
 
-    /// The scene's height, m: the peak-to-valley heights of the profile's data points and of the layer's roughness together,
-    /// the spacing of the masses where both are flat.
+    /// The scene's height, m: the peak-to-valley heights of the profile's data points and of the layer's roughness
+    /// together, the spacing of the masses where both are flat.
     pub fn height(&self) -> f64 {
-        let Surface { z, .. } = &self.surface;
-        let height = peak_to_valley(z) + peak_to_valley(&self.layer.roughness);
+        let height = peak_to_valley(&self.surface.z) + peak_to_valley(&self.layer.roughness);
         if height > 0.0 { height } else { self.layer.spacing }
     }
 
     /// The absolute tolerance, m: as it was set, or the relative one times the [`height`](Self::height).
     pub fn absolute_tolerance(&self) -> f64 {
         self.solver.absolute_tolerance.unwrap_or_else(|| self.solver.relative_tolerance * self.height())
+    }
+}
+
+impl Path {
+    /// The displacement since the start at `time` (s) after it, m.
+    pub fn at(&self, time: f64) -> f64 {
+        self.rate * time + self.amplitude * (TAU * self.frequency * time).sin()
     }
 }

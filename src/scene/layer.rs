@@ -1,11 +1,9 @@
 //! Reading of `[layer]`: the masses, their roughness and their links.
 
-use std::path::PathBuf;
-
 use super::allowed::{self, SurfaceKind};
-use super::surface::{self, KIND};
+use super::surface::{self, Found, KIND};
 use super::table::{Entry, TableReader, read_table};
-use super::{Initial, Layer, Link, MaxwellElement, SceneError};
+use super::{Initial, Layer, Link, MaxwellElement, SceneError, warnings};
 
 const KEYS: [&str; 11] = [
     "masses",
@@ -22,7 +20,7 @@ const KEYS: [&str; 11] = [
 ];
 const LATER: [&str; 2] = ["thickness", "width"];
 
-pub(super) fn read_layer(entry: &Entry<'_>, files: &mut Vec<PathBuf>) -> Result<Layer, SceneError> {
+pub(super) fn read_layer(entry: &Entry<'_>, found: &mut Found) -> Result<Layer, SceneError> {
     read_table(entry, |table| {
         table.allow(&KEYS, &LATER)?;
         let mut layer = read_masses(table)?;
@@ -31,7 +29,7 @@ pub(super) fn read_layer(entry: &Entry<'_>, files: &mut Vec<PathBuf>) -> Result<
         layer.lateral_x = table.optional_table("lateral_x", read_link)?;
         layer.lateral_z = table.optional_table("lateral_z", read_link)?;
         if let Some(entry) = table.entry("roughness") {
-            layer.roughness = read_roughness(&entry, &layer, files)?;
+            layer.roughness = read_roughness(&entry, &layer, found)?;
         }
         Ok(layer)
     })
@@ -73,13 +71,13 @@ fn read_maxwell(table: &mut TableReader<'_>) -> Result<MaxwellElement, SceneErro
 }
 
 /// The roughness at the masses: given there, or a surface sampled at the masses' places. A flat one is none.
-fn read_roughness(entry: &Entry<'_>, layer: &Layer, files: &mut Vec<PathBuf>) -> Result<Vec<f64>, SceneError> {
+fn read_roughness(entry: &Entry<'_>, layer: &Layer, found: &mut Found) -> Result<Vec<f64>, SceneError> {
     let mut table = entry.table()?;
     let kind = table.required(KIND, allowed::SURFACE)?.choice(&allowed::SURFACE)?;
     match (kind, table.entry("x")) {
-        (SurfaceKind::Flat, _) => surface::read_surface(entry, files).map(|_| Vec::new()),
+        (SurfaceKind::Flat, _) => surface::read_surface(entry, found).map(|_| Vec::new()),
         (SurfaceKind::Points, None) => read_heights(&mut table, layer.masses),
-        _ => sample(entry, layer, files),
+        _ => sample(entry, layer, found),
     }
 }
 
@@ -95,8 +93,10 @@ fn read_heights(table: &mut TableReader<'_>, masses: usize) -> Result<Vec<f64>, 
     if heights.len() == masses { Ok(heights) } else { Err(entry.refuse_count(heights.len(), &expected)) }
 }
 
-fn sample(entry: &Entry<'_>, layer: &Layer, files: &mut Vec<PathBuf>) -> Result<Vec<f64>, SceneError> {
-    let spline = surface::read_surface(entry, files)?.spline();
+fn sample(entry: &Entry<'_>, layer: &Layer, found: &mut Found) -> Result<Vec<f64>, SceneError> {
+    let surface = surface::read_surface(entry, found)?;
+    found.warnings.extend(warnings::short_roughness(layer, &surface));
+    let spline = surface.spline();
     let heights: Vec<f64> = (0..layer.masses).map(|i| spline.evaluate(layer.place(i)).0).collect();
     let finite = heights.iter().all(|height| height.is_finite());
     if finite { Ok(heights) } else { Err(entry.refuse("finite heights at the masses")) }

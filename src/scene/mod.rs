@@ -1,6 +1,7 @@
 //! What one FMU simulates: a scene, read from one TOML file and checked.
 //!
-//! Every field is in SI units. A feature that the scene does not name is `None` or empty, and costs nothing at run time.
+//! Every field is in SI units. A feature that the scene does not name is `None` or empty, and costs nothing at run
+//! time.
 
 mod allowed;
 mod derived;
@@ -16,6 +17,9 @@ mod surface;
 mod table;
 mod unit;
 mod warnings;
+
+#[cfg(test)]
+mod tests;
 
 use std::f64::consts::TAU;
 use std::path::PathBuf;

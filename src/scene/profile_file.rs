@@ -1,4 +1,5 @@
-//! Profiles in files: two columns x, z in m, separated by comma, semicolon, tab or blanks, with or without a header line.
+//! Profiles in files: two columns x, z in m, separated by comma, semicolon, tab or blanks, with or without a header
+//! line.
 
 use std::fs;
 use std::path::Path;

@@ -6,7 +6,7 @@ use std::path::Path;
 use toml::de::DeTable;
 
 use super::error::Place;
-use super::surface::read_surface;
+use super::surface::{Found, read_surface};
 use super::table::{Entry, Source, TableReader};
 use super::{Problem, Scene, SceneError, excitation, layer, settings, warnings};
 
@@ -45,16 +45,17 @@ fn read_scene(source: Source<'_>, document: &DeTable<'_>) -> Result<Scene, Scene
     root.allow(&KEYS, &LATER)?;
     let name = read_name(&root.required("name", "a text")?)?;
     let description = root.entry("description").map(|entry| read_description(&entry)).transpose()?;
-    let mut files = Vec::new();
-    let layer = layer::read_layer(&root.required("layer", "a table")?, &mut files)?;
-    let surface = read_surface(&root.required("surface", "a table")?, &mut files)?;
+    let mut found = Found::default();
+    let layer = layer::read_layer(&root.required("layer", "a table")?, &mut found)?;
+    let surface = read_surface(&root.required("surface", "a table")?, &mut found)?;
     let friction = root.optional_table("friction", settings::read_friction)?;
     let solver = root.optional_table("solver", settings::read_solver)?.unwrap_or_default();
     let extrapolation = root.optional_table("input", settings::read_input)?.unwrap_or_default();
     let outputs = root.optional_table("fmu", settings::read_fmu)?.unwrap_or_else(settings::default_outputs);
     let excitation = root.tables("excitation", excitation::read_phase)?;
     root.finish()?;
-    let warnings = warnings::warnings(&layer, &surface, &excitation);
+    let Found { files, mut warnings } = found;
+    warnings.extend(warnings::short_profile(&layer, &surface, &excitation));
     Ok(Scene {
         name,
         description,

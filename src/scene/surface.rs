@@ -19,14 +19,21 @@ impl Surface {
     }
 }
 
-/// The surface given by the table `entry`; the file that it names, if any, is added to `files`.
-pub(super) fn read_surface(entry: &Entry<'_>, files: &mut Vec<PathBuf>) -> Result<Surface, SceneError> {
+/// What comes up on the way through a scene.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Found {
+    pub(super) files: Vec<PathBuf>,
+    pub(super) warnings: Vec<String>,
+}
+
+/// The surface given by the table `entry`; the file that it names, if any, is added to those `found`.
+pub(super) fn read_surface(entry: &Entry<'_>, found: &mut Found) -> Result<Surface, SceneError> {
     let surface =
         read_table(entry, |table| match table.required(KIND, allowed::SURFACE)?.choice(&allowed::SURFACE)? {
             SurfaceKind::Flat => read_flat(table),
             SurfaceKind::Sinusoid => read_sinusoid(table),
             SurfaceKind::Points => read_points(table),
-            SurfaceKind::File => read_file(table, files),
+            SurfaceKind::File => read_file(table, found),
         })?;
     let spline = surface.spline();
     let finite = surface.x.iter().all(|&x| spline.evaluate(x).2.is_finite());
@@ -78,14 +85,14 @@ fn read_points(table: &mut TableReader<'_>) -> Result<Surface, SceneError> {
     Ok(Surface { x, z, periodic })
 }
 
-fn read_file(table: &mut TableReader<'_>, files: &mut Vec<PathBuf>) -> Result<Surface, SceneError> {
+fn read_file(table: &mut TableReader<'_>, found: &mut Found) -> Result<Surface, SceneError> {
     table.allow(&[KIND, "path", "periodic"], &[])?;
     let periodic = table.optional_flag("periodic")?.unwrap_or(false);
     let entry = table.required("path", PATH_EXPECTED)?;
     let path = read_path(&entry)?;
     let profile = profile_file::read(&entry, &path, periodic)?;
-    if !files.contains(&path) {
-        files.push(path);
+    if !found.files.contains(&path) {
+        found.files.push(path);
     }
     Ok(profile)
 }

@@ -1,6 +1,11 @@
 //! What is worth telling about a scene though it is valid.
 
+use std::fmt;
+
 use super::{Layer, Path, Phase, Surface};
+
+/// A layer may reach over the end by rounding: by this part of the profile's length.
+const ROUNDING: f64 = 1.0e-9;
 
 /// From the lowest to the highest place that something can have, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,25 +14,44 @@ struct Reach {
     high: f64,
 }
 
-pub(super) fn warnings(layer: &Layer, surface: &Surface, excitation: &[Phase]) -> Vec<String> {
-    short_profile(layer, surface, excitation).into_iter().collect()
+/// A natural profile that ends below the layer on its way.
+pub(super) fn short_profile(layer: &Layer, surface: &Surface, excitation: &[Phase]) -> Option<String> {
+    let way = layer.reach().plus(carrier_reach(excitation));
+    surface.too_short_for(way).then(|| {
+        let (profile, end) = (surface.reach(), "beyond its ends the profile goes on straight, along its end tangents");
+        format!("the profile reaches {profile}, but the layer moves {way}: {end}")
+    })
 }
 
-/// A natural profile that ends below the layer. A level one goes on as it is, and ends nowhere.
-fn short_profile(layer: &Layer, surface: &Surface, excitation: &[Phase]) -> Option<String> {
-    let level = surface.z.iter().all(|&z| z == surface.z[0]);
-    let (&from, &to) = (surface.x.first()?, surface.x.last()?);
-    let carrier = carrier_reach(excitation);
-    let low = layer.place(0) + carrier.low;
-    let high = layer.place(layer.masses.saturating_sub(1)) + carrier.high;
-    let inside = from <= low && high <= to;
-    let told = !(surface.periodic || level || inside);
-    told.then(|| {
-        format!(
-            "the profile reaches from {from:?} m to {to:?} m, but the layer moves from {low:?} m to {high:?} m: \
-             beyond its ends the profile goes on straight, along its end tangents"
-        )
+/// A roughness, sampled from a natural profile that ends before the layer does.
+pub(super) fn short_roughness(layer: &Layer, roughness: &Surface) -> Option<String> {
+    roughness.too_short_for(layer.reach()).then(|| {
+        let (profile, end) =
+            (roughness.reach(), "beyond its ends the roughness goes on straight, along its end tangents");
+        format!("the roughness reaches {profile}, but the layer {}: {end}", layer.reach())
     })
+}
+
+impl Surface {
+    fn reach(&self) -> Reach {
+        let end = |x: Option<&f64>| x.copied().unwrap_or(0.0);
+        Reach { low: end(self.x.first()), high: end(self.x.last()) }
+    }
+
+    /// A level profile goes on as it is, and ends nowhere.
+    fn too_short_for(&self, way: Reach) -> bool {
+        let level = self.z.windows(2).all(|pair| pair[0] == pair[1]);
+        let reach = self.reach();
+        let rounding = ROUNDING * (reach.high - reach.low);
+        !self.periodic && !level && (way.low < reach.low - rounding || reach.high + rounding < way.high)
+    }
+}
+
+impl Layer {
+    /// The places of the masses at rest.
+    fn reach(&self) -> Reach {
+        Reach { low: self.place(0), high: self.place(self.masses.saturating_sub(1)) }
+    }
 }
 
 /// Where u can be in a run without a master.
@@ -42,6 +66,12 @@ fn carrier_reach(excitation: &[Phase]) -> Reach {
         start = if phase.until_force.is_some() { during } else { start.plus(Reach { low: end, high: end }) };
     }
     whole
+}
+
+impl fmt::Display for Reach {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "from {:?} m to {:?} m", self.low, self.high)
+    }
 }
 
 impl Reach {

@@ -44,8 +44,8 @@ impl Spline {
         }
     }
 
-    /// Bounds over the range from `x_low` to `x_high`, m: the true extremes over a few intervals, those of all intervals where
-    /// the range spans many. `x_low` ≤ `x_high`.
+    /// Bounds over the range from `x_low` to `x_high`, m: the true extremes over a few intervals, those of all
+    /// intervals where the range spans many. `x_low` ≤ `x_high`.
     pub fn local_bounds(&self, x_low: f64, x_high: f64) -> Bounds {
         match &self.ends {
             Ends::Periodic { period } => self.periodic_bounds(x_low, x_high - x_low, *period),
@@ -115,7 +115,8 @@ impl Piece {
         if low < inflection && inflection < high { self.evaluate(inflection).1 } else { 0.0 }
     }
 
-    /// The places between `low` and `high` where z' = 0, clamped to the range; none where the slopes there have one sign.
+    /// The places between `low` and `high` where z' = 0, clamped to the range; none where the slopes there
+    /// have one sign.
     fn level(&self, low: f64, high: f64, slopes: [f64; 3]) -> impl Iterator<Item = f64> {
         let one_sign = slopes.iter().all(|&slope| slope >= 0.0) || slopes.iter().all(|&slope| slope <= 0.0);
         let discriminant = self.curvature * self.curvature - 2.0 * self.third * self.slope;

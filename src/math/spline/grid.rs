@@ -9,8 +9,8 @@ pub(super) struct Grid {
     pub(super) last: f64,
     cells_per_meter: f64,
     last_cell: usize,
-    /// For each cell the number of intervals that start in an earlier cell, and at the end the number of all intervals; empty
-    /// where the points are spaced evenly enough for a cell to be its interval or a neighbour of it.
+    /// For each cell the number of intervals that start in an earlier cell, and at the end the number of all intervals;
+    /// empty where the points are spaced evenly enough for a cell to be its interval or a neighbour of it.
     pub(super) starts_before: Vec<u32>,
 }
 

@@ -91,8 +91,8 @@ impl Scene {
     /// Gives `parameter` a value.
     ///
     /// # Errors
-    /// [`ParameterError`] where the value is of the wrong type or out of range, or where the scene has no such parameter; the
-    /// scene is then as it was.
+    /// [`ParameterError`] where the value is of the wrong type or out of range, or where the scene has no such
+    /// parameter; the scene is then as it was.
     pub fn set_parameter(&mut self, parameter: Parameter, value: Value) -> Result<(), ParameterError> {
         match &value {
             Value::Real(number) => self.set_real(parameter, *number),

@@ -12,8 +12,8 @@ impl Scene {
     /// Gives the parameter called `name` the value that `text` writes.
     ///
     /// # Errors
-    /// [`ParameterError`] as for [`set_parameter`](Self::set_parameter), and for an unknown name, with the parameters whose names
-    /// are similar or, failing these, all that the scene has.
+    /// [`ParameterError`] as for [`set_parameter`](Self::set_parameter), and for an unknown name, with the parameters
+    /// whose names are similar or, failing these, all that the scene has.
     pub fn set_by_name(&mut self, name: &str, text: &str) -> Result<(), ParameterError> {
         let parameter = self.parameter_named(name).ok_or_else(|| self.unknown(name))?;
         let value = match self.parameter(parameter) {
