@@ -4,7 +4,7 @@ use std::ffi::CString;
 use std::sync::Arc;
 
 use crate::outputs::{self, Output, Variable};
-use crate::scene::{OutputGroup, Scene, Unit, Value};
+use crate::scene::{OutputGroup, Parameter, Scene, Unit, Value};
 use crate::simulation::ModeChange;
 
 use super::catalogue::Catalogue;
@@ -100,18 +100,11 @@ impl Instance {
     ) -> Result<(), Fault> {
         let clock = Clock::new(start, stop)?;
         if let Some(tolerance) = tolerance {
-            self.set_tolerance(tolerance)?;
+            Arc::make_mut(&mut self.run.scene).set_parameter(Parameter::RelativeTolerance, Value::Real(tolerance))?;
         }
         self.run.clock = clock;
         self.run.start_anew();
         Ok(())
-    }
-
-    fn set_tolerance(&mut self, tolerance: f64) -> Result<(), Fault> {
-        let name = "solver.relative_tolerance";
-        let Some(parameter) = self.catalogue.parameter(name) else { return Ok(()) };
-        let set = Arc::make_mut(&mut self.run.scene).set_parameter(parameter, Value::Real(tolerance));
-        set.map_err(|source| Fault::Parameter { name: name.into(), source })
     }
 
     /// fmi2EnterInitializationMode
