@@ -31,4 +31,10 @@ impl Path {
     pub fn at(&self, time: f64) -> f64 {
         self.rate * time + self.amplitude * (TAU * self.frequency * time).sin()
     }
+
+    /// The velocity at `time` (s) after the start, m/s.
+    pub fn velocity(&self, time: f64) -> f64 {
+        let omega = TAU * self.frequency;
+        self.rate + self.amplitude * omega * (omega * time).cos()
+    }
 }

@@ -21,7 +21,6 @@ mod warnings;
 #[cfg(test)]
 mod tests;
 
-use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 pub use error::{Problem, SceneError};
@@ -213,17 +212,4 @@ pub struct Path {
     pub amplitude: f64,
     /// Frequency of the sine, Hz.
     pub frequency: f64,
-}
-
-impl Path {
-    /// The displacement since the start at `time` (s) after it, m.
-    pub fn at(&self, time: f64) -> f64 {
-        self.rate * time + self.amplitude * (TAU * self.frequency * time).sin()
-    }
-
-    /// The velocity at `time` (s) after the start, m/s.
-    pub fn velocity(&self, time: f64) -> f64 {
-        let omega = TAU * self.frequency;
-        self.rate + self.amplitude * omega * (omega * time).cos()
-    }
 }
