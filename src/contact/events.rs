@@ -118,13 +118,7 @@ fn interpolate(value: &impl Fn(usize) -> f64, theta: f64) -> f64 {
 const PASSED: f64 = 0.05;
 
 /// Whether at the end of a step an event has come: `state` and `rates` are those there.
-pub fn is_due(
-    model: &Model,
-    state: &State,
-    rates: &Rates,
-    (place, w): (f64, f64),
-    tolerance: &EventTolerance,
-) -> bool {
+pub fn is_due(model: &Model, state: &State, rates: &Rates, (place, w): (f64, f64), tolerance: &EventTolerance) -> bool {
     (0..model.masses()).any(|i| match state.mode[i] {
         Mode::Free => {
             let ground = model.ground(model.rest_x[i] + (place + state.elongation_x[i]));

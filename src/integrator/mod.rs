@@ -105,8 +105,12 @@ impl Integrator {
             let moved = (at.du - start.du, at.dw - start.dw);
             self.collect_history(state, h, i, moved);
             self.predict(model, h, i);
-            let point =
-                StagePoint { beta: METHOD.gamma() * h, carrier: at, place: carrier.place + at.du, w: carrier.w + at.dw };
+            let point = StagePoint {
+                beta: METHOD.gamma() * h,
+                carrier: at,
+                place: carrier.place + at.du,
+                w: carrier.w + at.dw,
+            };
             self.solver.solve(model, &point, tolerance.newton(point.beta), &mut self.stages[i])?;
             if self.accounts_energy {
                 self.powers[i] = Power::evaluate(model, &self.solver.state, &at, &self.solver.forces);
@@ -128,7 +132,8 @@ impl Integrator {
     /// Bytes that the stages hold.
     pub fn bytes(&self) -> usize {
         let rates = &self.stages[0];
-        let floats = 6 * rates.velocity_x.len() + rates.maxwell.len() + rates.maxwell_force.iter().map(Vec::len).sum::<usize>();
+        let floats =
+            6 * rates.velocity_x.len() + rates.maxwell.len() + rates.maxwell_force.iter().map(Vec::len).sum::<usize>();
         STAGES * floats * size_of::<f64>()
     }
 

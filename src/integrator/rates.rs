@@ -104,11 +104,8 @@ impl Rates {
             let a = &state.maxwell[row.range.clone()];
             let (rate, force_rate) = self.maxwell_row(row);
             for i in 0..a.len() {
-                let elongation_rate = if row.kind.is_lateral() {
-                    velocity[i + 1] - velocity[i]
-                } else {
-                    velocity[i] - carrier_rate
-                };
+                let elongation_rate =
+                    if row.kind.is_lateral() { velocity[i + 1] - velocity[i] } else { velocity[i] - carrier_rate };
                 rate[i] = elongation_rate - a[i] / row.relaxation_time;
                 force_rate[i] += row.stiffness * rate[i];
             }

@@ -180,8 +180,7 @@ impl StageSolver {
                 let ground = model.ground(model.rest_x[i] + (point.place + state.elongation_x[i]));
                 let v = state.velocity_x[i];
                 state.velocity_z[i] = ground.slope * v;
-                self.climb[i] =
-                    Climb { height: beta * ground.slope, rate: ground.slope + beta * ground.curvature * v };
+                self.climb[i] = Climb { height: beta * ground.slope, rate: ground.slope + beta * ground.curvature * v };
                 state.ground[i] = ground;
             }
             state.elongation_z[i] = state.ground[i].height - model.rest_z[i] - point.w;
@@ -274,13 +273,17 @@ impl StageSolver {
         let q2 = 1.0 + s * s;
         let q = q2.sqrt();
         let acceleration = (v - self.history.velocity_x[i]) / beta;
-        let residual = m * (q2 * acceleration + kappa * v * v * share_z) - share_x * f_x - share_z * f_z + sigma_shear * q;
+        let residual =
+            m * (q2 * acceleration + kappa * v * v * share_z) - share_x * f_x - share_z * f_z + sigma_shear * q;
         // With v the place moves by β, so s by ds = βκ and κ by βz'''.
         let ds = beta * kappa;
         let inertia = q2 / beta
             + 2.0 * s * ds * acceleration
             + v * (beta * third * v * share_z + 2.0 * kappa * share_z + kappa * v * ds);
-        let derivative = m * inertia + share_x * weight_x + share_z * weight_z + ds * (sigma_mu * f_x - f_z)
+        let derivative = m * inertia
+            + share_x * weight_x
+            + share_z * weight_z
+            + ds * (sigma_mu * f_x - f_z)
             + sigma_shear * s * ds / q;
         Row {
             along_x: Vector2::new(share_x, 0.0),
@@ -406,7 +409,12 @@ struct Column {
 
 impl Row {
     fn identity() -> Self {
-        Self { along_x: Vector2::zeros(), along_z: Vector2::zeros(), diagonal: Matrix2::identity(), right: Vector2::zeros() }
+        Self {
+            along_x: Vector2::zeros(),
+            along_z: Vector2::zeros(),
+            diagonal: Matrix2::identity(),
+            right: Vector2::zeros(),
+        }
     }
 
     /// The block beside the diagonal: what the neighbour's unknowns do to this row.
