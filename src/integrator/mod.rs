@@ -151,11 +151,6 @@ impl Integrator {
         sum
     }
 
-    /// The powers at the end of the step tried last.
-    pub fn end_power(&self) -> Power {
-        self.powers[STAGES - 1]
-    }
-
     /// Takes the step tried last: `state` becomes its end, and the rates there those at the start of the next step.
     pub fn accept(&mut self, state: &mut State) {
         std::mem::swap(state, &mut self.solver.state);

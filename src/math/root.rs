@@ -11,11 +11,7 @@ pub fn bracketed_root(mut f: impl FnMut(f64) -> f64, (a, b): (f64, f64), toleran
     for _ in 0..MOST_STEPS {
         let x = newest.0 + fraction * (other.0 - newest.0);
         let point = (x, f(x));
-        let dropped = if (point.1 > 0.0) == (newest.1 > 0.0) {
-            newest
-        } else {
-            std::mem::replace(&mut other, newest)
-        };
+        let dropped = if (point.1 > 0.0) == (newest.1 > 0.0) { newest } else { std::mem::replace(&mut other, newest) };
         newest = point;
         let best = if newest.1.abs() < other.1.abs() { newest } else { other };
         let resolution = tolerance / (other.0 - newest.0).abs();

@@ -53,11 +53,8 @@ impl BlockTridiagonal {
     /// Takes unknown `from` out of the neighbouring row `into`; the inverse of its block stays in its place.
     fn eliminate(&mut self, from: usize, into: usize) {
         let inverse = inverse(&self.diagonal[from]);
-        let (there, back) = if from < into {
-            (self.lower[into], self.upper[from])
-        } else {
-            (self.upper[into], self.lower[from])
-        };
+        let (there, back) =
+            if from < into { (self.lower[into], self.upper[from]) } else { (self.upper[into], self.lower[from]) };
         let factor = there * inverse;
         let right = self.right[from];
         self.diagonal[into] -= factor * back;
@@ -97,7 +94,8 @@ mod tests {
             let mut system = BlockTridiagonal::new(n);
             let mut dense = DMatrix::zeros(2 * n, 2 * n);
             for i in 0..n {
-                let mut block = |strength: f64| Matrix2::from_fn(|_, _| noise(&mut seed)) + Matrix2::identity() * strength;
+                let mut block =
+                    |strength: f64| Matrix2::from_fn(|_, _| noise(&mut seed)) + Matrix2::identity() * strength;
                 (system.lower[i], system.diagonal[i], system.upper[i]) = (block(0.0), block(4.0), block(0.0));
                 system.right[i] = Vector2::from_fn(|_, _| noise(&mut seed));
                 dense.fixed_view_mut::<2, 2>(2 * i, 2 * i).copy_from(&system.diagonal[i]);

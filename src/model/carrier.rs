@@ -1,7 +1,5 @@
 //! The carrier's motion through one smooth piece.
 
-use std::f64::consts::TAU;
-
 use crate::math::Spline;
 use crate::scene::Path;
 
@@ -46,8 +44,8 @@ impl Carrier {
 
     /// The carrier `s` seconds after the start of the piece.
     pub fn at(&self, s: f64) -> CarrierPoint {
-        let [du, u_rate, u_acceleration] = displacement(&self.u_path, s);
-        let [dw, w_rate, w_acceleration] = displacement(&self.w_path, s);
+        let [du, u_rate, u_acceleration] = self.u_path.motion(s);
+        let [dw, w_rate, w_acceleration] = self.w_path.motion(s);
         CarrierPoint { du, dw, u_rate, w_rate, u_acceleration, w_acceleration }
     }
 
@@ -55,34 +53,5 @@ impl Carrier {
     pub fn initial_rates(&self) -> (f64, f64) {
         let start = self.at(0.0);
         (start.u_rate, start.w_rate)
-    }
-}
-
-/// Displacement, rate and acceleration after `s` seconds on `path`.
-fn displacement(path: &Path, s: f64) -> [f64; 3] {
-    if path.amplitude == 0.0 {
-        return [path.rate * s, path.rate, 0.0];
-    }
-    let omega = TAU * path.frequency;
-    let (sine, cosine) = (omega * s).sin_cos();
-    let swing = path.amplitude * sine;
-    [path.rate * s + swing, path.rate + path.amplitude * omega * cosine, -omega * omega * swing]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_path_has_the_rates_of_its_displacement() {
-        let path = Path { rate: 0.3, amplitude: 1e-3, frequency: 40.0 };
-        let (s, h) = (0.0123, 1e-6);
-        let [_, rate, acceleration] = displacement(&path, s);
-        let difference = |component: usize| {
-            (displacement(&path, s + h)[component] - displacement(&path, s - h)[component]) / (2.0 * h)
-        };
-        // Central differences: error h² ω³ amplitude / 6, and roundings of 1e-16 over h.
-        assert!((difference(0) - rate).abs() < 1e-8);
-        assert!((difference(1) - acceleration).abs() < 1e-5);
     }
 }

@@ -18,11 +18,7 @@ impl Forces {
     pub fn new(model: &Model) -> Self {
         let k = model.masses();
         let room = |kind: LinkKind| if model.links[kind as usize].present { kind.count(k) } else { 0 };
-        Self {
-            link: LinkKind::ALL.map(|kind| vec![0.0; room(kind)]),
-            on_mass_x: vec![0.0; k],
-            on_mass_z: vec![0.0; k],
-        }
+        Self { link: LinkKind::ALL.map(|kind| vec![0.0; room(kind)]), on_mass_x: vec![0.0; k], on_mass_z: vec![0.0; k] }
     }
 
     /// The forces in `state` under the carrier's rates.

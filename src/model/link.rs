@@ -2,35 +2,7 @@
 
 use std::ops::Range;
 
-use crate::scene::Link;
-
-/// The four kinds of link (`model.md` section 2).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LinkKind {
-    /// Carrier to mass, along z: elongation ζ_i - w.
-    Vertical,
-    /// Carrier to mass, along x: elongation ξ_i - u.
-    Horizontal,
-    /// Mass i to mass i+1, along x: elongation ξ_{i+1} - ξ_i.
-    LateralX,
-    /// Mass i to mass i+1, along z: elongation ζ_{i+1} - ζ_i.
-    LateralZ,
-}
-
-impl LinkKind {
-    /// All kinds, in the order in which arrays hold them.
-    pub const ALL: [Self; 4] = [Self::Vertical, Self::Horizontal, Self::LateralX, Self::LateralZ];
-
-    /// Whether the link joins two masses.
-    pub fn is_lateral(self) -> bool {
-        matches!(self, Self::LateralX | Self::LateralZ)
-    }
-
-    /// How many links of this kind a layer of `masses` masses has.
-    pub fn count(self, masses: usize) -> usize {
-        masses - usize::from(self.is_lateral())
-    }
-}
+use crate::scene::{Layer, Link, LinkKind};
 
 /// The spring and the damper of one kind of link.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -67,12 +39,12 @@ pub struct MaxwellRow {
     pub range: Range<usize>,
 }
 
-pub(super) fn maxwell_rows(links: [&Option<Link>; 4], masses: usize) -> Vec<MaxwellRow> {
+pub(super) fn maxwell_rows(layer: &Layer) -> Vec<MaxwellRow> {
     let mut rows = Vec::new();
     let mut start = 0;
-    for (kind, link) in LinkKind::ALL.into_iter().zip(links) {
-        for element in link.iter().flat_map(|link| &link.maxwell) {
-            let end = start + kind.count(masses);
+    for kind in LinkKind::ALL {
+        for element in layer.link(kind).iter().flat_map(|link| &link.maxwell) {
+            let end = start + kind.count(layer.masses);
             rows.push(MaxwellRow {
                 kind,
                 stiffness: element.stiffness,

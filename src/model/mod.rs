@@ -9,12 +9,13 @@ mod state;
 
 pub use carrier::{Carrier, CarrierPoint};
 pub use forces::{ContactForces, Forces};
-pub use link::{LinkKind, LinkLaw, MaxwellRow};
+pub use link::{LinkLaw, MaxwellRow};
 pub use power::{Power, elastic_energy, kinetic_energy};
 pub use state::{Mode, State};
 
 use crate::math::Spline;
-use crate::scene::{Initial, Scene, Surface};
+pub use crate::scene::LinkKind;
+use crate::scene::{Initial, Scene};
 
 /// The profile at one place.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -59,16 +60,15 @@ impl Model {
     pub fn new(scene: &Scene) -> Self {
         let layer = &scene.layer;
         let k = layer.masses;
-        let links = [&layer.vertical, &layer.horizontal, &layer.lateral_x, &layer.lateral_z];
         let friction = scene.friction.as_ref();
         let roughness = |i| layer.roughness.get(i).copied().unwrap_or(0.0);
         Self {
             mass: layer.mass,
-            rest_x: (0..k).map(|i| layer.origin + i as f64 * layer.spacing).collect(),
+            rest_x: (0..k).map(|i| layer.place(i)).collect(),
             rest_z: (0..k).map(|i| layer.clearance + roughness(i)).collect(),
-            links: links.map(|link| LinkLaw::new(link.as_ref())),
-            rows: link::maxwell_rows(links, k),
-            profile: profile(&scene.surface),
+            links: LinkKind::ALL.map(|kind| LinkLaw::new(layer.link(kind))),
+            rows: link::maxwell_rows(layer),
+            profile: scene.surface.spline(),
             friction_coefficient: friction.and_then(|f| f.coulomb).unwrap_or(0.0),
             shear_force: friction.and_then(|f| f.shear_force).unwrap_or(0.0),
             has_friction: friction.is_some_and(|f| [f.coulomb, f.shear_force].iter().flatten().any(|&part| part > 0.0)),
@@ -110,13 +110,5 @@ impl Model {
         let frequency = (self.glassy_stiffness() / self.mass).sqrt();
         let damping = self.links.iter().map(|link| link.damping).fold(0.0, f64::max) / self.mass;
         [frequency, damping].into_iter().find(|&rate| rate > 0.0).unwrap_or(1.0)
-    }
-}
-
-fn profile(surface: &Surface) -> Spline {
-    if surface.periodic {
-        Spline::periodic(&surface.x, &surface.z)
-    } else {
-        Spline::natural(&surface.x, &surface.z)
     }
 }

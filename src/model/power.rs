@@ -38,15 +38,6 @@ impl Power {
         self.friction += time * power.friction;
         self.input += time * power.input;
     }
-
-    /// Energies within a step of length `h` (s): from those at its start, in `self`, by the cubic that gains `gain` over the
-    /// step and has the powers at both ends.
-    pub fn interpolate(&mut self, theta: f64, h: f64, gain: &Self, (start, end): (Self, Self)) {
-        let complement = 1.0 - theta;
-        self.add(theta * theta * (3.0 - 2.0 * theta), gain);
-        self.add(h * theta * complement * complement, &start);
-        self.add(-h * theta * theta * complement, &end);
-    }
 }
 
 fn damper(model: &Model, state: &State, carrier: &CarrierPoint, kind: LinkKind) -> f64 {
@@ -93,9 +84,8 @@ pub fn kinetic_energy(model: &Model, state: &State) -> f64 {
 /// V = Σ ½ c e² + Σ_j ½ c_j (e - y_j)², J.
 pub fn elastic_energy(model: &Model, state: &State) -> f64 {
     let springs: f64 = LinkKind::ALL.map(|kind| spring_energy(model, state, kind)).iter().sum();
-    let row_energy = |row: &super::MaxwellRow| {
-        0.5 * row.stiffness * square_sum(state.maxwell[row.range.clone()].iter().copied())
-    };
+    let row_energy =
+        |row: &super::MaxwellRow| 0.5 * row.stiffness * square_sum(state.maxwell[row.range.clone()].iter().copied());
     springs + model.rows.iter().map(row_energy).sum::<f64>()
 }
 

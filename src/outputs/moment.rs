@@ -1,9 +1,7 @@
 //! The values of output variables at one instant.
 
 use super::{Output, Variable};
-use crate::model::{
-    CarrierPoint, ContactForces, Forces, Mode, Model, Power, State, elastic_energy, kinetic_energy,
-};
+use crate::model::{CarrierPoint, ContactForces, Forces, Mode, Model, Power, State, elastic_energy, kinetic_energy};
 use crate::scene::{OutputGroup, Scene};
 
 /// What a scene asks to be added up along the way.
@@ -147,9 +145,7 @@ impl Moment<'_> {
                 Output::ElementX(i) => self.model.rest_x[i] + (self.displacement.0 + self.state.elongation_x[i]),
                 Output::ElementZ(i) => self.model.rest_z[i] + (self.displacement.1 + self.state.elongation_z[i]),
                 Output::ElementNormalForce(i) => self.contact(i).map_or(0.0, |contact| contact.normal),
-                Output::ElementFrictionForce(i) => {
-                    self.contact(i).map_or(0.0, |contact| self.friction(i, &contact))
-                }
+                Output::ElementFrictionForce(i) => self.contact(i).map_or(0.0, |contact| self.friction(i, &contact)),
                 Output::ElementMode(i) => f64::from(self.mode(i).number()),
             };
         }

@@ -29,7 +29,23 @@ impl Scene {
 impl Path {
     /// The displacement since the start at `time` (s) after it, m.
     pub fn at(&self, time: f64) -> f64 {
-        self.rate * time + self.amplitude * (TAU * self.frequency * time).sin()
+        self.motion(time)[0]
+    }
+
+    /// The velocity at `time` (s) after the start, m/s.
+    pub fn velocity(&self, time: f64) -> f64 {
+        self.motion(time)[1]
+    }
+
+    /// Displacement (m), velocity (m/s) and acceleration (m/s²) at `time` (s) after the start.
+    pub fn motion(&self, time: f64) -> [f64; 3] {
+        if self.amplitude == 0.0 {
+            return [self.rate * time, self.rate, 0.0];
+        }
+        let omega = TAU * self.frequency;
+        let (sine, cosine) = (omega * time).sin_cos();
+        let swing = self.amplitude * sine;
+        [self.rate * time + swing, self.rate + self.amplitude * omega * cosine, -omega * omega * swing]
     }
 
     /// The velocity at `time` (s) after the start, m/s.

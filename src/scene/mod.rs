@@ -8,6 +8,7 @@ mod derived;
 mod error;
 mod excitation;
 mod layer;
+mod link_kind;
 mod parameters;
 mod points;
 mod profile_file;
@@ -24,7 +25,8 @@ mod tests;
 use std::path::PathBuf;
 
 pub use error::{Problem, SceneError};
-pub use parameters::{LinkKind, Parameter, ParameterError, Value};
+pub use link_kind::LinkKind;
+pub use parameters::{Parameter, ParameterError, Value};
 pub use unit::Unit;
 
 /// A whole scene, checked.

@@ -7,7 +7,7 @@ mod tests;
 
 use std::fmt;
 
-use super::{Layer, Link, Problem, Scene, Unit};
+use super::{Layer, Link, LinkKind, Problem, Scene, Unit};
 
 /// One settable number or word of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -42,19 +42,6 @@ pub enum Parameter {
     Extrapolation,
 }
 
-/// The four kinds of links.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum LinkKind {
-    /// Carrier to mass, along z.
-    Vertical,
-    /// Carrier to mass, along x.
-    Horizontal,
-    /// Mass to mass, along x.
-    LateralX,
-    /// Mass to mass, along z.
-    LateralZ,
-}
-
 /// A parameter's value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
@@ -85,31 +72,6 @@ impl ParameterError {
     /// What was given and what is allowed.
     pub fn problem(&self) -> &Problem {
         &self.problem
-    }
-}
-
-impl LinkKind {
-    /// The kinds in the order of the scene's keys.
-    pub const ALL: [Self; 4] = [Self::Vertical, Self::Horizontal, Self::LateralX, Self::LateralZ];
-
-    /// The name of the link's table in `[layer]`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Vertical => "vertical",
-            Self::Horizontal => "horizontal",
-            Self::LateralX => "lateral_x",
-            Self::LateralZ => "lateral_z",
-        }
-    }
-
-    /// What the link joins, in a few words.
-    pub fn description(self) -> &'static str {
-        match self {
-            Self::Vertical => "vertical link (carrier to mass)",
-            Self::Horizontal => "horizontal link (carrier to mass)",
-            Self::LateralX => "lateral link along x (mass to mass)",
-            Self::LateralZ => "lateral link along z (mass to mass)",
-        }
     }
 }
 

@@ -181,3 +181,14 @@ fn a_periodic_or_a_level_profile_is_never_too_short() {
         assert!(parse(&text).warnings.is_empty());
     }
 }
+
+#[test]
+fn a_path_has_the_rates_of_its_displacement() {
+    let path = Path { rate: 0.3, amplitude: 1e-3, frequency: 40.0 };
+    let (s, h) = (0.0123, 1e-6);
+    let [_, velocity, acceleration] = path.motion(s);
+    let difference = |component: usize| (path.motion(s + h)[component] - path.motion(s - h)[component]) / (2.0 * h);
+    // Central differences: error h² ω³ amplitude / 6, and roundings of 1e-16 over h.
+    assert!((difference(0) - velocity).abs() < 1e-8);
+    assert!((difference(1) - acceleration).abs() < 1e-5);
+}

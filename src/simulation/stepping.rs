@@ -6,7 +6,7 @@ use super::{ModeChange, Motion, Simulation, SimulationError};
 use crate::contact::{decide_modes, first_event, free_unloaded, impacts_due, is_due, place_layer, stop_reversed};
 use crate::integrator::{Attempt, Dense, METHOD, STAGES};
 use crate::math::bracketed_root;
-use crate::model::{Carrier, elastic_energy, kinetic_energy};
+use crate::model::{Carrier, Power, elastic_energy, kinetic_energy};
 
 /// A new step is this share of what the error estimate allows, so that few are rejected.
 const SAFETY: f64 = 0.9;
@@ -89,10 +89,7 @@ impl Simulation {
 
     /// F_z at the fraction `theta` of the step of length `h` tried last, N.
     fn force_z_within(&mut self, h: f64, theta: f64) -> f64 {
-        let mut within = std::mem::take(&mut self.within);
-        self.dense(h).state_at(theta, &mut within);
-        self.within = within;
-        self.forces.evaluate(&self.model, &self.within, &self.run.carrier.at(self.run.s + theta * h));
+        self.evaluate_within(h, theta);
         self.forces.on_carrier_z()
     }
 
@@ -230,20 +227,44 @@ impl Simulation {
 
     /// Calls `show` with the simulation as it stood at the fraction `theta` of the step of length `h` tried last.
     fn show_within(&mut self, h: f64, theta: f64, show: impl FnOnce(&mut Self)) {
-        let mut within = std::mem::take(&mut self.within);
-        self.dense(h).state_at(theta, &mut within);
         let (s, energies) = (self.run.s, self.run.energies);
         if self.settings.accounts.energy {
-            let powers = (self.integrator.start_power(), self.integrator.end_power());
-            self.run.energies.channels.interpolate(theta, h, &self.integrator.energies(h), powers);
+            let gain = self.energies_within(h, theta);
+            self.run.energies.channels.add(1.0, &gain);
         }
+        let mut within = std::mem::take(&mut self.within);
+        self.dense(h).state_at(theta, &mut within);
         self.run.s += theta * h;
         std::mem::swap(&mut self.run.state, &mut within);
         show(self);
         std::mem::swap(&mut self.run.state, &mut within);
         (self.run.s, self.run.energies, self.within) = (s, energies, within);
     }
+
+    /// Energies through the channels from the start of the step of length `h` tried last to its fraction `theta`: Gauss's
+    /// rule with three points on the dense output, as exact as that.
+    fn energies_within(&mut self, h: f64, theta: f64) -> Power {
+        let mut sum = Power::default();
+        for (node, weight) in GAUSS {
+            self.evaluate_within(h, theta * node);
+            let carrier = self.run.carrier.at(self.run.s + theta * node * h);
+            sum.add(theta * h * weight, &Power::evaluate(&self.model, &self.within, &carrier, &self.forces));
+        }
+        sum
+    }
+
+    /// The state and the forces at the fraction `theta` of the step of length `h` tried last.
+    fn evaluate_within(&mut self, h: f64, theta: f64) {
+        let mut within = std::mem::take(&mut self.within);
+        self.dense(h).state_at(theta, &mut within);
+        self.within = within;
+        self.forces.evaluate(&self.model, &self.within, &self.run.carrier.at(self.run.s + theta * h));
+    }
 }
+
+/// Nodes and weights of Gauss's rule with three points on [0, 1].
+const GAUSS: [(f64, f64); 3] =
+    [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 
 /// How much longer or shorter a step may be than one with this error over the tolerance.
 fn growth(error: f64) -> f64 {
