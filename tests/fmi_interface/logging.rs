@@ -1,5 +1,7 @@
 //! What reaches the master's logger.
 
+use std::ffi::CStr;
+
 use crate::master::{ERROR, Fmu, Message, OK, SCENE};
 
 #[test]
@@ -53,4 +55,19 @@ fn reset_brings_the_logging_of_the_instantiation_back() {
     fmu.messages();
     assert_eq!((fmu.enter(), fmu.exit(), fmu.step(0.0, 1e-7)), (OK, OK, OK));
     assert!(fmu.messages().iter().any(|message| message.category == "logSolver"));
+}
+
+#[test]
+fn mode_changes_are_heard_only_when_asked_for() {
+    let lift = |categories: &[&CStr]| {
+        let fmu = Fmu::initialising();
+        assert_eq!((fmu.set_real("w", -5e-6), fmu.exit()), (OK, OK));
+        assert_eq!(fmu.set_debug_logging(!categories.is_empty(), categories), OK);
+        assert_eq!((fmu.set_real("w", 5e-5), fmu.step(0.0, 1e-3)), (OK, OK));
+        fmu.messages()
+    };
+    assert_eq!(lift(&[]), []);
+    let messages = lift(&[c"logEvents"]);
+    assert!(messages.iter().all(|message| message.category == "logEvents" && message.status == OK));
+    assert!(messages.iter().any(|message| message.text.ends_with(" to free")), "{messages:?}");
 }

@@ -80,10 +80,11 @@ fn steps_with_bad_arguments_are_refused_and_may_be_done_right() {
 fn an_input_that_is_no_number_stops_the_step_and_is_named() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let fmu = Fmu::running();
-        assert_eq!((fmu.step(0.0, 1e-6), fmu.set_real("w", bad)), (OK, OK));
-        assert_eq!(fmu.step(1e-6, 1e-6), ERROR);
+        assert_eq!(fmu.step(0.0, 1e-6), OK);
+        let before = fmu.real("F_z");
+        assert_eq!((fmu.set_real("w", bad), fmu.step(1e-6, 1e-6)), (OK, ERROR));
         assert!(fmu.message().contains("the input w is"));
-        assert_eq!(fmu.real("F_z"), 0.0);
+        assert_eq!(fmu.real("F_z"), before);
     }
 }
 
@@ -101,11 +102,12 @@ fn after_a_discarded_step_a_smaller_one_is_done() {
     let fmu = Fmu::initialising();
     assert_eq!(fmu.set_integers(&[fmu.reference("solver.max_steps")], &[2]), OK);
     assert_eq!((fmu.exit(), fmu.set_real("w", -1e-6)), (OK, OK));
+    let before = fmu.real("F_z");
     assert_eq!(fmu.step(0.0, 1.0), DISCARD);
     let messages = fmu.messages();
     assert_eq!((messages.len(), messages[0].category.as_str()), (1, "logStatusDiscard"));
     assert_eq!((fmu.last_step(), fmu.last_successful_time()), ((OK, DISCARD), 0.0));
-    assert_eq!((fmu.real("w"), fmu.real("F_z")), (-1e-6, 0.0));
+    assert_eq!((fmu.real("w"), fmu.real("F_z")), (-1e-6, before));
     assert_eq!((fmu.set_real("w", 0.0), fmu.step(0.0, 1e-12)), (OK, OK));
     assert_eq!(fmu.last_successful_time(), 1e-12);
 }
