@@ -47,10 +47,4 @@ impl Path {
         let swing = self.amplitude * sine;
         [self.rate * time + swing, self.rate + self.amplitude * omega * cosine, -omega * omega * swing]
     }
-
-    /// The velocity at `time` (s) after the start, m/s.
-    pub fn velocity(&self, time: f64) -> f64 {
-        let omega = TAU * self.frequency;
-        self.rate + self.amplitude * omega * (omega * time).cos()
-    }
 }
