@@ -4,6 +4,7 @@ mod dense;
 mod rates;
 mod stage;
 mod tableau;
+mod tangent;
 mod tolerance;
 
 pub use dense::Dense;
@@ -14,6 +15,7 @@ pub use tolerance::Tolerance;
 
 use crate::model::{Carrier, Forces, LinkKind, Mode, Model, Power, State};
 use stage::{StagePoint, StageSolver};
+use tangent::{Tangent, Target};
 
 /// The method that the integrator uses.
 pub const METHOD: Tableau<7> = ESDIRK5;
@@ -31,6 +33,8 @@ pub struct Integrator {
     solver: StageSolver,
     predictor: [[f64; STAGES]; STAGES],
     accounts_energy: bool,
+    /// How the run follows the targets of u and w; empty where nobody asks.
+    tangents: Vec<Tangent>,
 }
 
 /// A step that was tried.
@@ -43,14 +47,16 @@ pub struct Attempt {
 }
 
 impl Integrator {
-    /// Room for steps of `model`; the powers are followed where `accounts_energy`.
-    pub fn new(model: &Model, accounts_energy: bool) -> Self {
+    /// Room for steps of `model`; the powers are followed where `accounts_energy`, the tangents where `tangents`.
+    pub fn new(model: &Model, accounts_energy: bool, tangents: bool) -> Self {
+        let targets: &[Target] = if tangents { &[Target::U, Target::W] } else { &[] };
         Self {
             stages: vec![Rates::new(model); STAGES],
             powers: [Power::default(); STAGES],
             solver: StageSolver::new(model),
             predictor: predictor(&METHOD.c),
             accounts_energy,
+            tangents: targets.iter().map(|&target| Tangent::new(model, target)).collect(),
         }
     }
 
@@ -115,8 +121,48 @@ impl Integrator {
             if self.accounts_energy {
                 self.powers[i] = Power::evaluate(model, &self.solver.state, &at, &self.solver.forces);
             }
+            self.vary(model, &point, (s, h), i);
         }
         Ok(self.error(model, carrier, (s, h), tolerance))
+    }
+
+    /// The tangents at a stage just solved.
+    fn vary(&mut self, model: &Model, point: &StagePoint, (s, h): (f64, f64), i: usize) {
+        if self.tangents.is_empty() {
+            return;
+        }
+        self.solver.factor_at_solution(model, point.beta);
+        for tangent in &mut self.tangents {
+            tangent.collect_history(h, i);
+            let carrier = tangent.carrier(s + METHOD.c[i] * h);
+            self.solver.vary(model, point, &carrier, tangent, (i, &self.stages[i]));
+        }
+    }
+
+    /// Whether anybody asks for tangents.
+    pub fn has_tangents(&self) -> bool {
+        !self.tangents.is_empty()
+    }
+
+    /// Begins the tangents of a motion of the carrier of `duration` (s).
+    pub fn begin_tangents(&mut self, duration: f64) {
+        for tangent in &mut self.tangents {
+            tangent.begin(duration);
+        }
+    }
+
+    /// Computes the tangents' rates at the start of a step afresh, `s` seconds after the start of the carrier's motion.
+    pub fn refresh_tangents(&mut self, model: &Model, state: &State, forces: &Forces, s: f64) {
+        for tangent in &mut self.tangents {
+            tangent.evaluate_rates(model, state, forces, &self.stages[0].acceleration_x, s);
+        }
+    }
+
+    /// ∂F_x/∂u, ∂F_x/∂w, ∂F_z/∂u, ∂F_z/∂w by the targets of the motion, `s` seconds after its start, N/m.
+    pub fn tangents(&mut self, model: &Model, s: f64) -> [f64; 4] {
+        let mut by_target = self.tangents.iter_mut().map(|tangent| tangent.carrier_forces(model, s));
+        let (u, w) = (by_target.next().unwrap_or_default(), by_target.next().unwrap_or_default());
+        [u.0, w.0, u.1, w.1]
     }
 
     /// The state at the end of the step tried last.
@@ -156,6 +202,9 @@ impl Integrator {
         std::mem::swap(state, &mut self.solver.state);
         self.stages.swap(0, STAGES - 1);
         self.powers.swap(0, STAGES - 1);
+        for tangent in &mut self.tangents {
+            tangent.accept();
+        }
     }
 
     /// The starred values of stage `i`: what the earlier stages give.

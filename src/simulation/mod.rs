@@ -123,7 +123,7 @@ impl Simulation {
         start.check()?;
         let model = Arc::new(Model::new(scene));
         let settings = Settings::new(scene, &model);
-        let integrator = Integrator::new(&model, settings.accounts.energy);
+        let integrator = Integrator::new(&model, settings.accounts.energy, settings.accounts.tangents);
         let state = State::new(model.masses(), model.maxwell_variables());
         let run = Run::new(&model, state.clone(), start);
         let forces = Forces::new(&model);
@@ -220,6 +220,7 @@ impl Simulation {
             carrier: &carrier,
             displacement: self.run.displacement(),
             energies: &self.run.energies,
+            tangents: self.run.tangents,
             counters: &self.run.counters,
         };
         moment.evaluate(variables, values);

@@ -125,12 +125,6 @@ fn what_is_not_yet_supported() {
             (21, "method = 'auto'", 21, r#"solver.method = 'auto': not yet supported; allowed: "event""#),
             (21, "reduce = 0.0", 21, &format!("solver.reduce: not yet supported; allowed: {solver}")),
             (
-                27,
-                "outputs = ['forces', 'tangent']",
-                27,
-                &format!("fmu.outputs[2] = 'tangent': not yet supported; allowed: {outputs}"),
-            ),
-            (
                 31,
                 "until_pressure = 2e5",
                 31,
