@@ -35,7 +35,8 @@ fn random_state(random: &mut Random, model: &Model, place: &Vector2<f64>) -> Sta
         state.elongation_x[i] = random.between(-0.1, 0.1);
         state.elongation_z[i] = random.between(0.0, 0.1);
         (state.velocity_x[i], state.velocity_z[i]) = (random.between(-2.0, 2.0), random.between(-2.0, 2.0));
-        let contact = if model.has_friction { [Mode::Forward, Mode::Backward, Mode::Stick] } else { [Mode::Forward; 3] };
+        let contact =
+            if model.has_friction { [Mode::Forward, Mode::Backward, Mode::Stick] } else { [Mode::Forward; 3] };
         if random.below(3) > 0 {
             put_on_profile(model, &mut state, i, contact[random.below(3)], place);
         }
@@ -53,11 +54,7 @@ fn put_on_profile(model: &Model, state: &mut State, i: usize, mode: Mode, place:
 }
 
 /// The dense form of a state: q, q̇, y.
-fn dense_state(
-    matrices: &Matrices,
-    state: &State,
-    place: Vector2<f64>,
-) -> (DVector<f64>, DVector<f64>, DVector<f64>) {
+fn dense_state(matrices: &Matrices, state: &State, place: Vector2<f64>) -> (DVector<f64>, DVector<f64>, DVector<f64>) {
     let xi = state.elongation_x.iter().map(|e| e + place.x);
     let zeta = state.elongation_z.iter().map(|e| e + place.y);
     let k = matrices.masses;

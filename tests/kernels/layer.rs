@@ -65,8 +65,7 @@ impl Layer {
         );
         for (kind, link) in LinkKind::ALL.iter().zip(&self.links) {
             if let Some(Link { stiffness, damping, maxwell }) = link {
-                let element =
-                    |(c, tau): &(f64, f64)| format!("{{ stiffness = {c:e}, relaxation_time = {tau:e} }}");
+                let element = |(c, tau): &(f64, f64)| format!("{{ stiffness = {c:e}, relaxation_time = {tau:e} }}");
                 let maxwell: Vec<String> = maxwell.iter().map(element).collect();
                 text += &format!("[layer.{}]\nstiffness = {stiffness:e}\ndamping = {damping:e}\n", kind.name());
                 text += &format!("maxwell = [{}]\n", maxwell.join(", "));
@@ -85,8 +84,7 @@ impl Layer {
     }
 }
 
-const OUTPUTS: &str =
-    r#"["forces", "dissipation", "friction", "contact", "energy", "solver", "elements"]"#;
+const OUTPUTS: &str = r#"["forces", "dissipation", "friction", "contact", "energy", "solver", "elements"]"#;
 
 /// `[surface]` of the natural or periodic spline through points.
 pub fn points(x: &[f64], z: &[f64], periodic: bool) -> String {
@@ -99,7 +97,6 @@ pub struct Stepper {
     pub carrier: Carrier,
     pub state: State,
     pub integrator: Integrator,
-    pub forces: Forces,
     pub tolerance: Tolerance,
     pub s: f64,
 }
@@ -112,7 +109,7 @@ impl Stepper {
         let mut forces = Forces::new(&model);
         let mut integrator = Integrator::new(&model, false);
         integrator.begin(&model, &state, &carrier, 0.0, &mut forces);
-        Self { model, carrier, state, integrator, forces, tolerance, s: 0.0 }
+        Self { model, carrier, state, integrator, tolerance, s: 0.0 }
     }
 
     /// Tries a step without taking it.

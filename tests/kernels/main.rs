@@ -1,6 +1,6 @@
 //! Tests of the numerical kernels through the library's public interface: the Runge-Kutta method, its stages, its dense
 //! output, the equations of motion against a dense assembly of them, and whole runs.
-#![allow(unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![allow(unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests may fail")]
 
 mod convergence;
 mod dense_output;

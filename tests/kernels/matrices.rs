@@ -40,7 +40,8 @@ enum Ends {
 
 /// The links of a kind in the order of `LinkKind::ALL`: vertical, horizontal, lateral x, lateral z.
 fn ends(kind: usize, k: usize) -> Vec<Ends> {
-    let lateral = |first: usize| (0..k - 1).map(move |i| Ends::Masses { lengthens: first + i + 1, shortens: first + i });
+    let lateral =
+        |first: usize| (0..k - 1).map(move |i| Ends::Masses { lengthens: first + i + 1, shortens: first + i });
     match kind {
         0 => (0..k).map(|i| Ends::Carrier { mass: k + i, displacement: 1 }).collect(),
         1 => (0..k).map(|i| Ends::Carrier { mass: i, displacement: 0 }).collect(),
