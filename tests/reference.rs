@@ -142,7 +142,7 @@ fn fmu(name: &'static str, fine: Bounds) {
 /// A sine as a row of straight pieces is only as good as its pieces are short: the rate is off by half its change over
 /// one piece, and the damper forces with it.
 fn fmu_with_sines(name: &'static str) {
-    const STEPS: usize = 100;
+    const STEPS: usize = 1000;
     let case = Case::new(name, "fmu");
     let fmu = pack(&case.scene, &case.folder);
     simulate(&case.scene, &case.folder, &["--points", &(50 * STEPS).to_string()]);

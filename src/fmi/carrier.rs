@@ -19,8 +19,6 @@ struct Axis {
     value: f64,
     /// u̇_n, m/s, if the master gave it for the next step.
     rate: Option<f64>,
-    /// û, m: where the model's carrier stands.
-    position: f64,
     /// The communication step before.
     past: Option<Past>,
 }
@@ -51,36 +49,36 @@ impl Carrier {
     }
 
     /// The carrier at the start: it stands where the inputs say and moves at the derivatives given, else not at all.
+    /// The derivatives stay: they are those of the first step, too, unless the master gives others.
     pub(super) fn start(&self, time: f64) -> Start {
         let [u, w] = &self.axes;
         Start { time, u: u.value, w: w.value, u_rate: u.rate.unwrap_or_default(), w_rate: w.rate.unwrap_or_default() }
     }
 
-    /// The carrier once the run has started. The derivatives stay: they are those of the first step, too, unless the
-    /// master gives others.
-    pub(super) fn started(mut self) -> Self {
-        for axis in &mut self.axes {
-            axis.position = axis.value;
-        }
-        self
-    }
-
-    /// The motion over a step of `h` from `time`, and the carrier after it.
+    /// The targets of û and ŵ at the end of a step of `h` from `time`.
     ///
     /// # Errors
     /// [`Fault::InputNotFinite`] where a value or a derivative is not a finite number.
-    pub(super) fn step(&self, time: f64, h: f64, rule: Extrapolation) -> Result<(Motion, Self), Fault> {
-        let mut after = *self;
-        let mut paths = [Path::default(); 2];
-        for input in Input::ALL {
-            let axis = &self.axes[input as usize];
-            let target = axis.finite_target(input, time, h, rule)?;
-            paths[input as usize].rate = (target - axis.position) / h;
-            after.axes[input as usize] = axis.moved(target, h);
-        }
-        let [u, w] = paths;
-        Ok((Motion { duration: h, u, w }, after))
+    pub(super) fn targets(&self, time: f64, h: f64, rule: Extrapolation) -> Result<[f64; 2], Fault> {
+        let [u, w] = Input::ALL;
+        let target = |input: Input| self.axes[input as usize].finite_target(input, time, h, rule);
+        Ok([target(u)?, target(w)?])
     }
+
+    /// Counts a step of `h` as done: its derivatives are used up.
+    pub(super) fn count_step(&mut self, h: f64) {
+        for axis in &mut self.axes {
+            axis.rate = None;
+            axis.past = Some(Past { value: axis.value, step: h });
+        }
+    }
+}
+
+/// The straight motion in the time `duration` from where the carrier stands to the targets. Rounding does not add up: the
+/// next motion starts from where this one ended.
+pub(super) fn straight_motion((u, w): (f64, f64), targets: [f64; 2], duration: f64) -> Motion {
+    let path = |from: f64, to: f64| Path { rate: (to - from) / duration, ..Path::default() };
+    Motion { duration, u: path(u, targets[0]), w: path(w, targets[1]) }
 }
 
 impl Axis {
@@ -100,46 +98,39 @@ impl Axis {
             None => Ok(target),
         }
     }
-
-    fn moved(&self, target: f64, h: f64) -> Self {
-        Self { value: self.value, rate: None, position: target, past: Some(Past { value: self.value, step: h }) }
-    }
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 
     fn at(value: f64) -> Carrier {
         let mut carrier = Carrier::default();
         carrier.set_input(Input::U, value);
-        carrier.started()
+        carrier
     }
 
-    fn step(carrier: &mut Carrier, h: f64, rule: Extrapolation) -> Motion {
-        let (motion, after) = carrier.step(0.0, h, rule).unwrap();
-        *carrier = after;
-        motion
+    /// Does a step and gives its targets.
+    fn step(carrier: &mut Carrier, h: f64, rule: Extrapolation) -> [f64; 2] {
+        let targets = carrier.targets(0.0, h, rule).unwrap();
+        carrier.count_step(h);
+        targets
     }
 
     #[test]
     fn the_first_step_without_rates_goes_to_the_value_given() {
-        let mut carrier = at(1.0);
-        carrier.set_input(Input::U, 3.0);
-        assert_eq!(step(&mut carrier, 0.5, Extrapolation::Linear).u.rate, 4.0);
-        assert_eq!(carrier.axes[0].position, 3.0);
+        assert_eq!(step(&mut at(3.0), 0.5, Extrapolation::Linear), [3.0, 0.0]);
     }
 
     #[test]
     fn linear_extrapolation_follows_a_steady_motion_from_the_second_step_on() {
         let mut carrier = at(0.0);
         step(&mut carrier, 1.0, Extrapolation::Linear);
-        carrier.set_input(Input::U, 2.0);
-        step(&mut carrier, 0.5, Extrapolation::Linear);
-        assert_eq!(carrier.axes[0].position, 3.0);
-        carrier.set_input(Input::U, 3.0);
-        assert_eq!(step(&mut carrier, 0.5, Extrapolation::Linear).u.rate, 2.0);
-        assert_eq!(carrier.axes[0].position, 4.0);
+        for (value, h, target) in [(2.0, 0.5, 3.0), (3.0, 0.5, 4.0), (4.0, 0.25, 4.5)] {
+            carrier.set_input(Input::U, value);
+            assert_eq!(step(&mut carrier, h, Extrapolation::Linear), [target, 0.0]);
+        }
     }
 
     #[test]
@@ -147,8 +138,7 @@ mod tests {
         let mut carrier = at(0.0);
         for value in [1.0, 2.0, 2.0] {
             carrier.set_input(Input::U, value);
-            step(&mut carrier, 1.0, Extrapolation::Hold);
-            assert_eq!(carrier.axes[0].position, value);
+            assert_eq!(step(&mut carrier, 1.0, Extrapolation::Hold), [value, 0.0]);
         }
     }
 
@@ -156,31 +146,34 @@ mod tests {
     fn a_rate_counts_for_one_step_and_its_own_input() {
         let mut carrier = at(0.0);
         carrier.set_rate(Input::U, 2.0);
-        let motion = step(&mut carrier, 0.5, Extrapolation::Linear);
-        assert_eq!((motion.u.rate, motion.w.rate), (2.0, 0.0));
+        assert_eq!(step(&mut carrier, 0.5, Extrapolation::Linear), [1.0, 0.0]);
         carrier.set_input(Input::U, 1.0);
         // 1 + (1 - 0)·0.25/0.5
-        assert_eq!(step(&mut carrier, 0.25, Extrapolation::Linear).u.rate, 2.0);
-        assert_eq!(carrier.axes[0].position, 1.5);
+        assert_eq!(step(&mut carrier, 0.25, Extrapolation::Linear), [1.5, 0.0]);
     }
 
     #[test]
     fn rates_before_the_start_are_the_starting_velocity_and_those_of_the_first_step() {
         let mut carrier = Carrier::default();
-        carrier.set_rate(Input::W, -0.1);
-        assert_eq!(carrier.start(2.0), Start { time: 2.0, w_rate: -0.1, ..Start::default() });
-        let mut carrier = carrier.started();
-        assert_eq!(step(&mut carrier, 0.5, Extrapolation::Linear).w.rate, -0.1);
-        assert_eq!(step(&mut carrier, 0.5, Extrapolation::Hold).w.rate, 0.1);
+        carrier.set_rate(Input::W, -0.5);
+        assert_eq!(carrier.start(2.0), Start { time: 2.0, w_rate: -0.5, ..Start::default() });
+        assert_eq!(step(&mut carrier, 0.5, Extrapolation::Linear), [0.0, -0.25]);
+        assert_eq!(step(&mut carrier, 0.5, Extrapolation::Hold), [0.0, 0.0]);
+    }
+
+    #[test]
+    fn the_carrier_runs_straight_from_where_it_stands() {
+        let motion = straight_motion((1.0, 0.5), [3.0, 0.0], 0.25);
+        assert_eq!((motion.duration, motion.u.rate, motion.w.rate), (0.25, 8.0, -2.0));
     }
 
     #[test]
     fn values_and_rates_that_are_not_finite_stop_the_step() {
         let mut carrier = at(f64::NAN);
-        assert!(carrier.step(0.0, 1.0, Extrapolation::Linear).is_err());
+        assert!(carrier.targets(0.0, 1.0, Extrapolation::Linear).is_err());
         carrier.set_input(Input::U, 0.0);
         carrier.set_rate(Input::U, f64::INFINITY);
-        let fault = carrier.step(0.0, 1.0, Extrapolation::Linear).unwrap_err();
+        let fault = carrier.targets(0.0, 1.0, Extrapolation::Linear).unwrap_err();
         assert_eq!(fault.to_string(), "the input u is inf at t = 0 s: no step can be done");
     }
 }

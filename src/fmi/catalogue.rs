@@ -129,11 +129,6 @@ impl Catalogue {
         }
     }
 
-    /// The parameter of that name.
-    pub(super) fn parameter(&self, name: &str) -> Option<Parameter> {
-        self.parameters.iter().map(|&(parameter, _)| parameter).find(|parameter| parameter.name() == name)
-    }
-
     /// All variables with their value references, in rising order.
     pub fn entries(&self) -> impl Iterator<Item = (u32, Entry<'_>)> {
         (0..).map_while(|reference| Some((reference, self.entry(reference)?)))

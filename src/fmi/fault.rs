@@ -46,8 +46,8 @@ pub(super) enum Fault {
     DerivativeOrder { name: &'static str, order: i32 },
     #[error("{name} is a fixed parameter and cannot be set in the state {state}: its value stays")]
     Late { name: String, state: State },
-    #[error("{name}: {source}")]
-    Parameter { name: String, source: ParameterError },
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
     #[error("{name} is {value}: it has no value here")]
     NoValue { name: String, value: f64 },
     #[error("unknown log category \"{0}\"")]
@@ -84,7 +84,7 @@ pub(super) enum Fault {
     NoLocation,
     #[error("no file {file} in the resources at \"{location}\"; looked in {}", list(.tried))]
     NoScene { location: String, file: &'static str, tried: Vec<PathBuf> },
-    #[error("{0}")]
+    #[error(transparent)]
     Scene(#[from] SceneError),
     #[error("cannot read {path}: {source}", path = .path.display())]
     Unreadable { path: PathBuf, source: std::io::Error },

@@ -4,7 +4,7 @@ use std::ffi::CString;
 use std::sync::Arc;
 
 use crate::outputs::{self, Output, Variable};
-use crate::scene::{OutputGroup, Scene, Unit, Value};
+use crate::scene::{OutputGroup, Parameter, Scene, Unit, Value};
 use crate::simulation::ModeChange;
 
 use super::catalogue::Catalogue;
@@ -100,18 +100,11 @@ impl Instance {
     ) -> Result<(), Fault> {
         let clock = Clock::new(start, stop)?;
         if let Some(tolerance) = tolerance {
-            self.set_tolerance(tolerance)?;
+            Arc::make_mut(&mut self.run.scene).set_parameter(Parameter::RelativeTolerance, Value::Real(tolerance))?;
         }
         self.run.clock = clock;
         self.run.start_anew();
         Ok(())
-    }
-
-    fn set_tolerance(&mut self, tolerance: f64) -> Result<(), Fault> {
-        let name = "solver.relative_tolerance";
-        let Some(parameter) = self.catalogue.parameter(name) else { return Ok(()) };
-        let set = Arc::make_mut(&mut self.run.scene).set_parameter(parameter, Value::Real(tolerance));
-        set.map_err(|source| Fault::Parameter { name: name.into(), source })
     }
 
     /// fmi2EnterInitializationMode
@@ -129,9 +122,12 @@ impl Instance {
 
     /// fmi2DoStep
     pub(super) fn do_step(&mut self, point: f64, h: f64) -> Result<(), Fault> {
-        self.run.step(point, h)?;
+        let result = self.run.step(point, h);
+        let events = self.take_events();
+        // What a discarded step went through has not happened.
+        result?;
         self.outputs.outdate();
-        self.tell_events();
+        self.tell_events(&events);
         self.tell_work();
         Ok(())
     }
@@ -187,13 +183,16 @@ impl Instance {
         }
     }
 
-    fn tell_events(&mut self) {
-        if !self.log.tells(Category::Events) {
-            return;
+    fn take_events(&mut self) -> Vec<ModeChange> {
+        match self.run.simulation() {
+            Ok(simulation) => simulation.take_mode_changes(),
+            Err(_) => Vec::new(),
         }
-        let changes = self.run.simulation().map(|simulation| simulation.take_mode_changes());
-        for change in changes.unwrap_or_default() {
-            self.log.add(Message { status: Status::Ok, category: Category::Events, text: event(&change) });
+    }
+
+    fn tell_events(&mut self, events: &[ModeChange]) {
+        for change in events {
+            self.log.add(Message { status: Status::Ok, category: Category::Events, text: event(change) });
         }
     }
 
@@ -231,5 +230,40 @@ fn count(output: Output) -> Variable {
         unit: Unit::One,
         kind: outputs::Kind::Integer,
         description: String::new(),
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, clippy::panic)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    fn instance() -> Instance {
+        let text = "name = \"a\"\nlayer = { masses = 1, spacing = 1.0, mass = 1.0 }\nsurface = { kind = \"flat\" }";
+        let scene = Arc::new(Scene::parse(text, Path::new("scene.toml")).unwrap());
+        let catalogue = Catalogue::new(&scene);
+        Instance::of(scene, catalogue, false)
+    }
+
+    #[test]
+    fn a_panic_poisons_the_instance_and_is_told() {
+        let mut instance = instance();
+        assert_eq!(instance.call(Function::Reset, |_| panic!("lost a mass")), Status::Fatal);
+        let told = Message {
+            status: Status::Fatal,
+            category: Category::Error,
+            text: "fmi2Reset: internal error, the instance is lost: lost a mass".into(),
+        };
+        assert_eq!(instance.take_messages(), [told]);
+        assert_eq!(instance.call(Function::Reset, Instance::reset), Status::Error);
+        assert_eq!(instance.take_messages()[0].text, "fmi2Reset: not allowed in the state fatal");
+    }
+
+    #[test]
+    fn mode_changes_are_told_in_words() {
+        let change = ModeChange { time: 0.5, mass: 2, from: 0, to: -1 };
+        assert_eq!(event(&change), "t = 0.5 s: mass 3 from free to slipping backwards");
     }
 }

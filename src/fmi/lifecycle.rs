@@ -179,6 +179,7 @@ const TABLE: [Row; 31] = {
 };
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 

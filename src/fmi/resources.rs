@@ -69,6 +69,7 @@ fn without_slash_before_drive(path: &str) -> &str {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::scene::Scene;
 use crate::simulation::Simulation;
 
-use super::carrier::Carrier;
+use super::carrier::{Carrier, straight_motion};
 use super::clock::Clock;
 use super::fault::{Fault, Status};
 use super::lifecycle::State;
@@ -60,7 +60,6 @@ impl Run {
     pub(super) fn start(&mut self) -> Result<(), Fault> {
         let result = self.simulation().map(|_| ());
         self.state = if result.is_ok() { State::StepComplete } else { State::Error };
-        self.carrier = self.carrier.started();
         result
     }
 
@@ -81,9 +80,10 @@ impl Run {
     }
 
     fn advance(&mut self, clock: Clock, h: f64) -> Result<(), Fault> {
-        let (motion, carrier) = self.carrier.step(self.clock.time, h, self.scene.extrapolation)?;
-        self.simulation()?.advance(&motion)?;
-        self.carrier = carrier;
+        let targets = self.carrier.targets(self.clock.time, h, self.scene.extrapolation)?;
+        let simulation = self.simulation()?;
+        simulation.advance(&straight_motion(simulation.carrier(), targets, h))?;
+        self.carrier.count_step(h);
         self.clock = clock;
         Ok(())
     }

@@ -115,8 +115,7 @@ impl Instance {
         if !self.run.state.before_run() {
             return Err(Fault::Late { name: entry.name(), state: self.run.state });
         }
-        let set = Arc::make_mut(scene).set_parameter(parameter, value);
-        set.map_err(|source| Fault::Parameter { name: entry.name(), source })
+        Ok(Arc::make_mut(scene).set_parameter(parameter, value)?)
     }
 
     /// fmi2SetRealInputDerivatives: all of them or none.

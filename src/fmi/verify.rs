@@ -2,6 +2,7 @@
 //! feature `verify-bindings` they stand in the place of the committed ones, so every export is checked against them.
 
 #[path = "bindings.rs"]
+#[rustfmt::skip]
 pub mod committed;
 
 pub use fmi_sys::fmi2::*;

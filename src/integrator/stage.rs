@@ -12,6 +12,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::rates::Rates;
+use super::tolerance::NEWTON_SHARE;
 use crate::math::BlockTridiagonal;
 use crate::model::{CarrierPoint, ContactForces, Forces, LinkKind, Mode, Model, State};
 
@@ -21,7 +22,7 @@ pub struct NoConvergence;
 
 /// What the stage knows of the earlier ones: the starred values.
 #[derive(Clone, Debug, Default)]
-pub struct History {
+pub(super) struct History {
     /// e*_x, m: carried along with the carrier to the stage's time.
     pub elongation_x: Vec<f64>,
     /// e*_z, m.
@@ -36,7 +37,7 @@ pub struct History {
 
 /// When and how far the stage reaches.
 #[derive(Clone, Copy, Debug)]
-pub struct StagePoint {
+pub(super) struct StagePoint {
     /// β = γh, s.
     pub beta: f64,
     /// The carrier at the stage.
@@ -67,7 +68,7 @@ struct Climb {
 
 /// Room to solve stages of one model.
 #[derive(Clone, Debug)]
-pub struct StageSolver {
+pub(super) struct StageSolver {
     /// The starred values, to be set before a stage is solved.
     pub history: History,
     /// The state at the stage: in the mode and at the velocities to start from before, the solution after.
@@ -87,7 +88,7 @@ const MOST_ITERATIONS: usize = 10;
 
 impl StageSolver {
     /// Room for stages of `model`.
-    pub fn new(model: &Model) -> Self {
+    pub(super) fn new(model: &Model) -> Self {
         let k = model.masses();
         let zero = vec![0.0; k];
         let forces = Forces::new(model);
@@ -113,7 +114,7 @@ impl StageSolver {
     ///
     /// # Errors
     /// [`NoConvergence`] where Newton's iterations do not settle.
-    pub fn solve(
+    pub(super) fn solve(
         &mut self,
         model: &Model,
         point: &StagePoint,
@@ -135,7 +136,10 @@ impl StageSolver {
             }
             // Newton's error falls with the square: what the next correction would be is known from the last two.
             let next = change * (change / last).min(1.0);
-            if linear || change <= tolerance || (iteration > 1 && next <= 0.1 * tolerance) {
+            let settled = change <= tolerance || (iteration > 1 && next <= tolerance);
+            // Roundings alone are left when the corrections no longer fall and are below what the step may err by.
+            let stalled = change >= 0.25 * last && change <= tolerance / NEWTON_SHARE;
+            if linear || settled || stalled {
                 self.finish(model, point, rates);
                 return Ok(());
             }

@@ -44,7 +44,8 @@ mod tests {
 
     #[test]
     fn finds_roots_of_known_functions() {
-        let cases: [(fn(f64) -> f64, (f64, f64), f64); 4] = [
+        type Case = (fn(f64) -> f64, (f64, f64), f64);
+        let cases: [Case; 4] = [
             (|x| x * x - 2.0, (0.0, 2.0), std::f64::consts::SQRT_2),
             (|x| x.cos(), (3.0, 0.0), std::f64::consts::FRAC_PI_2),
             (|x| (x - 1.0).powi(9), (0.3, 1.9), 1.0),

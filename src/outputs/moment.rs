@@ -104,13 +104,17 @@ impl Moment<'_> {
     /// computed.
     pub fn evaluate(&self, variables: &[Variable], values: &mut [f64]) {
         let asked = |outputs: &[Output]| variables.iter().any(|variable| outputs.contains(&variable.output));
-        let sums = asked(&[Output::Hysteresis, Output::Adhesion, Output::ContactForceX, Output::ContactForceZ])
-            .then(|| self.contact_sums())
-            .unwrap_or_default();
-        let power = asked(&[Output::DissipatedPower]).then(|| self.dissipated_power()).unwrap_or_default();
-        let [kinetic, elastic] = asked(&[Output::KineticEnergy, Output::ElasticEnergy, Output::EnergyResidual])
-            .then(|| [kinetic_energy(self.model, self.state), elastic_energy(self.model, self.state)])
-            .unwrap_or_default();
+        let (mut sums, mut power, mut kinetic, mut elastic) = (ContactSums::default(), 0.0, 0.0, 0.0);
+        if asked(&[Output::Hysteresis, Output::Adhesion, Output::ContactForceX, Output::ContactForceZ]) {
+            sums = self.contact_sums();
+        }
+        if asked(&[Output::DissipatedPower]) {
+            power = Power::evaluate(self.model, self.state, self.carrier, self.forces).dissipated();
+        }
+        if asked(&[Output::KineticEnergy, Output::ElasticEnergy, Output::EnergyResidual]) {
+            kinetic = kinetic_energy(self.model, self.state);
+            elastic = elastic_energy(self.model, self.state);
+        }
         let count = |test: fn(&Mode) -> bool| self.state.mode.iter().filter(|mode| test(mode)).count() as f64;
         let channels = &self.energies.channels;
         for (variable, value) in variables.iter().zip(values) {
@@ -149,10 +153,6 @@ impl Moment<'_> {
                 Output::ElementMode(i) => f64::from(self.mode(i).number()),
             };
         }
-    }
-
-    fn dissipated_power(&self) -> f64 {
-        Power::evaluate(self.model, self.state, self.carrier, self.forces).dissipated()
     }
 
     /// |F_x|/F_z, 0 where F_z ≤ 0.

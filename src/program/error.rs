@@ -51,6 +51,11 @@ pub(crate) enum ProgramError {
 }
 
 impl ProgramError {
+    /// The picture at `path` could not be drawn.
+    pub(crate) fn picture(path: &Path, error: &dyn std::error::Error) -> Self {
+        Self::Picture { path: path.to_owned(), message: error.to_string() }
+    }
+
     /// For `map_err`: `action` ("read", "write") on `path` failed.
     pub(crate) fn file(action: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Self + use<> {
         let path = path.to_owned();

@@ -18,6 +18,9 @@ const PROGRESS_LENGTH: f64 = 1000.0;
 pub(crate) fn simulate(command: &Simulate) -> Result<(), ProgramError> {
     let mut scene = super::load(&command.scene)?;
     set_parameters(&mut scene, &command.set)?;
+    if scene.excitation.is_empty() {
+        super::warn("the scene has no [[excitation]]: the carrier rests, and the start is all there is");
+    }
     let mut recorder = Recorder::new(&scene, command)?;
     let result = record(&scene, command, &mut recorder);
     let history = recorder.finish()?;

@@ -145,26 +145,23 @@ impl Simulation {
         let remaining = duration - self.run.s;
         let shortest = 4.0 * f64::EPSILON * (self.run.s + 1e-3 * duration);
         let mut h = fitted(self.run.step_size, remaining);
+        // The step that an event cuts short says how long the next may be; the shorter ones need no test of their error.
         let mut proposal = None;
         loop {
             self.count_work(work)?;
-            let attempt = self.try_step(h);
-            let error = attempt.map_or(f64::NAN, |attempt| attempt.error);
-            if !(error <= 1.0) && h > shortest && proposal.is_none() {
-                self.run.counters.rejected += 1;
-                self.run.step_size = h * if error.is_nan() { AFTER_FAILURE } else { growth(error).min(SAFETY) };
+            let Some(attempt) = self.try_step(h, proposal.is_some()) else {
+                if h <= shortest {
+                    return Err(SimulationError::StepTooSmall { time: self.run.time(), step: h });
+                }
                 h = self.run.step_size;
                 continue;
-            }
-            let Some(attempt) = attempt else {
-                return Err(SimulationError::StepTooSmall { time: self.run.time(), step: h });
             };
-            // The step that an event cuts short says how long the next may be.
-            proposal = proposal.or(Some(self.proposal(h, remaining, error)));
-            match first_event(&self.dense(h), self.integrator.stages(), &self.settings.events) {
-                Some(theta) if theta < 1.0 && h > shortest => h = (theta * h).max(shortest),
-                _ => {
-                    self.run.step_size = proposal.unwrap_or(h);
+            let proposed = *proposal.get_or_insert_with(|| self.proposal(h, remaining, attempt.error));
+            let event = first_event(&self.dense(h), self.integrator.stages(), &self.settings.events);
+            match event.filter(|&theta| theta < 1.0 && h > shortest) {
+                Some(theta) => h = (theta * h).max(shortest),
+                None => {
+                    self.run.step_size = proposed;
                     self.note_error(&attempt);
                     return Ok(h);
                 }
@@ -172,16 +169,18 @@ impl Simulation {
         }
     }
 
-    fn try_step(&mut self, h: f64) -> Option<Attempt> {
+    /// Tries a step of length `h`; `None` where it is no good, and the run's step size is then a better one.
+    fn try_step(&mut self, h: f64, any_error: bool) -> Option<Attempt> {
         let run = &self.run;
         let tolerance = &self.settings.tolerance;
-        self.integrator.attempt(&self.model, &run.state, &run.carrier, (run.s, h), tolerance).ok()
-    }
-
-    /// The length of the next step after a good one of length `h`. The end of a piece cuts steps short; that says nothing.
-    fn proposal(&self, h: f64, remaining: f64, error: f64) -> f64 {
-        let grown = h * growth(error);
-        if h < remaining { grown } else { grown.max(self.run.step_size) }
+        let attempt = self.integrator.attempt(&self.model, &run.state, &run.carrier, (run.s, h), tolerance);
+        let error = attempt.map_or(f64::NAN, |attempt| attempt.error);
+        if error <= 1.0 || (any_error && error.is_finite()) {
+            return attempt.ok();
+        }
+        self.run.counters.rejected += 1;
+        self.run.step_size = h * if error.is_finite() { growth(error).min(SAFETY) } else { AFTER_FAILURE };
+        None
     }
 
     fn count_work(&self, work: &mut u64) -> Result<(), SimulationError> {
@@ -190,6 +189,12 @@ impl Simulation {
         }
         *work += 1;
         Ok(())
+    }
+
+    /// The length of the next step after a good one of length `h`. The end of a piece cuts steps short; that says nothing.
+    fn proposal(&self, h: f64, remaining: f64, error: f64) -> f64 {
+        let grown = h * growth(error);
+        if h < remaining { grown } else { grown.max(self.run.step_size) }
     }
 
     fn note_error(&mut self, attempt: &Attempt) {

@@ -8,6 +8,7 @@ With --against, also how far the columns F_x, F_z and E_diss of the two files li
 import argparse
 import csv
 import math
+from bisect import bisect_left
 
 import matplotlib
 
@@ -30,12 +31,13 @@ def read(path):
 
 
 def print_table(columns):
-    """Some rows, evenly spread, the last among them."""
+    """The rows at, or just after, times evenly spread over the run."""
     names = [name for name in TABLE if name in columns]
-    last = len(columns["time"]) - 1
-    count = min(TABLE_ROWS, last)
+    times = columns["time"]
+    wanted = (times[0] + (times[-1] - times[0]) * i / TABLE_ROWS for i in range(TABLE_ROWS + 1))
+    rows = sorted({min(bisect_left(times, time), len(times) - 1) for time in wanted})
     print(" ".join(f"{f'{name}/{UNITS[name]}' if name in UNITS else name:>16}" for name in names))
-    for row in sorted({round(last * i / count) for i in range(count + 1)} if count else {0}):
+    for row in rows:
         print(" ".join(f"{columns[name][row]:16.6g}" for name in names))
 
 

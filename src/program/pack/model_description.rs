@@ -136,7 +136,28 @@ fn unknown(xml: &mut Xml, reference: u32, dependencies: Option<&str>) -> io::Res
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
+    use asperity::fmi::{Sources, guid};
+
     use super::*;
+
+    /// The description of the default scene is kept in the repository, so that a change to it is seen. After one that is
+    /// meant: `BLESS=1 cargo test --bin asperity golden`.
+    #[test]
+    fn the_default_scene_has_the_golden_description() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let path = root.join("scenes/tread-block/tread-block.toml");
+        let scene = Scene::load(&path).unwrap();
+        let catalogue = Catalogue::new(&scene);
+        let guid = guid(&Sources::read(&path, &scene).unwrap(), &catalogue);
+        let written = String::from_utf8(write(&scene, &catalogue, &guid).unwrap()).unwrap();
+        let golden = root.join("modelDescription/modelDescription.xml");
+        if std::env::var_os("BLESS").is_some() {
+            std::fs::write(&golden, &written).unwrap();
+        }
+        assert!(written == std::fs::read_to_string(&golden).unwrap(), "BLESS=1 accepts the new description");
+    }
 
     #[test]
     fn the_default_step_is_a_round_number() {

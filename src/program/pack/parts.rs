@@ -13,3 +13,23 @@ pub(super) const PARTS: [(&str, &str); 4] = [
         include_str!("../../../modelDescription/documentation/licenses/third-party.txt"),
     ),
 ];
+
+#[cfg(test)]
+mod tests {
+    use std::process::Command;
+
+    use super::*;
+
+    #[test]
+    fn every_package_in_the_library_is_named() {
+        let mut cargo = Command::new(env!("CARGO"));
+        cargo.current_dir(env!("CARGO_MANIFEST_DIR")).args(["tree", "--locked", "--no-default-features"]);
+        let output = cargo.args(["-e", "normal,no-proc-macro", "--prefix", "none"]).output().unwrap();
+        let packages = String::from_utf8(output.stdout).unwrap();
+        assert!(packages.lines().count() > 10, "{}", String::from_utf8_lossy(&output.stderr));
+        let names = packages.lines().filter_map(|line| line.split(' ').next()).filter(|name| *name != "asperity");
+        let (_, third_party) = PARTS[3];
+        let missing: Vec<_> = names.filter(|name| !third_party.contains(&format!("\n{name} "))).collect();
+        assert!(missing.is_empty(), "missing in third-party.txt: {missing:?}");
+    }
+}

@@ -1,6 +1,8 @@
 //! One chart: lines over an axis, a legend above them. The look of every picture is decided here.
 
 use std::error::Error;
+use std::fs;
+use std::path::Path;
 
 use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
@@ -25,16 +27,20 @@ const COLOURS: [RGBColor; 7] = [
     RGBColor(70, 70, 70),
 ];
 const FONT: &str = "sans-serif";
-const TITLE_SIZE: i32 = 22;
-const TEXT_SIZE: i32 = 17;
-const TICK_SIZE: i32 = 15;
 const INK: RGBColor = RGBColor(40, 40, 40);
 const GRID: RGBColor = RGBColor(225, 225, 225);
+/// plotters places every point on a whole pixel; a picture drawn that many times as large and shown smaller has finer ones.
+const FINE: u32 = 8;
+const TITLE_SIZE: u32 = 22 * FINE;
+const TEXT_SIZE: u32 = 17 * FINE;
+const TICK_SIZE: u32 = 15 * FINE;
+const LINE_WIDTH: u32 = 2 * FINE;
+const SWATCH_LENGTH: u32 = 26 * FINE;
+const GAP: u32 = 7 * FINE;
+const LEGEND_HEIGHT: u32 = 30 * FINE;
+const LEFT_MARGIN: u32 = 84 * FINE;
 /// Width of a letter over its height, roughly: an SVG's font is only known where it is shown.
-const LETTER_WIDTH: f64 = 0.56;
-const LEGEND_HEIGHT: i32 = 30;
-const LEFT_MARGIN: u32 = 84;
-const SWATCH: i32 = 26;
+const LETTER_WIDTH: f64 = 0.58;
 
 /// One line of a chart.
 #[derive(Clone, Debug)]
@@ -56,9 +62,30 @@ pub(crate) struct Chart {
     pub(crate) lines: Vec<Line>,
 }
 
-/// Draws a title at the top of `canvas` and returns what is left below it.
-pub(crate) fn title<'a>(canvas: &Canvas<'a>, text: &str) -> Result<Canvas<'a>, Box<dyn Error>> {
-    Ok(canvas.titled(text, (FONT, TITLE_SIZE).into_font().color(&INK))?)
+/// Writes a picture of `size` pixels to `path`: a title, if there is one, and what `draw` adds below it.
+pub(crate) fn write(
+    path: &Path,
+    size: (u32, u32),
+    title: Option<&str>,
+    draw: impl FnOnce(&Canvas<'_>) -> Drawn,
+) -> Drawn {
+    let mut text = String::new();
+    let fine = (size.0 * FINE, size.1 * FINE);
+    let canvas = SVGBackend::with_string(&mut text, fine).into_drawing_area();
+    canvas.fill(&WHITE)?;
+    match title {
+        Some(title) => draw(&canvas.margin(6 * FINE, 0, 0, 0).titled(title, style(TITLE_SIZE))?)?,
+        None => draw(&canvas)?,
+    }
+    canvas.present()?;
+    drop(canvas);
+    let (drawn, shown) =
+        [fine, size].map(|(width, height)| format!("<svg width=\"{width}\" height=\"{height}\"")).into();
+    Ok(fs::write(path, text.replacen(&drawn, &shown, 1))?)
+}
+
+fn style(size: u32) -> TextStyle<'static> {
+    (FONT, size).into_font().color(&INK)
 }
 
 impl Chart {
@@ -67,14 +94,14 @@ impl Chart {
         let (legend, plot) = canvas.split_vertically(LEGEND_HEIGHT);
         self.draw_legend(&legend)?;
         let mut context = ChartBuilder::on(&plot)
-            .margin(6)
-            .margin_right(24)
-            .x_label_area_size(44)
+            .margin(6 * FINE)
+            .margin_right(24 * FINE)
+            .x_label_area_size(44 * FINE)
             .y_label_area_size(LEFT_MARGIN)
             .build_cartesian_2d(self.x.low..self.x.high, self.y.low..self.y.high)?;
         self.draw_axes(&mut context)?;
         for (i, line) in self.lines.iter().enumerate() {
-            context.draw_series(LineSeries::new(self.drawn(line), colour(i).stroke_width(2)))?;
+            context.draw_series(LineSeries::new(self.drawn(line), colour(i).stroke_width(LINE_WIDTH)))?;
         }
         Ok(())
     }
@@ -82,15 +109,16 @@ impl Chart {
     fn draw_axes(&self, context: &mut Context<'_, '_>) -> Drawn {
         context
             .configure_mesh()
-            .bold_line_style(GRID)
+            .bold_line_style(GRID.stroke_width(FINE))
             .light_line_style(TRANSPARENT)
-            .axis_style(INK)
+            .axis_style(INK.stroke_width(FINE))
+            .set_all_tick_mark_size(5 * FINE)
             .x_labels(self.x.ticks.max(6))
             .y_labels(self.y.ticks)
             .x_label_formatter(&|x| self.x.label(*x))
             .y_label_formatter(&|y| self.y.label(*y))
-            .label_style((FONT, TICK_SIZE).into_font().color(&INK))
-            .axis_desc_style((FONT, TEXT_SIZE).into_font().color(&INK))
+            .label_style(style(TICK_SIZE))
+            .axis_desc_style(style(TEXT_SIZE))
             .x_desc(&self.x.title)
             .y_desc(&self.y.title)
             .draw()?;
@@ -102,15 +130,14 @@ impl Chart {
     }
 
     fn draw_legend(&self, canvas: &Canvas<'_>) -> Drawn {
-        let mut left = LEFT_MARGIN as i32 + 10;
-        let middle = LEGEND_HEIGHT / 2 + 4;
+        let mut left = LEFT_MARGIN + GAP;
         for (i, line) in self.lines.iter().enumerate() {
-            let swatch = vec![(left, middle), (left + SWATCH, middle)];
-            canvas.draw(&PathElement::new(swatch, colour(i).stroke_width(3)))?;
-            let text_left = left + SWATCH + 7;
-            let style = (FONT, TEXT_SIZE).into_font().color(&INK);
-            canvas.draw(&Text::new(line.name.clone(), (text_left, middle - TEXT_SIZE / 2), style))?;
-            left = text_left + text_width(&line.name) + 22;
+            let text_left = left + SWATCH_LENGTH + GAP;
+            let swatch = [left, left + SWATCH_LENGTH].map(|x| (x as i32, (LEGEND_HEIGHT / 2 + FINE) as i32));
+            canvas.draw(&PathElement::new(swatch, colour(i).stroke_width(LINE_WIDTH + FINE)))?;
+            let place = (text_left as i32, ((LEGEND_HEIGHT - TEXT_SIZE) / 2 + 2 * FINE) as i32);
+            canvas.draw(&Text::new(line.name.clone(), place, style(TEXT_SIZE)))?;
+            left = text_left + text_width(&line.name) + 3 * GAP;
         }
         Ok(())
     }
@@ -122,6 +149,6 @@ fn colour(i: usize) -> RGBColor {
     COLOURS[i % COLOURS.len()]
 }
 
-fn text_width(text: &str) -> i32 {
-    (text.chars().count() as f64 * f64::from(TEXT_SIZE) * LETTER_WIDTH) as i32
+fn text_width(text: &str) -> u32 {
+    (text.chars().count() as f64 * f64::from(TEXT_SIZE) * LETTER_WIDTH) as u32
 }

@@ -3,10 +3,9 @@
 use std::path::Path;
 
 use asperity::outputs::unit_of;
-use plotters::prelude::*;
 
 use super::axis::{Axis, Fit};
-use super::chart::{Chart, Drawn, Line, title};
+use super::chart::{Chart, Line, write};
 use crate::program::arguments::Plot;
 use crate::program::error::ProgramError;
 use crate::program::result_file::ResultFile;
@@ -20,8 +19,9 @@ pub(crate) fn plot_files(command: &Plot) -> Result<(), ProgramError> {
     }
     let lines = command.files.iter().enumerate().map(|(i, path)| file_lines(command, i, path));
     let lines: Vec<Vec<Line>> = lines.collect::<Result<_, _>>()?;
-    draw(command, &chart(command, lines.concat()))
-        .map_err(|error| ProgramError::Picture { path: command.output.clone(), message: error.to_string() })
+    let chart = chart(command, lines.concat());
+    write(&command.output, SIZE, command.title.as_deref(), |canvas| chart.draw(canvas))
+        .map_err(|error| ProgramError::picture(&command.output, &*error))
 }
 
 fn file_lines(command: &Plot, index: usize, path: &Path) -> Result<Vec<Line>, ProgramError> {
@@ -69,16 +69,6 @@ fn unit(column: &str) -> &'static str {
         "u" | "w" => "m",
         _ => unit_of(column).map(|unit| unit.name()).filter(|&name| name != "1").unwrap_or_default(),
     }
-}
-
-fn draw(command: &Plot, chart: &Chart) -> Drawn {
-    let root = SVGBackend::new(&command.output, SIZE).into_drawing_area();
-    root.fill(&WHITE)?;
-    match &command.title {
-        Some(text) => chart.draw(&title(&root, text)?)?,
-        None => chart.draw(&root)?,
-    }
-    Ok(root.present()?)
 }
 
 #[cfg(test)]

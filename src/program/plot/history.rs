@@ -5,10 +5,9 @@ use std::path::Path;
 use asperity::outputs::{Output, Variable, variables};
 use asperity::scene::{OutputGroup, Scene};
 use asperity::simulation::Simulation;
-use plotters::prelude::*;
 
 use super::axis::{Axis, Fit};
-use super::chart::{Chart, Drawn, Line, title};
+use super::chart::{Canvas, Chart, Drawn, Line, write};
 use crate::program::error::ProgramError;
 
 const SIZE: (u32, u32) = (1000, 1080);
@@ -58,18 +57,13 @@ impl History {
 
     /// Draws the picture.
     pub(crate) fn draw(&self, path: &Path, name: &str) -> Result<(), ProgramError> {
-        self.try_draw(path, name)
-            .map_err(|error| ProgramError::Picture { path: path.to_owned(), message: error.to_string() })
+        write(path, SIZE, Some(name), |canvas| self.draw_panels(canvas))
+            .map_err(|error| ProgramError::picture(path, &*error))
     }
 
-    fn try_draw(&self, path: &Path, name: &str) -> Drawn {
-        let root = SVGBackend::new(path, SIZE).into_drawing_area();
-        root.fill(&WHITE)?;
-        let panels = title(&root, name)?.split_evenly((PANELS.len(), 1));
-        for (panel, canvas) in PANELS.iter().zip(&panels) {
-            self.chart(panel).draw(canvas)?;
-        }
-        Ok(root.present()?)
+    fn draw_panels(&self, canvas: &Canvas<'_>) -> Drawn {
+        let canvases = canvas.split_evenly((PANELS.len(), 1));
+        PANELS.iter().zip(&canvases).try_for_each(|(panel, canvas)| self.chart(panel).draw(canvas))
     }
 
     fn chart(&self, &(quantity, unit, shows): &Panel) -> Chart {
@@ -85,11 +79,16 @@ impl History {
     fn lines(&self, shows: fn(&Output) -> bool) -> impl Iterator<Item = Line> {
         self.variables.iter().enumerate().filter(move |(_, variable)| shows(&variable.output)).map(|(i, variable)| {
             Line {
-                name: variable.name.clone(),
+                name: short_name(&variable.name).to_owned(),
                 points: self.times.iter().zip(&self.rows).map(|(&time, row)| (time, row[i])).collect(),
             }
         })
     }
+}
+
+/// Without the group, which the chart's axis tells: `E_damper` of `dissipation.E_damper`.
+fn short_name(name: &str) -> &str {
+    name.rsplit_once('.').map_or(name, |(_, field)| field)
 }
 
 fn with_groups(scene: &Scene) -> Scene {

@@ -1,0 +1,352 @@
+//! A small master: a scene in a folder, an instance of it, and every function as a method.
+
+use std::ffi::{CStr, CString, c_char, c_void};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::{fs, mem, process, ptr};
+
+use asperity::fmi::bindings::*;
+use asperity::fmi::{self, Catalogue, SCENE_FILE, Sources};
+use asperity::scene::Scene;
+
+pub const OK: fmi2Status = fmi2Status_fmi2OK;
+pub const DISCARD: fmi2Status = fmi2Status_fmi2Discard;
+pub const ERROR: fmi2Status = fmi2Status_fmi2Error;
+
+/// Two masses above a wave, with something of everything that makes variables.
+pub const SCENE: &str = r#"
+name = "interface"
+[layer]
+masses = 2
+spacing = 1.0e-4
+mass = 1.0e-7
+[layer.vertical]
+stiffness = 2.0e3
+damping = 8.0e-3
+maxwell = [ { stiffness = 1.0e3, relaxation_time = 1.0e-4 } ]
+[layer.horizontal]
+stiffness = 1.0e3
+damping = 8.0e-3
+[surface]
+kind = "file"
+path = "profile.csv"
+periodic = true
+[friction]
+coulomb = 0.3
+[fmu]
+outputs = ["forces", "contact"]
+"#;
+
+/// A folder that is removed when it is no longer needed.
+pub struct Folder(PathBuf);
+
+impl Folder {
+    /// A new folder whose name ends in `name`.
+    pub fn new(name: &str) -> Self {
+        static COUNT: AtomicUsize = AtomicUsize::new(0);
+        let count = COUNT.fetch_add(1, Ordering::Relaxed);
+        let path = std::env::temp_dir().join(format!("asperity-{}-{count}{name}", process::id()));
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    /// A folder with `scene` and its profile in it.
+    pub fn with_scene(name: &str, scene: &str) -> Self {
+        let folder = Self::new(name);
+        fs::write(folder.scene_file(), scene).unwrap();
+        fs::write(folder.path().join("profile.csv"), "0,0\n1e-4,1e-6\n2e-4,0\n").unwrap();
+        folder
+    }
+
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+
+    pub fn text(&self) -> &str {
+        self.0.to_str().unwrap()
+    }
+
+    pub fn scene_file(&self) -> PathBuf {
+        self.0.join(SCENE_FILE)
+    }
+
+    /// The GUID and the variables of the scene in it.
+    pub fn description(&self) -> (String, Catalogue) {
+        let scene = Scene::load(&self.scene_file()).unwrap();
+        let catalogue = Catalogue::new(&scene);
+        (fmi::guid(&Sources::read(&self.scene_file(), &scene).unwrap(), &catalogue), catalogue)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// A message as the logger received it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Message {
+    pub instance: String,
+    pub status: fmi2Status,
+    pub category: String,
+    pub text: String,
+}
+
+pub type Messages = Mutex<Vec<Message>>;
+
+unsafe extern "C" fn receive(
+    environment: *mut c_void,
+    instance: *const c_char,
+    status: fmi2Status,
+    category: *const c_char,
+    text: *const c_char,
+) {
+    // SAFETY: the strings are the FMU's; the environment is what `callbacks` gave.
+    unsafe {
+        let string = |pointer| CStr::from_ptr(pointer).to_str().unwrap().to_owned();
+        let message = Message { instance: string(instance), status, category: string(category), text: string(text) };
+        environment.cast::<Messages>().as_ref().unwrap().lock().unwrap().push(message);
+    }
+}
+
+/// Callbacks that gather messages; memory and stepFinished are NULL, so that using them would be seen.
+pub fn callbacks(messages: &Messages) -> fmi2CallbackFunctions {
+    type Receive = unsafe extern "C" fn(*mut c_void, *const c_char, fmi2Status, *const c_char, *const c_char);
+    type Logger = unsafe extern "C" fn(*mut c_void, *const c_char, fmi2Status, *const c_char, *const c_char, ...);
+    // SAFETY: Rust cannot define a variadic function; one that ignores the variadic part is called in the same way.
+    let logger = unsafe { mem::transmute::<Receive, Logger>(receive) };
+    fmi2CallbackFunctions {
+        logger: Some(logger),
+        allocateMemory: None,
+        freeMemory: None,
+        stepFinished: None,
+        componentEnvironment: ptr::from_ref(messages).cast_mut().cast(),
+    }
+}
+
+/// What fmi2Instantiate is given.
+pub struct Request {
+    pub name: Option<String>,
+    pub kind: fmi2Type,
+    pub guid: Option<String>,
+    pub location: Option<String>,
+    pub functions: *const fmi2CallbackFunctions,
+    pub logging: bool,
+}
+
+impl Request {
+    pub fn send(&self) -> fmi2Component {
+        let [name, guid, location] =
+            [&self.name, &self.guid, &self.location].map(|text| text.clone().map(|text| CString::new(text).unwrap()));
+        let pointer = |text: &Option<CString>| text.as_ref().map_or(ptr::null(), |text| text.as_ptr());
+        let (name, guid, location) = (pointer(&name), pointer(&guid), pointer(&location));
+        // SAFETY: strings that live, NULL or callbacks that live.
+        unsafe { fmi::fmi2Instantiate(name, self.kind, guid, location, self.functions, 0, self.logging.into()) }
+    }
+}
+
+/// An instance and its messages.
+pub struct Fmu {
+    pub c: fmi2Component,
+    pub catalogue: Catalogue,
+    messages: Box<Messages>,
+    _folder: Folder,
+}
+
+impl Fmu {
+    /// An instance of [`SCENE`].
+    pub fn new() -> Self {
+        Self::of(SCENE, false)
+    }
+
+    pub fn of(scene: &str, logging: bool) -> Self {
+        let folder = Folder::with_scene("", scene);
+        let (guid, catalogue) = folder.description();
+        let messages = Box::new(Messages::default());
+        let functions = callbacks(&messages);
+        let location = format!("file://{}", folder.text());
+        let request = Request {
+            name: Some("a name".into()),
+            kind: fmi2Type_fmi2CoSimulation,
+            guid: Some(guid),
+            location: Some(location),
+            functions: &functions,
+            logging,
+        };
+        let c = request.send();
+        assert!(!c.is_null(), "{:?}", messages.lock());
+        Self { c, catalogue, messages, _folder: folder }
+    }
+
+    /// An instance of [`SCENE`] in the initialisation mode.
+    pub fn initialising() -> Self {
+        let fmu = Self::new();
+        assert_eq!((fmu.setup(0.0), fmu.enter()), (OK, OK));
+        fmu
+    }
+
+    /// An instance of [`SCENE`] that can step from time 0.
+    pub fn running() -> Self {
+        let fmu = Self::initialising();
+        assert_eq!(fmu.exit(), OK);
+        fmu
+    }
+
+    /// The messages since the last call.
+    pub fn messages(&self) -> Vec<Message> {
+        mem::take(&mut self.messages.lock().unwrap())
+    }
+
+    /// The text of the one message since the last call.
+    pub fn message(&self) -> String {
+        let messages = self.messages();
+        assert_eq!(messages.len(), 1, "{messages:?}");
+        messages[0].text.clone()
+    }
+
+    /// The value reference of the variable `name`.
+    pub fn reference(&self, name: &str) -> u32 {
+        self.catalogue.entries().find(|(_, entry)| entry.name() == name).unwrap().0
+    }
+
+    pub fn setup(&self, start: f64) -> fmi2Status {
+        self.setup_all(None, start, None)
+    }
+
+    pub fn real(&self, name: &str) -> f64 {
+        let mut value = [f64::NAN];
+        assert_eq!(self.get_reals(&[self.reference(name)], &mut value), OK, "{name}");
+        value[0]
+    }
+
+    pub fn set_real(&self, name: &str, value: f64) -> fmi2Status {
+        self.set_reals(&[self.reference(name)], &[value])
+    }
+
+    pub fn set_rate(&self, name: &str, rate: f64) -> fmi2Status {
+        self.set_rates(&[self.reference(name)], &[1], &[rate])
+    }
+}
+
+/// The functions, safe here because the instance lives and the slices have the lengths given.
+impl Fmu {
+    pub fn setup_all(&self, tolerance: Option<f64>, start: f64, stop: Option<f64>) -> fmi2Status {
+        let (given, tolerance) = (tolerance.is_some().into(), tolerance.unwrap_or_default());
+        // SAFETY: see above.
+        unsafe {
+            fmi::fmi2SetupExperiment(self.c, given, tolerance, start, stop.is_some().into(), stop.unwrap_or_default())
+        }
+    }
+
+    pub fn enter(&self) -> fmi2Status {
+        // SAFETY: see above.
+        unsafe { fmi::fmi2EnterInitializationMode(self.c) }
+    }
+
+    pub fn exit(&self) -> fmi2Status {
+        // SAFETY: see above.
+        unsafe { fmi::fmi2ExitInitializationMode(self.c) }
+    }
+
+    pub fn step(&self, point: f64, h: f64) -> fmi2Status {
+        // SAFETY: see above.
+        unsafe { fmi::fmi2DoStep(self.c, point, h, 1) }
+    }
+
+    pub fn terminate(&self) -> fmi2Status {
+        // SAFETY: see above.
+        unsafe { fmi::fmi2Terminate(self.c) }
+    }
+
+    pub fn reset(&self) -> fmi2Status {
+        // SAFETY: see above.
+        unsafe { fmi::fmi2Reset(self.c) }
+    }
+
+    pub fn get_reals(&self, references: &[u32], values: &mut [f64]) -> fmi2Status {
+        // SAFETY: see above.
+        unsafe { fmi::fmi2GetReal(self.c, references.as_ptr(), references.len(), values.as_mut_ptr()) }
+    }
+
+    pub fn set_reals(&self, references: &[u32], values: &[f64]) -> fmi2Status {
+        // SAFETY: see above.
+        unsafe { fmi::fmi2SetReal(self.c, references.as_ptr(), references.len(), values.as_ptr()) }
+    }
+
+    pub fn get_integers(&self, references: &[u32], values: &mut [i32]) -> fmi2Status {
+        // SAFETY: see above.
+        unsafe { fmi::fmi2GetInteger(self.c, references.as_ptr(), references.len(), values.as_mut_ptr()) }
+    }
+
+    pub fn set_integers(&self, references: &[u32], values: &[i32]) -> fmi2Status {
+        // SAFETY: see above.
+        unsafe { fmi::fmi2SetInteger(self.c, references.as_ptr(), references.len(), values.as_ptr()) }
+    }
+
+    pub fn get_text(&self, reference: u32) -> Result<String, fmi2Status> {
+        let mut value = ptr::null();
+        // SAFETY: see above; the string lives until the next call.
+        unsafe {
+            match fmi::fmi2GetString(self.c, &reference, 1, &mut value) {
+                OK => Ok(CStr::from_ptr(value).to_str().unwrap().to_owned()),
+                status => Err(status),
+            }
+        }
+    }
+
+    pub fn set_text(&self, reference: u32, value: &str) -> fmi2Status {
+        let value = CString::new(value).unwrap();
+        // SAFETY: see above.
+        unsafe { fmi::fmi2SetString(self.c, &reference, 1, &value.as_ptr()) }
+    }
+
+    pub fn set_rates(&self, references: &[u32], orders: &[i32], rates: &[f64]) -> fmi2Status {
+        let (count, orders) = (references.len(), orders.as_ptr());
+        // SAFETY: see above.
+        unsafe { fmi::fmi2SetRealInputDerivatives(self.c, references.as_ptr(), count, orders, rates.as_ptr()) }
+    }
+
+    pub fn get_state(&self, state: &mut fmi2FMUstate) -> fmi2Status {
+        // SAFETY: see above.
+        unsafe { fmi::fmi2GetFMUstate(self.c, state) }
+    }
+
+    pub fn set_state(&self, state: fmi2FMUstate) -> fmi2Status {
+        // SAFETY: see above.
+        unsafe { fmi::fmi2SetFMUstate(self.c, state) }
+    }
+
+    pub fn free_state(&self, state: &mut fmi2FMUstate) -> fmi2Status {
+        // SAFETY: see above.
+        unsafe { fmi::fmi2FreeFMUstate(self.c, state) }
+    }
+
+    pub fn set_debug_logging(&self, on: bool, categories: &[&CStr]) -> fmi2Status {
+        let categories: Vec<_> = categories.iter().map(|category| category.as_ptr()).collect();
+        // SAFETY: see above.
+        unsafe { fmi::fmi2SetDebugLogging(self.c, on.into(), categories.len(), categories.as_ptr()) }
+    }
+
+    pub fn last_step(&self) -> (fmi2Status, fmi2Status) {
+        let mut value = fmi2Status_fmi2Pending;
+        // SAFETY: see above.
+        (unsafe { fmi::fmi2GetStatus(self.c, fmi2StatusKind_fmi2DoStepStatus, &mut value) }, value)
+    }
+
+    pub fn last_successful_time(&self) -> f64 {
+        let mut time = f64::NAN;
+        let kind = fmi2StatusKind_fmi2LastSuccessfulTime;
+        // SAFETY: see above.
+        assert_eq!(unsafe { fmi::fmi2GetRealStatus(self.c, kind, &mut time) }, OK);
+        time
+    }
+}
+
+impl Drop for Fmu {
+    fn drop(&mut self) {
+        // SAFETY: from fmi2Instantiate, and freed once.
+        unsafe { fmi::fmi2FreeInstance(self.c) }
+    }
+}

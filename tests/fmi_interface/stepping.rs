@@ -1,0 +1,134 @@
+//! Experiments, steps and what stops them.
+
+use asperity::fmi::bindings::fmi2StatusKind_fmi2LastSuccessfulTime;
+
+use crate::master::{DISCARD, ERROR, Fmu, OK};
+
+#[test]
+fn the_start_may_be_any_time_and_the_stop_is_kept() {
+    let fmu = Fmu::new();
+    assert_eq!(fmu.setup_all(None, -3.0, Some(-3.0 + 2e-6)), OK);
+    assert_eq!((fmu.enter(), fmu.exit()), (OK, OK));
+    assert_eq!(fmu.last_successful_time(), -3.0);
+    assert_eq!(fmu.step(-3.0, 1e-6), OK);
+    assert_eq!(fmu.step(-3.0 + 1e-6, 2e-6), ERROR);
+    assert!(fmu.message().contains("stop time"));
+    assert_eq!(fmu.step(-3.0 + 1e-6, 1e-6), OK);
+}
+
+#[test]
+fn experiments_that_make_no_sense_are_refused() {
+    let fmu = Fmu::new();
+    for (tolerance, start, stop) in [
+        (None, f64::NAN, None),
+        (None, f64::INFINITY, None),
+        (None, 0.0, Some(f64::NAN)),
+        (None, 1.0, Some(0.0)),
+        (Some(f64::NAN), 0.0, None),
+        (Some(-1e-6), 0.0, None),
+    ] {
+        assert_eq!(fmu.setup_all(tolerance, start, stop), ERROR, "{tolerance:?} {start} {stop:?}");
+        fmu.message();
+    }
+    assert_eq!(fmu.enter(), OK);
+    assert_eq!(fmu.real("solver.relative_tolerance"), 1e-6);
+}
+
+#[test]
+fn a_tolerance_is_the_parameter_unless_that_is_set_later() {
+    let fmu = Fmu::new();
+    assert_eq!(fmu.set_real("solver.relative_tolerance", 1e-4), OK);
+    assert_eq!((fmu.setup_all(Some(1e-7), 0.0, None), fmu.enter()), (OK, OK));
+    assert_eq!(fmu.real("solver.relative_tolerance"), 1e-7);
+    assert_eq!(fmu.set_real("solver.relative_tolerance", 1e-5), OK);
+    assert_eq!(fmu.real("solver.relative_tolerance"), 1e-5);
+}
+
+#[test]
+fn a_step_ends_at_the_masters_time() {
+    let fmu = Fmu::running();
+    assert_eq!(fmu.step(0.0, 0.1e-6), OK);
+    let point = 0.1e-6 * (1.0 + 1e-11);
+    assert_eq!(fmu.step(point, 0.2e-6), OK);
+    assert_eq!(fmu.last_successful_time(), point + 0.2e-6);
+    assert_eq!(fmu.last_step(), (OK, OK));
+}
+
+#[test]
+fn a_step_that_is_none_changes_nothing() {
+    let fmu = Fmu::running();
+    assert_eq!((fmu.set_rate("u", 1.0), fmu.set_real("u", f64::NAN)), (OK, OK));
+    assert_eq!(fmu.step(0.0, 0.0), OK);
+    assert_eq!(fmu.last_successful_time(), 0.0);
+    assert_eq!(fmu.messages(), []);
+}
+
+#[test]
+fn steps_with_bad_arguments_are_refused_and_may_be_done_right() {
+    let fmu = Fmu::running();
+    assert_eq!(fmu.step(0.0, 1e-6), OK);
+    for (point, h) in
+        [(0.0, 1e-6), (2e-6, 1e-6), (f64::NAN, 1e-6), (1e-6, -1e-6), (1e-6, f64::NAN), (1e-6, f64::INFINITY)]
+    {
+        assert_eq!(fmu.step(point, h), ERROR, "{point} {h}");
+        fmu.message();
+    }
+    assert_eq!(fmu.step(1e-6, 1e-6), OK);
+}
+
+#[test]
+fn an_input_that_is_no_number_stops_the_step_and_is_named() {
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let fmu = Fmu::running();
+        assert_eq!(fmu.step(0.0, 1e-6), OK);
+        let before = fmu.real("F_z");
+        assert_eq!((fmu.set_real("w", bad), fmu.step(1e-6, 1e-6)), (OK, ERROR));
+        assert!(fmu.message().contains("the input w is"));
+        assert_eq!(fmu.real("F_z"), before);
+    }
+}
+
+#[test]
+fn a_start_that_is_no_number_is_an_error() {
+    let fmu = Fmu::initialising();
+    assert_eq!(fmu.set_real("u", f64::NAN), OK);
+    assert_eq!(fmu.get_reals(&[fmu.reference("F_x")], &mut [0.0]), ERROR);
+    assert_eq!((fmu.exit(), fmu.step(0.0, 1e-6)), (ERROR, ERROR));
+    assert_eq!(fmu.reset(), OK);
+}
+
+#[test]
+fn after_a_discarded_step_a_smaller_one_is_done() {
+    let fmu = Fmu::initialising();
+    assert_eq!(fmu.set_integers(&[fmu.reference("solver.max_steps")], &[2]), OK);
+    assert_eq!((fmu.exit(), fmu.set_real("w", -1e-6)), (OK, OK));
+    let before = fmu.real("F_z");
+    assert_eq!(fmu.step(0.0, 1.0), DISCARD);
+    let messages = fmu.messages();
+    assert_eq!((messages.len(), messages[0].category.as_str()), (1, "logStatusDiscard"));
+    assert_eq!((fmu.last_step(), fmu.last_successful_time()), ((OK, DISCARD), 0.0));
+    assert_eq!((fmu.real("w"), fmu.real("F_z")), (-1e-6, before));
+    assert_eq!((fmu.set_real("w", 0.0), fmu.step(0.0, 1e-12)), (OK, OK));
+    assert_eq!(fmu.last_successful_time(), 1e-12);
+}
+
+#[test]
+fn a_status_that_does_not_exist_is_discarded() {
+    let (fmu, mut value) = (Fmu::running(), 0);
+    let kind = fmi2StatusKind_fmi2LastSuccessfulTime;
+    // SAFETY: the instance and the value live.
+    assert_eq!(unsafe { asperity::fmi::fmi2GetStatus(fmu.c, kind, &mut value) }, DISCARD);
+    assert!(fmu.message().contains("asynchronous"));
+}
+
+#[test]
+fn derivatives_are_of_order_one_and_of_inputs() {
+    let fmu = Fmu::running();
+    let (u, force) = (fmu.reference("u"), fmu.reference("F_x"));
+    assert_eq!(fmu.set_rates(&[u], &[2], &[1.0]), ERROR);
+    assert!(fmu.message().contains("order 2"));
+    assert_eq!(fmu.set_rates(&[u, force], &[1, 1], &[f64::NAN, 1.0]), ERROR);
+    assert!(fmu.message().contains("F_x"));
+    // The rate that came with the refused one was not taken.
+    assert_eq!(fmu.step(0.0, 1e-6), OK);
+}
