@@ -2,8 +2,9 @@
 
     rough_profile.py OUT.csv LENGTH POINTS HURST RMS ROLL_OFF CUT_OFF SEED
 
-LENGTH, RMS and the wavelengths ROLL_OFF and CUT_OFF in m. The one-sided power spectrum is constant up to q = 2π/ROLL_OFF,
-falls as q^(-1-2 HURST) up to 2π/CUT_OFF and is 0 beyond; the phases are random. Heights are rounded to 1e-10 m.
+LENGTH, RMS and the wavelengths ROLL_OFF and CUT_OFF in m. The one-sided power spectrum is constant up to
+q = 2π/ROLL_OFF, falls as q^(-1-2 HURST) up to 2π/CUT_OFF and is 0 beyond; the phases are random. Heights are rounded
+to 1e-10 m.
 """
 
 import sys

@@ -50,11 +50,7 @@ fn place_dashpots(model: &Model, state: &mut State) {
         return;
     }
     for row in &model.rows {
-        use crate::model::LinkKind::{Horizontal, LateralX, LateralZ, Vertical};
-        let e = match row.kind {
-            Vertical | LateralZ => &state.elongation_z,
-            Horizontal | LateralX => &state.elongation_x,
-        };
+        let e = if row.kind.is_along_x() { &state.elongation_x } else { &state.elongation_z };
         for (i, a) in state.maxwell[row.range.clone()].iter_mut().enumerate() {
             *a = if row.kind.is_lateral() { e[i + 1] - e[i] } else { e[i] };
         }

@@ -6,7 +6,7 @@
 
 use super::Rates;
 use crate::math::{Jet, Quintic, Relaxation};
-use crate::model::{Carrier, LinkKind, MaxwellRow, Mode, Model, State};
+use crate::model::{Carrier, MaxwellRow, Mode, Model, State};
 
 /// One step, seen from within.
 #[derive(Clone, Copy, Debug)]
@@ -108,10 +108,7 @@ impl Dense<'_> {
     fn maxwell_at(&self, theta: f64, row: &MaxwellRow, a: &mut [f64]) {
         let ratio = self.h / row.relaxation_time;
         let (here, whole) = (Relaxation::new(ratio, theta), Relaxation::new(ratio, 1.0));
-        let axis = match row.kind {
-            LinkKind::Vertical | LinkKind::LateralZ => Axis::Z,
-            LinkKind::Horizontal | LinkKind::LateralX => Axis::X,
-        };
+        let axis = if row.kind.is_along_x() { Axis::X } else { Axis::Z };
         let (start, end) = (&self.start.0.maxwell[row.range.clone()], &self.end.0.maxwell[row.range.clone()]);
         let mut next = self.elongation(axis, 0).derivative_monomials();
         for (i, a) in a.iter_mut().enumerate() {

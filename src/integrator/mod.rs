@@ -79,7 +79,7 @@ impl Integrator {
     pub fn begin(&mut self, model: &Model, state: &State, carrier: &Carrier, s: f64, forces: &mut Forces) {
         let point = carrier.at(s);
         forces.evaluate(model, state, &point);
-        self.stages[0].evaluate(model, state, &point, forces);
+        self.stages[0].evaluate(model, state, forces);
         if self.accounts_energy {
             self.powers[0] = Power::evaluate(model, state, &point, forces);
         }
@@ -226,11 +226,7 @@ impl Integrator {
             force_error += vertical.stiffness * z + vertical.damping * v_z;
         }
         for kind in LinkKind::ALL {
-            let elongation = if matches!(kind, LinkKind::Vertical | LinkKind::LateralZ) {
-                &end.elongation_z
-            } else {
-                &end.elongation_x
-            };
+            let elongation = if kind.is_along_x() { &end.elongation_x } else { &end.elongation_z };
             for i in 0..self.stages[0].maxwell_force[kind as usize].len() {
                 let force = h * self.weighed(|stage| stage.maxwell_force[kind as usize][i]);
                 let e = if kind.is_lateral() { elongation[i + 1] - elongation[i] } else { elongation[i] };

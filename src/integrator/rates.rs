@@ -1,6 +1,6 @@
 //! Rates of change at one stage.
 
-use crate::model::{CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint};
+use crate::model::{ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint};
 
 /// What a stage leaves for the later ones, for the error estimate and for the events.
 #[derive(Clone, Debug)]
@@ -63,7 +63,7 @@ impl Rates {
     }
 
     /// The rates that the forces give in `state`: the explicit first stage.
-    pub fn evaluate(&mut self, model: &Model, state: &State, carrier: &CarrierPoint, forces: &Forces) {
+    pub fn evaluate(&mut self, model: &Model, state: &State, forces: &Forces) {
         for i in 0..model.masses() {
             let v = state.velocity_x[i];
             self.velocity_x[i] = v;
@@ -80,7 +80,7 @@ impl Rates {
                 self.contact(i, mode, v, ground, &contact);
             }
         }
-        self.evaluate_maxwell(model, state, carrier);
+        self.evaluate_maxwell(model, state, forces);
     }
 
     /// What a contact at mass `i` leaves: its z̈ along the surface, F_N and the margin of its mode.
@@ -94,20 +94,15 @@ impl Rates {
         };
     }
 
-    fn evaluate_maxwell(&mut self, model: &Model, state: &State, carrier: &CarrierPoint) {
+    /// ȧ = ė - a/τ.
+    fn evaluate_maxwell(&mut self, model: &Model, state: &State, forces: &Forces) {
         self.clear_maxwell_force();
         for row in &model.rows {
-            let (velocity, carrier_rate) = match row.kind {
-                LinkKind::Vertical | LinkKind::LateralZ => (&state.velocity_z, carrier.w_rate),
-                LinkKind::Horizontal | LinkKind::LateralX => (&state.velocity_x, carrier.u_rate),
-            };
-            let a = &state.maxwell[row.range.clone()];
+            let known = state.maxwell[row.range.clone()].iter().zip(&forces.rate[row.kind as usize]);
             let (rate, force_rate) = self.maxwell_row(row);
-            for i in 0..a.len() {
-                let elongation_rate =
-                    if row.kind.is_lateral() { velocity[i + 1] - velocity[i] } else { velocity[i] - carrier_rate };
-                rate[i] = elongation_rate - a[i] / row.relaxation_time;
-                force_rate[i] += row.stiffness * rate[i];
+            for ((a, elongation_rate), (rate, force_rate)) in known.zip(rate.iter_mut().zip(force_rate)) {
+                *rate = elongation_rate - a / row.relaxation_time;
+                *force_rate += row.stiffness * *rate;
             }
         }
     }

@@ -3,11 +3,14 @@
 use nalgebra::{Matrix2, Vector2};
 
 /// Lower_i δ_{i-1} + Diagonal_i δ_i + Upper_i δ_{i+1} = Right_i, i = 0 … n-1, and room to solve it.
+///
+/// Blocks are eliminated from both ends towards the middle, and back: two chains of divisions that do not wait for each
+/// other.
 #[derive(Clone, Debug, Default)]
 pub struct BlockTridiagonal {
-    /// Blocks left of the diagonal; the first is not read.
+    /// Blocks left of the diagonal; the first is not read. Destroyed by [`factor`](Self::factor), as the others are.
     pub lower: Vec<Matrix2<f64>>,
-    /// Diagonal blocks; destroyed by [`solve`](Self::solve).
+    /// Diagonal blocks.
     pub diagonal: Vec<Matrix2<f64>>,
     /// Blocks right of the diagonal; the last is not read.
     pub upper: Vec<Matrix2<f64>>,
@@ -16,30 +19,39 @@ pub struct BlockTridiagonal {
 }
 
 impl BlockTridiagonal {
-    /// Room for `n` block rows.
+    /// Room for `n` ≥ 1 block rows.
     pub fn new(n: usize) -> Self {
         let zero = vec![Matrix2::zeros(); n];
         Self { lower: zero.clone(), diagonal: zero.clone(), upper: zero, right: vec![Vector2::zeros(); n] }
     }
 
-    /// Solves by block elimination from both ends towards the middle, and back: two chains of divisions that do not
-    /// wait for each other. The solution stands in `right`; a singular block leaves values that are not finite.
-    pub fn solve(&mut self) {
-        let n = self.diagonal.len();
-        if n == 0 {
-            return;
-        }
-        let middle = n / 2;
-        let mirrored = n - 1 - middle;
+    /// Factors the blocks, so that [`solve`](Self::solve) can take any number of right sides. A singular block leaves
+    /// values that are not finite.
+    pub fn factor(&mut self) {
+        let (middle, mirrored) = self.halves();
         for step in 0..middle.max(mirrored) {
             if step < middle {
                 self.eliminate(step, step + 1);
             }
             if step < mirrored {
-                self.eliminate(n - 1 - step, n - 2 - step);
+                self.eliminate(middle + mirrored - step, middle + mirrored - step - 1);
             }
         }
-        self.right[middle] = inverse(&self.diagonal[middle]) * self.right[middle];
+        self.diagonal[middle] = inverse(&self.diagonal[middle]);
+    }
+
+    /// The solution for the right sides in `right`, in their place, once the blocks are factored.
+    pub fn solve(&mut self) {
+        let (middle, mirrored) = self.halves();
+        for step in 0..middle.max(mirrored) {
+            if step < middle {
+                self.carry(step, step + 1);
+            }
+            if step < mirrored {
+                self.carry(middle + mirrored - step, middle + mirrored - step - 1);
+            }
+        }
+        self.right[middle] = self.diagonal[middle] * self.right[middle];
         for step in 1..=middle.max(mirrored) {
             if step <= middle {
                 self.substitute(middle - step, middle - step + 1);
@@ -50,21 +62,36 @@ impl BlockTridiagonal {
         }
     }
 
-    /// Takes unknown `from` out of the neighbouring row `into`; the inverse of its block stays in its place.
+    /// The number of rows before the middle one, and behind it.
+    fn halves(&self) -> (usize, usize) {
+        let n = self.diagonal.len();
+        (n / 2, n - 1 - n / 2)
+    }
+
+    /// Takes unknown `from` out of the neighbouring row `into`: the inverse of its block stays in its place, the factor
+    /// that takes its row along in that of the block beside.
     fn eliminate(&mut self, from: usize, into: usize) {
         let inverse = inverse(&self.diagonal[from]);
-        let (there, back) =
-            if from < into { (self.lower[into], self.upper[from]) } else { (self.upper[into], self.lower[from]) };
-        let factor = there * inverse;
-        let right = self.right[from];
-        self.diagonal[into] -= factor * back;
-        self.right[into] -= factor * right;
+        let (beside, back) = if from < into {
+            (&mut self.lower[into], &self.upper[from])
+        } else {
+            (&mut self.upper[into], &self.lower[from])
+        };
+        *beside *= inverse;
+        self.diagonal[into] -= *beside * back;
         self.diagonal[from] = inverse;
+    }
+
+    /// Takes the right side of row `from` along into the neighbouring row.
+    fn carry(&mut self, from: usize, into: usize) {
+        let factor = if from < into { &self.lower[into] } else { &self.upper[into] };
+        let right = factor * self.right[from];
+        self.right[into] -= right;
     }
 
     /// The unknown of row `row` from that of its neighbour `known`, found before.
     fn substitute(&mut self, row: usize, known: usize) {
-        let coupling = if row < known { self.upper[row] } else { self.lower[row] };
+        let coupling = if row < known { &self.upper[row] } else { &self.lower[row] };
         self.right[row] = self.diagonal[row] * (self.right[row] - coupling * self.right[known]);
     }
 }
@@ -108,6 +135,7 @@ mod tests {
             }
             let right = DVector::from_fn(2 * n, |row, _| system.right[row / 2][row % 2]);
             let expected = dense.lu().solve(&right).unwrap();
+            system.factor();
             system.solve();
             for row in 0..2 * n {
                 // Diagonally dominant, so a few roundings of numbers of size 1.

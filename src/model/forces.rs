@@ -7,6 +7,8 @@ use super::{CarrierPoint, LinkKind, Mode, Model, State, SurfacePoint};
 pub struct Forces {
     /// Forces of the links by kind, N; empty where the scene has no such link.
     pub link: [Vec<f64>; 4],
+    /// Elongation rates ė of the links by kind, m/s; empty where the scene has no such link.
+    pub rate: [Vec<f64>; 4],
     /// f_x,i of all links on mass i, N (3).
     pub on_mass_x: Vec<f64>,
     /// f_z,i of all links on mass i, N (4).
@@ -18,13 +20,16 @@ impl Forces {
     pub fn new(model: &Model) -> Self {
         let k = model.masses();
         let room = |kind: LinkKind| if model.links[kind as usize].present { kind.count(k) } else { 0 };
-        Self { link: LinkKind::ALL.map(|kind| vec![0.0; room(kind)]), on_mass_x: vec![0.0; k], on_mass_z: vec![0.0; k] }
+        let by_kind = || LinkKind::ALL.map(|kind| vec![0.0; room(kind)]);
+        Self { link: by_kind(), rate: by_kind(), on_mass_x: vec![0.0; k], on_mass_z: vec![0.0; k] }
     }
 
     /// The forces in `state` under the carrier's rates.
     pub fn evaluate(&mut self, model: &Model, state: &State, carrier: &CarrierPoint) {
+        let motion = LinkMotion::of(state, carrier);
         for kind in LinkKind::ALL {
-            self.spring_and_damper(model, state, carrier, kind);
+            let law = &model.links[kind as usize];
+            self.spring_and_damper(kind, law.stiffness, law.damping, &motion);
         }
         for row in &model.rows {
             let elongations = &state.maxwell[row.range.clone()];
@@ -35,21 +40,20 @@ impl Forces {
         self.sum_on_masses();
     }
 
-    /// F = c e + d ė, the first two parts of every link's force.
-    fn spring_and_damper(&mut self, model: &Model, state: &State, carrier: &CarrierPoint, kind: LinkKind) {
-        let law = &model.links[kind as usize];
-        let force = &mut self.link[kind as usize];
-        let (place, velocity, carrier_rate) = match kind {
-            LinkKind::Vertical | LinkKind::LateralZ => (&state.elongation_z, &state.velocity_z, carrier.w_rate),
-            LinkKind::Horizontal | LinkKind::LateralX => (&state.elongation_x, &state.velocity_x, carrier.u_rate),
-        };
-        for (i, force) in force.iter_mut().enumerate() {
-            let (e, rate) = if kind.is_lateral() {
-                (place[i + 1] - place[i], velocity[i + 1] - velocity[i])
-            } else {
-                (place[i], velocity[i] - carrier_rate)
-            };
-            *force = law.stiffness * e + law.damping * rate;
+    /// ė and F = c e + d ė of every link of a kind.
+    pub fn spring_and_damper(&mut self, kind: LinkKind, stiffness: f64, damping: f64, motion: &LinkMotion<'_>) {
+        let (rate, force) = (&mut self.rate[kind as usize], &mut self.link[kind as usize]);
+        let (place, velocity, carrier_rate) = motion.along(kind);
+        if kind.is_lateral() {
+            for (((force, rate), e), v) in force.iter_mut().zip(rate).zip(place.windows(2)).zip(velocity.windows(2)) {
+                *rate = v[1] - v[0];
+                *force = stiffness * (e[1] - e[0]) + damping * *rate;
+            }
+        } else {
+            for (((force, rate), e), v) in force.iter_mut().zip(rate).zip(place).zip(velocity) {
+                *rate = v - carrier_rate;
+                *force = stiffness * e + damping * *rate;
+            }
         }
     }
 
@@ -75,6 +79,42 @@ impl Forces {
     /// What the surface and the links do to mass `i`, which is in contact over `ground`.
     pub fn contact(&self, model: &Model, i: usize, velocity_x: f64, ground: &SurfacePoint) -> ContactForces {
         ContactForces::new(model, (self.on_mass_x[i], self.on_mass_z[i]), velocity_x, ground)
+    }
+}
+
+/// Elongations and rates from which those of all links follow.
+#[derive(Clone, Copy, Debug)]
+pub struct LinkMotion<'a> {
+    /// Elongations of the horizontal links, m.
+    pub elongation_x: &'a [f64],
+    /// Elongations of the vertical links, m.
+    pub elongation_z: &'a [f64],
+    /// Velocities of the masses along x, m/s.
+    pub velocity_x: &'a [f64],
+    /// Velocities of the masses along z, m/s.
+    pub velocity_z: &'a [f64],
+    /// u̇ and ẇ, m/s.
+    pub carrier_rates: (f64, f64),
+}
+
+impl<'a> LinkMotion<'a> {
+    /// The motion in `state` under a carrier with these rates.
+    pub fn of(state: &'a State, carrier: &CarrierPoint) -> Self {
+        Self {
+            elongation_x: &state.elongation_x,
+            elongation_z: &state.elongation_z,
+            velocity_x: &state.velocity_x,
+            velocity_z: &state.velocity_z,
+            carrier_rates: (carrier.u_rate, carrier.w_rate),
+        }
+    }
+
+    fn along(&self, kind: LinkKind) -> (&'a [f64], &'a [f64], f64) {
+        if kind.is_along_x() {
+            (self.elongation_x, self.velocity_x, self.carrier_rates.0)
+        } else {
+            (self.elongation_z, self.velocity_z, self.carrier_rates.1)
+        }
     }
 }
 

@@ -8,7 +8,7 @@ mod power;
 mod state;
 
 pub use carrier::{Carrier, CarrierPoint};
-pub use forces::{ContactForces, Forces};
+pub use forces::{ContactForces, Forces, LinkMotion};
 pub use link::{LinkLaw, MaxwellRow};
 pub use power::{Power, elastic_energy, kinetic_energy};
 pub use state::{Mode, State};

@@ -19,7 +19,7 @@ impl Power {
     /// The powers in `state` with the forces there.
     pub fn evaluate(model: &Model, state: &State, carrier: &CarrierPoint, forces: &Forces) -> Self {
         Self {
-            damper: LinkKind::ALL.map(|kind| damper(model, state, carrier, kind)).iter().sum(),
+            damper: LinkKind::ALL.map(|kind| damper(model, forces, kind)).iter().sum(),
             maxwell: maxwell(model, state),
             friction: if model.has_friction { friction(model, state, forces) } else { 0.0 },
             input: -(forces.on_carrier_x() * carrier.u_rate + forces.on_carrier_z() * carrier.w_rate),
@@ -40,18 +40,9 @@ impl Power {
     }
 }
 
-fn damper(model: &Model, state: &State, carrier: &CarrierPoint, kind: LinkKind) -> f64 {
+fn damper(model: &Model, forces: &Forces, kind: LinkKind) -> f64 {
     let damping = model.links[kind as usize].damping;
-    if damping == 0.0 {
-        return 0.0;
-    }
-    let sum: f64 = match kind {
-        LinkKind::Vertical => square_sum(state.velocity_z.iter().map(|v| v - carrier.w_rate)),
-        LinkKind::Horizontal => square_sum(state.velocity_x.iter().map(|v| v - carrier.u_rate)),
-        LinkKind::LateralX => square_sum(state.velocity_x.windows(2).map(|v| v[1] - v[0])),
-        LinkKind::LateralZ => square_sum(state.velocity_z.windows(2).map(|v| v[1] - v[0])),
-    };
-    damping * sum
+    if damping == 0.0 { 0.0 } else { damping * square_sum(forces.rate[kind as usize].iter().copied()) }
 }
 
 fn square_sum(values: impl Iterator<Item = f64>) -> f64 {

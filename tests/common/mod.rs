@@ -98,6 +98,11 @@ impl Table {
         Self { names, rows }
     }
 
+    /// The names of the columns.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
     /// The values of a column; `None` where there is no such column.
     pub fn get(&self, name: &str) -> Option<Vec<f64>> {
         let index = self.names.iter().position(|other| other == name)?;

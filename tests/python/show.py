@@ -47,7 +47,8 @@ def print_difference(columns, other):
         if name in columns and name in other:
             largest = max(map(abs, other[name]))
             difference = max(abs(a - b) for a, b in zip(columns[name], other[name]))
-            print(f"{name}: largest difference {difference:.2e}, {difference / largest if largest else 0:.2e} of the largest value")
+            relative = difference / largest if largest else 0.0
+            print(f"{name}: largest difference {difference:.2e}, {relative:.2e} of the largest value")
 
 
 def panels(columns):

@@ -142,8 +142,8 @@ mod tests {
 
     use super::*;
 
-    /// The description of the default scene is kept in the repository, so that a change to it is seen. After one that is
-    /// meant: `BLESS=1 cargo test --bin asperity golden`.
+    /// The description of the default scene is kept in the repository, so that a change to it is seen. After one that
+    /// is meant: `BLESS=1 cargo test --bin asperity golden`.
     #[test]
     fn the_default_scene_has_the_golden_description() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));

@@ -29,7 +29,8 @@ const COLOURS: [RGBColor; 7] = [
 const FONT: &str = "sans-serif";
 const INK: RGBColor = RGBColor(40, 40, 40);
 const GRID: RGBColor = RGBColor(225, 225, 225);
-/// plotters places every point on a whole pixel; a picture drawn that many times as large and shown smaller has finer ones.
+/// plotters places every point on a whole pixel; a picture drawn so many times as large and shown smaller has finer
+/// ones.
 const FINE: u32 = 8;
 const TITLE_SIZE: u32 = 22 * FINE;
 const TEXT_SIZE: u32 = 17 * FINE;

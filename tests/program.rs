@@ -1,0 +1,183 @@
+//! The program on its command line: result files, messages, exit codes, pictures.
+
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests may fail")]
+
+#[allow(dead_code, unreachable_pub, reason = "shared by several tests")]
+mod common;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use common::{Table, asperity, root, run, scratch, simulate};
+
+fn reference(name: &str) -> PathBuf {
+    root().join(format!("tests/reference/{name}.toml"))
+}
+
+/// The scene of tests/reference/sinusoid.toml, changed.
+fn changed(folder: &Path, from: &str, to: &str) -> PathBuf {
+    let text = fs::read_to_string(reference("sinusoid")).unwrap();
+    assert!(text.contains(from), "{from}");
+    let scene = folder.join("scene.toml");
+    fs::write(&scene, text.replacen(from, to, 1)).unwrap();
+    scene
+}
+
+/// What the program says on standard error as it fails.
+fn failure(arguments: &[&str]) -> String {
+    let output = asperity().args(arguments).output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+    assert!(output.stdout.is_empty(), "{arguments:?}");
+    String::from_utf8(output.stderr).unwrap()
+}
+
+fn warnings(scene: &Path, folder: &Path) -> String {
+    let output = asperity().arg("simulate").arg(scene).arg("-o").arg(folder.join("out.csv")).output().unwrap();
+    assert!(output.status.success());
+    String::from_utf8(output.stderr).unwrap()
+}
+
+#[test]
+fn a_result_file_has_the_variables_in_their_order_and_even_rows() {
+    let table = simulate(&reference("sinusoid"), &scratch("program-rows"), &["--points", "4"]);
+    assert_eq!(table.names()[..7], ["time", "u", "w", "F_x", "F_z", "P_diss", "E_diss"]);
+    assert!(table.get("dissipation.E_friction").is_none(), "no friction in the scene");
+    let wanted = [0.0, 0.000125, 0.00025, 0.000375, 0.0005, 0.0015, 0.0025, 0.0035, 0.0045];
+    assert!(common::difference(&table.column("time"), &wanted) < 1e-17);
+    assert!((table.column("u")[8] - 0.5 * 4e-3).abs() < 1e-17);
+}
+
+#[test]
+fn elements_are_columns() {
+    let folder = scratch("program-elements");
+    let scene = changed(&folder, "[\"forces\",", "[\"elements\", \"forces\",");
+    let table = simulate(&scene, &folder, &["--points", "1"]);
+    let names = table.names();
+    assert_eq!(names[names.len() - 5..], ["x", "z", "F_N", "F_T", "mode"].map(|field| format!("element[1].{field}")));
+}
+
+#[test]
+fn a_parameter_is_overridden_by_its_name() {
+    let folder = scratch("program-set");
+    let plain = simulate(&reference("sinusoid"), &folder, &["--points", "2"]);
+    let softer = simulate(
+        &reference("sinusoid"),
+        &folder,
+        &[
+            "--points",
+            "2",
+            "--set",
+            "layer.vertical.stiffness=1000",
+            "--set",
+            "layer.vertical.maxwell[1].stiffness = 0",
+        ],
+    );
+    assert!(softer.column("F_z")[4] < 0.5 * plain.column("F_z")[4]);
+    let text = failure(&["simulate", reference("sinusoid").to_str().unwrap(), "-o", "x.csv", "--set", "layer.mass=-1"]);
+    assert_eq!(text.lines().count(), 1, "{text}");
+    assert!(text.starts_with("asperity: --set: layer.mass = -1"), "{text}");
+}
+
+#[test]
+fn a_bad_scene_is_refused_in_one_line_with_its_place() {
+    let folder = scratch("program-bad");
+    let scene = changed(&folder, "masses = 1", "masses = 0");
+    let text = failure(&["describe", scene.to_str().unwrap()]);
+    assert_eq!(text.lines().count(), 1, "{text}");
+    assert!(text.starts_with("asperity: ") && text.contains("scene.toml:5: layer.masses = 0"), "{text}");
+}
+
+#[test]
+fn a_run_that_gives_up_keeps_its_rows_and_says_so() {
+    let folder = scratch("program-gives-up");
+    let output = folder.join("out.csv");
+    let scene = reference("rough-coulomb");
+    let arguments = ["simulate", scene.to_str().unwrap(), "-o", output.to_str().unwrap()];
+    let text = failure(&[&arguments[..], &["--set", "solver.max_steps=60"]].concat());
+    assert!(text.contains("solver.max_steps") && text.contains("out.csv"), "{text}");
+    let times = Table::read(&output).column("time");
+    assert!(!times.is_empty() && times[times.len() - 1] < 2.6e-3, "{times:?}");
+}
+
+#[test]
+fn a_phase_that_a_force_ends_takes_the_time_that_it_takes() {
+    let folder = scratch("program-force");
+    let scene = changed(&folder, "w_rate = -0.12", "w_rate = -0.12\nuntil_force = 0.02");
+    let table = simulate(&scene, &folder, &["--points", "10"]);
+    assert_eq!(table.column("time").len(), 21);
+    assert!((table.column("F_z")[10] - 0.02).abs() < 1e-6, "{}", table.column("F_z")[10]);
+    assert!(table.column("time")[10] < 5e-4);
+}
+
+#[test]
+fn a_phase_that_ends_at_once_adds_no_rows() {
+    let folder = scratch("program-at-once");
+    let scene = changed(&folder, "u_rate = 0.5", "until_force = 0.0\nu_rate = 0.5");
+    assert_eq!(simulate(&scene, &folder, &["--points", "10"]).column("time").len(), 11);
+}
+
+#[test]
+fn a_force_that_is_not_reached_is_a_warning() {
+    let folder = scratch("program-not-reached");
+    let scene = changed(&folder, "w_rate = -0.12", "w_rate = -0.12\nuntil_force = 1e6");
+    let text = warnings(&scene, &folder);
+    assert!(text.contains("warning: phase 1") && text.contains("until_force"), "{text}");
+    assert_eq!(Table::read(&folder.join("out.csv")).column("time").len(), 101);
+}
+
+#[test]
+fn a_scene_without_excitation_gives_the_start_and_a_warning() {
+    let folder = scratch("program-no-excitation");
+    let text = fs::read_to_string(reference("sinusoid")).unwrap();
+    let scene = folder.join("scene.toml");
+    fs::write(&scene, text.split("[[excitation]]").next().unwrap()).unwrap();
+    assert!(warnings(&scene, &folder).contains("no [[excitation]]"));
+    assert_eq!(Table::read(&folder.join("out.csv")).column("time"), [0.0]);
+}
+
+#[test]
+fn a_picture_shows_more_than_the_scene_names() {
+    let folder = scratch("program-picture");
+    let scene = changed(&folder, "outputs = [", "outputs = [] # ");
+    let picture = folder.join("out.svg");
+    let table = simulate(&scene, &folder, &["--plot", picture.to_str().unwrap()]);
+    assert_eq!(table.names(), ["time", "u", "w"]);
+    let text = fs::read_to_string(picture).unwrap();
+    for word in ["F_x", "F_z", "sticking", "E_diss", "E_impact", "time in ms"] {
+        assert!(text.contains(word), "{word}");
+    }
+}
+
+#[test]
+fn result_files_are_drawn_over_each_other() {
+    let folder = scratch("program-plot");
+    let scene = reference("figure-7-low");
+    simulate(&scene, &folder, &[]);
+    let (result, picture) = (folder.join("figure-7-low.csv"), folder.join("out.svg"));
+    let plot = |options: &[&str]| {
+        let mut command = asperity();
+        command.arg("plot").arg(&result).arg(&result).args(["--x", "u"]).args(options).arg("-o").arg(&picture);
+        command
+    };
+    run(&mut plot(&["--y", "F_x", "--negate", "--from-motion", "--labels", "one,two", "--title", "a <title>"]));
+    let text = fs::read_to_string(&picture).unwrap();
+    assert!(text.contains("one") && text.contains("two") && text.contains("a &lt;title&gt;"), "{text}");
+    let refused = plot(&["--y", "nothing"]).output().unwrap();
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(String::from_utf8(refused.stderr).unwrap().contains("no column nothing; there are time, u, w,"));
+}
+
+#[test]
+fn a_description_tells_what_is_there_and_what_is_left_out() {
+    let text = run(asperity().arg("describe").arg(reference("free-chain")));
+    for part in [
+        "5 masses",
+        "the paper's 2k + 4kn - 2n = 46 (k = 5, n = 2, every mass free)",
+        "as coded 56: two places and two velocities a mass, 36 Maxwell variables",
+        "Friction    left out",
+        "elements     left out",
+        "bytes a run",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+}
