@@ -21,7 +21,7 @@ const ROOMS: [(&str, &[&str]); 8] = [
 const UNSAFE: [&str; 3] = ["fmi/exports.rs", "fmi/callbacks.rs", "fmi/bindings.rs"];
 
 /// The most lines of a file.
-const LONGEST: usize = 430;
+const LONGEST: usize = 420;
 
 /// Longer ones: the 34 functions of FMI, one after another and alike.
 const LONG: [&str; 1] = ["fmi/exports.rs"];
