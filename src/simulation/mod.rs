@@ -185,8 +185,12 @@ impl Simulation {
     ) -> Result<(), SimulationError> {
         motion.check()?;
         self.keep_checkpoint();
+        let recorded = self.mode_changes.as_ref().map_or(0, Vec::len);
         let result = self.follow(motion, times, observe);
         if result.is_err() {
+            if let Some(record) = &mut self.mode_changes {
+                record.truncate(recorded);
+            }
             self.run.copy_from(&self.before.run);
             self.integrator.restore(&self.before.rates, self.before.power);
         }
