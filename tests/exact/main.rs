@@ -7,8 +7,16 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests may fail")]
 
+mod energy;
 mod free;
+mod friction;
 mod hysteresis;
 mod linear;
 mod modulus;
+mod one_mass;
+mod partial;
+mod rules;
 mod run;
+mod sliding;
+mod start;
+mod symmetry;

@@ -152,9 +152,6 @@ pub(crate) fn difference(a: &[f64], b: &[f64]) -> f64 {
 #[track_caller]
 pub(crate) fn assert_near(what: &str, found: f64, expected: f64, allowed: f64) {
     let error = (found - expected).abs();
-    if std::env::var_os("EXACT_SHOW").is_some() {
-        eprintln!("{what}: {found:e}, error {error:.1e}, allowed {allowed:.1e}");
-    }
     assert!(error <= allowed, "{what}: {found:e}, not {expected:e}: off by {error:e}, allowed {allowed:e}");
 }
 
