@@ -61,7 +61,7 @@ fn a_thrown_mass_slides_to_rest() {
 /// within D holds it.
 fn swings(speed: f64, turns: usize) {
     let stiffness = 1.0e3;
-    let omega = (stiffness / MASS as f64).sqrt();
+    let omega = (stiffness / MASS).sqrt();
     let shift = LIMIT / stiffness;
     let radius = shift.hypot(speed / omega);
     let first = (FRAC_PI_2 - (shift / radius).asin()) / omega;
@@ -71,7 +71,7 @@ fn swings(speed: f64, turns: usize) {
     let mut run = pressed(&Law::new(stiffness, 0.0), speed);
     run.drive(first + PI / omega * (last as f64 + 1.0), REST, REST);
     let events = run.events();
-    let direction = |turn: usize| if turn % 2 == 0 { 1 } else { -1 };
+    let direction = |turn: usize| if turn.is_multiple_of(2) { 1 } else { -1 };
     let mut expected: Vec<(i8, i8)> = (0..last).map(|turn| (direction(turn), direction(turn + 1))).collect();
     expected.push((direction(last), 2));
     assert_eq!(sequence(&events), expected);
