@@ -66,6 +66,13 @@ impl Direction<'_> {
         x
     }
 
+    /// The start of this motion of the carrier where another ended in `state`.
+    pub(crate) fn taken_over(&self, state: &DVector<f64>) -> DVector<f64> {
+        let mut x = state.clone();
+        (x[self.size() - 3], x[self.size() - 2]) = (0.0, self.amplitude);
+        x
+    }
+
     /// The carrier's rate, in m a unit of time, as a row on the state.
     fn carrier_rate(&self) -> DVector<f64> {
         let mut row = DVector::zeros(self.size());
