@@ -124,7 +124,11 @@ fn a_kink_breaks_a_sticking_mass_loose() {
         for sign in [1.0, -1.0] {
             let mut run = pressed(&Law::new(0.0, damping), 0.0);
             run.drive(kink, REST, REST);
-            run.drive(1.0e-6, rate(sign * share * LIMIT / damping), REST);
+            let u = rate(sign * share * LIMIT / damping);
+            // At the kink, before any time passes.
+            run.drive(0.0, u, REST);
+            assert_eq!(run.mode(1), if moves { sign } else { 2.0 });
+            run.drive(1.0e-6, u, REST);
             let events = run.events();
             assert_eq!(events.len(), usize::from(moves), "{events:?}");
             if moves {
