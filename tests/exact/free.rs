@@ -123,8 +123,8 @@ fn times() -> Vec<f64> {
 }
 
 /// x and z of every mass and F_x and F_z on the carrier, against the exact solution: some dozens to hundreds of steps
-/// with an error of the tolerance each stay below a hundred tolerances, and a thousandth of the tolerance takes at least
-/// a hundredth of the error.
+/// with an error of the tolerance each stay below a hundred tolerances, and a thousandth of the tolerance takes at
+/// least a hundredth of the error.
 fn follows_the_exponential(seed: u64, masses: usize, elements: [usize; 4]) {
     let chain = Chain::random(seed, masses, elements);
     let (coarse, fine) = (chain.errors(1e-6), chain.errors(1e-9));

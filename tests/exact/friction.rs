@@ -14,8 +14,8 @@ const SHEAR: f64 = 2.0e-3;
 /// T = μ F_N + A τ_0 with F_N = c w_0.
 const LIMIT: f64 = COULOMB * STIFFNESS * PRESSED + SHEAR;
 
-/// Events lie where a limit is passed by some hundredth of the absolute tolerance, 1e-14 m, and the steps before them err
-/// by the tolerances, 1e-9: of times of 1e-5 to 1e-3 s, a millionth of a microsecond.
+/// Events lie where a limit is passed by some hundredth of the absolute tolerance, 1e-14 m, and the steps before them
+/// err by the tolerances, 1e-9: of times of 1e-5 to 1e-3 s, a millionth of a microsecond.
 const TIME: f64 = 1.0e-12;
 
 /// Of energies and places: ten times the relative tolerance.

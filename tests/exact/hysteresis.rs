@@ -18,8 +18,8 @@ const Q: f64 = TAU / WAVELENGTH;
 const BEST_SPEED: f64 = 1.0 / (Q * TAU_1);
 
 /// What the finite stiffness c_x along x leaves: the mass lags by F s/c_x, at most c (w_0 + â) qâ/(1e4 c) = 4e-10 m, a
-/// phase of 2.4e-6 that swings about 0, so that of the loss less than half of it remains. The spline through 256 points a
-/// wavelength is off by (2π/256)⁴/720 = 5e-10 in its first harmonic.
+/// phase of 2.4e-6 that swings about 0, so that of the loss less than half of it remains. The spline through 256 points
+/// a wavelength is off by (2π/256)⁴/720 = 5e-10 in its first harmonic.
 const ALLOWED: f64 = 1.0e-6;
 
 /// Samples of F_x are as good as the dense output: this share of its peak c w_0 qâ, of which the mean is some 4 %.

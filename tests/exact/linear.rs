@@ -26,9 +26,9 @@ pub(crate) struct Links {
     pub(crate) lateral_z: Law,
 }
 
-/// One direction of the free layer under a carrier that moves by a t + b sin Ωt. The state: displacements d_i from rest,
-/// velocities (times `unit`), the dashpots' y_j of the links to the carrier and of the lateral ones, and last, of the
-/// carrier, its displacement, its swing b sin Ωt, b cos Ωt and 1.
+/// One direction of the free layer under a carrier that moves by a t + b sin Ωt. The state: displacements d_i from
+/// rest, velocities (times `unit`), the dashpots' y_j of the links to the carrier and of the lateral ones, and last, of
+/// the carrier, its displacement, its swing b sin Ωt, b cos Ωt and 1.
 pub(crate) struct Direction<'a> {
     pub(crate) masses: usize,
     pub(crate) mass: f64,

@@ -68,8 +68,8 @@ fn vibrate(frequency: f64, relative: f64) -> Seen {
 }
 
 /// With every mass sticking on a flat profile the vertical links stretch by e = -w. So w = -w_0 + â sin ωt gives, once
-/// the transient has died, F_z = k c w_0 - k â |K*| sin(ωt + arg K*), and a period loses π k â² Im K*, which the carrier
-/// puts in.
+/// the transient has died, F_z = k c w_0 - k â |K*| sin(ωt + arg K*), and a period loses π k â² Im K*, which the
+/// carrier puts in.
 fn follows_the_complex_stiffness(frequency: f64) {
     // The Maxwell elements alone are integrated; an error of 1e-9 a step, some 100 steps a memory long, stays below.
     const ALLOWED: f64 = 1e-7;
@@ -106,8 +106,8 @@ fn at_10_khz() {
     follows_the_complex_stiffness(1.0e4);
 }
 
-/// At the default tolerance too: there a step may err by 1e-6 of w_0, 1e-5 of the swing, and some five steps are a memory
-/// long.
+/// At the default tolerance too: there a step may err by 1e-6 of w_0, 1e-5 of the swing, and some five steps are a
+/// memory long.
 #[test]
 fn at_the_default_tolerance() {
     let seen = vibrate(500.0, 1e-6);

@@ -10,8 +10,8 @@ const STIFFNESS: f64 = 2.0e3;
 /// μ where there is friction.
 const FRICTION: f64 = 0.3;
 
-/// Events lie where a limit is passed by some hundredth of the absolute tolerance, 1e-14 m, and the steps before them err
-/// by the tolerances, 1e-9: of times of 1e-5 to 1e-3 s, a millionth of a microsecond.
+/// Events lie where a limit is passed by some hundredth of the absolute tolerance, 1e-14 m, and the steps before them
+/// err by the tolerances, 1e-9: of times of 1e-5 to 1e-3 s, a millionth of a microsecond.
 const TIME: f64 = 1.0e-12;
 
 /// Of energies and places: ten times the relative tolerance.
@@ -95,9 +95,9 @@ fn an_impact_on_a_slope() {
     strikes(0.25, 0.01, -0.05, 2);
 }
 
-/// A mass thrown down with V under a carrier at rest swings as ζ = -(V/ω_d) e^{-δt} sin ω_d t, δ = d/2m,
-/// ω_d² = c/m - δ². It touches at ζ = -h with ζ̇ and is stopped; the spring, drawn by h, lifts it off again at once, and
-/// damping never lets it come back.
+/// A mass thrown down with V under a carrier at rest swings as ζ = -(V/ω_d) e^{-δt} sin ω_d t, δ = d/2m, ω_d² = c/m -
+/// δ². It touches at ζ = -h with ζ̇ and is stopped; the spring, drawn by h, lifts it off again at once, and damping
+/// never lets it come back.
 #[test]
 fn a_swinging_mass_touches() {
     let (height, speed, damping) = (1.0e-6, 0.2, 2.0e-3);
@@ -154,8 +154,8 @@ fn a_pressed_mass_lifts() {
     assert_near("lift", only(&run.events(), 1, 0), lift, TIME);
 }
 
-/// On a slope s, frictionless, the spring's r = ζ - w follows r̈ = -Ω² r, Ω² = c s²/(m q²), on the line, and lifts the mass
-/// off at r = 0, with its velocity; from there r̈ = -ω² r, ω² = c/m, x goes on evenly, and the gap opens with t³.
+/// On a slope s, frictionless, the spring's r = ζ - w follows r̈ = -Ω² r, Ω² = c s²/(m q²), on the line, and lifts the
+/// mass off at r = 0, with its velocity; from there r̈ = -ω² r, ω² = c/m, x goes on evenly, and the gap opens with t³.
 #[test]
 fn a_lift_keeps_the_velocity() {
     let (slope, pressed, speed) = (0.4_f64, 1.0e-5, 0.05);

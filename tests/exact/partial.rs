@@ -29,8 +29,8 @@ fn lay(k: usize, depth: f64) -> [f64; 2] {
     [run.get("contact.ratio"), run.get("F_z") / (k as f64 * STIFFNESS * AMPLITUDE)]
 }
 
-/// With cos θ = 1 - δ/A the crest of A cos qx stands out of the layer at A - δ where |qx| < θ: a share θ/π of it, pressed
-/// back there by c (A cos qx - A + δ), on the mean (c/π) [(δ - A) θ + A sin θ].
+/// With cos θ = 1 - δ/A the crest of A cos qx stands out of the layer at A - δ where |qx| < θ: a share θ/π of it,
+/// pressed back there by c (A cos qx - A + δ), on the mean (c/π) [(δ - A) θ + A sin θ].
 fn expected(depth: f64) -> [f64; 2] {
     let theta = (1.0 - depth).acos();
     [2.0 * theta / TAU, 2.0 * ((depth - 1.0) * theta + theta.sin()) / TAU]

@@ -8,8 +8,8 @@ const MASS: f64 = 1.0e-7;
 const STIFFNESS: f64 = 2.0e3;
 const FRICTION: f64 = 0.3;
 
-/// Events lie where a limit is passed by some hundredth of the absolute tolerance, 1e-14 m, and the steps before them err
-/// by the tolerances, 1e-9: of times of 1e-5 s, a millionth of a microsecond.
+/// Events lie where a limit is passed by some hundredth of the absolute tolerance, 1e-14 m, and the steps before them
+/// err by the tolerances, 1e-9: of times of 1e-5 s, a millionth of a microsecond.
 const TIME: f64 = 1.0e-12;
 
 /// The masses of a flat layer that comes down on the flat all touch at h/V, in one event, each with its own impact

@@ -22,8 +22,8 @@ fn scene() -> String {
     )
 }
 
-/// At a steady speed all masses slip at it, no damper moves and no dashpot yields: each mass is dragged by
-/// μ F_N + A τ_0 alone, so F_x = ∓(μ F_z + k A τ_0), all of it adhesion, and the carrier's power |F_x| v goes into friction.
+/// At a steady speed all masses slip at it, no damper moves and no dashpot yields: each mass is dragged by μ F_N + A
+/// τ_0 alone, so F_x = ∓(μ F_z + k A τ_0), all of it adhesion, and the carrier's power |F_x| v goes into friction.
 fn slides(v: f64) {
     // 3 ms are 30 of the longest relaxation time, 1e-4 s, and the chain's swings die in 2 m/d = 25 µs.
     let mut run = Run::new(&scene(), Start { w: -2.0e-5, u_rate: v, ..Start::default() });

@@ -44,8 +44,8 @@ fn a_lifted_mass_keeps_its_tangential_velocity() {
     }
 }
 
-/// At v_t = 0 the rule for a stop decides: on a slope s the spring alone pulls with F s/q against F_N = F/q, so the mass
-/// sticks for μ ≥ |s| and slips downhill below.
+/// At v_t = 0 the rule for a stop decides: on a slope s the spring alone pulls with F s/q against F_N = F/q, so the
+/// mass sticks for μ ≥ |s| and slips downhill below.
 #[test]
 fn at_rest_the_slope_decides_between_stick_and_slip() {
     for slope in [0.5, -0.5_f64] {
@@ -108,8 +108,8 @@ fn a_mass_on_the_profile_that_nothing_presses_is_free() {
 }
 
 /// Gliding along the profile with κ > 0, a mass is pressed by F_N = m κ U², and so in contact; with κ < 0 it takes off.
-/// The natural spline through (-h, b), (0, 0), (h, b) has s = 0 and κ = 3b/h² at 0, and so it has in floating point where
-/// b and h are powers of two: g = 0 and v_n = 0 to the last digit.
+/// The natural spline through (-h, b), (0, 0), (h, b) has s = 0 and κ = 3b/h² at 0, and so it has in floating point
+/// where b and h are powers of two: g = 0 and v_n = 0 to the last digit.
 #[test]
 fn a_mass_gliding_through_a_trough_is_in_contact() {
     let (h, b, speed) = (2.0_f64.powi(-10), 2.0_f64.powi(-20), 0.5);
@@ -174,7 +174,8 @@ fn dashpots_start_relaxed_or_undeformed() {
     }
 }
 
-/// The lateral links' dashpots too: neighbours lifted by different heights, e = Δh, pull with (c + c_1) Δh if undeformed.
+/// The lateral links' dashpots too: neighbours lifted by different heights, e = Δh, pull with (c + c_1) Δh if
+/// undeformed.
 #[test]
 fn lateral_dashpots_start_relaxed_or_undeformed() {
     let lateral = Law::with_maxwell(300.0, 0.0, &[(200.0, 1.0e-4)]);

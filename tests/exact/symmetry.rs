@@ -103,8 +103,8 @@ fn the_contact_force_is_hysteresis_and_adhesion() {
     }
 }
 
-/// In a steady slide all comes again after a wavelength, the layer's momentum too: so on the mean the contacts' forces are
-/// those on the carrier, along x and along z.
+/// In a steady slide all comes again after a wavelength, the layer's momentum too: so on the mean the contacts' forces
+/// are those on the carrier, along x and along z.
 #[test]
 fn contact_forces_are_the_carriers_on_the_mean() {
     let links = link("vertical", &Law::with_maxwell(2.0e3, 4.0e-3, &[(1.0e3, 2.0e-5)]))
@@ -139,8 +139,9 @@ fn apart(near: &[Vec<f64>], far: &[Vec<f64>], offset: f64) -> (f64, f64) {
     (forces.fold(0.0, f64::max), difference(&near[7], &places))
 }
 
-/// Over a periodic profile a carrier that starts 2^20 m away, 2^31 periods, sees the same. Where u comes to exact values
-/// at the ends of the motions nothing is lost at all; only the places, as outputs, are rounded, twice by up to 2^-33 m.
+/// Over a periodic profile a carrier that starts 2^20 m away, 2^31 periods, sees the same. Where u comes to exact
+/// values at the ends of the motions nothing is lost at all; only the places, as outputs, are rounded, twice by up to
+/// 2^-33 m.
 #[test]
 fn a_far_carrier_loses_nothing_where_u_is_exact() {
     let offset = 2.0_f64.powi(20);
@@ -150,9 +151,9 @@ fn a_far_carrier_loses_nothing_where_u_is_exact() {
     assert!(places <= 2.0_f64.powi(-32), "{places:e}");
 }
 
-/// Elsewhere u itself is rounded at the end of each motion: by up to 2^-33 m = 1.2e-10 m at 2^20 m, 2^-43 m at 2^10 m. On
-/// slopes of 0.1 that moves springs of 3 kN/m by 3e-8 N of some 1e-2 N, 1e-5 of the force with three motions, and what
-/// friction and events make of it. The places are rounded five times.
+/// Elsewhere u itself is rounded at the end of each motion: by up to 2^-33 m = 1.2e-10 m at 2^20 m, 2^-43 m at 2^10 m.
+/// On slopes of 0.1 that moves springs of 3 kN/m by 3e-8 N of some 1e-2 N, 1e-5 of the force with three motions, and
+/// what friction and events make of it. The places are rounded five times.
 #[test]
 fn a_far_carrier_loses_what_rounding_takes_from_u() {
     let near = travel(false, 0.0, &other_motions());
