@@ -100,7 +100,7 @@ pub(super) fn real(value: f64) -> String {
 
 fn model_structure(xml: &mut Xml, scene: &Scene, catalogue: &Catalogue) -> io::Result<()> {
     let outputs = |(reference, entry)| match entry {
-        Entry::Output(_, variable) if scalar_variables::is_output(variable) => Some((reference, variable)),
+        Entry::Output(_, variable) if variable.is_output() => Some((reference, variable)),
         _ => None,
     };
     let unknowns = || catalogue.entries().filter_map(outputs);
