@@ -4,6 +4,8 @@ mod derivatives;
 mod run;
 mod saved;
 mod stepping;
+#[cfg(test)]
+mod tests;
 
 use std::sync::Arc;
 

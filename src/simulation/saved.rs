@@ -160,3 +160,82 @@ fn check_ground(at: &Checkpoint, model: &Model, slack: f64) -> Result<(), Restor
 fn near(a: f64, b: f64, distance: f64) -> bool {
     (a - b).abs() <= distance + PLACE_ROUNDING * b.abs()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{WAVE, scene, variables_of};
+    use super::*;
+    use crate::simulation::Motion;
+
+    /// A run with masses free, slipping and sticking.
+    fn run(scene: &Scene) -> Simulation {
+        let mut simulation = Simulation::new(scene, &Start { w: -2e-6, ..Start::default() }).unwrap();
+        simulation.advance(&WAVE).unwrap();
+        simulation
+    }
+
+    fn bits(scene: &Scene, simulation: &mut Simulation) -> Vec<u64> {
+        variables_of(scene, simulation).into_iter().map(|(_, value)| value.to_bits()).collect()
+    }
+
+    #[test]
+    fn a_saved_run_goes_on_bit_for_bit() {
+        let scene = scene();
+        let mut first = run(&scene);
+        let bytes = postcard::to_stdvec(&first.save()).unwrap();
+        let mut second = Simulation::restore(&scene, &postcard::from_bytes(&bytes).unwrap()).unwrap();
+        assert_eq!(bits(&scene, &mut second), bits(&scene, &mut first));
+        assert_eq!(second.force_rates(), first.force_rates());
+        for _ in 0..20 {
+            let motion = Motion { duration: 3.7e-6, ..WAVE };
+            assert_eq!((first.advance(&motion), second.advance(&motion)), (Ok(()), Ok(())));
+            assert_eq!(bits(&scene, &mut second), bits(&scene, &mut first));
+        }
+        assert_eq!(first.save(), second.save());
+    }
+
+    #[test]
+    fn a_run_not_yet_under_way_is_restored_too() {
+        let scene = scene();
+        let mut first = Simulation::new(&scene, &Start { u: 3.0, w: -1e-6, w_rate: -0.1, ..Start::default() }).unwrap();
+        let mut second = Simulation::restore(&scene, &first.save()).unwrap();
+        assert_eq!((first.advance(&WAVE), second.advance(&WAVE)), (Ok(()), Ok(())));
+        assert_eq!(bits(&scene, &mut second), bits(&scene, &mut first));
+    }
+
+    #[test]
+    fn what_no_run_gets_to_is_refused() {
+        let scene = scene();
+        let saved = run(&scene).save();
+        let refused = |change: &dyn Fn(&mut Saved)| {
+            let mut saved = saved.clone();
+            change(&mut saved);
+            Simulation::restore(&scene, &saved).unwrap_err().to_string()
+        };
+        assert!(refused(&|saved| saved.numbers.truncate(7)).starts_with("7 numbers, expected "));
+        assert!(refused(&|saved| saved.modes.push(0)).starts_with("7 modes, expected 6"));
+        for bad in [f64::NAN, f64::INFINITY] {
+            assert!(refused(&|saved| saved.numbers[20] = bad).contains("which no run gets to"));
+        }
+        assert_eq!(refused(&|saved| saved.modes[2] = 7), "mass 3 is in the mode 7, which the scene does not have");
+        // time, u, w, two paths of three numbers, then s.
+        assert!(refused(&|saved| saved.numbers[9] = -1.0).contains("the carrier's last kink"));
+    }
+
+    #[test]
+    fn a_mass_in_contact_stands_on_the_scenes_profile() {
+        let scene = scene();
+        let simulation = run(&scene);
+        let mass = (0..6).find(|&i| simulation.run.state.mode[i].in_contact()).unwrap();
+        let part: [fn(&mut Simulation, usize) -> &mut f64; 3] = [
+            |simulation, i| &mut simulation.run.state.ground[i].height,
+            |simulation, i| &mut simulation.run.state.ground[i].slope,
+            |simulation, i| &mut simulation.run.state.elongation_x[i],
+        ];
+        for part in part {
+            let mut changed = simulation.clone();
+            *part(&mut changed, mass) += 1e-5;
+            assert_eq!(Simulation::restore(&scene, &changed.save()).unwrap_err(), RestoreError::Surface { mass });
+        }
+    }
+}
