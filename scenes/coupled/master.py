@@ -16,13 +16,13 @@ METHODS = ("jacobi", "gauss_seidel", "newton")
 
 
 class Master:
-    """A body and layers, each a path and whether it is mirrored, stepped together by steps of `h`."""
+    """A body and layers stepped together by `h`. `layers`: for each the path of its FMU and whether it is mirrored."""
 
-    def __init__(self, method: str, rates: bool, body: str, layers: list, h: float):
+    def __init__(self, method: str, rates: bool, body: Body, layers: list, h: float):
         self.advance, self.rates, self.h = getattr(self, method), rates, h
         # What a layer does when it is told values only: go on as it came, or to the value.
         extrapolation = "linear" if method == "jacobi" else "hold"
-        self.body = Body(body)
+        self.body = body
         self.layers = [Layer(path, mirrored, extrapolation) for path, mirrored in layers]
         self.tries = 0
 
@@ -112,10 +112,9 @@ class Master:
         for slave, state in zip(self.slaves(), states):
             slave.fmu.freeFMUstate(state)
 
-    def defect(self) -> float:
-        """The energy that the layers have received less that which the body has given off."""
-        received = sum(layer.get(["energy.input"])[0] for layer in self.layers)
-        return received - self.body.get(["energy_out"])[0]
+    def energies(self) -> tuple:
+        """The energy that the layers have received, and that which the body has given off."""
+        return sum(layer.get(["energy.input"])[0] for layer in self.layers), self.body.get(["energy_out"])[0]
 
     def close(self):
         for slave in self.slaves():

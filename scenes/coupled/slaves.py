@@ -52,6 +52,10 @@ class Slave:
 class Body(Slave):
     """The body: takes forces, gives displacements."""
 
+    def __init__(self, path: str, parameters: dict):
+        super().__init__(path)
+        self.set(parameters.keys(), parameters.values())
+
     def step_under(self, time: float, h: float, force, rate=(0.0, 0.0)):
         """Steps under a force that runs linearly; with no rate it is held."""
         self.set(FORCE + FORCE_RATE, [*force, *rate])
