@@ -85,6 +85,15 @@ def compare(places, energies, reference) -> tuple:
     return error, np.abs(received - given).max() / np.abs(given).max()
 
 
+def check_balance(folder: Path):
+    """Between two layers and without a normal load, the body does not move in z at all."""
+    case = Case("balanced", "smooth", [False, True], {"load_z": 0.0})
+    for variant in VARIANTS:
+        places, _ = run(case, folder, *variant, 50)
+        if np.any(places[:, 1] != 0.0) or not np.any(places[:, 0]):
+            raise SystemExit(f"{label(*variant)}: two layers that mirror each other move the body by {places}")
+
+
 def label(method: str, rates: bool) -> str:
     return f"{method}_rates" if rates else method
 
@@ -144,6 +153,7 @@ def main():
     parser.add_argument("--quick", action="store_true", help="fewer and longer steps, without the case `rough`")
     arguments = parser.parse_args()
     folder, quick = arguments.folder, arguments.quick
+    check_balance(folder)
     counts = [50, 100, 200] if quick else [25, 50, 100, 200, 400, 800]
     h, tables = [DURATION / n for n in counts], {}
     for case in CASES[:2] if quick else CASES:
