@@ -10,7 +10,7 @@ mod tolerance;
 pub use dense::Dense;
 pub use rates::Rates;
 pub use stage::NoConvergence;
-pub use tableau::{ESDIRK4, ESDIRK5, Tableau};
+pub use tableau::{ESDIRK5, Tableau};
 pub use tolerance::Tolerance;
 
 use crate::model::{Carrier, Forces, LinkKind, Mode, Model, Power, State};
