@@ -96,7 +96,6 @@ fn extrapolated(values: &Table) -> Table {
 fn assert_close(name: &str, found: &[f64], own: &[f64]) {
     assert!(found.len() == own.len() || found.len() == own.len() - 1, "{name}: {} rows", found.len());
     let error = difference(found, &own[own.len() - found.len()..]) / largest(own);
-    println!("{name}: {error:.1e} of the largest");
     assert!(error <= TOLERANCE, "{name}: {error:e} of the largest");
 }
 
