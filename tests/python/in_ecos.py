@@ -12,9 +12,13 @@ import master
 
 
 def load_tbb():
-    """Ecos is linked against TBB, whose package puts the library where the loader does not look."""
-    library = next(file for file in files("tbb") if file.name == "libtbb.so.12")
-    ctypes.CDLL(str(library.locate()))
+    """Ecos is linked against TBB. The package of that name puts the library where the loader does not look, and a
+    folder of packages that is no virtual environment does not get it at all: then it has to be the system's."""
+    library = next(file for file in files("tbb") if file.name == "libtbb.so.12").locate()
+    try:
+        ctypes.CDLL(str(library) if library.exists() else "libtbb.so.12")
+    except OSError as error:
+        raise SystemExit(f"Ecos needs the library TBB, in Debian the package libtbb12: {error}")
 
 
 def simulate(fmu, step, inputs, reals, integers):

@@ -20,8 +20,8 @@ def outputs(fmu, kind):
 
 
 def run(simulate, description):
-    """Runs `simulate(fmu, step, inputs, reals, integers)`, which yields the row of values after each step: the time, the
-    outputs `reals`, the outputs `integers`."""
+    """Runs `simulate(fmu, step, inputs, reals, integers)`. It yields a row after each step: the time, the outputs
+    `reals` and the outputs `integers`."""
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("fmu", metavar="MODEL.fmu")
     parser.add_argument("motion", metavar="MOTION.csv")
