@@ -11,6 +11,8 @@ pub struct Accounts {
     pub energy: bool,
     /// The error estimate of F_z and the processor time: the group `solver`.
     pub solver: bool,
+    /// The forces' sensitivities to the carrier's targets: the group `tangent`.
+    pub tangents: bool,
 }
 
 impl Accounts {
@@ -20,6 +22,7 @@ impl Accounts {
         Self {
             energy: asked(OutputGroup::Dissipation) || asked(OutputGroup::Energy),
             solver: asked(OutputGroup::Solver),
+            tangents: asked(OutputGroup::Tangent),
         }
     }
 }
@@ -87,6 +90,8 @@ pub struct Moment<'a> {
     pub displacement: (f64, f64),
     /// Energies since the start.
     pub energies: &'a Energies,
+    /// ∂F_x/∂u, ∂F_x/∂w, ∂F_z/∂u, ∂F_z/∂w by the targets of the last motion, N/m.
+    pub tangents: [f64; 4],
     /// The solver's counters.
     pub counters: &'a Counters,
 }
@@ -141,6 +146,10 @@ impl Moment<'_> {
                 Output::EnergyResidual => {
                     channels.input - (kinetic + elastic - self.energies.initial) - self.energies.dissipated()
                 }
+                Output::TangentXU => self.tangents[0],
+                Output::TangentXW => self.tangents[1],
+                Output::TangentZU => self.tangents[2],
+                Output::TangentZW => self.tangents[3],
                 Output::Steps => held(self.counters.steps),
                 Output::Events => held(self.counters.events),
                 Output::Rejected => held(self.counters.rejected),

@@ -175,6 +175,8 @@ pub enum OutputGroup {
     Contact,
     /// The energy balance.
     Energy,
+    /// Change of the forces with the carrier's targets, for masters that iterate.
+    Tangent,
     /// Steps, events, estimated error, processor time.
     Solver,
     /// Place, forces and mode of each mass.

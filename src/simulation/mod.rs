@@ -6,7 +6,7 @@ mod stepping;
 use std::sync::Arc;
 
 use crate::contact::EventTolerance;
-use crate::integrator::{Integrator, Tolerance};
+use crate::integrator::{Followed, Integrator, Tolerance};
 use crate::model::{Forces, Model, State};
 use crate::outputs::{self, Accounts, Variable};
 use crate::scene::{Path, Scene};
@@ -123,7 +123,8 @@ impl Simulation {
         start.check()?;
         let model = Arc::new(Model::new(scene));
         let settings = Settings::new(scene, &model);
-        let integrator = Integrator::new(&model, settings.accounts.energy);
+        let followed = Followed { energy: settings.accounts.energy, tangents: settings.accounts.tangents };
+        let integrator = Integrator::new(&model, followed);
         let state = State::new(model.masses(), model.maxwell_variables());
         let run = Run::new(&model, state.clone(), start);
         let forces = Forces::new(&model);
@@ -185,8 +186,12 @@ impl Simulation {
     ) -> Result<(), SimulationError> {
         motion.check()?;
         self.keep_checkpoint();
+        let recorded = self.mode_changes.as_ref().map_or(0, Vec::len);
         let result = self.follow(motion, times, observe);
         if result.is_err() {
+            if let Some(record) = &mut self.mode_changes {
+                record.truncate(recorded);
+            }
             self.run.copy_from(&self.before.run);
             self.integrator.restore(&self.before.rates, self.before.power);
         }
@@ -220,6 +225,7 @@ impl Simulation {
             carrier: &carrier,
             displacement: self.run.displacement(),
             energies: &self.run.energies,
+            tangents: self.run.tangents,
             counters: &self.run.counters,
         };
         moment.evaluate(variables, values);

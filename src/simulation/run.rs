@@ -18,6 +18,8 @@ pub(super) struct Run {
     pub(super) counters: Counters,
     /// The length of the next step to try, s.
     pub(super) step_size: f64,
+    /// ∂F_x/∂u, ∂F_x/∂w, ∂F_z/∂u, ∂F_z/∂w by the targets of the last motion, N/m; 0 before the first.
+    pub(super) tangents: [f64; 4],
     /// Whether the integrator's rates at the start of the next step hold.
     pub(super) rates_hold: bool,
 }
@@ -33,15 +35,16 @@ impl Run {
             energies: Energies::default(),
             counters: Counters::default(),
             step_size: FIRST_STEP / model.stiffest_frequency(),
+            tangents: [0.0; 4],
             rates_hold: false,
         }
     }
 
     /// Takes over `other`, a run of the same scene, without allocating.
     pub(super) fn copy_from(&mut self, other: &Self) {
-        let Self { carrier, s, state, energies, counters, step_size, rates_hold } = self;
+        let Self { carrier, s, state, energies, counters, step_size, tangents, rates_hold } = self;
         (*carrier, *s, *energies, *counters) = (other.carrier, other.s, other.energies, other.counters);
-        (*step_size, *rates_hold) = (other.step_size, other.rates_hold);
+        (*step_size, *tangents, *rates_hold) = (other.step_size, other.tangents, other.rates_hold);
         state.copy_from(&other.state);
     }
 

@@ -53,6 +53,9 @@ impl Simulation {
             }
             self.change_modes_if_due();
         }
+        if self.integrator.has_tangents() {
+            self.run.tangents = self.integrator.tangents(&self.model, self.run.s);
+        }
         if let Some(clock) = clock {
             self.run.counters.run_time += clock.elapsed().as_secs_f64();
         }
@@ -100,8 +103,18 @@ impl Simulation {
         let before = rates(&run.carrier, run.s);
         run.carrier = Carrier::new(run.time(), run.displacement(), (motion.u, motion.w), &self.model.profile);
         run.s = 0.0;
+        self.integrator.begin_tangents(motion.duration);
         if !run.rates_hold || rates(&run.carrier, 0.0) != before {
             self.change_modes(0.0);
+        } else {
+            self.refresh_tangents();
+        }
+    }
+
+    fn refresh_tangents(&mut self) {
+        if self.integrator.has_tangents() {
+            self.forces.evaluate(&self.model, &self.run.state, &self.run.carrier.at(self.run.s));
+            self.integrator.refresh_tangents(&self.model, &self.run.state, &self.forces, self.run.s);
         }
     }
 
@@ -118,6 +131,7 @@ impl Simulation {
         decide_modes(model, state, &self.forces);
         self.integrator.begin(model, state, &self.run.carrier, self.run.s, &mut self.forces);
         self.run.rates_hold = true;
+        self.refresh_tangents();
         self.count_mode_changes();
     }
 

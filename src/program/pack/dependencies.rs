@@ -55,6 +55,10 @@ pub(super) fn of(scene: &Scene, output: Output) -> Dependencies {
         | Output::ContactRatio
         | Output::InputEnergy
         | Output::KineticEnergy
+        | Output::TangentXU
+        | Output::TangentXW
+        | Output::TangentZU
+        | Output::TangentZW
         | Output::Steps
         | Output::Events
         | Output::Rejected
