@@ -139,9 +139,9 @@ impl Table {
         Self { names: names.iter().map(|&name| name.to_owned()).collect(), rows }
     }
 
-    /// Writes it as a file.
+    /// Writes it as a file, zero as 0.0: some readers take 0 for a column of integers.
     pub fn write(&self, path: &Path) {
-        let line = |row: &Vec<f64>| row.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+        let line = |row: &Vec<f64>| row.iter().map(|value| format!("{value:?}")).collect::<Vec<_>>().join(",");
         let lines: Vec<String> = [self.names.join(",")].into_iter().chain(self.rows.iter().map(line)).collect();
         fs::write(path, lines.join("\n") + "\n").unwrap();
     }
