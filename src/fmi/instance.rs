@@ -254,12 +254,13 @@ fn count(output: Output) -> Variable {
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, clippy::panic)]
-mod tests {
+pub(super) mod tests {
     use std::path::Path;
 
     use super::*;
 
-    fn instance() -> Instance {
+    /// An instance of a scene with one mass.
+    pub(in super::super) fn instance() -> Instance {
         let text = "name = \"a\"\nlayer = { masses = 1, spacing = 1.0, mass = 1.0 }\nsurface = { kind = \"flat\" }";
         let scene = Scene::parse(text, Path::new("scene.toml")).unwrap();
         let catalogue = Catalogue::new(&scene);
