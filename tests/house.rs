@@ -12,7 +12,7 @@ const ROOMS: [(&str, &[&str]); 8] = [
     ("model", &["math", "scene"]),
     ("integrator", &["math", "model"]),
     ("contact", &["math", "scene", "model", "integrator"]),
-    ("outputs", &["scene", "model"]),
+    ("outputs", &["math", "scene", "model"]),
     ("simulation", &["math", "scene", "model", "integrator", "contact", "outputs"]),
     ("fmi", &["math", "scene", "model", "integrator", "contact", "outputs", "simulation"]),
 ];

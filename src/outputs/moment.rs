@@ -1,6 +1,7 @@
 //! The values of output variables at one instant.
 
 use super::{Output, Variable};
+use crate::math::{Numbers, visit_all};
 use crate::model::{CarrierPoint, ContactForces, Forces, Mode, Model, Power, State, elastic_energy, kinetic_energy};
 use crate::scene::{OutputGroup, Scene};
 
@@ -45,6 +46,13 @@ impl Energies {
     }
 }
 
+impl Numbers for Energies {
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        let Self { channels, impact, initial } = self;
+        visit_all([channels, impact, initial], visit);
+    }
+}
+
 /// What the solver counts since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Counters {
@@ -72,6 +80,14 @@ impl Counters {
     /// Estimated error of F_z over its largest value so far; the steps' errors count as independent of each other.
     pub fn estimated_error(&self) -> f64 {
         if self.largest_force > 0.0 { self.error_squares.sqrt() / self.largest_force } else { 0.0 }
+    }
+}
+
+/// All but the whole numbers and the processor time, which is no part of a run's state.
+impl Numbers for Counters {
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        let Self { steps: _, rejected: _, events: _, run_time: _, error_squares, largest_force } = self;
+        visit_all([error_squares, largest_force], visit);
     }
 }
 

@@ -101,6 +101,13 @@ pub struct Variable {
     pub description: String,
 }
 
+impl Variable {
+    /// Whether it is an output of the FMU; the fields of the elements are local.
+    pub fn is_output(&self) -> bool {
+        self.group != OutputGroup::Elements
+    }
+}
+
 /// The output variables of `scene`, in the order of the result files.
 pub fn variables(scene: &Scene) -> Vec<Variable> {
     scene.outputs.iter().flat_map(|&group| group_variables(scene, group)).collect()

@@ -24,6 +24,8 @@ mod tests;
 
 use std::path::PathBuf;
 
+use crate::math::{Numbers, visit_all};
+
 pub use error::{Problem, SceneError};
 pub use link_kind::LinkKind;
 pub use parameters::{Parameter, ParameterError, Value};
@@ -216,4 +218,11 @@ pub struct Path {
     pub amplitude: f64,
     /// Frequency of the sine, Hz.
     pub frequency: f64,
+}
+
+impl Numbers for Path {
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        let Self { rate, amplitude, frequency } = self;
+        visit_all([rate, amplitude, frequency], visit);
+    }
 }

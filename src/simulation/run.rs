@@ -3,6 +3,7 @@
 use super::{Motion, SimulationError, Start};
 use crate::contact::CarrierPlace;
 use crate::integrator::Rates;
+use crate::math::{Numbers, visit_all};
 use crate::model::{Carrier, Model, Power, State};
 use crate::outputs::{Counters, Energies};
 use crate::scene::Path;
@@ -73,6 +74,21 @@ pub(super) struct Checkpoint {
     pub(super) run: Run,
     pub(super) rates: Rates,
     pub(super) power: Power,
+}
+
+/// All but the modes, the counts and whether the rates hold.
+impl Numbers for Run {
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        let Self { carrier, s, state, energies, counters, step_size, tangents, rates_hold: _ } = self;
+        visit_all([carrier, s, state, energies, counters, step_size, tangents], visit);
+    }
+}
+
+impl Numbers for Checkpoint {
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        let Self { run, rates, power } = self;
+        visit_all([run, rates, power], visit);
+    }
 }
 
 impl Start {

@@ -1,7 +1,6 @@
 //! `asperity pack`: a scene and the shared library as one FMU.
 
 mod archive;
-mod dependencies;
 mod documentation;
 mod model_description;
 mod parts;
