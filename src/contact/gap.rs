@@ -2,7 +2,10 @@
 
 use crate::math::{Quintic, Spline};
 
-/// Halvings of a step after which a dip of the gap is left undecided; a step over 2⁴⁰ is beyond the clock's digits.
+/// A part over which the gap bends by less than this share of the tolerance is judged by its ends: what it may dip further
+/// does not count. So the search ends even where a mass glides along the very limit.
+const NEGLIGIBLE_BEND: f64 = 0.01;
+/// Halvings of a step after which a part is judged by its ends; a step over 2⁴⁰ is beyond the clock's digits.
 const MOST_HALVINGS: u32 = 40;
 
 /// The first fraction of a step at which the gap between a mass and the profile falls below -`tolerance` (m), located
@@ -43,8 +46,11 @@ impl Search<'_> {
         if start.min(end) - bend / 8.0 > -self.tolerance {
             return None;
         }
+        if !bend.is_finite() {
+            return None;
+        }
         let monotone = self.gap_rate(part, 0.5).abs() > 0.5 * bend;
-        if monotone || halvings == MOST_HALVINGS {
+        if monotone || bend <= NEGLIGIBLE_BEND * self.tolerance || halvings == MOST_HALVINGS {
             let crosses = start >= -self.tolerance && end < -self.tolerance;
             return crosses.then(|| self.locate(part));
         }
@@ -130,6 +136,17 @@ mod tests {
         let theta = over(top - 1e-9).unwrap();
         assert!((0.4995..0.5).contains(&theta), "{theta}");
         assert_eq!(over(top + 1e-9), None);
+    }
+
+    /// Neither a mass that glides along the very limit nor one that is nowhere keeps the search busy.
+    #[test]
+    fn the_search_ends() {
+        let flat = Spline::natural(&[0.0, 1.0], &[0.0, 0.0]);
+        let gliding = dip(-1e-12 + 1e-16, 1e-16);
+        assert_eq!(first_touch(&flat, &straight(0.0, 0.5), &gliding, 1e-12), None);
+        for place in [f64::NAN, f64::INFINITY, 1e300] {
+            assert_eq!(first_touch(&flat, &straight(0.0, place), &straight(-1.0, f64::NAN), 1e-12), None);
+        }
     }
 
     #[test]
