@@ -39,6 +39,9 @@ pub(crate) enum ProgramError {
         .path.display()
     )]
     NoLibrary { path: PathBuf },
+    /// Two libraries for one platform.
+    #[error("--library: two of {platform}: {} and {}", .first.display(), .second.display())]
+    SamePlatform { platform: &'static str, first: PathBuf, second: PathBuf },
     /// A file of the scene has no place in the archive.
     #[error("the scene reads {}, which is not below the scene's folder: an FMU carries only what is", .path.display())]
     Outside { path: PathBuf },
