@@ -34,8 +34,8 @@ pub(crate) enum ProgramError {
     Picture { path: PathBuf, message: String },
     /// The shared library is not there.
     #[error(
-        "no shared library at {}: build it with `cargo build --release --lib --no-default-features` and name it with \
-         --library, or use build-fmu.sh, which does both",
+        "no shared library at {}: build it with `cargo rustc --release --lib --no-default-features --crate-type \
+         cdylib` and name it with --library, or use build-fmu.sh, which does both",
         .path.display()
     )]
     NoLibrary { path: PathBuf },

@@ -60,8 +60,7 @@ fn documents(scene: &Scene, path: &Path) -> Result<Vec<Entry>, ProgramError> {
     let index = index.map_err(|error| document("documentation/index.html", error))?;
     let picture = picture::png(scene).map_err(|error| document("model.png", error.into()))?;
     let parts = PARTS.iter().map(|(name, text)| Entry::new((*name).into(), text.as_bytes().to_vec()));
-    let written =
-        [("modelDescription.xml", description), ("documentation/index.html", index), ("model.png", picture)];
+    let written = [("modelDescription.xml", description), ("documentation/index.html", index), ("model.png", picture)];
     Ok(written.into_iter().map(|(name, bytes)| Entry::new(name.into(), bytes)).chain(parts).collect())
 }
 

@@ -93,11 +93,7 @@ fn rows<'a>(heights: impl Iterator<Item = &'a f64> + Clone) -> impl Fn(f64) -> f
     let lowest = heights.copied().fold(f64::MAX, f64::min);
     let (top, bottom) = HEIGHTS;
     move |z| {
-        if highest > lowest {
-            top + (highest - z) / (highest - lowest) * (bottom - top)
-        } else {
-            (top + bottom) / 2.0
-        }
+        if highest > lowest { top + (highest - z) / (highest - lowest) * (bottom - top) } else { (top + bottom) / 2.0 }
     }
 }
 
