@@ -6,8 +6,7 @@ They have to have the same columns and rows and may differ by 1e-9 of each colum
 energy, a difference of large numbers, by 1e-9 of the largest energy; the processor's time is left out. Tells whether
 they are the same bit for bit, else the column that differs most.
 
-Platforms differ where their mathematical libraries round exp and pow differently in the last digit: the step sizes then
-differ in theirs.
+pow and sin are those of the platform's mathematical library: where they differ in the last digit, so do the step sizes.
 """
 
 import csv
