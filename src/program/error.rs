@@ -34,11 +34,14 @@ pub(crate) enum ProgramError {
     Picture { path: PathBuf, message: String },
     /// The shared library is not there.
     #[error(
-        "no shared library at {}: build it with `cargo build --release --lib --no-default-features` and name it with \
-         --library, or use build-fmu.sh, which does both",
+        "no shared library at {}: build it with `cargo rustc --release --lib --no-default-features --crate-type \
+         cdylib` and name it with --library, or use build-fmu.sh, which does both",
         .path.display()
     )]
     NoLibrary { path: PathBuf },
+    /// Two libraries for one platform.
+    #[error("--library: two of {platform}: {} and {}", .first.display(), .second.display())]
+    SamePlatform { platform: &'static str, first: PathBuf, second: PathBuf },
     /// A file of the scene has no place in the archive.
     #[error("the scene reads {}, which is not below the scene's folder: an FMU carries only what is", .path.display())]
     Outside { path: PathBuf },
