@@ -8,7 +8,7 @@ set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 requirements=${2:-requirements.txt}
-[ -f "$requirements" ] || requirements=$here/$requirements
+case $requirements in */*) ;; *) requirements=$here/$requirements ;; esac
 mkdir -p "$1"
 folder=$(cd "$1" && pwd)
 python=$folder/bin/python
