@@ -10,7 +10,7 @@ mod tolerance;
 pub use dense::Dense;
 pub use rates::Rates;
 pub use stage::NoConvergence;
-pub use tableau::{ESDIRK4, ESDIRK5, Tableau};
+pub use tableau::{ESDIRK5, Tableau};
 pub use tolerance::Tolerance;
 
 use crate::model::{Carrier, Forces, LinkKind, Mode, Model, Power, State};
@@ -37,6 +37,15 @@ pub struct Integrator {
     tangents: Vec<Tangent>,
 }
 
+/// What the steps follow beside the state.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Followed {
+    /// The powers of the channels.
+    pub energy: bool,
+    /// The forces' sensitivities to the carrier's targets.
+    pub tangents: bool,
+}
+
 /// A step that was tried.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Attempt {
@@ -47,15 +56,15 @@ pub struct Attempt {
 }
 
 impl Integrator {
-    /// Room for steps of `model`; the powers are followed where `accounts_energy`, the tangents where `tangents`.
-    pub fn new(model: &Model, accounts_energy: bool, tangents: bool) -> Self {
-        let targets: &[Target] = if tangents { &[Target::U, Target::W] } else { &[] };
+    /// Room for steps of `model`.
+    pub fn new(model: &Model, followed: Followed) -> Self {
+        let targets: &[Target] = if followed.tangents { &[Target::U, Target::W] } else { &[] };
         Self {
             stages: vec![Rates::new(model); STAGES],
             powers: [Power::default(); STAGES],
             solver: StageSolver::new(model),
             predictor: predictor(&METHOD.c),
-            accounts_energy,
+            accounts_energy: followed.energy,
             tangents: targets.iter().map(|&target| Tangent::new(model, target)).collect(),
         }
     }
@@ -110,7 +119,7 @@ impl Integrator {
             let at = carrier.at(s + METHOD.c[i] * h);
             let moved = (at.du - start.du, at.dw - start.dw);
             self.collect_history(state, h, i, moved);
-            self.predict(model, h, i);
+            self.predict(state, h, i);
             let point = StagePoint {
                 beta: METHOD.gamma() * h,
                 carrier: at,
@@ -238,21 +247,17 @@ impl Integrator {
         }
     }
 
-    /// The velocities from which Newton's iterations start: the accelerations of the earlier stages, extrapolated.
-    fn predict(&mut self, model: &Model, h: f64, i: usize) {
+    /// The velocities from which Newton's iterations start. For slipping masses the accelerations of the earlier stages are
+    /// extrapolated; free ones, whose equations are linear, start where they were, since a guess far off costs digits.
+    fn predict(&mut self, start: &State, h: f64, i: usize) {
         let beta = METHOD.gamma() * h;
-        let solver = &mut self.solver;
-        let state = &mut solver.state;
-        state.velocity_x.copy_from_slice(&solver.history.velocity_x);
-        state.velocity_z.copy_from_slice(&solver.history.velocity_z);
-        for (stage, weight) in self.stages[..i].iter().zip(&self.predictor[i]) {
-            add(&mut state.velocity_x, beta * weight, &stage.acceleration_x);
-            add(&mut state.velocity_z, beta * weight, &stage.acceleration_z);
-        }
-        for i in 0..model.masses() {
-            if state.mode[i] == Mode::Stick {
-                (state.velocity_x[i], state.velocity_z[i]) = (0.0, 0.0);
-            }
+        let state = &mut self.solver.state;
+        state.velocity_x.copy_from_slice(&start.velocity_x);
+        state.velocity_z.copy_from_slice(&start.velocity_z);
+        let earlier = self.stages[..i].iter().zip(&self.predictor[i]);
+        for mass in (0..start.mode.len()).filter(|&mass| start.mode[mass].slips()) {
+            let acceleration: f64 = earlier.clone().map(|(stage, weight)| weight * stage.acceleration_x[mass]).sum();
+            state.velocity_x[mass] = self.solver.history.velocity_x[mass] + beta * acceleration;
         }
     }
 

@@ -10,7 +10,7 @@ pub(crate) mod tests;
 use std::sync::Arc;
 
 use crate::contact::EventTolerance;
-use crate::integrator::{Integrator, Tolerance};
+use crate::integrator::{Followed, Integrator, Tolerance};
 use crate::model::{Forces, Model, State};
 use crate::outputs::{self, Accounts, Variable};
 use crate::scene::{Path, Scene};
@@ -132,7 +132,8 @@ impl Simulation {
     fn started(scene: &Scene, start: &Start) -> Self {
         let model = Arc::new(Model::new(scene));
         let settings = Settings::new(scene, &model);
-        let integrator = Integrator::new(&model, settings.accounts.energy, settings.accounts.tangents);
+        let followed = Followed { energy: settings.accounts.energy, tangents: settings.accounts.tangents };
+        let integrator = Integrator::new(&model, followed);
         let state = State::new(model.masses(), model.maxwell_variables());
         let run = Run::new(&model, state.clone(), start);
         let forces = Forces::new(&model);

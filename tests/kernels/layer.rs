@@ -2,7 +2,7 @@
 
 use std::path::Path as FilePath;
 
-use asperity::integrator::{Attempt, Dense, Integrator, STAGES, Tolerance};
+use asperity::integrator::{Attempt, Dense, Followed, Integrator, STAGES, Tolerance};
 use asperity::model::{Carrier, Forces, LinkKind, Model, State};
 use asperity::scene::{Path, Scene};
 use asperity::simulation::Simulation;
@@ -107,7 +107,7 @@ impl Stepper {
         let carrier = Carrier::new(0.0, (0.0, 0.0), (u, w), &model.profile);
         let tolerance = Tolerance::new(&model, tolerance, tolerance);
         let mut forces = Forces::new(&model);
-        let mut integrator = Integrator::new(&model, false);
+        let mut integrator = Integrator::new(&model, Followed::default());
         integrator.begin(&model, &state, &carrier, 0.0, &mut forces);
         Self { model, carrier, state, integrator, tolerance, s: 0.0 }
     }

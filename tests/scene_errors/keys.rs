@@ -96,7 +96,6 @@ fn missing_keys() {
 fn what_is_not_yet_supported() {
     let layer =
         "masses, spacing, origin, clearance, mass, initial, roughness, vertical, horizontal, lateral_x, lateral_z";
-    let outputs = r#""forces", "dissipation", "friction", "contact", "energy", "solver", "elements""#;
     let root = "name, description, layer, surface, friction, solver, input, fmu, excitation";
     let kinds = r#""flat", "sinusoid", "points", "file""#;
     let friction = "not yet supported; allowed: coulomb, shear_force";
