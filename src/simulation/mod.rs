@@ -5,7 +5,7 @@ mod run;
 mod saved;
 mod stepping;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use std::sync::Arc;
 

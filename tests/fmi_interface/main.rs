@@ -1,7 +1,7 @@
 //! The FMU driven through its C functions, as a master drives it.
-#![allow(unsafe_code, unreachable_pub, clippy::unwrap_used)]
+#![allow(unsafe_code, unreachable_pub, clippy::unwrap_used, clippy::panic)]
 
-#[allow(dead_code, clippy::panic, reason = "shared by several tests")]
+#[allow(dead_code, reason = "shared by several tests")]
 #[path = "../common/mod.rs"]
 mod common;
 
