@@ -49,6 +49,11 @@ impl Carrier {
         CarrierPoint { du, dw, u_rate, w_rate, u_acceleration, w_acceleration }
     }
 
+    /// The shorter period of the two sines, s; infinite where there is none.
+    pub fn shortest_period(&self) -> f64 {
+        self.u_path.period().min(self.w_path.period())
+    }
+
     /// The rates u̇, ẇ just after the start of the piece, m/s.
     pub fn initial_rates(&self) -> (f64, f64) {
         let start = self.at(0.0);

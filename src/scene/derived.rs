@@ -37,6 +37,11 @@ impl Path {
         self.motion(time)[1]
     }
 
+    /// The period of the sine, s; infinite where there is none.
+    pub fn period(&self) -> f64 {
+        if self.amplitude == 0.0 || self.frequency == 0.0 { f64::INFINITY } else { 1.0 / self.frequency }
+    }
+
     /// Displacement (m), velocity (m/s) and acceleration (m/s²) at `time` (s) after the start.
     pub fn motion(&self, time: f64) -> [f64; 3] {
         if self.amplitude == 0.0 {
