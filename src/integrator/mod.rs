@@ -114,11 +114,9 @@ impl Integrator {
     ) -> Result<Attempt, NoConvergence> {
         self.solver.state.mode.copy_from_slice(&state.mode);
         self.solver.state.ground.copy_from_slice(&state.ground);
-        let start = carrier.at(s);
         for i in 1..STAGES {
             let at = carrier.at(s + METHOD.c[i] * h);
-            let moved = (at.du - start.du, at.dw - start.dw);
-            self.collect_history(state, h, i, moved);
+            self.collect_history(state, h, i, carrier.moved(s, METHOD.c[i] * h));
             self.predict(state, h, i);
             let point = StagePoint {
                 beta: METHOD.gamma() * h,

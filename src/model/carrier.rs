@@ -49,6 +49,11 @@ impl Carrier {
         CarrierPoint { du, dw, u_rate, w_rate, u_acceleration, w_acceleration }
     }
 
+    /// How far u and w move from `s` to `span` after it, s, m.
+    pub fn moved(&self, s: f64, span: f64) -> (f64, f64) {
+        (self.u_path.change(s, span), self.w_path.change(s, span))
+    }
+
     /// The shorter period of the two sines, s; infinite where there is none.
     pub fn shortest_period(&self) -> f64 {
         self.u_path.period().min(self.w_path.period())
