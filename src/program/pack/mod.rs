@@ -31,6 +31,7 @@ const PLATFORM: (&str, &str) = if cfg!(target_os = "windows") {
 /// Writes the FMU.
 pub(crate) fn pack(command: &Pack) -> Result<(), ProgramError> {
     let scene = super::load(&command.scene)?;
+    super::check_output(&command.output, &super::sources(&command.scene, &scene))?;
     let mut entries = vec![binary(&scene, command.library.as_deref())?];
     entries.extend(resources(&scene, &command.scene)?);
     entries.extend(documents(&scene, &command.scene)?);
