@@ -40,10 +40,10 @@ struct Part {
 impl Search<'_> {
     fn first_touch(&mut self, part: &Part, halvings: u32) -> Option<f64> {
         self.parts += 1;
-        if self.parts > MOST_PARTS {
+        let (x_low, x_high) = part.place.range();
+        if self.parts > MOST_PARTS || !(x_low.is_finite() && x_high.is_finite()) {
             return Some(part.start);
         }
-        let (x_low, x_high) = part.place.range();
         let profile = self.profile.local_bounds(x_low, x_high);
         if part.height.range().0 - profile.z_max > -self.tolerance {
             return None;
