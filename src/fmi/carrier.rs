@@ -101,8 +101,11 @@ impl Axis {
     fn target(&self, h: f64, rule: Extrapolation) -> f64 {
         match (self.rate, rule, self.past) {
             (Some(rate), _, _) => self.value + h * rate,
-            (None, Extrapolation::Linear, Some(past)) => self.value + (self.value - past.value) * (h / past.step),
-            (None, Extrapolation::Linear, None) | (None, Extrapolation::Hold, _) => self.value,
+            // At rest it stays there, over steps of any ratio.
+            (None, Extrapolation::Linear, Some(past)) if past.value != self.value => {
+                self.value + (self.value - past.value) * (h / past.step)
+            }
+            (None, Extrapolation::Linear | Extrapolation::Hold, _) => self.value,
         }
     }
 

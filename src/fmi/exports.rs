@@ -617,3 +617,26 @@ pub unsafe extern "C" fn fmi2GetStringStatus(
     unsafe { call(c, Function::GetStringStatus, |_| Err(Fault::NoSuchStatus)) }
 }
 const _: fmi2GetStringStatusTYPE = Some(fmi2GetStringStatus);
+
+#[cfg(test)]
+mod tests {
+    use super::super::instance;
+    use super::*;
+
+    /// The host lives on: the call returns fmi2Fatal, later ones fmi2Error, and what is lost can be freed.
+    #[test]
+    fn a_panic_stops_at_the_interface() {
+        // SAFETY: no callbacks.
+        let callbacks = unsafe { Callbacks::new(ptr::null(), "lost") };
+        let component = Component { instance: instance::tests::instance(), callbacks };
+        let c: fmi2Component = Box::into_raw(Box::new(component)).cast();
+        // SAFETY: the component lives until it is freed, once.
+        unsafe {
+            assert_eq!(call(c, Function::GetReal, |_| Ok(())), fmi2Status_fmi2Error, "too early");
+            assert_eq!(call(c, Function::Reset, |_| panic!("lost a mass")), fmi2Status_fmi2Fatal);
+            assert_eq!(fmi2Reset(c), fmi2Status_fmi2Error);
+            assert_eq!(fmi2DoStep(c, 0.0, 1.0, 1), fmi2Status_fmi2Error);
+            fmi2FreeInstance(c);
+        }
+    }
+}

@@ -254,13 +254,18 @@ fn count(output: Output) -> Variable {
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, clippy::panic)]
-mod tests {
+pub(super) mod tests {
     use std::path::Path;
 
     use super::*;
 
-    fn instance() -> Instance {
-        let text = "name = \"a\"\nlayer = { masses = 1, spacing = 1.0, mass = 1.0 }\nsurface = { kind = \"flat\" }";
+    /// An instance of a scene with one mass.
+    pub(in super::super) fn instance() -> Instance {
+        instance_of("name = \"a\"\nlayer = { masses = 1, spacing = 1.0, mass = 1.0 }\nsurface = { kind = \"flat\" }")
+    }
+
+    /// An instance of a scene that reads no files.
+    pub(in super::super) fn instance_of(text: &str) -> Instance {
         let scene = Scene::parse(text, Path::new("scene.toml")).unwrap();
         let catalogue = Catalogue::new(&scene);
         Instance::of(scene, catalogue, "{}".into(), false)

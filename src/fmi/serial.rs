@@ -146,3 +146,104 @@ fn body<'a>(bytes: &'a [u8], guid: &str) -> Result<&'a [u8], Misfit> {
 fn checksum(bytes: &[u8]) -> [u8; CHECKSUM] {
     Uuid::new_v5(&Uuid::NAMESPACE_URL, bytes).into_bytes()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::fault::Status;
+    use super::super::instance::Instance;
+    use super::super::instance::tests::instance_of;
+    use super::super::lifecycle::Function;
+    use super::*;
+    use crate::fmi::{Entry, Input, Kind};
+
+    /// A run in contact that may do little work, so that a made-up one does no more.
+    fn lively() -> Instance {
+        let mut instance = instance_of(&crate::simulation::tests::TEXT.replace("1e-11", "1e-6\nmax_steps = 40"));
+        instance.run.carrier.set_input(Input::W, -2e-6);
+        instance.run.carrier.set_rate(Input::U, 0.1);
+        assert_eq!(instance.call(Function::EnterInitializationMode, Instance::enter_initialization_mode), Status::Ok);
+        assert_eq!(instance.call(Function::ExitInitializationMode, Instance::exit_initialization_mode), Status::Ok);
+        assert_eq!(instance.call(Function::DoStep, |instance| instance.do_step(0.0, 1e-6)), Status::Ok);
+        instance
+    }
+
+    /// Random numbers (Marsaglia, Xorshift RNGs, 2003).
+    struct Random(u64);
+
+    impl Random {
+        fn below(&mut self, end: usize) -> usize {
+            self.0 ^= self.0 << 13;
+            self.0 ^= self.0 >> 7;
+            self.0 ^= self.0 << 17;
+            usize::try_from(self.0 % end as u64).unwrap()
+        }
+    }
+
+    /// `bytes` with a few changes that its checksum does not tell of.
+    fn made_up(bytes: &[u8], random: &mut Random) -> Vec<u8> {
+        const NUMBERS: [f64; 8] = [0.0, -1.0, 1e300, -1e300, 1e-300, 1e8, f64::NAN, f64::NEG_INFINITY];
+        let (start, end) = (head("{}").len(), bytes.len() - CHECKSUM);
+        let mut bytes = bytes[..end].to_vec();
+        for _ in 0..=random.below(3) {
+            let place = start + random.below(end - start - 8);
+            if random.below(2) == 0 {
+                bytes[place] = random.0 as u8;
+            } else {
+                bytes[place..place + 8].copy_from_slice(&NUMBERS[random.below(8)].to_le_bytes());
+            }
+        }
+        bytes.extend(checksum(&bytes));
+        bytes
+    }
+
+    /// Every Real that the instance gives, one call each.
+    fn check_reals(instance: &mut Instance) {
+        let real = |(reference, entry): (u32, Entry<'_>)| {
+            let is_output = matches!(entry, Entry::Output(..)) && entry.kind() == Kind::Real;
+            is_output.then_some(reference)
+        };
+        let references: Vec<u32> = instance.catalogue.entries().filter_map(real).collect();
+        for reference in references {
+            for call in [Function::GetReal, Function::GetDirectionalDerivative, Function::GetRealOutputDerivatives] {
+                let mut value = [0.0];
+                let status = instance.call(call, |instance| match call {
+                    Function::GetReal => instance.get_reals(&[reference], &mut value),
+                    Function::GetRealOutputDerivatives => instance.output_derivatives(&[reference], &[1], &mut value),
+                    _ => instance.directional_derivatives(&[reference], (&[0, 1], &[1.0, 1.0]), &mut value),
+                });
+                assert!(status != Status::Fatal && value[0].is_finite(), "{call} {reference}: {value:?}");
+            }
+        }
+    }
+
+    /// Whoever makes a state up gets an error or a run with numbers: no panic, no NaN, no endless step.
+    #[test]
+    fn a_made_up_state_is_refused_or_runs() {
+        let mut instance = lively();
+        let state = instance.get_state(0).unwrap();
+        let bytes = instance.serialise_state(state).unwrap();
+        let mut random = Random(20_260_101);
+        let mut taken = 0;
+        for _ in 0..2_000 {
+            let bytes = made_up(&bytes, &mut random);
+            let mut handle = 0;
+            let status = instance.call(Function::DeSerializeFmuState, |instance| {
+                handle = instance.deserialise_state(&bytes)?;
+                instance.set_state(handle)
+            });
+            assert_ne!(status, Status::Fatal, "{:?}", instance.take_messages());
+            if status == Status::Ok {
+                taken += 1;
+                check_reals(&mut instance);
+                let point = instance.run.clock.time;
+                let status = instance.call(Function::DoStep, |instance| instance.do_step(point, 1e-6));
+                assert_ne!(status, Status::Fatal, "{:?}", instance.take_messages());
+                check_reals(&mut instance);
+                assert_eq!(instance.call(Function::FreeFmuState, |instance| instance.free_state(handle)), Status::Ok);
+                instance.set_state(state).unwrap();
+            }
+            instance.take_messages();
+        }
+        assert!((100..1900).contains(&taken), "{taken} taken");
+    }
+}

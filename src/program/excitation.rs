@@ -53,34 +53,42 @@ impl Run {
         phase: &Phase,
         observe: &mut impl FnMut(Carrier, &mut Simulation),
     ) -> Result<(), SimulationError> {
-        let duration = self.duration(index, phase)?;
+        let motion = Motion { duration: phase.duration, u: phase.u, w: phase.w };
+        let reached = self.time_of_force(&motion, phase.until_force)?;
+        if phase.until_force.is_some() && reached.is_none() {
+            warn_of_force(index, phase);
+        }
+        let duration = reached.unwrap_or(phase.duration);
         if duration <= 0.0 {
             return Ok(());
         }
-        let motion = Motion { duration, u: phase.u, w: phase.w };
-        let times: Vec<f64> = (1..=self.points).map(|i| duration * f64::from(i) / f64::from(self.points)).collect();
+        // The last one exactly the end: the quotient is 1 then.
+        let times: Vec<f64> = (1..=self.points).map(|i| duration * (f64::from(i) / f64::from(self.points))).collect();
         let start = self.carrier;
         let at = |s: f64| start.moved(phase, s);
-        self.simulation.advance_observed(&motion, &times, |s, simulation| observe(at(s), simulation))?;
+        let show = |s: f64, simulation: &mut Simulation| observe(at(s), simulation);
+        match phase.until_force.filter(|_| reached.is_some()) {
+            Some(force) => self.simulation.advance_until_force(&motion, force, &times, show).map(|_| ())?,
+            None => self.simulation.advance_observed(&motion, &times, show)?,
+        }
         self.carrier = Carrier { time: self.simulation.time(), ..at(duration) };
         Ok(())
     }
 
-    /// How long the phase really takes. A phase that ends at a force is run on a copy first, so that its rows can
-    /// divide it evenly.
-    fn duration(&self, index: usize, phase: &Phase) -> Result<f64, SimulationError> {
-        let Some(force) = phase.until_force else { return Ok(phase.duration) };
-        let motion = Motion { duration: phase.duration, u: phase.u, w: phase.w };
-        let reached = self.simulation.duration_until_force(&motion, force)?;
-        Ok(reached.unwrap_or_else(|| {
-            warn(&format!(
-                "phase {} of the excitation: F_z did not rise to until_force = {force} N within {} s",
-                index + 1,
-                phase.duration
-            ));
-            phase.duration
-        }))
+    /// When F_z rises to `force`. Found on a copy, which takes the very same steps, so that the rows can divide the phase
+    /// evenly.
+    fn time_of_force(&self, motion: &Motion, force: Option<f64>) -> Result<Option<f64>, SimulationError> {
+        force.map_or(Ok(None), |force| self.simulation.clone().advance_until_force(motion, force, &[], |_, _| ()))
     }
+}
+
+fn warn_of_force(index: usize, phase: &Phase) {
+    let force = phase.until_force.unwrap_or_default();
+    warn(&format!(
+        "phase {} of the excitation: F_z did not rise to until_force = {force} N within {} s",
+        index + 1,
+        phase.duration
+    ));
 }
 
 impl Carrier {

@@ -5,7 +5,7 @@ mod run;
 mod saved;
 mod stepping;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use std::sync::Arc;
 
@@ -193,10 +193,35 @@ impl Simulation {
         times: &[f64],
         observe: impl FnMut(f64, &mut Self),
     ) -> Result<(), SimulationError> {
+        self.follow_or_go_back(motion, None, times, observe).map(|_| ())
+    }
+
+    /// As [`advance_observed`](Self::advance_observed), but only until F_z rises to `force` (N). Returns when that was, s
+    /// after the start of the motion: 0 if it was there already, `None` if it is not reached within the motion.
+    ///
+    /// # Errors
+    /// [`SimulationError`]; the simulation is then as it was before the call.
+    pub fn advance_until_force(
+        &mut self,
+        motion: &Motion,
+        force: f64,
+        times: &[f64],
+        observe: impl FnMut(f64, &mut Self),
+    ) -> Result<Option<f64>, SimulationError> {
+        self.follow_or_go_back(motion, Some(force), times, observe)
+    }
+
+    fn follow_or_go_back(
+        &mut self,
+        motion: &Motion,
+        until: Option<f64>,
+        times: &[f64],
+        observe: impl FnMut(f64, &mut Self),
+    ) -> Result<Option<f64>, SimulationError> {
         motion.check()?;
         self.keep_checkpoint();
         let recorded = self.mode_changes.as_ref().map_or(0, Vec::len);
-        let result = self.follow(motion, times, observe);
+        let result = self.follow(motion, until, times, observe);
         if result.is_err() {
             if let Some(record) = &mut self.mode_changes {
                 record.truncate(recorded);
@@ -215,16 +240,6 @@ impl Simulation {
         self.before.run.copy_from(&self.run);
         self.before.rates.copy_from(self.integrator.start_rates());
         self.before.power = self.integrator.start_power();
-    }
-
-    /// The time in `motion` (s) at which F_z first rises to `force` (N): 0 if it is there already, `None` if it does not
-    /// within the motion. The simulation itself stays where it is.
-    ///
-    /// # Errors
-    /// [`SimulationError`] where the motion could not be followed that far.
-    pub fn duration_until_force(&self, motion: &Motion, force: f64) -> Result<Option<f64>, SimulationError> {
-        motion.check()?;
-        self.clone().follow_until_force(motion, force)
     }
 
     /// Writes the values of `variables`, in their order, into `values`; Integers as whole numbers.

@@ -12,6 +12,9 @@ use crate::model::{Carrier, Power, elastic_energy, kinetic_energy};
 const SAFETY: f64 = 0.9;
 /// The most by which one step differs from the one before.
 const GROWTH: (f64, f64) = (0.2, 5.0);
+/// The longest step, as a share of the period of the carrier's sine: a longer one could leap from swing to swing, where all
+/// stages see the same and the error estimate nothing.
+const OF_PERIOD: f64 = 0.25;
 /// What is left of a step whose stages could not be solved.
 const AFTER_FAILURE: f64 = 0.25;
 
@@ -27,31 +30,43 @@ impl Simulation {
         self.run.energies.initial = kinetic_energy(model, state) + elastic_energy(model, state);
     }
 
-    /// Follows `motion` to its end; on an error the run stands anywhere within it.
+    /// Follows `motion` to its end, or until F_z rises to the force `until`; the time of that. On an error the run stands
+    /// anywhere within the motion.
     pub(super) fn follow(
         &mut self,
         motion: &Motion,
+        until: Option<f64>,
         times: &[f64],
         mut observe: impl FnMut(f64, &mut Self),
-    ) -> Result<(), SimulationError> {
+    ) -> Result<Option<f64>, SimulationError> {
         let clock = self.settings.accounts.solver.then(ThreadTime::now);
         let mut rows = times.iter().copied().peekable();
         while let Some(time) = rows.next_if(|&time| time <= 0.0) {
             observe(time, self);
         }
+        if self.has_risen(until) {
+            return Ok(Some(0.0));
+        }
         self.enter(motion);
         let mut work = 0;
-        while self.run.s < motion.duration {
-            let h = self.step(motion.duration, &mut work)?;
-            let end = self.step_end(h, motion.duration);
+        let mut risen = self.has_risen(until);
+        while self.run.s < motion.duration && !risen {
+            let mut h = self.step(motion.duration, &mut work)?;
+            let mut end = self.step_end(h, motion.duration);
+            if let Some(share) = self.rises_within(h, until) {
+                h = self.cut_step(share * h)?;
+                end = self.run.s + h;
+                risen = true;
+            }
             while let Some(time) = rows.next_if(|&time| time < end) {
                 self.show_within(h, (time - self.run.s) / h, |simulation| observe(time, simulation));
             }
             self.accept(h, end);
+            self.change_modes_if_due();
+            risen = risen || self.has_risen(until);
             while let Some(time) = rows.next_if(|&time| time <= end) {
                 observe(time, self);
             }
-            self.change_modes_if_due();
         }
         if self.integrator.has_tangents() {
             self.run.tangents = self.integrator.tangents(&self.model, self.run.s);
@@ -59,29 +74,26 @@ impl Simulation {
         if let Some(clock) = clock {
             self.run.counters.run_time += clock.elapsed().as_secs_f64();
         }
-        Ok(())
+        Ok(risen.then_some(self.run.s))
     }
 
-    /// As [`follow`](Self::follow), until F_z rises to `force`.
-    pub(super) fn follow_until_force(&mut self, motion: &Motion, force: f64) -> Result<Option<f64>, SimulationError> {
-        if self.force_z() >= force {
-            return Ok(Some(0.0));
+    /// Whether F_z has reached the force `until`.
+    fn has_risen(&mut self, until: Option<f64>) -> bool {
+        until.is_some_and(|force| self.force_z() >= force)
+    }
+
+    /// The share of the step of length `h` tried last after which F_z is the force `until`; `None` where it ends below.
+    fn rises_within(&mut self, h: f64, until: Option<f64>) -> Option<f64> {
+        let force = until.filter(|&force| self.force_z_within(h, 1.0) >= force)?;
+        Some(bracketed_root(|theta| self.force_z_within(h, theta) - force, (0.0, 1.0), 1e-14))
+    }
+
+    /// A shorter step in place of a good one: no worse, and free of events.
+    fn cut_step(&mut self, h: f64) -> Result<f64, SimulationError> {
+        match self.try_step(h, true) {
+            Some(_) => Ok(h),
+            None => Err(SimulationError::StepTooSmall { time: self.run.time(), step: h }),
         }
-        self.enter(motion);
-        let mut work = 0;
-        while self.run.s < motion.duration {
-            if self.force_z() >= force {
-                return Ok(Some(self.run.s));
-            }
-            let h = self.step(motion.duration, &mut work)?;
-            if self.force_z_within(h, 1.0) >= force {
-                let theta = bracketed_root(|theta| self.force_z_within(h, theta) - force, (0.0, 1.0), 1e-14);
-                return Ok(Some(self.run.s + theta * h));
-            }
-            self.accept(h, self.step_end(h, motion.duration));
-            self.change_modes_if_due();
-        }
-        Ok(None)
     }
 
     /// F_z now, N.
@@ -158,7 +170,11 @@ impl Simulation {
     fn step(&mut self, duration: f64, work: &mut u64) -> Result<f64, SimulationError> {
         let remaining = duration - self.run.s;
         let shortest = 4.0 * f64::EPSILON * (self.run.s + 1e-3 * duration);
-        let mut h = fitted(self.run.step_size, remaining);
+        let longest = OF_PERIOD * self.run.carrier.shortest_period();
+        if longest <= shortest {
+            return Err(SimulationError::StepTooSmall { time: self.run.time(), step: longest });
+        }
+        let mut h = fitted(self.run.step_size.min(longest), remaining);
         // The step that an event cuts short says how long the next may be; the shorter ones need no test of their error.
         let mut proposal = None;
         loop {

@@ -7,7 +7,7 @@ use crate::outputs::variables;
 use crate::scene::{Path, Scene};
 
 /// Six masses over a wave, Maxwell elements on all links, both parts of friction, all outputs.
-pub(super) const TEXT: &str = r#"
+pub(crate) const TEXT: &str = r#"
 name = "everything"
 [layer]
 masses = 6

@@ -1,6 +1,6 @@
 //! The coefficients of the Runge-Kutta methods.
 
-use asperity::integrator::{ESDIRK4, ESDIRK5, Tableau};
+use asperity::integrator::{ESDIRK5, Tableau};
 use nalgebra::Complex;
 
 /// A rooted tree: the trees that hang on its root.
@@ -91,8 +91,7 @@ fn check_order<const N: usize>(method: &Tableau<N>) {
 /// Every order condition: b to the method's order, b̂ to one less and not further.
 #[test]
 fn the_order_conditions_hold() {
-    assert_eq!((ESDIRK4.embedded_order, ESDIRK5.embedded_order), (3, 4));
-    check_order(&ESDIRK4);
+    assert_eq!(ESDIRK5.embedded_order, 4);
     check_order(&ESDIRK5);
 }
 
@@ -114,7 +113,6 @@ fn check_shape<const N: usize>(method: &Tableau<N>) {
 /// One γ on the diagonal, an explicit first stage, Σ_j a_ij = c_i, Σ_j a_ij c_j = c_i²/2, b the last row of A.
 #[test]
 fn rows_and_stages_are_consistent() {
-    check_shape(&ESDIRK4);
     check_shape(&ESDIRK5);
 }
 
@@ -151,8 +149,6 @@ fn check_axis<const N: usize>(method: &Tableau<N>) {
 /// half plane: the methods are L-stable.
 #[test]
 fn the_methods_are_l_stable() {
-    check_decay(&ESDIRK4);
     check_decay(&ESDIRK5);
-    check_axis(&ESDIRK4);
     check_axis(&ESDIRK5);
 }
