@@ -17,7 +17,7 @@ import numpy as np
 
 matplotlib.use("Agg")
 # The same picture, the same bytes.
-matplotlib.rcParams["svg.hashsalt"] = "coupled"
+matplotlib.rcParams.update({"svg.hashsalt": "coupled", "svg.fonttype": "none"})
 import matplotlib.pyplot as plt
 from matplotlib.ticker import EngFormatter
 
@@ -101,6 +101,10 @@ def label(method: str, rates: bool) -> str:
     return f"{method}_rates" if rates else method
 
 
+def title(method: str, rates: bool) -> str:
+    return f"{method}, {'rates' if rates else 'values only'}"
+
+
 def order(h, values) -> float:
     """The slope over the two shortest steps."""
     return np.log(values[-2] / values[-1]) / np.log(h[-2] / h[-1])
@@ -114,14 +118,15 @@ def write(path: Path, h, table):
         writer.writerows([step, *row] for step, row in zip(h, np.transpose(table)))
 
 
-def show(title: str, h, table):
-    """A table in Markdown: a row for each variant."""
-    print(f"\n{title}\n")
-    print("| master | " + " | ".join(f"h = {step * 1e6:g} µs" for step in h) + " | order |")
-    print("|---|" + "---|" * (len(h) + 1))
-    for (method, rates), row in zip(VARIANTS, table):
-        name = f"{method}, {'rates' if rates else 'values only'}"
-        print(f"| {name} | " + " | ".join(f"{value:.1e}" for value in row) + f" | {order(h, row):.2f} |")
+def show(h, tables: dict):
+    """The errors, and the defects at the shortest step, in Markdown."""
+    print("| case | master | " + " | ".join(f"h = {step * 1e6:g} µs" for step in h) + " | order | defect | order |")
+    print("|---" * (len(h) + 5) + "|")
+    for case, (errors, defects) in tables.items():
+        for variant, error, defect in zip(VARIANTS, errors, defects):
+            numbers = [*(f"{value:.1e}" for value in error), f"{order(h, error):.2f}"]
+            numbers += [f"{defect[-1]:.1e}", f"{order(h, defect):.2f}"]
+            print(f"| {case} | {title(*variant)} | " + " | ".join(numbers) + " |")
 
 
 def draw(path: Path, h, tables: dict):
@@ -135,17 +140,16 @@ def draw(path: Path, h, tables: dict):
     figure.savefig(path, metadata={"Date": None})
 
 
-def draw_panel(ax, title: str, h, table):
+def draw_panel(ax, heading: str, h, table):
     for (method, rates), values in zip(VARIANTS, table):
         style = "-" if rates else "--"
-        name = f"{method}, {'rates' if rates else 'values only'}"
-        ax.loglog(h, values, style, marker="o", markersize=3, color=COLOURS[method], label=name)
+        ax.loglog(h, values, style, marker="o", markersize=3, color=COLOURS[method], label=title(method, rates))
     top = np.max(table[:, 0])
     for slope in (1, 2):
         guide = top * (np.array(h) / h[0]) ** slope
         ax.loglog(h, guide, ":", color="0.6")
         ax.annotate(f"h{'²' if slope == 2 else ''}", (h[-1], guide[-1]), color="0.4", ha="right")
-    ax.set_title(title, fontsize="medium")
+    ax.set_title(heading, fontsize="medium")
     ax.set_xlabel("communication step")
     ax.xaxis.set_major_formatter(EngFormatter("s"))
     ax.grid(color="0.9")
@@ -163,9 +167,9 @@ def main():
     h, tables = [DURATION / n for n in counts], {}
     for case in CASES[:2] if quick else CASES:
         errors, defects = tables[case.name] = measure(case, folder, counts)
-        for what, table in (("errors", errors), ("defects", defects)):
-            write(folder / f"{case.name}.{what}.csv", h, table)
-            show(f"{case.name}: {what}", h, table)
+        write(folder / f"{case.name}.errors.csv", h, errors)
+        write(folder / f"{case.name}.defects.csv", h, defects)
+    show(h, tables)
     draw(folder / "coupled.svg", h, tables)
 
 
