@@ -1,4 +1,4 @@
-//! The FMU in fmpy: its description, its results, its simulation from the command line.
+//! The FMU in fmpy: its results, its simulation from the command line; its description there and in fmutool.
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests may fail")]
 
@@ -9,10 +9,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use asperity::outputs::variables;
-use asperity::scene::{self, OutputGroup, Scene};
-use asperity::simulation::{Motion, Simulation, Start};
-use common::{Table, asperity, difference, drive, largest, library, pack, python, root, run, scratch, simulate};
+use asperity::scene::{OutputGroup, Scene};
+use common::{
+    Table, asperity, difference, drive, fmpy, interpolate, largest, library, library_along, masters_python, pack, root,
+    run, scratch, simulate,
+};
 
 const DEFAULT_SCENE: &str = "scenes/tread-block/tread-block.toml";
 
@@ -26,13 +27,16 @@ fn shipped_scenes() -> Vec<PathBuf> {
     scenes
 }
 
-fn fmpy(arguments: &[&str]) -> String {
-    run(Command::new(python()).args(["-m", "fmpy"]).args(arguments))
-}
-
+/// fmpy's check, of which the schema is part, and that of the FMU manipulation toolbox.
 fn validate(fmu: &Path) {
-    let text = fmpy(&["validate", fmu.to_str().unwrap()]);
-    assert_eq!(text.trim(), "No problems found.", "{}", fmu.display());
+    let fmpy = fmpy(&["validate", fmu.to_str().unwrap()]);
+    assert_eq!(fmpy.trim(), "No problems found.", "{}", fmu.display());
+    let mut fmutool = Command::new(masters_python());
+    fmutool.args(["-m", "fmu_manipulation_toolbox.cli.fmutool", "-check", "-input"]).arg(fmu);
+    let fmutool = run(&mut fmutool);
+    let verdicts = ["This FMU seems to be compliant with FMI-2.0.", "No semantic error against the FMI-2 standard."];
+    assert!(verdicts.iter().all(|verdict| fmutool.contains(verdict)), "{fmutool}");
+    assert!(fmutool.lines().all(|line| line.starts_with("INFO ")), "{fmutool}");
 }
 
 /// The scene in tests/reference with the output groups `groups`.
@@ -48,13 +52,13 @@ fn scene_with_groups(folder: &Path, groups: &[&str]) -> PathBuf {
 }
 
 #[test]
-fn fmpy_finds_no_fault_in_the_shipped_scenes() {
+fn no_fault_is_found_in_the_shipped_scenes() {
     let folder = scratch("fmpy-validate");
     shipped_scenes().iter().for_each(|scene| validate(&pack(scene, &folder)));
 }
 
 #[test]
-fn fmpy_finds_no_fault_with_every_output_group_and_with_none() {
+fn no_fault_is_found_with_every_output_group_and_with_none() {
     let folder = scratch("fmpy-groups");
     validate(&pack(&scene_with_groups(&folder, &OutputGroup::ALL.map(OutputGroup::name)), &folder));
     validate(&pack(&scene_with_groups(&folder, &[]), &folder));
@@ -98,25 +102,6 @@ fn a_missing_library_is_named_with_the_way_to_build_it() {
     assert!(text.contains("nowhere/libasperity.so") && text.contains("cargo rustc"), "{text}");
 }
 
-/// What the library gives along the rows of `motion`, straight from one to the next.
-fn library_along(scene: &Scene, motion: &Table) -> Vec<Vec<f64>> {
-    let [time, u, w] = ["time", "u", "w"].map(|name| motion.column(name));
-    let rate = |values: &[f64], i: usize| (values[i + 1] - values[i]) / (time[i + 1] - time[i]);
-    let start = Start { u_rate: rate(&u, 0), w_rate: rate(&w, 0), ..Start::default() };
-    let mut simulation = Simulation::new(scene, &start).unwrap();
-    let variables = variables(scene);
-    let mut rows = vec![vec![0.0; variables.len()]];
-    simulation.evaluate(&variables, &mut rows[0]);
-    for i in 0..time.len() - 1 {
-        let path = |values: &[f64]| scene::Path { rate: rate(values, i), ..scene::Path::default() };
-        simulation.advance(&Motion { duration: time[i + 1] - time[i], u: path(&u), w: path(&w) }).unwrap();
-        let mut row = vec![0.0; variables.len()];
-        simulation.evaluate(&variables, &mut row);
-        rows.push(row);
-    }
-    rows
-}
-
 /// The library's own results, to rounding: both take the same steps.
 #[test]
 fn driven_along_its_excitation_the_fmu_gives_what_the_library_gives() {
@@ -126,11 +111,10 @@ fn driven_along_its_excitation_the_fmu_gives_what_the_library_gives() {
     let motion = simulate(&path, &folder, &[]);
     let driven = drive(&pack(&path, &folder), &folder.join("tread-block.csv"), &[]);
     let scene = Scene::load(&path).unwrap();
-    let rows = library_along(&scene, &motion);
-    for (i, variable) in variables(&scene).iter().enumerate() {
-        let own: Vec<f64> = rows.iter().map(|row| row[i]).collect();
-        let error = difference(&driven.column(&variable.name), &own);
-        assert!(error <= TOLERANCE * largest(&own), "{}: {error:e} of {:e}", variable.name, largest(&own));
+    let own = library_along(&scene, &motion);
+    for name in own.names() {
+        let (error, largest) = (difference(&driven.column(name), &own.column(name)), largest(&own.column(name)));
+        assert!(error <= TOLERANCE * largest, "{name}: {error:e} of {largest:e}");
     }
 }
 
@@ -156,12 +140,6 @@ fn command_line_error(fmu: &Path, motion: &Path, own: &Table, step: f64) -> f64 
     let (times, losses) = (own.column("time"), own.column("E_diss"));
     let wanted: Vec<f64> = found.column("time").iter().map(|&time| interpolate(&times, &losses, time)).collect();
     difference(&found.column("E_diss"), &wanted) / largest(&wanted)
-}
-
-fn interpolate(times: &[f64], values: &[f64], time: f64) -> f64 {
-    let after = times.partition_point(|&other| other < time).clamp(1, times.len() - 1);
-    let part = (time - times[after - 1]) / (times[after] - times[after - 1]);
-    values[after - 1] + part * (values[after] - values[after - 1])
 }
 
 #[test]

@@ -2,21 +2,31 @@
 
 use crate::math::{Quintic, Spline};
 
-/// Halvings of a step after which a dip of the gap is left undecided; a step over 2⁴⁰ is beyond the clock's digits.
+/// A part over which the gap bends by less than this share of the tolerance is judged by its ends: what it may dip further
+/// does not count. So the search ends even where a mass glides along the very limit.
+const NEGLIGIBLE_BEND: f64 = 0.01;
+/// Halvings of a step after which a part is judged by its ends; a step over 2⁴⁰ is beyond the clock's digits.
 const MOST_HALVINGS: u32 = 40;
+
+/// Parts of a step that are looked at. A few are the rule; where numbers are so large that no bounds hold, all would be.
+const MOST_PARTS: u32 = 10_000;
 
 /// The first fraction of a step at which the gap between a mass and the profile falls below -`tolerance` (m), located
 /// where it is -`tolerance`/2; `None` where it does not. `place` and `height` are the mass's motion through the step.
 ///
 /// Nothing is sampled: a part of the step is passed over only when bounds of the motion and of the profile there show
-/// that the gap stays above, so that no dip is missed, however short. What the bounds leave open is halved.
+/// that the gap stays above, so that no dip is missed, however short. What the bounds leave open is halved. Where that
+/// would not come to an end, the fraction up to which all is known is returned: the step is to be cut there, too.
 pub fn first_touch(profile: &Spline, place: &Quintic, height: &Quintic, tolerance: f64) -> Option<f64> {
-    Search { profile, tolerance }.first_touch(&Part { place: *place, height: *height, start: 0.0, length: 1.0 }, 0)
+    Search { profile, tolerance, parts: 0 }
+        .first_touch(&Part { place: *place, height: *height, start: 0.0, length: 1.0 }, 0)
 }
 
 struct Search<'a> {
     profile: &'a Spline,
     tolerance: f64,
+    /// Parts looked at so far.
+    parts: u32,
 }
 
 /// The motion through a part of the step.
@@ -28,7 +38,11 @@ struct Part {
 }
 
 impl Search<'_> {
-    fn first_touch(&self, part: &Part, halvings: u32) -> Option<f64> {
+    fn first_touch(&mut self, part: &Part, halvings: u32) -> Option<f64> {
+        self.parts += 1;
+        if self.parts > MOST_PARTS {
+            return Some(part.start);
+        }
         let (x_low, x_high) = part.place.range();
         let profile = self.profile.local_bounds(x_low, x_high);
         if part.height.range().0 - profile.z_max > -self.tolerance {
@@ -44,7 +58,7 @@ impl Search<'_> {
             return None;
         }
         let monotone = self.gap_rate(part, 0.5).abs() > 0.5 * bend;
-        if monotone || halvings == MOST_HALVINGS {
+        if monotone || bend <= NEGLIGIBLE_BEND * self.tolerance || halvings == MOST_HALVINGS {
             let crosses = start >= -self.tolerance && end < -self.tolerance;
             return crosses.then(|| self.locate(part));
         }
@@ -130,6 +144,25 @@ mod tests {
         let theta = over(top - 1e-9).unwrap();
         assert!((0.4995..0.5).contains(&theta), "{theta}");
         assert_eq!(over(top + 1e-9), None);
+    }
+
+    /// A mass that glides along the very limit does not keep the search busy.
+    #[test]
+    fn a_mass_may_glide_along_the_limit() {
+        let flat = Spline::natural(&[0.0, 1.0], &[0.0, 0.0]);
+        let gliding = dip(-1e-12 + 1e-16, 1e-16);
+        assert_eq!(first_touch(&flat, &straight(0.0, 0.5), &gliding, 1e-12), None);
+    }
+
+    /// Over a million waves the first one is found; where no bounds hold, the search ends where it got to.
+    #[test]
+    fn a_search_ends_however_far_the_mass_goes() {
+        let wave = Spline::periodic(&[0.0, 1e-4, 2e-4], &[0.0, 1e-6, 0.0]);
+        let over = |far: f64| first_touch(&wave, &straight(0.0, far), &straight(0.5e-6, 0.5e-6), 1e-12);
+        let theta = over(2e2).unwrap();
+        assert!((2e-7..3e-7).contains(&theta), "{theta}");
+        let known = over(f64::MAX).unwrap();
+        assert!(known < 1e-6, "{known}");
     }
 
     #[test]

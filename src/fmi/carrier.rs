@@ -1,5 +1,7 @@
 //! The carrier's motion between communication points: û is continuous and runs straight to a target.
 
+use serde::{Deserialize, Serialize};
+
 use crate::scene::{Extrapolation, Path};
 use crate::simulation::{Motion, Start};
 
@@ -7,13 +9,13 @@ use super::catalogue::Input;
 use super::fault::Fault;
 
 /// The carrier as the master moves it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Carrier {
     axes: [Axis; 2],
 }
 
 /// One displacement of the carrier.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Axis {
     /// u_n, m: the input's value.
     value: f64,
@@ -24,7 +26,7 @@ struct Axis {
 }
 
 /// A communication step that is done.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Past {
     /// u_{n-1}, m: the input at its start.
     value: f64,
@@ -55,14 +57,24 @@ impl Carrier {
         Start { time, u: u.value, w: w.value, u_rate: u.rate.unwrap_or_default(), w_rate: w.rate.unwrap_or_default() }
     }
 
-    /// The targets of û and ŵ at the end of a step of `h` from `time`.
+    /// The motion over a step of `h` from `time`: straight from where û and ŵ stand to their targets. Rounding does not
+    /// add up: the next motion starts from where this one ended.
     ///
     /// # Errors
     /// [`Fault::InputNotFinite`] where a value or a derivative is not a finite number.
-    pub(super) fn targets(&self, time: f64, h: f64, rule: Extrapolation) -> Result<[f64; 2], Fault> {
-        let [u, w] = Input::ALL;
-        let target = |input: Input| self.axes[input as usize].finite_target(input, time, h, rule);
-        Ok([target(u)?, target(w)?])
+    pub(super) fn motion(&self, (u, w): (f64, f64), time: f64, h: f64, rule: Extrapolation) -> Result<Motion, Fault> {
+        let path = |input: Input, from: f64| {
+            let axis = &self.axes[input as usize];
+            let target = axis.finite_target(input, time, h, rule)?;
+            Ok::<_, Fault>(Path { rate: axis.given_rate(from).unwrap_or((target - from) / h), ..Path::default() })
+        };
+        Ok(Motion { duration: h, u: path(Input::U, u)?, w: path(Input::W, w)? })
+    }
+
+    /// Whether a run can have come to it: what was followed was finite. Values and rates not yet followed may be anything.
+    pub(super) fn is_sound(&self) -> bool {
+        let pasts = self.axes.iter().filter_map(|axis| axis.past.as_ref());
+        pasts.into_iter().all(|past| past.value.is_finite() && past.step.is_finite() && past.step > 0.0)
     }
 
     /// Counts a step of `h` as done: its derivatives are used up.
@@ -74,20 +86,26 @@ impl Carrier {
     }
 }
 
-/// The straight motion in the time `duration` from where the carrier stands to the targets. Rounding does not add up: the
-/// next motion starts from where this one ended.
-pub(super) fn straight_motion((u, w): (f64, f64), targets: [f64; 2], duration: f64) -> Motion {
-    let path = |from: f64, to: f64| Path { rate: (to - from) / duration, ..Path::default() };
-    Motion { duration, u: path(u, targets[0]), w: path(w, targets[1]) }
-}
+/// Places that differ by less than this part of the larger one differ by rounding.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 impl Axis {
+    /// The rate that the master gave, if û stands at its value but for rounding. It is then followed as it is: found from
+    /// the difference to the target it would bear that rounding over h, a kink of a steady motion at every point.
+    fn given_rate(&self, stands: f64) -> Option<f64> {
+        let same = (stands - self.value).abs() <= ROUNDING * stands.abs().max(self.value.abs());
+        self.rate.filter(|_| same)
+    }
+
     /// Where û stands at the end of a step of `h`.
     fn target(&self, h: f64, rule: Extrapolation) -> f64 {
         match (self.rate, rule, self.past) {
             (Some(rate), _, _) => self.value + h * rate,
-            (None, Extrapolation::Linear, Some(past)) => self.value + (self.value - past.value) * (h / past.step),
-            (None, Extrapolation::Linear, None) | (None, Extrapolation::Hold, _) => self.value,
+            // At rest it stays there, over steps of any ratio.
+            (None, Extrapolation::Linear, Some(past)) if past.value != self.value => {
+                self.value + (self.value - past.value) * (h / past.step)
+            }
+            (None, Extrapolation::Linear | Extrapolation::Hold, _) => self.value,
         }
     }
 
@@ -111,11 +129,11 @@ mod tests {
         carrier
     }
 
-    /// Does a step and gives its targets.
+    /// Does a step with û and ŵ at 0 and gives where they end.
     fn step(carrier: &mut Carrier, h: f64, rule: Extrapolation) -> [f64; 2] {
-        let targets = carrier.targets(0.0, h, rule).unwrap();
+        let motion = carrier.motion((0.0, 0.0), 0.0, h, rule).unwrap();
         carrier.count_step(h);
-        targets
+        [motion.u.rate * h, motion.w.rate * h]
     }
 
     #[test]
@@ -163,17 +181,34 @@ mod tests {
 
     #[test]
     fn the_carrier_runs_straight_from_where_it_stands() {
-        let motion = straight_motion((1.0, 0.5), [3.0, 0.0], 0.25);
+        let motion = at(3.0).motion((1.0, 0.5), 0.0, 0.25, Extrapolation::Hold).unwrap();
         assert_eq!((motion.duration, motion.u.rate, motion.w.rate), (0.25, 8.0, -2.0));
+    }
+
+    /// A carrier at 1e6 m, where the last digit is 1e-10 m: what its rounding would be over 1e-6 s is far from the rate.
+    #[test]
+    fn a_rate_given_where_the_carrier_stands_is_followed_as_it_is() {
+        let rate = |stands: f64| {
+            let mut carrier = at(1e6 + 0.1);
+            carrier.set_rate(Input::U, 0.3);
+            carrier.motion((stands, 0.0), 0.0, 1e-6, Extrapolation::Linear).unwrap().u.rate
+        };
+        let value: f64 = 1e6 + 0.1;
+        for stands in [value, value.next_up(), value.next_down()] {
+            assert_eq!(rate(stands), 0.3);
+        }
+        // A micrometre is no rounding: û goes where the target is.
+        assert!((rate(value - 1e-6) - 1.3).abs() < 1e-3);
+        assert!((rate(value + 1e-6) + 0.7).abs() < 1e-3);
     }
 
     #[test]
     fn values_and_rates_that_are_not_finite_stop_the_step() {
         let mut carrier = at(f64::NAN);
-        assert!(carrier.targets(0.0, 1.0, Extrapolation::Linear).is_err());
+        assert!(carrier.motion((0.0, 0.0), 0.0, 1.0, Extrapolation::Linear).is_err());
         carrier.set_input(Input::U, 0.0);
         carrier.set_rate(Input::U, f64::INFINITY);
-        let fault = carrier.targets(0.0, 1.0, Extrapolation::Linear).unwrap_err();
+        let fault = carrier.motion((0.0, 0.0), 0.0, 1.0, Extrapolation::Linear).unwrap_err();
         assert_eq!(fault.to_string(), "the input u is inf at t = 0 s: no step can be done");
     }
 }

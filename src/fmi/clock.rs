@@ -1,12 +1,14 @@
 //! The FMU's time and what a master may ask of it.
 
+use serde::{Deserialize, Serialize};
+
 use super::fault::Fault;
 
 /// Times that differ by less than this part of the larger of time and step size differ by rounding.
 const ROUNDING: f64 = 1e-10;
 
 /// Where the FMU stands in time and how far it may go.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Clock {
     /// The time reached, s: the last communication point.
     pub(super) time: f64,
@@ -29,6 +31,11 @@ impl Clock {
             }
         }
         Ok(Self { time: start, stop })
+    }
+
+    /// Whether its times are numbers.
+    pub(super) fn is_sound(&self) -> bool {
+        self.time.is_finite() && self.stop.is_none_or(f64::is_finite)
     }
 
     /// The clock after a step of `h` from `point`; `None` where the step is too short to change the time.

@@ -412,60 +412,84 @@ pub unsafe extern "C" fn fmi2FreeFMUstate(c: fmi2Component, FMUstate: *mut fmi2F
 }
 const _: fmi2FreeFMUstateTYPE = Some(fmi2FreeFMUstate);
 
-/// Not yet supported.
+/// The number of bytes of an FMU state as a byte string.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SerializedFMUstateSize(
     c: fmi2Component,
-    _FMUstate: fmi2FMUstate,
-    _size: *mut usize,
+    FMUstate: fmi2FMUstate,
+    size: *mut usize,
 ) -> fmi2Status {
     // SAFETY: the contract of this module.
-    unsafe { call(c, Function::SerializedFmuStateSize, |_| Err(SERIALISATION)) }
+    unsafe {
+        call(c, Function::SerializedFmuStateSize, |instance| {
+            *place("size", size)? = instance.serialise_state(FMUstate.addr())?.len();
+            Ok(())
+        })
+    }
 }
 const _: fmi2SerializedFMUstateSizeTYPE = Some(fmi2SerializedFMUstateSize);
 
-/// Not yet supported.
+/// Writes an FMU state as a byte string, whose size is that of [`fmi2SerializedFMUstateSize`].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SerializeFMUstate(
     c: fmi2Component,
-    _FMUstate: fmi2FMUstate,
-    _serializedState: *mut fmi2Byte,
-    _size: usize,
+    FMUstate: fmi2FMUstate,
+    serializedState: *mut fmi2Byte,
+    size: usize,
 ) -> fmi2Status {
     // SAFETY: the contract of this module.
-    unsafe { call(c, Function::SerializeFmuState, |_| Err(SERIALISATION)) }
+    unsafe {
+        call(c, Function::SerializeFmuState, |instance| {
+            let bytes = instance.serialise_state(FMUstate.addr())?;
+            if bytes.len() != size {
+                return Err(Fault::SerialisedSize { needed: bytes.len(), given: size });
+            }
+            array_mut("serializedState", serializedState.cast::<u8>(), size)?.copy_from_slice(&bytes);
+            Ok(())
+        })
+    }
 }
 const _: fmi2SerializeFMUstateTYPE = Some(fmi2SerializeFMUstate);
 
-/// Not yet supported.
+/// Makes a new FMU state from a byte string; what `FMUstate` points to is written and never read.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
     c: fmi2Component,
-    _serializedState: *const fmi2Byte,
-    _size: usize,
-    _FMUstate: *mut fmi2FMUstate,
+    serializedState: *const fmi2Byte,
+    size: usize,
+    FMUstate: *mut fmi2FMUstate,
 ) -> fmi2Status {
     // SAFETY: the contract of this module.
-    unsafe { call(c, Function::DeSerializeFmuState, |_| Err(SERIALISATION)) }
+    unsafe {
+        call(c, Function::DeSerializeFmuState, |instance| {
+            let state = place("FMUstate", FMUstate)?;
+            let bytes = array("serializedState", serializedState.cast::<u8>(), size)?;
+            *state = ptr::without_provenance_mut(instance.deserialise_state(bytes)?);
+            Ok(())
+        })
+    }
 }
 const _: fmi2DeSerializeFMUstateTYPE = Some(fmi2DeSerializeFMUstate);
 
-const SERIALISATION: Fault = Fault::Unsupported("serialising FMU states", "canSerializeFMUstate");
-
-/// Not yet supported.
+/// How outputs follow inputs with the states held.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
     c: fmi2Component,
-    _vUnknown_ref: *const fmi2ValueReference,
-    _nUnknown: usize,
-    _vKnown_ref: *const fmi2ValueReference,
-    _nKnown: usize,
-    _dvKnown: *const fmi2Real,
-    _dvUnknown: *mut fmi2Real,
+    vUnknown_ref: *const fmi2ValueReference,
+    nUnknown: usize,
+    vKnown_ref: *const fmi2ValueReference,
+    nKnown: usize,
+    dvKnown: *const fmi2Real,
+    dvUnknown: *mut fmi2Real,
 ) -> fmi2Status {
-    const FAULT: Fault = Fault::Unsupported("directional derivatives", "providesDirectionalDerivative");
     // SAFETY: the contract of this module.
-    unsafe { call(c, Function::GetDirectionalDerivative, |_| Err(FAULT)) }
+    unsafe {
+        call(c, Function::GetDirectionalDerivative, |instance| {
+            let knowns = (array("vKnown_ref", vKnown_ref, nKnown)?, array("dvKnown", dvKnown, nKnown)?);
+            let unknowns = array("vUnknown_ref", vUnknown_ref, nUnknown)?;
+            instance.directional_derivatives(unknowns, knowns, array_mut("dvUnknown", dvUnknown, nUnknown)?)
+        })
+    }
 }
 const _: fmi2GetDirectionalDerivativeTYPE = Some(fmi2GetDirectionalDerivative);
 
@@ -487,18 +511,22 @@ pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
 }
 const _: fmi2SetRealInputDerivativesTYPE = Some(fmi2SetRealInputDerivatives);
 
-/// Not yet supported.
+/// Gets first derivatives of F_x and F_z.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
     c: fmi2Component,
-    _vr: *const fmi2ValueReference,
-    _nvr: usize,
-    _order: *const fmi2Integer,
-    _value: *mut fmi2Real,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    order: *const fmi2Integer,
+    value: *mut fmi2Real,
 ) -> fmi2Status {
-    const FAULT: Fault = Fault::Unsupported("a derivative of an output", "maxOutputDerivativeOrder");
     // SAFETY: the contract of this module.
-    unsafe { call(c, Function::GetRealOutputDerivatives, |_| Err(FAULT)) }
+    unsafe {
+        call(c, Function::GetRealOutputDerivatives, |instance| {
+            let orders = array("order", order, nvr)?;
+            instance.output_derivatives(array("vr", vr, nvr)?, orders, array_mut("value", value, nvr)?)
+        })
+    }
 }
 const _: fmi2GetRealOutputDerivativesTYPE = Some(fmi2GetRealOutputDerivatives);
 
@@ -589,3 +617,26 @@ pub unsafe extern "C" fn fmi2GetStringStatus(
     unsafe { call(c, Function::GetStringStatus, |_| Err(Fault::NoSuchStatus)) }
 }
 const _: fmi2GetStringStatusTYPE = Some(fmi2GetStringStatus);
+
+#[cfg(test)]
+mod tests {
+    use super::super::instance;
+    use super::*;
+
+    /// The host lives on: the call returns fmi2Fatal, later ones fmi2Error, and what is lost can be freed.
+    #[test]
+    fn a_panic_stops_at_the_interface() {
+        // SAFETY: no callbacks.
+        let callbacks = unsafe { Callbacks::new(ptr::null(), "lost") };
+        let component = Component { instance: instance::tests::instance(), callbacks };
+        let c: fmi2Component = Box::into_raw(Box::new(component)).cast();
+        // SAFETY: the component lives until it is freed, once.
+        unsafe {
+            assert_eq!(call(c, Function::GetReal, |_| Ok(())), fmi2Status_fmi2Error, "too early");
+            assert_eq!(call(c, Function::Reset, |_| panic!("lost a mass")), fmi2Status_fmi2Fatal);
+            assert_eq!(fmi2Reset(c), fmi2Status_fmi2Error);
+            assert_eq!(fmi2DoStep(c, 0.0, 1.0, 1), fmi2Status_fmi2Error);
+            fmi2FreeInstance(c);
+        }
+    }
+}

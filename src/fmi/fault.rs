@@ -2,14 +2,17 @@
 
 use std::path::PathBuf;
 
+use serde::{Deserialize, Serialize};
+
 use crate::scene::{ParameterError, SceneError};
 use crate::simulation::SimulationError;
 
 use super::catalogue::Kind;
 use super::lifecycle::State;
+use super::serial::Misfit;
 
 /// The status that a function returns, but for fmi2Pending, which never occurs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Status {
     /// fmi2OK
     Ok,
@@ -43,7 +46,13 @@ pub(super) enum Fault {
     #[error("{0} is not an input and takes no derivative")]
     NoInput(String),
     #[error("the derivative of {name} is of order {order}; only order 1 is supported")]
-    DerivativeOrder { name: &'static str, order: i32 },
+    DerivativeOrder { name: String, order: i32 },
+    #[error("{0} has no derivative by time; only F_x and F_z have")]
+    NoOutputDerivative(String),
+    #[error("{0} is no output, whose directional derivative could be asked for")]
+    NoUnknown(String),
+    #[error("{0} is no input, by which an output could be derived")]
+    NoKnown(String),
     #[error("{name} is a fixed parameter and cannot be set in the state {state}: its value stays")]
     Late { name: String, state: State },
     #[error(transparent)]
@@ -70,8 +79,10 @@ pub(super) enum Fault {
     NoRun,
     #[error("{0} is no FMU state of this instance")]
     UnknownState(&'static str),
-    #[error("{0} is not yet supported ({1} is false)")]
-    Unsupported(&'static str, &'static str),
+    #[error("the byte string is no FMU state of this FMU: {0}")]
+    Serialised(#[from] Misfit),
+    #[error("the serialised FMU state has {needed} bytes, but the place for it has {given}")]
+    SerialisedSize { needed: usize, given: usize },
     #[error("this status is not available: steps never run asynchronously")]
     NoSuchStatus,
     #[error("the kind of the FMU is not co-simulation, the only one there is")]

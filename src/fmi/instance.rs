@@ -15,8 +15,10 @@ use super::lifecycle::{Function, State};
 use super::log::{Category, Log, Message};
 use super::memory::Memory;
 use super::panics;
+use super::parameters::Parameters;
 use super::resources::find_scene;
 use super::run::Run;
+use super::serial;
 use super::values::Outputs;
 
 /// An instance of the FMU.
@@ -29,8 +31,9 @@ pub(super) struct Instance {
     pub(super) texts: Vec<CString>,
     memory: Memory,
     log: Log,
+    guid: String,
     /// What fmi2Reset goes back to.
-    scene: Arc<Scene>,
+    original: Arc<Parameters>,
     logging: bool,
 }
 
@@ -38,28 +41,30 @@ impl Instance {
     /// Reads the scene from the resources at `location` and checks that it is the one that the master thinks it is.
     pub(super) fn new(given_guid: &str, location: &str, logging: bool) -> Result<Self, Fault> {
         let path = find_scene(location)?;
-        let scene = Arc::new(Scene::load(&path)?);
+        let scene = Scene::load(&path)?;
         let catalogue = Catalogue::new(&scene);
         let own = guid(&Sources::read_from(&path, &scene)?, &catalogue);
         if given_guid != own {
             return Err(Fault::Guid { given: given_guid.into(), own });
         }
-        Ok(Self::of(scene, catalogue, logging))
+        Ok(Self::of(scene, catalogue, own, logging))
     }
 
-    fn of(scene: Arc<Scene>, catalogue: Catalogue, logging: bool) -> Self {
+    fn of(scene: Scene, catalogue: Catalogue, guid: String, logging: bool) -> Self {
         let mut log = Log::new(logging);
         for warning in &scene.warnings {
             log.add(Message::of_status(Status::Warning, warning.clone()));
         }
+        let original = Arc::new(Parameters::new(scene));
         Self {
             catalogue,
-            run: Run::new(Arc::clone(&scene)),
+            run: Run::new(Arc::clone(&original)),
             outputs: Outputs::default(),
             texts: Vec::new(),
             memory: Memory::default(),
             log,
-            scene,
+            guid,
+            original,
             logging,
         }
     }
@@ -100,7 +105,8 @@ impl Instance {
     ) -> Result<(), Fault> {
         let clock = Clock::new(start, stop)?;
         if let Some(tolerance) = tolerance {
-            Arc::make_mut(&mut self.run.scene).set_parameter(Parameter::RelativeTolerance, Value::Real(tolerance))?;
+            let parameters = Arc::make_mut(&mut self.run.parameters);
+            parameters.set(Parameter::RelativeTolerance, Value::Real(tolerance))?;
         }
         self.run.clock = clock;
         self.run.start_anew();
@@ -140,7 +146,7 @@ impl Instance {
 
     /// fmi2Reset: back to what fmi2Instantiate gave. The FMU states handed out stay the master's to free.
     pub(super) fn reset(&mut self) -> Result<(), Fault> {
-        self.run = Run::new(Arc::clone(&self.scene));
+        self.run = Run::new(Arc::clone(&self.original));
         self.outputs.outdate();
         self.texts.clear();
         self.log = Log::new(self.logging);
@@ -154,7 +160,9 @@ impl Instance {
 
     /// fmi2SetFMUstate
     pub(super) fn set_state(&mut self, handle: usize) -> Result<(), Fault> {
-        self.run = self.memory.recall(handle)?.clone();
+        let mut run = self.memory.recall(handle)?.clone();
+        run.go_on_timing(&self.run);
+        self.run = run;
         self.outputs.outdate();
         self.record_events();
         Ok(())
@@ -163,6 +171,17 @@ impl Instance {
     /// fmi2FreeFMUstate
     pub(super) fn free_state(&mut self, handle: usize) -> Result<(), Fault> {
         self.memory.forget(handle)
+    }
+
+    /// fmi2SerializedFMUstateSize and fmi2SerializeFMUstate: the state `handle` as a byte string.
+    pub(super) fn serialise_state(&self, handle: usize) -> Result<Vec<u8>, Fault> {
+        Ok(serial::write(self.memory.recall(handle)?, &self.guid)?)
+    }
+
+    /// fmi2DeSerializeFMUstate: keeps the state in `bytes` and gives its handle.
+    pub(super) fn deserialise_state(&mut self, bytes: &[u8]) -> Result<usize, Fault> {
+        let run = serial::read(bytes, &self.guid, &self.original)?;
+        Ok(self.memory.keep_new(run))
     }
 
     /// The status of the last step.
@@ -235,16 +254,21 @@ fn count(output: Output) -> Variable {
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, clippy::panic)]
-mod tests {
+pub(super) mod tests {
     use std::path::Path;
 
     use super::*;
 
-    fn instance() -> Instance {
-        let text = "name = \"a\"\nlayer = { masses = 1, spacing = 1.0, mass = 1.0 }\nsurface = { kind = \"flat\" }";
-        let scene = Arc::new(Scene::parse(text, Path::new("scene.toml")).unwrap());
+    /// An instance of a scene with one mass.
+    pub(in super::super) fn instance() -> Instance {
+        instance_of("name = \"a\"\nlayer = { masses = 1, spacing = 1.0, mass = 1.0 }\nsurface = { kind = \"flat\" }")
+    }
+
+    /// An instance of a scene that reads no files.
+    pub(in super::super) fn instance_of(text: &str) -> Instance {
+        let scene = Scene::parse(text, Path::new("scene.toml")).unwrap();
         let catalogue = Catalogue::new(&scene);
-        Instance::of(scene, catalogue, false)
+        Instance::of(scene, catalogue, "{}".into(), false)
     }
 
     #[test]

@@ -2,11 +2,13 @@
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 use super::fault::Fault;
 
 /// The states of a co-simulation slave that this FMU can be in. Steps never run asynchronously, so the standard's
 /// stepInProgress and stepCanceled are never reached.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum State {
     /// After fmi2Instantiate and fmi2Reset.
     Instantiated,

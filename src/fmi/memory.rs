@@ -16,15 +16,16 @@ impl Memory {
     /// Keeps a copy of `run`: in the place of the state `handle`, or in a new one where `handle` is 0. Gives its handle.
     pub(super) fn keep(&mut self, handle: usize, run: &Run) -> Result<usize, Fault> {
         if handle == 0 {
-            return Ok(self.keep_new(run));
+            return Ok(self.keep_new(run.clone()));
         }
         let place = self.states.get_mut(&handle).ok_or(Fault::UnknownState("what FMUstate points to"))?;
         **place = run.clone();
         Ok(handle)
     }
 
-    fn keep_new(&mut self, run: &Run) -> usize {
-        let state = Box::new(run.clone());
+    /// Keeps `run` in a new state. Gives its handle.
+    pub(super) fn keep_new(&mut self, run: Run) -> usize {
+        let state = Box::new(run);
         let handle = (&raw const *state).addr();
         self.states.insert(handle, state);
         handle

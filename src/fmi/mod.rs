@@ -8,6 +8,7 @@ mod callbacks;
 mod carrier;
 mod catalogue;
 mod clock;
+mod derivatives;
 mod exports;
 mod fault;
 mod guid;
@@ -16,8 +17,10 @@ mod lifecycle;
 mod log;
 mod memory;
 mod panics;
+mod parameters;
 mod resources;
 mod run;
+mod serial;
 mod values;
 
 #[cfg_attr(feature = "verify-bindings", path = "verify.rs")]
@@ -32,9 +35,12 @@ pub use resources::SCENE_FILE;
 
 /// The capabilities that the model description claims, as attributes of its element `CoSimulation`; those left out are
 /// false.
-pub const CAPABILITIES: [(&str, &str); 4] = [
+pub const CAPABILITIES: [(&str, &str); 7] = [
     ("canHandleVariableCommunicationStepSize", "true"),
     ("canInterpolateInputs", "true"),
+    ("maxOutputDerivativeOrder", "1"),
     ("canGetAndSetFMUstate", "true"),
+    ("canSerializeFMUstate", "true"),
+    ("providesDirectionalDerivative", "true"),
     ("canNotUseMemoryManagementFunctions", "true"),
 ];

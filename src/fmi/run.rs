@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use crate::scene::Scene;
 use crate::simulation::Simulation;
 
-use super::carrier::{Carrier, straight_motion};
+use super::carrier::Carrier;
 use super::clock::Clock;
 use super::fault::{Fault, Status};
 use super::lifecycle::State;
+use super::parameters::Parameters;
 
 /// A run, from its parameters to where it stands.
 #[derive(Clone, Debug)]
@@ -16,7 +16,7 @@ pub(super) struct Run {
     /// The state of the lifecycle.
     pub(super) state: State,
     /// The scene with the parameters as set.
-    pub(super) scene: Arc<Scene>,
+    pub(super) parameters: Arc<Parameters>,
     /// The carrier with the inputs as set.
     pub(super) carrier: Carrier,
     /// The time and the stop time.
@@ -24,15 +24,15 @@ pub(super) struct Run {
     /// What the last step returned.
     pub(super) last_step: Status,
     /// The simulation; before the run, one that would start as things stand.
-    simulation: Option<Simulation>,
+    pub(super) simulation: Option<Simulation>,
 }
 
 impl Run {
     /// A run that has not begun.
-    pub(super) fn new(scene: Arc<Scene>) -> Self {
+    pub(super) fn new(parameters: Arc<Parameters>) -> Self {
         Self {
             state: State::Instantiated,
-            scene,
+            parameters,
             carrier: Carrier::default(),
             clock: Clock::default(),
             last_step: Status::Ok,
@@ -51,9 +51,16 @@ impl Run {
     pub(super) fn simulation(&mut self) -> Result<&mut Simulation, Fault> {
         if self.simulation.is_none() && self.state.before_run() {
             let start = self.carrier.start(self.clock.time);
-            self.simulation = Some(Simulation::new(&self.scene, &start)?);
+            self.simulation = Some(Simulation::new(self.parameters.scene(), &start)?);
         }
         self.simulation.as_mut().ok_or(Fault::NoRun)
+    }
+
+    /// Takes over the processor time that `other` has spent: it is no part of the FMU state.
+    pub(super) fn go_on_timing(&mut self, other: &Self) {
+        if let (Some(simulation), Some(other)) = (&mut self.simulation, &other.simulation) {
+            simulation.set_run_time(other.run_time());
+        }
     }
 
     /// Ends the initialisation.
@@ -80,9 +87,9 @@ impl Run {
     }
 
     fn advance(&mut self, clock: Clock, h: f64) -> Result<(), Fault> {
-        let targets = self.carrier.targets(self.clock.time, h, self.scene.extrapolation)?;
+        let (carrier, time, rule) = (self.carrier, self.clock.time, self.parameters.scene().extrapolation);
         let simulation = self.simulation()?;
-        simulation.advance(&straight_motion(simulation.carrier(), targets, h))?;
+        simulation.advance(&carrier.motion(simulation.carrier(), time, h, rule)?)?;
         self.carrier.count_step(h);
         self.clock = clock;
         Ok(())

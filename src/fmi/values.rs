@@ -3,11 +3,12 @@
 use std::ffi::CString;
 use std::sync::Arc;
 
-use crate::scene::{Scene, Value};
+use crate::scene::Value;
 
 use super::catalogue::{Catalogue, Entry, Kind};
 use super::fault::Fault;
 use super::instance::Instance;
+use super::parameters::Parameters;
 use super::run::Run;
 
 /// The outputs at the last communication point, computed when first asked for.
@@ -45,7 +46,7 @@ impl Instance {
     fn get_one(&mut self, reference: u32, kind: Kind) -> Result<Value, Fault> {
         match self.catalogue.find(reference, kind)? {
             Entry::Input(input) => Ok(Value::Real(self.run.carrier.input(input))),
-            Entry::Parameter(parameter, _) => Ok(self.run.scene.parameter(parameter)),
+            Entry::Parameter(parameter, _) => Ok(self.run.parameters.scene().parameter(parameter)),
             Entry::Output(place, variable) => match self.outputs.get(&mut self.run, &self.catalogue)?[place] {
                 value if !value.is_finite() => Err(Fault::NoValue { name: variable.name.clone(), value }),
                 value if kind == Kind::Real => Ok(Value::Real(value)),
@@ -95,27 +96,27 @@ impl Instance {
     /// An input that is not a finite number is taken here and refused by the step: a master may write it for as long as
     /// it does not ask the model to follow it.
     pub(super) fn set(&mut self, references: &[u32], values: impl Iterator<Item = Value>) -> Result<(), Fault> {
-        let mut scene = Arc::clone(&self.run.scene);
+        let mut parameters = Arc::clone(&self.run.parameters);
         let mut carrier = self.run.carrier;
         for (&reference, value) in references.iter().zip(values) {
             match (self.catalogue.find(reference, kind_of(&value))?, value) {
                 (Entry::Input(input), Value::Real(value)) => carrier.set_input(input, value),
-                (entry @ Entry::Parameter(..), value) => self.set_parameter(&mut scene, entry, value)?,
+                (entry @ Entry::Parameter(..), value) => self.set_parameter(&mut parameters, entry, value)?,
                 (entry, _) => return Err(Fault::OutputSet(entry.name())),
             }
         }
-        self.run.scene = scene;
+        self.run.parameters = parameters;
         self.run.carrier = carrier;
         self.start_anew();
         Ok(())
     }
 
-    fn set_parameter(&self, scene: &mut Arc<Scene>, entry: Entry<'_>, value: Value) -> Result<(), Fault> {
+    fn set_parameter(&self, parameters: &mut Arc<Parameters>, entry: Entry<'_>, value: Value) -> Result<(), Fault> {
         let Entry::Parameter(parameter, _) = entry else { return Ok(()) };
         if !self.run.state.before_run() {
             return Err(Fault::Late { name: entry.name(), state: self.run.state });
         }
-        Ok(Arc::make_mut(scene).set_parameter(parameter, value)?)
+        Ok(Arc::make_mut(parameters).set(parameter, value)?)
     }
 
     /// fmi2SetRealInputDerivatives: all of them or none.
@@ -124,7 +125,7 @@ impl Instance {
         for ((&reference, &order), &rate) in references.iter().zip(orders).zip(rates) {
             match (self.catalogue.find(reference, Kind::Real)?, order) {
                 (Entry::Input(input), 1) => carrier.set_rate(input, rate),
-                (Entry::Input(input), _) => return Err(Fault::DerivativeOrder { name: input.name(), order }),
+                (Entry::Input(input), _) => return Err(Fault::DerivativeOrder { name: input.name().into(), order }),
                 (entry, _) => return Err(Fault::NoInput(entry.name())),
             }
         }

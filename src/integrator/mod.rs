@@ -4,16 +4,18 @@ mod dense;
 mod rates;
 mod stage;
 mod tableau;
+mod tangent;
 mod tolerance;
 
 pub use dense::Dense;
 pub use rates::Rates;
 pub use stage::NoConvergence;
-pub use tableau::{ESDIRK4, ESDIRK5, Tableau};
+pub use tableau::{ESDIRK5, Tableau};
 pub use tolerance::Tolerance;
 
 use crate::model::{Carrier, Forces, LinkKind, Mode, Model, Power, State};
 use stage::{StagePoint, StageSolver};
+use tangent::{Tangent, Target};
 
 /// The method that the integrator uses.
 pub const METHOD: Tableau<7> = ESDIRK5;
@@ -31,6 +33,17 @@ pub struct Integrator {
     solver: StageSolver,
     predictor: [[f64; STAGES]; STAGES],
     accounts_energy: bool,
+    /// How the run follows the targets of u and w; empty where nobody asks.
+    tangents: Vec<Tangent>,
+}
+
+/// What the steps follow beside the state.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Followed {
+    /// The powers of the channels.
+    pub energy: bool,
+    /// The forces' sensitivities to the carrier's targets.
+    pub tangents: bool,
 }
 
 /// A step that was tried.
@@ -43,14 +56,16 @@ pub struct Attempt {
 }
 
 impl Integrator {
-    /// Room for steps of `model`; the powers are followed where `accounts_energy`.
-    pub fn new(model: &Model, accounts_energy: bool) -> Self {
+    /// Room for steps of `model`.
+    pub fn new(model: &Model, followed: Followed) -> Self {
+        let targets: &[Target] = if followed.tangents { &[Target::U, Target::W] } else { &[] };
         Self {
             stages: vec![Rates::new(model); STAGES],
             powers: [Power::default(); STAGES],
             solver: StageSolver::new(model),
             predictor: predictor(&METHOD.c),
-            accounts_energy,
+            accounts_energy: followed.energy,
+            tangents: targets.iter().map(|&target| Tangent::new(model, target)).collect(),
         }
     }
 
@@ -99,12 +114,10 @@ impl Integrator {
     ) -> Result<Attempt, NoConvergence> {
         self.solver.state.mode.copy_from_slice(&state.mode);
         self.solver.state.ground.copy_from_slice(&state.ground);
-        let start = carrier.at(s);
         for i in 1..STAGES {
             let at = carrier.at(s + METHOD.c[i] * h);
-            let moved = (at.du - start.du, at.dw - start.dw);
-            self.collect_history(state, h, i, moved);
-            self.predict(model, h, i);
+            self.collect_history(state, h, i, carrier.moved(s, METHOD.c[i] * h));
+            self.predict(state, h, i);
             let point = StagePoint {
                 beta: METHOD.gamma() * h,
                 carrier: at,
@@ -115,8 +128,48 @@ impl Integrator {
             if self.accounts_energy {
                 self.powers[i] = Power::evaluate(model, &self.solver.state, &at, &self.solver.forces);
             }
+            self.vary(model, &point, (s, h), i);
         }
         Ok(self.error(model, carrier, (s, h), tolerance))
+    }
+
+    /// The tangents at a stage just solved.
+    fn vary(&mut self, model: &Model, point: &StagePoint, (s, h): (f64, f64), i: usize) {
+        if self.tangents.is_empty() {
+            return;
+        }
+        self.solver.factor_at_solution(model, point.beta);
+        for tangent in &mut self.tangents {
+            tangent.collect_history(h, i);
+            let carrier = tangent.carrier(s + METHOD.c[i] * h);
+            self.solver.vary(model, point, &carrier, tangent, (i, &self.stages[i]));
+        }
+    }
+
+    /// Whether anybody asks for tangents.
+    pub fn has_tangents(&self) -> bool {
+        !self.tangents.is_empty()
+    }
+
+    /// Begins the tangents of a motion of the carrier of `duration` (s).
+    pub fn begin_tangents(&mut self, duration: f64) {
+        for tangent in &mut self.tangents {
+            tangent.begin(duration);
+        }
+    }
+
+    /// Computes the tangents' rates at the start of a step afresh, `s` seconds after the start of the carrier's motion.
+    pub fn refresh_tangents(&mut self, model: &Model, state: &State, forces: &Forces, s: f64) {
+        for tangent in &mut self.tangents {
+            tangent.evaluate_rates(model, state, forces, &self.stages[0].acceleration_x, s);
+        }
+    }
+
+    /// ∂F_x/∂u, ∂F_x/∂w, ∂F_z/∂u, ∂F_z/∂w by the targets of the motion, `s` seconds after its start, N/m.
+    pub fn tangents(&mut self, model: &Model, s: f64) -> [f64; 4] {
+        let mut by_target = self.tangents.iter_mut().map(|tangent| tangent.carrier_forces(model, s));
+        let (u, w) = (by_target.next().unwrap_or_default(), by_target.next().unwrap_or_default());
+        [u.0, w.0, u.1, w.1]
     }
 
     /// The state at the end of the step tried last.
@@ -156,6 +209,9 @@ impl Integrator {
         std::mem::swap(state, &mut self.solver.state);
         self.stages.swap(0, STAGES - 1);
         self.powers.swap(0, STAGES - 1);
+        for tangent in &mut self.tangents {
+            tangent.accept();
+        }
     }
 
     /// The starred values of stage `i`: what the earlier stages give.
@@ -189,29 +245,30 @@ impl Integrator {
         }
     }
 
-    /// The velocities from which Newton's iterations start: the accelerations of the earlier stages, extrapolated.
-    fn predict(&mut self, model: &Model, h: f64, i: usize) {
+    /// The velocities from which Newton's iterations start. For slipping masses the accelerations of the earlier stages are
+    /// extrapolated; free ones, whose equations are linear, start where they were, since a guess far off costs digits.
+    fn predict(&mut self, start: &State, h: f64, i: usize) {
         let beta = METHOD.gamma() * h;
-        let solver = &mut self.solver;
-        let state = &mut solver.state;
-        state.velocity_x.copy_from_slice(&solver.history.velocity_x);
-        state.velocity_z.copy_from_slice(&solver.history.velocity_z);
-        for (stage, weight) in self.stages[..i].iter().zip(&self.predictor[i]) {
-            add(&mut state.velocity_x, beta * weight, &stage.acceleration_x);
-            add(&mut state.velocity_z, beta * weight, &stage.acceleration_z);
-        }
-        for i in 0..model.masses() {
-            if state.mode[i] == Mode::Stick {
-                (state.velocity_x[i], state.velocity_z[i]) = (0.0, 0.0);
-            }
+        let state = &mut self.solver.state;
+        state.velocity_x.copy_from_slice(&start.velocity_x);
+        state.velocity_z.copy_from_slice(&start.velocity_z);
+        let earlier = self.stages[..i].iter().zip(&self.predictor[i]);
+        for mass in (0..start.mode.len()).filter(|&mass| start.mode[mass].slips()) {
+            let acceleration: f64 = earlier.clone().map(|(stage, weight)| weight * stage.acceleration_x[mass]).sum();
+            state.velocity_x[mass] = self.solver.history.velocity_x[mass] + beta * acceleration;
         }
     }
 
     /// The embedded estimate in the tolerance's norm, and of F_z.
+    ///
+    /// The carrier's displacement is known, not integrated; yet a step must be able to see it: the dense output, the
+    /// events between the stages and the energies do. So what the method would miss of it counts as an error too: where
+    /// every mass sticks, there is no other.
     fn error(&self, model: &Model, carrier: &Carrier, (s, h): (f64, f64), tolerance: &Tolerance) -> Attempt {
         let rates = carrier.at(s + h);
         let end = &self.solver.state;
         let vertical = &model.links[LinkKind::Vertical as usize];
+        let (u, w) = carrier_error(carrier, (s, h));
         let (mut sum, mut force_error) = (0.0, 0.0);
         for i in 0..model.masses() {
             let of = |component: fn(&Rates) -> &Vec<f64>| h * self.weighed(|stage| component(stage)[i]);
@@ -221,6 +278,7 @@ impl Integrator {
                 _ => (end.ground[i].slope * x, end.ground[i].slope * v_x),
             };
             sum += tolerance.position(x, end.elongation_x[i]) + tolerance.position(z, end.elongation_z[i]);
+            sum += tolerance.position(u, end.elongation_x[i]) + tolerance.position(w, end.elongation_z[i]);
             sum += tolerance.velocity(v_x, end.velocity_x[i] - rates.u_rate);
             sum += tolerance.velocity(v_z, end.velocity_z[i] - rates.w_rate);
             force_error += vertical.stiffness * z + vertical.damping * v_z;
@@ -244,6 +302,12 @@ impl Integrator {
     fn weighed(&self, quantity: impl Fn(&Rates) -> f64) -> f64 {
         self.stages.iter().zip(&METHOD.error).map(|(stage, weight)| weight * quantity(stage)).sum()
     }
+}
+
+/// The embedded estimate of u and w, as if their rates were integrated, m.
+fn carrier_error(carrier: &Carrier, (s, h): (f64, f64)) -> (f64, f64) {
+    let stages = METHOD.c.iter().zip(&METHOD.error).map(|(c, weight)| (carrier.at(s + c * h), h * weight));
+    stages.fold((0.0, 0.0), |(u, w), (at, weight)| (u + weight * at.u_rate, w + weight * at.w_rate))
 }
 
 /// Maxwell variables whose history is summed at a time: 16 KiB of sums.

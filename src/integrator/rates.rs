@@ -1,6 +1,7 @@
 //! Rates of change at one stage.
 
-use crate::model::{ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint};
+use crate::math::{Numbers, visit_all};
+use crate::model::{CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint};
 
 /// What a stage leaves for the later ones, for the error estimate and for the events.
 #[derive(Clone, Debug)]
@@ -117,5 +118,30 @@ impl Rates {
     /// ȧ of one row of elements and the sum of its kind that they add to.
     pub fn maxwell_row(&mut self, row: &MaxwellRow) -> (&mut [f64], &mut [f64]) {
         (&mut self.maxwell[row.range.clone()], &mut self.maxwell_force[row.kind as usize])
+    }
+
+    /// Ḟ_x and Ḟ_z of the layer on the carrier, N/s: Ḟ = Σ c ė + d ë + Σ_j c_j ȧ_j over the links to it.
+    pub fn on_carrier(&self, model: &Model, carrier: &CarrierPoint) -> (f64, f64) {
+        let of = |kind: LinkKind, (velocity, rate): (&[f64], f64), (acceleration, rate_change): (&[f64], f64)| {
+            let law = &model.links[kind as usize];
+            let spring: f64 = velocity.iter().map(|v| law.stiffness * (v - rate)).sum();
+            let damper: f64 = acceleration.iter().map(|a| law.damping * (a - rate_change)).sum();
+            spring + damper + self.maxwell_force[kind as usize].iter().sum::<f64>()
+        };
+        let along_x = (&self.velocity_x[..], carrier.u_rate);
+        let along_z = (&self.velocity_z[..], carrier.w_rate);
+        (
+            of(LinkKind::Horizontal, along_x, (&self.acceleration_x, carrier.u_acceleration)),
+            of(LinkKind::Vertical, along_z, (&self.acceleration_z, carrier.w_acceleration)),
+        )
+    }
+}
+
+impl Numbers for Rates {
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        let Self { velocity_x, velocity_z, acceleration_x, acceleration_z, maxwell, maxwell_force, normal, margin } =
+            self;
+        visit_all([velocity_x, velocity_z, acceleration_x, acceleration_z], visit);
+        visit_all([maxwell, maxwell_force, normal, margin], visit);
     }
 }

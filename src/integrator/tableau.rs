@@ -54,48 +54,6 @@ impl<const STAGES: usize> Tableau<STAGES> {
     }
 }
 
-/// ESDIRK4(3I)6L[2]SA of C. A. Kennedy and M. H. Carpenter, *Diagonally implicit Runge-Kutta methods for stiff ordinary
-/// differential equations* (Appl. Numer. Math. 146, 2019).
-pub const ESDIRK4: Tableau<6> = {
-    const GAMMA: f64 = 0.25;
-    const B: [f64; 6] = [
-        657241292721.0 / 9909463049845.0,
-        657241292721.0 / 9909463049845.0,
-        1290772910128.0 / 5804808736437.0,
-        1103522341516.0 / 2197678446715.0,
-        -3.0 / 28.0,
-        GAMMA,
-    ];
-    const EMBEDDED: [f64; 6] = [
-        -71925161075.0 / 3900939759889.0,
-        -71925161075.0 / 3900939759889.0,
-        2973346383745.0 / 8160025745289.0,
-        3972464885073.0 / 7694851252693.0,
-        -263368882881.0 / 4213126269514.0,
-        3295468053953.0 / 15064441987965.0,
-    ];
-    Tableau::new(
-        [
-            [0.0; 6],
-            [0.0, GAMMA, 0.0, 0.0, 0.0, 0.0],
-            [0.0, -1356991263433.0 / 26208533697614.0, GAMMA, 0.0, 0.0, 0.0],
-            [0.0, -1778551891173.0 / 14697912885533.0, 7325038566068.0 / 12797657924939.0, GAMMA, 0.0, 0.0],
-            [
-                0.0,
-                -24076725932807.0 / 39344244018142.0,
-                9344023789330.0 / 6876721947151.0,
-                11302510524611.0 / 18374767399840.0,
-                GAMMA,
-                0.0,
-            ],
-            B,
-        ],
-        [0.0, 0.5, 0.146_446_609_406_726_24, 2012122486997.0 / 3467029789466.0, 1.0, 1.0],
-        EMBEDDED,
-        3,
-    )
-};
-
 /// ESDIRK5(4)7L[2]SA2 of C. A. Kennedy and M. H. Carpenter, *Diagonally implicit Runge-Kutta methods for stiff ordinary
 /// differential equations* (Appl. Numer. Math. 146, 2019).
 pub const ESDIRK5: Tableau<7> = {

@@ -1,11 +1,13 @@
 //! Numerical tools that know nothing of the model.
 
+mod numbers;
 mod polynomial;
 mod relaxation;
 mod root;
 mod spline;
 mod tridiagonal;
 
+pub use numbers::{Numbers, visit_all};
 pub use polynomial::{Jet, Quintic};
 pub use relaxation::Relaxation;
 pub use root::bracketed_root;

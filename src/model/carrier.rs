@@ -1,6 +1,6 @@
 //! The carrier's motion through one smooth piece.
 
-use crate::math::Spline;
+use crate::math::{Numbers, Spline, visit_all};
 use crate::scene::Path;
 
 /// The carrier on a smooth piece of its motion. Within the piece all is counted from its start, so that a carrier that
@@ -49,9 +49,32 @@ impl Carrier {
         CarrierPoint { du, dw, u_rate, w_rate, u_acceleration, w_acceleration }
     }
 
+    /// Computes the place on `profile` afresh from u.
+    pub fn find_place(&mut self, profile: &Spline) {
+        self.place = profile.reduce(self.u);
+    }
+
+    /// How far u and w move from `s` to `span` after it, s, m.
+    pub fn moved(&self, s: f64, span: f64) -> (f64, f64) {
+        (self.u_path.change(s, span), self.w_path.change(s, span))
+    }
+
+    /// The shorter period of the two sines, s; infinite where there is none.
+    pub fn shortest_period(&self) -> f64 {
+        self.u_path.period().min(self.w_path.period())
+    }
+
     /// The rates u̇, ẇ just after the start of the piece, m/s.
     pub fn initial_rates(&self) -> (f64, f64) {
         let start = self.at(0.0);
         (start.u_rate, start.w_rate)
+    }
+}
+
+/// All but the place on the profile, which follows from u.
+impl Numbers for Carrier {
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        let Self { time, u, w, place: _, u_path, w_path } = self;
+        visit_all([time, u, w, u_path, w_path], visit);
     }
 }

@@ -13,7 +13,7 @@ pub use link::{LinkLaw, MaxwellRow};
 pub use power::{Power, elastic_energy, kinetic_energy};
 pub use state::{Mode, State};
 
-use crate::math::Spline;
+use crate::math::{Numbers, Spline, visit_all};
 pub use crate::scene::LinkKind;
 use crate::scene::{Initial, Scene};
 
@@ -28,6 +28,13 @@ pub struct SurfacePoint {
     pub curvature: f64,
     /// z_r''', 1/m²: constant between two data points.
     pub third: f64,
+}
+
+impl Numbers for SurfacePoint {
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        let Self { height, slope, curvature, third } = self;
+        visit_all([height, slope, curvature, third], visit);
+    }
 }
 
 /// A scene as numbers: what stays the same through a run.

@@ -1,5 +1,7 @@
 //! Power and energy of the layer (`model.md` section 6).
 
+use crate::math::{Numbers, visit_all};
+
 use super::{CarrierPoint, Forces, LinkKind, Model, State};
 
 /// Power through the channels, W; or, summed over time, the energy, J.
@@ -37,6 +39,13 @@ impl Power {
         self.maxwell += time * power.maxwell;
         self.friction += time * power.friction;
         self.input += time * power.input;
+    }
+}
+
+impl Numbers for Power {
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        let Self { damper, maxwell, friction, input } = self;
+        visit_all([damper, maxwell, friction, input], visit);
     }
 }
 

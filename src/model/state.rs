@@ -1,6 +1,7 @@
 //! The layer's state.
 
 use super::SurfacePoint;
+use crate::math::{Numbers, visit_all};
 
 /// How a mass stands to the surface. Each mode's inequality is what holds as long as the mode lasts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -50,6 +51,11 @@ impl Mode {
             Self::Stick => 2,
         }
     }
+
+    /// The mode that `number` stands for.
+    pub fn of_number(number: i8) -> Option<Self> {
+        [Self::Free, Self::Forward, Self::Backward, Self::Stick].into_iter().find(|mode| mode.number() == number)
+    }
 }
 
 /// Positions relative to the carrier, velocities in the inertial frame, Maxwell elongations and modes of all masses.
@@ -98,5 +104,13 @@ impl State {
         self.maxwell.copy_from_slice(&other.maxwell);
         self.mode.copy_from_slice(&other.mode);
         self.ground.copy_from_slice(&other.ground);
+    }
+}
+
+/// All but the modes, which are no numbers.
+impl Numbers for State {
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        let Self { elongation_x, elongation_z, velocity_x, velocity_z, maxwell, mode: _, ground } = self;
+        visit_all([elongation_x, elongation_z, velocity_x, velocity_z, maxwell, ground], visit);
     }
 }

@@ -1,6 +1,7 @@
 //! The values of output variables at one instant.
 
 use super::{Output, Variable};
+use crate::math::{Numbers, visit_all};
 use crate::model::{CarrierPoint, ContactForces, Forces, Mode, Model, Power, State, elastic_energy, kinetic_energy};
 use crate::scene::{OutputGroup, Scene};
 
@@ -11,6 +12,8 @@ pub struct Accounts {
     pub energy: bool,
     /// The error estimate of F_z and the processor time: the group `solver`.
     pub solver: bool,
+    /// The forces' sensitivities to the carrier's targets: the group `tangent`.
+    pub tangents: bool,
 }
 
 impl Accounts {
@@ -20,6 +23,7 @@ impl Accounts {
         Self {
             energy: asked(OutputGroup::Dissipation) || asked(OutputGroup::Energy),
             solver: asked(OutputGroup::Solver),
+            tangents: asked(OutputGroup::Tangent),
         }
     }
 }
@@ -39,6 +43,13 @@ impl Energies {
     /// Energy lost through all channels, J.
     pub fn dissipated(&self) -> f64 {
         self.channels.dissipated() + self.impact
+    }
+}
+
+impl Numbers for Energies {
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        let Self { channels, impact, initial } = self;
+        visit_all([channels, impact, initial], visit);
     }
 }
 
@@ -72,6 +83,14 @@ impl Counters {
     }
 }
 
+/// All but the whole numbers and the processor time, which is no part of a run's state.
+impl Numbers for Counters {
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        let Self { steps: _, rejected: _, events: _, run_time: _, error_squares, largest_force } = self;
+        visit_all([error_squares, largest_force], visit);
+    }
+}
+
 /// A run at one instant.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment<'a> {
@@ -87,6 +106,8 @@ pub struct Moment<'a> {
     pub displacement: (f64, f64),
     /// Energies since the start.
     pub energies: &'a Energies,
+    /// ∂F_x/∂u, ∂F_x/∂w, ∂F_z/∂u, ∂F_z/∂w by the targets of the last motion, N/m.
+    pub tangents: [f64; 4],
     /// The solver's counters.
     pub counters: &'a Counters,
 }
@@ -141,6 +162,10 @@ impl Moment<'_> {
                 Output::EnergyResidual => {
                     channels.input - (kinetic + elastic - self.energies.initial) - self.energies.dissipated()
                 }
+                Output::TangentXU => self.tangents[0],
+                Output::TangentXW => self.tangents[1],
+                Output::TangentZU => self.tangents[2],
+                Output::TangentZW => self.tangents[3],
                 Output::Steps => held(self.counters.steps),
                 Output::Events => held(self.counters.events),
                 Output::Rejected => held(self.counters.rejected),

@@ -45,6 +45,14 @@ pub enum Output {
     ElasticEnergy,
     /// What the energy balance misses, J.
     EnergyResidual,
+    /// Change of F_x at the end of a step with the target of û in that step, N/m.
+    TangentXU,
+    /// Change of F_x with the target of ŵ, N/m.
+    TangentXW,
+    /// Change of F_z with the target of û, N/m.
+    TangentZU,
+    /// Change of F_z with the target of ŵ, N/m.
+    TangentZW,
     /// Accepted steps since the start.
     Steps,
     /// Mode changes since the start.
@@ -93,6 +101,13 @@ pub struct Variable {
     pub description: String,
 }
 
+impl Variable {
+    /// Whether it is an output of the FMU; the fields of the elements are local.
+    pub fn is_output(&self) -> bool {
+        self.group != OutputGroup::Elements
+    }
+}
+
 /// The output variables of `scene`, in the order of the result files.
 pub fn variables(scene: &Scene) -> Vec<Variable> {
     scene.outputs.iter().flat_map(|&group| group_variables(scene, group)).collect()
@@ -132,10 +147,10 @@ fn can_have(scene: &Scene, output: Output) -> bool {
 type Row = (Output, OutputGroup, &'static str, Kind, Unit, &'static str);
 
 #[rustfmt::skip]
-const TABLE: [Row; 25] = {
+const TABLE: [Row; 29] = {
     use Kind::{Integer, Real};
-    use OutputGroup::{Contact, Dissipation, Energy, Forces, Friction, Solver};
-    use Unit::{Joule, Newton, One, Second, Watt};
+    use OutputGroup::{Contact, Dissipation, Energy, Forces, Friction, Solver, Tangent};
+    use Unit::{Joule, Newton, NewtonPerMeter, One, Second, Watt};
     [
         (Output::ForceX, Forces, "F_x", Real, Newton, "Force of the layer on the carrier along x"),
         (Output::ForceZ, Forces, "F_z", Real, Newton, "Force of the layer on the carrier along z, positive when compressed"),
@@ -157,6 +172,10 @@ const TABLE: [Row; 25] = {
         (Output::KineticEnergy, Energy, "energy.kinetic", Real, Joule, "Kinetic energy of the masses"),
         (Output::ElasticEnergy, Energy, "energy.elastic", Real, Joule, "Elastic energy of the links"),
         (Output::EnergyResidual, Energy, "energy.residual", Real, Joule, "What the energy balance misses: the run's numerical error"),
+        (Output::TangentXU, Tangent, "tangent.dF_x_du", Real, NewtonPerMeter, "Change of F_x at the end of a step with the target of u in that step"),
+        (Output::TangentXW, Tangent, "tangent.dF_x_dw", Real, NewtonPerMeter, "Change of F_x at the end of a step with the target of w in that step"),
+        (Output::TangentZU, Tangent, "tangent.dF_z_du", Real, NewtonPerMeter, "Change of F_z at the end of a step with the target of u in that step"),
+        (Output::TangentZW, Tangent, "tangent.dF_z_dw", Real, NewtonPerMeter, "Change of F_z at the end of a step with the target of w in that step"),
         (Output::Steps, Solver, "solver.steps", Integer, One, "Accepted steps since the start"),
         (Output::Events, Solver, "solver.events", Integer, One, "Mode changes since the start"),
         (Output::Rejected, Solver, "solver.rejected", Integer, One, "Rejected steps since the start"),

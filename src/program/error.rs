@@ -23,6 +23,9 @@ pub(crate) enum ProgramError {
     /// A file cannot be read or written.
     #[error("cannot {action} {}: {source}", .path.display())]
     File { action: &'static str, path: PathBuf, source: std::io::Error },
+    /// An output would take the place of what the command reads or writes already.
+    #[error("will not write {}: it is read or written here already", .path.display())]
+    Overwrites { path: PathBuf },
     /// A result file is not one.
     #[error("{}: {message}", .path.display())]
     ResultFile { path: PathBuf, message: String },

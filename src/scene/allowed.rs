@@ -73,10 +73,11 @@ pub(super) const OUTPUTS: Choices<OutputGroup> = Choices {
         ("friction", OutputGroup::Friction),
         ("contact", OutputGroup::Contact),
         ("energy", OutputGroup::Energy),
+        ("tangent", OutputGroup::Tangent),
         ("solver", OutputGroup::Solver),
         ("elements", OutputGroup::Elements),
     ],
-    later: &["tangent"],
+    later: &[],
 };
 
 /// Where the heights of a surface come from.

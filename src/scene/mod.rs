@@ -24,6 +24,8 @@ mod tests;
 
 use std::path::PathBuf;
 
+use crate::math::{Numbers, visit_all};
+
 pub use error::{Problem, SceneError};
 pub use link_kind::LinkKind;
 pub use parameters::{Parameter, ParameterError, Value};
@@ -175,6 +177,8 @@ pub enum OutputGroup {
     Contact,
     /// The energy balance.
     Energy,
+    /// Change of the forces with the carrier's targets, for masters that iterate.
+    Tangent,
     /// Steps, events, estimated error, processor time.
     Solver,
     /// Place, forces and mode of each mass.
@@ -214,4 +218,11 @@ pub struct Path {
     pub amplitude: f64,
     /// Frequency of the sine, Hz.
     pub frequency: f64,
+}
+
+impl Numbers for Path {
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        let Self { rate, amplitude, frequency } = self;
+        visit_all([rate, amplitude, frequency], visit);
+    }
 }

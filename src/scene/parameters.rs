@@ -7,6 +7,8 @@ mod tests;
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 use super::{Layer, Link, LinkKind, Problem, Scene, Unit};
 
 /// One settable number or word of a scene.
@@ -43,7 +45,7 @@ pub enum Parameter {
 }
 
 /// A parameter's value.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Value {
     /// A Real of FMI.
     Real(f64),

@@ -1,16 +1,21 @@
 //! The conductor: joins the integrator and the contact rules into a run.
 
+mod derivatives;
 mod run;
+mod saved;
 mod stepping;
+#[cfg(test)]
+pub(crate) mod tests;
 
 use std::sync::Arc;
 
 use crate::contact::EventTolerance;
-use crate::integrator::{Integrator, Tolerance};
+use crate::integrator::{Followed, Integrator, Tolerance};
 use crate::model::{Forces, Model, State};
 use crate::outputs::{self, Accounts, Variable};
 use crate::scene::{Path, Scene};
 use run::{Checkpoint, Run};
+pub use saved::{RestoreError, Saved};
 
 /// The carrier at the start of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -121,9 +126,14 @@ impl Simulation {
     /// [`SimulationError::NotFinite`] where `start` is not finite.
     pub fn new(scene: &Scene, start: &Start) -> Result<Self, SimulationError> {
         start.check()?;
+        Ok(Self::started(scene, start))
+    }
+
+    fn started(scene: &Scene, start: &Start) -> Self {
         let model = Arc::new(Model::new(scene));
         let settings = Settings::new(scene, &model);
-        let integrator = Integrator::new(&model, settings.accounts.energy);
+        let followed = Followed { energy: settings.accounts.energy, tangents: settings.accounts.tangents };
+        let integrator = Integrator::new(&model, followed);
         let state = State::new(model.masses(), model.maxwell_variables());
         let run = Run::new(&model, state.clone(), start);
         let forces = Forces::new(&model);
@@ -142,7 +152,7 @@ impl Simulation {
             mode_changes: None,
         };
         simulation.place_layer();
-        Ok(simulation)
+        simulation
     }
 
     /// The time reached, s.
@@ -185,12 +195,20 @@ impl Simulation {
     ) -> Result<(), SimulationError> {
         motion.check()?;
         self.keep_checkpoint();
+        let recorded = self.mode_changes.as_ref().map_or(0, Vec::len);
         let result = self.follow(motion, times, observe);
         if result.is_err() {
-            self.run.copy_from(&self.before.run);
-            self.integrator.restore(&self.before.rates, self.before.power);
+            if let Some(record) = &mut self.mode_changes {
+                record.truncate(recorded);
+            }
+            self.go_back();
         }
         result
+    }
+
+    fn go_back(&mut self) {
+        self.run.copy_from(&self.before.run);
+        self.integrator.restore(&self.before.rates, self.before.power);
     }
 
     fn keep_checkpoint(&mut self) {
@@ -211,18 +229,33 @@ impl Simulation {
 
     /// Writes the values of `variables`, in their order, into `values`; Integers as whole numbers.
     pub fn evaluate(&mut self, variables: &[Variable], values: &mut [f64]) {
+        self.with_moment(|moment| moment.evaluate(variables, values));
+    }
+
+    fn with_moment(&mut self, body: impl FnOnce(&outputs::Moment<'_>)) {
         let carrier = self.run.carrier.at(self.run.s);
         self.forces.evaluate(&self.model, &self.run.state, &carrier);
-        let moment = outputs::Moment {
+        body(&outputs::Moment {
             model: &self.model,
             state: &self.run.state,
             forces: &self.forces,
             carrier: &carrier,
             displacement: self.run.displacement(),
             energies: &self.run.energies,
+            tangents: self.run.tangents,
             counters: &self.run.counters,
-        };
-        moment.evaluate(variables, values);
+        });
+    }
+
+    /// Processor time since the start, s. It is no part of a run's state: one that is taken up where another stood goes
+    /// on from its own.
+    pub fn run_time(&self) -> f64 {
+        self.run.counters.run_time
+    }
+
+    /// Takes over the processor time spent so far.
+    pub fn set_run_time(&mut self, time: f64) {
+        self.run.counters.run_time = time;
     }
 
     /// Keeps a record of mode changes from now on, or stops keeping it.

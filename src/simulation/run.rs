@@ -3,6 +3,7 @@
 use super::{Motion, SimulationError, Start};
 use crate::contact::CarrierPlace;
 use crate::integrator::Rates;
+use crate::math::{Numbers, visit_all};
 use crate::model::{Carrier, Model, Power, State};
 use crate::outputs::{Counters, Energies};
 use crate::scene::Path;
@@ -18,6 +19,8 @@ pub(super) struct Run {
     pub(super) counters: Counters,
     /// The length of the next step to try, s.
     pub(super) step_size: f64,
+    /// ∂F_x/∂u, ∂F_x/∂w, ∂F_z/∂u, ∂F_z/∂w by the targets of the last motion, N/m; 0 before the first.
+    pub(super) tangents: [f64; 4],
     /// Whether the integrator's rates at the start of the next step hold.
     pub(super) rates_hold: bool,
 }
@@ -33,15 +36,16 @@ impl Run {
             energies: Energies::default(),
             counters: Counters::default(),
             step_size: FIRST_STEP / model.stiffest_frequency(),
+            tangents: [0.0; 4],
             rates_hold: false,
         }
     }
 
     /// Takes over `other`, a run of the same scene, without allocating.
     pub(super) fn copy_from(&mut self, other: &Self) {
-        let Self { carrier, s, state, energies, counters, step_size, rates_hold } = self;
+        let Self { carrier, s, state, energies, counters, step_size, tangents, rates_hold } = self;
         (*carrier, *s, *energies, *counters) = (other.carrier, other.s, other.energies, other.counters);
-        (*step_size, *rates_hold) = (other.step_size, other.rates_hold);
+        (*step_size, *tangents, *rates_hold) = (other.step_size, other.tangents, other.rates_hold);
         state.copy_from(&other.state);
     }
 
@@ -70,6 +74,21 @@ pub(super) struct Checkpoint {
     pub(super) run: Run,
     pub(super) rates: Rates,
     pub(super) power: Power,
+}
+
+/// All but the modes, the counts and whether the rates hold.
+impl Numbers for Run {
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        let Self { carrier, s, state, energies, counters, step_size, tangents, rates_hold: _ } = self;
+        visit_all([carrier, s, state, energies, counters, step_size, tangents], visit);
+    }
+}
+
+impl Numbers for Checkpoint {
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        let Self { run, rates, power } = self;
+        visit_all([run, rates, power], visit);
+    }
 }
 
 impl Start {

@@ -12,6 +12,9 @@ use crate::model::{Carrier, Power, elastic_energy, kinetic_energy};
 const SAFETY: f64 = 0.9;
 /// The most by which one step differs from the one before.
 const GROWTH: (f64, f64) = (0.2, 5.0);
+/// The longest step, as a share of the period of the carrier's sine: a longer one could leap from swing to swing, where all
+/// stages see the same and the error estimate nothing.
+const OF_PERIOD: f64 = 0.25;
 /// What is left of a step whose stages could not be solved.
 const AFTER_FAILURE: f64 = 0.25;
 
@@ -52,6 +55,9 @@ impl Simulation {
                 observe(time, self);
             }
             self.change_modes_if_due();
+        }
+        if self.integrator.has_tangents() {
+            self.run.tangents = self.integrator.tangents(&self.model, self.run.s);
         }
         if let Some(clock) = clock {
             self.run.counters.run_time += clock.elapsed().as_secs_f64();
@@ -100,8 +106,18 @@ impl Simulation {
         let before = rates(&run.carrier, run.s);
         run.carrier = Carrier::new(run.time(), run.displacement(), (motion.u, motion.w), &self.model.profile);
         run.s = 0.0;
+        self.integrator.begin_tangents(motion.duration);
         if !run.rates_hold || rates(&run.carrier, 0.0) != before {
             self.change_modes(0.0);
+        } else {
+            self.refresh_tangents();
+        }
+    }
+
+    fn refresh_tangents(&mut self) {
+        if self.integrator.has_tangents() {
+            self.forces.evaluate(&self.model, &self.run.state, &self.run.carrier.at(self.run.s));
+            self.integrator.refresh_tangents(&self.model, &self.run.state, &self.forces, self.run.s);
         }
     }
 
@@ -118,6 +134,7 @@ impl Simulation {
         decide_modes(model, state, &self.forces);
         self.integrator.begin(model, state, &self.run.carrier, self.run.s, &mut self.forces);
         self.run.rates_hold = true;
+        self.refresh_tangents();
         self.count_mode_changes();
     }
 
@@ -144,7 +161,11 @@ impl Simulation {
     fn step(&mut self, duration: f64, work: &mut u64) -> Result<f64, SimulationError> {
         let remaining = duration - self.run.s;
         let shortest = 4.0 * f64::EPSILON * (self.run.s + 1e-3 * duration);
-        let mut h = fitted(self.run.step_size, remaining);
+        let longest = OF_PERIOD * self.run.carrier.shortest_period();
+        if longest <= shortest {
+            return Err(SimulationError::StepTooSmall { time: self.run.time(), step: longest });
+        }
+        let mut h = fitted(self.run.step_size.min(longest), remaining);
         // The step that an event cuts short says how long the next may be; the shorter ones need no test of their error.
         let mut proposal = None;
         loop {

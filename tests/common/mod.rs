@@ -5,6 +5,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
+use asperity::outputs::variables;
+use asperity::scene::{self, Scene};
+use asperity::simulation::{Motion, Simulation, Start};
+
 /// The repository.
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -32,17 +36,30 @@ pub fn run(command: &mut Command) -> String {
 }
 
 /// Where cargo builds: the parent of the tests' scratch folder.
-fn target() -> &'static Path {
+pub fn target() -> &'static Path {
     Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap()
 }
 
 /// A Python with the packages of tests/python/requirements.txt, the same that build-fmu.sh uses.
 pub fn python() -> &'static Path {
     static PYTHON: OnceLock<PathBuf> = OnceLock::new();
-    PYTHON.get_or_init(|| {
-        let script = root().join("tests/python/environment.sh");
-        run(Command::new("bash").arg(script).arg(target().join("venv"))).trim().into()
-    })
+    PYTHON.get_or_init(|| environment("venv", "requirements.txt"))
+}
+
+/// A Python with the packages of tests/python/masters.txt.
+pub fn masters_python() -> &'static Path {
+    static PYTHON: OnceLock<PathBuf> = OnceLock::new();
+    PYTHON.get_or_init(|| environment("venv-masters", "masters.txt"))
+}
+
+fn environment(folder: &str, packages: &str) -> PathBuf {
+    let script = root().join("tests/python/environment.sh");
+    run(Command::new("bash").arg(script).arg(target().join(folder)).arg(packages)).trim().into()
+}
+
+/// Runs fmpy from its command line.
+pub fn fmpy(arguments: &[&str]) -> String {
+    run(Command::new(python()).args(["-m", "fmpy"]).args(arguments))
 }
 
 /// The shared library of the FMU, built as build-fmu.sh builds it.
@@ -81,6 +98,25 @@ pub fn drive(fmu: &Path, motion: &Path, parameters: &[&str]) -> Table {
     Table::read(&output)
 }
 
+/// What the library gives along the rows of `motion`, straight from one to the next.
+pub fn library_along(scene: &Scene, motion: &Table) -> Table {
+    let [time, u, w] = ["time", "u", "w"].map(|name| motion.column(name));
+    let rate = |values: &[f64], i: usize| (values[i + 1] - values[i]) / (time[i + 1] - time[i]);
+    let start = Start { u_rate: rate(&u, 0), w_rate: rate(&w, 0), ..Start::default() };
+    let mut simulation = Simulation::new(scene, &start).unwrap();
+    let variables = variables(scene);
+    let mut rows = vec![vec![0.0; variables.len()]];
+    simulation.evaluate(&variables, &mut rows[0]);
+    for i in 0..time.len() - 1 {
+        let path = |values: &[f64]| scene::Path { rate: rate(values, i), ..scene::Path::default() };
+        simulation.advance(&Motion { duration: time[i + 1] - time[i], u: path(&u), w: path(&w) }).unwrap();
+        let mut row = vec![0.0; variables.len()];
+        simulation.evaluate(&variables, &mut row);
+        rows.push(row);
+    }
+    Table { names: variables.into_iter().map(|variable| variable.name).collect(), rows }
+}
+
 /// A result file.
 #[derive(Debug)]
 pub struct Table {
@@ -96,6 +132,18 @@ impl Table {
         let names = lines.next().unwrap().split(',').map(|name| name.trim_matches('"').to_owned()).collect();
         let rows = lines.map(|line| line.split(',').map(|field| field.parse().unwrap()).collect()).collect();
         Self { names, rows }
+    }
+
+    /// The table with these rows.
+    pub fn new(names: &[&str], rows: Vec<Vec<f64>>) -> Self {
+        Self { names: names.iter().map(|&name| name.to_owned()).collect(), rows }
+    }
+
+    /// Writes it as a file, zero as 0.0: some readers take 0 for a column of integers.
+    pub fn write(&self, path: &Path) {
+        let line = |row: &Vec<f64>| row.iter().map(|value| format!("{value:?}")).collect::<Vec<_>>().join(",");
+        let lines: Vec<String> = [self.names.join(",")].into_iter().chain(self.rows.iter().map(line)).collect();
+        fs::write(path, lines.join("\n") + "\n").unwrap();
     }
 
     /// The names of the columns.
@@ -119,6 +167,13 @@ impl Table {
         self.rows = self.rows.into_iter().step_by(step).collect();
         self
     }
+}
+
+/// What lies at `time` on the straight lines between `values` at `times`.
+pub fn interpolate(times: &[f64], values: &[f64], time: f64) -> f64 {
+    let after = times.partition_point(|&other| other < time).clamp(1, times.len() - 1);
+    let part = (time - times[after - 1]) / (times[after] - times[after - 1]);
+    values[after - 1] + part * (values[after] - values[after - 1])
 }
 
 /// The largest absolute value.

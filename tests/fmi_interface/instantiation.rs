@@ -1,12 +1,12 @@
 //! Making instances: what is checked, and where the scene is found.
 
 use std::ffi::CStr;
-use std::{fs, ptr, thread};
+use std::{fs, ptr};
 
 use asperity::fmi::bindings::*;
 use asperity::fmi::{fmi2FreeInstance, fmi2GetTypesPlatform, fmi2GetVersion};
 
-use crate::master::{ERROR, Fmu, Folder, Messages, OK, Request, SCENE, callbacks};
+use crate::master::{ERROR, Folder, Messages, Request, SCENE, callbacks};
 
 #[test]
 fn version_and_platform_are_the_standards() {
@@ -132,18 +132,4 @@ fn the_guid_follows_whatever_would_run_differently() {
     fs::write(folder.path().join("profile.csv"), "0,0\n1e-4,2e-6\n2e-4,0\n").unwrap();
     assert_ne!(folder.description().0, first);
     assert_ne!(Folder::with_scene("", &SCENE.replace("0.3", "0.4")).description().0, first);
-}
-
-#[test]
-fn instances_in_many_threads_do_not_know_of_each_other() {
-    let drive = |u: f64| {
-        let fmu = Fmu::running();
-        assert_eq!(fmu.set_real("u", u), OK);
-        (0..100).for_each(|i| assert_eq!(fmu.step(f64::from(i) * 1e-7, 1e-7), OK));
-        (fmu.real("u"), fmu.real("F_x"), fmu.real("F_z"))
-    };
-    let alone: Vec<_> = (0..8).map(|i| drive(f64::from(i) * 1e-9)).collect();
-    let threads: Vec<_> = (0..8).map(|i| thread::spawn(move || drive(f64::from(i) * 1e-9))).collect();
-    let together: Vec<_> = threads.into_iter().map(|thread| thread.join().unwrap()).collect();
-    assert_eq!(together, alone);
 }

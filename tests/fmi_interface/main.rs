@@ -1,10 +1,20 @@
 //! The FMU driven through its C functions, as a master drives it.
-#![allow(unsafe_code, unreachable_pub, clippy::unwrap_used)]
+#![allow(unsafe_code, unreachable_pub, clippy::unwrap_used, clippy::panic)]
 
+#[allow(dead_code, reason = "shared by several tests")]
+#[path = "../common/mod.rs"]
+mod common;
+
+mod alone;
+mod derivatives;
+mod failures;
 mod instantiation;
+mod library;
 mod lifecycle;
 mod logging;
+mod many;
 mod master;
+mod serialised;
 mod states;
 mod stepping;
 mod values;

@@ -38,6 +38,28 @@ coulomb = 0.3
 outputs = ["forces", "contact"]
 "#;
 
+/// Three masses over the same wave, with everything that a scene can have.
+pub const EVERYTHING: &str = r#"
+name = "everything"
+[layer]
+masses = 3
+spacing = 0.7e-4
+mass = 1.0e-7
+vertical = { stiffness = 2e3, damping = 8e-3, maxwell = [{ stiffness = 1e3, relaxation_time = 1e-4 }] }
+horizontal = { stiffness = 1e3, damping = 8e-3, maxwell = [{ stiffness = 5e2, relaxation_time = 1e-5 }] }
+lateral_x = { stiffness = 5e2, damping = 2e-3, maxwell = [{ stiffness = 2e2, relaxation_time = 1e-5 }] }
+lateral_z = { stiffness = 3e2, damping = 2e-3 }
+[surface]
+kind = "file"
+path = "profile.csv"
+periodic = true
+[friction]
+coulomb = 0.3
+shear_force = 1e-5
+[fmu]
+outputs = ["forces", "dissipation", "friction", "contact", "energy", "tangent", "solver", "elements"]
+"#;
+
 /// A folder that is removed when it is no longer needed.
 pub struct Folder(PathBuf);
 
@@ -182,14 +204,22 @@ impl Fmu {
 
     /// An instance of [`SCENE`] in the initialisation mode.
     pub fn initialising() -> Self {
-        let fmu = Self::new();
+        Self::initialising_with(SCENE)
+    }
+
+    pub fn initialising_with(scene: &str) -> Self {
+        let fmu = Self::of(scene, false);
         assert_eq!((fmu.setup(0.0), fmu.enter()), (OK, OK));
         fmu
     }
 
     /// An instance of [`SCENE`] that can step from time 0.
     pub fn running() -> Self {
-        let fmu = Self::initialising();
+        Self::running_with(SCENE)
+    }
+
+    pub fn running_with(scene: &str) -> Self {
+        let fmu = Self::initialising_with(scene);
         assert_eq!(fmu.exit(), OK);
         fmu
     }
@@ -213,6 +243,21 @@ impl Fmu {
 
     pub fn setup(&self, start: f64) -> fmi2Status {
         self.setup_all(None, start, None)
+    }
+
+    /// All outputs but the processor time, bit by bit.
+    pub fn bits(&self) -> Vec<u64> {
+        let is_time = |entry: &fmi::Entry<'_>| entry.name() == "solver.run_time";
+        let outputs = self.catalogue.entries().filter(|(_, entry)| matches!(entry, fmi::Entry::Output(..)));
+        let bits = |(reference, entry): (u32, fmi::Entry<'_>)| match entry.kind() {
+            fmi::Kind::Real => self.real(&entry.name()).to_bits(),
+            _ => {
+                let mut value = [0];
+                assert_eq!(self.get_integers(&[reference], &mut value), OK);
+                u64::from(value[0].unsigned_abs())
+            }
+        };
+        outputs.filter(|(_, entry)| !is_time(entry)).map(bits).collect()
     }
 
     pub fn real(&self, name: &str) -> f64 {
@@ -321,6 +366,62 @@ impl Fmu {
     pub fn free_state(&self, state: &mut fmi2FMUstate) -> fmi2Status {
         // SAFETY: see above.
         unsafe { fmi::fmi2FreeFMUstate(self.c, state) }
+    }
+
+    /// An FMU state.
+    pub fn state(&self) -> fmi2FMUstate {
+        let mut state = ptr::null_mut();
+        assert_eq!(self.get_state(&mut state), OK);
+        assert!(!state.is_null());
+        state
+    }
+
+    /// An FMU state as a byte string.
+    pub fn serialised(&self, state: fmi2FMUstate) -> Vec<u8> {
+        let mut size = 0;
+        // SAFETY: see above.
+        assert_eq!(unsafe { fmi::fmi2SerializedFMUstateSize(self.c, state, &mut size) }, OK);
+        let mut bytes = vec![0; size];
+        assert_eq!(self.serialise(state, &mut bytes), OK);
+        bytes
+    }
+
+    /// The instance as it stands as a byte string.
+    pub fn frozen(&self) -> Vec<u8> {
+        let mut state = self.state();
+        let bytes = self.serialised(state);
+        assert_eq!(self.free_state(&mut state), OK);
+        bytes
+    }
+
+    /// Goes on from a byte string.
+    pub fn thaw(&self, bytes: &[u8]) {
+        let mut state = ptr::null_mut();
+        assert_eq!(self.deserialise(bytes, &mut state), OK, "{:?}", self.messages());
+        assert_eq!((self.set_state(state), self.free_state(&mut state)), (OK, OK));
+    }
+
+    pub fn serialise(&self, state: fmi2FMUstate, bytes: &mut [u8]) -> fmi2Status {
+        // SAFETY: see above.
+        unsafe { fmi::fmi2SerializeFMUstate(self.c, state, bytes.as_mut_ptr().cast(), bytes.len()) }
+    }
+
+    pub fn deserialise(&self, bytes: &[u8], state: &mut fmi2FMUstate) -> fmi2Status {
+        // SAFETY: see above.
+        unsafe { fmi::fmi2DeSerializeFMUstate(self.c, bytes.as_ptr().cast(), bytes.len(), state) }
+    }
+
+    pub fn get_derivatives(&self, unknowns: &[u32], knowns: &[u32], by: &[f64], values: &mut [f64]) -> fmi2Status {
+        let (known, by, values) = (knowns.as_ptr(), by.as_ptr(), values.as_mut_ptr());
+        let (n, m) = (unknowns.len(), knowns.len());
+        // SAFETY: see above.
+        unsafe { fmi::fmi2GetDirectionalDerivative(self.c, unknowns.as_ptr(), n, known, m, by, values) }
+    }
+
+    pub fn get_rates(&self, references: &[u32], orders: &[i32], values: &mut [f64]) -> fmi2Status {
+        let (count, orders) = (references.len(), orders.as_ptr());
+        // SAFETY: see above.
+        unsafe { fmi::fmi2GetRealOutputDerivatives(self.c, references.as_ptr(), count, orders, values.as_mut_ptr()) }
     }
 
     pub fn set_debug_logging(&self, on: bool, categories: &[&CStr]) -> fmi2Status {

@@ -132,3 +132,42 @@ fn derivatives_are_of_order_one_and_of_inputs() {
     // The rate that came with the refused one was not taken.
     assert_eq!(fmu.step(0.0, 1e-6), OK);
 }
+
+#[test]
+fn the_stop_time_may_be_overshot_by_rounding() {
+    let fmu = Fmu::new();
+    assert_eq!(fmu.setup_all(None, 0.0, Some(1e-6)), OK);
+    assert_eq!((fmu.enter(), fmu.exit()), (OK, OK));
+    // Ten tenths are more than one.
+    let times: Vec<f64> = (0..10).scan(0.0, |time, _| Some(std::mem::replace(time, *time + 1e-7))).collect();
+    assert!(times[9] + 1e-7 > 1e-6 || times[9] + 1.00000000001e-7 > 1e-6);
+    times[..9].iter().for_each(|&time| assert_eq!(fmu.step(time, 1e-7), OK));
+    let state = fmu.state();
+    assert_eq!(fmu.step(times[9], 1.001e-7), ERROR);
+    assert!(fmu.message().contains("stop time"));
+    assert_eq!((fmu.step(times[9], 1e-7 + 5e-18), fmu.set_state(state), fmu.step(times[9], 1e-7)), (OK, OK, OK));
+}
+
+/// Equal: within 1e-10 max(|t|, h), and less than half a step away.
+#[test]
+fn points_equal_but_for_rounding_are_taken_and_others_refused() {
+    let at = |time: f64| {
+        let fmu = Fmu::new();
+        assert_eq!((fmu.setup(time), fmu.enter(), fmu.exit()), (OK, OK, OK));
+        fmu
+    };
+    for (time, h, point, expected) in [
+        (1.0, 1e-6, 1.0 + 0.99e-10, OK),
+        (1.0, 1e-6, 1.0 - 0.99e-10, OK),
+        (1.0, 1e-6, 1.0 + 1.01e-10, ERROR),
+        (1.0, 1e-6, 1.0 + 1e-6, ERROR),
+        (-5.0, 1e-6, -5.0 + 4.9e-10, OK),
+        (0.0, 1e-6, 0.9e-16, OK),
+        (0.0, 1e-6, 1.1e-16, ERROR),
+        // Within the rounding of t, but half a step away.
+        (1.0, 1e-10, 1.0 + 0.6e-10, ERROR),
+        (1.0, 1e-10, 1.0 + 0.4e-10, OK),
+    ] {
+        assert_eq!(at(time).step(point, h), expected, "{time} {h} {point}");
+    }
+}

@@ -7,18 +7,13 @@ them is straight, and the FMU is told so: by the values at a row and the rates t
 """
 
 import argparse
-import csv
 import shutil
 import sys
 
 import fmpy
 from fmpy.fmi2 import FMU2Slave
 
-
-def read_motion(path):
-    """The rows (time, u, w)."""
-    with open(path, newline="") as file:
-        return [tuple(float(row[name]) for name in ("time", "u", "w")) for row in csv.DictReader(file)]
+from tables import read_motion, write
 
 
 def rates(motion, i):
@@ -101,14 +96,6 @@ def drive(fmu, motion, parameters=()):
         slave.close()
 
 
-def write(path, motion, names, rows):
-    """Writes a result file like the program's."""
-    with open(path, "w", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(["time", "u", "w", *names])
-        writer.writerows([*here, *values] for here, values in zip(motion, rows))
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("fmu", metavar="MODEL.fmu")
@@ -118,7 +105,9 @@ def main():
     arguments = parser.parse_args()
     motion = read_motion(arguments.motion)
     parameters = [tuple(text.split("=", 1)) for text in arguments.set]
-    write(arguments.output, motion, *drive(arguments.fmu, motion, parameters))
+    names, rows = drive(arguments.fmu, motion, parameters)
+    rows = [[*here, *values] for here, values in zip(motion, rows)]
+    write(arguments.output, ["time", "u", "w", *names], rows)
 
 
 if __name__ == "__main__":

@@ -96,7 +96,6 @@ fn missing_keys() {
 fn what_is_not_yet_supported() {
     let layer =
         "masses, spacing, origin, clearance, mass, initial, roughness, vertical, horizontal, lateral_x, lateral_z";
-    let outputs = r#""forces", "dissipation", "friction", "contact", "energy", "solver", "elements""#;
     let root = "name, description, layer, surface, friction, solver, input, fmu, excitation";
     let kinds = r#""flat", "sinusoid", "points", "file""#;
     let friction = "not yet supported; allowed: coulomb, shear_force";
@@ -124,12 +123,6 @@ fn what_is_not_yet_supported() {
             (21, "method = 'step'", 21, r#"solver.method = 'step': not yet supported; allowed: "event""#),
             (21, "method = 'auto'", 21, r#"solver.method = 'auto': not yet supported; allowed: "event""#),
             (21, "reduce = 0.0", 21, &format!("solver.reduce: not yet supported; allowed: {solver}")),
-            (
-                27,
-                "outputs = ['forces', 'tangent']",
-                27,
-                &format!("fmu.outputs[2] = 'tangent': not yet supported; allowed: {outputs}"),
-            ),
             (
                 31,
                 "until_pressure = 2e5",

@@ -11,6 +11,7 @@
 
 mod maxwell;
 mod newton;
+mod variation;
 
 use super::add;
 use super::rates::Rates;

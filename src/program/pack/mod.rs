@@ -1,7 +1,6 @@
 //! `asperity pack`: a scene and the shared library as one FMU.
 
 mod archive;
-mod dependencies;
 mod documentation;
 mod libraries;
 mod model_description;
@@ -24,6 +23,7 @@ use parts::PARTS;
 /// Writes the FMU.
 pub(crate) fn pack(command: &Pack) -> Result<(), ProgramError> {
     let scene = super::load(&command.scene)?;
+    super::check_output(&command.output, &super::sources(&command.scene, &scene))?;
     let mut entries = libraries::binaries(&scene, &command.library)?;
     entries.extend(resources(&scene, &command.scene)?);
     entries.extend(documents(&scene, &command.scene)?);

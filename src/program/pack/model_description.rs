@@ -3,11 +3,11 @@
 use std::io;
 
 use asperity::fmi::{CAPABILITIES, Catalogue, Category, Entry};
+use asperity::outputs::{Dependencies, dependencies};
 use asperity::scene::Scene;
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 
-use super::dependencies::{self, Dependencies};
 use super::{units, variables as scalar_variables};
 
 /// A document in the making.
@@ -100,7 +100,7 @@ pub(super) fn real(value: f64) -> String {
 
 fn model_structure(xml: &mut Xml, scene: &Scene, catalogue: &Catalogue) -> io::Result<()> {
     let outputs = |(reference, entry)| match entry {
-        Entry::Output(_, variable) if scalar_variables::is_output(variable) => Some((reference, variable)),
+        Entry::Output(_, variable) if variable.is_output() => Some((reference, variable)),
         _ => None,
     };
     let unknowns = || catalogue.entries().filter_map(outputs);
@@ -111,7 +111,7 @@ fn model_structure(xml: &mut Xml, scene: &Scene, catalogue: &Catalogue) -> io::R
     structure.write_inner_content(|xml| {
         xml.create_element("Outputs").write_inner_content(|xml| {
             unknowns()
-                .try_for_each(|(reference, variable)| output(xml, reference, dependencies::of(scene, variable.output)))
+                .try_for_each(|(reference, variable)| output(xml, reference, dependencies(scene, variable.output)))
         })?;
         // Without dependencies named: at the start everything may depend on inputs and parameters alike.
         xml.create_element("InitialUnknowns")

@@ -3,16 +3,10 @@
 use std::io;
 
 use asperity::fmi::{Catalogue, Entry, Input, Kind};
-use asperity::outputs::Variable;
-use asperity::scene::{OutputGroup, Scene, Unit, Value};
+use asperity::scene::{Scene, Unit, Value};
 
 use super::model_description::{Xml, clean, real};
 use super::units;
-
-/// Whether a variable is an output of the unit; the fields of the elements are local.
-pub(super) fn is_output(variable: &Variable) -> bool {
-    variable.group != OutputGroup::Elements
-}
 
 /// What a variable is, in a few words.
 pub(super) fn description(entry: &Entry<'_>) -> String {
@@ -28,7 +22,7 @@ pub(super) fn description(entry: &Entry<'_>) -> String {
 pub(super) fn causality(entry: &Entry<'_>) -> &'static str {
     match entry {
         Entry::Input(_) => "input",
-        Entry::Output(_, variable) if is_output(variable) => "output",
+        Entry::Output(_, variable) if variable.is_output() => "output",
         Entry::Output(..) => "local",
         Entry::Parameter(..) => "parameter",
     }

@@ -14,17 +14,24 @@
 //! - V follows each input whose link has a spring or Maxwell elements, and with V `energy.residual`.
 //! - T, everything integrated, and everything counted are states or follow from states alone.
 
-use asperity::outputs::Output;
-use asperity::scene::{Link, Scene};
+use super::Output;
+use crate::scene::{Link, Scene};
 
 /// Whether something depends directly on u and on w.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Dependencies {
-    pub(super) on_u: bool,
-    pub(super) on_w: bool,
+pub struct Dependencies {
+    /// On u.
+    pub on_u: bool,
+    /// On w.
+    pub on_w: bool,
 }
 
 impl Dependencies {
+    /// The parts of a direction (of u, of w) that count.
+    pub fn part_of(self, (du, dw): (f64, f64)) -> (f64, f64) {
+        (if self.on_u { du } else { 0.0 }, if self.on_w { dw } else { 0.0 })
+    }
+
     fn or(self, other: Self) -> Self {
         Self { on_u: self.on_u || other.on_u, on_w: self.on_w || other.on_w }
     }
@@ -35,7 +42,7 @@ impl Dependencies {
 }
 
 /// What `output` depends on directly in `scene`.
-pub(super) fn of(scene: &Scene, output: Output) -> Dependencies {
+pub fn dependencies(scene: &Scene, output: Output) -> Dependencies {
     let elastic = links(scene, |link| link.stiffness.is_some() || !link.maxwell.is_empty());
     match output {
         Output::ForceX => Dependencies { on_w: false, ..elastic },
@@ -55,6 +62,10 @@ pub(super) fn of(scene: &Scene, output: Output) -> Dependencies {
         | Output::ContactRatio
         | Output::InputEnergy
         | Output::KineticEnergy
+        | Output::TangentXU
+        | Output::TangentXW
+        | Output::TangentZU
+        | Output::TangentZW
         | Output::Steps
         | Output::Events
         | Output::Rejected

@@ -1,0 +1,52 @@
+//! A scene with everything, and what the tests of the conductor share.
+
+use std::path::Path as FilePath;
+
+use super::{Motion, Simulation};
+use crate::outputs::variables;
+use crate::scene::{Path, Scene};
+
+/// Six masses over a wave, Maxwell elements on all links, both parts of friction, all outputs.
+pub(crate) const TEXT: &str = r#"
+name = "everything"
+[layer]
+masses = 6
+spacing = 1.1e-4
+mass = 1e-7
+vertical = { stiffness = 2e3, damping = 8e-3, maxwell = [{ stiffness = 1e3, relaxation_time = 1e-4 }] }
+horizontal = { stiffness = 1e3, damping = 5e-3, maxwell = [
+    { stiffness = 6e2, relaxation_time = 1e-4 }, { stiffness = 2e2, relaxation_time = 1e-6 } ] }
+lateral_x = { stiffness = 5e2, damping = 2e-3, maxwell = [{ stiffness = 2e2, relaxation_time = 1e-5 }] }
+lateral_z = { stiffness = 3e2, damping = 2e-3, maxwell = [{ stiffness = 1e2, relaxation_time = 1e-5 }] }
+[surface]
+kind = "sinusoid"
+amplitude = 3e-6
+wavelength = 5e-4
+[friction]
+coulomb = 0.4
+shear_force = 5e-5
+[solver]
+relative_tolerance = 1e-11
+[fmu]
+outputs = ["forces", "dissipation", "friction", "contact", "energy", "tangent", "solver", "elements"]
+"#;
+
+/// A motion after which masses are free, slip and stick.
+pub(super) const WAVE: Motion = Motion {
+    duration: 1.3e-4,
+    u: Path { rate: 0.02, amplitude: 1e-6, frequency: 2000.0 },
+    w: Path { rate: -0.002, amplitude: 1e-7, frequency: 5000.0 },
+};
+
+pub(super) fn scene() -> Scene {
+    Scene::parse(TEXT, FilePath::new("everything.toml")).unwrap()
+}
+
+/// All variables but the processor time, by name.
+pub(super) fn variables_of(scene: &Scene, simulation: &mut Simulation) -> Vec<(String, f64)> {
+    let variables = variables(scene);
+    let mut values = vec![0.0; variables.len()];
+    simulation.evaluate(&variables, &mut values);
+    let named = variables.into_iter().map(|variable| variable.name).zip(values);
+    named.filter(|(name, _)| name != "solver.run_time").collect()
+}

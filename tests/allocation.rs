@@ -1,0 +1,147 @@
+//! Nothing is allocated once a run has started: all room is made by `Simulation::new`.
+#![allow(missing_docs, clippy::unwrap_used, clippy::panic, reason = "tests may fail")]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::path::Path as FilePath;
+
+use asperity::outputs::{Variable, variables};
+use asperity::scene::{Path, Scene};
+use asperity::simulation::{Motion, Simulation, Start};
+
+thread_local! {
+    static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
+}
+
+/// The system's allocator, counting for each thread how often it is asked.
+struct Counting;
+
+#[global_allocator]
+static COUNTING: Counting = Counting;
+
+fn count() {
+    ALLOCATIONS.set(ALLOCATIONS.get() + 1);
+}
+
+#[allow(unsafe_code, reason = "an allocator cannot be written without; it hands every call on to the system's")]
+// SAFETY: every call goes unchanged to `System`, which keeps the contract; counting neither allocates nor unwinds.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        // SAFETY: the caller keeps the contract of `GlobalAlloc::alloc`, the same one.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count();
+        // SAFETY: `pointer` came from `alloc` above, so from `System`.
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: `pointer` came from `alloc` above, so from `System`.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+/// How often `work` asks for memory on this thread.
+fn allocations(work: impl FnOnce()) -> usize {
+    let before = ALLOCATIONS.get();
+    work();
+    ALLOCATIONS.get() - before
+}
+
+/// Everything at once: Maxwell elements on every kind of link, stick and slip, impacts, all outputs.
+const RATTLE: &str = r#"
+name = "rattle"
+
+[layer]
+masses = 20
+spacing = 1.3e-4
+clearance = 1e-6
+mass = 2e-7
+vertical = { stiffness = 1000, damping = 0.002, maxwell = [{ stiffness = 500, relaxation_time = 1e-4 }] }
+horizontal = { stiffness = 2000, damping = 0.008, maxwell = [{ stiffness = 300, relaxation_time = 1e-3 }] }
+lateral_x = { stiffness = 300, damping = 0.001, maxwell = [{ stiffness = 100, relaxation_time = 1e-5 }] }
+lateral_z = { stiffness = 200, damping = 0.001, maxwell = [{ stiffness = 50, relaxation_time = 1e-4 }] }
+
+[surface]
+kind = "sinusoid"
+amplitude = 1e-5
+wavelength = 5e-4
+
+[friction]
+coulomb = 0.2
+shear_force = 1e-4
+
+[fmu]
+outputs = ["forces", "dissipation", "friction", "contact", "energy", "solver", "elements"]
+"#;
+
+/// The carrier swings, so that masses stop, stick, break loose, lift and touch.
+const SWING: Motion = Motion {
+    duration: 1e-4,
+    u: Path { rate: 1.0, amplitude: 2e-4, frequency: 5000.0 },
+    w: Path { rate: 0.0, amplitude: 1e-6, frequency: 9000.0 },
+};
+
+fn rattling() -> (Simulation, Vec<Variable>, Vec<f64>) {
+    let scene = Scene::parse(RATTLE, FilePath::new("rattle.toml")).unwrap();
+    let mut simulation = Simulation::new(&scene, &Start { w: -5e-6, ..Start::default() }).unwrap();
+    simulation.advance(&SWING).unwrap();
+    let variables = variables(&scene);
+    let values = vec![0.0; variables.len()];
+    (simulation, variables, values)
+}
+
+fn value(variables: &[Variable], values: &[f64], name: &str) -> f64 {
+    values[variables.iter().position(|variable| variable.name == name).unwrap()]
+}
+
+/// The counter counts: a test of the tests.
+#[test]
+fn an_allocation_is_counted() {
+    assert_eq!(allocations(|| drop(std::hint::black_box(vec![1_u8]))), 1);
+}
+
+/// 40 motions with hundreds of mode changes and impacts, and all outputs after each, without a single allocation.
+#[test]
+fn a_run_allocates_nothing() {
+    let (mut simulation, variables, mut values) = rattling();
+    let count = allocations(|| {
+        for _ in 0..40 {
+            simulation.advance(&SWING).unwrap();
+            simulation.evaluate(&variables, &mut values);
+        }
+    });
+    assert_eq!(count, 0);
+    let (events, lost) =
+        (value(&variables, &values, "solver.events"), value(&variables, &values, "dissipation.E_impact"));
+    assert!(events > 200.0 && lost > 0.0, "a lively run: {events} events, {lost} J lost in impacts");
+}
+
+/// Nor do rows within the steps.
+#[test]
+fn rows_within_steps_allocate_nothing() {
+    let (mut simulation, variables, mut values) = rattling();
+    let times: [f64; 101] = std::array::from_fn(|i| 1e-6 * i as f64);
+    let mut rows = 0;
+    let count = allocations(|| {
+        for _ in 0..4 {
+            let row = |_: f64, now: &mut Simulation| {
+                now.evaluate(&variables, &mut values);
+                rows += 1;
+            };
+            simulation.advance_observed(&SWING, &times, row).unwrap();
+        }
+    });
+    assert_eq!((count, rows), (0, 404));
+}
+
+/// Nor does a motion that fails.
+#[test]
+fn a_refused_motion_allocates_nothing() {
+    let (mut simulation, ..) = rattling();
+    let count = allocations(|| assert!(simulation.advance(&Motion { duration: f64::NAN, ..SWING }).is_err()));
+    assert_eq!(count, 0);
+}

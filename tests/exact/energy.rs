@@ -1,0 +1,82 @@
+//! The energy balance: E_in = Δ(T + V) + E_damper + E_maxwell + E_friction + E_impact holds exactly in the model, and
+//! every channel is added up on its own, so what a run misses is its numerical error.
+
+use asperity::simulation::{Motion, Start};
+
+use crate::run::{Law, Random, Run, largest, link, rate, sine, solver, steps};
+
+const CHANNELS: [&str; 5] =
+    ["energy.residual", "energy.input", "E_diss", "dissipation.E_friction", "dissipation.E_impact"];
+
+/// Six coupled masses over a random periodic profile of 2 µm a point, itself rough.
+fn scene(friction: &str, relative: f64) -> String {
+    let mut random = Random(7);
+    let points = 32;
+    let x: Vec<f64> = (0..=points).map(|i| f64::from(i) * 2.0e-5).collect();
+    let mut z: Vec<f64> = (0..=points).map(|_| random.between(-2.0e-6, 2.0e-6)).collect();
+    z[points as usize] = z[0];
+    let roughness: Vec<f64> = (0..6).map(|_| random.between(-1.0e-6, 1.0e-6)).collect();
+    let links = link("vertical", &Law::with_maxwell(2.0e3, 4.0e-3, &[(1.0e3, 1.0e-4), (500.0, 5.0e-6)]))
+        + &link("horizontal", &Law::with_maxwell(1.0e3, 4.0e-3, &[(600.0, 2.0e-5)]))
+        + &link("lateral_x", &Law::new(500.0, 2.0e-3))
+        + &link("lateral_z", &Law::with_maxwell(300.0, 1.0e-3, &[(200.0, 3.0e-5)]));
+    let solver = solver(relative, relative * 6.0e-6);
+    format!(
+        "[layer]\nmasses = 6\nspacing = 7e-5\nmass = 1e-7\nclearance = 1e-6\n\
+         roughness = {{ kind = \"points\", z = {roughness:?} }}\n{links}\
+         [surface]\nkind = \"points\"\nperiodic = true\nx = {x:?}\nz = {z:?}\n{friction}\n{solver}"
+    )
+}
+
+/// Presses, slides and vibrates; what the balance misses at worst over the largest energy, and the last values of the
+/// channels.
+fn balance(friction: &str, relative: f64) -> (f64, Vec<f64>) {
+    let mut run = Run::new(&scene(friction, relative), Start { u_rate: 0.1, w_rate: -0.02, ..Start::default() });
+    let names = if friction.is_empty() { vec!["energy.residual", "energy.input", "E_diss"] } else { CHANNELS.to_vec() };
+    let duration = 3.0e-4;
+    let phases = [(rate(0.1), rate(-0.02)), (rate(0.3), sine(3.0e-6, 8.0e3)), (sine(2.0e-5, 3.0e3), rate(0.005))];
+    let (mut worst, mut size, mut last) = (0.0_f64, 0.0_f64, Vec::new());
+    for (u, w) in phases {
+        let mut times = steps((0.0, duration), 60);
+        times.push(duration);
+        let columns = run.sample(&Motion { duration, u, w }, &times, &names);
+        worst = worst.max(largest(&columns[0]));
+        size = size.max(largest(&columns[1])).max(largest(&columns[2]));
+        last = columns.iter().map(|column| column[60]).collect();
+    }
+    assert!(run.get("dissipation.E_impact") > 0.0, "masses strike the profile");
+    assert!(run.events().len() > 20, "masses come and go");
+    (worst / size, last)
+}
+
+/// Steps with an error of the tolerance each, some thousand of them between events that they all pass on.
+fn balances(friction: &str) {
+    let (coarse, _) = balance(friction, 1e-6);
+    let (fine, last) = balance(friction, 1e-9);
+    assert!(coarse <= 1e-4, "at 1e-6 the balance misses {coarse:e}");
+    assert!(fine <= 1e-7, "at 1e-9 the balance misses {fine:e}");
+    assert!(fine <= 0.02 * coarse, "from {coarse:e} only to {fine:e}");
+    if !friction.is_empty() {
+        assert!(last[3] > 0.01 * last[2], "friction takes its share: {last:?}");
+    }
+}
+
+#[test]
+fn without_friction() {
+    balances("");
+}
+
+#[test]
+fn with_coulomb_friction() {
+    balances("[friction]\ncoulomb = 0.4");
+}
+
+#[test]
+fn with_adhesive_shear() {
+    balances("[friction]\nshear_force = 2e-3");
+}
+
+#[test]
+fn with_both() {
+    balances("[friction]\ncoulomb = 0.2\nshear_force = 1e-3");
+}

@@ -1,0 +1,182 @@
+//! One mass alone: touch and lift, impact, stop and break at the roots of known functions.
+
+use asperity::simulation::{ModeChange, Start};
+
+use crate::run::{Law, REST, Run, assert_near, link, rate, root, solver};
+
+const MASS: f64 = 1.0e-7;
+/// c of the vertical spring.
+const STIFFNESS: f64 = 2.0e3;
+/// μ where there is friction.
+const FRICTION: f64 = 0.3;
+
+/// Events lie where a limit is passed by some hundredth of the absolute tolerance, 1e-14 m, and the steps before them
+/// err by the tolerances, 1e-9: of times of 1e-5 to 1e-3 s, a millionth of a microsecond.
+const TIME: f64 = 1.0e-12;
+
+/// Of energies and places: ten times the relative tolerance.
+const SHARE: f64 = 1.0e-8;
+
+struct One {
+    clearance: f64,
+    /// Slope of the profile, a straight line through the origin.
+    slope: f64,
+    vertical: Law,
+    horizontal: Law,
+    friction: &'static str,
+}
+
+impl Default for One {
+    fn default() -> Self {
+        let vertical = Law::new(STIFFNESS, 0.0);
+        Self { clearance: 0.0, slope: 0.0, vertical, horizontal: Law::default(), friction: "" }
+    }
+}
+
+impl One {
+    fn start(&self, start: Start) -> Run {
+        let links = link("vertical", &self.vertical) + &link("horizontal", &self.horizontal);
+        let (clearance, end, friction, solver) = (self.clearance, self.slope, self.friction, solver(1e-9, 1e-14));
+        let text = format!(
+            "[layer]\nmasses = 1\nspacing = 1e-4\nmass = {MASS:?}\nclearance = {clearance:?}\n{links}\
+             [surface]\nkind = \"points\"\nx = [-1.0, 1.0]\nz = [{:?}, {end:?}]\n{friction}{solver}",
+            -end
+        );
+        Run::new(&text, start)
+    }
+}
+
+/// The one mode change of a run: its time.
+#[track_caller]
+fn only(events: &[ModeChange], from: i8, to: i8) -> f64 {
+    assert_eq!(events.len(), 1, "{events:?}");
+    assert_eq!((events[0].mass, events[0].from, events[0].to), (0, from, to));
+    events[0].time
+}
+
+fn square(x: f64) -> f64 {
+    x * x
+}
+
+/// Carrier and mass move together towards a line of slope s from the height h: they touch at h/(V + sU). There
+/// v_n = -(V + sU)/q is lost, v_t = (U - sV)/q falls by μ |v_n| towards 0, and ½ m (v_n² + v_t² - v_t⁺²) is gone.
+fn strikes(slope: f64, u_rate: f64, w_rate: f64, mode: i8) {
+    let (height, q) = (1.0e-6, slope.hypot(1.0));
+    let one = One { clearance: height, slope, friction: "[friction]\ncoulomb = 0.3\n", ..One::default() };
+    let mut run = one.start(Start { u_rate, w_rate, ..Start::default() });
+    let touch = height / (slope * u_rate - w_rate);
+    run.drive(touch + 1e-10, rate(u_rate), rate(w_rate));
+    assert_near("touch", only(&run.events(), 0, mode), touch, TIME);
+    let v_n = (w_rate - slope * u_rate) / q;
+    let v_t = (u_rate + slope * w_rate) / q;
+    let after = (v_t.abs() + FRICTION * v_n).max(0.0);
+    let (kinetic, lost) = (0.5 * MASS * square(after), 0.5 * MASS * (square(v_n) + square(v_t) - square(after)));
+    assert_near("lost in the impact", run.get("dissipation.E_impact"), lost, SHARE * lost);
+    // In the 1e-10 s since, the spring has grown by c V 1e-10 s = 1e-8 N: nothing.
+    assert_near("left after the impact", run.get("energy.kinetic"), kinetic, SHARE * lost);
+}
+
+#[test]
+fn an_impact_that_slips_on() {
+    strikes(0.0, 0.03, -0.05, 1);
+    strikes(0.0, -0.03, -0.05, -1);
+}
+
+#[test]
+fn an_impact_that_sticks() {
+    strikes(0.0, 0.0149, -0.05, 2);
+    strikes(0.0, 0.0, -0.05, 2);
+}
+
+#[test]
+fn an_impact_on_a_slope() {
+    strikes(0.5, 0.06, -0.02, 1);
+    strikes(-0.5, -0.06, -0.02, -1);
+    strikes(0.25, 0.01, -0.05, 2);
+}
+
+/// A mass thrown down with V under a carrier at rest swings as ζ = -(V/ω_d) e^{-δt} sin ω_d t, δ = d/2m, ω_d² = c/m -
+/// δ². It touches at ζ = -h with ζ̇ and is stopped; the spring, drawn by h, lifts it off again at once, and damping
+/// never lets it come back.
+#[test]
+fn a_swinging_mass_touches() {
+    let (height, speed, damping) = (1.0e-6, 0.2, 2.0e-3);
+    let one = One { clearance: height, vertical: Law::new(STIFFNESS, damping), ..One::default() };
+    let decay = damping / (2.0 * MASS);
+    let omega = (STIFFNESS / MASS - square(decay)).sqrt();
+    let fall = |t: f64| (speed / omega) * (-decay * t).exp() * (omega * t).sin();
+    let velocity = |t: f64| speed * (-decay * t).exp() * ((omega * t).cos() - decay / omega * (omega * t).sin());
+    let touch = root(|t| fall(t) - height, (0.0, std::f64::consts::FRAC_PI_2 / omega * 0.9));
+    let mut run = one.start(Start { w_rate: -speed, ..Start::default() });
+    let mut before = run.clone();
+    before.drive(touch - 2.0 * TIME, REST, REST);
+    assert_eq!(before.get("dissipation.E_impact"), 0.0, "not touched yet");
+    run.drive(touch + 2.0 * TIME, REST, REST);
+    // The speed at the touch errs as the way there does, and counts twice.
+    let (lost, share) = (0.5 * MASS * square(velocity(touch)), 3.0 * SHARE);
+    assert_near("lost in the impact", run.get("dissipation.E_impact"), lost, share * lost);
+    run.drive(5.0e-4, REST, REST);
+    assert_eq!(run.mode(1), 0.0);
+    assert_near("lost in all impacts", run.get("dissipation.E_impact"), lost, share * lost);
+}
+
+/// Grazing: an undamped mass thrown down with V swings to the depth V/ω. One a millionth higher than the profile passes
+/// it; a millionth lower, it strikes with ½ m V² (1 - (hω/V)²) and bounces no more.
+#[test]
+fn a_grazing_mass() {
+    let speed = 0.2;
+    let depth = speed / (STIFFNESS / MASS).sqrt();
+    let lost = |height: f64| {
+        let mut run = One { clearance: height, ..One::default() }.start(Start { w_rate: -speed, ..Start::default() });
+        run.drive(1.0e-4, REST, REST);
+        assert!(run.get("solver.steps") < 5e3, "no trembling: {} steps", run.get("solver.steps"));
+        run.get("dissipation.E_impact")
+    };
+    assert_eq!(lost(depth * (1.0 + 1e-6)), 0.0);
+    let expected = 0.5 * MASS * square(speed) * (1.0 - square(1.0 - 1e-6));
+    // The depth is right to the tolerance of a step, some 1e-8 of it, out of 1e-6.
+    assert_near("grazing", lost(depth * (1.0 - 1e-6)), expected, 0.02 * expected);
+}
+
+/// A mass pressed by w_0, the carrier lifted at V: with the mass on the flat F_N = c (w_0 - V t) - d V
+/// - c_1 V τ (1 - e^{-t/τ}), whose root is the lift.
+#[test]
+fn a_pressed_mass_lifts() {
+    let (pressed, speed, (c_1, tau)) = (1.0e-5, 0.05, (800.0, 5.0e-5));
+    let normal =
+        |t: f64| STIFFNESS * (pressed - speed * t) - 2.0e-2 * speed - c_1 * speed * tau * (1.0 - (-t / tau).exp());
+    let lift = root(normal, (0.0, 1.0e-3));
+    let vertical = Law::with_maxwell(STIFFNESS, 2.0e-2, &[(c_1, tau)]);
+    let mut run = One { vertical, ..One::default() }.start(Start { w: -pressed, ..Start::default() });
+    run.drive(1.0e-4, REST, rate(speed));
+    assert_near("F_N", run.get("element[1].F_N"), normal(1.0e-4), SHARE * STIFFNESS * pressed);
+    run.drive(1.0e-3, REST, rate(speed));
+    assert_near("lift", only(&run.events(), 1, 0), lift, TIME);
+}
+
+/// On a slope s, frictionless, the spring's r = ζ - w follows r̈ = -Ω² r, Ω² = c s²/(m q²), on the line, and lifts the
+/// mass off at r = 0, with its velocity; from there r̈ = -ω² r, ω² = c/m, x goes on evenly, and the gap opens with t³.
+#[test]
+fn a_lift_keeps_the_velocity() {
+    let (slope, pressed, speed) = (0.4_f64, 1.0e-5, 0.05);
+    let (q2, omega) = (1.0 + square(slope), (STIFFNESS / MASS).sqrt());
+    let omega_line = omega * slope / q2.sqrt();
+    // The carrier's rate before t = 0 is that of the motion: of it the lifted mass keeps s ẇ/q² along x.
+    let start_x = slope * speed / q2;
+    let r = |t: f64| pressed * (omega_line * t).cos() + (slope * start_x - speed) / omega_line * (omega_line * t).sin();
+    let r_rate =
+        |t: f64| -pressed * omega_line * (omega_line * t).sin() + (slope * start_x - speed) * (omega_line * t).cos();
+    let lift = root(r, (0.0, std::f64::consts::PI / omega_line));
+    let mut run = One { slope, ..One::default() }.start(Start { w: -pressed, w_rate: speed, ..Start::default() });
+    let after = 5.0e-6;
+    run.drive(lift + after, REST, rate(speed));
+    let events = run.events();
+    assert_near("lift", events.last().unwrap().time, lift, TIME);
+    assert_eq!(run.mode(1), 0.0);
+    // Along the line s x = r + w, w = -w_0 + V t.
+    let (x_lift, x_rate) = ((r(lift) - pressed + speed * lift) / slope, (r_rate(lift) + speed) / slope);
+    assert_near("x", run.get("element[1].x"), x_lift + x_rate * after, SHARE * pressed);
+    let w = -pressed + speed * (lift + after);
+    let z = w + r_rate(lift) / omega * (omega * after).sin();
+    assert_near("z", run.get("element[1].z"), z, SHARE * pressed);
+}

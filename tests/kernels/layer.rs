@@ -1,0 +1,199 @@
+//! What the tests share: layers given in a few words, fixed steps, random numbers.
+
+use std::path::Path as FilePath;
+
+use asperity::integrator::{Attempt, Dense, Followed, Integrator, STAGES, Tolerance};
+use asperity::model::{Carrier, Forces, LinkKind, Model, State};
+use asperity::scene::{Path, Scene};
+use asperity::simulation::Simulation;
+
+/// A spring, a damper and Maxwell elements (c_j, τ_j).
+#[derive(Clone, Debug, Default)]
+pub struct Link {
+    pub stiffness: f64,
+    pub damping: f64,
+    pub maxwell: Vec<(f64, f64)>,
+}
+
+impl Link {
+    pub fn new(stiffness: f64, damping: f64, maxwell: &[(f64, f64)]) -> Option<Self> {
+        Some(Self { stiffness, damping, maxwell: maxwell.to_vec() })
+    }
+}
+
+/// A scene in a few words.
+#[derive(Clone, Debug)]
+pub struct Layer {
+    pub masses: usize,
+    pub mass: f64,
+    pub spacing: f64,
+    pub clearance: f64,
+    /// In the order of [`LinkKind::ALL`].
+    pub links: [Option<Link>; 4],
+    /// The lines of `[surface]`.
+    pub surface: String,
+    /// μ and A τ_0.
+    pub friction: Option<(f64, f64)>,
+    /// The lines of `[solver]`.
+    pub solver: String,
+}
+
+pub const FLAT: &str = "kind = \"flat\"";
+
+impl Default for Layer {
+    /// One mass without links, 1 m above a flat surface.
+    fn default() -> Self {
+        Self {
+            masses: 1,
+            mass: 1.0,
+            spacing: 1.0,
+            clearance: 1.0,
+            links: [None, None, None, None],
+            surface: FLAT.into(),
+            friction: None,
+            solver: String::new(),
+        }
+    }
+}
+
+impl Layer {
+    pub fn scene(&self) -> Scene {
+        let Self { masses, mass, spacing, clearance, .. } = self;
+        let mut text = format!(
+            "name = \"test\"\n[layer]\nmasses = {masses}\nmass = {mass:e}\nspacing = {spacing:e}\n\
+             clearance = {clearance:e}\n"
+        );
+        for (kind, link) in LinkKind::ALL.iter().zip(&self.links) {
+            if let Some(Link { stiffness, damping, maxwell }) = link {
+                let element = |(c, tau): &(f64, f64)| format!("{{ stiffness = {c:e}, relaxation_time = {tau:e} }}");
+                let maxwell: Vec<String> = maxwell.iter().map(element).collect();
+                text += &format!("[layer.{}]\nstiffness = {stiffness:e}\ndamping = {damping:e}\n", kind.name());
+                text += &format!("maxwell = [{}]\n", maxwell.join(", "));
+            }
+        }
+        text += &format!("[surface]\n{}\n", self.surface);
+        if let Some((coulomb, shear)) = self.friction {
+            text += &format!("[friction]\ncoulomb = {coulomb:e}\nshear_force = {shear:e}\n");
+        }
+        text += &format!("[solver]\n{}\n[fmu]\noutputs = {OUTPUTS}\n", self.solver);
+        Scene::parse(&text, FilePath::new("test.toml")).unwrap_or_else(|error| panic!("{error}\n{text}"))
+    }
+
+    pub fn model(&self) -> Model {
+        Model::new(&self.scene())
+    }
+}
+
+const OUTPUTS: &str = r#"["forces", "dissipation", "friction", "contact", "energy", "solver", "elements"]"#;
+
+/// `[surface]` of the natural or periodic spline through points.
+pub fn points(x: &[f64], z: &[f64], periodic: bool) -> String {
+    format!("kind = \"points\"\nx = {x:?}\nz = {z:?}\nperiodic = {periodic}")
+}
+
+/// Steps of lengths that the test chooses.
+pub struct Stepper {
+    pub model: Model,
+    pub carrier: Carrier,
+    pub state: State,
+    pub integrator: Integrator,
+    pub tolerance: Tolerance,
+    pub s: f64,
+}
+
+impl Stepper {
+    /// From `state` along the carrier's paths, counted from its place 0. Newton's iterations are led to `tolerance` (m).
+    pub fn new(model: Model, (u, w): (Path, Path), state: State, tolerance: f64) -> Self {
+        let carrier = Carrier::new(0.0, (0.0, 0.0), (u, w), &model.profile);
+        let tolerance = Tolerance::new(&model, tolerance, tolerance);
+        let mut forces = Forces::new(&model);
+        let mut integrator = Integrator::new(&model, Followed::default());
+        integrator.begin(&model, &state, &carrier, 0.0, &mut forces);
+        Self { model, carrier, state, integrator, tolerance, s: 0.0 }
+    }
+
+    /// Tries a step without taking it.
+    pub fn attempt(&mut self, h: f64) -> Attempt {
+        self.integrator.attempt(&self.model, &self.state, &self.carrier, (self.s, h), &self.tolerance).unwrap()
+    }
+
+    /// Takes a step of length `h`.
+    pub fn step(&mut self, h: f64) {
+        self.attempt(h);
+        self.integrator.accept(&mut self.state);
+        self.s += h;
+    }
+
+    /// Takes `steps` steps to the time `end`.
+    pub fn run(&mut self, end: f64, steps: u32) {
+        let h = (end - self.s) / f64::from(steps);
+        (0..steps).for_each(|_| self.step(h));
+    }
+
+    /// The step of length `h` tried last, seen from within.
+    pub fn dense(&self, h: f64) -> Dense<'_> {
+        let stages = self.integrator.stages();
+        Dense {
+            model: &self.model,
+            carrier: &self.carrier,
+            s: self.s,
+            h,
+            start: (&self.state, &stages[0]),
+            end: (self.integrator.end(), &stages[STAGES - 1]),
+        }
+    }
+}
+
+/// A carrier that moves at a constant rate.
+pub fn at_rate(rate: f64) -> Path {
+    Path { rate, ..Path::default() }
+}
+
+/// The order log2(error(h)/error(h/2)) seen in errors at halved steps, by the last pair.
+pub fn last_order(errors: &[f64]) -> f64 {
+    let [.., coarse, fine] = errors else { panic!("two errors at least") };
+    (coarse / fine).log2()
+}
+
+/// The largest absolute value.
+pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().fold(0.0, |largest, value: f64| if value.is_nan() { f64::NAN } else { value.abs().max(largest) })
+}
+
+/// Every output of a run but the processor time, as bits.
+pub fn outputs(scene: &Scene, simulation: &mut Simulation) -> Vec<(String, u64)> {
+    let variables = asperity::outputs::variables(scene);
+    let mut values = vec![0.0; variables.len()];
+    simulation.evaluate(&variables, &mut values);
+    let named = variables.into_iter().zip(values);
+    named.filter(|(v, _)| v.name != "solver.run_time").map(|(v, value)| (v.name, value.to_bits())).collect()
+}
+
+/// The value of one output.
+pub fn output(scene: &Scene, simulation: &mut Simulation, name: &str) -> f64 {
+    let outputs = outputs(scene, simulation);
+    f64::from_bits(outputs.iter().find(|(other, _)| other == name).unwrap_or_else(|| panic!("no {name}")).1)
+}
+
+/// Numbers that are the same in every run: splitmix64 of S. Vigna.
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    /// Evenly from `low` to `high`.
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.next() >> 11) as f64 * 2.0_f64.powi(-53)
+    }
+
+    /// One of 0 … `count` - 1.
+    pub fn below(&mut self, count: usize) -> usize {
+        (self.next() % count as u64) as usize
+    }
+}
