@@ -11,8 +11,8 @@ use std::process::Command;
 
 use asperity::scene::{OutputGroup, Scene};
 use common::{
-    Table, asperity, difference, drive, fmpy, interpolate, largest, library, library_along, masters_python, pack, root,
-    run, scratch, simulate,
+    Table, asperity, difference, drive, fmpy, interpolate, largest, library, library_along, masters_python, pack,
+    python, root, run, scratch, simulate,
 };
 
 const DEFAULT_SCENE: &str = "scenes/tread-block/tread-block.toml";
