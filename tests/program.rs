@@ -48,6 +48,25 @@ fn a_result_file_has_the_variables_in_their_order_and_even_rows() {
 }
 
 #[test]
+fn no_output_takes_the_place_of_what_is_read_or_written() {
+    let folder = scratch("program-overwrites");
+    let scene = changed(&folder, "", "");
+    let [scene, out] = [scene.to_str().unwrap(), folder.join("out.csv").to_str().unwrap()].map(str::to_owned);
+    let before = fs::read(&scene).unwrap();
+    for arguments in [
+        &["simulate", &scene, "-o", &scene][..],
+        &["simulate", &scene, "-o", &out, "--plot", &scene],
+        &["simulate", &scene, "-o", &out, "--plot", &out],
+        &["pack", &scene, "-o", &scene],
+    ] {
+        assert!(failure(arguments).contains("will not write"), "{arguments:?}");
+        assert_eq!(fs::read(&scene).unwrap(), before);
+    }
+    run(asperity().args(["simulate", &scene, "-o", &out]));
+    assert!(failure(&["plot", &out, "--y", "F_z", "-o", &out]).contains("will not write"));
+}
+
+#[test]
 fn elements_are_columns() {
     let folder = scratch("program-elements");
     let scene = changed(&folder, "[\"forces\",", "[\"elements\", \"forces\",");

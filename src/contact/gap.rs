@@ -2,7 +2,10 @@
 
 use crate::math::{Quintic, Spline};
 
-/// Halvings of a step after which a dip of the gap is left undecided; a step over 2⁴⁰ is beyond the clock's digits.
+/// A part over which the gap bends by less than this share of the tolerance is judged by its ends: what it may dip further
+/// does not count. So the search ends even where a mass glides along the very limit.
+const NEGLIGIBLE_BEND: f64 = 0.01;
+/// Halvings of a step after which a part is judged by its ends; a step over 2⁴⁰ is beyond the clock's digits.
 const MOST_HALVINGS: u32 = 40;
 
 /// Parts of a step that are looked at. A few are the rule; where numbers are so large that no bounds hold, all would be.
@@ -37,10 +40,10 @@ struct Part {
 impl Search<'_> {
     fn first_touch(&mut self, part: &Part, halvings: u32) -> Option<f64> {
         self.parts += 1;
-        if self.parts > MOST_PARTS {
+        let (x_low, x_high) = part.place.range();
+        if self.parts > MOST_PARTS || !(x_low.is_finite() && x_high.is_finite()) {
             return Some(part.start);
         }
-        let (x_low, x_high) = part.place.range();
         let profile = self.profile.local_bounds(x_low, x_high);
         if part.height.range().0 - profile.z_max > -self.tolerance {
             return None;
@@ -55,7 +58,7 @@ impl Search<'_> {
             return None;
         }
         let monotone = self.gap_rate(part, 0.5).abs() > 0.5 * bend;
-        if monotone || halvings == MOST_HALVINGS {
+        if monotone || bend <= NEGLIGIBLE_BEND * self.tolerance || halvings == MOST_HALVINGS {
             let crosses = start >= -self.tolerance && end < -self.tolerance;
             return crosses.then(|| self.locate(part));
         }
@@ -141,6 +144,14 @@ mod tests {
         let theta = over(top - 1e-9).unwrap();
         assert!((0.4995..0.5).contains(&theta), "{theta}");
         assert_eq!(over(top + 1e-9), None);
+    }
+
+    /// A mass that glides along the very limit does not keep the search busy.
+    #[test]
+    fn a_mass_may_glide_along_the_limit() {
+        let flat = Spline::natural(&[0.0, 1.0], &[0.0, 0.0]);
+        let gliding = dip(-1e-12 + 1e-16, 1e-16);
+        assert_eq!(first_touch(&flat, &straight(0.0, 0.5), &gliding, 1e-12), None);
     }
 
     /// Over a million waves the first one is found; where no bounds hold, the search ends where it got to.

@@ -2,8 +2,10 @@
 
 use std::any::Any;
 use std::cell::Cell;
-use std::panic::{self, AssertUnwindSafe};
-use std::sync::Once;
+use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
+use std::sync::OnceLock;
+
+type Hook = Box<dyn Fn(&PanicHookInfo<'_>) + Send + Sync>;
 
 thread_local! {
     /// Whether this thread is inside a guarded call.
@@ -12,22 +14,25 @@ thread_local! {
 
 /// Calls `body`; a panic in it becomes its message, and nothing is written to stderr.
 pub(super) fn guard<T>(body: impl FnOnce() -> T) -> Result<T, String> {
-    static HOOK: Once = Once::new();
-    HOOK.call_once(silence_guarded_calls);
+    USUAL.get_or_init(silence_guarded_calls);
     let before = GUARDED.replace(true);
     let result = panic::catch_unwind(AssertUnwindSafe(body));
     GUARDED.set(before);
     result.map_err(|payload| message(payload.as_ref()))
 }
 
-/// Panics outside of guarded calls, those of the program's other threads, keep their hook.
-fn silence_guarded_calls() {
+/// The hook of panics outside of guarded calls, those of the program's other threads. It stands here and not in the new
+/// hook, which takes no memory that way: it would be lost when the library is unloaded.
+static USUAL: OnceLock<Hook> = OnceLock::new();
+
+/// Returns the hook that was there.
+fn silence_guarded_calls() -> Hook {
     let usual = panic::take_hook();
-    panic::set_hook(Box::new(move |panic| {
-        if !GUARDED.get() {
-            usual(panic);
-        }
+    panic::set_hook(Box::new(|panic| match USUAL.get() {
+        Some(usual) if !GUARDED.get() => usual(panic),
+        _ => (),
     }));
+    usual
 }
 
 fn message(payload: &(dyn Any + Send)) -> String {

@@ -54,6 +54,16 @@ impl Carrier {
         self.place = profile.reduce(self.u);
     }
 
+    /// How far u and w move from `s` to `span` after it, s, m.
+    pub fn moved(&self, s: f64, span: f64) -> (f64, f64) {
+        (self.u_path.change(s, span), self.w_path.change(s, span))
+    }
+
+    /// The shorter period of the two sines, s; infinite where there is none.
+    pub fn shortest_period(&self) -> f64 {
+        self.u_path.period().min(self.w_path.period())
+    }
+
     /// The rates u̇, ẇ just after the start of the piece, m/s.
     pub fn initial_rates(&self) -> (f64, f64) {
         let start = self.at(0.0);

@@ -1,5 +1,6 @@
 //! The command line.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
@@ -86,9 +87,10 @@ pub(crate) struct Pack {
     /// The FMU to write.
     #[arg(short, long, value_name = "OUT.fmu")]
     pub(crate) output: PathBuf,
-    /// The shared library; default: the one beside this program.
-    #[arg(long, value_name = "PATH")]
-    pub(crate) library: Option<PathBuf>,
+    /// A shared library, of this platform unless another is named, as in win64=PATH; may be given several times.
+    /// Default: the one beside this program.
+    #[arg(long, value_name = "[PLATFORM=]PATH")]
+    pub(crate) library: Vec<OsString>,
 }
 
 fn key_and_value(text: &str) -> Result<(String, String), String> {

@@ -23,6 +23,9 @@ pub(crate) enum ProgramError {
     /// A file cannot be read or written.
     #[error("cannot {action} {}: {source}", .path.display())]
     File { action: &'static str, path: PathBuf, source: std::io::Error },
+    /// An output would take the place of what the command reads or writes already.
+    #[error("will not write {}: it is read or written here already", .path.display())]
+    Overwrites { path: PathBuf },
     /// A result file is not one.
     #[error("{}: {message}", .path.display())]
     ResultFile { path: PathBuf, message: String },
@@ -34,11 +37,14 @@ pub(crate) enum ProgramError {
     Picture { path: PathBuf, message: String },
     /// The shared library is not there.
     #[error(
-        "no shared library at {}: build it with `cargo build --release --lib --no-default-features` and name it with \
-         --library, or use build-fmu.sh, which does both",
+        "no shared library at {}: build it with `cargo rustc --release --lib --no-default-features --crate-type \
+         cdylib` and name it with --library, or use build-fmu.sh, which does both",
         .path.display()
     )]
     NoLibrary { path: PathBuf },
+    /// Two libraries for one platform.
+    #[error("--library: two of {platform}: {} and {}", .first.display(), .second.display())]
+    SamePlatform { platform: &'static str, first: PathBuf, second: PathBuf },
     /// A file of the scene has no place in the archive.
     #[error("the scene reads {}, which is not below the scene's folder: an FMU carries only what is", .path.display())]
     Outside { path: PathBuf },

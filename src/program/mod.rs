@@ -9,7 +9,7 @@ mod plot;
 mod result_file;
 mod simulate;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use asperity::scene::Scene;
 
@@ -32,6 +32,19 @@ fn load(path: &Path) -> Result<Scene, ProgramError> {
     let scene = Scene::load(path)?;
     scene.warnings.iter().for_each(|warning| warn(warning));
     Ok(scene)
+}
+
+/// The files that a scene is read from.
+fn sources(path: &Path, scene: &Scene) -> Vec<PathBuf> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    std::iter::once(path.to_owned()).chain(scene.files.iter().map(|file| folder.join(file))).collect()
+}
+
+/// Refuses an output that would take the place of one of `others`; a file that is not there yet takes no one's.
+fn check_output(output: &Path, others: &[PathBuf]) -> Result<(), ProgramError> {
+    let place = |path: &Path| path.canonicalize().ok();
+    let same = |other: &PathBuf| other == output || (place(output).is_some() && place(other) == place(output));
+    if others.iter().any(same) { Err(ProgramError::Overwrites { path: output.to_owned() }) } else { Ok(()) }
 }
 
 /// Tells the user what is worth knowing though the program goes on.

@@ -18,6 +18,7 @@ const PROGRESS_LENGTH: f64 = 1000.0;
 pub(crate) fn simulate(command: &Simulate) -> Result<(), ProgramError> {
     let mut scene = super::load(&command.scene)?;
     set_parameters(&mut scene, &command.set)?;
+    check_outputs(&scene, command)?;
     if scene.excitation.is_empty() {
         super::warn("the scene has no [[excitation]]: the carrier rests, and the start is all there is");
     }
@@ -29,6 +30,13 @@ pub(crate) fn simulate(command: &Simulate) -> Result<(), ProgramError> {
         (Some(path), Some(history)) => history.draw(path, &scene.name),
         _ => Ok(()),
     }
+}
+
+fn check_outputs(scene: &Scene, command: &Simulate) -> Result<(), ProgramError> {
+    let mut taken = super::sources(&command.scene, scene);
+    super::check_output(&command.output, &taken)?;
+    taken.push(command.output.clone());
+    command.plot.as_ref().map_or(Ok(()), |plot| super::check_output(plot, &taken))
 }
 
 fn set_parameters(scene: &mut Scene, set: &[(String, String)]) -> Result<(), ProgramError> {

@@ -37,6 +37,19 @@ impl Path {
         self.motion(time)[1]
     }
 
+    /// The displacement from `time` to `span` after it, s, m: where the rate is large and the time long, with more digits
+    /// than the difference of two displacements.
+    pub fn change(&self, time: f64, span: f64) -> f64 {
+        let omega = TAU * self.frequency;
+        let swing = if self.amplitude == 0.0 { 0.0 } else { (omega * (time + span)).sin() - (omega * time).sin() };
+        self.rate * span + self.amplitude * swing
+    }
+
+    /// The period of the sine, s; infinite where there is none.
+    pub fn period(&self) -> f64 {
+        if self.amplitude == 0.0 || self.frequency == 0.0 { f64::INFINITY } else { 1.0 / self.frequency }
+    }
+
     /// Displacement (m), velocity (m/s) and acceleration (m/s²) at `time` (s) after the start.
     pub fn motion(&self, time: f64) -> [f64; 3] {
         if self.amplitude == 0.0 {

@@ -12,6 +12,9 @@ use crate::model::{Carrier, Power, elastic_energy, kinetic_energy};
 const SAFETY: f64 = 0.9;
 /// The most by which one step differs from the one before.
 const GROWTH: (f64, f64) = (0.2, 5.0);
+/// The longest step, as a share of the period of the carrier's sine: a longer one could leap from swing to swing, where all
+/// stages see the same and the error estimate nothing.
+const OF_PERIOD: f64 = 0.25;
 /// What is left of a step whose stages could not be solved.
 const AFTER_FAILURE: f64 = 0.25;
 
@@ -158,7 +161,11 @@ impl Simulation {
     fn step(&mut self, duration: f64, work: &mut u64) -> Result<f64, SimulationError> {
         let remaining = duration - self.run.s;
         let shortest = 4.0 * f64::EPSILON * (self.run.s + 1e-3 * duration);
-        let mut h = fitted(self.run.step_size, remaining);
+        let longest = OF_PERIOD * self.run.carrier.shortest_period();
+        if longest <= shortest {
+            return Err(SimulationError::StepTooSmall { time: self.run.time(), step: longest });
+        }
+        let mut h = fitted(self.run.step_size.min(longest), remaining);
         // The step that an event cuts short says how long the next may be; the shorter ones need no test of their error.
         let mut proposal = None;
         loop {

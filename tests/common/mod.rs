@@ -68,8 +68,8 @@ pub fn library() -> &'static Path {
     LIBRARY.get_or_init(|| {
         let folder = target().join("fmu");
         let mut cargo = Command::new(env!("CARGO"));
-        cargo.current_dir(root()).args(["build", "--release", "--lib", "--no-default-features", "--target-dir"]);
-        run(cargo.arg(&folder));
+        cargo.current_dir(root()).args(["rustc", "--release", "--lib", "--no-default-features"]);
+        run(cargo.args(["--crate-type", "cdylib", "--target-dir"]).arg(&folder));
         let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
         folder.join(format!("release/{prefix}asperity{suffix}"))
     })

@@ -106,6 +106,28 @@ fn at_10_khz() {
     follows_the_complex_stiffness(1.0e4);
 }
 
+/// Without Maxwell elements nothing is left to integrate but the energies: the steps must see the carrier's sine all the
+/// same. F_z = k (c (w_0 - â sin ωt) - d â ω cos ωt) at any time, and a period loses π k â² ωd.
+#[test]
+fn a_spring_and_a_damper_alone() {
+    const FREQUENCY: f64 = 1.0e3;
+    let law = Law::new(2.0e3, 2.0e-3);
+    let text = scene(1e-9).replace(&link("vertical", &self::law()), &link("vertical", &law));
+    let (omega, duration) = (TAU * FREQUENCY, 100.0 / FREQUENCY);
+    let mut run = Run::new(&text, Start { w: -PRESSED, w_rate: omega * SWING, ..Start::default() });
+    let times = [0.013_37, 0.05, 0.071_23, duration];
+    let motion = Motion { duration, u: REST, w: sine(SWING, FREQUENCY) };
+    let columns = run.sample(&motion, &times, &["F_z", "E_diss"]);
+    let masses = MASSES as f64;
+    for (time, force) in times.iter().zip(&columns[0]) {
+        let (sin, cos) = (omega * time).sin_cos();
+        let expected = masses * (law.stiffness * (PRESSED - SWING * sin) - law.damping * SWING * omega * cos);
+        assert_near("F_z", *force, expected, 1e-7 * masses * law.stiffness * PRESSED);
+    }
+    let lost = 100.0 * masses * PI * SWING * SWING * omega * law.damping;
+    assert_near("energy lost", columns[1][3], lost, 1e-6 * lost);
+}
+
 /// At the default tolerance too: there a step may err by 1e-6 of w_0, 1e-5 of the swing, and some five steps are a
 /// memory long.
 #[test]

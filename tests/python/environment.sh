@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
-# Prints the Python to use, after making it a place with the packages of requirements.txt, or of another list beside
-# it: FOLDER, made if it is not there. For build-fmu.sh and the tests alike; several at once wait for one another.
+# Prints the Python to use, after making it a place with the packages of requirements.txt, or of another list: a path, or
+# a name beside it. FOLDER is made if it is not there. For build-fmu.sh and the tests alike; several at once wait for one
+# another.
 #
 #   tests/python/environment.sh FOLDER [LIST.txt]
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-requirements=$here/${2:-requirements.txt}
+requirements=${2:-requirements.txt}
+case $requirements in */*) ;; *) requirements=$here/$requirements ;; esac
 mkdir -p "$1"
 folder=$(cd "$1" && pwd)
 python=$folder/bin/python

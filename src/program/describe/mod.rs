@@ -24,18 +24,24 @@ pub(crate) fn describe(command: &Describe) -> Result<(), ProgramError> {
 }
 
 fn text(scene: &Scene, bytes: usize) -> String {
-    let mut rows = vec![("Scene", title(scene))];
-    rows.extend(layer::rows(scene));
+    let title = ("Scene", title(scene));
+    let memory = ("Memory", format!("{bytes} bytes a run"));
+    let rows = [title].into_iter().chain(rows(scene)).chain([memory]);
+    rows.map(|(name, text)| format!("{name:<12}{text}\n")).collect()
+}
+
+/// A row: its name, empty where the row goes on with the one above, and its text.
+pub(super) type Row = (&'static str, String);
+
+/// What is in the scene and what is left out.
+pub(super) fn rows(scene: &Scene) -> Vec<Row> {
+    let mut rows = layer::rows(scene);
     rows.extend(friction(scene));
     rows.extend(outputs(scene));
     rows.extend([("Solver", solver(scene)), ("Input", input(scene))]);
     rows.extend(excitation(scene));
-    rows.push(("Memory", format!("{bytes} bytes a run")));
-    rows.into_iter().map(|(name, text)| format!("{name:<12}{text}\n")).collect()
+    rows
 }
-
-/// A row: its name, empty where the row goes on with the one above, and its text.
-type Row = (&'static str, String);
 
 fn title(scene: &Scene) -> String {
     scene.description.as_ref().map_or_else(|| scene.name.clone(), |text| format!("{}: {text}", scene.name))

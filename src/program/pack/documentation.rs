@@ -1,4 +1,4 @@
-//! documentation/index.html: what the scene is, its variables, its parameters, the equations.
+//! documentation/index.html: what the scene is, what is left out, its variables, its parameters, the equations.
 
 use std::io;
 
@@ -11,18 +11,24 @@ use quick_xml::events::BytesText;
 use super::model_description::{Xml, clean};
 use super::parts::PAGE;
 use super::{units, variables};
+use crate::program::describe;
 
-/// Fills the page in: `{{name}}`, `{{description}}`, `{{variables}}` and `{{parameters}}` stand for what they say.
+/// Fills the page in: `{{name}}`, `{{scene}}`, `{{variables}}` and the like stand for what they say.
 pub(super) fn write(scene: &Scene, catalogue: &Catalogue) -> io::Result<Vec<u8>> {
     let description = clean(scene.description.as_deref().unwrap_or_default());
     let fields = [
         ("{{name}}", escape(clean(&scene.name)).into_owned()),
         ("{{description}}", escape(description).into_owned()),
         ("{{version}}", env!("CARGO_PKG_VERSION").to_owned()),
+        ("{{scene}}", table(&["", "What is there"], &scene_rows(scene))?),
         ("{{variables}}", table(&["Name", "Causality", "Unit", "Description"], &variable_rows(catalogue))?),
         ("{{parameters}}", table(&["Name", "Start", "Unit", "Description"], &parameter_rows(scene, catalogue))?),
     ];
     Ok(fields.iter().fold(PAGE.to_owned(), |page, (field, text)| page.replace(field, text)).into_bytes())
+}
+
+fn scene_rows(scene: &Scene) -> Vec<[String; 2]> {
+    describe::rows(scene).into_iter().map(|(name, text)| [name.into(), clean(&text)]).collect()
 }
 
 fn variable_rows(catalogue: &Catalogue) -> Vec<[String; 4]> {
@@ -44,7 +50,7 @@ fn row(entry: &Entry<'_>, second: String) -> [String; 4] {
     [entry.name(), second, unit.into(), variables::description(entry)]
 }
 
-fn table(head: &[&str], rows: &[[String; 4]]) -> io::Result<String> {
+fn table<const N: usize>(head: &[&str; N], rows: &[[String; N]]) -> io::Result<String> {
     let mut html = Writer::new_with_indent(Vec::new(), b' ', 1);
     html.create_element("table").write_inner_content(|html| {
         table_row(html, "th", head.iter().copied())?;

@@ -2,13 +2,15 @@
 
 mod archive;
 mod documentation;
+mod libraries;
 mod model_description;
 mod parts;
+mod picture;
 mod units;
 mod variables;
 
 use std::fs;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Component, Path};
 
 use asperity::fmi::{Catalogue, SCENE_FILE, Sources, guid};
 use asperity::scene::Scene;
@@ -18,39 +20,15 @@ use super::error::ProgramError;
 use archive::Entry;
 use parts::PARTS;
 
-/// The platform's folder in `binaries/` and the extension of its shared libraries.
-const PLATFORM: (&str, &str) = if cfg!(target_os = "windows") {
-    ("win64", "dll")
-} else if cfg!(target_os = "macos") {
-    ("darwin64", "dylib")
-} else {
-    ("linux64", "so")
-};
-
 /// Writes the FMU.
 pub(crate) fn pack(command: &Pack) -> Result<(), ProgramError> {
     let scene = super::load(&command.scene)?;
-    let mut entries = vec![binary(&scene, command.library.as_deref())?];
+    super::check_output(&command.output, &super::sources(&command.scene, &scene))?;
+    let mut entries = libraries::binaries(&scene, &command.library)?;
     entries.extend(resources(&scene, &command.scene)?);
     entries.extend(documents(&scene, &command.scene)?);
     let bytes = archive::zip(entries)?;
     fs::write(&command.output, bytes).map_err(ProgramError::file("write", &command.output))
-}
-
-fn binary(scene: &Scene, library: Option<&Path>) -> Result<Entry, ProgramError> {
-    let (platform, extension) = PLATFORM;
-    let path = library.map_or_else(default_library, Path::to_owned);
-    if !path.is_file() {
-        return Err(ProgramError::NoLibrary { path });
-    }
-    let name = format!("binaries/{platform}/{}.{extension}", scene.model_identifier());
-    Ok(Entry { name, bytes: read(&path)?, executable: true })
-}
-
-/// The library that cargo puts beside this program.
-fn default_library() -> PathBuf {
-    let name = format!("{}asperity.{}", std::env::consts::DLL_PREFIX, PLATFORM.1);
-    std::env::current_exe().unwrap_or_default().with_file_name(name)
 }
 
 /// The scene, under a fixed name, and what it reads.
@@ -80,8 +58,9 @@ fn documents(scene: &Scene, path: &Path) -> Result<Vec<Entry>, ProgramError> {
     let description = description.map_err(|error| document("modelDescription.xml", error))?;
     let index = documentation::write(scene, &catalogue);
     let index = index.map_err(|error| document("documentation/index.html", error))?;
+    let picture = picture::png(scene).map_err(|error| document("model.png", error.into()))?;
     let parts = PARTS.iter().map(|(name, text)| Entry::new((*name).into(), text.as_bytes().to_vec()));
-    let written = [("modelDescription.xml", description), ("documentation/index.html", index)];
+    let written = [("modelDescription.xml", description), ("documentation/index.html", index), ("model.png", picture)];
     Ok(written.into_iter().map(|(name, bytes)| Entry::new(name.into(), bytes)).chain(parts).collect())
 }
 

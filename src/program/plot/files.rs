@@ -7,6 +7,7 @@ use asperity::outputs::unit_of;
 use super::axis::{Axis, Fit};
 use super::chart::{Chart, Line, write};
 use crate::program::arguments::Plot;
+use crate::program::check_output;
 use crate::program::error::ProgramError;
 use crate::program::result_file::ResultFile;
 
@@ -17,6 +18,7 @@ pub(crate) fn plot_files(command: &Plot) -> Result<(), ProgramError> {
     if !command.labels.is_empty() && command.labels.len() != command.files.len() {
         return Err(ProgramError::Labels { labels: command.labels.len(), files: command.files.len() });
     }
+    check_output(&command.output, &command.files)?;
     let lines = command.files.iter().enumerate().map(|(i, path)| file_lines(command, i, path));
     let lines: Vec<Vec<Line>> = lines.collect::<Result<_, _>>()?;
     let chart = chart(command, lines.concat());

@@ -1,0 +1,149 @@
+//! model.png: the first masses of the layer at rest between the carrier and the profile, drawn from the scene.
+
+mod canvas;
+
+use asperity::math::Spline;
+use asperity::scene::Scene;
+use canvas::{Canvas, Colour, Point};
+
+/// Pixels: width, height.
+const SIZE: (usize, usize) = (240, 160);
+/// Masses drawn at most: so few that each is seen.
+const MASSES: usize = 10;
+/// The carrier's lower edge, pixels from the top.
+const CARRIER: f64 = 22.0;
+/// Where heights are drawn, pixels from the top: of the highest point and of the lowest.
+const HEIGHTS: (f64, f64) = (92.0, 140.0);
+/// Radius of a mass, pixels.
+const MASS: f64 = 4.0;
+/// Half the width of a spring's windings, pixels.
+const WINDING: f64 = 3.5;
+/// Corners of a spring.
+const CORNERS: usize = 9;
+/// Half the width of a line, pixels.
+const LINE: f64 = 0.7;
+
+const STEEL: Colour = [70, 70, 70];
+const GROUND: Colour = [196, 188, 176];
+const EDGE: Colour = [110, 100, 88];
+const RUBBER: Colour = [0, 114, 178];
+const LINK: Colour = [86, 160, 210];
+
+/// The picture as a PNG file.
+pub(super) fn png(scene: &Scene) -> Result<Vec<u8>, png::EncodingError> {
+    let mut canvas = Canvas::new(SIZE);
+    let view = View::new(scene);
+    view.draw_ground(&mut canvas);
+    canvas.fill((0.0, 0.0), (SIZE.0 as f64, CARRIER), STEEL, |_| true);
+    view.draw_links(&mut canvas);
+    view.masses.iter().for_each(|&centre| canvas.disc(centre, MASS, RUBBER));
+    canvas.png()
+}
+
+/// What is drawn, in pixels.
+struct View<'a> {
+    scene: &'a Scene,
+    /// The profile's height at the middle of each column of pixels, and one more.
+    ground: Vec<f64>,
+    /// The masses' centres: a mass touches with its lowest point.
+    masses: Vec<Point>,
+}
+
+impl<'a> View<'a> {
+    fn new(scene: &'a Scene) -> Self {
+        let layer = &scene.layer;
+        let masses = layer.masses.min(MASSES);
+        let pitch = layer.spacing * masses as f64 / SIZE.0 as f64;
+        let left = layer.origin - layer.spacing / 2.0;
+        let rest: Vec<f64> = (0..masses).map(|i| layer.clearance + layer.roughness.get(i).unwrap_or(&0.0)).collect();
+        let ground = heights(&scene.surface.spline(), left, pitch);
+        let row = rows(rest.iter().chain(&ground));
+        let column = |i: usize| (i as f64 + 0.5) * SIZE.0 as f64 / masses as f64;
+        let centre = |(i, z): (usize, &f64)| (column(i), row(*z) - MASS);
+        let masses = rest.iter().enumerate().map(centre).collect();
+        Self { scene, masses, ground: ground.iter().map(|z| row(*z)).collect() }
+    }
+
+    fn draw_ground(&self, canvas: &mut Canvas) {
+        let (width, height) = (SIZE.0 as f64, SIZE.1 as f64);
+        canvas.fill((0.0, 0.0), (width, height), GROUND, |(x, y)| y > interpolate(&self.ground, x));
+        let corners = self.ground.iter().enumerate().map(|(i, &y)| (i as f64, y));
+        canvas.polyline(corners, LINE, EDGE);
+    }
+
+    fn draw_links(&self, canvas: &mut Canvas) {
+        let layer = &self.scene.layer;
+        if layer.lateral_x.is_some() || layer.lateral_z.is_some() {
+            canvas.polyline(self.masses.iter().copied(), LINE, LINK);
+        }
+        if layer.vertical.is_some() || layer.horizontal.is_some() {
+            self.masses.iter().for_each(|&mass| canvas.polyline(spring(mass), LINE, LINK));
+        }
+    }
+}
+
+/// The profile's heights at the columns of pixels, m.
+fn heights(profile: &Spline, left: f64, pitch: f64) -> Vec<f64> {
+    (0..=SIZE.0).map(|i| profile.evaluate(left + pitch * i as f64).0).collect()
+}
+
+/// Where a height is drawn, so that all of `heights` (m) fit in; a flat scene lies in the middle.
+fn rows<'a>(heights: impl Iterator<Item = &'a f64> + Clone) -> impl Fn(f64) -> f64 {
+    let highest = heights.clone().copied().fold(f64::MIN, f64::max);
+    let lowest = heights.copied().fold(f64::MAX, f64::min);
+    let (top, bottom) = HEIGHTS;
+    move |z| {
+        if highest > lowest { top + (highest - z) / (highest - lowest) * (bottom - top) } else { (top + bottom) / 2.0 }
+    }
+}
+
+fn interpolate(values: &[f64], x: f64) -> f64 {
+    let i = (x as usize).min(values.len() - 2);
+    values[i] + (x - i as f64) * (values[i + 1] - values[i])
+}
+
+/// A spring from the carrier down to a mass.
+fn spring((x, end): Point) -> impl Iterator<Item = Point> {
+    (0..=CORNERS).map(move |i| {
+        let sideways = if i == 0 || i == CORNERS { 0.0 } else { WINDING * [1.0, -1.0][i % 2] };
+        (x + sideways, CARRIER + (end - CARRIER) * i as f64 / CORNERS as f64)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    fn scene(layer: &str, surface: &str) -> Scene {
+        let text = format!("name = 'a'\n[layer]\n{layer}\n[surface]\n{surface}");
+        Scene::parse(&text, Path::new("scene.toml")).unwrap()
+    }
+
+    #[test]
+    fn masses_on_a_flat_profile_rest_on_it() {
+        let scene = scene("masses = 3\nspacing = 1e-4\nmass = 1e-6", "kind = 'flat'");
+        let view = View::new(&scene);
+        assert_eq!(view.masses, [(40.0, 112.0), (120.0, 112.0), (200.0, 112.0)]);
+        assert_eq!(view.ground, [116.0; SIZE.0 + 1]);
+    }
+
+    #[test]
+    fn heights_fill_the_room_there_is() {
+        let layer = "masses = 1\nspacing = 1e-3\nclearance = 2e-6\nmass = 1e-6";
+        let scene = scene(layer, "kind = 'sinusoid'\namplitude = 1e-6\nwavelength = 1e-3");
+        let view = View::new(&scene);
+        assert_eq!(view.masses, [(120.0, HEIGHTS.0 - MASS)]);
+        let lowest = view.ground.iter().copied().fold(f64::MIN, f64::max);
+        assert!((lowest - HEIGHTS.1).abs() < 1e-3, "{lowest}");
+    }
+
+    #[test]
+    fn the_picture_is_a_png_and_always_the_same() {
+        let scene = scene("masses = 200\nspacing = 1e-4\nmass = 1e-6", "kind = 'flat'");
+        let bytes = png(&scene).unwrap();
+        assert_eq!(&bytes[..8], b"\x89PNG\r\n\x1a\n");
+        assert_eq!(bytes, png(&scene).unwrap());
+    }
+}

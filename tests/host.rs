@@ -1,0 +1,97 @@
+//! The FMU in a host written in C: its results, what valgrind says, thousands of instances.
+
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests may fail")]
+#![cfg(target_os = "linux")]
+
+#[allow(dead_code, unreachable_pub, reason = "shared by several tests")]
+mod common;
+
+use std::path::PathBuf;
+use std::process::Command;
+
+use asperity::outputs::variables;
+use asperity::scene::Scene;
+use common::{Table, drive, pack, python, root, run, scratch, simulate};
+
+/// Sticks, slips and hits the profile.
+const SCENE: &str = "tests/reference/rough-coulomb.toml";
+
+/// A scene, packed, and its motion.
+struct Packed {
+    scene: PathBuf,
+    fmu: PathBuf,
+    motion: PathBuf,
+}
+
+fn packed(scene: &str, folder: &str) -> Packed {
+    let (scene, folder) = (root().join(scene), scratch(folder));
+    simulate(&scene, &folder, &[]);
+    let motion = folder.join(scene.with_extension("csv").file_name().unwrap());
+    Packed { fmu: pack(&scene, &folder), motion, scene }
+}
+
+impl Packed {
+    fn result(&self) -> PathBuf {
+        self.fmu.with_extension("host.csv")
+    }
+
+    /// The host, ready to run.
+    fn host(&self, options: &[&str]) -> Command {
+        let mut command = Command::new(python());
+        command.arg(root().join("tests/host/run.py")).args([&self.fmu, &self.motion]).arg("-o").arg(self.result());
+        command.args(options);
+        command
+    }
+
+    /// The names of the columns that are the same in every run.
+    fn columns(&self) -> Vec<String> {
+        let variables = variables(&Scene::load(&self.scene).unwrap());
+        variables.into_iter().map(|variable| variable.name).filter(|name| name != "solver.run_time").collect()
+    }
+}
+
+fn the_host_gives_what_fmpy_gives(scene: &str, folder: &str) {
+    let packed = packed(scene, folder);
+    run(&mut packed.host(&[]));
+    let (own, fmpy) = (Table::read(&packed.result()), drive(&packed.fmu, &packed.motion, &[]));
+    for name in packed.columns() {
+        assert!(own.column(&name) == fmpy.column(&name), "{name}");
+    }
+}
+
+#[test]
+fn driven_from_c_the_default_scene_gives_what_it_gives_in_fmpy() {
+    the_host_gives_what_fmpy_gives("scenes/tread-block/tread-block.toml", "host-default");
+}
+
+#[test]
+fn driven_from_c_stick_slip_and_impacts_are_those_of_fmpy() {
+    the_host_gives_what_fmpy_gives(SCENE, "host-impacts");
+}
+
+#[test]
+fn valgrind_finds_no_error_and_nothing_lost() {
+    const VALGRIND: &str =
+        "valgrind --error-exitcode=99 --leak-check=full --errors-for-leak-kinds=definite,indirect,possible";
+    let packed = packed(SCENE, "host-valgrind");
+    let output = packed.host(&["--points", "60", "--instances", "2", "--under", VALGRIND]).output().unwrap();
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && text.contains("ERROR SUMMARY: 0 errors"), "{text}");
+}
+
+/// What the host says of its memory, kB: after a tenth of the instances and at the end.
+fn peaks(text: &str) -> Vec<u64> {
+    let lines = text.lines().filter(|line| line.starts_with("host: ") && line.ends_with(" kB"));
+    lines.map(|line| line.rsplit(' ').nth(1).unwrap().parse().unwrap()).collect()
+}
+
+#[test]
+fn ten_thousand_instances_take_no_more_memory_than_a_thousand() {
+    const SLACK: u64 = 256;
+    let packed = packed(SCENE, "host-instances");
+    let output = packed.host(&["--points", "4", "--instances", "10000"]).output().unwrap();
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{text}");
+    let [early, late] = peaks(&text)[..] else { panic!("{text}") };
+    assert!(late <= early + SLACK, "{early} kB, {late} kB");
+}
