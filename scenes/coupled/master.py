@@ -50,7 +50,7 @@ class Master:
         self.body.step_under(time, h, self.force(), self.force_rate())
         self.lead(time, h, start, self.body.place())
 
-    def newton(self, time: float, h: float, tolerance: float = 1e-13):
+    def newton(self, time: float, h: float, tolerance: float = 1e-15):
         """Until the body goes where the layers were led, to `tolerance` in m."""
         start, before = self.body.place(), self.force()
         end = start + h * self.body.speed()

@@ -14,7 +14,7 @@ fi
 mkdir -p "$folder"
 folder=$(cd "$folder" && pwd)
 
-python=$("$root/tests/python/environment.sh" "$folder/venv" ../../scenes/coupled/requirements.txt)
+python=$("$root/tests/python/environment.sh" "$folder/venv" "$here/requirements.txt")
 for scene in smooth rough; do
     "$root/build-fmu.sh" "$here/$scene.toml" -o "$folder/$scene.fmu"
 done

@@ -52,6 +52,13 @@ pub fn masters_python() -> &'static Path {
     PYTHON.get_or_init(|| environment("venv-masters", "masters.txt"))
 }
 
+/// A Python with the packages of scenes/coupled/requirements.txt.
+pub fn coupled_python() -> &'static Path {
+    static PYTHON: OnceLock<PathBuf> = OnceLock::new();
+    let packages = root().join("scenes/coupled/requirements.txt");
+    PYTHON.get_or_init(|| environment("venv-coupled", packages.to_str().unwrap()))
+}
+
 fn environment(folder: &str, packages: &str) -> PathBuf {
     let script = root().join("tests/python/environment.sh");
     run(Command::new("bash").arg(script).arg(target().join(folder)).arg(packages)).trim().into()
