@@ -11,8 +11,8 @@ use std::process::Command;
 
 use asperity::scene::{OutputGroup, Scene};
 use common::{
-    Table, asperity, difference, drive, fmpy, interpolate, largest, library, library_along, masters_python, pack, root,
-    run, scratch, simulate,
+    Table, asperity, difference, drive, fmpy, interpolate, largest, library, library_along, masters_python, pack,
+    python, root, run, scratch, simulate,
 };
 
 const DEFAULT_SCENE: &str = "scenes/tread-block/tread-block.toml";
@@ -69,6 +69,21 @@ fn the_same_scene_gives_the_same_bytes() {
     let folder = scratch("fmpy-bytes");
     let pack = || fs::read(pack(&root().join(DEFAULT_SCENE), &folder)).unwrap();
     assert!(pack() == pack());
+}
+
+/// Whatever is given as a library is packed as it is.
+#[test]
+fn an_fmu_has_the_libraries_of_all_platforms_named() {
+    let folder = scratch("fmpy-platforms");
+    let (scene, fmu, windows) = (root().join(DEFAULT_SCENE), folder.join("all.fmu"), folder.join("windows.dll"));
+    fs::write(&windows, "a library for Windows").unwrap();
+    let libraries =
+        [("linux64", library()), ("win64", &windows)].map(|(name, path)| format!("{name}={}", path.display()));
+    let mut command = asperity();
+    command.arg("pack").arg(scene).arg("-o").arg(&fmu);
+    run(command.args(libraries.iter().flat_map(|library| ["--library", library])));
+    let platforms = "import sys, fmpy; print(*sorted(fmpy.supported_platforms(sys.argv[1])))";
+    assert_eq!(run(Command::new(python()).args(["-c", platforms]).arg(&fmu)).trim(), "linux64 win64");
 }
 
 #[test]

@@ -155,6 +155,19 @@ fn a_scene_without_excitation_gives_the_start_and_a_warning() {
 }
 
 #[test]
+fn drawing_a_picture_changes_no_column() {
+    let folder = scratch("program-drawn");
+    let scene = changed(&folder, "outputs = [", "outputs = [\"tangent\", ");
+    let picture = folder.join("out.svg");
+    let plain = simulate(&scene, &folder, &["--points", "3"]);
+    let drawn = simulate(&scene, &folder, &["--points", "3", "--plot", picture.to_str().unwrap()]);
+    for name in plain.names().iter().filter(|name| *name != "solver.run_time") {
+        assert_eq!(plain.column(name), drawn.column(name), "{name}");
+    }
+    assert!(plain.column("tangent.dF_z_dw").iter().any(|&tangent| tangent != 0.0));
+}
+
+#[test]
 fn a_picture_shows_more_than_the_scene_names() {
     let folder = scratch("program-picture");
     let scene = changed(&folder, "outputs = [", "outputs = [] # ");

@@ -182,12 +182,15 @@ impl Integrator {
         self.solver.forces.on_carrier_z()
     }
 
-    /// Bytes that the stages hold.
+    /// Bytes that the stages hold, those to go back to included.
     pub fn bytes(&self) -> usize {
         let rates = &self.stages[0];
-        let floats =
-            6 * rates.velocity_x.len() + rates.maxwell.len() + rates.maxwell_force.iter().map(Vec::len).sum::<usize>();
-        STAGES * floats * size_of::<f64>()
+        let masses = rates.velocity_x.len();
+        let by_link: usize = rates.maxwell_force.iter().map(Vec::len).sum();
+        let floats = (STAGES + 1) * (6 * masses + rates.maxwell.len() + by_link);
+        // The starred values, and three blocks, a right side and a climb a mass.
+        let solver = 4 * masses + rates.maxwell.len() + by_link + (3 * 4 + 2 + 2) * masses;
+        (floats + solver) * size_of::<f64>()
     }
 
     /// The rates at the stages of the step tried last.

@@ -76,6 +76,12 @@ impl Forces {
         self.link[LinkKind::Vertical as usize].iter().sum()
     }
 
+    /// Bytes that the forces hold.
+    pub fn bytes(&self) -> usize {
+        let by_link: usize = self.link.iter().chain(&self.rate).map(Vec::len).sum();
+        (by_link + self.on_mass_x.len() + self.on_mass_z.len()) * size_of::<f64>()
+    }
+
     /// What the surface and the links do to mass `i`, which is in contact over `ground`.
     pub fn contact(&self, model: &Model, i: usize, velocity_x: f64, ground: &SurfacePoint) -> ContactForces {
         ContactForces::new(model, (self.on_mass_x[i], self.on_mass_z[i]), velocity_x, ground)

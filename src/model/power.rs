@@ -60,7 +60,7 @@ fn square_sum(values: impl Iterator<Item = f64>) -> f64 {
 
 fn maxwell(model: &Model, state: &State) -> f64 {
     let row_power = |row: &super::MaxwellRow| {
-        row.stiffness / row.relaxation_time * square_sum(state.maxwell[row.range.clone()].iter().copied())
+        row.stiffness * square_sum(state.maxwell[row.range.clone()].iter().copied()) / row.relaxation_time
     };
     model.rows.iter().map(row_power).sum()
 }

@@ -62,8 +62,7 @@ impl Run {
         if duration <= 0.0 {
             return Ok(());
         }
-        // The last one exactly the end: the quotient is 1 then.
-        let times: Vec<f64> = (1..=self.points).map(|i| duration * (f64::from(i) / f64::from(self.points))).collect();
+        let times = even_times(duration, self.points);
         let start = self.carrier;
         let at = |s: f64| start.moved(phase, s);
         let show = |s: f64, simulation: &mut Simulation| observe(at(s), simulation);
@@ -91,9 +90,33 @@ fn warn_of_force(index: usize, phase: &Phase) {
     ));
 }
 
+/// The ends of `points` even intervals of `duration` (s). The last is the duration itself: a rounding above it would be a
+/// row that the run never comes to.
+fn even_times(duration: f64, points: u32) -> Vec<f64> {
+    let time = |i| if i == points { duration } else { duration * f64::from(i) / f64::from(points) };
+    (1..=points).map(time).collect()
+}
+
 impl Carrier {
     /// The carrier a time `s` after the start of `phase`, which began here.
     fn moved(self, phase: &Phase, s: f64) -> Self {
         Self { time: self.time + s, u: self.u + phase.u.at(s), w: self.w + phase.w.at(s) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_row_is_the_end_whatever_rounding_makes_of_it() {
+        const POINTS: u32 = 50;
+        let mut above = 0;
+        for duration in (1..200).map(|i| 1e-6 * f64::from(i)) {
+            above += usize::from(duration * f64::from(POINTS) / f64::from(POINTS) > duration);
+            let times = even_times(duration, POINTS);
+            assert_eq!((times.len(), times.last()), (POINTS as usize, Some(&duration)));
+        }
+        assert!(above > 0, "no duration is rounded up");
     }
 }

@@ -187,8 +187,16 @@ pub enum OutputGroup {
 
 impl OutputGroup {
     /// All groups, in the order of the variables.
-    pub const ALL: [Self; 7] =
-        [Self::Forces, Self::Dissipation, Self::Friction, Self::Contact, Self::Energy, Self::Solver, Self::Elements];
+    pub const ALL: [Self; 8] = [
+        Self::Forces,
+        Self::Dissipation,
+        Self::Friction,
+        Self::Contact,
+        Self::Energy,
+        Self::Tangent,
+        Self::Solver,
+        Self::Elements,
+    ];
 
     /// The group's name in a scene file.
     pub fn name(self) -> &'static str {

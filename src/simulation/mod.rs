@@ -165,13 +165,13 @@ impl Simulation {
         self.run.displacement()
     }
 
-    /// Bytes that the run holds.
+    /// Bytes that the run holds, but for some hundreds that do not grow with the layer.
     pub fn bytes(&self) -> usize {
-        let state = |state: &State| {
-            let floats = 4 * state.mode.len() + state.maxwell.len();
-            floats * size_of::<f64>() + state.mode.len() * size_of_val(&state.ground[0])
-        };
-        3 * state(&self.run.state) + self.integrator.bytes()
+        let masses = self.run.state.mode.len();
+        let maxwell = self.run.state.maxwell.len();
+        // The run, the one to go back to, the one within a step and the stage's.
+        let states = 4 * (masses * (4 * size_of::<f64>() + size_of_val(&self.run.state.ground[0]) + 1));
+        states + 4 * maxwell * size_of::<f64>() + self.integrator.bytes() + 2 * self.forces.bytes()
     }
 
     /// Follows `motion` to its end.

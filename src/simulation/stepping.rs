@@ -64,12 +64,12 @@ impl Simulation {
             self.accept(h, end);
             self.change_modes_if_due();
             risen = risen || self.has_risen(until);
+            if risen || end >= motion.duration {
+                self.find_tangents();
+            }
             while let Some(time) = rows.next_if(|&time| time <= end) {
                 observe(time, self);
             }
-        }
-        if self.integrator.has_tangents() {
-            self.run.tangents = self.integrator.tangents(&self.model, self.run.s);
         }
         if let Some(clock) = clock {
             self.run.counters.run_time += clock.elapsed().as_secs_f64();
@@ -120,6 +120,13 @@ impl Simulation {
             self.change_modes(0.0);
         } else {
             self.refresh_tangents();
+        }
+    }
+
+    /// The tangents of the motion that ends here.
+    fn find_tangents(&mut self) {
+        if self.integrator.has_tangents() {
+            self.run.tangents = self.integrator.tangents(&self.model, self.run.s);
         }
     }
 

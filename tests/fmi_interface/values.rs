@@ -120,3 +120,22 @@ fn reset_brings_back_what_instantiate_gave() {
     assert_eq!((fmu.enter(), fmu.real("u"), fmu.real("layer.mass")), (OK, 0.0, 1e-7));
     assert_eq!((fmu.exit(), fmu.last_successful_time()), (OK, 0.0));
 }
+
+#[test]
+fn in_initialisation_mode_outputs_follow_what_is_set() {
+    let fmu = Fmu::initialising();
+    let force = |w: f64, w_rate: f64| {
+        assert_eq!((fmu.set_real("w", w), fmu.set_rate("w", w_rate)), (OK, OK));
+        fmu.real("F_z")
+    };
+    // Masses over the valley and the crest of the wave, 1e-6 m high: 2e3 N/m for each one pressed, relaxed.
+    for (w, expected) in [(1e-5, 0.0), (-1e-6, 2e3 * (1e-6 + 2e-6)), (-5e-6, 2e3 * (5e-6 + 6e-6))] {
+        assert!((force(w, 0.0) - expected).abs() < 1e-15, "{w}");
+    }
+    // A carrier that comes down on masses that stand: two dampers more.
+    assert!((force(-5e-6, -0.5) - 2e3 * 11e-6 - 2.0 * 8e-3 * 0.5).abs() < 1e-9);
+    assert_eq!((fmu.set_real("layer.vertical.stiffness", 4e3), fmu.set_rate("w", 0.0)), (OK, OK));
+    assert!((fmu.real("F_z") - 4e3 * 11e-6).abs() < 1e-15);
+    assert_eq!(fmu.exit(), OK);
+    assert!((fmu.real("F_z") - 4e3 * 11e-6).abs() < 1e-15);
+}

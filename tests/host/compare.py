@@ -7,6 +7,7 @@ energy, a difference of large numbers, by 1e-9 of the largest energy; the proces
 they are the same bit for bit, else the column that differs most.
 
 pow and sin are those of the platform's mathematical library: where they differ in the last digit, so do the step sizes.
+glibc's pow takes another way on processors with FMA, unless GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2.
 """
 
 import csv

@@ -46,6 +46,8 @@ fn options(entry: &Entry) -> SimpleFileOptions {
 
 #[cfg(test)]
 mod tests {
+    use zip::ZipArchive;
+
     use super::*;
 
     #[test]
@@ -53,7 +55,21 @@ mod tests {
         let [a, b] = ["a", "b"].map(|name| Entry::new(name.into(), name.repeat(1000).into_bytes()));
         let packed = zip(vec![a.clone(), b.clone()]).unwrap();
         assert_eq!(packed, zip(vec![b, a]).unwrap());
-        assert_eq!(&packed[4..6], &[20, 0], "version needed to extract is 2.0");
-        assert_eq!(&packed[10..14], &[0, 0, 0x21, 0], "1980-01-01, 00:00");
+    }
+
+    #[test]
+    fn entries_are_plain_files_that_any_reader_can_unpack() {
+        let library = Entry { executable: true, ..Entry::new("a".into(), vec![7; 1000]) };
+        let packed = zip(vec![library, Entry::new("b".into(), Vec::new())]).unwrap();
+        let mut archive = ZipArchive::new(Cursor::new(&packed)).unwrap();
+        for (i, mode) in [0o755, 0o644].into_iter().enumerate() {
+            let file = archive.by_index(i).unwrap();
+            assert!(matches!(file.compression(), CompressionMethod::Stored | CompressionMethod::Deflated));
+            assert_eq!((file.is_file(), file.is_symlink()), (true, false));
+            assert_eq!(file.unix_mode().map(|mode| mode & 0o777), Some(mode));
+            let header = &packed[usize::try_from(file.header_start()).unwrap()..];
+            assert_eq!(&header[4..6], &[20, 0], "version needed to extract is 2.0");
+            assert_eq!(&header[10..14], &[0, 0, 0x21, 0], "1980-01-01, 00:00");
+        }
     }
 }
