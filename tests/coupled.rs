@@ -38,9 +38,9 @@ fn end_and_order(name: &str, column: &str) -> (f64, f64) {
     (b, (a / b).ln() / (h_1 / h_2).ln())
 }
 
-/// A force held over h lags by h/2: a negative damping, by which an oscillation grows as exp(gT), gT = ω² T h/4 = 0.44 at
-/// h = 50 µs, with ω² = 7e6 1/s² of the body between two layers and T = 5 ms. From there to h/2 the slope of exp(gT) - 1 is
-/// 1 + gT/(4 ln 2) = 1.16.
+/// A force held over h lags by h/2: a negative damping, by which an oscillation grows as exp(gT), gT = ω² T h/4 = 0.44
+/// at h = 50 µs, with ω² = 7e6 1/s² of the body between two layers and T = 5 ms. From there to h/2 the slope of
+/// exp(gT) - 1 is 1 + gT/(4 ln 2) = 1.16.
 const SLACK: f64 = 0.25;
 
 /// An energy grows by twice the exponent.

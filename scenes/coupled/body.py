@@ -3,8 +3,8 @@
     m ü + d_x u̇ + c_x u = F_x + P_x sin(2π f t)
     m ẅ + d_z ẇ + c_z w = F_z - P_z
 
-F_x and F_z are the forces of the layer on the body. Each is given as a value and a rate and runs linearly over the step;
-with the rate 0 it is held. Spring and damper join the body to a fixed frame; w < 0 presses.
+F_x and F_z are the forces of the layer on the body. Each is given as a value and a rate and runs linearly over the
+step; with the rate 0 it is held. Spring and damper join the body to a fixed frame; w < 0 presses.
 """
 
 from math import ceil, pi, sin

@@ -2,9 +2,10 @@
 
     coupled.py FOLDER [--quick]
 
-FOLDER holds body.fmu, smooth.fmu and rough.fmu (see run.sh); tables and picture go there. Three cases: `smooth`, the body
-on a layer; `pair`, the body between two such layers; `rough`, with friction and loss of contact. The first two are
-compared with the equations of the whole system solved by scipy; the last with the iterated master at a far shorter step.
+FOLDER holds body.fmu, smooth.fmu and rough.fmu (see run.sh); tables and picture go there. Three cases: `smooth`, the
+body on a layer; `pair`, the body between two such layers; `rough`, with friction and loss of contact. The first two are
+compared with the equations of the whole system solved by scipy; the last with the iterated master at a far shorter
+step.
 """
 
 import argparse
@@ -16,8 +17,6 @@ import matplotlib
 import numpy as np
 
 matplotlib.use("Agg")
-# The same picture, the same bytes.
-matplotlib.rcParams.update({"svg.hashsalt": "coupled", "svg.fonttype": "none"})
 import matplotlib.pyplot as plt
 from matplotlib.ticker import EngFormatter
 
@@ -26,6 +25,8 @@ from master import METHODS, Master
 from monolith import System
 from slaves import Body
 
+# The same picture, the same bytes.
+plt.rcParams.update({"svg.hashsalt": "coupled", "svg.fonttype": "none"})
 HERE = Path(__file__).parent
 DURATION, SETTLE = 5e-3, 1e-4
 VARIANTS = [(method, rates) for rates in (False, True) for method in METHODS]
@@ -73,7 +74,7 @@ def run(case: Case, folder: Path, method: str, rates: bool, steps: int) -> tuple
 
 
 def measure(case: Case, folder: Path, counts: list) -> tuple:
-    """For each variant, over the numbers of steps: the error of the place and the defect of the energy, both relative."""
+    """For each variant, over the numbers of steps: the relative errors of the place and defects of the energy."""
     times = np.linspace(0.0, DURATION, counts[-1] + 1)
     reference = case.reference(folder, times)
     found = [[compare(*run(case, folder, *variant, n), reference) for n in counts] for variant in VARIANTS]

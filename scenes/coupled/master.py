@@ -4,8 +4,8 @@
     gauss_seidel  the body steps first, and the layers follow it to where it has gone
     newton        steps are done and taken back (FMU states) until both meet; the layers' tangents tell where to try
 
-With rates, a force runs linearly over the body's step: at the layers' output derivatives, or (newton) to the force at the
-step's end. With values only it is held: that of the step's start, or (newton) of its end.
+With rates, a force runs linearly over the body's step: at the layers' output derivatives, or (newton) to the force at
+the step's end. With values only it is held: that of the step's start, or (newton) of its end.
 """
 
 import numpy as np

@@ -77,7 +77,7 @@ class Layer(Slave):
         self.fmu.setString(self.find(["input.extrapolation"]), [extrapolation])
 
     def step_along(self, time: float, h: float, place, rate=None):
-        """Steps with the body at `place`, going on at `rate`; with none, the layer's extrapolation says what it does."""
+        """Steps with the body at `place`, going on at `rate`; with none, as the layer's extrapolation says."""
         self.set(DISPLACEMENT, self.signs * place)
         if rate is not None:
             self.fmu.setRealInputDerivatives(self.find(DISPLACEMENT), [1, 1], list(self.signs * rate))
