@@ -1,4 +1,4 @@
-//! The rules of mode changes (`model.md` sections 4 and 5).
+//! The rules of mode changes, at the start and during a run: impact, lift, stop, break.
 
 use crate::model::{CarrierPoint, Forces, Mode, Model, State, SurfacePoint};
 use crate::scene::Initial;

@@ -13,7 +13,7 @@ pub use stage::NoConvergence;
 pub use tableau::{ESDIRK5, Tableau};
 pub use tolerance::Tolerance;
 
-use crate::model::{Carrier, Forces, LinkKind, Mode, Model, Power, State};
+use crate::model::{Carrier, CarrierPoint, Forces, LinkKind, Mode, Model, Power, State};
 use stage::{StagePoint, StageSolver};
 use tangent::{Tangent, Target};
 
@@ -90,13 +90,12 @@ impl Integrator {
         self.solver.iterations
     }
 
-    /// Computes the rates at the start of a step afresh: needed at the start, after an event and at a kink.
-    pub fn begin(&mut self, model: &Model, state: &State, carrier: &Carrier, s: f64, forces: &mut Forces) {
-        let point = carrier.at(s);
-        forces.evaluate(model, state, &point);
+    /// Computes the rates at the start of a step afresh, from the forces in `state`: needed at the start, after an event
+    /// and at a kink.
+    pub fn begin(&mut self, model: &Model, state: &State, carrier: &CarrierPoint, forces: &Forces) {
         self.stages[0].evaluate(model, state, forces);
         if self.accounts_energy {
-            self.powers[0] = Power::evaluate(model, state, &point, forces);
+            self.powers[0] = Power::evaluate(model, state, carrier, forces);
         }
     }
 

@@ -138,7 +138,7 @@ fn sum_on_masses(sum: &mut [f64], to_carrier: &[f64], lateral: &[f64]) {
     }
 }
 
-/// The forces in one contact (`model.md` section 3).
+/// The forces in one contact, from (6)-(9).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactForces {
     /// F_N of the surface on the mass, N.

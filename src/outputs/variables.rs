@@ -1,4 +1,4 @@
-//! The output variables of a scene: names, units, order. The table of `scene.md` as code.
+//! The output variables of a scene: names, units, order.
 
 use crate::scene::{Link, OutputGroup, Scene, Unit};
 

@@ -1,6 +1,6 @@
 //! The kinds of links.
 
-/// The four kinds of link (`model.md` section 2).
+/// The four kinds of link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LinkKind {
     /// Carrier to mass, along z: elongation ζ_i - w.

@@ -13,7 +13,8 @@ impl Simulation {
     /// Ḟ_x and Ḟ_z where the run stands, N/s, as the carrier came there; at the start, as it leaves.
     pub fn force_rates(&mut self) -> (f64, f64) {
         if !self.run.rates_hold {
-            self.integrator.begin(&self.model, &self.run.state, &self.run.carrier, self.run.s, &mut self.forces);
+            let carrier = self.evaluate_forces();
+            self.integrator.begin(&self.model, &self.run.state, &carrier, &self.forces);
         }
         self.integrator.start_rates().on_carrier(&self.model, &self.run.carrier.at(self.run.s))
     }

@@ -120,7 +120,7 @@ impl Settings {
 }
 
 impl Simulation {
-    /// Puts the layer under the carrier at rest or in motion (`model.md` section 5).
+    /// Puts the layer under the carrier at rest or in motion; what lies under the profile is lifted onto it.
     ///
     /// # Errors
     /// [`SimulationError::NotFinite`] where `start` is not finite.
@@ -248,8 +248,7 @@ impl Simulation {
     }
 
     fn with_moment(&mut self, body: impl FnOnce(&outputs::Moment<'_>)) {
-        let carrier = self.run.carrier.at(self.run.s);
-        self.forces.evaluate(&self.model, &self.run.state, &carrier);
+        let carrier = self.evaluate_forces();
         body(&outputs::Moment {
             model: &self.model,
             state: &self.run.state,

@@ -6,7 +6,7 @@ use super::{ModeChange, Motion, Simulation, SimulationError};
 use crate::contact::{decide_modes, first_event, free_unloaded, impacts_due, is_due, place_layer, stop_reversed};
 use crate::integrator::{Attempt, Dense, METHOD, STAGES};
 use crate::math::bracketed_root;
-use crate::model::{Carrier, Power, elastic_energy, kinetic_energy};
+use crate::model::{Carrier, CarrierPoint, Power, elastic_energy, kinetic_energy};
 
 /// A new step is this share of what the error estimate allows, so that few are rejected.
 const SAFETY: f64 = 0.9;
@@ -98,8 +98,15 @@ impl Simulation {
 
     /// F_z now, N.
     fn force_z(&mut self) -> f64 {
-        self.forces.evaluate(&self.model, &self.run.state, &self.run.carrier.at(self.run.s));
+        self.evaluate_forces();
         self.forces.on_carrier_z()
+    }
+
+    /// The forces as the run stands, and the carrier.
+    pub(super) fn evaluate_forces(&mut self) -> CarrierPoint {
+        let carrier = self.run.carrier.at(self.run.s);
+        self.forces.evaluate(&self.model, &self.run.state, &carrier);
+        carrier
     }
 
     /// F_z at the fraction `theta` of the step of length `h` tried last, N.
@@ -118,7 +125,8 @@ impl Simulation {
         self.integrator.begin_tangents(motion.duration);
         if !run.rates_hold || rates(&run.carrier, 0.0) != before {
             self.change_modes(0.0);
-        } else {
+        } else if self.integrator.has_tangents() {
+            self.evaluate_forces();
             self.refresh_tangents();
         }
     }
@@ -130,14 +138,12 @@ impl Simulation {
         }
     }
 
+    /// The tangents' rates from the forces just evaluated.
     fn refresh_tangents(&mut self) {
-        if self.integrator.has_tangents() {
-            self.forces.evaluate(&self.model, &self.run.state, &self.run.carrier.at(self.run.s));
-            self.integrator.refresh_tangents(&self.model, &self.run.state, &self.forces, self.run.s);
-        }
+        self.integrator.refresh_tangents(&self.model, &self.run.state, &self.forces, self.run.s);
     }
 
-    /// Impacts due, stops, then every contact decided anew (`model.md`, Jumps); and the rates after it. Masses within
+    /// Impacts due, stops, then every contact decided anew from the forces, which have jumped; and the rates after it. Masses within
     /// `reach` (m) of the profile count as touching.
     fn change_modes(&mut self, reach: f64) {
         let carrier = self.run.carrier.at(self.run.s);
@@ -148,7 +154,7 @@ impl Simulation {
         stop_reversed(model, state);
         self.forces.evaluate(model, state, &carrier);
         decide_modes(model, state, &self.forces);
-        self.integrator.begin(model, state, &self.run.carrier, self.run.s, &mut self.forces);
+        self.integrator.begin(model, state, &carrier, &self.forces);
         self.run.rates_hold = true;
         self.refresh_tangents();
         self.count_mode_changes();

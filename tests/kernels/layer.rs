@@ -108,7 +108,8 @@ impl Stepper {
         let tolerance = Tolerance::new(&model, tolerance, tolerance);
         let mut forces = Forces::new(&model);
         let mut integrator = Integrator::new(&model, Followed::default());
-        integrator.begin(&model, &state, &carrier, 0.0, &mut forces);
+        forces.evaluate(&model, &state, &carrier.at(0.0));
+        integrator.begin(&model, &state, &carrier.at(0.0), &forces);
         Self { model, carrier, state, integrator, tolerance, s: 0.0 }
     }
 
