@@ -1,19 +1,25 @@
 //! The implicit Runge-Kutta method: one step of the layer with its modes held, its error, and what lies within it.
 
 mod dense;
+mod energy;
+mod error;
+mod maxwell;
 mod rates;
 mod stage;
 mod tableau;
 mod tangent;
 mod tolerance;
 
-pub use dense::Dense;
-pub use rates::Rates;
+pub use dense::{Dense, DenseRoom};
+pub use rates::{NO_LIMIT, Rates};
 pub use stage::NoConvergence;
-pub use tableau::{ESDIRK5, Tableau};
+pub use tableau::{ESDIRK5, Tableau, WeightsWithin};
 pub use tolerance::Tolerance;
 
-use crate::model::{Carrier, CarrierPoint, Forces, LinkKind, Mode, Model, Power, State};
+use crate::math::weighted_sum;
+use crate::model::{Carrier, CarrierPoint, Exchange, Forces, LinkKind, Model, Power, State};
+use error::ErrorRoom;
+use maxwell::Maxwell;
 use stage::{StagePoint, StageSolver};
 use tangent::{Tangent, Target};
 
@@ -28,10 +34,15 @@ pub const STAGES: usize = METHOD.c.len();
 pub struct Integrator {
     /// The rates of the stages; those of the first are the rates at the start of the step.
     stages: Vec<Rates>,
-    /// The powers of the stages.
-    powers: [Power; STAGES],
+    /// The carrier at the stages.
+    carrier: [CarrierPoint; STAGES],
+    /// The powers through the surface and the carrier at the stages.
+    exchange: [Exchange; STAGES],
+    maxwell: Maxwell<STAGES>,
     solver: StageSolver,
+    error_room: ErrorRoom,
     predictor: [[f64; STAGES]; STAGES],
+    weights_within: WeightsWithin<STAGES>,
     accounts_energy: bool,
     /// How the run follows the targets of u and w; empty where nobody asks.
     tangents: Vec<Tangent>,
@@ -61,9 +72,13 @@ impl Integrator {
         let targets: &[Target] = if followed.tangents { &[Target::U, Target::W] } else { &[] };
         Self {
             stages: vec![Rates::new(model); STAGES],
-            powers: [Power::default(); STAGES],
+            carrier: [CarrierPoint::default(); STAGES],
+            exchange: [Exchange::default(); STAGES],
+            maxwell: Maxwell::new(model),
             solver: StageSolver::new(model),
+            error_room: ErrorRoom::new(model),
             predictor: predictor(&METHOD.c),
+            weights_within: WeightsWithin::new(&METHOD),
             accounts_energy: followed.energy,
             tangents: targets.iter().map(|&target| Tangent::new(model, target)).collect(),
         }
@@ -75,14 +90,14 @@ impl Integrator {
     }
 
     /// Puts back the rates at the start of a step.
-    pub fn restore(&mut self, rates: &Rates, power: Power) {
+    pub fn restore(&mut self, rates: &Rates, exchange: Exchange) {
         self.stages[0].copy_from(rates);
-        self.powers[0] = power;
+        self.exchange[0] = exchange;
     }
 
-    /// The powers at the start of the step.
-    pub fn start_power(&self) -> Power {
-        self.powers[0]
+    /// The powers through the surface and the carrier at the start of the step.
+    pub fn start_exchange(&self) -> Exchange {
+        self.exchange[0]
     }
 
     /// Newton's iterations since the start.
@@ -95,7 +110,7 @@ impl Integrator {
     pub fn begin(&mut self, model: &Model, state: &State, carrier: &CarrierPoint, forces: &Forces) {
         self.stages[0].evaluate(model, state, forces);
         if self.accounts_energy {
-            self.powers[0] = Power::evaluate(model, state, carrier, forces);
+            self.exchange[0] = Exchange::evaluate(model, state, carrier, forces);
         }
     }
 
@@ -111,25 +126,24 @@ impl Integrator {
         (s, h): (f64, f64),
         tolerance: &Tolerance,
     ) -> Result<Attempt, NoConvergence> {
-        self.solver.state.mode.copy_from_slice(&state.mode);
-        self.solver.state.ground.copy_from_slice(&state.ground);
+        let beta = METHOD.gamma() * h;
+        self.carrier[0] = carrier.at(s);
+        self.solver.begin(model, state, beta);
+        self.maxwell.begin(model, &METHOD, &state.maxwell, h);
         for i in 1..STAGES {
             let at = carrier.at(s + METHOD.c[i] * h);
+            self.carrier[i] = at;
             self.collect_history(state, h, i, carrier.moved(s, METHOD.c[i] * h));
-            self.predict(state, h, i);
-            let point = StagePoint {
-                beta: METHOD.gamma() * h,
-                carrier: at,
-                place: carrier.place + at.du,
-                w: carrier.w + at.dw,
-            };
-            self.solver.solve(model, &point, tolerance.newton(point.beta), &mut self.stages[i])?;
+            self.predict(state, beta, i);
+            let point = StagePoint { beta, carrier: at, place: carrier.place + at.du, w: carrier.w + at.dw };
+            self.solver.solve(model, &point, tolerance.newton(beta), &mut self.stages[i])?;
             if self.accounts_energy {
-                self.powers[i] = Power::evaluate(model, &self.solver.state, &at, &self.solver.forces);
+                self.exchange[i] = Exchange::evaluate(model, &self.solver.state, &at, &self.solver.forces);
             }
             self.vary(model, &point, (s, h), i);
         }
-        Ok(self.error(model, carrier, (s, h), tolerance))
+        self.maxwell.finish(model, &state.maxwell, &self.stages, &mut self.solver.state.maxwell);
+        Ok(self.error(model, h, tolerance))
     }
 
     /// The tangents at a stage just solved.
@@ -185,11 +199,10 @@ impl Integrator {
     pub fn bytes(&self) -> usize {
         let rates = &self.stages[0];
         let masses = rates.velocity_x.len();
-        let by_link: usize = rates.maxwell_force.iter().map(Vec::len).sum();
-        let floats = (STAGES + 1) * (6 * masses + rates.maxwell.len() + by_link);
-        // The starred values, and three blocks, a right side and a climb a mass.
-        let solver = 4 * masses + rates.maxwell.len() + by_link + (3 * 4 + 2 + 2) * masses;
-        (floats + solver) * size_of::<f64>()
+        let links: usize = rates.elongation_rate.iter().map(Vec::len).sum();
+        // By mass: the rates and the starred values; three blocks, a right side and a column; errors and polynomials.
+        let by_mass = (STAGES + 1) * 6 + 4 + (3 * 4 + 2 + 3) + 4;
+        (by_mass * masses + (STAGES + 1) * links + 2 * self.maxwell.floats()) * size_of::<f64>()
     }
 
     /// The rates at the stages of the step tried last.
@@ -197,132 +210,61 @@ impl Integrator {
         &self.stages
     }
 
-    /// Energies through the channels over the step of length `h` tried last.
-    pub fn energies(&self, h: f64) -> Power {
-        let mut sum = Power::default();
-        for (weight, power) in METHOD.weights().iter().zip(&self.powers) {
-            sum.add(h * weight, power);
+    /// Energies through the channels over the step of length `h` from `start` tried last, up to its fraction `theta`.
+    pub fn energies(&self, model: &Model, start: &State, h: f64, theta: f64) -> Power {
+        let weights = if theta < 1.0 { &self.weights_within.at(theta) } else { METHOD.weights() };
+        let mut energy = energy::lost(model, &self.maxwell, &start.maxwell, &self.stages, (h, weights));
+        for (weight, exchange) in weights.iter().zip(&self.exchange) {
+            energy.friction += h * weight * exchange.friction;
+            energy.input += h * weight * exchange.input;
         }
-        sum
+        energy
     }
 
     /// Takes the step tried last: `state` becomes its end, and the rates there those at the start of the next step.
     pub fn accept(&mut self, state: &mut State) {
         std::mem::swap(state, &mut self.solver.state);
         self.stages.swap(0, STAGES - 1);
-        self.powers.swap(0, STAGES - 1);
+        self.exchange.swap(0, STAGES - 1);
         for tangent in &mut self.tangents {
             tangent.accept();
         }
     }
 
-    /// The starred values of stage `i`: what the earlier stages give.
+    /// What the earlier stages give to stage `i`, at which the carrier has moved by (`du`, `dw`) since the start.
     fn collect_history(&mut self, state: &State, h: f64, i: usize, (du, dw): (f64, f64)) {
         let history = &mut self.solver.history;
         let earlier = &self.stages[..i];
         let weights = &METHOD.a[i];
-        for (star, e) in history.elongation_x.iter_mut().zip(&state.elongation_x) {
-            *star = e - du;
-        }
-        for (star, e) in history.elongation_z.iter_mut().zip(&state.elongation_z) {
-            *star = e - dw;
-        }
-        history.velocity_x.copy_from_slice(&state.velocity_x);
-        history.velocity_z.copy_from_slice(&state.velocity_z);
-        for (stage, weight) in earlier.iter().zip(weights) {
-            let step = h * weight;
-            add(&mut history.elongation_x, step, &stage.velocity_x);
-            add(&mut history.elongation_z, step, &stage.velocity_z);
-            add(&mut history.velocity_x, step, &stage.acceleration_x);
-            add(&mut history.velocity_z, step, &stage.acceleration_z);
-        }
-        // Row by row, so that the sum stays in the nearest cache whatever the number of elements.
-        for start in (0..history.maxwell.len()).step_by(HISTORY_CHUNK) {
-            let range = start..(start + HISTORY_CHUNK).min(history.maxwell.len());
-            let star = &mut history.maxwell[range.clone()];
-            star.copy_from_slice(&state.maxwell[range.clone()]);
-            for (stage, weight) in earlier.iter().zip(weights) {
-                add(star, h * weight, &stage.maxwell[range.clone()]);
-            }
+        let sum = |star: &mut [f64], start: &[f64], rate: fn(&Rates) -> &[f64]| {
+            let terms = earlier.iter().zip(weights).map(|(stage, weight)| (h * weight, rate(stage)));
+            weighted_sum(star, std::iter::once((1.0, start)).chain(terms));
+        };
+        sum(&mut history.elongation_x, &state.elongation_x, |stage| &stage.velocity_x);
+        sum(&mut history.elongation_z, &state.elongation_z, |stage| &stage.velocity_z);
+        sum(&mut history.velocity_x, &state.velocity_x, |stage| &stage.acceleration_x);
+        sum(&mut history.velocity_z, &state.velocity_z, |stage| &stage.acceleration_z);
+        history.elongation_x.iter_mut().for_each(|star| *star -= du);
+        history.elongation_z.iter_mut().for_each(|star| *star -= dw);
+        for kind in LinkKind::ALL.into_iter().filter(|&kind| self.maxwell.has(kind)) {
+            self.maxwell.known_force(kind, i, earlier, &mut history.force[kind as usize]);
         }
     }
 
     /// The velocities from which Newton's iterations start. For slipping masses the accelerations of the earlier stages are
     /// extrapolated; free ones, whose equations are linear, start where they were, since a guess far off costs digits.
-    fn predict(&mut self, start: &State, h: f64, i: usize) {
-        let beta = METHOD.gamma() * h;
-        let state = &mut self.solver.state;
-        state.velocity_x.copy_from_slice(&start.velocity_x);
-        state.velocity_z.copy_from_slice(&start.velocity_z);
-        let earlier = self.stages[..i].iter().zip(&self.predictor[i]);
-        for mass in (0..start.mode.len()).filter(|&mass| start.mode[mass].slips()) {
-            let acceleration: f64 = earlier.clone().map(|(stage, weight)| weight * stage.acceleration_x[mass]).sum();
-            state.velocity_x[mass] = self.solver.history.velocity_x[mass] + beta * acceleration;
-        }
-    }
-
-    /// The embedded estimate in the tolerance's norm, and of F_z.
-    ///
-    /// The carrier's displacement is known, not integrated; yet a step must be able to see it: the dense output, the
-    /// events between the stages and the energies do. So what the method would miss of it counts as an error too: where
-    /// every mass sticks, there is no other.
-    fn error(&self, model: &Model, carrier: &Carrier, (s, h): (f64, f64), tolerance: &Tolerance) -> Attempt {
-        let rates = carrier.at(s + h);
-        let end = &self.solver.state;
-        let vertical = &model.links[LinkKind::Vertical as usize];
-        let (u, w) = carrier_error(carrier, (s, h));
-        let (mut sum, mut force_error) = (0.0, 0.0);
-        for i in 0..model.masses() {
-            let of = |component: fn(&Rates) -> &Vec<f64>| h * self.weighed(|stage| component(stage)[i]);
-            let (x, v_x) = (of(|r| &r.velocity_x), of(|r| &r.acceleration_x));
-            let (z, v_z) = match end.mode[i] {
-                Mode::Free => (of(|r| &r.velocity_z), of(|r| &r.acceleration_z)),
-                _ => (end.ground[i].slope * x, end.ground[i].slope * v_x),
-            };
-            sum += tolerance.position(x, end.elongation_x[i]) + tolerance.position(z, end.elongation_z[i]);
-            sum += tolerance.position(u, end.elongation_x[i]) + tolerance.position(w, end.elongation_z[i]);
-            sum += tolerance.velocity(v_x, end.velocity_x[i] - rates.u_rate);
-            sum += tolerance.velocity(v_z, end.velocity_z[i] - rates.w_rate);
-            force_error += vertical.stiffness * z + vertical.damping * v_z;
-        }
-        for kind in LinkKind::ALL {
-            let elongation = if kind.is_along_x() { &end.elongation_x } else { &end.elongation_z };
-            for i in 0..self.stages[0].maxwell_force[kind as usize].len() {
-                let force = h * self.weighed(|stage| stage.maxwell_force[kind as usize][i]);
-                let e = if kind.is_lateral() { elongation[i + 1] - elongation[i] } else { elongation[i] };
-                sum += tolerance.maxwell(kind, force, e);
-                if kind == LinkKind::Vertical {
-                    force_error += force;
-                }
+    fn predict(&mut self, start: &State, beta: f64, i: usize) {
+        let solver = &mut self.solver;
+        solver.state.velocity_x.copy_from_slice(&start.velocity_x);
+        solver.state.velocity_z.copy_from_slice(&start.velocity_z);
+        let earlier = self.stages[..i].iter().zip(&self.predictor[i]).filter(|(_, weight)| **weight != 0.0);
+        for mass in 0..start.mode.len() {
+            if start.mode[mass].slips() {
+                let acceleration: f64 =
+                    earlier.clone().map(|(stage, weight)| weight * stage.acceleration_x[mass]).sum();
+                solver.state.velocity_x[mass] = solver.history.velocity_x[mass] + beta * acceleration;
             }
         }
-        Attempt { error: (sum / model.masses() as f64).sqrt(), force_error }
-    }
-
-    /// Σ (b_i - b̂_i) of a quantity of the stages.
-    #[inline]
-    fn weighed(&self, quantity: impl Fn(&Rates) -> f64) -> f64 {
-        self.stages.iter().zip(&METHOD.error).map(|(stage, weight)| weight * quantity(stage)).sum()
-    }
-}
-
-/// The embedded estimate of u and w, as if their rates were integrated, m.
-fn carrier_error(carrier: &Carrier, (s, h): (f64, f64)) -> (f64, f64) {
-    let stages = METHOD.c.iter().zip(&METHOD.error).map(|(c, weight)| (carrier.at(s + c * h), h * weight));
-    stages.fold((0.0, 0.0), |(u, w), (at, weight)| (u + weight * at.u_rate, w + weight * at.w_rate))
-}
-
-/// Maxwell variables whose history is summed at a time: 16 KiB of sums.
-const HISTORY_CHUNK: usize = 2048;
-
-/// sum += factor · term.
-#[inline]
-fn add(sum: &mut [f64], factor: f64, term: &[f64]) {
-    if factor == 0.0 {
-        return;
-    }
-    for (sum, term) in sum.iter_mut().zip(term) {
-        *sum += factor * term;
     }
 }
 

@@ -3,6 +3,9 @@
 use crate::math::{Numbers, visit_all};
 use crate::model::{CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint};
 
+/// What is left of a quantity that has no limit.
+pub const NO_LIMIT: f64 = f64::MAX;
+
 /// What a stage leaves for the later ones, for the error estimate and for the events.
 #[derive(Clone, Debug)]
 pub struct Rates {
@@ -14,13 +17,12 @@ pub struct Rates {
     pub acceleration_x: Vec<f64>,
     /// z̈_i, m/s²; in contact along the surface, s ẍ + κ ẋ².
     pub acceleration_z: Vec<f64>,
-    /// ȧ of all Maxwell elements, m/s.
-    pub maxwell: Vec<f64>,
-    /// Σ_j c_j ȧ_j by link, N/s; empty where a link has no Maxwell elements.
-    pub maxwell_force: [Vec<f64>; 4],
-    /// F_N of the masses in contact, N.
+    /// ė of the links by kind, m/s; empty where the scene has no such link.
+    pub elongation_rate: [Vec<f64>; 4],
+    /// F_N of the masses in contact, N; [`NO_LIMIT`] for a free one.
     pub normal: Vec<f64>,
-    /// What is left before a contact changes its mode: σẋ (m/s) of a slipping mass, T - |f·t| (N) of a sticking one.
+    /// What is left before a contact changes its mode: σẋ (m/s) of a slipping mass, T - |f·t| (N) of a sticking one;
+    /// [`NO_LIMIT`] for a free mass, and where the scene has no friction.
     pub margin: Vec<f64>,
 }
 
@@ -29,19 +31,21 @@ impl Rates {
     pub fn new(model: &Model) -> Self {
         let k = model.masses();
         let zero = vec![0.0; k];
-        let room = |kind: LinkKind| {
-            if model.rows.iter().any(|row| row.kind == kind) { vec![0.0; kind.count(k)] } else { Vec::new() }
-        };
         Self {
             velocity_x: zero.clone(),
             velocity_z: zero.clone(),
             acceleration_x: zero.clone(),
             acceleration_z: zero.clone(),
-            maxwell: vec![0.0; model.maxwell_variables()],
-            maxwell_force: LinkKind::ALL.map(room),
+            elongation_rate: Forces::new(model).rate,
             normal: zero.clone(),
             margin: zero,
         }
+    }
+
+    /// Leaves no mass in contact.
+    pub fn clear_contacts(&mut self) {
+        self.normal.fill(NO_LIMIT);
+        self.margin.fill(NO_LIMIT);
     }
 
     /// Takes over `other`, rates of the same model, without allocating.
@@ -51,20 +55,20 @@ impl Rates {
             (&mut self.velocity_z, &other.velocity_z),
             (&mut self.acceleration_x, &other.acceleration_x),
             (&mut self.acceleration_z, &other.acceleration_z),
-            (&mut self.maxwell, &other.maxwell),
             (&mut self.normal, &other.normal),
             (&mut self.margin, &other.margin),
         ];
         for (mine, theirs) in pairs {
             mine.copy_from_slice(theirs);
         }
-        for (mine, theirs) in self.maxwell_force.iter_mut().zip(&other.maxwell_force) {
+        for (mine, theirs) in self.elongation_rate.iter_mut().zip(&other.elongation_rate) {
             mine.copy_from_slice(theirs);
         }
     }
 
     /// The rates that the forces give in `state`: the explicit first stage.
     pub fn evaluate(&mut self, model: &Model, state: &State, forces: &Forces) {
+        self.clear_contacts();
         for i in 0..model.masses() {
             let v = state.velocity_x[i];
             self.velocity_x[i] = v;
@@ -78,70 +82,59 @@ impl Rates {
                 let ground = &state.ground[i];
                 let contact = ContactForces::new(model, (f_x, f_z), v, ground);
                 self.acceleration_x[i] = contact.acceleration(model, mode, v, ground);
-                self.contact(i, mode, v, ground, &contact);
+                self.contact(model, i, (mode, v), ground, &contact);
             }
         }
-        self.evaluate_maxwell(model, state, forces);
+        for (mine, rate) in self.elongation_rate.iter_mut().zip(&forces.rate) {
+            mine.copy_from_slice(rate);
+        }
     }
 
-    /// What a contact at mass `i` leaves: its z̈ along the surface, F_N and the margin of its mode.
+    /// What a contact at mass `i` in `mode` at the velocity ẋ leaves: its z̈ along the surface, F_N and the margin of its
+    /// mode.
     #[inline]
-    pub fn contact(&mut self, i: usize, mode: Mode, velocity_x: f64, ground: &SurfacePoint, contact: &ContactForces) {
+    pub fn contact(
+        &mut self,
+        model: &Model,
+        i: usize,
+        (mode, velocity_x): (Mode, f64),
+        ground: &SurfacePoint,
+        contact: &ContactForces,
+    ) {
         self.acceleration_z[i] = ground.slope * self.acceleration_x[i] + ground.curvature * velocity_x * velocity_x;
         self.normal[i] = contact.normal;
         self.margin[i] = match mode {
             Mode::Stick => contact.limit - contact.tangential.abs(),
-            _ => mode.direction() * velocity_x,
+            _ if model.has_friction => mode.direction() * velocity_x,
+            _ => NO_LIMIT,
         };
     }
 
-    /// ȧ = ė - a/τ.
-    fn evaluate_maxwell(&mut self, model: &Model, state: &State, forces: &Forces) {
-        self.clear_maxwell_force();
-        for row in &model.rows {
-            let known = state.maxwell[row.range.clone()].iter().zip(&forces.rate[row.kind as usize]);
-            let (rate, force_rate) = self.maxwell_row(row);
-            for ((a, elongation_rate), (rate, force_rate)) in known.zip(rate.iter_mut().zip(force_rate)) {
-                *rate = elongation_rate - a / row.relaxation_time;
-                *force_rate += row.stiffness * *rate;
-            }
-        }
-    }
-
-    /// Begins the sums of [`maxwell_force`](Self::maxwell_force) anew.
-    pub fn clear_maxwell_force(&mut self) {
-        for force in &mut self.maxwell_force {
-            force.fill(0.0);
-        }
-    }
-
-    /// ȧ of one row of elements and the sum of its kind that they add to.
-    pub fn maxwell_row(&mut self, row: &MaxwellRow) -> (&mut [f64], &mut [f64]) {
-        (&mut self.maxwell[row.range.clone()], &mut self.maxwell_force[row.kind as usize])
-    }
-
-    /// Ḟ_x and Ḟ_z of the layer on the carrier, N/s: Ḟ = Σ c ė + d ë + Σ_j c_j ȧ_j over the links to it.
-    pub fn on_carrier(&self, model: &Model, carrier: &CarrierPoint) -> (f64, f64) {
-        let of = |kind: LinkKind, (velocity, rate): (&[f64], f64), (acceleration, rate_change): (&[f64], f64)| {
+    /// Ḟ_x and Ḟ_z of the layer on the carrier, N/s, where the Maxwell elongations are `maxwell`:
+    /// Ḟ = Σ c ė + d ë + Σ_j c_j (ė - a_j/τ_j) over the links to it.
+    pub fn on_carrier(&self, model: &Model, maxwell: &[f64], carrier: &CarrierPoint) -> (f64, f64) {
+        let of = |kind: LinkKind, acceleration: &[f64], rate_change: f64| {
             let law = &model.links[kind as usize];
-            let spring: f64 = velocity.iter().map(|v| law.stiffness * (v - rate)).sum();
+            let rate: f64 = self.elongation_rate[kind as usize].iter().sum();
             let damper: f64 = acceleration.iter().map(|a| law.damping * (a - rate_change)).sum();
-            spring + damper + self.maxwell_force[kind as usize].iter().sum::<f64>()
+            let relaxing = |row: &MaxwellRow| {
+                row.stiffness * (rate - maxwell[row.range.clone()].iter().sum::<f64>() / row.relaxation_time)
+            };
+            let elements: f64 = model.rows.iter().filter(|row| row.kind == kind).map(relaxing).sum();
+            law.stiffness * rate + damper + elements
         };
-        let along_x = (&self.velocity_x[..], carrier.u_rate);
-        let along_z = (&self.velocity_z[..], carrier.w_rate);
         (
-            of(LinkKind::Horizontal, along_x, (&self.acceleration_x, carrier.u_acceleration)),
-            of(LinkKind::Vertical, along_z, (&self.acceleration_z, carrier.w_acceleration)),
+            of(LinkKind::Horizontal, &self.acceleration_x, carrier.u_acceleration),
+            of(LinkKind::Vertical, &self.acceleration_z, carrier.w_acceleration),
         )
     }
 }
 
 impl Numbers for Rates {
     fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        let Self { velocity_x, velocity_z, acceleration_x, acceleration_z, maxwell, maxwell_force, normal, margin } =
-            self;
+        let Self { velocity_x, velocity_z, acceleration_x, acceleration_z, elongation_rate, normal, margin } = self;
         visit_all([velocity_x, velocity_z, acceleration_x, acceleration_z], visit);
-        visit_all([maxwell, maxwell_force, normal, margin], visit);
+        elongation_rate.visit(visit);
+        visit_all([normal, margin], visit);
     }
 }

@@ -3,7 +3,7 @@
 //! Over a motion of the carrier of duration h, let one of its displacements end at û + ε: it is moved by ε s/h on the
 //! way, and its rate by ε/h. Everything here is the derivative with respect to ε at ε = 0, the modes held.
 
-use super::{METHOD, STAGES, add};
+use super::{METHOD, STAGES};
 use crate::model::{Forces, LinkKind, LinkMotion, Mode, Model, State, SurfacePoint};
 
 /// Which displacement's target is varied.
@@ -229,6 +229,13 @@ impl Tangent {
     pub(super) fn accept(&mut self) {
         std::mem::swap(&mut self.start, &mut self.end);
         self.stages.swap(0, STAGES - 1);
+    }
+}
+
+/// sum += factor · term.
+pub(super) fn add(sum: &mut [f64], factor: f64, term: &[f64]) {
+    for (sum, term) in sum.iter_mut().zip(term) {
+        *sum += factor * term;
     }
 }
 

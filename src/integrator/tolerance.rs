@@ -30,23 +30,22 @@ impl Tolerance {
         Self { relative, position: absolute, velocity: absolute * model.stiffest_frequency(), glassy }
     }
 
-    /// The square of a position's error over what is allowed.
+    /// The square of the error allowed of a position of this size, m².
     #[inline]
-    pub fn position(&self, error: f64, size: f64) -> f64 {
-        square(error / (self.position + self.relative * size.abs()))
+    pub fn of_position(&self, size: f64) -> f64 {
+        square(self.position + self.relative * size.abs())
     }
 
-    /// The square of a velocity's error over what is allowed.
+    /// The square of the error allowed of a velocity of this size, m²/s².
     #[inline]
-    pub fn velocity(&self, error: f64, size: f64) -> f64 {
-        square(error / (self.velocity + self.relative * size.abs()))
+    pub fn of_velocity(&self, size: f64) -> f64 {
+        square(self.velocity + self.relative * size.abs())
     }
 
-    /// The square of the error of all Maxwell elements of one link, given as a force (N), at the elongation `size` (m).
-    #[inline]
-    pub fn maxwell(&self, kind: LinkKind, error: f64, size: f64) -> f64 {
+    /// What turns the error of the force of all Maxwell elements of a link into an elongation, m/N.
+    pub fn per_glassy(&self, kind: LinkKind) -> f64 {
         let glassy = self.glassy[kind as usize];
-        if glassy > 0.0 { self.position(error / glassy, size) } else { 0.0 }
+        if glassy > 0.0 { 1.0 / glassy } else { 0.0 }
     }
 
     /// To what correction of the velocities, m/s, a stage with β = `beta` (s) is solved.

@@ -5,6 +5,7 @@ mod polynomial;
 mod relaxation;
 mod root;
 mod spline;
+mod sums;
 mod tridiagonal;
 
 pub use numbers::{Numbers, visit_all};
@@ -12,4 +13,5 @@ pub use polynomial::{Jet, Quintic};
 pub use relaxation::Relaxation;
 pub use root::bracketed_root;
 pub use spline::{Bounds, Spline};
+pub use sums::{dot, sum_of, weighted_sum};
 pub use tridiagonal::BlockTridiagonal;

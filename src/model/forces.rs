@@ -1,6 +1,7 @@
 //! Forces of the links and of the contacts at one instant.
 
 use super::{CarrierPoint, LinkKind, Mode, Model, State, SurfacePoint};
+use crate::math::sum_of;
 
 /// Forces at one instant, and room for them.
 #[derive(Clone, Debug, Default)]
@@ -66,14 +67,14 @@ impl Forces {
 
     /// F_x of the layer on the carrier, N.
     pub fn on_carrier_x(&self) -> f64 {
-        self.link[LinkKind::Horizontal as usize].iter().sum()
+        sum(&self.link[LinkKind::Horizontal as usize])
     }
 
     /// F_z of the layer on the carrier, N: positive when the layer is compressed.
     ///
     /// A compressed vertical link (e > 0: the mass is pushed up towards the carrier) pushes the carrier up.
     pub fn on_carrier_z(&self) -> f64 {
-        self.link[LinkKind::Vertical as usize].iter().sum()
+        sum(&self.link[LinkKind::Vertical as usize])
     }
 
     /// Bytes that the forces hold.
@@ -122,6 +123,10 @@ impl<'a> LinkMotion<'a> {
             (self.elongation_z, self.velocity_z, self.carrier_rates.1)
         }
     }
+}
+
+fn sum(forces: &[f64]) -> f64 {
+    sum_of(forces.len(), |i| forces[i])
 }
 
 fn sum_on_masses(sum: &mut [f64], to_carrier: &[f64], lateral: &[f64]) {

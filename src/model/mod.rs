@@ -10,7 +10,7 @@ mod state;
 pub use carrier::{Carrier, CarrierPoint};
 pub use forces::{ContactForces, Forces, LinkMotion};
 pub use link::{LinkLaw, MaxwellRow};
-pub use power::{Power, elastic_energy, kinetic_energy};
+pub use power::{Exchange, Power, elastic_energy, kinetic_energy};
 pub use state::{Mode, State};
 
 use crate::math::{Numbers, Spline, visit_all};

@@ -24,8 +24,8 @@ impl Power {
         Self {
             damper: LinkKind::ALL.map(|kind| damper(model, forces, kind)).iter().sum(),
             maxwell: maxwell(model, state),
-            friction: if model.has_friction { friction(model, state, forces) } else { 0.0 },
-            input: -(forces.on_carrier_x() * carrier.u_rate + forces.on_carrier_z() * carrier.w_rate),
+            friction: friction(model, state, forces),
+            input: input(forces, carrier),
         }
     }
 
@@ -40,6 +40,29 @@ impl Power {
         self.maxwell += time * power.maxwell;
         self.friction += time * power.friction;
         self.input += time * power.input;
+    }
+}
+
+/// Power through the surface and through the carrier: what of [`Power`] is not the links' own.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Exchange {
+    /// P_friction = Σ F_T v_t, W.
+    pub friction: f64,
+    /// P_in = -(F_x u̇ + F_z ẇ), W.
+    pub input: f64,
+}
+
+impl Exchange {
+    /// The powers in `state` with the forces there.
+    pub fn evaluate(model: &Model, state: &State, carrier: &CarrierPoint, forces: &Forces) -> Self {
+        Self { friction: friction(model, state, forces), input: input(forces, carrier) }
+    }
+}
+
+impl Numbers for Exchange {
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        let Self { friction, input } = self;
+        visit_all([friction, input], visit);
     }
 }
 
@@ -67,6 +90,9 @@ fn maxwell(model: &Model, state: &State) -> f64 {
 }
 
 fn friction(model: &Model, state: &State, forces: &Forces) -> f64 {
+    if !model.has_friction {
+        return 0.0;
+    }
     (0..model.masses())
         .filter(|&i| state.mode[i].slips())
         .map(|i| {
@@ -75,6 +101,13 @@ fn friction(model: &Model, state: &State, forces: &Forces) -> f64 {
             contact.friction(state.mode[i]) * v * contact.q
         })
         .sum()
+}
+
+/// A carrier at rest does no work, whatever the forces.
+fn input(forces: &Forces, carrier: &CarrierPoint) -> f64 {
+    let along_x = if carrier.u_rate == 0.0 { 0.0 } else { forces.on_carrier_x() * carrier.u_rate };
+    let along_z = if carrier.w_rate == 0.0 { 0.0 } else { forces.on_carrier_z() * carrier.w_rate };
+    -(along_x + along_z)
 }
 
 /// T = Σ ½ m (ẋ² + ż²), J.

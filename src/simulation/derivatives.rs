@@ -16,7 +16,8 @@ impl Simulation {
             let carrier = self.evaluate_forces();
             self.integrator.begin(&self.model, &self.run.state, &carrier, &self.forces);
         }
-        self.integrator.start_rates().on_carrier(&self.model, &self.run.carrier.at(self.run.s))
+        let carrier = self.run.carrier.at(self.run.s);
+        self.integrator.start_rates().on_carrier(&self.model, &self.run.state.maxwell, &carrier)
     }
 }
 

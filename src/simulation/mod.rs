@@ -10,7 +10,7 @@ pub(crate) mod tests;
 use std::sync::Arc;
 
 use crate::contact::EventTolerance;
-use crate::integrator::{Followed, Integrator, Tolerance};
+use crate::integrator::{DenseRoom, Followed, Integrator, Tolerance};
 use crate::model::{Forces, Model, State};
 use crate::outputs::{self, Accounts, Variable};
 use crate::scene::{Path, Scene};
@@ -99,6 +99,7 @@ pub struct Simulation {
     forces: Forces,
     /// The state within a step, shown to observers.
     within: State,
+    dense_room: DenseRoom,
     mode_changes: Option<Vec<ModeChange>>,
 }
 
@@ -137,18 +138,20 @@ impl Simulation {
         let state = State::new(model.masses(), model.maxwell_variables());
         let run = Run::new(&model, state.clone(), start);
         let forces = Forces::new(&model);
+        let dense_room = DenseRoom::new(&model);
         let mut simulation = Self {
             model,
             settings,
             before: Checkpoint {
                 run: run.clone(),
                 rates: integrator.start_rates().clone(),
-                power: integrator.start_power(),
+                exchange: integrator.start_exchange(),
             },
             run,
             integrator,
             forces,
             within: state,
+            dense_room,
             mode_changes: None,
         };
         simulation.place_layer();
@@ -171,7 +174,7 @@ impl Simulation {
         let maxwell = self.run.state.maxwell.len();
         // The run, the one to go back to, the one within a step and the stage's.
         let states = 4 * (masses * (4 * size_of::<f64>() + size_of_val(&self.run.state.ground[0]) + 1));
-        states + 4 * maxwell * size_of::<f64>() + self.integrator.bytes() + 2 * self.forces.bytes()
+        states + 4 * maxwell * size_of::<f64>() + self.integrator.bytes() + 2 * self.forces.bytes() + self.dense_room.bytes()
     }
 
     /// Follows `motion` to its end.
@@ -233,13 +236,13 @@ impl Simulation {
 
     fn go_back(&mut self) {
         self.run.copy_from(&self.before.run);
-        self.integrator.restore(&self.before.rates, self.before.power);
+        self.integrator.restore(&self.before.rates, self.before.exchange);
     }
 
     fn keep_checkpoint(&mut self) {
         self.before.run.copy_from(&self.run);
         self.before.rates.copy_from(self.integrator.start_rates());
-        self.before.power = self.integrator.start_power();
+        self.before.exchange = self.integrator.start_exchange();
     }
 
     /// Writes the values of `variables`, in their order, into `values`; Integers as whole numbers.

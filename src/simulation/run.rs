@@ -4,7 +4,7 @@ use super::{Motion, SimulationError, Start};
 use crate::contact::CarrierPlace;
 use crate::integrator::Rates;
 use crate::math::{Numbers, visit_all};
-use crate::model::{Carrier, Model, Power, State};
+use crate::model::{Carrier, Exchange, Model, State};
 use crate::outputs::{Counters, Energies};
 use crate::scene::Path;
 
@@ -73,7 +73,7 @@ const FIRST_STEP: f64 = 0.1;
 pub(super) struct Checkpoint {
     pub(super) run: Run,
     pub(super) rates: Rates,
-    pub(super) power: Power,
+    pub(super) exchange: Exchange,
 }
 
 /// All but the modes, the counts and whether the rates hold.
@@ -86,8 +86,8 @@ impl Numbers for Run {
 
 impl Numbers for Checkpoint {
     fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        let Self { run, rates, power } = self;
-        visit_all([run, rates, power], visit);
+        let Self { run, rates, exchange } = self;
+        visit_all([run, rates, exchange], visit);
     }
 }
 

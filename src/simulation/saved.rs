@@ -63,7 +63,7 @@ impl Simulation {
         let mut now = Checkpoint {
             run: self.run.clone(),
             rates: self.integrator.start_rates().clone(),
-            power: self.integrator.start_power(),
+            exchange: self.integrator.start_exchange(),
         };
         let mut numbers = Vec::new();
         now.visit(&mut |number| numbers.push(*number));

@@ -2,11 +2,12 @@
 
 use cpu_time::ThreadTime;
 
+use super::run::Run;
 use super::{ModeChange, Motion, Simulation, SimulationError};
 use crate::contact::{decide_modes, first_event, free_unloaded, impacts_due, is_due, place_layer, stop_reversed};
-use crate::integrator::{Attempt, Dense, METHOD, STAGES};
+use crate::integrator::{Attempt, Dense, Integrator, METHOD, STAGES};
 use crate::math::bracketed_root;
-use crate::model::{Carrier, CarrierPoint, Power, elastic_energy, kinetic_energy};
+use crate::model::{Carrier, CarrierPoint, Model, elastic_energy, kinetic_energy};
 
 /// A new step is this share of what the error estimate allows, so that few are rejected.
 const SAFETY: f64 = 0.9;
@@ -200,7 +201,7 @@ impl Simulation {
                 continue;
             };
             let proposed = *proposal.get_or_insert_with(|| self.proposal(h, remaining, attempt.error));
-            let event = first_event(&self.dense(h), self.integrator.stages(), &self.settings.events);
+            let event = first_event(&dense(&self.model, &self.run, &self.integrator, h), self.integrator.stages(), &self.settings.events);
             match event.filter(|&theta| theta < 1.0 && h > shortest) {
                 Some(theta) => h = (theta * h).max(shortest),
                 None => {
@@ -253,35 +254,22 @@ impl Simulation {
 
     fn accept(&mut self, h: f64, end: f64) {
         if self.settings.accounts.energy {
-            self.run.energies.channels.add(1.0, &self.integrator.energies(h));
+            self.run.energies.channels.add(1.0, &self.integrator.energies(&self.model, &self.run.state, h, 1.0));
         }
         self.integrator.accept(&mut self.run.state);
         self.run.counters.steps += 1;
         self.run.s = end;
     }
 
-    /// The step of length `h` tried last, seen from within.
-    fn dense(&self, h: f64) -> Dense<'_> {
-        let stages = self.integrator.stages();
-        Dense {
-            model: &self.model,
-            carrier: &self.run.carrier,
-            s: self.run.s,
-            h,
-            start: (&self.run.state, &stages[0]),
-            end: (self.integrator.end(), &stages[STAGES - 1]),
-        }
-    }
-
     /// Calls `show` with the simulation as it stood at the fraction `theta` of the step of length `h` tried last.
     fn show_within(&mut self, h: f64, theta: f64, show: impl FnOnce(&mut Self)) {
         let (s, energies) = (self.run.s, self.run.energies);
         if self.settings.accounts.energy {
-            let gain = self.energies_within(h, theta);
+            let gain = self.integrator.energies(&self.model, &self.run.state, h, theta);
             self.run.energies.channels.add(1.0, &gain);
         }
+        self.look_within(h, theta);
         let mut within = std::mem::take(&mut self.within);
-        self.dense(h).state_at(theta, &mut within);
         self.run.s += theta * h;
         std::mem::swap(&mut self.run.state, &mut within);
         show(self);
@@ -289,30 +277,31 @@ impl Simulation {
         (self.run.s, self.run.energies, self.within) = (s, energies, within);
     }
 
-    /// Energies through the channels from the start of the step of length `h` tried last to its fraction `theta`: Gauss's
-    /// rule with three points on the dense output, as exact as that.
-    fn energies_within(&mut self, h: f64, theta: f64) -> Power {
-        let mut sum = Power::default();
-        for (node, weight) in GAUSS {
-            self.evaluate_within(h, theta * node);
-            let carrier = self.run.carrier.at(self.run.s + theta * node * h);
-            sum.add(theta * h * weight, &Power::evaluate(&self.model, &self.within, &carrier, &self.forces));
-        }
-        sum
+    /// The state at the fraction `theta` of the step of length `h` tried last, into `within`.
+    fn look_within(&mut self, h: f64, theta: f64) {
+        let dense = dense(&self.model, &self.run, &self.integrator, h);
+        dense.state_at(theta, &mut self.dense_room, &mut self.within);
     }
 
     /// The state and the forces at the fraction `theta` of the step of length `h` tried last.
     fn evaluate_within(&mut self, h: f64, theta: f64) {
-        let mut within = std::mem::take(&mut self.within);
-        self.dense(h).state_at(theta, &mut within);
-        self.within = within;
+        self.look_within(h, theta);
         self.forces.evaluate(&self.model, &self.within, &self.run.carrier.at(self.run.s + theta * h));
     }
 }
 
-/// Nodes and weights of Gauss's rule with three points on [0, 1].
-const GAUSS: [(f64, f64); 3] =
-    [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
+/// The step of length `h` tried last, seen from within.
+fn dense<'a>(model: &'a Model, run: &'a Run, integrator: &'a Integrator, h: f64) -> Dense<'a> {
+    let stages = integrator.stages();
+    Dense {
+        model,
+        carrier: &run.carrier,
+        s: run.s,
+        h,
+        start: (&run.state, &stages[0]),
+        end: (integrator.end(), &stages[STAGES - 1]),
+    }
+}
 
 /// How much longer or shorter a step may be than one with this error over the tolerance.
 fn growth(error: f64) -> f64 {

@@ -1,30 +1,28 @@
 //! One implicit stage: the kernel of every integrator.
 //!
-//! A stage at t_i with β = γh looks for v_i and so for e_i = e* + β ė_i, v_i = v* + β v̇_i, a_i = a* + β ȧ_i, where the
-//! starred values hold what the earlier stages give. A Maxwell element, ȧ = ė - a/τ, is then
-//! a_i = g (a* + β ė_i) with g = τ/(τ + β), so it leaves the linear system: a link weighs
+//! A stage at t_i with β = γh looks for v_i and so for e_i = e* + β ė_i, v_i = v* + β v̇_i, where the starred values hold
+//! what the earlier stages give. The Maxwell elements add H + h Q_ii ė_i to a link's force (see `maxwell`), so a link weighs
 //!
-//!   F = H + c e + D ė,   H = Σ_j c_j g_j a*_j,   D = d + β Σ_j c_j g_j.
+//!   F = H + c e + D ė,   D = d + h Q_ii.
 //!
 //! What stays is one 2×2 block per mass in the velocities, block tridiagonal along the chain. A contact is the same
 //! block seen through (1, s)ᵀ: its second row is the identity; for a sticking mass both are.
 
-mod maxwell;
 mod newton;
 mod variation;
 
-use super::add;
 use super::rates::Rates;
 use super::tolerance::NEWTON_SHARE;
 use crate::math::BlockTridiagonal;
-use crate::model::{CarrierPoint, ContactForces, Forces, LinkKind, LinkMotion, Mode, Model, State};
+use crate::model::{CarrierPoint, Forces, LinkKind, LinkMotion, Mode, Model, State};
+use newton::Column;
 
 /// Newton's iterations did not converge: a smaller step will.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NoConvergence;
 
-/// What the stage knows of the earlier ones: the starred values.
-#[derive(Clone, Debug, Default)]
+/// What the earlier stages give to a stage: the starred values and the forces of the Maxwell elements.
+#[derive(Clone, Debug)]
 pub(super) struct History {
     /// e*_x, m: carried along with the carrier to the stage's time.
     pub elongation_x: Vec<f64>,
@@ -34,8 +32,8 @@ pub(super) struct History {
     pub velocity_x: Vec<f64>,
     /// v*_z, m/s.
     pub velocity_z: Vec<f64>,
-    /// a*, m.
-    pub maxwell: Vec<f64>,
+    /// H by kind of link, N; empty where the links have no Maxwell elements.
+    pub force: [Vec<f64>; 4],
 }
 
 /// When and how far the stage reaches.
@@ -60,33 +58,30 @@ struct StageLaw {
     weight: f64,
 }
 
-/// How a slipping mass is carried up the profile when its ẋ changes.
-#[derive(Clone, Copy, Debug, Default)]
-struct Climb {
-    /// ∂e_z/∂ẋ = βs.
-    height: f64,
-    /// ∂ż/∂ẋ = s + βκẋ.
-    rate: f64,
-}
-
 /// Room to solve stages of one model.
 #[derive(Clone, Debug)]
 pub(super) struct StageSolver {
-    /// The starred values, to be set before a stage is solved.
+    /// To be set before a stage is solved.
     pub history: History,
-    /// The state at the stage: in the mode and at the velocities to start from before, the solution after.
+    /// The state at the stage but for its Maxwell elements: at the velocities to start from before, the solution after.
     pub state: State,
     /// The forces at the stage.
     pub forces: Forces,
-    history_force: [Vec<f64>; 4],
     laws: [StageLaw; 4],
-    climb: Vec<Climb>,
+    /// The masses in contact.
+    contacts: Vec<usize>,
+    /// Whether no mass slips, so that the equations are linear.
+    linear: bool,
+    /// How the forces on its neighbours follow each mass's velocities.
+    columns: Vec<Column>,
     system: BlockTridiagonal,
+    /// Whether `system` holds the factors of the linear equations.
+    factored: bool,
     /// Newton's iterations so far.
     pub iterations: u64,
 }
 
-/// Iterations after which Newton's method is given up; converging takes two or three.
+/// Iterations after which Newton's method is given up; converging takes one or two.
 const MOST_ITERATIONS: usize = 10;
 
 impl StageSolver {
@@ -94,23 +89,60 @@ impl StageSolver {
     pub(super) fn new(model: &Model) -> Self {
         let k = model.masses();
         let zero = vec![0.0; k];
-        let forces = Forces::new(model);
+        let room = |kind: LinkKind| {
+            if model.rows.iter().any(|row| row.kind == kind) { vec![0.0; kind.count(k)] } else { Vec::new() }
+        };
         Self {
             history: History {
                 elongation_x: zero.clone(),
                 elongation_z: zero.clone(),
                 velocity_x: zero.clone(),
                 velocity_z: zero,
-                maxwell: vec![0.0; model.maxwell_variables()],
+                force: LinkKind::ALL.map(room),
             },
             state: State::new(k, model.maxwell_variables()),
-            history_force: forces.link.clone(),
-            forces,
+            forces: Forces::new(model),
             laws: [StageLaw::default(); 4],
-            climb: vec![Climb::default(); k],
+            contacts: Vec::with_capacity(k),
+            linear: true,
+            columns: vec![Column::default(); k],
             system: BlockTridiagonal::new(k),
+            factored: false,
             iterations: 0,
         }
+    }
+
+    /// Begins the stages of a step from `state`, whose modes hold through it.
+    pub(super) fn begin(&mut self, model: &Model, state: &State, beta: f64) {
+        self.state.mode.copy_from_slice(&state.mode);
+        self.contacts.clear();
+        self.contacts.extend((0..state.mode.len()).filter(|&i| state.mode[i].in_contact()));
+        self.linear = true;
+        for &i in &self.contacts {
+            self.state.ground[i] = state.ground[i];
+            self.linear &= state.mode[i] == Mode::Stick;
+        }
+        self.factored = false;
+        self.set_laws(model, beta);
+    }
+
+    /// D = d + Σ_j c_j β τ_j/(τ_j + β) of every kind of link.
+    fn set_laws(&mut self, model: &Model, beta: f64) {
+        for (law, link) in self.laws.iter_mut().zip(&model.links) {
+            *law = StageLaw { stiffness: link.stiffness, damping: link.damping, weight: 0.0 };
+        }
+        for row in &model.rows {
+            let tau = row.relaxation_time;
+            self.laws[row.kind as usize].damping += row.stiffness * beta * tau / (tau + beta);
+        }
+        for law in &mut self.laws {
+            law.weight = beta * law.stiffness + law.damping;
+        }
+    }
+
+    /// The masses in contact, in their order.
+    pub(super) fn contacts(&self) -> &[usize] {
+        &self.contacts
     }
 
     /// Solves the stage to `tolerance` (m/s) and writes its rates.
@@ -124,30 +156,56 @@ impl StageSolver {
         tolerance: f64,
         rates: &mut Rates,
     ) -> Result<(), NoConvergence> {
-        self.condense_maxwell(model, point.beta);
-        let linear = !self.state.mode.iter().any(|mode| mode.slips());
+        self.place(model, point);
+        self.forces(point);
+        if self.linear {
+            self.solve_linear(model, point)?;
+        } else {
+            self.iterate(model, point, tolerance)?;
+        }
+        self.finish(model, point, rates);
+        Ok(())
+    }
+
+    /// The equations without slip, which do not depend on where the masses are: one factorisation serves a whole step.
+    fn solve_linear(&mut self, model: &Model, point: &StagePoint) -> Result<(), NoConvergence> {
+        self.residuals(model, point.beta);
+        if !self.factored {
+            self.assemble(model, point.beta);
+            self.system.factor();
+            self.factored = true;
+        }
+        self.system.solve();
+        let change = self.correct();
+        self.place(model, point);
+        self.forces(point);
+        if change.is_finite() { Ok(()) } else { Err(NoConvergence) }
+    }
+
+    /// Newton's iterations. What is left after one is known in two ways, both from the residual at the new place: the
+    /// inertia alone would turn it into a velocity at most so large; and as the residual fell, so will the correction.
+    fn iterate(&mut self, model: &Model, point: &StagePoint, tolerance: f64) -> Result<(), NoConvergence> {
+        let mut residual = self.residuals(model, point.beta);
         let mut last = f64::INFINITY;
-        for iteration in 1..=MOST_ITERATIONS {
-            self.place(model, point);
-            self.forces(point);
+        for _ in 0..MOST_ITERATIONS {
             self.assemble(model, point.beta);
             self.system.factor();
             self.system.solve();
             let change = self.correct();
-            self.iterations += 1;
-            if !change.is_finite() {
-                return Err(NoConvergence);
-            }
-            // Newton's error falls with the square: what the next correction would be is known from the last two.
-            let next = change * (change / last).min(1.0);
-            let settled = change <= tolerance || (iteration > 1 && next <= tolerance);
+            self.place(model, point);
+            self.forces(point);
+            let left = self.residuals(model, point.beta);
+            let next = change * (left / residual);
+            let settled = left.min(next) <= tolerance;
             // Roundings alone are left when the corrections no longer fall and are below what the step may err by.
             let stalled = change >= 0.25 * last && change <= tolerance / NEWTON_SHARE;
-            if linear || settled || stalled {
-                self.finish(model, point, rates);
+            if !(change.is_finite() && left.is_finite()) {
+                return Err(NoConvergence);
+            }
+            if settled || stalled || change == 0.0 {
                 return Ok(());
             }
-            last = change;
+            (last, residual) = (change, left);
         }
         Err(NoConvergence)
     }
@@ -156,18 +214,12 @@ impl StageSolver {
     fn place(&mut self, model: &Model, point: &StagePoint) {
         let beta = point.beta;
         let (state, history) = (&mut self.state, &self.history);
-        for i in 0..state.mode.len() {
-            let mode = state.mode[i];
-            state.elongation_x[i] = history.elongation_x[i] + beta * state.velocity_x[i];
-            if mode == Mode::Free {
-                state.elongation_z[i] = history.elongation_z[i] + beta * state.velocity_z[i];
-                continue;
-            }
-            if mode.slips() {
+        carry(&mut state.elongation_x, &history.elongation_x, beta, &state.velocity_x);
+        carry(&mut state.elongation_z, &history.elongation_z, beta, &state.velocity_z);
+        for &i in &self.contacts {
+            if state.mode[i].slips() {
                 let ground = model.ground(model.rest_x[i] + (point.place + state.elongation_x[i]));
-                let v = state.velocity_x[i];
-                state.velocity_z[i] = ground.slope * v;
-                self.climb[i] = Climb { height: beta * ground.slope, rate: ground.slope + beta * ground.curvature * v };
+                state.velocity_z[i] = ground.slope * state.velocity_x[i];
                 state.ground[i] = ground;
             }
             state.elongation_z[i] = state.ground[i].height - model.rest_z[i] - point.w;
@@ -180,42 +232,56 @@ impl StageSolver {
         for kind in LinkKind::ALL {
             let law = &self.laws[kind as usize];
             self.forces.spring_and_damper(kind, law.stiffness, law.damping, &motion);
-            add(&mut self.forces.link[kind as usize], 1.0, &self.history_force[kind as usize]);
+            for (force, history) in self.forces.link[kind as usize].iter_mut().zip(&self.history.force[kind as usize]) {
+                *force += history;
+            }
         }
         self.forces.sum_on_masses();
     }
 
     /// Adds the corrections to the velocities; the largest, m/s.
     fn correct(&mut self) -> f64 {
+        let velocities = self.state.velocity_x.iter_mut().zip(&mut self.state.velocity_z);
         let mut largest = 0.0_f64;
-        let mut finite = true;
-        for (i, correction) in self.system.right.iter().enumerate() {
-            self.state.velocity_x[i] += correction.x;
-            self.state.velocity_z[i] += correction.y;
-            largest = largest.max(correction.x.abs()).max(correction.y.abs());
-            finite &= correction.x.is_finite() && correction.y.is_finite();
+        let mut sum = 0.0;
+        for ((v_x, v_z), correction) in velocities.zip(&self.system.right) {
+            *v_x += correction.x;
+            *v_z += correction.y;
+            largest = largest.max(correction.x.abs().max(correction.y.abs()));
+            sum += correction.x + correction.y;
         }
-        if finite { largest } else { f64::NAN }
+        // The maximum passes over what is not a number, the sum does not.
+        if sum.is_finite() { largest } else { f64::NAN }
     }
 
-    /// The solved stage's positions, forces, Maxwell elongations and rates.
+    /// The rates of the solved stage.
     fn finish(&mut self, model: &Model, point: &StagePoint, rates: &mut Rates) {
-        self.place(model, point);
-        self.forces(point);
-        self.update_maxwell(model, point.beta, rates);
         let per_beta = 1.0 / point.beta;
         let (state, history) = (&self.state, &self.history);
-        for i in 0..state.mode.len() {
-            let v = state.velocity_x[i];
-            rates.velocity_x[i] = v;
-            rates.velocity_z[i] = state.velocity_z[i];
-            rates.acceleration_x[i] = (v - history.velocity_x[i]) * per_beta;
-            rates.acceleration_z[i] = (state.velocity_z[i] - history.velocity_z[i]) * per_beta;
-            if state.mode[i].in_contact() {
-                let ground = &state.ground[i];
-                let on_mass = (self.forces.on_mass_x[i], self.forces.on_mass_z[i]);
-                rates.contact(i, state.mode[i], v, ground, &ContactForces::new(model, on_mass, v, ground));
-            }
+        rates.velocity_x.copy_from_slice(&state.velocity_x);
+        rates.velocity_z.copy_from_slice(&state.velocity_z);
+        rate_of_change(&mut rates.acceleration_x, &state.velocity_x, &history.velocity_x, per_beta);
+        rate_of_change(&mut rates.acceleration_z, &state.velocity_z, &history.velocity_z, per_beta);
+        std::mem::swap(&mut rates.elongation_rate, &mut self.forces.rate);
+        rates.clear_contacts();
+        for &i in &self.contacts {
+            let (mode, v, ground) = (state.mode[i], state.velocity_x[i], &state.ground[i]);
+            let contact = self.forces.contact(model, i, v, ground);
+            rates.contact(model, i, (mode, v), ground, &contact);
         }
+    }
+}
+
+/// place = from + β velocity.
+fn carry(place: &mut [f64], from: &[f64], beta: f64, velocity: &[f64]) {
+    for (place, (from, velocity)) in place.iter_mut().zip(from.iter().zip(velocity)) {
+        *place = from + beta * velocity;
+    }
+}
+
+/// rate = (now - before) / β.
+fn rate_of_change(rate: &mut [f64], now: &[f64], before: &[f64], per_beta: f64) {
+    for (rate, (now, before)) in rate.iter_mut().zip(now.iter().zip(before)) {
+        *rate = (now - before) * per_beta;
     }
 }

@@ -3,9 +3,8 @@
 use nalgebra::Vector2;
 
 use super::{StagePoint, StageSolver};
-use crate::integrator::add;
 use crate::integrator::rates::Rates;
-use crate::integrator::tangent::{CarrierVariation, Slip, Tangent, constrained};
+use crate::integrator::tangent::{CarrierVariation, Slip, Tangent, add, constrained};
 use crate::model::{LinkKind, LinkMotion, Mode, Model};
 
 impl StageSolver {

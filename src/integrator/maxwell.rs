@@ -1,0 +1,208 @@
+//! The Maxwell elements over one step.
+//!
+//! An element is linear, ȧ = ė - a/τ, so its elongation at stage i follows from that at the start of the step and the
+//! rates ė at the stages,
+//!
+//!   a_i = p_i a_0 + h Σ_{j≤i} q_ij ė_j,
+//!
+//! with numbers p, q that depend on h/τ alone. The forces of all elements of one link are then
+//!
+//!   Σ c a_i = P_i + h Σ_{j<i} Q_ij ė_j + h Q_ii ė_i,   P_i = Σ c p_i a_0,   Q_ij = Σ c q_ij:
+//!
+//! the elements are visited once a step, not once a stage, and what a stage costs does not depend on their number.
+
+use super::Tableau;
+use super::rates::Rates;
+use crate::math::weighted_sum;
+use crate::model::{LinkKind, MaxwellRow, Model};
+
+/// The Maxwell elements of a layer over a step, and room for them.
+#[derive(Clone, Debug)]
+pub(super) struct Maxwell<const STAGES: usize> {
+    /// One for each relaxation time of the layer.
+    courses: Vec<Course<STAGES>>,
+    /// Which of them each row of elements follows.
+    course_of_row: Vec<usize>,
+    kinds: [KindSums<STAGES>; 4],
+}
+
+/// How the elements of one relaxation time follow through a step.
+#[derive(Clone, Debug)]
+pub(super) struct Course<const STAGES: usize> {
+    /// τ, s.
+    pub relaxation_time: f64,
+    /// p_i.
+    pub start: [f64; STAGES],
+    /// h q_ij, s.
+    pub rate: [[f64; STAGES]; STAGES],
+    /// The embedded estimate of the error of a: its weights of a_0 and of ė_j, the latter in s.
+    error_start: f64,
+    error_rate: [f64; STAGES],
+}
+
+/// The elements of one kind of link, summed.
+#[derive(Clone, Debug)]
+struct KindSums<const STAGES: usize> {
+    /// h Q_ij, N s/m.
+    rate: [[f64; STAGES]; STAGES],
+    error_rate: [f64; STAGES],
+    /// P_i by stage and link, N; empty where the links have no elements.
+    start: [Vec<f64>; STAGES],
+    /// What the embedded estimate takes from a_0, by link, N.
+    error_start: Vec<f64>,
+}
+
+impl<const STAGES: usize> Maxwell<STAGES> {
+    pub(super) fn new(model: &Model) -> Self {
+        let mut courses: Vec<Course<STAGES>> = Vec::new();
+        let course_of_row = model.rows.iter().map(|row| {
+            let known = courses.iter().position(|course| course.relaxation_time == row.relaxation_time);
+            known.unwrap_or_else(|| {
+                courses.push(Course::new(row.relaxation_time));
+                courses.len() - 1
+            })
+        });
+        let course_of_row = course_of_row.collect();
+        let kinds = LinkKind::ALL.map(|kind| {
+            let present = model.rows.iter().any(|row| row.kind == kind);
+            KindSums::new(if present { kind.count(model.masses()) } else { 0 })
+        });
+        Self { courses, course_of_row, kinds }
+    }
+
+    /// Begins a step of length `h` from the elongations `a`.
+    pub(super) fn begin(&mut self, model: &Model, tableau: &Tableau<STAGES>, a: &[f64], h: f64) {
+        for course in &mut self.courses {
+            course.follow(tableau, h);
+        }
+        for (kind, sums) in LinkKind::ALL.into_iter().zip(&mut self.kinds) {
+            if sums.error_start.is_empty() {
+                continue;
+            }
+            let (courses, course_of_row) = (&self.courses, &self.course_of_row);
+            let rows = || {
+                let rows = model.rows.iter().zip(course_of_row).filter(|(row, _)| row.kind == kind);
+                rows.map(|(row, &course)| (row, &courses[course]))
+            };
+            sums.collect(a, rows);
+        }
+    }
+
+    /// Whether the links of `kind` have elements.
+    pub(super) fn has(&self, kind: LinkKind) -> bool {
+        !self.kinds[kind as usize].error_start.is_empty()
+    }
+
+    /// The rows of `kind` and the courses that they follow.
+    pub(super) fn rows<'a>(
+        &'a self,
+        model: &'a Model,
+        kind: LinkKind,
+    ) -> impl Iterator<Item = (&'a MaxwellRow, &'a Course<STAGES>)> {
+        let rows = model.rows.iter().zip(&self.course_of_row).filter(move |(row, _)| row.kind == kind);
+        rows.map(|(row, &course)| (row, &self.courses[course]))
+    }
+
+    /// P_i + h Σ_{j<i} Q_ij ė_j of the links of `kind`: what is known of their elements' forces before stage `i`, N.
+    pub(super) fn known_force(&self, kind: LinkKind, i: usize, stages: &[Rates], force: &mut [f64]) {
+        let sums = &self.kinds[kind as usize];
+        let start = std::iter::once((1.0, &sums.start[i][..]));
+        weighted_sum(force, start.chain(by_rate(kind, &sums.rate[i][..i], stages)));
+    }
+
+    /// The embedded estimate of the error of the elements' forces of the links of `kind`, N.
+    pub(super) fn force_error(&self, kind: LinkKind, stages: &[Rates], force: &mut [f64]) {
+        let sums = &self.kinds[kind as usize];
+        let start = std::iter::once((1.0, &sums.error_start[..]));
+        weighted_sum(force, start.chain(by_rate(kind, &sums.error_rate, stages)));
+    }
+
+    /// The elongations `end` at the end of a step from `start`.
+    pub(super) fn finish(&self, model: &Model, start: &[f64], stages: &[Rates], end: &mut [f64]) {
+        for (row, &course) in model.rows.iter().zip(&self.course_of_row) {
+            let course = &self.courses[course];
+            let from = std::iter::once((course.start[STAGES - 1], &start[row.range.clone()]));
+            let driven = by_rate(row.kind, &course.rate[STAGES - 1], stages);
+            weighted_sum(&mut end[row.range.clone()], from.chain(driven));
+        }
+    }
+
+    /// Numbers that this holds.
+    pub(super) fn floats(&self) -> usize {
+        self.kinds.iter().map(|sums| STAGES * sums.error_start.len()).sum()
+    }
+}
+
+/// The elongation rates of the links of `kind` at the stages that count, weighed.
+fn by_rate<'a>(
+    kind: LinkKind,
+    weights: &'a [f64],
+    stages: &'a [Rates],
+) -> impl Iterator<Item = (f64, &'a [f64])> {
+    let stages = weights.iter().zip(stages).filter(|(weight, _)| **weight != 0.0);
+    stages.map(move |(&weight, stage)| (weight, &stage.elongation_rate[kind as usize][..]))
+}
+
+impl<const STAGES: usize> Course<STAGES> {
+    fn new(relaxation_time: f64) -> Self {
+        let zero = [0.0; STAGES];
+        Self { relaxation_time, start: zero, rate: [zero; STAGES], error_start: 0.0, error_rate: zero }
+    }
+
+    /// The numbers for a step of length `h`. With z = h/τ a stage gives a_i = g (a*_i + γhė_i), g = 1/(1 + γz), from
+    /// a*_i = a_0 + h Σ_{j<i} a_ij ȧ_j, and hȧ_i = hė_i - z a_i, which is g (hė_i - z a*_i): nothing cancels, however
+    /// large z is.
+    fn follow(&mut self, tableau: &Tableau<STAGES>, h: f64) {
+        let z = h / self.relaxation_time;
+        let gamma = tableau.gamma();
+        let g = 1.0 / (1.0 + gamma * z);
+        // hȧ_i by a_0 and by hė_j.
+        let mut change_start = [0.0; STAGES];
+        let mut change_rate = [[0.0; STAGES]; STAGES];
+        (self.start[0], change_start[0], change_rate[0][0]) = (1.0, -z, 1.0);
+        for i in 1..STAGES {
+            let weights = &tableau.a[i][..i];
+            let start = 1.0 + sum(weights, &change_start, |change| *change);
+            (self.start[i], change_start[i]) = (g * start, -z * g * start);
+            for j in 0..i {
+                let rate = sum(weights, &change_rate, |change| change[j]);
+                (self.rate[i][j], change_rate[i][j]) = (h * g * rate, -z * g * rate);
+            }
+            (self.rate[i][i], change_rate[i][i]) = (h * g * gamma, g);
+        }
+        self.error_start = sum(&tableau.error, &change_start, |change| *change);
+        self.error_rate = std::array::from_fn(|j| h * sum(&tableau.error, &change_rate, |change| change[j]));
+    }
+}
+
+fn sum<T>(weights: &[f64], terms: &[T], number: impl Fn(&T) -> f64) -> f64 {
+    weights.iter().zip(terms).map(|(weight, term)| weight * number(term)).sum()
+}
+
+impl<const STAGES: usize> KindSums<STAGES> {
+    fn new(links: usize) -> Self {
+        Self {
+            rate: [[0.0; STAGES]; STAGES],
+            error_rate: [0.0; STAGES],
+            start: std::array::from_fn(|_| vec![0.0; links]),
+            error_start: vec![0.0; links],
+        }
+    }
+
+    fn collect<'a, Rows>(&mut self, a: &[f64], rows: impl Fn() -> Rows)
+    where
+        Rows: Iterator<Item = (&'a MaxwellRow, &'a Course<STAGES>)>,
+    {
+        let start = |i: usize| rows().map(move |(row, course)| (row.stiffness * course.start[i], &a[row.range.clone()]));
+        for i in 1..STAGES {
+            weighted_sum(&mut self.start[i], start(i));
+            for j in 0..=i {
+                self.rate[i][j] = rows().map(|(row, course)| row.stiffness * course.rate[i][j]).sum();
+            }
+        }
+        let error = rows().map(|(row, course)| (row.stiffness * course.error_start, &a[row.range.clone()]));
+        weighted_sum(&mut self.error_start, error);
+        self.error_rate =
+            std::array::from_fn(|j| rows().map(|(row, course)| row.stiffness * course.error_rate[j]).sum());
+    }
+}

@@ -1,0 +1,131 @@
+//! Weighted sums of arrays: what the history of a Runge-Kutta stage is made of.
+
+/// Terms that one pass over the memory takes.
+const MOST_TERMS: usize = 8;
+
+/// Numbers taken together, so that the compiler uses vector instructions.
+const LANES: usize = 4;
+
+/// out_i = Σ_t weight_t term_t,i. Terms may be longer than `out`.
+///
+/// # Panics
+/// Where a term is shorter than `out`.
+pub fn weighted_sum<'a>(out: &mut [f64], terms: impl IntoIterator<Item = (f64, &'a [f64])>) {
+    let mut terms = terms.into_iter();
+    let mut batch = [(0.0, &[][..]); MOST_TERMS];
+    let mut filled = fill(&mut batch, &mut terms);
+    sum_up::<false>(out, &batch[..filled]);
+    while filled == MOST_TERMS {
+        filled = fill(&mut batch, &mut terms);
+        sum_up::<true>(out, &batch[..filled]);
+    }
+}
+
+/// Takes the next terms; how many there were.
+fn fill<'a>(batch: &mut [(f64, &'a [f64]); MOST_TERMS], terms: &mut impl Iterator<Item = (f64, &'a [f64])>) -> usize {
+    let mut filled = 0;
+    while filled < MOST_TERMS
+        && let Some(term) = terms.next()
+    {
+        batch[filled] = term;
+        filled += 1;
+    }
+    filled
+}
+
+fn sum_up<const ADD: bool>(out: &mut [f64], terms: &[(f64, &[f64])]) {
+    match *terms {
+        [] if ADD => (),
+        [] => out.fill(0.0),
+        [a] => pass::<ADD, 1>(out, [a]),
+        [a, b] => pass::<ADD, 2>(out, [a, b]),
+        [a, b, c] => pass::<ADD, 3>(out, [a, b, c]),
+        [a, b, c, d] => pass::<ADD, 4>(out, [a, b, c, d]),
+        [a, b, c, d, e] => pass::<ADD, 5>(out, [a, b, c, d, e]),
+        [a, b, c, d, e, f] => pass::<ADD, 6>(out, [a, b, c, d, e, f]),
+        [a, b, c, d, e, f, g] => pass::<ADD, 7>(out, [a, b, c, d, e, f, g]),
+        [a, b, c, d, e, f, g, h, ..] => pass::<ADD, 8>(out, [a, b, c, d, e, f, g, h]),
+    }
+}
+
+/// One pass over the memory, a few numbers at a time: all are read before any is written.
+fn pass<const ADD: bool, const N: usize>(out: &mut [f64], terms: [(f64, &[f64]); N]) {
+    let terms = terms.map(|(weight, term)| (weight, &term[..out.len()]));
+    let blocks = terms.map(|(weight, term)| (weight, term.as_chunks::<LANES>().0));
+    let (out_blocks, rest) = out.as_chunks_mut::<LANES>();
+    let done = out_blocks.len() * LANES;
+    for (b, out) in out_blocks.iter_mut().enumerate() {
+        let mut sum = if ADD { *out } else { [0.0; LANES] };
+        for (weight, term) in &blocks {
+            let term = &term[b];
+            for lane in 0..LANES {
+                sum[lane] += weight * term[lane];
+            }
+        }
+        *out = sum;
+    }
+    for (i, out) in rest.iter_mut().enumerate() {
+        let sum = terms.iter().fold(if ADD { *out } else { 0.0 }, |sum, (weight, term)| sum + weight * term[done + i]);
+        *out = sum;
+    }
+}
+
+/// Σ_i a_i b_i over the shorter of both.
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let n = a.len().min(b.len());
+    let ((a, a_rest), (b, b_rest)) = (a[..n].as_chunks::<LANES>(), b[..n].as_chunks::<LANES>());
+    let mut sum = [0.0; LANES];
+    for (a, b) in a.iter().zip(b) {
+        for lane in 0..LANES {
+            sum[lane] += a[lane] * b[lane];
+        }
+    }
+    let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
+    (sum[0] + sum[1]) + (sum[2] + sum[3]) + rest
+}
+
+/// Σ_i term(i) for i = 0 … n-1, four at a time.
+#[inline]
+pub fn sum_of(n: usize, term: impl Fn(usize) -> f64) -> f64 {
+    let mut sum = [0.0; LANES];
+    let whole = n - n % LANES;
+    for start in (0..whole).step_by(LANES) {
+        for lane in 0..LANES {
+            sum[lane] += term(start + lane);
+        }
+    }
+    (sum[0] + sum[1]) + (sum[2] + sum[3]) + (whole..n).map(term).sum::<f64>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whole numbers, so that no rounding hides a term left out or taken twice.
+    #[test]
+    fn every_term_counts_once() {
+        for terms in 0..20 {
+            for n in [0, 1, 3, 4, 9] {
+                let arrays: Vec<Vec<f64>> =
+                    (0..terms).map(|t| (0..n + 2).map(|i| (100 * t + i) as f64).collect()).collect();
+                let weighted: Vec<(f64, &[f64])> =
+                    arrays.iter().enumerate().map(|(t, array)| ((t + 1) as f64, &array[..])).collect();
+                let expected = |i: usize| (0..terms).map(|t| ((t + 1) * (100 * t + i)) as f64).sum::<f64>();
+                let mut out = vec![7.0; n];
+                weighted_sum(&mut out, weighted.iter().copied());
+                assert!((0..n).all(|i| out[i] == expected(i)), "{terms} terms, {n} numbers: {out:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn sums_are_those_of_whole_numbers() {
+        for n in 0..11 {
+            let a: Vec<f64> = (0..n).map(|i| (i + 1) as f64).collect();
+            let b: Vec<f64> = (0..n + 1).map(|i| (3 * i) as f64).collect();
+            let expected: f64 = (0..n).map(|i| ((i + 1) * 3 * i) as f64).sum();
+            assert_eq!(dot(&a, &b), expected);
+            assert_eq!(sum_of(n, |i| a[i] * b[i]), expected);
+        }
+    }
+}
