@@ -1,7 +1,7 @@
 //! Which mode change comes first within a step.
 
 use super::gap::first_touch;
-use crate::integrator::{Dense, METHOD, Rates, STAGES, Tolerance};
+use crate::integrator::{Dense, DenseRoom, METHOD, Rates, STAGES, Tolerance};
 use crate::math::bracketed_root;
 use crate::model::{Mode, Model, State};
 
@@ -41,22 +41,17 @@ impl EventTolerance {
 }
 
 /// The fraction of the step at which the first mode change is due; `None` where none is.
-pub fn first_event(step: &Dense<'_>, stages: &[Rates], tolerance: &EventTolerance) -> Option<f64> {
-    let mut first = None;
+pub fn first_event(
+    step: &Dense<'_>,
+    stages: &[Rates],
+    tolerance: &EventTolerance,
+    room: &mut DenseRoom,
+) -> Option<f64> {
+    let mut first = Contacts { step, stages, tolerance, room }.first_change();
     for i in 0..step.model.masses() {
-        let event = match step.start.0.mode[i] {
-            Mode::Free => touch(step, i, tolerance.gap),
-            mode => {
-                let lift = fall(|stage| stages[stage].normal[i], tolerance.force);
-                let change = step
-                    .model
-                    .has_friction
-                    .then(|| fall(|stage| stages[stage].margin[i], tolerance.margin(mode)))
-                    .flatten();
-                earlier(lift, change)
-            }
-        };
-        first = earlier(first, event);
+        if step.start.0.mode[i] == Mode::Free {
+            first = earlier(first, first_touch(&step.model.profile, &step.place(i), &step.height(i), tolerance.gap));
+        }
     }
     first
 }
@@ -68,8 +63,84 @@ fn earlier(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     }
 }
 
-fn touch(step: &Dense<'_>, i: usize, tolerance: f64) -> Option<f64> {
-    first_touch(&step.model.profile, &step.place(i), &step.height(i), tolerance)
+/// The contacts through a step: where a stage shows a limit passed, the dense output is asked, which is more accurate
+/// than the stages are and from which the run goes on.
+struct Contacts<'a> {
+    step: &'a Dense<'a>,
+    stages: &'a [Rates],
+    tolerance: &'a EventTolerance,
+    room: &'a mut DenseRoom,
+}
+
+/// What of a contact may pass its limit.
+#[derive(Clone, Copy, PartialEq)]
+enum Limit {
+    /// F_N ≥ 0.
+    Normal,
+    /// [`Rates::margin`] ≥ 0.
+    Margin,
+}
+
+impl Contacts<'_> {
+    fn first_change(&mut self) -> Option<f64> {
+        let mut first = None;
+        let force = self.tolerance.force;
+        if self.stages[1..].iter().any(|stage| any_below(&stage.normal, -force)) {
+            for i in 0..self.step.model.masses() {
+                first = self.fall(i, Limit::Normal, force, first);
+            }
+        }
+        let margin = self.tolerance.velocity.min(force);
+        if self.stages[1..].iter().any(|stage| any_below(&stage.margin, -margin)) {
+            for i in 0..self.step.model.masses() {
+                let mode = self.step.start.0.mode[i];
+                first = self.fall(i, Limit::Margin, self.tolerance.margin(mode), first);
+            }
+        }
+        first
+    }
+
+    /// Where a quantity of mass `i` first falls below -`tolerance`, aimed at -`tolerance`/2; `first` where it does not
+    /// before that.
+    fn fall(&mut self, i: usize, limit: Limit, tolerance: f64, first: Option<f64>) -> Option<f64> {
+        let latest = first.unwrap_or(1.0);
+        let place = (1..STAGES).find(|&place| self.at_stage(place, i, limit) < -tolerance);
+        let Some(place) = place.filter(|&place| METHOD.c[IN_TIME[place - 1]] < latest) else { return first };
+        let falls_until = |contacts: &mut Self, place: usize| {
+            let theta = METHOD.c[IN_TIME[place]].min(latest);
+            contacts.at_stage(place, i, limit) < -tolerance && contacts.value(i, limit, theta) < -tolerance
+        };
+        let Some(below) = (place..STAGES).find(|&place| falls_until(self, place)) else { return first };
+        let aim = 0.5 * tolerance;
+        let bracket = (METHOD.c[IN_TIME[below - 1]].min(latest), METHOD.c[IN_TIME[below]].min(latest));
+        if self.value(i, limit, bracket.0) <= -aim {
+            return Some(bracket.0);
+        }
+        Some(bracketed_root(|theta| self.value(i, limit, theta) + aim, bracket, LOCATED))
+    }
+
+    /// The quantity at the stage that is `place`-th in time.
+    fn at_stage(&self, place: usize, i: usize, limit: Limit) -> f64 {
+        let stage = &self.stages[IN_TIME[place]];
+        if limit == Limit::Normal { stage.normal[i] } else { stage.margin[i] }
+    }
+
+    /// The quantity at the fraction `theta` of the step.
+    fn value(&mut self, i: usize, limit: Limit, theta: f64) -> f64 {
+        let mode = self.step.start.0.mode[i];
+        if limit == Limit::Margin && mode.slips() {
+            return mode.direction() * self.step.velocity_x(i, theta);
+        }
+        let contact = self.step.contact(i, theta, self.room);
+        if limit == Limit::Normal { contact.normal } else { contact.limit - contact.tangential.abs() }
+    }
+}
+
+/// Share of a step to which an event is located: far below what the tolerances can tell apart.
+const LOCATED: f64 = 1e-12;
+
+fn any_below(values: &[f64], limit: f64) -> bool {
+    values.iter().fold(f64::MAX, |least, &value| least.min(value)) < limit
 }
 
 /// The stages in the order of time.
@@ -88,30 +159,6 @@ const fn in_time() -> [usize; STAGES] {
         i += 1;
     }
     order
-}
-
-/// Where a quantity, known at the stages, first falls below -`tolerance`: on the polynomial through the stages, aimed at
-/// -`tolerance`/2.
-fn fall(value: impl Fn(usize) -> f64, tolerance: f64) -> Option<f64> {
-    let below = IN_TIME.iter().position(|&stage| value(stage) < -tolerance)?;
-    let aim = 0.5 * tolerance;
-    let before = below.checked_sub(1)?;
-    let bracket = (METHOD.c[IN_TIME[before]], METHOD.c[IN_TIME[below]]);
-    if value(IN_TIME[before]) <= -aim {
-        return Some(bracket.0);
-    }
-    Some(bracketed_root(|theta| interpolate(&value, theta) + aim, bracket, 1e-15))
-}
-
-/// Lagrange's polynomial through the values at the stages.
-fn interpolate(value: &impl Fn(usize) -> f64, theta: f64) -> f64 {
-    let c = &METHOD.c;
-    let mut sum = 0.0;
-    for i in 0..STAGES {
-        let basis: f64 = (0..STAGES).filter(|&j| j != i).map(|j| (theta - c[j]) / (c[i] - c[j])).product();
-        sum += basis * value(i);
-    }
-    sum
 }
 
 /// Share of an event tolerance by which a limit must be passed for the event to have come.

@@ -4,9 +4,9 @@
 //! The Maxwell elements follow these velocities by the exact solution of ȧ = ė - a/τ, which holds for every τ; what it
 //! misses of the step's own end is laid on linearly.
 
-use super::Rates;
+use super::{Rates, Tolerance};
 use crate::math::{Jet, Quintic, Relaxation, weighted_sum};
-use crate::model::{Carrier, CarrierPoint, LinkKind, MaxwellRow, Mode, Model, State};
+use crate::model::{Carrier, CarrierPoint, ContactForces, Forces, LinkKind, Mode, Model, State, SurfacePoint};
 
 /// One step, seen from within.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +19,8 @@ pub struct Dense<'a> {
     pub s: f64,
     /// Length of the step, s.
     pub h: f64,
+    /// The carrier at the start and at the end.
+    pub carriers: [CarrierPoint; 2],
     /// State and rates at the start.
     pub start: (&'a State, &'a Rates),
     /// State and rates at the end.
@@ -35,22 +37,22 @@ enum Axis {
 impl Dense<'_> {
     /// The place of mass `i` on the profile through the step, m.
     pub fn place(&self, i: usize) -> Quintic {
-        let at = |(state, rates): (&State, &Rates), s: f64| Jet {
-            place: self.model.rest_x[i] + (self.carrier.place + (self.carrier.at(s).du + state.elongation_x[i])),
+        let at = |(state, rates): (&State, &Rates), carrier: &CarrierPoint| Jet {
+            place: self.model.rest_x[i] + (self.carrier.place + (carrier.du + state.elongation_x[i])),
             speed: rates.velocity_x[i],
             acceleration: rates.acceleration_x[i],
         };
-        Quintic::hermite(at(self.start, self.s), at(self.end, self.s + self.h), self.h)
+        Quintic::hermite(at(self.start, &self.carriers[0]), at(self.end, &self.carriers[1]), self.h)
     }
 
     /// The height of mass `i` above the profile's datum through the step, m.
     pub fn height(&self, i: usize) -> Quintic {
-        let at = |(state, rates): (&State, &Rates), s: f64| Jet {
-            place: self.model.rest_z[i] + (self.carrier.w + (self.carrier.at(s).dw + state.elongation_z[i])),
+        let at = |(state, rates): (&State, &Rates), carrier: &CarrierPoint| Jet {
+            place: self.model.rest_z[i] + (self.carrier.w + (carrier.dw + state.elongation_z[i])),
             speed: rates.velocity_z[i],
             acceleration: rates.acceleration_z[i],
         };
-        Quintic::hermite(at(self.start, self.s), at(self.end, self.s + self.h), self.h)
+        Quintic::hermite(at(self.start, &self.carriers[0]), at(self.end, &self.carriers[1]), self.h)
     }
 
     /// Writes the state at the fraction `theta` of the step.
@@ -58,42 +60,131 @@ impl Dense<'_> {
         let carrier = self.carrier.at(self.s + theta * self.h);
         state.mode.copy_from_slice(&self.start.0.mode);
         for i in 0..self.model.masses() {
-            let along_x = self.elongation(Axis::X, i);
-            let x = along_x.evaluate(theta);
-            let along_z = self.elongation(Axis::Z, i);
-            room.follow(i, [&along_x, &along_z]);
-            state.elongation_x[i] = x.place;
-            state.velocity_x[i] = x.speed / self.h + carrier.u_rate;
-            match state.mode[i] {
-                Mode::Free => {
-                    let z = along_z.evaluate(theta);
-                    state.elongation_z[i] = z.place;
-                    state.velocity_z[i] = z.speed / self.h + carrier.w_rate;
-                }
-                mode => self.put_on_profile(i, mode, &carrier, state),
-            }
+            let motion = [self.elongation(Axis::X, i), self.elongation(Axis::Z, i)];
+            room.follow(i, &motion);
+            let mass = self.mass_at(theta, i, &motion, &carrier);
+            (state.elongation_x[i], state.elongation_z[i]) = mass.elongation;
+            (state.velocity_x[i], state.velocity_z[i]) = mass.velocity;
+            state.ground[i] = mass.ground;
         }
         room.follow_neighbours();
+        room.relax(self, theta);
         for row in &self.model.rows {
-            self.maxwell_at(theta, row, room, &mut state.maxwell[row.range.clone()]);
+            let weights = &room.relaxation[row.time_index];
+            let (start, end) = (&self.start.0.maxwell[row.range.clone()], &self.end.0.maxwell[row.range.clone()]);
+            let driven = room.rate[row.kind as usize].iter().zip(weights.driven).map(|(rate, weight)| (weight, &rate[..]));
+            let ends = [(weights.decay, start), (theta, end)];
+            weighted_sum(&mut state.maxwell[row.range.clone()], ends.into_iter().chain(driven));
         }
     }
 
-    fn put_on_profile(&self, i: usize, mode: Mode, carrier: &CarrierPoint, state: &mut State) {
-        state.ground[i] = self.start.0.ground[i];
-        if mode.slips() {
-            let place = self.model.rest_x[i] + (self.carrier.place + (carrier.du + state.elongation_x[i]));
-            state.ground[i] = self.model.ground(place);
-        } else {
-            state.velocity_x[i] = 0.0;
+    /// What the step misses of the equations of motion at its fraction `theta`, where the forces are `forces` in `state`:
+    /// the accelerations that these give against those of the dense output, as a velocity gained over the step, in the
+    /// tolerance's norm.
+    pub fn defect(&self, theta: f64, (state, forces): (&State, &Forces), tolerance: &Tolerance) -> f64 {
+        let carrier = self.carrier.at(self.s + theta * self.h);
+        let mut largest = 0.0_f64;
+        for i in 0..self.model.masses() {
+            let missed = |axis: Axis, of_forces: f64, of_carrier: f64, velocity: f64| {
+                let dense = self.elongation(axis, i).evaluate(theta).acceleration / (self.h * self.h) + of_carrier;
+                let gained = theta * self.h * (of_forces - dense);
+                gained * gained / tolerance.of_velocity(velocity)
+            };
+            let (x, z) = match state.mode[i] {
+                Mode::Stick => continue,
+                Mode::Free => {
+                    let m = self.model.mass;
+                    (forces.on_mass_x[i] / m, Some(forces.on_mass_z[i] / m))
+                }
+                mode => {
+                    let (v, ground) = (state.velocity_x[i], &state.ground[i]);
+                    let contact = forces.contact(self.model, i, v, ground);
+                    (contact.acceleration(self.model, mode, v, ground), None)
+                }
+            };
+            largest = largest.max(missed(Axis::X, x, carrier.u_acceleration, state.velocity_x[i] - carrier.u_rate));
+            if let Some(z) = z {
+                largest = largest.max(missed(Axis::Z, z, carrier.w_acceleration, state.velocity_z[i] - carrier.w_rate));
+            }
         }
-        state.velocity_z[i] = state.ground[i].slope * state.velocity_x[i];
-        state.elongation_z[i] = state.ground[i].height - self.model.rest_z[i] - (self.carrier.w + carrier.dw);
+        largest.sqrt()
+    }
+
+    /// Mass `i` at the fraction `theta`, where the carrier is at `carrier`.
+    fn mass_at(&self, theta: f64, i: usize, motion: &[Quintic; 2], carrier: &CarrierPoint) -> MassPoint {
+        let x = motion[0].evaluate(theta);
+        let mut ground = self.start.0.ground[i];
+        let v_x = match self.start.0.mode[i] {
+            Mode::Stick => 0.0,
+            _ => x.speed / self.h + carrier.u_rate,
+        };
+        if self.start.0.mode[i] == Mode::Free {
+            let z = motion[1].evaluate(theta);
+            return MassPoint {
+                elongation: (x.place, z.place),
+                velocity: (v_x, z.speed / self.h + carrier.w_rate),
+                ground,
+            };
+        }
+        if self.start.0.mode[i].slips() {
+            ground = self.model.ground(self.model.rest_x[i] + (self.carrier.place + (carrier.du + x.place)));
+        }
+        let z = ground.height - self.model.rest_z[i] - (self.carrier.w + carrier.dw);
+        MassPoint { elongation: (x.place, z), velocity: (v_x, ground.slope * v_x), ground }
+    }
+
+    /// ẋ of mass `i` at the fraction `theta`, m/s.
+    pub fn velocity_x(&self, i: usize, theta: f64) -> f64 {
+        self.elongation(Axis::X, i).evaluate(theta).speed / self.h + self.carrier.at(self.s + theta * self.h).u_rate
+    }
+
+    /// What the surface and the links do to mass `i`, in contact, at the fraction `theta`: the same as in the state there,
+    /// for this mass alone.
+    pub fn contact(&self, i: usize, theta: f64, room: &mut DenseRoom) -> ContactForces {
+        room.relax(self, theta);
+        let carrier = self.carrier.at(self.s + theta * self.h);
+        let motion = |j: usize| [self.elongation(Axis::X, j), self.elongation(Axis::Z, j)];
+        let here_motion = motion(i);
+        let here = self.mass_at(theta, i, &here_motion, &carrier);
+        let relative = |velocity: (f64, f64)| (velocity.0 - carrier.u_rate, velocity.1 - carrier.w_rate);
+        let to_carrier = LinkPoint { elongation: here.elongation, rate: relative(here.velocity), motion: here_motion };
+        let mut force_x = -self.link_force(LinkKind::Horizontal, i, theta, &to_carrier, room);
+        let mut force_z = -self.link_force(LinkKind::Vertical, i, theta, &to_carrier, room);
+        for (j, link, sign) in [(i.wrapping_sub(1), i.wrapping_sub(1), -1.0), (i + 1, i, 1.0)] {
+            if j >= self.model.masses() {
+                continue;
+            }
+            let there_motion = motion(j);
+            let there = self.mass_at(theta, j, &there_motion, &carrier);
+            let between = LinkPoint::between((&here, &here_motion), (&there, &there_motion), sign);
+            force_x += sign * self.link_force(LinkKind::LateralX, link, theta, &between, room);
+            force_z += sign * self.link_force(LinkKind::LateralZ, link, theta, &between, room);
+        }
+        ContactForces::new(self.model, (force_x, force_z), here.velocity.0, &here.ground)
+    }
+
+    /// The force of one link at the fraction `theta`, N.
+    fn link_force(&self, kind: LinkKind, link: usize, theta: f64, point: &LinkPoint, room: &DenseRoom) -> f64 {
+        let law = &self.model.links[kind as usize];
+        let along_x = kind.is_along_x();
+        let of = |(x, z): (f64, f64)| if along_x { x } else { z };
+        let mut force = law.stiffness * of(point.elongation) + law.damping * of(point.rate);
+        let mut rows = self.model.rows_of(kind).peekable();
+        if rows.peek().is_none() {
+            return force;
+        }
+        let rate = point.motion[usize::from(!along_x)].derivative_monomials();
+        for row in rows {
+            let weights = &room.relaxation[row.time_index];
+            let (start, end) = (self.start.0.maxwell[row.range.start + link], self.end.0.maxwell[row.range.start + link]);
+            let driven: f64 = weights.driven.iter().zip(rate).map(|(weight, rate)| weight * rate).sum();
+            force += row.stiffness * (weights.decay * start + theta * end + driven);
+        }
+        force
     }
 
     /// The elongation of a link of mass `i` to the carrier through the step, m.
     fn elongation(&self, axis: Axis, i: usize) -> Quintic {
-        let (start, end) = (self.carrier.at(self.s), self.carrier.at(self.s + self.h));
         let at = |(state, rates): (&State, &Rates), carrier: &CarrierPoint| match axis {
             Axis::X => Jet {
                 place: state.elongation_x[i],
@@ -106,19 +197,33 @@ impl Dense<'_> {
                 acceleration: rates.acceleration_z[i] - carrier.w_acceleration,
             },
         };
-        Quintic::hermite(at(self.start, &start), at(self.end, &end), self.h)
+        Quintic::hermite(at(self.start, &self.carriers[0]), at(self.end, &self.carriers[1]), self.h)
     }
+}
 
-    /// The elongations a of one row of Maxwell elements at the fraction `theta`: those that the rates drive from the start,
-    /// and the share `theta` of what these miss of the step's own end.
-    fn maxwell_at(&self, theta: f64, row: &MaxwellRow, room: &DenseRoom, a: &mut [f64]) {
-        let ratio = self.h / row.relaxation_time;
-        let (here, whole) = (Relaxation::new(ratio, theta), Relaxation::new(ratio, 1.0));
-        let (start, end) = (&self.start.0.maxwell[row.range.clone()], &self.end.0.maxwell[row.range.clone()]);
-        let ends = [(here.decay - theta * whole.decay, start), (theta, end)];
-        let rates = room.rate[row.kind as usize].iter().zip(here.driven.iter().zip(whole.driven));
-        let driven = rates.map(|(rate, (here, whole))| (here - theta * whole, &rate[..]));
-        weighted_sum(a, ends.into_iter().chain(driven));
+/// A mass at one instant within a step; along x and z.
+struct MassPoint {
+    elongation: (f64, f64),
+    velocity: (f64, f64),
+    ground: SurfacePoint,
+}
+
+/// The links at one place of the layer at one instant within a step, and their motion through it; along x and z.
+struct LinkPoint {
+    elongation: (f64, f64),
+    rate: (f64, f64),
+    motion: [Quintic; 2],
+}
+
+impl LinkPoint {
+    /// The links from a mass to its neighbour at the right (`sign` 1) or at the left (-1).
+    fn between(here: (&MassPoint, &[Quintic; 2]), there: (&MassPoint, &[Quintic; 2]), sign: f64) -> Self {
+        let difference = |there: (f64, f64), here: (f64, f64)| (sign * (there.0 - here.0), sign * (there.1 - here.1));
+        Self {
+            elongation: difference(there.0.elongation, here.0.elongation),
+            rate: difference(there.0.velocity, here.0.velocity),
+            motion: std::array::from_fn(|axis| there.1[axis].less(&here.1[axis], sign)),
+        }
     }
 }
 
@@ -127,6 +232,11 @@ impl Dense<'_> {
 pub struct DenseRoom {
     /// By kind of link: the coefficients of 1, θ, … θ⁴ of h ė; empty where the links have no Maxwell elements.
     rate: [[Vec<f64>; 5]; 4],
+    /// By relaxation time: what a at one fraction of the step takes from that at the start and from the rates. The elements
+    /// follow the rates exactly; what they miss of the step's own end is laid on linearly.
+    relaxation: Vec<Relaxation>,
+    /// The fraction, and the length of the step.
+    relaxed: (f64, f64),
 }
 
 impl DenseRoom {
@@ -140,7 +250,8 @@ impl DenseRoom {
             }));
             std::array::from_fn(|_| vec![0.0; if needed { kind.count(model.masses()) } else { 0 }])
         });
-        Self { rate }
+        let relaxation = vec![Relaxation::default(); model.relaxation_times.len()];
+        Self { rate, relaxation, relaxed: (f64::NAN, f64::NAN) }
     }
 
     /// Bytes that this holds.
@@ -148,8 +259,24 @@ impl DenseRoom {
         self.rate.iter().flatten().map(|rate| rate.len() * size_of::<f64>()).sum()
     }
 
+    /// Finds how the elements relax up to the fraction `theta` of `step`, if that is not known yet.
+    fn relax(&mut self, step: &Dense<'_>, theta: f64) {
+        if self.relaxed == (theta, step.h) {
+            return;
+        }
+        self.relaxed = (theta, step.h);
+        for (relaxation, tau) in self.relaxation.iter_mut().zip(&step.model.relaxation_times) {
+            let ratio = step.h / tau;
+            let (here, whole) = (Relaxation::new(ratio, theta), Relaxation::new(ratio, 1.0));
+            *relaxation = Relaxation {
+                decay: here.decay - theta * whole.decay,
+                driven: std::array::from_fn(|m| here.driven[m] - theta * whole.driven[m]),
+            };
+        }
+    }
+
     /// Notes the elongations of the links of mass `i` to the carrier, along x and z.
-    fn follow(&mut self, i: usize, elongations: [&Quintic; 2]) {
+    fn follow(&mut self, i: usize, elongations: &[Quintic; 2]) {
         for (kind, elongation) in [LinkKind::Horizontal, LinkKind::Vertical].into_iter().zip(elongations) {
             let rate = &mut self.rate[kind as usize];
             if !rate[0].is_empty() {

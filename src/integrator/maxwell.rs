@@ -19,18 +19,14 @@ use crate::model::{LinkKind, MaxwellRow, Model};
 /// The Maxwell elements of a layer over a step, and room for them.
 #[derive(Clone, Debug)]
 pub(super) struct Maxwell<const STAGES: usize> {
-    /// One for each relaxation time of the layer.
+    /// One for each relaxation time of the model.
     courses: Vec<Course<STAGES>>,
-    /// Which of them each row of elements follows.
-    course_of_row: Vec<usize>,
     kinds: [KindSums<STAGES>; 4],
 }
 
 /// How the elements of one relaxation time follow through a step.
 #[derive(Clone, Debug)]
 pub(super) struct Course<const STAGES: usize> {
-    /// τ, s.
-    pub relaxation_time: f64,
     /// p_i.
     pub start: [f64; STAGES],
     /// h q_ij, s.
@@ -54,37 +50,25 @@ struct KindSums<const STAGES: usize> {
 
 impl<const STAGES: usize> Maxwell<STAGES> {
     pub(super) fn new(model: &Model) -> Self {
-        let mut courses: Vec<Course<STAGES>> = Vec::new();
-        let course_of_row = model.rows.iter().map(|row| {
-            let known = courses.iter().position(|course| course.relaxation_time == row.relaxation_time);
-            known.unwrap_or_else(|| {
-                courses.push(Course::new(row.relaxation_time));
-                courses.len() - 1
-            })
-        });
-        let course_of_row = course_of_row.collect();
+        let courses = model.relaxation_times.iter().map(|_| Course::new()).collect();
         let kinds = LinkKind::ALL.map(|kind| {
             let present = model.rows.iter().any(|row| row.kind == kind);
             KindSums::new(if present { kind.count(model.masses()) } else { 0 })
         });
-        Self { courses, course_of_row, kinds }
+        Self { courses, kinds }
     }
 
     /// Begins a step of length `h` from the elongations `a`.
     pub(super) fn begin(&mut self, model: &Model, tableau: &Tableau<STAGES>, a: &[f64], h: f64) {
-        for course in &mut self.courses {
-            course.follow(tableau, h);
+        for (course, relaxation_time) in self.courses.iter_mut().zip(&model.relaxation_times) {
+            course.follow(tableau, h / relaxation_time, h);
         }
         for (kind, sums) in LinkKind::ALL.into_iter().zip(&mut self.kinds) {
             if sums.error_start.is_empty() {
                 continue;
             }
-            let (courses, course_of_row) = (&self.courses, &self.course_of_row);
-            let rows = || {
-                let rows = model.rows.iter().zip(course_of_row).filter(|(row, _)| row.kind == kind);
-                rows.map(|(row, &course)| (row, &courses[course]))
-            };
-            sums.collect(a, rows);
+            let courses = &self.courses;
+            sums.collect(a, || model.rows_of(kind).map(|row| (row, &courses[row.time_index])));
         }
     }
 
@@ -99,8 +83,7 @@ impl<const STAGES: usize> Maxwell<STAGES> {
         model: &'a Model,
         kind: LinkKind,
     ) -> impl Iterator<Item = (&'a MaxwellRow, &'a Course<STAGES>)> {
-        let rows = model.rows.iter().zip(&self.course_of_row).filter(move |(row, _)| row.kind == kind);
-        rows.map(|(row, &course)| (row, &self.courses[course]))
+        model.rows_of(kind).map(|row| (row, &self.courses[row.time_index]))
     }
 
     /// P_i + h Σ_{j<i} Q_ij ė_j of the links of `kind`: what is known of their elements' forces before stage `i`, N.
@@ -119,8 +102,8 @@ impl<const STAGES: usize> Maxwell<STAGES> {
 
     /// The elongations `end` at the end of a step from `start`.
     pub(super) fn finish(&self, model: &Model, start: &[f64], stages: &[Rates], end: &mut [f64]) {
-        for (row, &course) in model.rows.iter().zip(&self.course_of_row) {
-            let course = &self.courses[course];
+        for row in &model.rows {
+            let course = &self.courses[row.time_index];
             let from = std::iter::once((course.start[STAGES - 1], &start[row.range.clone()]));
             let driven = by_rate(row.kind, &course.rate[STAGES - 1], stages);
             weighted_sum(&mut end[row.range.clone()], from.chain(driven));
@@ -144,16 +127,15 @@ fn by_rate<'a>(
 }
 
 impl<const STAGES: usize> Course<STAGES> {
-    fn new(relaxation_time: f64) -> Self {
+    fn new() -> Self {
         let zero = [0.0; STAGES];
-        Self { relaxation_time, start: zero, rate: [zero; STAGES], error_start: 0.0, error_rate: zero }
+        Self { start: zero, rate: [zero; STAGES], error_start: 0.0, error_rate: zero }
     }
 
-    /// The numbers for a step of length `h`. With z = h/τ a stage gives a_i = g (a*_i + γhė_i), g = 1/(1 + γz), from
+    /// The numbers for a step of length `h` and its ratio `z` to the relaxation time. A stage gives a_i = g (a*_i + γhė_i), g = 1/(1 + γz), from
     /// a*_i = a_0 + h Σ_{j<i} a_ij ȧ_j, and hȧ_i = hė_i - z a_i, which is g (hė_i - z a*_i): nothing cancels, however
     /// large z is.
-    fn follow(&mut self, tableau: &Tableau<STAGES>, h: f64) {
-        let z = h / self.relaxation_time;
+    fn follow(&mut self, tableau: &Tableau<STAGES>, z: f64, h: f64) {
         let gamma = tableau.gamma();
         let g = 1.0 / (1.0 + gamma * z);
         // hȧ_i by a_0 and by hė_j.

@@ -26,6 +26,11 @@ impl Quintic {
         Self { coefficients: [p0, p0 + v0, p0 + 2.0 * v0 + a0, p1 - 2.0 * v1 + a1, p1 - v1, p1] }
     }
 
+    /// `sign` times the difference of this one and `other`.
+    pub fn less(&self, other: &Self, sign: f64) -> Self {
+        Self { coefficients: std::array::from_fn(|i| sign * (self.coefficients[i] - other.coefficients[i])) }
+    }
+
     /// Place, and its derivatives with respect to the fraction, at the fraction `theta` of the step.
     pub fn evaluate(&self, theta: f64) -> Jet {
         let mut b = self.coefficients;

@@ -2,7 +2,7 @@
 
 /// Weights of the exact solution of da/dθ = ṗ(θ) - z a: a(θ) = `decay` a(0) + Σ_m `driven[m]` p_m for
 /// ṗ = Σ p_m θ^m, m = 0 … 4. Bounded for every z ≥ 0, so it serves a relaxation of any speed.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Relaxation {
     /// e^{-zθ}.
     pub decay: f64,

@@ -8,7 +8,7 @@ use nalgebra::{Matrix2, Vector2};
 /// other.
 #[derive(Clone, Debug, Default)]
 pub struct BlockTridiagonal {
-    /// Blocks left of the diagonal; the first is not read. Destroyed by [`factor`](Self::factor), as the others are.
+    /// Blocks left of the diagonal; the first is not read.
     pub lower: Vec<Matrix2<f64>>,
     /// Diagonal blocks.
     pub diagonal: Vec<Matrix2<f64>>,
@@ -16,48 +16,100 @@ pub struct BlockTridiagonal {
     pub upper: Vec<Matrix2<f64>>,
     /// Right sides; [`solve`](Self::solve) puts the solution here.
     pub right: Vec<Vector2<f64>>,
+    /// The inverses of the blocks left on the diagonal once the rows outside are taken out.
+    inverse: Vec<Matrix2<f64>>,
+    /// How much of the row outside is taken out of each row.
+    share: Vec<Matrix2<f64>>,
 }
 
 impl BlockTridiagonal {
     /// Room for `n` ≥ 1 block rows.
     pub fn new(n: usize) -> Self {
         let zero = vec![Matrix2::zeros(); n];
-        Self { lower: zero.clone(), diagonal: zero.clone(), upper: zero, right: vec![Vector2::zeros(); n] }
+        Self {
+            lower: zero.clone(),
+            diagonal: zero.clone(),
+            upper: zero.clone(),
+            right: vec![Vector2::zeros(); n],
+            inverse: zero.clone(),
+            share: zero,
+        }
     }
 
     /// Factors the blocks, so that [`solve`](Self::solve) can take any number of right sides. A singular block leaves
     /// values that are not finite.
     pub fn factor(&mut self) {
         let (middle, mirrored) = self.halves();
+        let last = middle + mirrored;
+        let Self { lower, diagonal, upper, inverse, share, .. } = self;
+        let mut first_end = inverse_of(&diagonal[0]);
+        let mut second_end = inverse_of(&diagonal[last]);
         for step in 0..middle.max(mirrored) {
             if step < middle {
-                self.eliminate(step, step + 1);
+                let into = step + 1;
+                inverse[step] = first_end;
+                share[into] = lower[into] * first_end;
+                // The middle row is reached from both sides.
+                if into < middle {
+                    first_end = inverse_of(&(diagonal[into] - share[into] * upper[step]));
+                }
             }
             if step < mirrored {
-                self.eliminate(middle + mirrored - step, middle + mirrored - step - 1);
+                let (from, into) = (last - step, last - step - 1);
+                inverse[from] = second_end;
+                if into > middle {
+                    share[into] = upper[into] * second_end;
+                    second_end = inverse_of(&(diagonal[into] - share[into] * lower[from]));
+                }
             }
         }
-        self.diagonal[middle] = inverse(&self.diagonal[middle]);
+        let mut center = diagonal[middle];
+        if middle > 0 {
+            center -= share[middle] * upper[middle - 1];
+        }
+        if mirrored > 0 {
+            center -= upper[middle] * inverse[middle + 1] * lower[middle + 1];
+        }
+        inverse[middle] = inverse_of(&center);
     }
 
     /// The solution for the right sides in `right`, in their place, once the blocks are factored.
     pub fn solve(&mut self) {
         let (middle, mirrored) = self.halves();
-        for step in 0..middle.max(mirrored) {
+        let last = middle + mirrored;
+        let Self { lower, upper, right, inverse, share, .. } = self;
+        let (mut first, mut second) = (right[0], right[last]);
+        for step in 1..middle.max(mirrored) {
             if step < middle {
-                self.carry(step, step + 1);
+                first = right[step] - share[step] * first;
+                right[step] = first;
             }
             if step < mirrored {
-                self.carry(middle + mirrored - step, middle + mirrored - step - 1);
+                let row = last - step;
+                second = right[row] - share[row] * second;
+                right[row] = second;
             }
         }
-        self.right[middle] = self.diagonal[middle] * self.right[middle];
+        let mut center = right[middle];
+        if middle > 0 {
+            center -= share[middle] * right[middle - 1];
+        }
+        if mirrored > 0 {
+            center -= upper[middle] * (inverse[middle + 1] * right[middle + 1]);
+        }
+        center = inverse[middle] * center;
+        right[middle] = center;
+        let (mut first, mut second) = (center, center);
         for step in 1..=middle.max(mirrored) {
             if step <= middle {
-                self.substitute(middle - step, middle - step + 1);
+                let row = middle - step;
+                first = inverse[row] * (right[row] - upper[row] * first);
+                right[row] = first;
             }
             if step <= mirrored {
-                self.substitute(middle + step, middle + step - 1);
+                let row = middle + step;
+                second = inverse[row] * (right[row] - lower[row] * second);
+                right[row] = second;
             }
         }
     }
@@ -67,37 +119,10 @@ impl BlockTridiagonal {
         let n = self.diagonal.len();
         (n / 2, n - 1 - n / 2)
     }
-
-    /// Takes unknown `from` out of the neighbouring row `into`: the inverse of its block stays in its place, the factor
-    /// that takes its row along in that of the block beside.
-    fn eliminate(&mut self, from: usize, into: usize) {
-        let inverse = inverse(&self.diagonal[from]);
-        let (beside, back) = if from < into {
-            (&mut self.lower[into], &self.upper[from])
-        } else {
-            (&mut self.upper[into], &self.lower[from])
-        };
-        *beside *= inverse;
-        self.diagonal[into] -= *beside * back;
-        self.diagonal[from] = inverse;
-    }
-
-    /// Takes the right side of row `from` along into the neighbouring row.
-    fn carry(&mut self, from: usize, into: usize) {
-        let factor = if from < into { &self.lower[into] } else { &self.upper[into] };
-        let right = factor * self.right[from];
-        self.right[into] -= right;
-    }
-
-    /// The unknown of row `row` from that of its neighbour `known`, found before.
-    fn substitute(&mut self, row: usize, known: usize) {
-        let coupling = if row < known { &self.upper[row] } else { &self.lower[row] };
-        self.right[row] = self.diagonal[row] * (self.right[row] - coupling * self.right[known]);
-    }
 }
 
 /// The inverse of a 2×2 block, without a test for zero: a singular block must show in the result.
-fn inverse(m: &Matrix2<f64>) -> Matrix2<f64> {
+fn inverse_of(m: &Matrix2<f64>) -> Matrix2<f64> {
     let factor = 1.0 / (m.m11 * m.m22 - m.m12 * m.m21);
     Matrix2::new(m.m22 * factor, -m.m12 * factor, -m.m21 * factor, m.m11 * factor)
 }

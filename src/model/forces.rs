@@ -137,9 +137,11 @@ fn sum_on_masses(sum: &mut [f64], to_carrier: &[f64], lateral: &[f64]) {
             *sum = -force;
         }
     }
-    for (i, &force) in lateral.iter().enumerate() {
-        sum[i] += force;
-        sum[i + 1] -= force;
+    for (sum, force) in sum.iter_mut().zip(lateral) {
+        *sum += force;
+    }
+    for (sum, force) in sum.iter_mut().skip(1).zip(lateral) {
+        *sum -= force;
     }
 }
 

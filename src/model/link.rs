@@ -35,24 +35,33 @@ pub struct MaxwellRow {
     pub stiffness: f64,
     /// Relaxation time τ_j, s.
     pub relaxation_time: f64,
+    /// Where that stands in [`Model::relaxation_times`](super::Model::relaxation_times).
+    pub time_index: usize,
     /// The elements of the row, link by link.
     pub range: Range<usize>,
 }
 
-pub(super) fn maxwell_rows(layer: &Layer) -> Vec<MaxwellRow> {
-    let mut rows = Vec::new();
+/// The rows of a layer, and their relaxation times, each once.
+pub(super) fn maxwell_rows(layer: &Layer) -> (Vec<MaxwellRow>, Vec<f64>) {
+    let (mut rows, mut times) = (Vec::new(), Vec::new());
     let mut start = 0;
     for kind in LinkKind::ALL {
         for element in layer.link(kind).iter().flat_map(|link| &link.maxwell) {
             let end = start + kind.count(layer.masses);
+            let tau = element.relaxation_time;
+            let time_index = times.iter().position(|&known| known == tau).unwrap_or_else(|| {
+                times.push(tau);
+                times.len() - 1
+            });
             rows.push(MaxwellRow {
                 kind,
                 stiffness: element.stiffness,
-                relaxation_time: element.relaxation_time,
+                relaxation_time: tau,
+                time_index,
                 range: start..end,
             });
             start = end;
         }
     }
-    rows
+    (rows, times)
 }

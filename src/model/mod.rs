@@ -50,6 +50,8 @@ pub struct Model {
     pub links: [LinkLaw; 4],
     /// The Maxwell elements: one row for each element of each kind of link.
     pub rows: Vec<MaxwellRow>,
+    /// The relaxation times of the Maxwell elements, each once, s.
+    pub relaxation_times: Vec<f64>,
     /// The rigid profile z_r(x).
     pub profile: Spline,
     /// Coulomb's coefficient μ.
@@ -68,13 +70,15 @@ impl Model {
         let layer = &scene.layer;
         let k = layer.masses;
         let friction = scene.friction.as_ref();
+        let (rows, relaxation_times) = link::maxwell_rows(layer);
         let roughness = |i| layer.roughness.get(i).copied().unwrap_or(0.0);
         Self {
             mass: layer.mass,
             rest_x: (0..k).map(|i| layer.place(i)).collect(),
             rest_z: (0..k).map(|i| layer.clearance + roughness(i)).collect(),
             links: LinkKind::ALL.map(|kind| LinkLaw::new(layer.link(kind))),
-            rows: link::maxwell_rows(layer),
+            rows,
+            relaxation_times,
             profile: scene.surface.spline(),
             friction_coefficient: friction.and_then(|f| f.coulomb).unwrap_or(0.0),
             shear_force: friction.and_then(|f| f.shear_force).unwrap_or(0.0),
@@ -93,6 +97,11 @@ impl Model {
     pub fn ground(&self, x: f64) -> SurfacePoint {
         let (height, slope, curvature, third) = self.profile.evaluate(x);
         SurfacePoint { height, slope, curvature, third }
+    }
+
+    /// The Maxwell elements of the links of `kind`.
+    pub fn rows_of(&self, kind: LinkKind) -> impl Iterator<Item = &MaxwellRow> {
+        self.rows.iter().filter(move |row| row.kind == kind)
     }
 
     /// Number of Maxwell variables of the whole layer.

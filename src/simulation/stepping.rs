@@ -16,8 +16,18 @@ const GROWTH: (f64, f64) = (0.2, 5.0);
 /// The longest step, as a share of the period of the carrier's sine: a longer one could leap from swing to swing, where all
 /// stages see the same and the error estimate nothing.
 const OF_PERIOD: f64 = 0.25;
+/// The most that the dense output may miss of the equations of motion where a step is cut at an event, as a velocity
+/// gained over the step, against the tolerance.
+const MOST_DEFECT: f64 = 1.0;
 /// What is left of a step whose stages could not be solved.
 const AFTER_FAILURE: f64 = 0.25;
+
+/// A step that was tried with the length `h` (s) and is taken up to its fraction `share`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Stride {
+    h: f64,
+    share: f64,
+}
 
 impl Simulation {
     pub(super) fn place_layer(&mut self) {
@@ -52,18 +62,16 @@ impl Simulation {
         let mut work = 0;
         let mut risen = self.has_risen(until);
         while self.run.s < motion.duration && !risen {
-            let mut h = self.step(motion.duration, &mut work)?;
-            let mut end = self.step_end(h, motion.duration);
-            if let Some(share) = self.rises_within(h, until) {
-                h = self.cut_step(share * h)?;
-                end = self.run.s + h;
+            let mut stride = self.step(motion.duration, &mut work)?;
+            if let Some(share) = self.rises_within(&stride, until) {
+                stride = self.cut_step(share * stride.h)?;
                 risen = true;
             }
+            let end = self.end_of(&stride, motion.duration);
             while let Some(time) = rows.next_if(|&time| time < end) {
-                self.show_within(h, (time - self.run.s) / h, |simulation| observe(time, simulation));
+                self.show_within(stride.h, (time - self.run.s) / stride.h, |simulation| observe(time, simulation));
             }
-            self.accept(h, end);
-            self.change_modes_if_due();
+            self.accept(&stride, end);
             risen = risen || self.has_risen(until);
             if risen || end >= motion.duration {
                 self.find_tangents();
@@ -83,16 +91,17 @@ impl Simulation {
         until.is_some_and(|force| self.force_z() >= force)
     }
 
-    /// The share of the step of length `h` tried last after which F_z is the force `until`; `None` where it ends below.
-    fn rises_within(&mut self, h: f64, until: Option<f64>) -> Option<f64> {
-        let force = until.filter(|&force| self.force_z_within(h, 1.0) >= force)?;
-        Some(bracketed_root(|theta| self.force_z_within(h, theta) - force, (0.0, 1.0), 1e-14))
+    /// The share of the step tried last after which F_z is the force `until`; `None` where `stride` ends below.
+    fn rises_within(&mut self, stride: &Stride, until: Option<f64>) -> Option<f64> {
+        let Stride { h, share } = *stride;
+        let force = until.filter(|&force| self.force_z_within(h, share) >= force)?;
+        Some(bracketed_root(|theta| self.force_z_within(h, theta) - force, (0.0, share), 1e-14))
     }
 
     /// A shorter step in place of a good one: no worse, and free of events.
-    fn cut_step(&mut self, h: f64) -> Result<f64, SimulationError> {
+    fn cut_step(&mut self, h: f64) -> Result<Stride, SimulationError> {
         match self.try_step(h, true) {
-            Some(_) => Ok(h),
+            Some(_) => Ok(Stride { h, share: 1.0 }),
             None => Err(SimulationError::StepTooSmall { time: self.run.time(), step: h }),
         }
     }
@@ -180,8 +189,8 @@ impl Simulation {
         }
     }
 
-    /// Tries steps until one is good and ends no later than its first event; its length, s.
-    fn step(&mut self, duration: f64, work: &mut u64) -> Result<f64, SimulationError> {
+    /// Tries steps until one is good up to its first event.
+    fn step(&mut self, duration: f64, work: &mut u64) -> Result<Stride, SimulationError> {
         let remaining = duration - self.run.s;
         let shortest = 4.0 * f64::EPSILON * (self.run.s + 1e-3 * duration);
         let longest = OF_PERIOD * self.run.carrier.shortest_period();
@@ -201,16 +210,32 @@ impl Simulation {
                 continue;
             };
             let proposed = *proposal.get_or_insert_with(|| self.proposal(h, remaining, attempt.error));
-            let event = first_event(&dense(&self.model, &self.run, &self.integrator, h), self.integrator.stages(), &self.settings.events);
-            match event.filter(|&theta| theta < 1.0 && h > shortest) {
-                Some(theta) => h = (theta * h).max(shortest),
-                None => {
-                    self.run.step_size = proposed;
-                    self.note_error(&attempt);
-                    return Ok(h);
-                }
+            let event = self.first_event(h);
+            let share = event.filter(|_| h > shortest).map_or(1.0, |theta| theta.max(shortest / h));
+            if share >= 1.0 || self.is_good_within(h, share) {
+                self.run.step_size = proposed;
+                self.note_error(&attempt);
+                return Ok(Stride { h, share });
             }
+            h *= share;
         }
+    }
+
+    /// The share of the step of length `h` tried last after which a mode change is due.
+    fn first_event(&mut self, h: f64) -> Option<f64> {
+        let dense = dense(&self.model, &self.run, &self.integrator, h);
+        first_event(&dense, self.integrator.stages(), &self.settings.events, &mut self.dense_room)
+    }
+
+    /// Whether the run can go on from the fraction `share` of the step of length `h` tried last: whether the dense output
+    /// obeys the equations of motion there as well as the step's error does.
+    fn is_good_within(&mut self, h: f64, share: f64) -> bool {
+        if self.integrator.has_tangents() {
+            return false;
+        }
+        self.evaluate_within(h, share);
+        let dense = dense(&self.model, &self.run, &self.integrator, h);
+        let d = dense.defect(share, (&self.within, &self.forces), &self.settings.tolerance); eprintln!("defect {d:.2e} share {share:.3} h {h:.2e}"); d <= MOST_DEFECT
     }
 
     /// Tries a step of length `h`; `None` where it is no good, and the run's step size is then a better one.
@@ -247,18 +272,30 @@ impl Simulation {
         }
     }
 
-    /// The end of a step of length `h`: exactly that of the piece where it is the last.
-    fn step_end(&self, h: f64, duration: f64) -> f64 {
-        if h >= duration - self.run.s { duration } else { self.run.s + h }
+    /// The end of a stride: exactly that of the piece where it is the last.
+    fn end_of(&self, stride: &Stride, duration: f64) -> f64 {
+        let whole = stride.share >= 1.0 && stride.h >= duration - self.run.s;
+        if whole { duration } else { self.run.s + stride.share * stride.h }
     }
 
-    fn accept(&mut self, h: f64, end: f64) {
+    /// Goes to the end of a stride, at the time `end` of the piece, and changes the modes if that is due.
+    fn accept(&mut self, stride: &Stride, end: f64) {
+        let Stride { h, share } = *stride;
         if self.settings.accounts.energy {
-            self.run.energies.channels.add(1.0, &self.integrator.energies(&self.model, &self.run.state, h, 1.0));
+            let gain = self.integrator.energies(&self.model, &self.run.state, h, share);
+            self.run.energies.channels.add(1.0, &gain);
         }
-        self.integrator.accept(&mut self.run.state);
         self.run.counters.steps += 1;
-        self.run.s = end;
+        if share < 1.0 {
+            self.look_within(h, share);
+            std::mem::swap(&mut self.run.state, &mut self.within);
+            self.run.s = end;
+            self.change_modes(self.settings.events.gap);
+        } else {
+            self.integrator.accept(&mut self.run.state);
+            self.run.s = end;
+            self.change_modes_if_due();
+        }
     }
 
     /// Calls `show` with the simulation as it stood at the fraction `theta` of the step of length `h` tried last.
@@ -298,6 +335,7 @@ fn dense<'a>(model: &'a Model, run: &'a Run, integrator: &'a Integrator, h: f64)
         carrier: &run.carrier,
         s: run.s,
         h,
+        carriers: [run.carrier.at(run.s), run.carrier.at(run.s + h)],
         start: (&run.state, &stages[0]),
         end: (integrator.end(), &stages[STAGES - 1]),
     }

@@ -15,7 +15,7 @@ use super::rates::Rates;
 use super::tolerance::NEWTON_SHARE;
 use crate::math::BlockTridiagonal;
 use crate::model::{CarrierPoint, Forces, LinkKind, LinkMotion, Mode, Model, State};
-use newton::Column;
+use newton::{Column, Row, Slip, largest};
 
 /// Newton's iterations did not converge: a smaller step will.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,13 +70,12 @@ pub(super) struct StageSolver {
     laws: [StageLaw; 4],
     /// The masses in contact.
     contacts: Vec<usize>,
-    /// Whether no mass slips, so that the equations are linear.
-    linear: bool,
-    /// How the forces on its neighbours follow each mass's velocities.
+    /// Those of them that slip, and how; without any the equations are linear.
+    slips: Vec<usize>,
+    slip: Vec<Slip>,
+    rows: Vec<Row>,
     columns: Vec<Column>,
     system: BlockTridiagonal,
-    /// Whether `system` holds the factors of the linear equations.
-    factored: bool,
     /// Newton's iterations so far.
     pub iterations: u64,
 }
@@ -104,10 +103,11 @@ impl StageSolver {
             forces: Forces::new(model),
             laws: [StageLaw::default(); 4],
             contacts: Vec::with_capacity(k),
-            linear: true,
+            slips: Vec::with_capacity(k),
+            slip: Vec::with_capacity(k),
+            rows: vec![Row::default(); k],
             columns: vec![Column::default(); k],
             system: BlockTridiagonal::new(k),
-            factored: false,
             iterations: 0,
         }
     }
@@ -117,13 +117,17 @@ impl StageSolver {
         self.state.mode.copy_from_slice(&state.mode);
         self.contacts.clear();
         self.contacts.extend((0..state.mode.len()).filter(|&i| state.mode[i].in_contact()));
-        self.linear = true;
         for &i in &self.contacts {
             self.state.ground[i] = state.ground[i];
-            self.linear &= state.mode[i] == Mode::Stick;
         }
-        self.factored = false;
+        self.slips.clear();
+        self.slips.extend(self.contacts.iter().filter(|&&i| state.mode[i].slips()));
+        self.slip.resize(self.slips.len(), Slip::default());
         self.set_laws(model, beta);
+        self.assemble_held(model, beta);
+        if self.slips.is_empty() {
+            self.system.factor();
+        }
     }
 
     /// D = d + Σ_j c_j β τ_j/(τ_j + β) of every kind of link.
@@ -158,7 +162,7 @@ impl StageSolver {
     ) -> Result<(), NoConvergence> {
         self.place(model, point);
         self.forces(point);
-        if self.linear {
+        if self.slips.is_empty() {
             self.solve_linear(model, point)?;
         } else {
             self.iterate(model, point, tolerance)?;
@@ -170,11 +174,6 @@ impl StageSolver {
     /// The equations without slip, which do not depend on where the masses are: one factorisation serves a whole step.
     fn solve_linear(&mut self, model: &Model, point: &StagePoint) -> Result<(), NoConvergence> {
         self.residuals(model, point.beta);
-        if !self.factored {
-            self.assemble(model, point.beta);
-            self.system.factor();
-            self.factored = true;
-        }
         self.system.solve();
         let change = self.correct();
         self.place(model, point);
@@ -188,7 +187,7 @@ impl StageSolver {
         let mut residual = self.residuals(model, point.beta);
         let mut last = f64::INFINITY;
         for _ in 0..MOST_ITERATIONS {
-            self.assemble(model, point.beta);
+            self.assemble_slips(model, point.beta);
             self.system.factor();
             self.system.solve();
             let change = self.correct();
@@ -217,7 +216,7 @@ impl StageSolver {
         carry(&mut state.elongation_x, &history.elongation_x, beta, &state.velocity_x);
         carry(&mut state.elongation_z, &history.elongation_z, beta, &state.velocity_z);
         for &i in &self.contacts {
-            if state.mode[i].slips() {
+            if state.mode[i] != Mode::Stick {
                 let ground = model.ground(model.rest_x[i] + (point.place + state.elongation_x[i]));
                 state.velocity_z[i] = ground.slope * state.velocity_x[i];
                 state.ground[i] = ground;
@@ -242,16 +241,11 @@ impl StageSolver {
     /// Adds the corrections to the velocities; the largest, m/s.
     fn correct(&mut self) -> f64 {
         let velocities = self.state.velocity_x.iter_mut().zip(&mut self.state.velocity_z);
-        let mut largest = 0.0_f64;
-        let mut sum = 0.0;
         for ((v_x, v_z), correction) in velocities.zip(&self.system.right) {
             *v_x += correction.x;
             *v_z += correction.y;
-            largest = largest.max(correction.x.abs().max(correction.y.abs()));
-            sum += correction.x + correction.y;
         }
-        // The maximum passes over what is not a number, the sum does not.
-        if sum.is_finite() { largest } else { f64::NAN }
+        largest(&self.system.right)
     }
 
     /// The rates of the solved stage.

@@ -10,8 +10,10 @@ use crate::model::{LinkKind, LinkMotion, Mode, Model};
 impl StageSolver {
     /// Factors the system at the solution, once for all variations of the stage.
     pub(in crate::integrator) fn factor_at_solution(&mut self, model: &Model, beta: f64) {
-        self.assemble(model, beta);
-        self.system.factor();
+        if !self.slips.is_empty() {
+            self.assemble_slips(model, beta);
+            self.system.factor();
+        }
     }
 
     /// The variation at stage `i`, whose history stands in `tangent.end`: there and in its rates afterwards.
