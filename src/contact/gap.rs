@@ -1,6 +1,6 @@
 //! The first touch of a free mass within a step.
 
-use crate::math::{Quintic, Spline};
+use crate::math::{Bounds, Quintic, Spline};
 
 /// A part over which the gap bends by less than this share of the tolerance is judged by its ends: what it may dip further
 /// does not count. So the search ends even where a mass glides along the very limit.
@@ -18,8 +18,14 @@ const MOST_PARTS: u32 = 10_000;
 /// that the gap stays above, so that no dip is missed, however short. What the bounds leave open is halved. Where that
 /// would not come to an end, the fraction up to which all is known is returned: the step is to be cut there, too.
 pub fn first_touch(profile: &Spline, place: &Quintic, height: &Quintic, tolerance: f64) -> Option<f64> {
-    Search { profile, tolerance, parts: 0 }
-        .first_touch(&Part { place: *place, height: *height, start: 0.0, length: 1.0 }, 0)
+    let mut search = Search { profile, tolerance, parts: 0 };
+    let whole = Part { place: *place, height: *height, start: 0.0, length: 1.0 };
+    // The bounds of the whole profile are at hand, and most masses are far enough away for them.
+    let Ends { start, end, bend } = search.ends(&whole, &profile.bounds());
+    if search.stays_above(start, end, bend) {
+        return None;
+    }
+    search.first_touch(&whole, 0)
 }
 
 struct Search<'a> {
@@ -37,6 +43,14 @@ struct Part {
     length: f64,
 }
 
+/// The gap over a part, m.
+struct Ends {
+    start: f64,
+    end: f64,
+    /// The largest |g''| with respect to the fraction.
+    bend: f64,
+}
+
 impl Search<'_> {
     fn first_touch(&mut self, part: &Part, halvings: u32) -> Option<f64> {
         self.parts += 1;
@@ -48,13 +62,8 @@ impl Search<'_> {
         if part.height.range().0 - profile.z_max > -self.tolerance {
             return None;
         }
-        // |g''| over the part: g = z - z_r(x), g'' = z̈ - s ẍ - κ ẋ².
-        let (speed_x, bend_x) = part.place.derivative_bounds();
-        let bend = part.height.derivative_bounds().1
-            + profile.slope_max_abs * bend_x
-            + profile.curvature_max_abs * speed_x * speed_x;
-        let (start, end) = (self.gap(part, 0.0), self.gap(part, 1.0));
-        if start.min(end) - bend / 8.0 > -self.tolerance {
+        let Ends { start, end, bend } = self.ends(part, &profile);
+        if self.stays_above(start, end, bend) {
             return None;
         }
         let monotone = self.gap_rate(part, 0.5).abs() > 0.5 * bend;
@@ -64,6 +73,22 @@ impl Search<'_> {
         }
         let (first, second) = part.halves();
         self.first_touch(&first, halvings + 1).or_else(|| self.first_touch(&second, halvings + 1))
+    }
+
+    /// The gap at the ends of a part, and how far it bends between them where the profile keeps within `profile`.
+    fn ends(&self, part: &Part, profile: &Bounds) -> Ends {
+        // |g''| over the part: g = z - z_r(x), g'' = z̈ - s ẍ - κ ẋ².
+        let (speed_x, bend_x) = part.place.derivative_bounds();
+        let bend = part.height.derivative_bounds().1
+            + profile.slope_max_abs * bend_x
+            + profile.curvature_max_abs * speed_x * speed_x;
+        let gap = |(x, z): (f64, f64)| z - self.profile.evaluate(x).0;
+        let (x, z) = (part.place.ends(), part.height.ends());
+        Ends { start: gap((x.0, z.0)), end: gap((x.1, z.1)), bend }
+    }
+
+    fn stays_above(&self, start: f64, end: f64, bend: f64) -> bool {
+        start.min(end) - bend / 8.0 > -self.tolerance
     }
 
     fn locate(&self, part: &Part) -> f64 {

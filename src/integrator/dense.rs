@@ -62,6 +62,9 @@ impl Dense<'_> {
         for i in 0..self.model.masses() {
             let motion = [self.elongation(Axis::X, i), self.elongation(Axis::Z, i)];
             room.follow(i, &motion);
+            for (bend, motion) in room.bend.iter_mut().zip(&motion) {
+                bend[i] = motion.evaluate(theta).acceleration;
+            }
             let mass = self.mass_at(theta, i, &motion, &carrier);
             (state.elongation_x[i], state.elongation_z[i]) = mass.elongation;
             (state.velocity_x[i], state.velocity_z[i]) = mass.velocity;
@@ -78,34 +81,40 @@ impl Dense<'_> {
         }
     }
 
-    /// What the step misses of the equations of motion at its fraction `theta`, where the forces are `forces` in `state`:
-    /// the accelerations that these give against those of the dense output, as a velocity gained over the step, in the
-    /// tolerance's norm.
-    pub fn defect(&self, theta: f64, (state, forces): (&State, &Forces), tolerance: &Tolerance) -> f64 {
+    /// What the dense output misses of the equations of motion at the fraction `theta`, whose state stands in `state` and
+    /// `room`: how far the accelerations that the forces there give are from its own, as a velocity gained over the step,
+    /// in the tolerance's norm.
+    pub fn defect(
+        &self,
+        theta: f64,
+        (state, forces): (&State, &Forces),
+        room: &DenseRoom,
+        tolerance: &Tolerance,
+    ) -> f64 {
         let carrier = self.carrier.at(self.s + theta * self.h);
+        let per_square = 1.0 / (self.h * self.h);
+        let missed = |bend: f64, of_carrier: f64, of_forces: f64, velocity: f64| {
+            let gained = theta * self.h * (of_forces - (bend * per_square + of_carrier));
+            gained * gained / tolerance.of_velocity(velocity)
+        };
         let mut largest = 0.0_f64;
         for i in 0..self.model.masses() {
-            let missed = |axis: Axis, of_forces: f64, of_carrier: f64, velocity: f64| {
-                let dense = self.elongation(axis, i).evaluate(theta).acceleration / (self.h * self.h) + of_carrier;
-                let gained = theta * self.h * (of_forces - dense);
-                gained * gained / tolerance.of_velocity(velocity)
-            };
-            let (x, z) = match state.mode[i] {
-                Mode::Stick => continue,
+            let (v_x, v_z) = (state.velocity_x[i] - carrier.u_rate, state.velocity_z[i] - carrier.w_rate);
+            let along_x = |acceleration: f64| missed(room.bend[0][i], carrier.u_acceleration, acceleration, v_x);
+            let along_z = |acceleration: f64| missed(room.bend[1][i], carrier.w_acceleration, acceleration, v_z);
+            let here = match state.mode[i] {
+                Mode::Stick => 0.0,
                 Mode::Free => {
                     let m = self.model.mass;
-                    (forces.on_mass_x[i] / m, Some(forces.on_mass_z[i] / m))
+                    along_x(forces.on_mass_x[i] / m).max(along_z(forces.on_mass_z[i] / m))
                 }
                 mode => {
                     let (v, ground) = (state.velocity_x[i], &state.ground[i]);
                     let contact = forces.contact(self.model, i, v, ground);
-                    (contact.acceleration(self.model, mode, v, ground), None)
+                    along_x(contact.acceleration(self.model, mode, v, ground))
                 }
             };
-            largest = largest.max(missed(Axis::X, x, carrier.u_acceleration, state.velocity_x[i] - carrier.u_rate));
-            if let Some(z) = z {
-                largest = largest.max(missed(Axis::Z, z, carrier.w_acceleration, state.velocity_z[i] - carrier.w_rate));
-            }
+            largest = largest.max(here);
         }
         largest.sqrt()
     }
@@ -232,6 +241,8 @@ impl LinkPoint {
 pub struct DenseRoom {
     /// By kind of link: the coefficients of 1, θ, … θ⁴ of h ė; empty where the links have no Maxwell elements.
     rate: [[Vec<f64>; 5]; 4],
+    /// Along x and z: the second derivative of each mass's elongation with respect to the fraction, m.
+    bend: [Vec<f64>; 2],
     /// By relaxation time: what a at one fraction of the step takes from that at the start and from the rates. The elements
     /// follow the rates exactly; what they miss of the step's own end is laid on linearly.
     relaxation: Vec<Relaxation>,
@@ -251,12 +262,13 @@ impl DenseRoom {
             std::array::from_fn(|_| vec![0.0; if needed { kind.count(model.masses()) } else { 0 }])
         });
         let relaxation = vec![Relaxation::default(); model.relaxation_times.len()];
-        Self { rate, relaxation, relaxed: (f64::NAN, f64::NAN) }
+        let bend = [vec![0.0; model.masses()], vec![0.0; model.masses()]];
+        Self { rate, bend, relaxation, relaxed: (f64::NAN, f64::NAN) }
     }
 
     /// Bytes that this holds.
     pub fn bytes(&self) -> usize {
-        self.rate.iter().flatten().map(|rate| rate.len() * size_of::<f64>()).sum()
+        self.rate.iter().flatten().chain(&self.bend).map(|array| array.len() * size_of::<f64>()).sum()
     }
 
     /// Finds how the elements relax up to the fraction `theta` of `step`, if that is not known yet.

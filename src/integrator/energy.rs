@@ -6,10 +6,10 @@
 
 use super::maxwell::{Course, Maxwell};
 use super::rates::Rates;
-use crate::math::dots;
+use crate::math::dot;
 use crate::model::{LinkKind, MaxwellRow, Model, Power};
 
-/// Σ ė_i ė_j over the links of one kind, m²/s².
+/// Σ ė_i ė_j over the links of one kind, m²/s², for j ≤ i.
 type Products<const STAGES: usize> = [[f64; STAGES]; STAGES];
 
 /// Energies lost in the dampers and Maxwell elements over a step of length `h` whose stages count with `weights`; the
@@ -38,20 +38,14 @@ pub(super) fn lost<const STAGES: usize>(
 }
 
 fn products<const STAGES: usize>(stages: &[Rates], kind: LinkKind, all: bool) -> Products<STAGES> {
-    let rates: [&[f64]; STAGES] = rates(stages, kind);
-    std::array::from_fn(|i| {
-        if all {
-            dots(rates[i], rates)
-        } else {
-            let mut diagonal = [0.0; STAGES];
-            [diagonal[i]] = dots(rates[i], [rates[i]]);
-            diagonal
+    let mut products = [[0.0; STAGES]; STAGES];
+    for i in 0..STAGES {
+        let rate = &stages[i].elongation_rate[kind as usize];
+        for j in if all { 0 } else { i }..=i {
+            products[i][j] = dot(rate, &stages[j].elongation_rate[kind as usize]);
         }
-    })
-}
-
-fn rates<const STAGES: usize>(stages: &[Rates], kind: LinkKind) -> [&[f64]; STAGES] {
-    std::array::from_fn(|stage| &stages[stage].elongation_rate[kind as usize][..])
+    }
+    products
 }
 
 /// Σ_i weight_i Σ a_i² over the elements of one row: a_i = p_i a_0 + h Σ_j q_ij ė_j multiplied out.
@@ -64,8 +58,8 @@ fn row_squares<const STAGES: usize>(
     weights: &[f64; STAGES],
 ) -> f64 {
     let a = &a[row.range.clone()];
-    let [start] = dots(a, [a]);
-    let with_start: [f64; STAGES] = dots(a, rates(stages, row.kind));
+    let start = dot(a, a);
+    let with_start: [f64; STAGES] = std::array::from_fn(|j| dot(a, &stages[j].elongation_rate[row.kind as usize]));
     let mut sum = weights[0] * start;
     for i in 1..STAGES {
         let (p, q) = (course.start[i], &course.rate[i]);

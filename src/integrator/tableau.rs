@@ -1,6 +1,6 @@
 //! Coefficients of the Runge-Kutta method.
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{DMatrix, SMatrix, SVector};
 
 /// A diagonally implicit Runge-Kutta method with an explicit first stage, the same γ in every other stage, and the end
 /// of the step as its last stage (stiffly accurate: b is the last row of A).
@@ -58,32 +58,38 @@ impl<const STAGES: usize> Tableau<STAGES> {
 
 /// Weights b_i(θ) of the quadrature h Σ_i b_i(θ) P_i over the stages from the start of a step to its fraction θ.
 ///
-/// Of all that are exact to order 4, Σ b_i (1, c, c², c³, A c²)_i = (θ, θ²/2, θ³/3, θ⁴/4, θ⁴/12), these are the
-/// smallest for θ → 0; a term in θ⁵ brings them to the method's own weights at θ = 1.
+/// Of all that are exact to the order p of the embedded method, Σ b_i (1, c, c², …)_i = (θ, θ²/2, θ³/3, …), with
+/// Σ b_i (A c²)_i = θ⁴/12 at order 4, these are the smallest for θ → 0; a term in θ^{p+1} brings them to the method's own
+/// weights at θ = 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WeightsWithin<const STAGES: usize> {
     /// The coefficients of θ, θ², … θ⁵.
     by_power: [SVector<f64, STAGES>; 5],
 }
 
-/// The order conditions up to order 4 of a method whose stages have order 2.
-const CONDITIONS: usize = 5;
-
 impl<const STAGES: usize> WeightsWithin<STAGES> {
-    /// The weights of a method of order 4 or more.
+    /// The weights of a method.
     pub fn new(tableau: &Tableau<STAGES>) -> Self {
+        let order = tableau.embedded_order.clamp(1, 4) as usize;
         let c = SVector::from(tableau.c);
         let a = SMatrix::<f64, STAGES, STAGES>::from_fn(|i, j| tableau.a[i][j]);
         let square = c.component_mul(&c);
-        let rows = [SVector::repeat(1.0), c, square, c.component_mul(&square), a * square];
-        let conditions = SMatrix::<f64, CONDITIONS, STAGES>::from_fn(|row, stage| rows[row][stage]);
-        // The least squares solution is the transpose times the inverse of the normal matrix, which is not singular for
-        // a method of order 4: the conditions do not depend on each other.
-        let normal = (conditions * conditions.transpose()).try_inverse().unwrap_or_default();
-        let smallest = conditions.transpose() * normal;
-        let of = |row: usize, factor: f64| smallest.column(row) * factor;
-        let mut by_power = [of(0, 1.0), of(1, 0.5), of(2, 1.0 / 3.0), of(3, 0.25) + of(4, 1.0 / 12.0), c];
-        by_power[4] = SVector::from(*tableau.weights()) - by_power[..4].iter().sum::<SVector<f64, STAGES>>();
+        let conditions = [SVector::repeat(1.0), c, square, c.component_mul(&square), a * square];
+        let count = if order == 4 { 5 } else { order };
+        let rows = DMatrix::from_fn(count, STAGES, |row, stage| conditions[row][stage]);
+        // The least squares solution is the transpose times the inverse of the normal matrix, which is not singular: the
+        // conditions of a method that obeys them do not depend on each other.
+        let normal = (&rows * rows.transpose()).try_inverse().unwrap_or_else(|| DMatrix::zeros(count, count));
+        let smallest = rows.transpose() * normal;
+        let of = |row: usize, factor: f64| SVector::from_fn(|stage, _| factor * smallest[(stage, row)]);
+        let mut by_power = [SVector::zeros(); 5];
+        for power in 0..order {
+            by_power[power] = of(power, 1.0 / (power + 1) as f64);
+        }
+        if order == 4 {
+            by_power[3] += of(4, 1.0 / 12.0);
+        }
+        by_power[order] = SVector::from(*tableau.weights()) - by_power.iter().sum::<SVector<f64, STAGES>>();
         Self { by_power }
     }
 

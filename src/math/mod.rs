@@ -13,5 +13,5 @@ pub use polynomial::{Jet, Quintic};
 pub use relaxation::Relaxation;
 pub use root::bracketed_root;
 pub use spline::{Bounds, Spline};
-pub use sums::{dots, sum_of, weighted_sum};
+pub use sums::{dot, sum_of, weighted_sum};
 pub use tridiagonal::BlockTridiagonal;

@@ -48,6 +48,11 @@ impl Quintic {
         }
     }
 
+    /// The places at the start and at the end.
+    pub fn ends(&self) -> (f64, f64) {
+        (self.coefficients[0], self.coefficients[5])
+    }
+
     /// The least and the largest value that the polynomial can take.
     pub fn range(&self) -> (f64, f64) {
         range(&self.coefficients)

@@ -99,6 +99,8 @@ pub struct Simulation {
     forces: Forces,
     /// The state within a step, shown to observers.
     within: State,
+    /// Of which step and fraction that is, where it is known.
+    within_at: Option<(f64, f64)>,
     dense_room: DenseRoom,
     mode_changes: Option<Vec<ModeChange>>,
 }
@@ -151,6 +153,7 @@ impl Simulation {
             integrator,
             forces,
             within: state,
+            within_at: None,
             dense_room,
             mode_changes: None,
         };

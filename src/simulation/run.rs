@@ -19,6 +19,10 @@ pub(super) struct Run {
     pub(super) counters: Counters,
     /// The length of the next step to try, s.
     pub(super) step_size: f64,
+    /// The mean time between the events of late, s; the largest number where there was none.
+    pub(super) event_spacing: f64,
+    /// Time since the last event, s.
+    pub(super) since_event: f64,
     /// ∂F_x/∂u, ∂F_x/∂w, ∂F_z/∂u, ∂F_z/∂w by the targets of the last motion, N/m; 0 before the first.
     pub(super) tangents: [f64; 4],
     /// Whether the integrator's rates at the start of the next step hold.
@@ -36,6 +40,8 @@ impl Run {
             energies: Energies::default(),
             counters: Counters::default(),
             step_size: FIRST_STEP / model.stiffest_frequency(),
+            event_spacing: f64::MAX,
+            since_event: 0.0,
             tangents: [0.0; 4],
             rates_hold: false,
         }
@@ -43,10 +49,30 @@ impl Run {
 
     /// Takes over `other`, a run of the same scene, without allocating.
     pub(super) fn copy_from(&mut self, other: &Self) {
-        let Self { carrier, s, state, energies, counters, step_size, tangents, rates_hold } = self;
+        let Self {
+            carrier,
+            s,
+            state,
+            energies,
+            counters,
+            step_size,
+            event_spacing,
+            since_event,
+            tangents,
+            rates_hold,
+        } = self;
         (*carrier, *s, *energies, *counters) = (other.carrier, other.s, other.energies, other.counters);
+        (*event_spacing, *since_event) = (other.event_spacing, other.since_event);
         (*step_size, *tangents, *rates_hold) = (other.step_size, other.tangents, other.rates_hold);
         state.copy_from(&other.state);
+    }
+
+    /// Notes that an event has come.
+    pub(super) fn note_event(&mut self) {
+        // A mean from long ago counts no more than the latest.
+        let mean = self.event_spacing.min(self.since_event / SPACING_GAIN);
+        self.event_spacing = mean + SPACING_GAIN * (self.since_event - mean);
+        self.since_event = 0.0;
     }
 
     pub(super) fn time(&self) -> f64 {
@@ -68,6 +94,9 @@ impl Run {
 /// The first step to try, as a share of the stiffest period over 2π; the error test corrects it at once.
 const FIRST_STEP: f64 = 0.1;
 
+/// The weight of the latest in the mean time between events.
+const SPACING_GAIN: f64 = 0.3;
+
 /// The run as it was before the motion under way.
 #[derive(Clone, Debug)]
 pub(super) struct Checkpoint {
@@ -79,8 +108,20 @@ pub(super) struct Checkpoint {
 /// All but the modes, the counts and whether the rates hold.
 impl Numbers for Run {
     fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        let Self { carrier, s, state, energies, counters, step_size, tangents, rates_hold: _ } = self;
-        visit_all([carrier, s, state, energies, counters, step_size, tangents], visit);
+        let Self {
+            carrier,
+            s,
+            state,
+            energies,
+            counters,
+            step_size,
+            event_spacing,
+            since_event,
+            tangents,
+            rates_hold: _,
+        } = self;
+        visit_all([carrier, s, state, energies, counters], visit);
+        visit_all([step_size, event_spacing, since_event, tangents], visit);
     }
 }
 

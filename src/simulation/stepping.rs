@@ -19,6 +19,10 @@ const OF_PERIOD: f64 = 0.25;
 /// The most that the dense output may miss of the equations of motion where a step is cut at an event, as a velocity
 /// gained over the step, against the tolerance.
 const MOST_DEFECT: f64 = 1.0;
+/// The longest step, as a multiple of the mean time between the events of late: a longer one would be cut.
+///
+/// Recommended 1.5 to 3: shorter ones end before there is an event, longer ones are less accurate where they are cut.
+const OF_SPACING: f64 = 2.0;
 /// What is left of a step whose stages could not be solved.
 const AFTER_FAILURE: f64 = 0.25;
 
@@ -197,7 +201,8 @@ impl Simulation {
         if longest <= shortest {
             return Err(SimulationError::StepTooSmall { time: self.run.time(), step: longest });
         }
-        let mut h = fitted(self.run.step_size.min(longest), remaining);
+        let limit = longest.min(OF_SPACING * self.run.event_spacing);
+        let mut h = fitted(self.run.step_size.min(limit), remaining);
         // The step that an event cuts short says how long the next may be; the shorter ones need no test of their error.
         let mut proposal = None;
         loop {
@@ -209,7 +214,7 @@ impl Simulation {
                 h = self.run.step_size;
                 continue;
             };
-            let proposed = *proposal.get_or_insert_with(|| self.proposal(h, remaining, attempt.error));
+            let proposed = *proposal.get_or_insert_with(|| self.proposal(h, remaining.min(limit), attempt.error));
             let event = self.first_event(h);
             let share = event.filter(|_| h > shortest).map_or(1.0, |theta| theta.max(shortest / h));
             if share >= 1.0 || self.is_good_within(h, share) {
@@ -235,11 +240,13 @@ impl Simulation {
         }
         self.evaluate_within(h, share);
         let dense = dense(&self.model, &self.run, &self.integrator, h);
-        let d = dense.defect(share, (&self.within, &self.forces), &self.settings.tolerance); eprintln!("defect {d:.2e} share {share:.3} h {h:.2e}"); d <= MOST_DEFECT
+let d = dense.defect(share, (&self.within, &self.forces), &self.dense_room, &self.settings.tolerance);eprintln!("defect {d:.2e} share {share:.3} h {h:.2e}");
+        d <= MOST_DEFECT
     }
 
     /// Tries a step of length `h`; `None` where it is no good, and the run's step size is then a better one.
     fn try_step(&mut self, h: f64, any_error: bool) -> Option<Attempt> {
+        self.within_at = None;
         let run = &self.run;
         let tolerance = &self.settings.tolerance;
         let attempt = self.integrator.attempt(&self.model, &run.state, &run.carrier, (run.s, h), tolerance);
@@ -260,10 +267,11 @@ impl Simulation {
         Ok(())
     }
 
-    /// The length of the next step after a good one of length `h`. The end of a piece cuts steps short; that says nothing.
-    fn proposal(&self, h: f64, remaining: f64, error: f64) -> f64 {
+    /// The length of the next step after a good one of length `h`. One that was cut short to `limit` by the end of a piece
+    /// or by the events says nothing.
+    fn proposal(&self, h: f64, limit: f64, error: f64) -> f64 {
         let grown = h * growth(error);
-        if h < remaining { grown } else { grown.max(self.run.step_size) }
+        if h < limit { grown } else { grown.max(self.run.step_size) }
     }
 
     fn note_error(&mut self, attempt: &Attempt) {
@@ -286,12 +294,16 @@ impl Simulation {
             self.run.energies.channels.add(1.0, &gain);
         }
         self.run.counters.steps += 1;
+        self.run.since_event += share * h;
         if share < 1.0 {
+            self.run.note_event();
             self.look_within(h, share);
             std::mem::swap(&mut self.run.state, &mut self.within);
+            self.within_at = None;
             self.run.s = end;
             self.change_modes(self.settings.events.gap);
         } else {
+            self.run.event_spacing = self.run.event_spacing.max(self.run.since_event);
             self.integrator.accept(&mut self.run.state);
             self.run.s = end;
             self.change_modes_if_due();
@@ -316,6 +328,10 @@ impl Simulation {
 
     /// The state at the fraction `theta` of the step of length `h` tried last, into `within`.
     fn look_within(&mut self, h: f64, theta: f64) {
+        if self.within_at == Some((h, theta)) {
+            return;
+        }
+        self.within_at = Some((h, theta));
         let dense = dense(&self.model, &self.run, &self.integrator, h);
         dense.state_at(theta, &mut self.dense_room, &mut self.within);
     }
