@@ -140,7 +140,7 @@ impl Contacts<'_> {
 const LOCATED: f64 = 1e-12;
 
 fn any_below(values: &[f64], limit: f64) -> bool {
-    values.iter().fold(f64::MAX, |least, &value| least.min(value)) < limit
+    values.iter().fold(f64::MAX, |least, &value| if value < least { value } else { least }) < limit
 }
 
 /// The stages in the order of time.

@@ -62,20 +62,19 @@ impl Dense<'_> {
         for i in 0..self.model.masses() {
             let motion = [self.elongation(Axis::X, i), self.elongation(Axis::Z, i)];
             room.follow(i, &motion);
-            for (bend, motion) in room.bend.iter_mut().zip(&motion) {
-                bend[i] = motion.evaluate(theta).acceleration;
-            }
             let mass = self.mass_at(theta, i, &motion, &carrier);
             (state.elongation_x[i], state.elongation_z[i]) = mass.elongation;
             (state.velocity_x[i], state.velocity_z[i]) = mass.velocity;
             state.ground[i] = mass.ground;
+            (room.bend[0][i], room.bend[1][i]) = mass.bend;
         }
         room.follow_neighbours();
         room.relax(self, theta);
         for row in &self.model.rows {
             let weights = &room.relaxation[row.time_index];
             let (start, end) = (&self.start.0.maxwell[row.range.clone()], &self.end.0.maxwell[row.range.clone()]);
-            let driven = room.rate[row.kind as usize].iter().zip(weights.driven).map(|(rate, weight)| (weight, &rate[..]));
+            let driven =
+                room.rate[row.kind as usize].iter().zip(weights.driven).map(|(rate, weight)| (weight, &rate[..]));
             let ends = [(weights.decay, start), (theta, end)];
             weighted_sum(&mut state.maxwell[row.range.clone()], ends.into_iter().chain(driven));
         }
@@ -132,6 +131,7 @@ impl Dense<'_> {
             return MassPoint {
                 elongation: (x.place, z.place),
                 velocity: (v_x, z.speed / self.h + carrier.w_rate),
+                bend: (x.acceleration, z.acceleration),
                 ground,
             };
         }
@@ -139,7 +139,7 @@ impl Dense<'_> {
             ground = self.model.ground(self.model.rest_x[i] + (self.carrier.place + (carrier.du + x.place)));
         }
         let z = ground.height - self.model.rest_z[i] - (self.carrier.w + carrier.dw);
-        MassPoint { elongation: (x.place, z), velocity: (v_x, ground.slope * v_x), ground }
+        MassPoint { elongation: (x.place, z), velocity: (v_x, ground.slope * v_x), bend: (x.acceleration, 0.0), ground }
     }
 
     /// ẋ of mass `i` at the fraction `theta`, m/s.
@@ -185,7 +185,8 @@ impl Dense<'_> {
         let rate = point.motion[usize::from(!along_x)].derivative_monomials();
         for row in rows {
             let weights = &room.relaxation[row.time_index];
-            let (start, end) = (self.start.0.maxwell[row.range.start + link], self.end.0.maxwell[row.range.start + link]);
+            let (start, end) =
+                (self.start.0.maxwell[row.range.start + link], self.end.0.maxwell[row.range.start + link]);
             let driven: f64 = weights.driven.iter().zip(rate).map(|(weight, rate)| weight * rate).sum();
             force += row.stiffness * (weights.decay * start + theta * end + driven);
         }
@@ -214,6 +215,8 @@ impl Dense<'_> {
 struct MassPoint {
     elongation: (f64, f64),
     velocity: (f64, f64),
+    /// The second derivative of the elongation with respect to the fraction, m; along z of a free mass alone.
+    bend: (f64, f64),
     ground: SurfacePoint,
 }
 
@@ -256,9 +259,11 @@ impl DenseRoom {
         let has = |kind: LinkKind| model.rows.iter().any(|row| row.kind == kind);
         let rate = LinkKind::ALL.map(|kind| {
             // The links between masses are summed from those to the carrier.
-            let needed = has(kind) || (!kind.is_lateral() && LinkKind::ALL.into_iter().any(|lateral| {
-                lateral.is_lateral() && lateral.is_along_x() == kind.is_along_x() && has(lateral)
-            }));
+            let needed = has(kind)
+                || (!kind.is_lateral()
+                    && LinkKind::ALL.into_iter().any(|lateral| {
+                        lateral.is_lateral() && lateral.is_along_x() == kind.is_along_x() && has(lateral)
+                    }));
             std::array::from_fn(|_| vec![0.0; if needed { kind.count(model.masses()) } else { 0 }])
         });
         let relaxation = vec![Relaxation::default(); model.relaxation_times.len()];

@@ -6,20 +6,21 @@
 
 use super::maxwell::{Course, Maxwell};
 use super::rates::Rates;
-use crate::math::dot;
+use crate::math::{dot, weighted_sum};
 use crate::model::{LinkKind, MaxwellRow, Model, Power};
 
 /// Σ ė_i ė_j over the links of one kind, m²/s², for j ≤ i.
 type Products<const STAGES: usize> = [[f64; STAGES]; STAGES];
 
 /// Energies lost in the dampers and Maxwell elements over a step of length `h` whose stages count with `weights`; the
-/// elongations at the start are `a`.
+/// elongations at the start are `a`. `room` takes as many numbers as there are masses.
 pub(super) fn lost<const STAGES: usize>(
     model: &Model,
     maxwell: &Maxwell<STAGES>,
     a: &[f64],
     stages: &[Rates],
     (h, weights): (f64, &[f64; STAGES]),
+    room: &mut [f64],
 ) -> Power {
     let mut energy = Power::default();
     for kind in LinkKind::ALL {
@@ -30,7 +31,7 @@ pub(super) fn lost<const STAGES: usize>(
         let products = products::<STAGES>(stages, kind, maxwell.has(kind));
         energy.damper += h * damping * (0..STAGES).map(|i| weights[i] * products[i][i]).sum::<f64>();
         for (row, course) in maxwell.rows(model, kind) {
-            let square = row_squares(row, course, a, stages, &products, weights);
+            let square = row_squares(row, course, a, stages, &products, weights, room);
             energy.maxwell += h * row.stiffness / row.relaxation_time * square;
         }
     }
@@ -48,7 +49,8 @@ fn products<const STAGES: usize>(stages: &[Rates], kind: LinkKind, all: bool) ->
     products
 }
 
-/// Σ_i weight_i Σ a_i² over the elements of one row: a_i = p_i a_0 + h Σ_j q_ij ė_j multiplied out.
+/// Σ_i weight_i Σ a_i² over the elements of one row: a_i = p_i a_0 + h Σ_j q_ij ė_j multiplied out into
+/// Σ a_0 (S a_0 + Σ_j R_j ė_j), which is summed in `room`, and the products of the rates.
 fn row_squares<const STAGES: usize>(
     row: &MaxwellRow,
     course: &Course<STAGES>,
@@ -56,19 +58,76 @@ fn row_squares<const STAGES: usize>(
     stages: &[Rates],
     products: &Products<STAGES>,
     weights: &[f64; STAGES],
+    room: &mut [f64],
 ) -> f64 {
     let a = &a[row.range.clone()];
-    let start = dot(a, a);
-    let with_start: [f64; STAGES] = std::array::from_fn(|j| dot(a, &stages[j].elongation_rate[row.kind as usize]));
-    let mut sum = weights[0] * start;
+    let (mut by_start, mut by_rate, mut square) = (weights[0], [0.0; STAGES], 0.0);
     for i in 1..STAGES {
         let (p, q) = (course.start[i], &course.rate[i]);
-        let mut square = p * p * start;
+        by_start += weights[i] * p * p;
         for j in 0..=i {
+            by_rate[j] += 2.0 * weights[i] * p * q[j];
             let below: f64 = (0..j).map(|l| q[l] * products[j][l]).sum();
-            square += q[j] * (2.0 * (p * with_start[j] + below) + q[j] * products[j][j]);
+            square += weights[i] * q[j] * (2.0 * below + q[j] * products[j][j]);
         }
-        sum += weights[i] * square;
     }
-    sum
+    let rates =
+        by_rate.iter().zip(stages).map(|(&factor, stage)| (factor, &stage.elongation_rate[row.kind as usize][..]));
+    let room = &mut room[..a.len()];
+    weighted_sum(room, std::iter::once((by_start, a)).chain(rates));
+    square + dot(a, room)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrator::{ESDIRK5, STAGES};
+
+    const SCENE: &str = "name = 'a'
+        layer = { masses = 5, spacing = 1.0, mass = 1.0,
+                  vertical = { damping = 0.7, maxwell = [{ stiffness = 3.0, relaxation_time = 0.2 },
+                                                         { stiffness = 2.0, relaxation_time = 1e-7 }] },
+                  lateral_x = { damping = 0.3 },
+                  lateral_z = { maxwell = [{ stiffness = 1.5, relaxation_time = 50.0 }] } }
+        surface = { kind = 'flat' }";
+
+    /// Against the sums over every element at every stage.
+    #[test]
+    fn products_give_what_every_element_at_every_stage_does() {
+        let model = Model::of_text(SCENE);
+        let mut seed = 1_u32;
+        let mut number = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(seed) / f64::from(u32::MAX) - 0.5
+        };
+        let h = 0.01;
+        let mut stages = vec![Rates::new(&model); STAGES];
+        stages.iter_mut().flat_map(|stage| &mut stage.elongation_rate).flatten().for_each(|rate| *rate = number());
+        // An element is as long as its relaxation time lets it be.
+        let start: Vec<f64> =
+            model.rows.iter().flat_map(|row| row.range.clone().map(|_| row.relaxation_time)).collect();
+        let start: Vec<f64> = start.into_iter().map(|tau| tau.min(1.0) * number()).collect();
+        let mut maxwell = Maxwell::<STAGES>::new(&model);
+        maxwell.begin(&model, &ESDIRK5, &start, h);
+        let weights: [f64; STAGES] = std::array::from_fn(|_| number());
+        let found = lost(&model, &maxwell, &start, &stages, (h, &weights), &mut [0.0; 5]);
+
+        let mut expected = Power::default();
+        for (i, weight) in weights.iter().enumerate() {
+            for kind in LinkKind::ALL {
+                let squares: f64 = stages[i].elongation_rate[kind as usize].iter().map(|rate| rate * rate).sum();
+                expected.damper += h * weight * model.links[kind as usize].damping * squares;
+                for (row, course) in maxwell.rows(&model, kind) {
+                    for (link, a) in start[row.range.clone()].iter().enumerate() {
+                        let rate = |j: usize| course.rate[i][j] * stages[j].elongation_rate[kind as usize][link];
+                        let a = course.start[i] * a + (0..=i).map(rate).sum::<f64>();
+                        expected.maxwell += h * weight * row.stiffness * a * a / row.relaxation_time;
+                    }
+                }
+            }
+        }
+        // Some hundred terms of both signs in another order.
+        assert!((found.damper - expected.damper).abs() < 1e-13 * expected.damper.abs(), "{found:?} {expected:?}");
+        assert!((found.maxwell - expected.maxwell).abs() < 1e-12 * expected.maxwell.abs(), "{found:?} {expected:?}");
+    }
 }

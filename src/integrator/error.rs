@@ -20,6 +20,11 @@ impl ErrorRoom {
         let zero = vec![0.0; model.masses()];
         Self { x: zero.clone(), z: zero.clone(), v_x: zero.clone(), v_z: zero.clone(), force: zero }
     }
+
+    /// Room for one number a mass.
+    pub(super) fn any(&mut self) -> &mut [f64] {
+        &mut self.force
+    }
 }
 
 impl Integrator {

@@ -117,11 +117,7 @@ impl<const STAGES: usize> Maxwell<STAGES> {
 }
 
 /// The elongation rates of the links of `kind` at the stages that count, weighed.
-fn by_rate<'a>(
-    kind: LinkKind,
-    weights: &'a [f64],
-    stages: &'a [Rates],
-) -> impl Iterator<Item = (f64, &'a [f64])> {
+fn by_rate<'a>(kind: LinkKind, weights: &'a [f64], stages: &'a [Rates]) -> impl Iterator<Item = (f64, &'a [f64])> {
     let stages = weights.iter().zip(stages).filter(|(weight, _)| **weight != 0.0);
     stages.map(move |(&weight, stage)| (weight, &stage.elongation_rate[kind as usize][..]))
 }
@@ -175,7 +171,8 @@ impl<const STAGES: usize> KindSums<STAGES> {
     where
         Rows: Iterator<Item = (&'a MaxwellRow, &'a Course<STAGES>)>,
     {
-        let start = |i: usize| rows().map(move |(row, course)| (row.stiffness * course.start[i], &a[row.range.clone()]));
+        let start =
+            |i: usize| rows().map(move |(row, course)| (row.stiffness * course.start[i], &a[row.range.clone()]));
         for i in 1..STAGES {
             weighted_sum(&mut self.start[i], start(i));
             for j in 0..=i {
@@ -186,5 +183,62 @@ impl<const STAGES: usize> KindSums<STAGES> {
         weighted_sum(&mut self.error_start, error);
         self.error_rate =
             std::array::from_fn(|j| rows().map(|(row, course)| row.stiffness * course.error_rate[j]).sum());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrator::{ESDIRK5, STAGES};
+
+    const METHOD: Tableau<STAGES> = ESDIRK5;
+
+    /// Stage by stage, as the method is defined: a_i and the embedded estimate, in units where h = 1.
+    fn stage_by_stage(z: f64, a: f64, rates: &[f64; STAGES]) -> ([f64; STAGES], f64) {
+        let (mut found, mut changes) = ([a; STAGES], [0.0; STAGES]);
+        changes[0] = rates[0] - z * a;
+        for i in 1..STAGES {
+            let star = a + (0..i).map(|j| METHOD.a[i][j] * changes[j]).sum::<f64>();
+            found[i] = (star + METHOD.gamma() * rates[i]) / (1.0 + METHOD.gamma() * z);
+            changes[i] = rates[i] - z * found[i];
+        }
+        (found, METHOD.error.iter().zip(changes).map(|(weight, change)| weight * change).sum())
+    }
+
+    #[test]
+    fn the_numbers_of_a_course_are_those_of_the_stages() {
+        let rates = [0.3, -0.7, 1.1, 0.2, -0.4, 0.9, 0.5];
+        for z in [0.0, 1e-8, 0.1, 1.0, 30.0, 1e4] {
+            let a = 0.8 / (1.0 + z);
+            let mut course = Course::<STAGES>::new();
+            course.follow(&METHOD, z, 1.0);
+            let (expected, expected_error) = stage_by_stage(z, a, &rates);
+            for i in 0..STAGES {
+                let driven: f64 = course.rate[i].iter().zip(&rates).map(|(q, rate)| q * rate).sum();
+                let found = course.start[i] * a + driven;
+                // In the plain recursion a change hȧ loses the digits that ė and z a share.
+                assert!(
+                    (found - expected[i]).abs() < 1e-14 / (1.0 + z) * 100.0,
+                    "z {z:e}, stage {i}: {found} {}",
+                    expected[i]
+                );
+            }
+            let driven: f64 = course.error_rate.iter().zip(&rates).map(|(e, rate)| e * rate).sum();
+            let found = course.error_start * a + driven;
+            assert!((found - expected_error).abs() < 1e-13, "z {z:e}: {found} {expected_error}");
+        }
+    }
+
+    /// τ far below the step: at the end of it a = τė, however short τ is.
+    #[test]
+    fn a_short_element_is_a_damper() {
+        for z in [1e9, 1e13, 1e100] {
+            let mut course = Course::<STAGES>::new();
+            course.follow(&METHOD, z, 1.0);
+            let a = 1.0 / z;
+            let end = course.start[STAGES - 1] * a + course.rate[STAGES - 1].iter().sum::<f64>();
+            // R(∞) = 0 within the digits of the printed coefficients; of 1/z a few roundings.
+            assert!((end * z - 1.0).abs() < 1e-8, "z {z:e}: {}", end * z);
+        }
     }
 }

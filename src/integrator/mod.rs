@@ -133,9 +133,10 @@ impl Integrator {
         for i in 1..STAGES {
             let at = carrier.at(s + METHOD.c[i] * h);
             self.carrier[i] = at;
-            self.collect_history(state, h, i, carrier.moved(s, METHOD.c[i] * h));
+            self.collect_history(state, h, i);
             self.predict(state, beta, i);
-            let point = StagePoint { beta, carrier: at, place: carrier.place + at.du, w: carrier.w + at.dw };
+            let moved = carrier.moved(s, METHOD.c[i] * h);
+            let point = StagePoint { beta, carrier: at, moved, place: carrier.place + at.du, w: carrier.w + at.dw };
             self.solver.solve(model, &point, tolerance.newton(beta), &mut self.stages[i])?;
             if self.accounts_energy {
                 self.exchange[i] = Exchange::evaluate(model, &self.solver.state, &at, &self.solver.forces);
@@ -210,10 +211,25 @@ impl Integrator {
         &self.stages
     }
 
+    /// The step of length `h` from `start`, `s` seconds after the start of the carrier's piece, that was tried last, seen
+    /// from within.
+    pub fn dense<'a>(
+        &'a self,
+        model: &'a Model,
+        carrier: &'a Carrier,
+        start: &'a State,
+        (s, h): (f64, f64),
+    ) -> Dense<'a> {
+        let carriers = [self.carrier[0], self.carrier[STAGES - 1]];
+        let end = (self.end(), &self.stages[STAGES - 1]);
+        Dense { model, carrier, s, h, carriers, start: (start, &self.stages[0]), end }
+    }
+
     /// Energies through the channels over the step of length `h` from `start` tried last, up to its fraction `theta`.
-    pub fn energies(&self, model: &Model, start: &State, h: f64, theta: f64) -> Power {
+    pub fn energies(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> Power {
         let weights = if theta < 1.0 { &self.weights_within.at(theta) } else { METHOD.weights() };
-        let mut energy = energy::lost(model, &self.maxwell, &start.maxwell, &self.stages, (h, weights));
+        let room = self.error_room.any();
+        let mut energy = energy::lost(model, &self.maxwell, &start.maxwell, &self.stages, (h, weights), room);
         for (weight, exchange) in weights.iter().zip(&self.exchange) {
             energy.friction += h * weight * exchange.friction;
             energy.input += h * weight * exchange.input;
@@ -231,8 +247,8 @@ impl Integrator {
         }
     }
 
-    /// What the earlier stages give to stage `i`, at which the carrier has moved by (`du`, `dw`) since the start.
-    fn collect_history(&mut self, state: &State, h: f64, i: usize, (du, dw): (f64, f64)) {
+    /// What the earlier stages give to stage `i`.
+    fn collect_history(&mut self, state: &State, h: f64, i: usize) {
         let history = &mut self.solver.history;
         let earlier = &self.stages[..i];
         let weights = &METHOD.a[i];
@@ -244,8 +260,6 @@ impl Integrator {
         sum(&mut history.elongation_z, &state.elongation_z, |stage| &stage.velocity_z);
         sum(&mut history.velocity_x, &state.velocity_x, |stage| &stage.acceleration_x);
         sum(&mut history.velocity_z, &state.velocity_z, |stage| &stage.acceleration_z);
-        history.elongation_x.iter_mut().for_each(|star| *star -= du);
-        history.elongation_z.iter_mut().for_each(|star| *star -= dw);
         for kind in LinkKind::ALL.into_iter().filter(|&kind| self.maxwell.has(kind)) {
             self.maxwell.known_force(kind, i, earlier, &mut history.force[kind as usize]);
         }

@@ -217,7 +217,7 @@ impl Tangent {
         };
         for kind in LinkKind::ALL {
             let law = &model.links[kind as usize];
-            self.forces.spring_and_damper(kind, law.stiffness, law.damping, &motion);
+            self.forces.spring_and_damper(kind, (law.stiffness, law.damping), &motion, &[]);
         }
         for row in &model.rows {
             add(&mut self.forces.link[row.kind as usize], row.stiffness, &start.maxwell[row.range.clone()]);

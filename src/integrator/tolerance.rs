@@ -18,7 +18,7 @@ pub struct Tolerance {
 /// Newton's iterations are left to this share of the tolerance.
 ///
 /// Recommended 0.001 to 0.1: larger spoils the error estimate, smaller costs iterations.
-pub(super) const NEWTON_SHARE: f64 = 0.01;
+pub(super) const NEWTON_SHARE: f64 = 0.05;
 
 impl Tolerance {
     /// The tolerances of `model` for a relative and an absolute (m) one.

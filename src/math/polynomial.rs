@@ -91,19 +91,12 @@ impl Quintic {
     /// The derivative with respect to the fraction as coefficients of powers of the fraction, constant first.
     pub fn derivative_monomials(&self) -> [f64; 5] {
         let c = &self.coefficients;
-        let difference = |order: usize| -> f64 {
-            const BINOMIAL: [[f64; 6]; 6] = [
-                [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-                [-1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
-                [1.0, -2.0, 1.0, 0.0, 0.0, 0.0],
-                [-1.0, 3.0, -3.0, 1.0, 0.0, 0.0],
-                [1.0, -4.0, 6.0, -4.0, 1.0, 0.0],
-                [-1.0, 5.0, -10.0, 10.0, -5.0, 1.0],
-            ];
-            BINOMIAL[order].iter().zip(c).map(|(b, c)| b * c).sum()
-        };
-        // Monomial m of the place is binomial(5, m) times the m-th difference of the Bernstein coefficients.
-        [5.0 * difference(1), 20.0 * difference(2), 30.0 * difference(3), 20.0 * difference(4), 5.0 * difference(5)]
+        // Monomial m of a polynomial of degree 4 is binomial(4, m) times the m-th difference of its Bernstein coefficients.
+        let first: [f64; 5] = std::array::from_fn(|i| c[i + 1] - c[i]);
+        let second: [f64; 4] = std::array::from_fn(|i| first[i + 1] - first[i]);
+        let third: [f64; 3] = std::array::from_fn(|i| second[i + 1] - second[i]);
+        let fourth: [f64; 2] = std::array::from_fn(|i| third[i + 1] - third[i]);
+        [5.0 * first[0], 20.0 * second[0], 30.0 * third[0], 20.0 * fourth[0], 5.0 * (fourth[1] - fourth[0])]
     }
 }
 

@@ -30,7 +30,7 @@ impl Forces {
         let motion = LinkMotion::of(state, carrier);
         for kind in LinkKind::ALL {
             let law = &model.links[kind as usize];
-            self.spring_and_damper(kind, law.stiffness, law.damping, &motion);
+            self.spring_and_damper(kind, (law.stiffness, law.damping), &motion, &[]);
         }
         for row in &model.rows {
             let elongations = &state.maxwell[row.range.clone()];
@@ -41,20 +41,16 @@ impl Forces {
         self.sum_on_masses();
     }
 
-    /// ė and F = c e + d ė of every link of a kind.
-    pub fn spring_and_damper(&mut self, kind: LinkKind, stiffness: f64, damping: f64, motion: &LinkMotion<'_>) {
-        let (rate, force) = (&mut self.rate[kind as usize], &mut self.link[kind as usize]);
-        let (place, velocity, carrier_rate) = motion.along(kind);
+    /// ė and F = c e + d ė of every link of a kind, for (c, d), and with the forces `known` added, if any.
+    pub fn spring_and_damper(&mut self, kind: LinkKind, law: (f64, f64), motion: &LinkMotion<'_>, known: &[f64]) {
+        let (rate, force) = (&mut self.rate[kind as usize][..], &mut self.link[kind as usize][..]);
         if kind.is_lateral() {
-            for (((force, rate), e), v) in force.iter_mut().zip(rate).zip(place.windows(2)).zip(velocity.windows(2)) {
-                *rate = v[1] - v[0];
-                *force = stiffness * (e[1] - e[0]) + damping * *rate;
-            }
+            motion.between_masses(kind, rate, force, law);
         } else {
-            for (((force, rate), e), v) in force.iter_mut().zip(rate).zip(place).zip(velocity) {
-                *rate = v - carrier_rate;
-                *force = stiffness * e + damping * *rate;
-            }
+            motion.to_carrier(kind, rate, force, law);
+        }
+        for (force, known) in force.iter_mut().zip(known) {
+            *force += known;
         }
     }
 
@@ -116,6 +112,24 @@ impl<'a> LinkMotion<'a> {
         }
     }
 
+    fn to_carrier(&self, kind: LinkKind, rate: &mut [f64], force: &mut [f64], (stiffness, damping): (f64, f64)) {
+        let (place, velocity, carrier_rate) = self.along(kind);
+        for ((force, rate), (e, v)) in force.iter_mut().zip(rate).zip(place.iter().zip(velocity)) {
+            *rate = v - carrier_rate;
+            *force = stiffness * e + damping * *rate;
+        }
+    }
+
+    fn between_masses(&self, kind: LinkKind, rate: &mut [f64], force: &mut [f64], (stiffness, damping): (f64, f64)) {
+        let (place, velocity, _) = self.along(kind);
+        let elongations = place.iter().zip(place.iter().skip(1));
+        let rates = velocity.iter().zip(velocity.iter().skip(1));
+        for ((force, rate), ((e, e_next), (v, v_next))) in force.iter_mut().zip(rate).zip(elongations.zip(rates)) {
+            *rate = v_next - v;
+            *force = stiffness * (e_next - e) + damping * *rate;
+        }
+    }
+
     fn along(&self, kind: LinkKind) -> (&'a [f64], &'a [f64], f64) {
         if kind.is_along_x() {
             (self.elongation_x, self.velocity_x, self.carrier_rates.0)
@@ -137,11 +151,12 @@ fn sum_on_masses(sum: &mut [f64], to_carrier: &[f64], lateral: &[f64]) {
             *sum = -force;
         }
     }
-    for (sum, force) in sum.iter_mut().zip(lateral) {
-        *sum += force;
+    if let (Some(first), Some(last)) = (lateral.first(), lateral.last()) {
+        sum[0] += first;
+        sum[lateral.len()] -= last;
     }
-    for (sum, force) in sum.iter_mut().skip(1).zip(lateral) {
-        *sum -= force;
+    for (sum, force) in sum.iter_mut().skip(1).zip(lateral.windows(2)) {
+        *sum += force[1] - force[0];
     }
 }
 

@@ -87,6 +87,12 @@ impl Model {
         }
     }
 
+    /// The model of the scene with this text.
+    #[cfg(test)]
+    pub(crate) fn of_text(text: &str) -> Self {
+        Self::new(&Scene::parse(text, "test.toml".as_ref()).unwrap_or_else(|error| panic!("{error}")))
+    }
+
     /// Number of masses k.
     pub fn masses(&self) -> usize {
         self.rest_x.len()

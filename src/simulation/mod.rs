@@ -177,7 +177,11 @@ impl Simulation {
         let maxwell = self.run.state.maxwell.len();
         // The run, the one to go back to, the one within a step and the stage's.
         let states = 4 * (masses * (4 * size_of::<f64>() + size_of_val(&self.run.state.ground[0]) + 1));
-        states + 4 * maxwell * size_of::<f64>() + self.integrator.bytes() + 2 * self.forces.bytes() + self.dense_room.bytes()
+        states
+            + 4 * maxwell * size_of::<f64>()
+            + self.integrator.bytes()
+            + 2 * self.forces.bytes()
+            + self.dense_room.bytes()
     }
 
     /// Follows `motion` to its end.

@@ -49,18 +49,8 @@ impl Run {
 
     /// Takes over `other`, a run of the same scene, without allocating.
     pub(super) fn copy_from(&mut self, other: &Self) {
-        let Self {
-            carrier,
-            s,
-            state,
-            energies,
-            counters,
-            step_size,
-            event_spacing,
-            since_event,
-            tangents,
-            rates_hold,
-        } = self;
+        let Self { carrier, s, state, energies, counters, step_size, event_spacing, since_event, tangents, rates_hold } =
+            self;
         (*carrier, *s, *energies, *counters) = (other.carrier, other.s, other.energies, other.counters);
         (*event_spacing, *since_event) = (other.event_spacing, other.since_event);
         (*step_size, *tangents, *rates_hold) = (other.step_size, other.tangents, other.rates_hold);

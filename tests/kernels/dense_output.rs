@@ -1,20 +1,21 @@
 //! What lies within a step, against exact solutions.
 
-use asperity::model::State;
+use asperity::integrator::DenseRoom;
+use asperity::model::{Forces, State};
+use nalgebra::Vector2;
 
 use crate::convergence::{Exact, PATHS, chain, differences, displaced, slider, sliding};
-use crate::layer::{Layer, Link, Stepper, at_rate, last_order};
+use crate::equations::{random_layer, random_state};
+use crate::layer::{Layer, Link, Random, Stepper, at_rate, last_order};
 
 const THETAS: [f64; 6] = [0.0, 0.13, 0.37, 0.5, 0.81, 1.0];
 
 /// The largest difference of places, velocities and Maxwell elongations within one step of length `h`.
 fn worst(stepper: &mut Stepper, h: f64, exact: impl Fn(f64) -> State) -> [f64; 3] {
     stepper.attempt(h);
-    let mut within = stepper.state.clone();
     let mut worst = [0.0_f64; 3];
     for theta in THETAS {
-        stepper.dense(h).state_at(theta, &mut within);
-        let differences = differences(&within, &exact(theta * h));
+        let differences = differences(&stepper.within(h, theta), &exact(theta * h));
         worst = std::array::from_fn(|part| worst[part].max(differences[part]));
     }
     worst
@@ -63,11 +64,9 @@ fn the_ends_of_a_step_are_the_states_there() {
         let start = if layer.masses == 1 { sliding(&layer.model(), 2.0, 0.0) } else { displaced(&layer.model()) };
         let mut stepper = Stepper::new(layer.model(), paths, start, 1e-13);
         stepper.attempt(0.01);
-        let mut within = stepper.state.clone();
         for (theta, expected) in [(0.0, &stepper.state), (1.0, stepper.integrator.end())] {
-            stepper.dense(0.01).state_at(theta, &mut within);
             // Roundings of places up to 0.3 m, over the step's length where a velocity is their difference.
-            let [place, velocity, maxwell] = differences(&within, expected);
+            let [place, velocity, maxwell] = differences(&stepper.within(0.01, theta), expected);
             assert!(place < 2e-16 && velocity < 1e-13 && maxwell < 1e-15, "{place:e} {velocity:e} {maxwell:e}");
         }
     }
@@ -86,16 +85,40 @@ fn a_stiff_element_is_followed_after_a_jump_of_the_velocity() {
         let layer = Layer { links: [link, None, None, None], clearance: 10.0, ..Layer::default() };
         let mut state = State::new(1, 1);
         state.velocity_z[0] = 1.0;
-        let mut stepper = Stepper::new(layer.model(), (at_rate(0.0), at_rate(0.0)), state.clone(), 1e-12);
+        let mut stepper = Stepper::new(layer.model(), (at_rate(0.0), at_rate(0.0)), state, 1e-12);
         stepper.attempt(h);
         let exact = |theta: f64| -tau * (-theta * h / tau).exp_m1();
         let end = (stepper.integrator.end().maxwell[0] - exact(1.0)).abs() / tau;
         // |R(-h/τ)|, at most 0.11: the element starts off its slow manifold by τ ė.
         assert!(end < 0.15, "τ {tau:e}: {end:e}");
         for theta in [1e-9, 1e-6, 1e-3, 0.05, 0.3, 0.9, 1.0] {
-            stepper.dense(h).state_at(theta, &mut state);
-            let error = (state.maxwell[0] - exact(theta)).abs() / tau;
+            let error = (stepper.within(h, theta).maxwell[0] - exact(theta)).abs() / tau;
             assert!(error < theta * end + 1e-11, "τ {tau:e}, θ {theta:e}: {error:e}");
+        }
+    }
+}
+
+/// F_N and f·t of one mass within a step are those of the whole state there, whatever the modes of its neighbours.
+#[test]
+fn one_contact_within_a_step_is_that_of_the_whole_state() {
+    let mut random = Random(7);
+    for case in 0..200 {
+        let layer = random_layer(&mut random, 1 + case % 5);
+        let model = layer.model();
+        let state = random_state(&mut random, &model, &Vector2::zeros());
+        let mut stepper = Stepper::new(model, PATHS, state, 1e-12);
+        stepper.attempt(1e-3);
+        let theta = random.between(0.0, 1.0);
+        let within = stepper.within(1e-3, theta);
+        let mut forces = Forces::new(&stepper.model);
+        forces.evaluate(&stepper.model, &within, &stepper.carrier.at(theta * 1e-3));
+        let mut room = DenseRoom::new(&stepper.model);
+        for i in (0..within.mode.len()).filter(|&i| within.mode[i].in_contact()) {
+            let expected = forces.contact(&stepper.model, i, within.velocity_x[i], &within.ground[i]);
+            let found = stepper.dense(1e-3).contact(i, theta, &mut room);
+            // Sums of some twenty forces up to 1e3 N in another order.
+            let error = (found.normal - expected.normal).abs().max((found.tangential - expected.tangential).abs());
+            assert!(error < 1e-11, "case {case}, mass {i}: {found:?} {expected:?}");
         }
     }
 }

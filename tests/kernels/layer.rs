@@ -2,7 +2,7 @@
 
 use std::path::Path as FilePath;
 
-use asperity::integrator::{Attempt, Dense, Followed, Integrator, STAGES, Tolerance};
+use asperity::integrator::{Attempt, Dense, DenseRoom, Followed, Integrator, Tolerance};
 use asperity::model::{Carrier, Forces, LinkKind, Model, State};
 use asperity::scene::{Path, Scene};
 use asperity::simulation::Simulation;
@@ -133,15 +133,14 @@ impl Stepper {
 
     /// The step of length `h` tried last, seen from within.
     pub fn dense(&self, h: f64) -> Dense<'_> {
-        let stages = self.integrator.stages();
-        Dense {
-            model: &self.model,
-            carrier: &self.carrier,
-            s: self.s,
-            h,
-            start: (&self.state, &stages[0]),
-            end: (self.integrator.end(), &stages[STAGES - 1]),
-        }
+        self.integrator.dense(&self.model, &self.carrier, &self.state, (self.s, h))
+    }
+
+    /// The state at the fraction `theta` of the step of length `h` tried last.
+    pub fn within(&self, h: f64, theta: f64) -> State {
+        let mut state = self.state.clone();
+        self.dense(h).state_at(theta, &mut DenseRoom::new(&self.model), &mut state);
+        state
     }
 }
 

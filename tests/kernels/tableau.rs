@@ -1,6 +1,6 @@
 //! The coefficients of the Runge-Kutta methods.
 
-use asperity::integrator::{ESDIRK5, Tableau};
+use asperity::integrator::{ESDIRK5, Tableau, WeightsWithin};
 use nalgebra::Complex;
 
 /// A rooted tree: the trees that hang on its root.
@@ -151,4 +151,25 @@ fn check_axis<const N: usize>(method: &Tableau<N>) {
 fn the_methods_are_l_stable() {
     check_decay(&ESDIRK5);
     check_axis(&ESDIRK5);
+}
+
+/// The quadrature up to a fraction of the step: exact to order 4 at every fraction, the method's own at the end, nothing
+/// at the start.
+#[test]
+fn the_weights_within_a_step_have_order_four() {
+    let within = WeightsWithin::new(&ESDIRK5);
+    let c = ESDIRK5.c;
+    let a_c2 = ESDIRK5.a.map(|row| row.iter().zip(c).map(|(a, c)| a * c * c).sum::<f64>());
+    for theta in [0.0, 1e-3, 0.2, 0.7, 1.0] {
+        let weights = within.at(theta);
+        let sum = |term: &dyn Fn(usize) -> f64| (0..c.len()).map(|i| weights[i] * term(i)).sum::<f64>();
+        for power in 1..=4 {
+            let error = sum(&|i| c[i].powi(power - 1)) - theta.powi(power) / f64::from(power);
+            // Roundings of weights up to some 10, and of the printed coefficients.
+            assert!(error.abs() < 1e-13, "θ {theta}, order {power}: {error:e}");
+        }
+        assert!((sum(&|i| a_c2[i]) - theta.powi(4) / 12.0).abs() < 1e-13, "θ {theta}");
+    }
+    let difference = within.at(1.0).iter().zip(ESDIRK5.weights()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(difference < 1e-13, "{difference:e}");
 }

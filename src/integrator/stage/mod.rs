@@ -24,7 +24,7 @@ pub struct NoConvergence;
 /// What the earlier stages give to a stage: the starred values and the forces of the Maxwell elements.
 #[derive(Clone, Debug)]
 pub(super) struct History {
-    /// e*_x, m: carried along with the carrier to the stage's time.
+    /// e*_x, m: as if the carrier stood where it was at the start of the step.
     pub elongation_x: Vec<f64>,
     /// e*_z, m.
     pub elongation_z: Vec<f64>,
@@ -43,6 +43,8 @@ pub(super) struct StagePoint {
     pub beta: f64,
     /// The carrier at the stage.
     pub carrier: CarrierPoint,
+    /// How far the carrier has moved since the start of the step, along x and z, m.
+    pub moved: (f64, f64),
     /// u at the stage as a place on the profile, m.
     pub place: f64,
     /// w at the stage, m.
@@ -213,8 +215,8 @@ impl StageSolver {
     fn place(&mut self, model: &Model, point: &StagePoint) {
         let beta = point.beta;
         let (state, history) = (&mut self.state, &self.history);
-        carry(&mut state.elongation_x, &history.elongation_x, beta, &state.velocity_x);
-        carry(&mut state.elongation_z, &history.elongation_z, beta, &state.velocity_z);
+        carry(&mut state.elongation_x, &history.elongation_x, (beta, &state.velocity_x), point.moved.0);
+        carry(&mut state.elongation_z, &history.elongation_z, (beta, &state.velocity_z), point.moved.1);
         for &i in &self.contacts {
             if state.mode[i] != Mode::Stick {
                 let ground = model.ground(model.rest_x[i] + (point.place + state.elongation_x[i]));
@@ -230,10 +232,8 @@ impl StageSolver {
         let motion = LinkMotion::of(&self.state, &point.carrier);
         for kind in LinkKind::ALL {
             let law = &self.laws[kind as usize];
-            self.forces.spring_and_damper(kind, law.stiffness, law.damping, &motion);
-            for (force, history) in self.forces.link[kind as usize].iter_mut().zip(&self.history.force[kind as usize]) {
-                *force += history;
-            }
+            let known = &self.history.force[kind as usize];
+            self.forces.spring_and_damper(kind, (law.stiffness, law.damping), &motion, known);
         }
         self.forces.sum_on_masses();
     }
@@ -266,10 +266,10 @@ impl StageSolver {
     }
 }
 
-/// place = from + β velocity.
-fn carry(place: &mut [f64], from: &[f64], beta: f64, velocity: &[f64]) {
-    for (place, (from, velocity)) in place.iter_mut().zip(from.iter().zip(velocity)) {
-        *place = from + beta * velocity;
+/// e = e* + β v less what the carrier has moved.
+fn carry(elongation: &mut [f64], star: &[f64], (beta, velocity): (f64, &[f64]), moved: f64) {
+    for (elongation, (star, velocity)) in elongation.iter_mut().zip(star.iter().zip(velocity)) {
+        *elongation = star + beta * velocity - moved;
     }
 }
 

@@ -61,8 +61,10 @@ impl StageSolver {
             let neighbours = neighbours(i, k);
             let climb = slip.climb(beta);
             let weight = |law: &StageLaw| law.stiffness * climb.height + law.damping * climb.rate;
-            let weights =
-                (horizontal.weight + neighbours * lateral_x.weight, weight(&vertical) + neighbours * weight(&lateral_z));
+            let weights = (
+                horizontal.weight + neighbours * lateral_x.weight,
+                weight(&vertical) + neighbours * weight(&lateral_z),
+            );
             let forces = (self.forces.on_mass_x[i], self.forces.on_mass_z[i]);
             self.system.diagonal[i] = Matrix2::new(slip.derivative(model, beta, forces, weights), 0.0, 0.0, 1.0);
             self.rows[i] = Row { x_by_x: slip.share_x, x_by_z: slip.share_z, z_by_z: 0.0 };
@@ -93,13 +95,14 @@ fn neighbours(i: usize, k: usize) -> f64 {
 
 /// The largest of all numbers; NaN where one is not finite.
 pub(super) fn largest(values: &[Vector2<f64>]) -> f64 {
-    let (mut largest, mut sum) = (0.0_f64, 0.0);
+    // Comparisons pass over what is not a number, the sum does not.
+    let greater = |a: f64, b: f64| if a > b { a } else { b };
+    let (mut largest, mut sum) = (Vector2::zeros(), Vector2::zeros());
     for value in values {
-        largest = largest.max(value.x.abs().max(value.y.abs()));
-        // The maximum passes over what is not a number, the sum does not.
-        sum += value.x + value.y;
+        largest = value.abs().zip_map(&largest, greater);
+        sum += value;
     }
-    if sum.is_finite() { largest } else { f64::NAN }
+    if (sum.x + sum.y).is_finite() { greater(largest.x, largest.y) } else { f64::NAN }
 }
 
 /// How a slipping mass is carried up the profile when its ẋ changes.

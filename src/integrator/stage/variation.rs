@@ -46,7 +46,7 @@ impl StageSolver {
         let motion = held.links(carrier);
         for kind in LinkKind::ALL {
             let law = &self.laws[kind as usize];
-            tangent.forces.spring_and_damper(kind, law.stiffness, law.damping, &motion);
+            tangent.forces.spring_and_damper(kind, (law.stiffness, law.damping), &motion, &[]);
         }
         for row in &model.rows {
             let weight = row.stiffness * row.relaxation_time / (row.relaxation_time + beta);
@@ -102,7 +102,7 @@ impl StageSolver {
             carrier_rates: (carrier.u_rate, carrier.w_rate),
         };
         for kind in LinkKind::ALL {
-            tangent.forces.spring_and_damper(kind, 0.0, 0.0, &motion);
+            tangent.forces.spring_and_damper(kind, (0.0, 0.0), &motion, &[]);
         }
         for row in &model.rows {
             let g = row.relaxation_time / (row.relaxation_time + beta);
