@@ -213,3 +213,27 @@ fn a_description_tells_what_is_there_and_what_is_left_out() {
         assert!(text.contains(part), "{part}: {text}");
     }
 }
+
+#[test]
+fn a_scene_as_json_is_all_of_it() {
+    let json = |name: &str| -> serde_json::Value {
+        serde_json::from_str(&run(asperity().arg("describe").arg(reference(name)).arg("--json"))).unwrap()
+    };
+    let chain = json("free-chain");
+    assert_eq!(chain["name"], "free-chain");
+    assert_eq!(chain["layer"]["masses"], 5);
+    assert_eq!(chain["layer"]["roughness"][2], -2e-6);
+    assert_eq!(chain["layer"]["lateral_x"]["maxwell"][1]["relaxation_time"], 1e-5);
+    assert_eq!(
+        (&chain["friction"], &chain["surface"]["z"]),
+        (&serde_json::Value::Null, &serde_json::json!([0.0, 0.0]))
+    );
+    assert_eq!(chain["excitation"][0]["w"], serde_json::json!({ "rate": 0.0, "amplitude": 5e-6, "frequency": 3500.0 }));
+    let rough = json("rough-coulomb");
+    assert_eq!(rough["friction"]["coulomb"], 0.3);
+    assert_eq!((&rough["solver"]["method"], &rough["outputs"][1]), (&"event".into(), &"dissipation".into()));
+    let file = Table::read(&root().join("tests/reference/rough-coulomb.profile.csv"));
+    let heights: Vec<f64> = rough["surface"]["z"].as_array().unwrap().iter().map(|z| z.as_f64().unwrap()).collect();
+    // The numbers are written in full; the reader here may miss the last digit of one.
+    assert!(common::difference(&heights, &file.column("z")) < 1e-15 * common::largest(&heights));
+}

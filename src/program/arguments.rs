@@ -77,6 +77,10 @@ pub(crate) struct Describe {
     /// The scene file.
     #[arg(value_name = "SCENE.toml")]
     pub(crate) scene: PathBuf,
+    /// Prints the whole scene as one JSON object, in SI units: links as constants, the profile as its data points; what
+    /// is left out is null or empty.
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Debug, Args)]

@@ -17,6 +17,9 @@ pub(crate) enum ProgramError {
     /// The run cannot begin.
     #[error("the run cannot start: {0}")]
     Start(SimulationError),
+    /// The scene cannot be written as JSON.
+    #[error("the scene cannot be written as JSON: {0}")]
+    Json(serde_json::Error),
     /// The run could not go on.
     #[error("{source}; the rows so far, up to t = {time} s, are in {}", .output.display())]
     Run { source: SimulationError, time: f64, output: PathBuf },

@@ -24,6 +24,8 @@ mod tests;
 
 use std::path::PathBuf;
 
+use serde::Serialize;
+
 use crate::math::{Numbers, visit_all};
 
 pub use error::{Problem, SceneError};
@@ -31,8 +33,8 @@ pub use link_kind::LinkKind;
 pub use parameters::{Parameter, ParameterError, Value};
 pub use unit::Unit;
 
-/// A whole scene, checked.
-#[derive(Clone, Debug, PartialEq)]
+/// A whole scene, checked. Serialised, it is every number of it: what the scene does not name is null or empty.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Scene {
     /// The scene's name; becomes the model's name.
     pub name: String,
@@ -53,13 +55,15 @@ pub struct Scene {
     /// The motion of the carrier in runs without a master.
     pub excitation: Vec<Phase>,
     /// The files that the scene reads, as the scene names them: relative to its folder.
+    #[serde(skip)]
     pub files: Vec<PathBuf>,
     /// What is worth telling though the scene is valid.
+    #[serde(skip)]
     pub warnings: Vec<String>,
 }
 
 /// The elastic layer: k point masses and their links.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Layer {
     /// Number of point masses k ≥ 1.
     pub masses: usize,
@@ -86,7 +90,7 @@ pub struct Layer {
 }
 
 /// A spring, a damper and Maxwell elements in parallel. A key that the scene does not name is `None`.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Link {
     /// Stiffness c of the spring, N/m.
     pub stiffness: Option<f64>,
@@ -97,7 +101,7 @@ pub struct Link {
 }
 
 /// A spring in series with a dashpot.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MaxwellElement {
     /// Stiffness c_j of the spring, N/m.
     pub stiffness: f64,
@@ -106,7 +110,8 @@ pub struct MaxwellElement {
 }
 
 /// How the dashpots stand at the start.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Initial {
     /// y_j = e_j: pressed long ago.
     Relaxed,
@@ -115,7 +120,7 @@ pub enum Initial {
 }
 
 /// The data points of the rigid profile; the spline through them is the model's business.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Surface {
     /// Places of the data points, m, strictly rising; at least two.
     pub x: Vec<f64>,
@@ -126,7 +131,7 @@ pub struct Surface {
 }
 
 /// The parts of the friction law that the scene names.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Friction {
     /// Coulomb's coefficient μ, 1.
     pub coulomb: Option<f64>,
@@ -135,7 +140,7 @@ pub struct Friction {
 }
 
 /// The integrator's settings.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Solver {
     /// How mode changes are treated.
     pub method: Method,
@@ -148,14 +153,16 @@ pub struct Solver {
 }
 
 /// How mode changes are treated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Method {
     /// Every mode change is located.
     Event,
 }
 
 /// How the carrier moves when a master gives values alone.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Extrapolation {
     /// On, as it came.
     #[default]
@@ -165,7 +172,8 @@ pub enum Extrapolation {
 }
 
 /// The groups of output variables that a scene may ask for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum OutputGroup {
     /// F_x, F_z.
     Forces,
@@ -205,7 +213,7 @@ impl OutputGroup {
 }
 
 /// One phase of the carrier's motion.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Phase {
     /// Duration, s.
     pub duration: f64,
@@ -218,7 +226,7 @@ pub struct Phase {
 }
 
 /// A displacement from where it stood: rate · s + amplitude · sin(2π frequency s), s the time since the start.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Path {
     /// Constant rate, m/s.
     pub rate: f64,

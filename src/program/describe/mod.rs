@@ -18,16 +18,21 @@ const LEFT_OUT: &str = "left out";
 /// Prints the description.
 pub(crate) fn describe(command: &Describe) -> Result<(), ProgramError> {
     let scene = super::load(&command.scene)?;
-    let simulation = Simulation::new(&scene, &Start::default()).map_err(ProgramError::Start)?;
-    let text = text(&scene, simulation.bytes());
+    let text = if command.json { json(&scene)? } else { text(&scene)? };
     std::io::stdout().write_all(text.as_bytes()).map_err(ProgramError::file("write", FilePath::new("standard output")))
 }
 
-fn text(scene: &Scene, bytes: usize) -> String {
+/// The scene as it was read, for other programs.
+fn json(scene: &Scene) -> Result<String, ProgramError> {
+    serde_json::to_string(scene).map(|text| text + "\n").map_err(ProgramError::Json)
+}
+
+fn text(scene: &Scene) -> Result<String, ProgramError> {
+    let simulation = Simulation::new(scene, &Start::default()).map_err(ProgramError::Start)?;
     let title = ("Scene", title(scene));
-    let memory = ("Memory", format!("{bytes} bytes a run"));
+    let memory = ("Memory", format!("{} bytes a run", simulation.bytes()));
     let rows = [title].into_iter().chain(rows(scene)).chain([memory]);
-    rows.map(|(name, text)| format!("{name:<12}{text}\n")).collect()
+    Ok(rows.map(|(name, text)| format!("{name:<12}{text}\n")).collect())
 }
 
 /// A row: its name, empty where the row goes on with the one above, and its text.
