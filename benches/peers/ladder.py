@@ -2,9 +2,9 @@
 
 import math
 import statistics
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
-from programs import COLUMNS
+from programs import COLUMNS, SCIPY
 
 
 @dataclass
@@ -15,7 +15,7 @@ class Rung:
     errors: dict  # by column, the largest difference over the largest value
     steps: int
     events: int
-    times: list = field(default_factory=list)
+    times: list  # processor seconds of each run
 
     @property
     def error(self):
@@ -47,11 +47,13 @@ def tolerances(per_decade, tightest):
 
 
 def climb(bench, program, scene, reference, wanted, per_decade, tightest):
-    """The rungs of a program, without times, down to the first whose error is below `wanted`."""
+    """The rungs of a program down to the first whose error is below `wanted`: without times, but for scipy, hundreds of
+    times slower than the others, for which this run has to be enough."""
     rungs = []
     for tolerance in tolerances(per_decade, tightest):
         outcome = bench.outcome(program, scene, tolerance)
-        rungs.append(Rung(tolerance, differences(outcome, reference), outcome.steps, outcome.events))
+        times = [outcome.time] if program.name == SCIPY else []
+        rungs.append(Rung(tolerance, differences(outcome, reference), outcome.steps, outcome.events, times))
         if rungs[-1].error < wanted:
             break
     return rungs
@@ -67,8 +69,8 @@ def front(rungs):
 
 
 def time_at(rungs, error):
-    """Time at an error, s: straight lines between the logarithms of the front's errors and times. Above the largest error
-    the time of the fastest rung; None below the smallest."""
+    """Time at an error, s: straight lines between the logarithms of the front's errors and times. Above the largest
+    error the time of the fastest rung; None below the smallest."""
     best = front(rungs)
     if error < best[0][0]:
         return None

@@ -37,9 +37,10 @@ RADAU, BDF = Program(SCIPY, "Radau"), Program(SCIPY, "BDF")
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a run gave: columns of its result file, and what it counted."""
+    """What a run gave: columns of its result file, its processor time in s, and what it counted."""
 
     columns: dict
+    time: float
     steps: int
     events: int
 
@@ -56,7 +57,9 @@ class Bench:
         toml = self.scene(scene)
         counted = toml.read_text() + '\n[fmu]\noutputs = ["forces", "dissipation", "solver"]\n'
         self.scene(scene, ".counted.toml").write_text(counted)
-        text = subprocess.run([self.asperity, "describe", toml, "--json"], check=True, capture_output=True, text=True).stdout
+        text = subprocess.run(
+            [self.asperity, "describe", toml, "--json"], check=True, capture_output=True, text=True
+        ).stdout
         self.scene(scene, ".json").write_text(text)
         self.scene(scene, ".txt").write_text(flatten.flatten(json.loads(text)))
 
@@ -95,11 +98,11 @@ class Bench:
 
     def outcome(self, program, scene, tolerance):
         """Runs for the result."""
-        _, text = self.run(program, scene, tolerance, counted=True)
+        time, text = self.run(program, scene, tolerance, counted=True)
         with open(self.folder / "out.csv", newline="") as file:
             rows = list(csv.DictReader(file))
         columns = {name: [float(row[name]) for row in rows] for name in ("time", *COLUMNS)}
         if program.name == ASPERITY:
-            return Outcome(columns, *(int(float(rows[-1][f"solver.{name}"])) for name in ("steps", "events")))
+            return Outcome(columns, time, *(int(float(rows[-1][f"solver.{name}"])) for name in ("steps", "events")))
         counts = dict(pair.split("=") for pair in text.split() if "=" in pair)
-        return Outcome(columns, int(counts["steps"]), int(counts["events"]))
+        return Outcome(columns, time, int(counts["steps"]), int(counts["events"]))

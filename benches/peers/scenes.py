@@ -2,10 +2,11 @@
 
     scenes.py FOLDER
 
-tread-block-*: k masses 5e-5 m apart, five Maxwell elements on the links to the carrier and two on the lateral ones, pressed
-on a rough profile within 1e-3 s and slid at 1 m/s with Coulomb friction. The profile is periodic, 2e-2 m long (8e-2 m under 800
-masses), of wavelengths from 2e-2 to 2e-4 m with amplitudes falling as a power of the wave number, rms 5e-6 m, its highest point
-at 0. free-chain-1000: no surface near, three Maxwell elements on every link, moved to and fro at 100 Hz.
+tread-block-*: k masses 5e-5 m apart, five Maxwell elements on the links to the carrier and two on the lateral ones,
+pressed on a rough profile within 1e-3 s and slid at 1 m/s with Coulomb friction. The profile is periodic, 2e-2 m long
+(8e-2 m under 800 masses), of wavelengths from 2e-2 to 2e-4 m with amplitudes falling as a power of the wave number,
+rms 5e-6 m, its highest point at 0. free-chain-1000: no surface near, three Maxwell elements on every link, moved to and
+fro at 100 Hz.
 """
 
 import math
@@ -15,6 +16,7 @@ from pathlib import Path
 # name: masses, speed of pressing in m/s, time of sliding in s, power of the amplitudes.
 TREAD_BLOCKS = {
     "tread-block-50": (50, 0.010, 2e-3, -1.3),
+    "tread-block-50-rough": (50, 0.010, 2e-3, -0.8),
     "tread-block-200": (200, 0.010, 2e-3, -1.3),
     "tread-block-200-rough": (200, 0.010, 2e-3, -0.8),
     "tread-block-800": (800, 0.016, 5e-4, -1.3),

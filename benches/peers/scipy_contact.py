@@ -2,10 +2,11 @@
 
     scipy_contact.py SCENE.json OUT.csv RTOL [--method Radau|BDF] [--points N]
 
-SCENE.json is what `asperity describe --json` prints. OUT.csv holds time, F_x, F_z, E_diss at the start and at N (50) even times
-a phase; on standard output one line of what the run took. Equation numbers are the paper's.
+SCENE.json is what `asperity describe --json` prints. OUT.csv holds time, F_x, F_z, E_diss at the start and at N (50)
+even times a phase; on standard output one line of what the run took. Equation numbers are the paper's.
 
-The state is a structure of arrays over the masses in the carrier's frame, as in cvode/layer.h, and E_diss without the impacts:
+The state is a structure of arrays over the masses in the carrier's frame, as in cvode/layer.h, and E_diss without the
+impacts:
 
     e_x | e_z | r_x | r_z | a_j of the vertical, horizontal, lateral x, lateral z links | E_diss
 """
@@ -44,8 +45,8 @@ class Profile:
 
 
 class Motion:
-    """What follows from a state at an instant. Arrays have masses along their first axis, and a second one where several
-    states are given at once, as for the Jacobian."""
+    """What follows from a state at an instant. Arrays have masses along their first axis, and a second axis where
+    several states are given at once, as for the Jacobian."""
 
 
 class Layer:
@@ -82,7 +83,13 @@ class Layer:
         for start, path in ((self.phase_u, self.phase["u"]), (self.phase_w, self.phase["w"])):
             omega, swing = 2 * np.pi * path["frequency"], path["amplitude"]
             sine, cosine = np.sin(omega * s), np.cos(omega * s)
-            parts.append((start + path["rate"] * s + swing * sine, path["rate"] + swing * omega * cosine, -swing * omega**2 * sine))
+            parts.append(
+                (
+                    start + path["rate"] * s + swing * sine,
+                    path["rate"] + swing * omega * cosine,
+                    -swing * omega**2 * sine,
+                )
+            )
         return [value for pair in zip(*parts) for value in pair]
 
     def motion(self, t, y):
@@ -109,9 +116,8 @@ class Layer:
 
     def link_forces(self, m, y):
         """(3), (4) and rows 21, 22 of (13)-(15)."""
-        difference = lambda values: values[1:] - values[:-1]
-        m.elongation = [m.e_z, m.e_x, difference(m.e_x), difference(m.e_z)]
-        m.rate = [m.r_z, m.r_x, difference(m.r_x), difference(m.r_z)]
+        m.elongation = [m.e_z, m.e_x, np.diff(m.e_x, axis=0), np.diff(m.e_z, axis=0)]
+        m.rate = [m.r_z, m.r_x, np.diff(m.r_x, axis=0), np.diff(m.r_z, axis=0)]
         m.force = [
             c * e + d * r + np.tensordot(c_j, self.elements(y, i), 1)
             for i, ((c, d, c_j, *_), e, r) in enumerate(zip(self.links, m.elongation, m.rate))
@@ -146,14 +152,14 @@ class Layer:
         return f
 
     def sparsity(self):
-        """What may depend on what in any mode. The last row is left out: nothing depends on E_diss, and with all of it no
-        two columns could be found together."""
+        """What may depend on what in any mode. The last row is left out: nothing depends on E_diss, and with it no two
+        columns could be found together."""
         k, pattern = self.k, lil_matrix((self.order, self.order), dtype=bool)
         columns = [[] for _ in range(k)]  # what the force on a mass depends on
         for i in range(k):
             near = range(max(i - 1, 0), min(i + 2, k))
             columns[i] += [part * k + j for part in range(4) for j in near]
-        for index, (_, _, c_j, _, where, count) in enumerate(self.links):
+        for _, _, c_j, _, where, count in self.links:
             for j in range(len(c_j)):
                 for i in range(count):
                     row = where.start + j * count + i
@@ -169,7 +175,7 @@ class Layer:
 
 
 class Run:
-    """The run: restarts after events, and the rules of section 4."""
+    """The run: restarts after events, and what they change."""
 
     def __init__(self, scene, rtol, method):
         self.layer = layer = Layer(scene)
@@ -189,17 +195,18 @@ class Run:
         self.rows = []
 
     def roots(self, t, y):
-        """The root functions: gap, F_N; and σx', T(0) - |f.t|; each falls through 0 at its event."""
+        """The root functions: gap, F_N; and σx', T(0) - |f.t|; each falls through 0 at its event, scaled to metres."""
         m, mode = self.layer.motion(t, y), self.layer.mode
-        first = np.where(mode == FREE, m.gap + self.margin, (m.F_N + self.force_margin) / (self.force_margin / self.gap_margin))
+        force_scale, speed_scale = self.force_margin / self.gap_margin, self.speed_margin / self.gap_margin
+        first = np.where(mode == FREE, m.gap + self.margin, m.F_N / force_scale + self.gap_margin)
         if not self.layer.has_friction:
             return first, np.full_like(first, np.inf)
-        stop = (mode * m.v_x + self.speed_margin) / (self.speed_margin / self.gap_margin)
-        breaks = (m.T - np.abs(m.f_t) + self.force_margin) / (self.force_margin / self.gap_margin)
+        stop = mode * m.v_x / speed_scale + self.gap_margin
+        breaks = (m.T - np.abs(m.f_t)) / force_scale + self.gap_margin
         return first, np.where(mode == FREE, np.inf, np.where(mode == STICKING, breaks, stop))
 
     def start(self):
-        """Section 5: at rest under the carrier; what lies under the profile is lifted onto it."""
+        """At rest under the carrier; what lies under the profile is lifted onto it."""
         layer = self.layer
         y, k = np.zeros(layer.order), layer.k
         u, w, u_rate, w_rate, *_ = layer.carrier(0.0)
@@ -283,14 +290,25 @@ class Run:
 
     def follow(self, t, end, y, times):
         """One phase; `times` of its rows."""
-        first_event = lambda t, y: min(part.min() for part in self.roots(t, y))
+
+        def first_event(t, y):
+            return min(part.min() for part in self.roots(t, y))
+
         first_event.terminal, first_event.direction = True, -1
         self.settle(t, y, np.zeros(self.layer.k, dtype=int))
         while t < end:
             solution = solve_ivp(
-                self.layer.derivatives, (t, end), y, self.method, dense_output=True, events=first_event, vectorized=True,
-                rtol=self.rtol, atol=self.atol, jac_sparsity=self.pattern,
-            )  # fmt: skip
+                self.layer.derivatives,
+                (t, end),
+                y,
+                self.method,
+                dense_output=True,
+                events=first_event,
+                vectorized=True,
+                rtol=self.rtol,
+                atol=self.atol,
+                jac_sparsity=self.pattern,
+            )
             if solution.status < 0:
                 raise SystemExit(f"scipy_contact: {solution.message} at t = {solution.t[-1]}")
             self.steps += len(solution.t) - 1

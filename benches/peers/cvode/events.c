@@ -32,7 +32,8 @@ int events_roots(double t, N_Vector y, double *roots, void *data) {
   problem->forces_known_at = NAN;
   for (int i = 0; i < layer->k; i++) {
     int is_free = layer->mode[i] == FREE;
-    roots[i] = is_free ? layer_gap(layer, i) + problem->margin[i] : layer_normal_force(layer, i) + problem->force_margin;
+    roots[i] =
+        is_free ? layer_gap(layer, i) + problem->margin[i] : layer_normal_force(layer, i) + problem->force_margin;
     if (layer->has_friction) roots[layer->k + i] = is_free ? 1 : stop_or_break(problem, i);
   }
   return 0;
@@ -83,7 +84,7 @@ static Decided change_mode(Problem *problem, Events *events, double *y, int i, i
   return STOPPED;
 }
 
-/* Section 4, Jumps: F_N < 0: free; sticking with |f.t| > T(0), a mass that has just stopped included: slip. One pass is
+/* Decided anew: F_N < 0: free; sticking with |f.t| > T(0), a mass that has just stopped included: slip. One pass is
  * enough: the forces follow from motion, which no decision changes. A contact whose own event this is not may pass its
  * limit by the margin, until CVODE finds its root. */
 static void decide(Problem *problem, Events *events, double t, double *y, const char *decided) {
@@ -110,7 +111,7 @@ void events_settle(Problem *problem, Events *events, double t, double *y) {
   free(decided);
 }
 
-/* After a lift the gap opens as t^3, for a while below the error of the positions. */
+/* After a lift the gap opens as t³, for a while below the error of the positions. */
 static int moves_apart(const Layer *layer, int i) {
   double x = layer->scene.rest_x[i] + (layer->e_x[i] + layer->carrier.u), s = profile_at(&layer->profile, x).slope;
   return layer->r_z[i] + layer->carrier.w_rate - s * layer_speed(layer, i) > 0;

@@ -1,14 +1,14 @@
-/* Mode changes: the root functions that find them and the rules that follow (sections 3 and 4).
+/* Mode changes: the root functions that find them and the rules that follow.
  *
  * One root function a mass, and with friction a second one:
  *
  *   free       gap                       touch
  *   contact    F_N                       lift
- *   slipping   sigma x'                  stop
+ *   slipping   σ ẋ                       stop
  *   sticking   T(0) - |f.t|              break
  *
- * each falling through 0. Each is raised by a margin well inside the tolerances, so that right after its own event it is
- * above 0: CVODE leaves out a root function that starts at 0. */
+ * each falling through 0. Each is raised by a margin well inside the tolerances, so that right after its own event it
+ * is above 0: CVODE leaves out a root function that starts at 0. */
 #ifndef EVENTS_H
 #define EVENTS_H
 

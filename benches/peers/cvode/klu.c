@@ -56,19 +56,27 @@ typedef void Entries(Sparse *, const Problem *, long, double, int, double, doubl
 
 static void entries_of_elements(Sparse *sparse, const Layer *layer, long row, double factor, int kind, int i) {
   const Link *link = &layer->scene.link[kind];
-  for (int j = 0; j < link->n; j++) entry(sparse, row, layer->maxwell[kind] + (long)j * layer->count[kind] + i, factor * link->stiffness[j]);
+  for (int j = 0; j < link->n; j++)
+    entry(sparse, row, layer->maxwell[kind] + (long)j * layer->count[kind] + i, factor * link->stiffness[j]);
 }
 
 /* factor f_i, (3) or (4). */
-static void entries_of_force(Sparse *sparse, const Problem *problem, long row, double factor, int i, int carrier, int lateral) {
+static void entries_of_force(Sparse *sparse, const Problem *problem, long row, double factor, int i, int carrier,
+                             int lateral) {
   const Layer *layer = problem->layer;
   const Link *own = &layer->scene.link[carrier], *shared = &layer->scene.link[lateral];
   Entries *entries_of = carrier == HORIZONTAL ? entries_of_x : entries_of_z;
   int left = i > 0, right = i < layer->k - 1, neighbours = left + right;
   entries_of(sparse, problem, row, -factor, i, own->c + neighbours * shared->c, own->d + neighbours * shared->d);
   entries_of_elements(sparse, layer, row, -factor, carrier, i);
-  if (right) entries_of(sparse, problem, row, factor, i + 1, shared->c, shared->d), entries_of_elements(sparse, layer, row, factor, lateral, i);
-  if (left) entries_of(sparse, problem, row, factor, i - 1, shared->c, shared->d), entries_of_elements(sparse, layer, row, -factor, lateral, i - 1);
+  if (right) {
+    entries_of(sparse, problem, row, factor, i + 1, shared->c, shared->d);
+    entries_of_elements(sparse, layer, row, factor, lateral, i);
+  }
+  if (left) {
+    entries_of(sparse, problem, row, factor, i - 1, shared->c, shared->d);
+    entries_of_elements(sparse, layer, row, -factor, lateral, i - 1);
+  }
 }
 
 static void rows_of_mass(Sparse *sparse, const Problem *problem, int i) {
@@ -134,16 +142,15 @@ static SUNMatrix note_pattern(Sparse *sparse, const Problem *problem, SUNContext
   return matrix;
 }
 
-/* I - gamma J in the slots of the matrix, whose pattern stays. */
-static int set_up_system(double t, N_Vector y, N_Vector f, SUNMatrix matrix, booleantype jok, booleantype *jcur, double gamma, void *data, N_Vector a, N_Vector b, N_Vector c) {
+/* I - γ J in the slots of the matrix, whose pattern stays. */
+static int set_up_system(double t, N_Vector y, N_Vector f, SUNMatrix matrix, booleantype jok, booleantype *jcur,
+                         double gamma, void *data, N_Vector a, N_Vector b, N_Vector c) {
   (void)f, (void)a, (void)b, (void)c;
   Problem *problem = data;
   Sparse *sparse = problem->linear_data;
   *jcur = !jok;
   if (!jok) {
-    problem->forces_known_at = NAN;
-    layer_evaluate(problem->layer, t, N_VGetArrayPointer(y));
-    variation_evaluate(&problem->variation, problem->layer);
+    linearise(problem, t, y);
     memset(sparse->jacobian, 0, sparse->entries * sizeof *sparse->jacobian);
     visit(sparse, problem);
   }
@@ -164,6 +171,7 @@ LinearSolver klu_new(Problem *problem, N_Vector y, SUNContext context) {
   SUNMatrix matrix = note_pattern(sparse, problem, context);
   SUNLinearSolver solver = SUNLinSol_KLU(y, matrix, context);
   solver->ops->initialize = keep_analysis;
-  SUNLinSol_KLUGetCommon(solver)->scale = -1; /* rows need no scaling: the pivots are 1 + gamma times a positive rate */
+  /* Nor are the rows scaled: pivots stand on the main diagonal, where the matrix is near the identity or above it. */
+  SUNLinSol_KLUGetCommon(solver)->scale = -1;
   return (LinearSolver){solver, matrix, set_up_system};
 }

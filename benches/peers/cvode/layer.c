@@ -2,8 +2,7 @@
 
 #include <string.h>
 
-/* Loops over masses: no two of the arrays overlap. */
-#define EACH(i, n) _Pragma("GCC ivdep") for (int i = 0; i < (n); i++)
+#include "arrays.h"
 
 Layer layer_new(Scene scene) {
   int k = scene.k;
@@ -82,7 +81,7 @@ void layer_start(Layer *layer, double *y) {
     Ground ground = profile_at(&layer->profile, layer->scene.rest_x[i] + carrier.u);
     double lift = ground.height - layer->scene.rest_z[i] - carrier.w, s = ground.slope;
     if (lift <= 0) continue;
-    double v = (carrier.u_rate + s * carrier.w_rate) / (1 + s * s); /* x' of what is left of the velocity, along t */
+    double v = (carrier.u_rate + s * carrier.w_rate) / (1 + s * s); /* ẋ of what is left of the velocity, along t */
     y[k + i] = lift;
     y[2 * k + i] = v - carrier.u_rate;
     y[3 * k + i] = s * v - carrier.w_rate;
@@ -93,7 +92,8 @@ void layer_start(Layer *layer, double *y) {
   if (layer->scene.relaxed) return;
   for (int kind = 0; kind < KINDS; kind++)
     for (int j = 0; j < layer->scene.link[kind].n; j++)
-      memcpy(y + layer->maxwell[kind] + (long)j * layer->count[kind], layer->elongation[kind], layer->count[kind] * sizeof *y);
+      memcpy(y + layer->maxwell[kind] + (long)j * layer->count[kind], layer->elongation[kind],
+             layer->count[kind] * sizeof *y);
   layer_evaluate(layer, 0, y);
 }
 
@@ -120,13 +120,10 @@ static void evaluate_motion(Layer *layer, const double *y) {
   }
 }
 
-static void evaluate_neighbours(int count, const double *restrict e, const double *restrict r, double *restrict elongation, double *restrict rate) {
-  EACH(i, count) elongation[i] = e[i + 1] - e[i];
-  EACH(i, count) rate[i] = r[i + 1] - r[i];
-}
-
-/* Rows 21, 22 of (13)-(15): F = c e + d e' + sum_j c_j a_j. Four elements at a time, to pass through memory less often. */
-static void evaluate_link(const Link *link, int count, const double *restrict e, const double *restrict r, const double *restrict a, double *restrict force) {
+/* Rows 21, 22 of (13)-(15): F = c e + d ė + Σ_j c_j a_j. Four elements at a time, to pass through memory less often.
+ */
+static void evaluate_link(const Link *link, int count, const double *restrict e, const double *restrict r,
+                          const double *restrict a, double *restrict force) {
   double c = link->c, d = link->d;
   EACH(i, count) force[i] = c * e[i] + d * r[i];
   const double *cj = link->stiffness;
@@ -138,26 +135,20 @@ static void evaluate_link(const Link *link, int count, const double *restrict e,
   for (; j < link->n; j++, a += count) EACH(i, count) force[i] += cj[j] * a[i];
 }
 
-/* (3), (4): f_i = -F_i + F_l,i - F_l,i-1. Returns the sum of the F_i, the force on the carrier. */
-static double sum_on_masses(int k, const double *restrict carrier, const double *restrict lateral, double *restrict f) {
-  double sum = 0;
-  f[0] = -carrier[0] + (k > 1 ? lateral[0] : 0);
-  EACH(i, k - 2) f[i + 1] = -carrier[i + 1] + (lateral[i + 1] - lateral[i]);
-  if (k > 1) f[k - 1] = -carrier[k - 1] - lateral[k - 2];
-#pragma omp simd reduction(+ : sum)
-  for (int i = 0; i < k; i++) sum += carrier[i];
-  return sum;
-}
-
 void layer_evaluate(Layer *layer, double t, const double *y) {
   layer->carrier = layer_carrier(layer, t);
   evaluate_motion(layer, y);
-  evaluate_neighbours(layer->k - 1, layer->e_x, layer->r_x, layer->elongation[LATERAL_X], layer->rate[LATERAL_X]);
-  evaluate_neighbours(layer->k - 1, layer->e_z, layer->r_z, layer->elongation[LATERAL_Z], layer->rate[LATERAL_Z]);
+  differences(layer->k - 1, layer->e_x, layer->elongation[LATERAL_X]);
+  differences(layer->k - 1, layer->e_z, layer->elongation[LATERAL_Z]);
+  differences(layer->k - 1, layer->r_x, layer->rate[LATERAL_X]);
+  differences(layer->k - 1, layer->r_z, layer->rate[LATERAL_Z]);
   for (int kind = 0; kind < KINDS; kind++)
-    evaluate_link(&layer->scene.link[kind], layer->count[kind], layer->elongation[kind], layer->rate[kind], y + layer->maxwell[kind], layer->force[kind]);
-  layer->F_x = sum_on_masses(layer->k, layer->force[HORIZONTAL], layer->force[LATERAL_X], layer->f_x);
-  layer->F_z = sum_on_masses(layer->k, layer->force[VERTICAL], layer->force[LATERAL_Z], layer->f_z);
+    evaluate_link(&layer->scene.link[kind], layer->count[kind], layer->elongation[kind], layer->rate[kind],
+                  y + layer->maxwell[kind], layer->force[kind]);
+  sum_on_masses(layer->k, layer->force[HORIZONTAL], layer->force[LATERAL_X], layer->f_x);
+  sum_on_masses(layer->k, layer->force[VERTICAL], layer->force[LATERAL_Z], layer->f_z);
+  layer->F_x = sum(layer->k, layer->force[HORIZONTAL]);
+  layer->F_z = sum(layer->k, layer->force[VERTICAL]);
 }
 
 void layer_store_contacts(const Layer *layer, double *y) {
@@ -169,8 +160,8 @@ void layer_store_contacts(const Layer *layer, double *y) {
   }
 }
 
-/* x'' of a slipping mass: m q^2 x'' = f_x + s f_z - F_T q - m s kappa x'^2 with F_T = sigma (mu F_N + A tau_0), so that
- * with S = sigma mu: m q^2 x'' = (1 - S s) f_x + (s + S)(f_z - m kappa x'^2) - sigma A tau_0 q. */
+/* ẍ of a slipping mass: m q² ẍ = f_x + s f_z - F_T q - m s κ ẋ² with F_T = σ (μ F_N + A τ_0), so that
+ * with S = σ μ: m q² ẍ = (1 - S s) f_x + (s + S)(f_z - m κ ẋ²) - σ A τ_0 q. */
 static double slip_acceleration(const Layer *layer, int i) {
   double m = layer->scene.mass, s = layer->ground[i].slope, v = layer_speed(layer, i), sigma = layer->mode[i];
   double q2 = 1 + s * s, S = sigma * layer->scene.friction;
@@ -181,7 +172,8 @@ static double slip_acceleration(const Layer *layer, int i) {
 
 static void mass_derivatives(const Layer *layer, double *restrict f) {
   int k = layer->k;
-  double per_mass = 1 / layer->scene.mass, u_acceleration = layer->carrier.u_acceleration, w_acceleration = layer->carrier.w_acceleration;
+  double per_mass = 1 / layer->scene.mass, u_acceleration = layer->carrier.u_acceleration,
+         w_acceleration = layer->carrier.w_acceleration;
   memcpy(f, layer->r_x, k * sizeof *f);
   memcpy(f + k, layer->r_z, k * sizeof *f);
   EACH(i, k) f[2 * k + i] = layer->f_x[i] * per_mass - u_acceleration;
@@ -194,8 +186,9 @@ static void mass_derivatives(const Layer *layer, double *restrict f) {
   }
 }
 
-/* a_j' = e' - a_j/tau_j. */
-static void maxwell_derivatives(const Link *link, int count, const double *restrict rate, const double *restrict a, double *restrict f) {
+/* ȧ_j = ė - a_j/τ_j. */
+static void maxwell_derivatives(const Link *link, int count, const double *restrict rate, const double *restrict a,
+                                double *restrict f) {
   for (int j = 0; j < link->n; j++, a += count, f += count) {
     double per_tau = link->rate[j];
     EACH(i, count) f[i] = rate[i] - per_tau * a[i];
@@ -205,18 +198,12 @@ static void maxwell_derivatives(const Link *link, int count, const double *restr
 void layer_derivatives(const Layer *layer, const double *y, double *f) {
   mass_derivatives(layer, f);
   for (int kind = 0; kind < KINDS; kind++)
-    maxwell_derivatives(&layer->scene.link[kind], layer->count[kind], layer->rate[kind], y + layer->maxwell[kind], f + layer->maxwell[kind]);
+    maxwell_derivatives(&layer->scene.link[kind], layer->count[kind], layer->rate[kind], y + layer->maxwell[kind],
+                        f + layer->maxwell[kind]);
 }
 
-static double sum_of_squares(long n, const double *a) {
-  double sum = 0;
-#pragma omp simd reduction(+ : sum)
-  for (long i = 0; i < n; i++) sum += a[i] * a[i];
-  return sum;
-}
-
-/* Section 6: P_damper = sum d e'^2, P_maxwell = sum c_j tau_j y_j'^2 = sum c_j a_j^2/tau_j, P_friction = sum F_T v_t and
- * P_in = -(F_x u' + F_z w'). */
+/* P_damper = Σ d ė², P_maxwell = Σ c_j τ_j ẏ_j² = Σ c_j a_j²/τ_j, P_friction = Σ F_T v_t
+ * and P_in = -(F_x u̇ + F_z ẇ). */
 void layer_power(const Layer *layer, const double *y, double power[CHANNELS]) {
   memset(power, 0, CHANNELS * sizeof *power);
   for (int kind = 0; kind < KINDS; kind++) {
@@ -224,7 +211,8 @@ void layer_power(const Layer *layer, const double *y, double power[CHANNELS]) {
     long count = layer->count[kind];
     power[DAMPER] += link->d * sum_of_squares(count, layer->rate[kind]);
     for (int j = 0; j < link->n; j++)
-      power[MAXWELL] += link->stiffness[j] * link->rate[j] * sum_of_squares(count, y + layer->maxwell[kind] + j * count);
+      power[MAXWELL] +=
+          link->stiffness[j] * link->rate[j] * sum_of_squares(count, y + layer->maxwell[kind] + j * count);
   }
   for (int j = 0; layer->has_friction && j < layer->contacts; j++) {
     int i = layer->contact[j];
@@ -245,7 +233,8 @@ double layer_stored_energy(const Layer *layer, const double *y) {
     const Link *link = &layer->scene.link[kind];
     long count = layer->count[kind];
     energy += link->c * sum_of_squares(count, layer->elongation[kind]) / 2;
-    for (int j = 0; j < link->n; j++) energy += link->stiffness[j] * sum_of_squares(count, y + layer->maxwell[kind] + j * count) / 2;
+    for (int j = 0; j < link->n; j++)
+      energy += link->stiffness[j] * sum_of_squares(count, y + layer->maxwell[kind] + j * count) / 2;
   }
   return energy;
 }

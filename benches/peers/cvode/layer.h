@@ -3,20 +3,22 @@
  * The state is a structure of arrays over the masses i, so that every loop over masses is one of vectors whatever the
  * number of Maxwell elements:
  *
- *   e_x (k) | e_z (k) | r_x (k) | r_z (k) | vertical a_1 (k), a_2 (k) ... | horizontal | lateral x, k - 1 each | lateral z
+ *   e_x | e_z | r_x | r_z | vertical a_1, a_2 ... | horizontal | lateral x | lateral z
  *
- * with e_x = xi - u and e_z = zeta - w the elongations of the links to the carrier, r_x and r_z their rates, and
- * a_j = e - y_j those of the Maxwell springs. This is the carrier's frame: tolerances mean deflections, not places.
+ * with e_x = ξ - u and e_z = ζ - w the elongations of the links to the carrier, r_x and r_z their rates, and
+ * a_j = e - y_j those of the Maxwell springs: k of each, k - 1 of lateral ones. This is the carrier's frame: tolerances
+ * mean deflections, not places.
  *
  * The dimension is fixed, so that nothing is set up anew when modes change. A slipping mass has one degree of freedom:
- * its e_z and r_z rest in the state, z = z_r(x) and z' = s x' are put in where they are needed. A sticking mass has none. */
+ * its e_z and r_z rest in the state, z = z_r(x) and ż = s ẋ are put in where they are needed. A sticking mass has
+ * none. */
 #ifndef LAYER_H
 #define LAYER_H
 
 #include "profile.h"
 #include "scene.h"
 
-/* Free: gap > 0. Slipping along +t or -t: gap = 0, the value is the direction. Sticking: gap = 0, x' = 0. */
+/* Free: gap > 0. Slipping along +t or -t: gap = 0, the value is the direction. Sticking: gap = 0, ẋ = 0. */
 typedef enum { BACKWARD = -1, FREE = 0, FORWARD = 1, STICKING = 2 } Mode;
 
 /* The carrier at one instant. */
@@ -41,7 +43,7 @@ typedef struct {
   /* Modes, the masses in contact one after another, and where the sticking ones stand. */
   Mode *mode;
   int *contact, contacts;
-  double *stuck_at; /* xi = x - X */
+  double *stuck_at; /* ξ = x - X */
   Ground *stuck_on;
 
   /* At the instant last evaluated: the carrier, motion with the constraints put in, links, forces on the masses. */
@@ -53,11 +55,11 @@ typedef struct {
   double F_x, F_z; /* on the carrier */
 } Layer;
 
-/* The channels of the energy, section 6: what CVODE integrates beside the state. */
+/* The channels of the energy: what CVODE integrates beside the state. */
 enum { DAMPER, MAXWELL, FRICTION, INPUT, CHANNELS };
 
-/* Start of section 5: at rest under the carrier of the first phase; what lies under the profile is lifted onto it. The modes
- * of lifted masses are not decided yet: they slip, or stick where they do not move. */
+/* The start: at rest under the carrier of the first phase; what lies under the profile is lifted onto it. The
+ * modes of lifted masses are not decided yet: they slip, or stick where they do not move. */
 Layer layer_new(Scene scene);
 void layer_start(Layer *layer, double *y);
 
@@ -79,12 +81,12 @@ void layer_derivatives(const Layer *layer, const double *y, double *f);
 void layer_power(const Layer *layer, const double *y, double power[CHANNELS]);
 double layer_stored_energy(const Layer *layer, const double *y);
 
-/* Of mass i in contact: x', F_N, f.t q and T(0). */
+/* Of mass i: ẋ; and in contact F_N, f.t, T(0). */
 static inline double layer_speed(const Layer *layer, int i) {
   return layer->r_x[i] + layer->carrier.u_rate;
 }
 
-/* (9): F_N = (m kappa x'^2 - f_z + s f_x)/q. */
+/* (9): F_N = (m κ ẋ² - f_z + s f_x)/q. */
 static inline double layer_normal_force(const Layer *layer, int i) {
   const Ground *ground = &layer->ground[i];
   double s = ground->slope, v = layer_speed(layer, i);

@@ -2,8 +2,8 @@
  *
  *   cvode_contact SCENE.txt OUT.csv RTOL [--solver klu|cond] [--points N] [--length METRES]
  *
- * OUT.csv holds time, F_x, F_z, E_diss at the start and at N (50) even times a phase. On standard output: one line of what
- * the run took, as key=value. Equation numbers are the paper's, sections those of the description of the model. */
+ * OUT.csv holds time, F_x, F_z, E_diss at the start and at N (50) even times a phase. On standard output: one line of
+ * what the run took, as key=value. Equation numbers are the paper's. */
 #include <pmmintrin.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -72,8 +72,8 @@ static int weights(N_Vector y_, N_Vector weights_, void *data) {
 
 /* ---- setting up ---- */
 
-/* Tolerances: elongations rtol times the length given, rates that times the vertical link's glassy frequency, energies what
- * such an elongation stores in all vertical links. */
+/* Tolerances: elongations rtol times the length given, rates that times the vertical link's glassy frequency, energies
+ * what such an elongation stores in all vertical links. */
 static void set_tolerances(Run *run, const Options *options) {
   Problem *problem = &run->problem;
   const Scene *scene = &run->layer.scene;
@@ -226,21 +226,26 @@ static void simulate(Run *run, const Options *options) {
   double dissipated = energy[DAMPER] + energy[MAXWELL] + energy[FRICTION] + run->events.impact;
   double residual = energy[INPUT] - (layer_stored_energy(&run->layer, y) - before) - dissipated;
   const Events *events = &run->events;
-  printf("steps=%ld rejected=%ld newton=%ld events=%ld touch=%ld lift=%ld stop=%ld break=%ld aside=%ld apart=%ld residual=%.3e\n", run->steps, run->failures,
-         run->iterations, events->touch + events->lift + events->stop + events->break_, events->touch, events->lift, events->stop, events->break_,
-         events->aside, events->apart, residual / (fabs(energy[INPUT]) + 1e-300));
+  printf(
+      "steps=%ld rejected=%ld newton=%ld events=%ld touch=%ld lift=%ld stop=%ld break=%ld aside=%ld apart=%ld "
+      "residual=%.3e\n",
+      run->steps, run->failures, run->iterations, events->touch + events->lift + events->stop + events->break_,
+      events->touch, events->lift, events->stop, events->break_, events->aside, events->apart,
+      residual / (fabs(energy[INPUT]) + 1e-300));
 }
 
 static Options options_of(int count, char **words) {
   if (count < 4) fail("usage: cvode_contact SCENE.txt OUT.csv RTOL [--solver klu|cond] [--points N] [--length METRES]");
-  Options options = {.scene = words[1], .output = words[2], .rtol = atof(words[3]), .solver = "klu", .length = 1e-6, .points = 50};
+  Options options = {
+      .scene = words[1], .output = words[2], .rtol = atof(words[3]), .solver = "klu", .length = 1e-6, .points = 50};
   for (int i = 4; i + 1 < count; i += 2) {
     if (!strcmp(words[i], "--solver")) options.solver = words[i + 1];
     else if (!strcmp(words[i], "--points")) options.points = atoi(words[i + 1]);
     else if (!strcmp(words[i], "--length")) options.length = atof(words[i + 1]);
     else fail("no such option: %s", words[i]);
   }
-  if (options.rtol <= 0 || options.points < 1 || options.length <= 0) fail("RTOL, --points and --length have to be above 0");
+  if (options.rtol <= 0 || options.points < 1 || options.length <= 0)
+    fail("RTOL, --points and --length have to be above 0");
   return options;
 }
 

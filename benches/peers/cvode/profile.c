@@ -69,7 +69,8 @@ Profile profile_new(const Scene *scene) {
   profile.piece = room(n + 1, sizeof *profile.piece);
   for (int i = 0; i < n; i++) {
     double h = x[i + 1] - x[i];
-    profile.piece[i] = (Piece){x[i], z[i], (z[i + 1] - z[i]) / h - h * (2 * m[i] + m[i + 1]) / 6, m[i] / 2, (m[i + 1] - m[i]) / (6 * h)};
+    profile.piece[i] = (Piece){x[i], z[i], (z[i + 1] - z[i]) / h - h * (2 * m[i] + m[i + 1]) / 6, m[i] / 2,
+                               (m[i + 1] - m[i]) / (6 * h)};
   }
   double h = x[n] - x[n - 1];
   profile.tangent = profile.piece[0].slope;

@@ -1,4 +1,4 @@
-/* The rigid profile: a cubic spline, natural or periodic (model: section 1, Profile). */
+/* The rigid profile: a cubic spline, natural or periodic. */
 #ifndef PROFILE_H
 #define PROFILE_H
 
@@ -6,7 +6,7 @@
 
 #include "scene.h"
 
-/* The profile at one place: z_r, s = z_r', kappa = z_r'', z_r'''. */
+/* The profile at one place: z_r, s = z_r', κ = z_r'', z_r'''. */
 typedef struct {
   double height, slope, curvature, third;
 } Ground;
@@ -53,7 +53,8 @@ static inline Ground profile_at(const Profile *profile, double x) {
     piece = &profile->piece[from_start > profile->length ? profile->pieces : profile_piece(profile, x)];
   }
   double t = x - piece->x, b = piece->half, c = piece->sixth;
-  return (Ground){piece->height + t * (piece->slope + t * (b + t * c)), piece->slope + t * (2 * b + t * 3 * c), 2 * b + t * 6 * c, 6 * c};
+  return (Ground){piece->height + t * (piece->slope + t * (b + t * c)), piece->slope + t * (2 * b + t * 3 * c),
+                  2 * b + t * 6 * c, 6 * c};
 }
 
 #endif

@@ -25,7 +25,8 @@ void *room(unsigned long count, unsigned long size) {
 /* The next word has to be `word`. */
 static void expect(FILE *file, const char *word) {
   char found[32] = "the end of the file";
-  if (fscanf(file, "%31s", found) != 1 || strcmp(found, word)) fail("the scene: expected `%s`, found `%s`", word, found);
+  if (fscanf(file, "%31s", found) != 1 || strcmp(found, word))
+    fail("the scene: expected `%s`, found `%s`", word, found);
 }
 
 static double number(FILE *file) {

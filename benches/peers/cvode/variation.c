@@ -2,7 +2,8 @@
 
 Variation variation_new(int k) {
   double *memory = room(9L * k, sizeof *memory);
-  return (Variation){memory, memory + k, memory + 2 * k, memory + 3 * k, memory + 4 * k, memory + 5 * k, memory + 6 * k, memory + 7 * k, memory + 8 * k};
+  return (Variation){memory,         memory + k,     memory + 2 * k, memory + 3 * k, memory + 4 * k,
+                     memory + 5 * k, memory + 6 * k, memory + 7 * k, memory + 8 * k};
 }
 
 static void vary_free(Variation *v, const Layer *layer) {
@@ -18,7 +19,7 @@ static void vary_sticking(Variation *v, int i) {
   v->x_moves[i] = v->z_moves[i] = v->x_of_f_x[i] = v->z_of_f_z[i] = 0;
 }
 
-/* With N = (1 - S s) f_x + (s + S)(f_z - m kappa x'^2) - sigma A tau_0 q, x'' = N/(m q^2) and s' = kappa x', q' = s s'/q. */
+/* With N = (1 - S s) f_x + (s + S)(f_z - m κ ẋ²) - σ A τ_0 q, ẍ = N/(m q²); ds/dx = κ, dq/dx = s κ/q. */
 static void vary_slipping(Variation *v, const Layer *layer, int i) {
   const Ground *ground = &layer->ground[i];
   double m = layer->scene.mass, s = ground->slope, kappa = ground->curvature, speed = layer_speed(layer, i);
@@ -36,11 +37,14 @@ static void vary_slipping(Variation *v, const Layer *layer, int i) {
   v->x_of_v[i] = -2 * w * (s + S) * m * kappa * speed;
 }
 
-void variation_evaluate(Variation *v, const Layer *layer) {
-  vary_free(v, layer);
+void linearise(Problem *problem, double t, N_Vector y) {
+  Layer *layer = problem->layer;
+  problem->forces_known_at = NAN;
+  layer_evaluate(layer, t, N_VGetArrayPointer(y));
+  vary_free(&problem->variation, layer);
   for (int j = 0; j < layer->contacts; j++) {
     int i = layer->contact[j];
-    if (layer->mode[i] == STICKING) vary_sticking(v, i);
-    else vary_slipping(v, layer, i);
+    if (layer->mode[i] == STICKING) vary_sticking(&problem->variation, i);
+    else vary_slipping(&problem->variation, layer, i);
   }
 }

@@ -3,8 +3,9 @@
 #include <math.h>
 #include <string.h>
 
-/* SUNDIALS lets the result be one of the operands: element by element, the order does not matter. */
-#define EACH(i, n) _Pragma("GCC ivdep") for (long i = 0; i < (n); i++)
+#include "arrays.h"
+
+/* SUNDIALS lets the result be one of the operands: element by element that does no harm. */
 
 static double *of(N_Vector vector) {
   return NV_DATA_S(vector);

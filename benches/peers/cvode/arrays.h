@@ -1,0 +1,35 @@
+/* Loops over arrays that the compiler can turn into vector instructions. */
+#ifndef ARRAYS_H
+#define ARRAYS_H
+
+/* For i from 0 to n - 1, in any order: no element written is read at another i. */
+#define EACH(i, n) _Pragma("GCC ivdep") for (long i = 0; i < (n); i++)
+
+static inline double sum(long n, const double *a) {
+  double total = 0;
+#pragma omp simd reduction(+ : total)
+  for (long i = 0; i < n; i++) total += a[i];
+  return total;
+}
+
+static inline double sum_of_squares(long n, const double *a) {
+  double total = 0;
+#pragma omp simd reduction(+ : total)
+  for (long i = 0; i < n; i++) total += a[i] * a[i];
+  return total;
+}
+
+/* d_i = a_{i+1} - a_i, n of them. */
+static inline void differences(long n, const double *restrict a, double *restrict d) {
+  EACH(i, n) d[i] = a[i + 1] - a[i];
+}
+
+/* (3), (4): f_i = -F_i + F_l,i - F_l,i-1 of k masses, F the links to the carrier, F_l those to the neighbours. */
+static inline void sum_on_masses(long k, const double *restrict carrier, const double *restrict lateral,
+                                 double *restrict f) {
+  f[0] = -carrier[0] + (k > 1 ? lateral[0] : 0);
+  EACH(i, k - 2) f[i + 1] = -carrier[i + 1] + (lateral[i + 1] - lateral[i]);
+  if (k > 1) f[k - 1] = -carrier[k - 1] - lateral[k - 2];
+}
+
+#endif
