@@ -45,8 +45,9 @@ TARGETS = (
 
 REFERENCE = 1e-11  # tolerance of the reference run
 # Each peer's tolerance in the check, and the largest difference then allowed, over the largest value. CVODE errs by
-# some 1e-7 at 1e-9; scipy, which has to be waited for, by some 1e-4 at 1e-5.
-CHECKS = {CVODE: (1e-9, 2e-6), SCIPY: (1e-5, 1e-3)}
+# some 1e-8 at 1e-10, by more where deflections are small (free-chain-1000); scipy, which has to be waited for, by some
+# 1e-4 at 1e-5.
+CHECKS = {CVODE: (1e-10, 1e-6), SCIPY: (1e-5, 1e-3)}
 # The tightest tolerance of a ladder.
 TIGHTEST = {ASPERITY: 1e-11, CVODE: 1e-10, SCIPY: 1e-6}
 

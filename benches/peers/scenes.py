@@ -6,7 +6,7 @@ tread-block-*: k masses 5e-5 m apart, five Maxwell elements on the links to the 
 pressed on a rough profile within 1e-3 s and slid at 1 m/s with Coulomb friction. The profile is periodic, 2e-2 m long
 (8e-2 m under 800 masses), of wavelengths from 2e-2 to 2e-4 m with amplitudes falling as a power of the wave number,
 rms 5e-6 m, its highest point at 0. free-chain-1000: no surface near, three Maxwell elements on every link, moved to and
-fro at 100 Hz.
+fro by 1 mm at 100 Hz.
 """
 
 import math
@@ -114,10 +114,10 @@ kind = "flat"
 
 [[excitation]]
 duration = 0.05
-u_sine = { amplitude = 1e-05, frequency = 100.0 }
-w_sine = { amplitude = 5e-06, frequency = 100.0 }
+u_sine = { amplitude = 0.001, frequency = 100.0 }
+w_sine = { amplitude = 0.0005, frequency = 100.0 }
 """
-    return scene(name, 1000, 0.001, links, rest)
+    return scene(name, 1000, 0.01, links, rest)
 
 
 def write(folder):
