@@ -58,9 +58,10 @@ typedef struct {
 /* The channels of the energy: what CVODE integrates beside the state. */
 enum { DAMPER, MAXWELL, FRICTION, INPUT, CHANNELS };
 
-/* The start: at rest under the carrier of the first phase; what lies under the profile is lifted onto it. The
- * modes of lifted masses are not decided yet: they slip, or stick where they do not move. */
 Layer layer_new(Scene scene);
+
+/* At rest under the carrier of the first phase; what lies under the profile is lifted onto it, and then slips, or
+ * sticks where it does not move, until events_settle decides. */
 void layer_start(Layer *layer, double *y);
 
 void layer_enter_phase(Layer *layer, const Phase *phase, double t);

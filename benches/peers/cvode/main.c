@@ -195,7 +195,7 @@ static void follow_phase(Run *run, const Phase *phase, double start, int points,
   }
 }
 
-static double follow(Run *run, int points) {
+static void follow(Run *run, int points) {
   const Scene *scene = &run->layer.scene;
   int *found = room(events_count(&run->layer), sizeof *found);
   double t = 0;
@@ -205,7 +205,19 @@ static double follow(Run *run, int points) {
     t += scene->phase[i].duration;
   }
   free(found);
-  return t;
+}
+
+/* What the run took, and what the energy balance misses since `before`, over the energy put in. */
+static void report(const Run *run, double before) {
+  const Events *events = &run->events;
+  const double *energy = N_VGetArrayPointer(run->energies);
+  double dissipated = energy[DAMPER] + energy[MAXWELL] + energy[FRICTION] + events->impact;
+  double gained = layer_stored_energy(&run->layer, N_VGetArrayPointer(run->y)) - before;
+  double residual = (energy[INPUT] - gained - dissipated) / (fabs(energy[INPUT]) + 1e-300);
+  long found = events->touch + events->lift + events->stop + events->break_;
+  printf("steps=%ld rejected=%ld newton=%ld events=%ld ", run->steps, run->failures, run->iterations, found);
+  printf("touch=%ld lift=%ld stop=%ld break=%ld ", events->touch, events->lift, events->stop, events->break_);
+  printf("aside=%ld apart=%ld residual=%.3e\n", events->aside, events->apart, residual);
 }
 
 static void simulate(Run *run, const Options *options) {
@@ -218,20 +230,10 @@ static void simulate(Run *run, const Options *options) {
   if (!run->output) fail("cannot write %s", options->output);
   fputs("time,F_x,F_z,E_diss\n", run->output);
   write_row(run, 0);
-  double t = follow(run, options->points);
-  count(run);
+  follow(run, options->points);
   fclose(run->output);
-  layer_evaluate(&run->layer, t, y);
-  const double *energy = N_VGetArrayPointer(run->energies);
-  double dissipated = energy[DAMPER] + energy[MAXWELL] + energy[FRICTION] + run->events.impact;
-  double residual = energy[INPUT] - (layer_stored_energy(&run->layer, y) - before) - dissipated;
-  const Events *events = &run->events;
-  printf(
-      "steps=%ld rejected=%ld newton=%ld events=%ld touch=%ld lift=%ld stop=%ld break=%ld aside=%ld apart=%ld "
-      "residual=%.3e\n",
-      run->steps, run->failures, run->iterations, events->touch + events->lift + events->stop + events->break_,
-      events->touch, events->lift, events->stop, events->break_, events->aside, events->apart,
-      residual / (fabs(energy[INPUT]) + 1e-300));
+  count(run);
+  report(run, before);
 }
 
 static Options options_of(int count, char **words) {
