@@ -13,14 +13,14 @@ pub(crate) struct Cell {
     /// What it says, as plain text.
     pub(crate) text: String,
     /// Its class in the style sheet; empty for none.
-    pub(crate) class: &'static str,
+    pub(crate) class: String,
     /// The columns that it fills.
     pub(crate) span: usize,
 }
 
 impl<T: Into<String>> From<T> for Cell {
     fn from(text: T) -> Self {
-        Self { text: text.into(), class: "", span: 1 }
+        Self { text: text.into(), class: String::new(), span: 1 }
     }
 }
 
@@ -43,7 +43,7 @@ fn write_row(html: &mut Html, element: &str, cells: &[Cell]) -> io::Result<()> {
     html.create_element("tr").write_inner_content(|html| {
         cells.iter().try_for_each(|cell| {
             let span = cell.span.to_string();
-            let class = (!cell.class.is_empty()).then_some(("class", cell.class));
+            let class = (!cell.class.is_empty()).then_some(("class", cell.class.as_str()));
             let span = (cell.span != 1).then_some(("colspan", span.as_str()));
             let html = html.create_element(element).with_attributes(class.into_iter().chain(span));
             html.write_text_content(BytesText::new(&cell.text)).map(drop)

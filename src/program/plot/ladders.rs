@@ -3,12 +3,12 @@
 use std::error::Error;
 
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::chart::{
     Canvas, Drawn, FINE, GAP, GRID, INK, LEGEND_HEIGHT, LINE_WIDTH, SWATCH_LENGTH, TEXT_SIZE, TICK_SIZE, colour, style,
     svg,
 };
+use super::labels::Labels;
 use super::logarithmic::{Logarithmic, is_drawn};
 
 /// Width and height of one panel, pixels.
@@ -24,7 +24,7 @@ const ABOVE: f64 = 1.6;
 /// Ticks at most, so that they do not touch.
 const X_TICKS: usize = 7;
 const Y_TICKS: usize = 12;
-/// Width of a letter of a legend over its height, roughly.
+/// Width of a letter over the size of its text, roughly.
 const LETTER_WIDTH: f64 = 0.46;
 const BELOW: RGBColor = RGBColor(238, 238, 238);
 const BELOW_NAME: &str = "below the reference's own error";
@@ -36,7 +36,7 @@ pub(crate) struct Rung {
     pub(crate) x: f64,
     /// Its error.
     pub(crate) y: f64,
-    /// What is written beside it; empty for nothing.
+    /// What is written beside it where there is room; empty for nothing.
     pub(crate) label: String,
 }
 
@@ -112,7 +112,35 @@ impl Panel {
             .build_cartesian_2d(x, y)?;
         self.draw_floor(&mut context, x, y)?;
         draw_axes(&mut context, x_title, &self.title)?;
-        self.ladders.iter().try_for_each(|ladder| ladder.draw(canvas, &mut context, self.floor))
+        self.ladders.iter().try_for_each(|ladder| ladder.draw(canvas, &mut context, self.floor))?;
+        self.draw_labels(canvas, &context)
+    }
+
+    /// Writes beside the markers, in the order of the ladders, where there is room.
+    fn draw_labels(&self, canvas: &Canvas<'_>, context: &Context<'_, '_>) -> Drawn {
+        let (across, down) = context.plotting_area().get_pixel_range();
+        let (left, top) = canvas.get_base_pixel();
+        let mut labels = Labels::new([across.start - left, down.start - top, across.end - left, down.end - top]);
+        let places = |ladder: &Ladder| -> Vec<(i32, i32)> {
+            ladder.drawn().map(|rung| pixel(canvas, context, (rung.x, rung.y))).collect()
+        };
+        for places in self.ladders.iter().map(places) {
+            places.iter().for_each(|&place| labels.take_marker(place, RADIUS));
+            places.windows(2).for_each(|pair| labels.take_line(pair[0], pair[1]));
+        }
+        for ladder in &self.ladders {
+            for (rung, place) in ladder.drawn().zip(places(ladder)).filter(|(rung, _)| !rung.label.is_empty()) {
+                let size = (length(&rung.label, LABEL_SIZE) as i32, (LABEL_SIZE + FINE) as i32);
+                if let Some(corner) = labels.place(place, RADIUS + FINE as i32, size) {
+                    canvas.draw(&Text::new(
+                        rung.label.as_str(),
+                        corner,
+                        style(LABEL_SIZE).color(&colour(ladder.look)),
+                    ))?;
+                }
+            }
+        }
+        Ok(())
     }
 
     /// The part of the panel where errors say no more, shaded.
@@ -144,20 +172,23 @@ fn draw_axes(context: &mut Context<'_, '_>, x_title: &str, y_title: &str) -> Dra
 
 impl Ladder {
     fn draw(&self, canvas: &Canvas<'_>, context: &mut Context<'_, '_>, floor: Option<f64>) -> Drawn {
-        let drawn: Vec<&Rung> = self.rungs.iter().filter(|rung| is_drawn(rung.x) && is_drawn(rung.y)).collect();
-        let places = drawn.iter().map(|rung| (rung.x, rung.y));
+        let places = self.drawn().map(|rung| (rung.x, rung.y));
         let line = colour(self.look).stroke_width(LINE_WIDTH);
         if self.dashed {
             context.draw_series(DashedLineSeries::new(places, 7 * FINE, 5 * FINE, line))?;
         } else {
             context.draw_series(LineSeries::new(places, line))?;
         }
-        for (i, rung) in drawn.iter().enumerate() {
+        for rung in self.drawn() {
             let at = pixel(canvas, context, (rung.x, rung.y));
             draw_marker(canvas, at, self.look, floor.is_some_and(|floor| rung.y < floor))?;
-            draw_label(canvas, at, &rung.label, if i == 0 { HPos::Right } else { HPos::Left })?;
         }
         Ok(())
+    }
+
+    /// The rungs that have a place on logarithmic axes.
+    fn drawn(&self) -> impl Iterator<Item = &Rung> {
+        self.rungs.iter().filter(|rung| is_drawn(rung.x) && is_drawn(rung.y))
     }
 }
 
@@ -166,16 +197,6 @@ fn pixel(canvas: &Canvas<'_>, context: &Context<'_, '_>, place: (f64, f64)) -> (
     let (x, y) = context.backend_coord(&place);
     let (left, top) = canvas.get_base_pixel();
     (x - left, y - top)
-}
-
-/// Writes beside a marker: left of it with the text's right end, or right of it with the left one.
-fn draw_label(canvas: &Canvas<'_>, (x, y): (i32, i32), text: &str, end: HPos) -> Drawn {
-    if !text.is_empty() {
-        let beside = if matches!(end, HPos::Right) { -RADIUS } else { RADIUS };
-        let style = style(LABEL_SIZE).pos(Pos::new(end, VPos::Bottom));
-        canvas.draw(&Text::new(text, (x + beside, y - RADIUS), style))?;
-    }
-    Ok(())
 }
 
 /// A disc, a square, a triangle or a diamond, which tell lines apart without their colours; hollow where the error says no
@@ -229,7 +250,7 @@ impl Legend {
             if legend.items.iter().any(|item| item.name == name) {
                 continue;
             }
-            let room = SWATCH_LENGTH + GAP + length(name) + 3 * GAP;
+            let room = SWATCH_LENGTH + GAP + length(name, TEXT_SIZE) + 3 * GAP;
             if left + room > width && left > LEFT {
                 (left, legend.lines) = (LEFT, legend.lines + 1);
             }
@@ -248,8 +269,8 @@ impl Legend {
     }
 }
 
-fn length(text: &str) -> u32 {
-    (text.chars().count() as f64 * f64::from(TEXT_SIZE) * LETTER_WIDTH) as u32
+fn length(text: &str, size: u32) -> u32 {
+    (text.chars().count() as f64 * f64::from(size) * LETTER_WIDTH) as u32
 }
 
 impl Item {
@@ -294,7 +315,7 @@ mod tests {
         let legend = Legend::new(&ladders, width);
         assert_eq!(legend.items.len(), 7);
         assert!(legend.lines > 1);
-        let ends = legend.items.iter().map(|item| item.left + SWATCH_LENGTH + GAP + length(&item.name));
+        let ends = legend.items.iter().map(|item| item.left + SWATCH_LENGTH + GAP + length(&item.name, TEXT_SIZE));
         assert!(ends.clone().all(|end| end <= width), "{:?}", ends.collect::<Vec<_>>());
     }
 }

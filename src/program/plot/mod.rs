@@ -4,6 +4,7 @@ mod axis;
 mod chart;
 mod files;
 mod history;
+mod labels;
 mod ladders;
 mod logarithmic;
 mod raster;

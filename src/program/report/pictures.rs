@@ -19,7 +19,8 @@ pub(super) fn errors(reference: &Reference, rows: &[Row]) -> Ladders {
         let own = rows.iter().filter(|row| row.program == program && row.method == method);
         let rungs: Vec<Rung> = own.filter_map(|row| rung(row, quantity)).collect();
         let name = if program == PROGRAM { method.to_owned() } else { format!("{program} {method}") };
-        Ladder { name, dashed: program != PROGRAM, look, rungs: with_end_labels(rungs) }
+        let dashed = program != PROGRAM;
+        Ladder { name, dashed, look, rungs: with_end_labels(rungs) }
     };
     let panels = panels(reference, |quantity| {
         names.iter().enumerate().map(|name| ladder(name, quantity)).filter(|ladder| !ladder.rungs.is_empty()).collect()

@@ -11,10 +11,11 @@ use crate::program::excitation::Rows;
 
 /// How far the start is moved to see whether the motion is sensitive, m: far below what any scene resolves.
 pub(super) const DISPLACEMENT: f64 = 1e-12;
-/// Runs have parted where the moved start changes a force by more than so many times what it is of the scene's height ...
-const AMPLIFICATION: f64 = 1e4;
-/// ... or by more than this share of the force's largest value.
-const PARTED: f64 = 1e-2;
+/// Runs have parted where the moved start changes a force by more than this share of its largest value: where it does not
+/// spread, it changes some 1e-8, and up to 1e-4 where the layer is stiff against the force.
+const PARTED: f64 = 1e-3;
+/// On a profile so fine that the displacement is no small part of its height, so many times that part.
+const OF_HEIGHT: f64 = 100.0;
 /// A run that is ten times as tight may take so many times the steps. It is far more than any method needs: where it is
 /// used up, rounding has taken over.
 const WORK: u64 = 10;
@@ -60,7 +61,7 @@ pub(super) enum Comparison {
 
 impl Sensitivity {
     fn new(scene: &Scene, differences: Errors) -> Self {
-        Self { differences, limit: (AMPLIFICATION * DISPLACEMENT / scene.height()).min(PARTED) }
+        Self { differences, limit: (OF_HEIGHT * DISPLACEMENT / scene.height()).max(PARTED) }
     }
 
     /// Whether the two runs went apart.

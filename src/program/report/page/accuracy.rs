@@ -4,7 +4,7 @@ use std::io;
 
 use quick_xml::escape::escape;
 
-use super::{count, errors, head, number, reason, seconds, short};
+use super::{begin_group, count, errors, head, number, reason, seconds, short};
 use crate::program::arguments::Report;
 use crate::program::html::{Cell, fill, table};
 use crate::program::report::Parts;
@@ -128,14 +128,15 @@ fn runs(parts: &Parts) -> io::Result<String> {
     let rows: Vec<&Row> = parts.rows.iter().chain([&reference]).collect();
     let same = |a: &Row, b: &Row| a.program == b.program && a.method == b.method;
     let cells = rows.iter().enumerate().map(|(i, row)| {
-        let begins = i > 0 && !same(row, rows[i - 1]);
         let below = |figures: &Figures| parts.reference.below(&figures.errors);
         let name = if row.program == PROGRAM { row.method.clone() } else { format!("{} {}", row.program, row.method) };
-        let mut cells = vec![Cell { class: if begins { "group" } else { "" }, ..Cell::from(name) }];
-        cells.push(number(format!("{:e}", row.tolerance)));
+        let mut cells = vec![name.into(), number(format!("{:e}", row.tolerance))];
         match &row.result {
             Ok(figures) => cells.extend(figure_cells(figures, below(figures))),
             Err(why) => cells.push(reason(why, FIGURES.len())),
+        }
+        if i > 0 && !same(row, rows[i - 1]) {
+            begin_group(&mut cells);
         }
         cells
     });

@@ -4,7 +4,7 @@ use std::io;
 
 use asperity::scene::{Extrapolation, Parameter, Scene};
 
-use super::{count, errors, head, number, reason, seconds, short};
+use super::{begin_group, count, errors, head, number, reason, seconds, short};
 use crate::program::html::{Cell, fill, table};
 use crate::program::report::Parts;
 use crate::program::report::communication::Row;
@@ -13,7 +13,7 @@ use crate::program::report::reference::Reference;
 const TEMPLATE: &str = include_str!("communication.html");
 
 const FIGURES: [&str; 9] =
-    ["error of F_x", "F_z", "E_diss", "mean square, F_x", "F_z", "E_diss", "run time in s", "steps", "events"];
+    ["error of F_x", "F_z", "E_diss", "root mean square, F_x", "F_z", "E_diss", "run time in s", "steps", "events"];
 
 /// The section, with the text of its picture.
 pub(in crate::program::report) fn section(scene: &Scene, parts: &Parts, picture: &str) -> io::Result<String> {
@@ -42,15 +42,18 @@ pub(in crate::program::report) fn section(scene: &Scene, parts: &Parts, picture:
 fn rows(parts: &Parts) -> io::Result<String> {
     let rows = &parts.communication;
     let cells = rows.iter().enumerate().map(|(i, row)| {
-        let begins = i > 0 && row.given != rows[i - 1].given;
-        row_cells(row, begins, &parts.reference)
+        let mut cells = row_cells(row, &parts.reference);
+        if i > 0 && row.given != rows[i - 1].given {
+            begin_group(&mut cells);
+        }
+        cells
     });
     table(&head(&["a master gives"], &[&["step in s"], &FIGURES[..]].concat()), &cells.collect::<Vec<_>>())
 }
 
-fn row_cells(row: &Row, begins: bool, reference: &Reference) -> Vec<Cell> {
-    let mut cells = vec![Cell { class: if begins { "group" } else { "" }, ..Cell::from(row.given.name()) }];
-    cells.push(number(row.step.map_or_else(|| super::NOTHING.into(), |step| format!("{step:.3e}"))));
+fn row_cells(row: &Row, reference: &Reference) -> Vec<Cell> {
+    let step = row.step.map_or_else(|| super::NOTHING.into(), |step| format!("{step:.3e}"));
+    let mut cells = vec![row.given.name().into(), number(step)];
     match &row.result {
         Ok((figures, mean_square)) => {
             cells.extend(errors(&figures.errors, reference.below(&figures.errors)));

@@ -40,7 +40,12 @@ fn head(texts: &[&str], numbers: &[&str]) -> Vec<Cell> {
 
 /// A cell of a column of numbers.
 fn number(text: impl Into<String>) -> Cell {
-    Cell { class: "number", ..Cell::from(text) }
+    Cell { class: "number".into(), ..Cell::from(text) }
+}
+
+/// Marks a row as the first of a group.
+fn begin_group(cells: &mut [Cell]) {
+    cells.iter_mut().for_each(|cell| cell.class.push_str(" group"));
 }
 
 /// A number with two digits, or nothing.
@@ -62,13 +67,13 @@ fn seconds(value: Option<f64>) -> Cell {
 fn errors(errors: &Errors, below: [bool; 3]) -> impl Iterator<Item = Cell> {
     errors.iter().zip(below).map(|(&error, below)| {
         let cell = short(error);
-        if below { Cell { text: format!("{} *", cell.text), class: "number below", ..cell } } else { cell }
+        if below { Cell { text: format!("{} *", cell.text), class: "number below".into(), ..cell } } else { cell }
     })
 }
 
 /// Why there are no figures, over the `span` columns that they would fill.
 fn reason(text: &str, span: usize) -> Cell {
-    Cell { text: text.to_owned(), class: "reason", span }
+    Cell { text: text.to_owned(), class: "reason".into(), span }
 }
 
 /// Three digits, with an exponent where the number is far from 1.
