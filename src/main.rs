@@ -1,4 +1,4 @@
-//! The command line program: `asperity simulate`, `plot`, `describe` and `pack`.
+//! The command line program: `asperity simulate`, `plot`, `describe`, `pack` and `report`.
 
 mod program;
 

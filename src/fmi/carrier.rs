@@ -6,11 +6,10 @@ use crate::scene::{Extrapolation, Path};
 use crate::simulation::{Motion, Start};
 
 use super::catalogue::Input;
-use super::fault::Fault;
 
 /// The carrier as the master moves it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Carrier {
+pub struct Carrier {
     axes: [Axis; 2],
 }
 
@@ -34,25 +33,37 @@ struct Past {
     step: f64,
 }
 
+/// The master gave an input that is no finite number, or a rate that leads to none.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("the input {name} is {value} at t = {time} s: no step can be done")]
+pub struct InputNotFinite {
+    /// The input's name.
+    pub name: &'static str,
+    /// What it is or would become.
+    pub value: f64,
+    /// The time of the step, s.
+    pub time: f64,
+}
+
 impl Carrier {
     /// The value of an input.
-    pub(super) fn input(&self, input: Input) -> f64 {
+    pub fn input(&self, input: Input) -> f64 {
         self.axes[input as usize].value
     }
 
     /// Gives an input a value.
-    pub(super) fn set_input(&mut self, input: Input, value: f64) {
+    pub fn set_input(&mut self, input: Input, value: f64) {
         self.axes[input as usize].value = value;
     }
 
     /// Gives an input a first derivative for the next step.
-    pub(super) fn set_rate(&mut self, input: Input, rate: f64) {
+    pub fn set_rate(&mut self, input: Input, rate: f64) {
         self.axes[input as usize].rate = Some(rate);
     }
 
     /// The carrier at the start: it stands where the inputs say and moves at the derivatives given, else not at all.
     /// The derivatives stay: they are those of the first step, too, unless the master gives others.
-    pub(super) fn start(&self, time: f64) -> Start {
+    pub fn start(&self, time: f64) -> Start {
         let [u, w] = &self.axes;
         Start { time, u: u.value, w: w.value, u_rate: u.rate.unwrap_or_default(), w_rate: w.rate.unwrap_or_default() }
     }
@@ -61,12 +72,15 @@ impl Carrier {
     /// add up: the next motion starts from where this one ended.
     ///
     /// # Errors
-    /// [`Fault::InputNotFinite`] where a value or a derivative is not a finite number.
-    pub(super) fn motion(&self, (u, w): (f64, f64), time: f64, h: f64, rule: Extrapolation) -> Result<Motion, Fault> {
+    /// [`InputNotFinite`] where a value or a derivative is not a finite number.
+    pub fn motion(&self, (u, w): (f64, f64), time: f64, h: f64, rule: Extrapolation) -> Result<Motion, InputNotFinite> {
         let path = |input: Input, from: f64| {
             let axis = &self.axes[input as usize];
             let target = axis.finite_target(input, time, h, rule)?;
-            Ok::<_, Fault>(Path { rate: axis.given_rate(from).unwrap_or((target - from) / h), ..Path::default() })
+            Ok::<_, InputNotFinite>(Path {
+                rate: axis.given_rate(from).unwrap_or((target - from) / h),
+                ..Path::default()
+            })
         };
         Ok(Motion { duration: h, u: path(Input::U, u)?, w: path(Input::W, w)? })
     }
@@ -78,7 +92,7 @@ impl Carrier {
     }
 
     /// Counts a step of `h` as done: its derivatives are used up.
-    pub(super) fn count_step(&mut self, h: f64) {
+    pub fn count_step(&mut self, h: f64) {
         for axis in &mut self.axes {
             axis.rate = None;
             axis.past = Some(Past { value: axis.value, step: h });
@@ -109,10 +123,10 @@ impl Axis {
         }
     }
 
-    fn finite_target(&self, input: Input, time: f64, h: f64, rule: Extrapolation) -> Result<f64, Fault> {
+    fn finite_target(&self, input: Input, time: f64, h: f64, rule: Extrapolation) -> Result<f64, InputNotFinite> {
         let target = self.target(h, rule);
         match [self.value, target].into_iter().find(|value| !value.is_finite()) {
-            Some(value) => Err(Fault::InputNotFinite { name: input.name(), value, time }),
+            Some(value) => Err(InputNotFinite { name: input.name(), value, time }),
             None => Ok(target),
         }
     }

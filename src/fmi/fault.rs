@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::scene::{ParameterError, SceneError};
 use crate::simulation::SimulationError;
 
+use super::carrier::InputNotFinite;
 use super::catalogue::Kind;
 use super::lifecycle::State;
 use super::serial::Misfit;
@@ -71,8 +72,8 @@ pub(super) enum Fault {
     OtherPoint { given: f64, own: f64 },
     #[error("the step to {end} s goes beyond the stop time {stop} s")]
     BeyondStop { end: f64, stop: f64 },
-    #[error("the input {name} is {value} at t = {time} s: no step can be done")]
-    InputNotFinite { name: &'static str, value: f64, time: f64 },
+    #[error(transparent)]
+    Input(#[from] InputNotFinite),
     #[error(transparent)]
     Simulation(#[from] SimulationError),
     #[error("no values: the initialisation failed")]

@@ -27,6 +27,7 @@ mod values;
 #[rustfmt::skip]
 pub mod bindings;
 
+pub use carrier::{Carrier, InputNotFinite};
 pub use catalogue::{Catalogue, Entry, Input, Kind};
 pub use exports::*;
 pub use guid::{Sources, guid};

@@ -23,6 +23,12 @@ pub(crate) enum ProgramError {
     /// The run could not go on.
     #[error("{source}; the rows so far, up to t = {time} s, are in {}", .output.display())]
     Run { source: SimulationError, time: f64, output: PathBuf },
+    /// There is no run to report on.
+    #[error("the scene {0}")]
+    NoRun(&'static str),
+    /// No run comes to its end, so that there is nothing to compare with.
+    #[error("no reference: not even the loosest tolerance comes to its end: {0}")]
+    Reference(SimulationError),
     /// A file cannot be read or written.
     #[error("cannot {action} {}: {source}", .path.display())]
     File { action: &'static str, path: PathBuf, source: std::io::Error },

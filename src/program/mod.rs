@@ -4,8 +4,11 @@ mod arguments;
 mod describe;
 mod error;
 mod excitation;
+mod html;
 mod pack;
 mod plot;
+mod progress;
+mod report;
 mod result_file;
 mod simulate;
 
@@ -24,6 +27,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<(), ProgramError> {
         Command::Plot(command) => plot::plot_files(&command),
         Command::Describe(command) => describe::describe(&command),
         Command::Pack(command) => pack::pack(&command),
+        Command::Report(command) => report::report(&command),
     }
 }
 
@@ -32,6 +36,11 @@ fn load(path: &Path) -> Result<Scene, ProgramError> {
     let scene = Scene::load(path)?;
     scene.warnings.iter().for_each(|warning| warn(warning));
     Ok(scene)
+}
+
+/// Overrides parameters, as `--set` gives them.
+fn set_parameters(scene: &mut Scene, set: &[(String, String)]) -> Result<(), ProgramError> {
+    Ok(set.iter().try_for_each(|(key, value)| scene.set_by_name(key, value))?)
 }
 
 /// The files that a scene is read from.

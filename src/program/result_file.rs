@@ -50,7 +50,7 @@ fn field(kind: Kind, value: f64) -> String {
 }
 
 /// The shortest decimal that reads back as the same number; far from 1 with an exponent.
-fn real(value: f64) -> String {
+pub(crate) fn real(value: f64) -> String {
     if value == 0.0 || (1e-4..1e16).contains(&value.abs()) { format!("{value}") } else { format!("{value:e}") }
 }
 

@@ -3,12 +3,13 @@
 use asperity::outputs::{Variable, variables};
 use asperity::scene::Scene;
 use asperity::simulation::Simulation;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 
 use super::arguments::Simulate;
 use super::error::ProgramError;
-use super::excitation::{Carrier, Run};
+use super::excitation::{Carrier, Rows, Run};
 use super::plot::History;
+use super::progress;
 use super::result_file::ResultWriter;
 
 /// Positions of the progress bar: fine enough to move at every row of a usual run.
@@ -17,7 +18,7 @@ const PROGRESS_LENGTH: f64 = 1000.0;
 /// Runs the scene, writes the rows, draws the plot.
 pub(crate) fn simulate(command: &Simulate) -> Result<(), ProgramError> {
     let mut scene = super::load(&command.scene)?;
-    set_parameters(&mut scene, &command.set)?;
+    super::set_parameters(&mut scene, &command.set)?;
     check_outputs(&scene, command)?;
     if scene.excitation.is_empty() {
         super::warn("the scene has no [[excitation]]: the carrier rests, and the start is all there is");
@@ -39,14 +40,11 @@ fn check_outputs(scene: &Scene, command: &Simulate) -> Result<(), ProgramError> 
     command.plot.as_ref().map_or(Ok(()), |plot| super::check_output(plot, &taken))
 }
 
-fn set_parameters(scene: &mut Scene, set: &[(String, String)]) -> Result<(), ProgramError> {
-    Ok(set.iter().try_for_each(|(key, value)| scene.set_by_name(key, value))?)
-}
-
 fn record(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<(), ProgramError> {
     let shown = recorder.history.as_ref().map_or_else(|| scene.clone(), |history| history.scene().clone());
-    let mut run = Run::new(&shown, command.points).map_err(ProgramError::Start)?;
+    let mut run = Run::new(&shown, Rows::PerPhase(command.points)).map_err(ProgramError::Start)?;
     run.follow(&scene.excitation, |carrier, simulation| recorder.row(carrier, simulation))
+        .map(drop)
         .map_err(|source| ProgramError::Run { source, time: recorder.time, output: command.output.clone() })
 }
 
@@ -71,7 +69,7 @@ impl Recorder {
             writer: ResultWriter::create(&command.output, &variables)?,
             variables,
             history: command.plot.is_some().then(|| History::new(scene)),
-            progress: progress_bar(),
+            progress: progress::bar(PROGRESS_LENGTH as u64),
             duration: scene.excitation.iter().map(|phase| phase.duration).sum(),
             time: 0.0,
             failure: None,
@@ -102,14 +100,5 @@ impl Recorder {
         self.progress.finish_and_clear();
         self.writer.finish()?;
         self.failure.map_or(Ok(self.history), Err)
-    }
-}
-
-/// On a terminal alone: elsewhere the bar stays hidden.
-fn progress_bar() -> ProgressBar {
-    let bar = ProgressBar::new(PROGRESS_LENGTH as u64);
-    match ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {eta} left") {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
     }
 }

@@ -282,6 +282,11 @@ impl Simulation {
         self.run.counters.run_time = time;
     }
 
+    /// Newton's iterations since the start, those of steps rejected and of motions gone back on included.
+    pub fn newton_iterations(&self) -> u64 {
+        self.integrator.iterations()
+    }
+
     /// Keeps a record of mode changes from now on, or stops keeping it.
     pub fn record_mode_changes(&mut self, on: bool) {
         self.mode_changes = on.then(Vec::new);

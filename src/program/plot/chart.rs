@@ -27,18 +27,18 @@ const COLOURS: [RGBColor; 7] = [
     RGBColor(70, 70, 70),
 ];
 const FONT: &str = "sans-serif";
-const INK: RGBColor = RGBColor(40, 40, 40);
-const GRID: RGBColor = RGBColor(225, 225, 225);
+pub(super) const INK: RGBColor = RGBColor(40, 40, 40);
+pub(super) const GRID: RGBColor = RGBColor(225, 225, 225);
 /// plotters places every point on a whole pixel; a picture drawn so many times as large and shown smaller has finer
 /// ones.
-const FINE: u32 = 8;
+pub(super) const FINE: u32 = 8;
 const TITLE_SIZE: u32 = 22 * FINE;
-const TEXT_SIZE: u32 = 17 * FINE;
-const TICK_SIZE: u32 = 15 * FINE;
-const LINE_WIDTH: u32 = 2 * FINE;
-const SWATCH_LENGTH: u32 = 26 * FINE;
-const GAP: u32 = 7 * FINE;
-const LEGEND_HEIGHT: u32 = 30 * FINE;
+pub(super) const TEXT_SIZE: u32 = 17 * FINE;
+pub(super) const TICK_SIZE: u32 = 15 * FINE;
+pub(super) const LINE_WIDTH: u32 = 2 * FINE;
+pub(super) const SWATCH_LENGTH: u32 = 26 * FINE;
+pub(super) const GAP: u32 = 7 * FINE;
+pub(super) const LEGEND_HEIGHT: u32 = 30 * FINE;
 const LEFT_MARGIN: u32 = 84 * FINE;
 /// Width of a letter over its height, roughly: an SVG's font is only known where it is shown.
 const LETTER_WIDTH: f64 = 0.58;
@@ -70,6 +70,15 @@ pub(crate) fn write(
     title: Option<&str>,
     draw: impl FnOnce(&Canvas<'_>) -> Drawn,
 ) -> Drawn {
+    Ok(fs::write(path, svg(size, title, draw)?)?)
+}
+
+/// The picture as the text of an SVG file.
+pub(super) fn svg(
+    size: (u32, u32),
+    title: Option<&str>,
+    draw: impl FnOnce(&Canvas<'_>) -> Drawn,
+) -> Result<String, Box<dyn Error>> {
     let mut text = String::new();
     let fine = (size.0 * FINE, size.1 * FINE);
     let canvas = SVGBackend::with_string(&mut text, fine).into_drawing_area();
@@ -82,10 +91,10 @@ pub(crate) fn write(
     drop(canvas);
     let (drawn, shown) =
         [fine, size].map(|(width, height)| format!("<svg width=\"{width}\" height=\"{height}\"")).into();
-    Ok(fs::write(path, text.replacen(&drawn, &shown, 1))?)
+    Ok(text.replacen(&drawn, &shown, 1))
 }
 
-fn style(size: u32) -> TextStyle<'static> {
+pub(super) fn style(size: u32) -> TextStyle<'static> {
     (FONT, size).into_font().color(&INK)
 }
 
@@ -146,7 +155,7 @@ impl Chart {
 
 type Context<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
-fn colour(i: usize) -> RGBColor {
+pub(super) fn colour(i: usize) -> RGBColor {
     COLOURS[i % COLOURS.len()]
 }
 

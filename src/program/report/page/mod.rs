@@ -1,0 +1,97 @@
+//! The page: one file, nothing from elsewhere. Each part of the report has its section.
+
+mod accuracy;
+mod communication;
+
+use std::io;
+
+use asperity::scene::Scene;
+use quick_xml::escape::escape;
+
+use super::trace::Errors;
+use crate::program::describe;
+use crate::program::html::{Cell, fill, table};
+
+pub(super) use accuracy::section as accuracy;
+pub(super) use communication::section as communication;
+
+const TEMPLATE: &str = include_str!("page.html");
+/// Stands where there is nothing to tell.
+const NOTHING: &str = "–";
+
+/// The whole page.
+pub(super) fn page(scene: &Scene, sections: &[String]) -> io::Result<String> {
+    let rows = describe::rows(scene).into_iter().map(|(name, text)| vec![name.into(), text.into()]);
+    let fields = [
+        ("name", escape(&scene.name).into_owned()),
+        ("description", escape(scene.description.as_deref().unwrap_or_default()).into_owned()),
+        ("version", env!("CARGO_PKG_VERSION").into()),
+        ("scene", table(&["", "What is there"].map(Cell::from), &rows.collect::<Vec<_>>())?),
+        ("sections", sections.concat()),
+    ];
+    Ok(fill(TEMPLATE, &fields))
+}
+
+/// The head of a table: names of text columns, then of columns of numbers.
+fn head(texts: &[&str], numbers: &[&str]) -> Vec<Cell> {
+    let texts = texts.iter().map(|&name| Cell::from(name));
+    texts.chain(numbers.iter().map(|&name| number(name))).collect()
+}
+
+/// A cell of a column of numbers.
+fn number(text: impl Into<String>) -> Cell {
+    Cell { class: "number".into(), ..Cell::from(text) }
+}
+
+/// Marks a row as the first of a group.
+fn begin_group(cells: &mut [Cell]) {
+    cells.iter_mut().for_each(|cell| cell.class.push_str(" group"));
+}
+
+/// A number with two digits, or nothing.
+fn short(value: Option<f64>) -> Cell {
+    number(value.map_or_else(|| NOTHING.into(), |value| format!("{value:.1e}")))
+}
+
+/// A count, or nothing.
+fn count(value: Option<u64>) -> Cell {
+    number(value.map_or_else(|| NOTHING.into(), |count| count.to_string()))
+}
+
+/// A time with three digits, or nothing.
+fn seconds(value: Option<f64>) -> Cell {
+    number(value.map_or_else(|| NOTHING.into(), three_digits))
+}
+
+/// Errors; those below the reference's own are marked.
+fn errors(errors: &Errors, below: [bool; 3]) -> impl Iterator<Item = Cell> {
+    errors.iter().zip(below).map(|(&error, below)| {
+        let cell = short(error);
+        if below { Cell { text: format!("{} *", cell.text), class: "number below".into(), ..cell } } else { cell }
+    })
+}
+
+/// Why there are no figures, over the `span` columns that they would fill.
+fn reason(text: &str, span: usize) -> Cell {
+    Cell { text: text.to_owned(), class: "reason".into(), span }
+}
+
+/// Three digits, with an exponent where the number is far from 1.
+fn three_digits(value: f64) -> String {
+    if value == 0.0 || !(1e-3..1e4).contains(&value) {
+        return format!("{value:.2e}");
+    }
+    let digits = (2.0 - value.log10().floor()).max(0.0) as usize;
+    format!("{value:.digits$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_have_three_digits() {
+        let written = [0.01234, 3.0, 123.4, 5678.0, 4.5e-7].map(three_digits);
+        assert_eq!(written, ["0.0123", "3.00", "123", "5678", "4.50e-7"]);
+    }
+}

@@ -1,0 +1,79 @@
+//! Lines of other programs, measured elsewhere: a CSV file with the columns below, others ignored.
+
+use std::path::Path;
+
+use csv::StringRecord;
+
+use super::ladder::{Figures, Row};
+use crate::program::error::ProgramError;
+
+/// scene, program, method, tolerance; errors over the largest value; processor time in s; steps and mode changes.
+const COLUMNS: [&str; 10] =
+    ["scene", "program", "method", "tolerance", "error_F_x", "error_F_z", "error_E_diss", "time", "steps", "events"];
+
+/// The peers' rows, and the scenes that the file has.
+#[derive(Debug, Default)]
+pub(super) struct Peers {
+    /// The rows of the scene asked for.
+    pub(super) rows: Vec<Row>,
+    /// All scenes, each once.
+    pub(super) scenes: Vec<String>,
+}
+
+/// Reads the rows of the scene that goes by one of `names`.
+pub(super) fn read(path: &Path, names: &[&str]) -> Result<Peers, ProgramError> {
+    let wrong = |message: String| ProgramError::ResultFile { path: path.to_owned(), message };
+    let file = std::fs::File::open(path).map_err(ProgramError::file("read", path))?;
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
+    let head = reader.headers().map_err(|error| wrong(error.to_string()))?.clone();
+    let columns = find_columns(&head).map_err(wrong)?;
+    let mut peers = Peers::default();
+    for record in reader.records() {
+        let record = record.map_err(|error| wrong(error.to_string()))?;
+        let fields = columns.map(|column| record.get(column).unwrap_or_default());
+        if !peers.scenes.iter().any(|scene| scene == fields[0]) {
+            peers.scenes.push(fields[0].to_owned());
+        }
+        if names.contains(&fields[0]) {
+            let line = record.position().map_or(0, csv::Position::line);
+            peers.rows.push(row(fields).map_err(|message| wrong(format!("line {line}: {message}")))?);
+        }
+    }
+    Ok(peers)
+}
+
+fn find_columns(head: &StringRecord) -> Result<[usize; COLUMNS.len()], String> {
+    let mut columns = [0; COLUMNS.len()];
+    for (column, name) in columns.iter_mut().zip(COLUMNS) {
+        let found = head.iter().position(|other| other == name);
+        *column = found.ok_or_else(|| {
+            let there: Vec<&str> = head.iter().collect();
+            format!("no column {name}; there are {}", there.join(", "))
+        })?;
+    }
+    Ok(columns)
+}
+
+/// A row without a time is one of a run that did not come to its end.
+fn row([_, program, method, tolerance, x, z, lost, time, steps, events]: [&str; COLUMNS.len()]) -> Result<Row, String> {
+    let tolerance = number(tolerance)?.ok_or("expected a tolerance, found none")?;
+    let time = number(time)?;
+    let figures = Figures {
+        errors: [number(x)?, number(z)?, number(lost)?],
+        time,
+        steps: number(steps)?.map(|count| count as u64),
+        events: number(events)?.map(|count| count as u64),
+        ..Figures::default()
+    };
+    let result = if time.is_some() { Ok(figures) } else { Err("no run time".into()) };
+    Ok(Row { program: program.into(), method: method.into(), tolerance, result })
+}
+
+/// A number; empty or not a number where there is none.
+fn number(text: &str) -> Result<Option<f64>, String> {
+    if text.is_empty() {
+        return Ok(None);
+    }
+    let number: f64 = text.parse().map_err(|_| format!("expected a number, found {text:?}"))?;
+    Ok(Some(number).filter(|number| !number.is_nan()))
+}

@@ -1,0 +1,191 @@
+//! What runs are compared by: the forces on the carrier and the energy lost, row by row.
+
+use crate::program::excitation::Rows;
+
+/// The quantities whose errors are shown, by the names of their variables.
+pub(super) const QUANTITIES: [&str; 3] = ["F_x", "F_z", "E_diss"];
+
+/// The errors of F_x, F_z and E_diss over the largest value of each; `None` for a quantity that a scene does not have.
+pub(super) type Errors = [Option<f64>; 3];
+
+/// Windows of a phase over which means are taken.
+pub(super) const WINDOWS: u32 = 20;
+
+/// A force that stays below this share of the other one is rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// F_x, F_z (N) and E_diss (J) at the rows of a run: the start, and even intervals of each phase.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Trace {
+    rows: Vec<[f64; 3]>,
+    /// How many intervals each phase has; those that took no time have none.
+    intervals: Vec<usize>,
+}
+
+impl Trace {
+    /// The rows of a run whose phases took `durations` (s).
+    pub(super) fn new(values: Vec<[f64; 3]>, durations: &[f64], rows: Rows) -> Self {
+        let intervals = durations.iter().map(|&duration| rows.of(duration) as usize).filter(|&count| count > 0);
+        Self { rows: values, intervals: intervals.collect() }
+    }
+
+    /// Every `step`th row, a divisor of every phase's.
+    pub(super) fn every(&self, step: usize) -> Self {
+        Self {
+            rows: self.rows.iter().copied().step_by(step).collect(),
+            intervals: self.intervals.iter().map(|count| count / step).collect(),
+        }
+    }
+
+    /// The largest difference from `reference`, which has the same rows.
+    pub(super) fn largest(&self, reference: &Self) -> Errors {
+        self.errors(reference, |differences| differences.fold(0.0, larger))
+    }
+
+    /// The root of the mean square of the differences.
+    pub(super) fn mean_square(&self, reference: &Self) -> Errors {
+        let count = self.rows.len() as f64;
+        self.errors(reference, |differences| (differences.map(|d| d * d).sum::<f64>() / count).sqrt())
+    }
+
+    fn errors(&self, reference: &Self, measure: impl Fn(&mut dyn Iterator<Item = f64>) -> f64) -> Errors {
+        let scales = reference.scales();
+        [0, 1, 2].map(|i| {
+            let pairs = self.rows.iter().zip(&reference.rows);
+            let error = measure(&mut pairs.map(|(row, wanted)| (row[i] - wanted[i]).abs()));
+            scales[i].map(|scale| error / scale)
+        })
+    }
+
+    /// The largest difference of the forces' means over windows of a phase, over the largest mean; of the energy lost, whose
+    /// rows are sums already, as it is. `reference` may have other rows.
+    pub(super) fn means(&self, reference: &Self) -> Errors {
+        let (own, wanted) = (self.window_means(), reference.window_means());
+        let scales = reference.scales();
+        [0, 1, 2].map(|i| {
+            scales[i]?;
+            let largest = wanted.iter().fold(0.0, |largest, mean| larger(largest, mean[i].abs()));
+            let error = own.iter().zip(&wanted).fold(0.0, |error, (a, b)| larger(error, (a[i] - b[i]).abs()));
+            (largest > 0.0).then_some(error / largest)
+        })
+    }
+
+    /// The means over the windows of each phase, in their order; of the energy lost, what it has come to at their ends.
+    fn window_means(&self) -> Vec<[f64; 3]> {
+        let mut start = 0;
+        let mut means = Vec::new();
+        for &count in &self.intervals {
+            let rows = &self.rows[start..=start + count];
+            let sums = running_sums(rows);
+            let bound = |window: u32| f64::from(window) / f64::from(WINDOWS) * count as f64;
+            means.extend((0..WINDOWS).map(|window| {
+                let (from, to) = (bound(window), bound(window + 1));
+                let (low, high) = (sum_to(rows, &sums, from), sum_to(rows, &sums, to));
+                let mean = |i: usize| (high[i] - low[i]) / (to - from);
+                [mean(0), mean(1), value_at(rows, to)[2]]
+            }));
+            start += count;
+        }
+        means
+    }
+
+    /// The largest values; `None` for what is not there but for rounding.
+    fn scales(&self) -> Errors {
+        let largest = |i: usize| self.rows.iter().fold(0.0, |largest, row| larger(largest, row[i].abs()));
+        let [x, z, lost] = [0, 1, 2].map(largest);
+        let least = ROUNDING * x.max(z);
+        [(x, least), (z, least), (lost, 0.0)].map(|(scale, least)| (scale > least).then_some(scale))
+    }
+}
+
+/// What is not a number counts as infinite.
+fn larger(a: f64, b: f64) -> f64 {
+    if b.is_nan() { f64::INFINITY } else { a.max(b) }
+}
+
+/// The integrals of the straight lines between the rows, from the first row to each; an interval counts as 1.
+fn running_sums(rows: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    let mut sums = vec![[0.0; 3]];
+    for (i, pair) in rows.windows(2).enumerate() {
+        sums.push([0, 1, 2].map(|j| sums[i][j] + 0.5 * (pair[0][j] + pair[1][j])));
+    }
+    sums
+}
+
+/// The integral from the first row to `place`, which counts rows.
+fn sum_to(rows: &[[f64; 3]], sums: &[[f64; 3]], place: f64) -> [f64; 3] {
+    let (i, part) = interval(rows, place);
+    let here = value_at(rows, place);
+    [0, 1, 2].map(|j| sums[i][j] + 0.5 * part * (rows[i][j] + here[j]))
+}
+
+fn value_at(rows: &[[f64; 3]], place: f64) -> [f64; 3] {
+    let (i, part) = interval(rows, place);
+    [0, 1, 2].map(|j| rows[i][j] + part * (rows[i + 1][j] - rows[i][j]))
+}
+
+/// The interval that `place` lies in and its part before it.
+fn interval(rows: &[[f64; 3]], place: f64) -> (usize, f64) {
+    let i = (place as usize).min(rows.len() - 2);
+    (i, place - i as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two phases, of 4 and of 2 intervals.
+    fn trace(values: [f64; 7]) -> Trace {
+        Trace { rows: values.map(|value| [value, 2.0 * value, 0.0]).into(), intervals: vec![4, 2] }
+    }
+
+    #[test]
+    fn errors_are_shares_of_the_largest_value() {
+        let reference = trace([0.0, 1.0, 2.0, 3.0, 4.0, 2.0, 0.0]);
+        let other = trace([0.0, 1.0, 2.0, 3.0, 4.0, 2.0, 1.0]);
+        assert_eq!(other.largest(&reference), [Some(0.25), Some(0.25), None]);
+        let mean_square = other.mean_square(&reference)[0].unwrap();
+        assert!((mean_square - 0.25 / 7.0_f64.sqrt()).abs() < 1e-15, "{mean_square}");
+        assert_eq!(trace([f64::NAN; 7]).largest(&reference)[0], Some(f64::INFINITY));
+    }
+
+    #[test]
+    fn rounding_is_no_force() {
+        let rows = vec![[1e-13, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        let trace = Trace { rows, intervals: vec![1] };
+        assert_eq!(trace.largest(&trace), [None, Some(0.0), None]);
+    }
+
+    /// Straight lines have the means of their windows' middles, with any rows.
+    #[test]
+    fn means_do_not_depend_on_how_fine_the_rows_are() {
+        let line = |count: usize| {
+            let rows = (0..=count).map(|i| [i as f64 / count as f64; 3]).collect();
+            Trace { rows, intervals: vec![count] }
+        };
+        let means = line(3).window_means();
+        assert_eq!(means.len(), WINDOWS as usize);
+        for (i, mean) in means.iter().enumerate() {
+            let middle = (i as f64 + 0.5) / f64::from(WINDOWS);
+            assert!((mean[0] - middle).abs() < 1e-14 && (mean[2] - middle).abs() < 0.03, "{i}: {mean:?}");
+        }
+        let errors = line(7).means(&line(64));
+        assert!(errors.iter().flatten().all(|&error| error < 1e-14), "{errors:?}");
+    }
+
+    #[test]
+    fn a_difference_that_comes_and_goes_within_a_window_is_none_of_the_means() {
+        let wave = |sign: f64| Trace {
+            rows: (0..=80).map(|i| [1.0 + sign * f64::from([0, 1, 0, -1][i % 4]), 1.0, 1.0]).collect(),
+            intervals: vec![80],
+        };
+        assert_eq!(wave(1.0).means(&wave(-1.0)), [Some(0.0); 3]);
+        assert_eq!(wave(1.0).largest(&wave(-1.0))[0], Some(1.0));
+    }
+
+    #[test]
+    fn fewer_rows_are_every_so_many() {
+        let reference = trace([0.0, 1.0, 2.0, 3.0, 4.0, 2.0, 0.0]).every(2);
+        assert_eq!((reference.rows.len(), reference.intervals), (4, vec![2, 1]));
+    }
+}

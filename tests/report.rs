@@ -1,0 +1,305 @@
+//! `asperity report`: its files, what is in them, and what it says where there is nothing to report.
+
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests may fail")]
+
+#[allow(dead_code, unreachable_pub, reason = "shared by several tests")]
+mod common;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use common::{asperity, root, run, scratch};
+
+/// A row of a table by the names of its columns.
+type Row = BTreeMap<String, String>;
+
+const SINUSOID: &str = "tests/reference/sinusoid.toml";
+
+fn rows(path: &Path) -> Vec<Row> {
+    csv::Reader::from_path(path).unwrap().deserialize().collect::<Result<_, _>>().unwrap()
+}
+
+fn number(row: &Row, column: &str) -> f64 {
+    row[column].parse().unwrap_or_else(|_| panic!("{column}: {row:?}"))
+}
+
+fn of_method<'a>(rows: &'a [Row], method: &str) -> Vec<&'a Row> {
+    rows.iter().filter(|row| row["program"] == "asperity" && row["method"] == method).collect()
+}
+
+/// What the program says while it writes the report of `scene` into `folder`.
+fn report(scene: &Path, folder: &Path, options: &[&str]) -> String {
+    let output = asperity().arg("report").arg(scene).arg("-o").arg(folder).args(options).output().unwrap();
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success() && output.stdout.is_empty(), "{text}");
+    text
+}
+
+/// What the program says as it refuses to.
+fn refusal(scene: &Path, folder: &Path, options: &[&str]) -> String {
+    let output = asperity().arg("report").arg(scene).arg("-o").arg(folder).args(options).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(text.lines().count(), 1, "{text}");
+    text
+}
+
+/// The sinusoid's scene, changed.
+fn changed(folder: &Path, from: &str, to: &str) -> PathBuf {
+    let text = fs::read_to_string(root().join(SINUSOID)).unwrap();
+    assert!(text.contains(from), "{from}");
+    let scene = folder.join("scene.toml");
+    fs::write(&scene, text.replacen(from, to, 1)).unwrap();
+    scene
+}
+
+fn errors(folder: &Path) -> Vec<Row> {
+    rows(&folder.join("error-run-time.csv"))
+}
+
+#[test]
+fn every_file_is_there_and_the_page_is_whole() {
+    let folder = scratch("report-files").join("made/if/need/be");
+    report(&root().join(SINUSOID), &folder, &["--repeat", "1"]);
+    for name in ["error-run-time", "error-communication-step"] {
+        let svg = fs::read_to_string(folder.join(name).with_extension("svg")).unwrap();
+        assert!(svg.starts_with("<svg") && svg.contains("error of F_z"), "{name}");
+        let png = fs::read(folder.join(name).with_extension("png")).unwrap();
+        assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n");
+    }
+    let page = fs::read_to_string(folder.join("index.html")).unwrap();
+    assert_eq!(page.matches("<svg").count(), 2);
+    // Nothing from elsewhere: the name of SVG's own language is no address to fetch.
+    let elsewhere = page.replace("http://www.w3.org/2000/svg", "");
+    for sign in ["http", "<link", "<script", "src=", "@import", "url(", "{{"] {
+        assert!(!elsewhere.contains(sign), "{sign}");
+    }
+    for head in ["run time in s", "steps", "rejected", "events", "Newton iterations", "energy residual", "step in s"] {
+        assert!(page.contains(&format!("<th class=\"number\">{head}</th>")), "{head}");
+    }
+    // Each run's figures are in the page as in the table.
+    for row in errors(&folder) {
+        let cells = ["steps", "events", "newton_iterations"].map(|column| format!(">{}</td>", row[column]));
+        assert!(cells.iter().all(|cell| page.contains(cell)), "{row:?}");
+        let error = format!(">{:.1e}", number(&row, "error_F_x"));
+        assert!(page.contains(&error), "{error}");
+    }
+}
+
+#[test]
+fn errors_fall_with_the_tolerance_down_to_what_the_reference_knows() {
+    let folder = scratch("report-errors");
+    report(&root().join(SINUSOID), &folder, &["--repeat", "2", "--points", "20"]);
+    let rows = errors(&folder);
+    let (reference, event) = (of_method(&rows, "reference"), of_method(&rows, "event"));
+    assert_eq!((reference.len(), event.len()), (1, 9));
+    assert_eq!(number(reference[0], "tolerance"), 1e-11);
+    for (i, row) in event.iter().enumerate() {
+        assert_eq!(number(row, "tolerance"), format!("1e-{}", i + 2).parse::<f64>().unwrap());
+        assert!(number(row, "time") > 0.0 && number(row, "steps") > 0.0 && row["failure"].is_empty());
+    }
+    for column in ["error_F_x", "error_F_z", "error_E_diss"] {
+        // Eight powers of ten of the tolerance; half of them at least in the error, whatever the scene's constant.
+        let [loosest, tightest] = [event[0], event[8]].map(|row| number(row, column));
+        assert!(tightest < 1e-4 * loosest, "{column}: {loosest:e} to {tightest:e}");
+        // The reference is ten times as tight as the tightest rung: its own error is no larger than that rung's.
+        assert!(number(reference[0], column) <= tightest, "{column}");
+    }
+    assert!(number(event[8], "energy_residual") < 1e-3 * number(event[0], "energy_residual"));
+}
+
+/// With rates the FMU follows straight phases exactly; with values alone it learns of each kink one step late, so that
+/// E_diss, which does not jump, comes closer as the step gets shorter.
+#[test]
+fn communication_steps_have_their_ladder() {
+    let folder = scratch("report-communication");
+    report(&root().join(SINUSOID), &folder, &["--repeat", "1", "--tolerances", "1e-6..1e-8"]);
+    let rows = rows(&folder.join("error-communication-step.csv"));
+    let of = |given: &str| rows.iter().filter(|row| row["given"] == given).collect::<Vec<_>>();
+    let (rates, values, alone) = (of("values and rates"), of("values alone"), of("no master"));
+    assert_eq!((rates.len(), values.len(), alone.len()), (7, 7, 1));
+    for (longer, shorter) in values.iter().zip(&values[1..]) {
+        let ratio = number(longer, "communication_step") / number(shorter, "communication_step");
+        assert!((ratio - 2.0).abs() < 1e-12, "{ratio}");
+    }
+    // First order: a sixty-fourth of the step, and at most a sixteenth of the error.
+    let [longest, shortest] = [values[0], values[6]].map(|row| number(row, "error_E_diss"));
+    assert!(shortest < longest / 16.0, "{longest:e} to {shortest:e}");
+    // At the scene's tolerance of 1e-6, of which the steps between communication points make no more than ten times.
+    assert!(rates.iter().all(|row| number(row, "error_E_diss") < 1e-5), "{rates:?}");
+    assert!(number(values[6], "mean_square_error_F_z") < number(values[6], "error_F_z"));
+}
+
+#[test]
+fn peers_have_their_lines_and_those_of_other_scenes_none() {
+    let folder = scratch("report-peers");
+    let peers = folder.join("peers.csv");
+    let head = "scene,program,method,tolerance,error_F_x,error_F_z,error_E_diss,time,steps,events";
+    let lines = [
+        "sinusoid,CVODE,klu,1e-3,2e-3,3e-4,4e-4,0.25,1234567,1",
+        "sinusoid,CVODE,klu,1e-6,2e-6,3e-7,4e-7,0.5,3575,1",
+        "sinusoid,scipy,Radau,1e-6,,,,,,",
+        "another,CVODE,cond,1e-6,2e-6,3e-7,4e-7,0.5,7654321,1",
+    ];
+    fs::write(&peers, format!("{head}\n{}\n", lines.join("\n"))).unwrap();
+    let peers = peers.to_str().unwrap();
+    let options = ["--repeat", "1", "--tolerances", "1e-3..1e-6", "--peers", peers];
+    assert!(!report(&root().join(SINUSOID), &folder, &options).contains("no lines"));
+    let page = fs::read_to_string(folder.join("index.html")).unwrap();
+    assert!(page.contains("CVODE klu") && page.contains("1234567") && page.contains("quickest peer"));
+    assert!(!page.contains("7654321") && !page.contains("cond"));
+    let rows = errors(&folder);
+    let klu: Vec<&Row> = rows.iter().filter(|row| row["method"] == "klu").collect();
+    assert_eq!(klu.iter().map(|row| number(row, "time")).collect::<Vec<_>>(), [0.25, 0.5]);
+    assert!(rows.iter().any(|row| row["method"] == "Radau" && row["failure"] == "no run time"));
+    let none = changed(&folder, "name = \"sinusoid\"", "name = \"unheard-of\"");
+    let text = report(&none, &folder, &options);
+    assert!(text.contains("no lines of the scene unheard-of; there are sinusoid, another"), "{text}");
+}
+
+#[test]
+fn peers_that_cannot_be_read_are_named_before_anything_is_run() {
+    let folder = scratch("report-no-peers");
+    let peers = folder.join("peers.csv");
+    let output = folder.join("out");
+    let refused = || refusal(&root().join(SINUSOID), &output, &["--peers", peers.to_str().unwrap()]);
+    let text = refused();
+    assert!(text.contains("cannot read") && text.contains("peers.csv"), "{text}");
+    fs::write(&peers, "scene,program\nsinusoid,CVODE\n").unwrap();
+    let text = refused();
+    assert!(text.contains("no column method; there are scene, program"), "{text}");
+    let head = "scene,program,method,tolerance,error_F_x,error_F_z,error_E_diss,time,steps,events";
+    fs::write(&peers, format!("{head}\nsinusoid,CVODE,klu,1e-3,soon,1,1,1,1,1\n")).unwrap();
+    let text = refused();
+    assert!(text.contains("line 2: expected a number, found \"soon\""), "{text}");
+    assert!(!output.exists());
+}
+
+/// A rung that gives up is a row with its reason; the reference is then the tightest that does not.
+#[test]
+fn a_rung_that_gives_up_says_why() {
+    let folder = scratch("report-gives-up");
+    let scene = root().join(SINUSOID);
+    report(&scene, &folder, &["--repeat", "1"]);
+    let work: f64 = {
+        let rows = errors(&folder);
+        let tightest = of_method(&rows, "event")[8];
+        number(tightest, "steps") + number(tightest, "rejected")
+    };
+    // A third of what the tightest takes in its two phases: less than the longer of them takes.
+    let limit = format!("solver.max_steps={}", (work / 3.0) as u64);
+    report(&scene, &folder, &["--repeat", "1", "--set", &limit]);
+    let rows = errors(&folder);
+    let (failed, done): (Vec<&Row>, Vec<&Row>) =
+        of_method(&rows, "event").into_iter().partition(|row| !row["failure"].is_empty());
+    assert!(!failed.is_empty() && !done.is_empty(), "{rows:?}");
+    assert!(failed.iter().all(|row| row["failure"].contains("solver.max_steps") && row["time"].is_empty()));
+    let page = fs::read_to_string(folder.join("index.html")).unwrap();
+    assert!(page.contains("class=\"reason\"") && page.contains("solver.max_steps"));
+    let reference = of_method(&rows, "reference")[0];
+    assert!(number(reference, "tolerance") < number(done[0], "tolerance"));
+    let text = refusal(&scene, &folder, &["--set", "solver.max_steps=1"]);
+    assert!(text.contains("no reference: not even the loosest tolerance"), "{text}");
+}
+
+#[test]
+fn a_scene_without_a_run_is_refused() {
+    let folder = scratch("report-no-run");
+    let text = fs::read_to_string(root().join(SINUSOID)).unwrap();
+    let scene = folder.join("scene.toml");
+    fs::write(&scene, text.split("[[excitation]]").next().unwrap()).unwrap();
+    let output = folder.join("out");
+    assert!(refusal(&scene, &output, &[]).contains("no [[excitation]]: the carrier rests"));
+    let at_once = text.replace("[[excitation]]", "[[excitation]]\nuntil_force = 0.0");
+    fs::write(&scene, at_once).unwrap();
+    assert!(refusal(&scene, &output, &[]).contains("takes no time"));
+    assert!(!output.exists());
+}
+
+#[test]
+fn what_is_read_is_not_written_over() {
+    let folder = scratch("report-overwrites");
+    let peers = folder.join("error-run-time.csv");
+    fs::write(&peers, "a table of peers").unwrap();
+    let text = refusal(&root().join(SINUSOID), &folder, &["--peers", peers.to_str().unwrap()]);
+    assert!(text.contains("will not write"), "{text}");
+}
+
+/// A phase that a force ends takes the same time in all runs: the errors are those of one motion.
+#[test]
+fn a_phase_that_a_force_ends_is_the_same_in_all_runs() {
+    let folder = scratch("report-force");
+    let scene = changed(&folder, "w_rate = -0.12", "w_rate = -0.12\nuntil_force = 0.02");
+    report(&scene, &folder, &["--repeat", "1", "--tolerances", "1e-5..1e-8"]);
+    let rows = errors(&folder);
+    assert!(of_method(&rows, "event").iter().all(|row| number(row, "error_F_z") < 1e-3), "{rows:?}");
+}
+
+/// Six hard masses, tied firmly to each other and softly to the carrier, hop over a wavy profile without losses but by
+/// impacts: where each lands depends on the last digit.
+#[test]
+fn where_runs_part_means_are_compared() {
+    let folder = scratch("report-sensitive");
+    let scene = folder.join("hopping.toml");
+    fs::write(&scene, HOPPING).unwrap();
+    report(&scene, &folder, &["--repeat", "1", "--tolerances", "1e-4..1e-7"]);
+    let page = fs::read_to_string(folder.join("index.html")).unwrap();
+    assert!(page.contains("The motion is sensitive") && page.contains("1e-12 m"), "{page}");
+    assert!(page.contains("means of F_x and F_z over 20 windows"));
+    let svg = fs::read_to_string(folder.join("error-run-time.svg")).unwrap();
+    assert!(svg.contains("error of F_z, means"));
+    // Runs that stay together say nothing of it.
+    report(&root().join(SINUSOID), &folder, &["--repeat", "1", "--tolerances", "1e-4..1e-7"]);
+    let page = fs::read_to_string(folder.join("index.html")).unwrap();
+    assert!(!page.contains("sensitive") && page.contains("compared row by row"));
+}
+
+const HOPPING: &str = "
+name = 'hopping'
+[layer]
+masses = 6
+spacing = 1.37e-4
+mass = 2e-7
+[layer.vertical]
+stiffness = 10.0
+[layer.horizontal]
+stiffness = 10.0
+[layer.lateral_x]
+stiffness = 3e4
+[layer.lateral_z]
+stiffness = 3e4
+[surface]
+kind = 'points'
+x = [0.0, 1.1e-4, 2.3e-4, 3.2e-4, 4.5e-4, 5.3e-4, 6.4e-4]
+z = [0.0, -6e-6, 5e-6, -9e-6, 1e-6, -4e-6, 0.0]
+periodic = true
+[[excitation]]
+duration = 5e-4
+w_rate = -0.02
+[[excitation]]
+duration = 1e-2
+u_rate = 1.0
+";
+
+#[test]
+fn what_a_scene_does_not_have_has_no_error() {
+    let folder = scratch("report-absent");
+    let scene = folder.join("flat.toml");
+    let text = "name = 'flat'\n[layer]\nmasses = 2\nspacing = 1e-4\nmass = 1e-7\n[layer.vertical]\nstiffness = 1e3\n\
+                [surface]\nkind = 'flat'\n[[excitation]]\nduration = 1e-3\nw_rate = -0.01\n";
+    fs::write(&scene, text).unwrap();
+    report(&scene, &folder, &["--repeat", "1", "--tolerances", "1e-4..1e-6"]);
+    let rows = errors(&folder);
+    assert!(rows.iter().all(|row| row["error_F_x"].is_empty() && !row["error_F_z"].is_empty()), "{rows:?}");
+    let svg = fs::read_to_string(folder.join("error-run-time.svg")).unwrap();
+    assert!(!svg.contains("error of F_x") && svg.contains("error of F_z"));
+}
+
+#[test]
+fn tolerances_are_a_range() {
+    let output = asperity().args(["report", SINUSOID, "-o", "x", "--tolerances", "1e-10..1e-2"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("expected LOOSEST..TIGHTEST"));
+    assert!(run(asperity().args(["report", "--help"])).contains("[default: 1e-2..1e-10]"));
+}
