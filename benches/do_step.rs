@@ -105,9 +105,11 @@ impl SteppingFmu {
 
     fn run(&mut self) {
         assert_eq!(self.fmu.set_state(self.start), OK);
+        let mut u = 0.0;
         for i in 0..STEPS as u32 {
-            assert_eq!(self.fmu.set_rates(&[self.u], &[1], &[U_RATE]), OK);
+            assert_eq!((self.fmu.set_reals(&[self.u], &[u]), self.fmu.set_rates(&[self.u], &[1], &[U_RATE])), (OK, OK));
             assert_eq!(self.fmu.step(f64::from(i) * STEP, STEP), OK);
+            u += U_RATE * STEP;
         }
     }
 }

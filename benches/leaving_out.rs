@@ -17,7 +17,7 @@ use asperity::outputs::variables;
 use asperity::scene::Scene;
 use common::{callgrind, has_valgrind, instructions, prints_tables, side_by_side};
 use criterion::{BenchmarkId, Criterion};
-use pairs::{PIECES, pairs, piece, started};
+use pairs::{PIECES, Pair, pairs, piece, reduced, started};
 
 const MASSES: usize = 50;
 
@@ -35,6 +35,11 @@ fn main() {
     }
 }
 
+/// The pairs, and one whose Maxwell elements are replaced.
+fn all() -> Vec<Pair> {
+    pairs(MASSES).into_iter().chain([reduced(MASSES)]).collect()
+}
+
 /// A run of so many pieces, and what it gives after each.
 fn run(scene: &Scene, pieces: usize) -> impl FnMut() {
     let start = started(scene);
@@ -50,7 +55,7 @@ fn run(scene: &Scene, pieces: usize) -> impl FnMut() {
 }
 
 fn run_pairs(criterion: &mut Criterion) {
-    for pair in pairs(MASSES) {
+    for pair in all() {
         let mut group = criterion.benchmark_group(pair.feature);
         group.sample_size(10);
         for (name, scene) in [("without", &pair.without), ("at zero", &pair.with)] {
@@ -65,7 +70,7 @@ fn print_ratios() {
     let counts = has_valgrind();
     println!("\na run without a feature over one with it at zero, {MASSES} masses");
     println!("{:<32} {:>8} {:>8} {:>6} {:>12} {:>15} {:>6}", "", "ms", "ms", "ratio", "instructions", "bytes", "ratio");
-    for (i, pair) in pairs(MASSES).iter().enumerate() {
+    for (i, pair) in all().iter().enumerate() {
         let (mut without, mut with) = (run(&pair.without, PIECES), run(&pair.with, PIECES));
         let times = side_by_side([&mut without, &mut with], Duration::from_secs(2));
         let [a, b] = times.shortest.map(|time| 1e3 * time);
@@ -96,6 +101,6 @@ const COUNTED_PIECES: usize = 4;
 
 /// The run whose instructions are counted.
 fn count(pair: usize, with: bool, pieces: usize) {
-    let pair = &pairs(MASSES)[pair];
+    let pair = &all()[pair];
     run(if with { &pair.with } else { &pair.without }, pieces)();
 }

@@ -75,7 +75,8 @@ impl Dense<'_> {
         for row in &self.model.rows {
             let weights = &room.relaxation[row.time_index];
             let (start, end) = (&self.start.0.maxwell[row.range.clone()], &self.end.0.maxwell[row.range.clone()]);
-            let driven = room.rate[row.kind as usize].iter().zip(weights.driven).map(|(rate, weight)| (weight, &rate[..]));
+            let driven =
+                room.rate[row.kind as usize].iter().zip(weights.driven).map(|(rate, weight)| (weight, &rate[..]));
             let ends = [(weights.decay, start), (theta, end)];
             weighted_sum(&mut state.maxwell[row.range.clone()], ends.into_iter().chain(driven));
         }
@@ -178,6 +179,9 @@ impl Dense<'_> {
         let along_x = kind.is_along_x();
         let of = |(x, z): (f64, f64)| if along_x { x } else { z };
         let mut force = law.stiffness * of(point.elongation) + law.damping * of(point.rate);
+        if law.still > 0.0 {
+            force -= law.still * self.model.still_dashpot(kind, link);
+        }
         let mut rows = self.model.rows_of(kind).peekable();
         if rows.peek().is_none() {
             return force;
@@ -185,7 +189,8 @@ impl Dense<'_> {
         let rate = point.motion[usize::from(!along_x)].derivative_monomials();
         for row in rows {
             let weights = &room.relaxation[row.time_index];
-            let (start, end) = (self.start.0.maxwell[row.range.start + link], self.end.0.maxwell[row.range.start + link]);
+            let (start, end) =
+                (self.start.0.maxwell[row.range.start + link], self.end.0.maxwell[row.range.start + link]);
             let driven: f64 = weights.driven.iter().zip(rate).map(|(weight, rate)| weight * rate).sum();
             force += row.stiffness * (weights.decay * start + theta * end + driven);
         }
@@ -256,9 +261,11 @@ impl DenseRoom {
         let has = |kind: LinkKind| model.rows.iter().any(|row| row.kind == kind);
         let rate = LinkKind::ALL.map(|kind| {
             // The links between masses are summed from those to the carrier.
-            let needed = has(kind) || (!kind.is_lateral() && LinkKind::ALL.into_iter().any(|lateral| {
-                lateral.is_lateral() && lateral.is_along_x() == kind.is_along_x() && has(lateral)
-            }));
+            let needed = has(kind)
+                || (!kind.is_lateral()
+                    && LinkKind::ALL.into_iter().any(|lateral| {
+                        lateral.is_lateral() && lateral.is_along_x() == kind.is_along_x() && has(lateral)
+                    }));
             std::array::from_fn(|_| vec![0.0; if needed { kind.count(model.masses()) } else { 0 }])
         });
         let relaxation = vec![Relaxation::default(); model.relaxation_times.len()];

@@ -5,12 +5,14 @@ mod carrier;
 mod forces;
 mod link;
 mod power;
+mod reduction;
 mod state;
 
 pub use carrier::{Carrier, CarrierPoint};
 pub use forces::{ContactForces, Forces, LinkMotion};
 pub use link::{LinkLaw, MaxwellRow};
 pub use power::{Exchange, Power, elastic_energy, kinetic_energy};
+pub use reduction::{Reduction, Replaced, Replacement};
 pub use state::{Mode, State};
 
 use crate::math::{Numbers, Spline, visit_all};
@@ -62,6 +64,9 @@ pub struct Model {
     pub has_friction: bool,
     /// How the dashpots start.
     pub initial: Initial,
+    /// Elongations of the vertical links at the start, m: where the dashpots of [`LinkLaw::still`] stand. Empty where there
+    /// are none.
+    pub still: Vec<f64>,
 }
 
 impl Model {
@@ -70,13 +75,16 @@ impl Model {
         let layer = &scene.layer;
         let k = layer.masses;
         let friction = scene.friction.as_ref();
-        let (rows, relaxation_times) = link::maxwell_rows(layer);
         let roughness = |i| layer.roughness.get(i).copied().unwrap_or(0.0);
+        let reduction = Reduction::new(scene);
+        let links = LinkKind::ALL.map(|kind| LinkLaw::new(layer, kind, reduction.as_ref()));
+        let (rows, relaxation_times) = link::maxwell_rows(layer, reduction.as_ref());
         Self {
             mass: layer.mass,
             rest_x: (0..k).map(|i| layer.place(i)).collect(),
             rest_z: (0..k).map(|i| layer.clearance + roughness(i)).collect(),
-            links: LinkKind::ALL.map(|kind| LinkLaw::new(layer.link(kind))),
+            still: if links.iter().any(|link| link.still > 0.0) { vec![0.0; k] } else { Vec::new() },
+            links,
             rows,
             relaxation_times,
             profile: scene.surface.spline(),
@@ -85,6 +93,34 @@ impl Model {
             has_friction: friction.is_some_and(|f| [f.coulomb, f.shear_force].iter().flatten().any(|&part| part > 0.0)),
             initial: layer.initial,
         }
+    }
+
+    /// Puts the dashpots that stand still where the masses' places at the start have them: `place` is u there as a place on
+    /// the profile, `w` is w, m. A mass that would lie under the profile is lifted onto it.
+    pub fn stand_still(&mut self, place: f64, w: f64) {
+        for i in 0..self.still.len() {
+            let ground = self.ground(self.rest_x[i] + place);
+            let gap = self.rest_z[i] + w - ground.height;
+            self.still[i] = if gap < 0.0 { ground.height - self.rest_z[i] - w } else { 0.0 };
+        }
+    }
+
+    /// Takes from the forces of a kind of link what its springs lack whose dashpots stand still: F = … - c_j y_j.
+    pub fn subtract_still(&self, kind: LinkKind, forces: &mut [f64]) {
+        let stiffness = self.links[kind as usize].still;
+        if stiffness > 0.0 {
+            forces.iter_mut().zip(self.still_dashpots(kind)).for_each(|(force, y)| *force -= stiffness * y);
+        }
+    }
+
+    /// y of the dashpots that stand still, link by link of a kind that has some, m.
+    pub fn still_dashpots(&self, kind: LinkKind) -> impl Iterator<Item = f64> {
+        (0..kind.count(self.still.len())).map(move |link| self.still_dashpot(kind, link))
+    }
+
+    /// y of the dashpots that stand still in one link of a kind that has some, m.
+    pub fn still_dashpot(&self, kind: LinkKind, link: usize) -> f64 {
+        if kind.is_lateral() { self.still[link + 1] - self.still[link] } else { self.still[link] }
     }
 
     /// Number of masses k.

@@ -133,7 +133,9 @@ impl Simulation {
     }
 
     fn started(scene: &Scene, start: &Start) -> Self {
-        let model = Arc::new(Model::new(scene));
+        let mut model = Model::new(scene);
+        model.stand_still(model.profile.reduce(start.u), start.w);
+        let model = Arc::new(model);
         let settings = Settings::new(scene, &model);
         let followed = Followed { energy: settings.accounts.energy, tangents: settings.accounts.tangents };
         let integrator = Integrator::new(&model, followed);
@@ -177,7 +179,11 @@ impl Simulation {
         let maxwell = self.run.state.maxwell.len();
         // The run, the one to go back to, the one within a step and the stage's.
         let states = 4 * (masses * (4 * size_of::<f64>() + size_of_val(&self.run.state.ground[0]) + 1));
-        states + 4 * maxwell * size_of::<f64>() + self.integrator.bytes() + 2 * self.forces.bytes() + self.dense_room.bytes()
+        states
+            + 4 * maxwell * size_of::<f64>()
+            + self.integrator.bytes()
+            + 2 * self.forces.bytes()
+            + self.dense_room.bytes()
     }
 
     /// Follows `motion` to its end.

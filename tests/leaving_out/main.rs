@@ -2,7 +2,7 @@
 //! zero. Their times are compared by `cargo bench --bench leaving_out`.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic, reason = "tests may fail")]
 
-#[allow(unreachable_pub, reason = "shared with the benchmark")]
+#[allow(dead_code, unreachable_pub, reason = "shared with the benchmark")]
 mod pairs;
 
 use std::collections::BTreeSet;

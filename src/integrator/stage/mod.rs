@@ -161,7 +161,7 @@ impl StageSolver {
         rates: &mut Rates,
     ) -> Result<(), NoConvergence> {
         self.place(model, point);
-        self.forces(point);
+        self.forces(model, point);
         if self.slips.is_empty() {
             self.solve_linear(model, point)?;
         } else {
@@ -177,7 +177,7 @@ impl StageSolver {
         self.system.solve();
         let change = self.correct();
         self.place(model, point);
-        self.forces(point);
+        self.forces(model, point);
         if change.is_finite() { Ok(()) } else { Err(NoConvergence) }
     }
 
@@ -192,7 +192,7 @@ impl StageSolver {
             self.system.solve();
             let change = self.correct();
             self.place(model, point);
-            self.forces(point);
+            self.forces(model, point);
             let left = self.residuals(model, point.beta);
             let next = change * (left / residual);
             let settled = left.min(next) <= tolerance;
@@ -226,7 +226,7 @@ impl StageSolver {
     }
 
     /// Forces of the links and on the masses, by the stage's law.
-    fn forces(&mut self, point: &StagePoint) {
+    fn forces(&mut self, model: &Model, point: &StagePoint) {
         let motion = LinkMotion::of(&self.state, &point.carrier);
         for kind in LinkKind::ALL {
             let law = &self.laws[kind as usize];
@@ -234,6 +234,7 @@ impl StageSolver {
             for (force, history) in self.forces.link[kind as usize].iter_mut().zip(&self.history.force[kind as usize]) {
                 *force += history;
             }
+            model.subtract_still(kind, &mut self.forces.link[kind as usize]);
         }
         self.forces.sum_on_masses();
     }
