@@ -75,8 +75,7 @@ impl Dense<'_> {
         for row in &self.model.rows {
             let weights = &room.relaxation[row.time_index];
             let (start, end) = (&self.start.0.maxwell[row.range.clone()], &self.end.0.maxwell[row.range.clone()]);
-            let driven =
-                room.rate[row.kind as usize].iter().zip(weights.driven).map(|(rate, weight)| (weight, &rate[..]));
+            let driven = room.rate[row.kind as usize].iter().zip(weights.driven).map(|(rate, weight)| (weight, &rate[..]));
             let ends = [(weights.decay, start), (theta, end)];
             weighted_sum(&mut state.maxwell[row.range.clone()], ends.into_iter().chain(driven));
         }
@@ -189,8 +188,7 @@ impl Dense<'_> {
         let rate = point.motion[usize::from(!along_x)].derivative_monomials();
         for row in rows {
             let weights = &room.relaxation[row.time_index];
-            let (start, end) =
-                (self.start.0.maxwell[row.range.start + link], self.end.0.maxwell[row.range.start + link]);
+            let (start, end) = (self.start.0.maxwell[row.range.start + link], self.end.0.maxwell[row.range.start + link]);
             let driven: f64 = weights.driven.iter().zip(rate).map(|(weight, rate)| weight * rate).sum();
             force += row.stiffness * (weights.decay * start + theta * end + driven);
         }
@@ -261,11 +259,9 @@ impl DenseRoom {
         let has = |kind: LinkKind| model.rows.iter().any(|row| row.kind == kind);
         let rate = LinkKind::ALL.map(|kind| {
             // The links between masses are summed from those to the carrier.
-            let needed = has(kind)
-                || (!kind.is_lateral()
-                    && LinkKind::ALL.into_iter().any(|lateral| {
-                        lateral.is_lateral() && lateral.is_along_x() == kind.is_along_x() && has(lateral)
-                    }));
+            let needed = has(kind) || (!kind.is_lateral() && LinkKind::ALL.into_iter().any(|lateral| {
+                lateral.is_lateral() && lateral.is_along_x() == kind.is_along_x() && has(lateral)
+            }));
             std::array::from_fn(|_| vec![0.0; if needed { kind.count(model.masses()) } else { 0 }])
         });
         let relaxation = vec![Relaxation::default(); model.relaxation_times.len()];

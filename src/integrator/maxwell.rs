@@ -117,7 +117,11 @@ impl<const STAGES: usize> Maxwell<STAGES> {
 }
 
 /// The elongation rates of the links of `kind` at the stages that count, weighed.
-fn by_rate<'a>(kind: LinkKind, weights: &'a [f64], stages: &'a [Rates]) -> impl Iterator<Item = (f64, &'a [f64])> {
+fn by_rate<'a>(
+    kind: LinkKind,
+    weights: &'a [f64],
+    stages: &'a [Rates],
+) -> impl Iterator<Item = (f64, &'a [f64])> {
     let stages = weights.iter().zip(stages).filter(|(weight, _)| **weight != 0.0);
     stages.map(move |(&weight, stage)| (weight, &stage.elongation_rate[kind as usize][..]))
 }
@@ -171,8 +175,7 @@ impl<const STAGES: usize> KindSums<STAGES> {
     where
         Rows: Iterator<Item = (&'a MaxwellRow, &'a Course<STAGES>)>,
     {
-        let start =
-            |i: usize| rows().map(move |(row, course)| (row.stiffness * course.start[i], &a[row.range.clone()]));
+        let start = |i: usize| rows().map(move |(row, course)| (row.stiffness * course.start[i], &a[row.range.clone()]));
         for i in 1..STAGES {
             weighted_sum(&mut self.start[i], start(i));
             for j in 0..=i {

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::reduction::{Reduction, Replacement};
-use crate::scene::{Initial, Layer, LinkKind};
+use crate::scene::{Initial, Layer, Link, LinkKind};
 
 /// The spring and the damper of one kind of link.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -57,6 +57,12 @@ pub struct MaxwellRow {
     pub time_index: usize,
     /// The elements of the row, link by link.
     pub range: Range<usize>,
+}
+
+/// c + Σ c_j, N/m.
+pub(super) fn glassy_stiffness(link: &Link) -> f64 {
+    let maxwell: f64 = link.maxwell.iter().map(|element| element.stiffness).sum();
+    link.stiffness.unwrap_or(0.0) + maxwell
 }
 
 /// The rows of the elements that stay, and their relaxation times, each once.

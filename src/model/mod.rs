@@ -54,6 +54,8 @@ pub struct Model {
     pub rows: Vec<MaxwellRow>,
     /// The relaxation times of the Maxwell elements, each once, s.
     pub relaxation_times: Vec<f64>,
+    /// c + Σ c_j of each kind of link, N/m, as the scene has it: tolerances go by the whole, whatever is replaced.
+    pub glassy: [f64; 4],
     /// The rigid profile z_r(x).
     pub profile: Spline,
     /// Coulomb's coefficient μ.
@@ -87,6 +89,7 @@ impl Model {
             links,
             rows,
             relaxation_times,
+            glassy: LinkKind::ALL.map(|kind| layer.link(kind).map_or(0.0, link::glassy_stiffness)),
             profile: scene.surface.spline(),
             friction_coefficient: friction.and_then(|f| f.coulomb).unwrap_or(0.0),
             shear_force: friction.and_then(|f| f.shear_force).unwrap_or(0.0),
@@ -147,13 +150,8 @@ impl Model {
 
     /// Largest stiffness that holds one mass, all springs at once, N/m: Σ (c + Σ c_j), lateral links twice.
     pub fn glassy_stiffness(&self) -> f64 {
-        let of = |kind: LinkKind| {
-            let maxwell: f64 = self.rows.iter().filter(|row| row.kind == kind).map(|row| row.stiffness).sum();
-            self.links[kind as usize].stiffness + maxwell
-        };
-        let along_x = of(LinkKind::Horizontal) + 2.0 * of(LinkKind::LateralX);
-        let along_z = of(LinkKind::Vertical) + 2.0 * of(LinkKind::LateralZ);
-        along_x.max(along_z)
+        let [vertical, horizontal, lateral_x, lateral_z] = self.glassy;
+        (horizontal + 2.0 * lateral_x).max(vertical + 2.0 * lateral_z)
     }
 
     /// The stiffest frequency of one mass, rad/s; where the layer has no springs, its fastest damping rate, 1/s, and

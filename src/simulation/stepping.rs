@@ -240,8 +240,7 @@ impl Simulation {
         }
         self.evaluate_within(h, share);
         let dense = dense(&self.model, &self.run, &self.integrator, h);
-        let d = dense.defect(share, (&self.within, &self.forces), &self.dense_room, &self.settings.tolerance);
-        eprintln!("defect {d:.2e} share {share:.3} h {h:.2e}");
+let d = dense.defect(share, (&self.within, &self.forces), &self.dense_room, &self.settings.tolerance);eprintln!("defect {d:.2e} share {share:.3} h {h:.2e}");
         d <= MOST_DEFECT
     }
 

@@ -61,10 +61,8 @@ impl StageSolver {
             let neighbours = neighbours(i, k);
             let climb = slip.climb(beta);
             let weight = |law: &StageLaw| law.stiffness * climb.height + law.damping * climb.rate;
-            let weights = (
-                horizontal.weight + neighbours * lateral_x.weight,
-                weight(&vertical) + neighbours * weight(&lateral_z),
-            );
+            let weights =
+                (horizontal.weight + neighbours * lateral_x.weight, weight(&vertical) + neighbours * weight(&lateral_z));
             let forces = (self.forces.on_mass_x[i], self.forces.on_mass_z[i]);
             self.system.diagonal[i] = Matrix2::new(slip.derivative(model, beta, forces, weights), 0.0, 0.0, 1.0);
             self.rows[i] = Row { x_by_x: slip.share_x, x_by_z: slip.share_z, z_by_z: 0.0 };
