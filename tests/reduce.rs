@@ -104,7 +104,8 @@ fn few_of_sixteen_elements_stay() {
     assert_eq!(before, 64);
     assert!(after <= 32, "{after} of {before} rows stay");
     let bytes = [&whole, &reduced].map(|scene| Simulation::new(scene, &SLIDE_START).unwrap().bytes());
-    assert!(2 * bytes[1] < bytes[0] + bytes[0] / 10, "{bytes:?}");
+    // Ten of sixteen elements less in each of four states; the rest does not depend on their number.
+    assert!(4 * bytes[1] < 3 * bytes[0], "{bytes:?}");
     // The long ones become springs, the short ones dampers, and what the run can see stays.
     for one in Reduction::new(&reduced).unwrap().replaced {
         let tau = one.element.relaxation_time;

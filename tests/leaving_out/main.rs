@@ -46,6 +46,9 @@ fn rows(scene: &Scene, variables: &[Variable]) -> Vec<Vec<f64>> {
 /// The sums of a stage hold zeros more, which changes no digit or the last one; a run multiplies that by its events, but
 /// not to more than this.
 const ROUNDING: f64 = 1e-9;
+/// Steps that are followed by tangents end at their events, the others may go on from within: alike within the
+/// tolerance of a step, 1e-6, times the steps' number.
+const OTHER_STEPS: f64 = 1e-4;
 
 #[test]
 fn a_feature_at_zero_gives_what_the_scene_without_it_gives() {
@@ -53,11 +56,12 @@ fn a_feature_at_zero_gives_what_the_scene_without_it_gives() {
         let [without, with] = common_variables(&pair);
         assert!(!without.is_empty(), "{}: something to compare", pair.feature);
         let (a, b) = (rows(&pair.without, &without), rows(&pair.with, &with));
+        let allowed = if pair.feature == "tangent" { OTHER_STEPS } else { ROUNDING };
         for (j, variable) in without.iter().enumerate() {
             let size = a.iter().map(|row| row[j].abs()).fold(0.0, f64::max);
             for (a, b) in a.iter().zip(&b) {
                 let difference = (a[j] - b[j]).abs();
-                assert!(difference <= ROUNDING * size, "{}, {}: {} and {}", pair.feature, variable.name, a[j], b[j]);
+                assert!(difference <= allowed * size, "{}, {}: {} and {}", pair.feature, variable.name, a[j], b[j]);
             }
         }
     }
