@@ -208,6 +208,7 @@ fn a_description_tells_what_is_there_and_what_is_left_out() {
         "as coded 56: two places and two velocities a mass, 36 Maxwell variables",
         "Friction    left out",
         "elements     left out",
+        "Reduce      left out",
         "bytes a run",
     ] {
         assert!(text.contains(part), "{part}: {text}");
@@ -236,4 +237,35 @@ fn a_scene_as_json_is_all_of_it() {
     let heights: Vec<f64> = rough["surface"]["z"].as_array().unwrap().iter().map(|z| z.as_f64().unwrap()).collect();
     // The numbers are written in full; the reader here may miss the last digit of one.
     assert!(common::difference(&heights, &file.column("z")) < 1e-15 * common::largest(&heights));
+}
+
+/// One mass on a stiff, a long and a short element: K' = 3, m ω² = 3 + 2, T = 0.1 s.
+#[test]
+fn a_description_tells_which_maxwell_elements_are_replaced_and_why() {
+    let layer = "layer = { masses = 2, spacing = 1.0, mass = 5e-4, vertical = { stiffness = 3.0, maxwell = [\
+                 { stiffness = 2.0, relaxation_time = 1e-1 }, { stiffness = 1e-1, relaxation_time = 1e2 },\
+                 { stiffness = 1e-1, relaxation_time = 1e-4 }] } }";
+    let rest = "surface = { kind = 'flat' }\nsolver = { reduce = 1e-2 }";
+    let folder = scratch("reduce");
+    let describe = |excitation: &str| {
+        let scene = folder.join("reduce.toml");
+        fs::write(&scene, format!("name = 'a'\n{layer}\n{rest}\n{excitation}")).unwrap();
+        run(asperity().arg("describe").arg(&scene))
+    };
+    let text = describe("[[excitation]]\nduration = 1e-1");
+    for part in [
+        "Reduce      0.01: ",
+        "vertical    1 of 3 elements stay, K' = 4.1000e0 N/m",
+        "[2] 0.1 N/m at 100 s is long: a spring, bound 2.44e-5",
+        "[3] 0.1 N/m at 1e-4 s is short: a damper, bound 2.48e-6",
+        "as coded 10: two places and two velocities a mass, 2 Maxwell variables",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    let text = describe("");
+    for part in
+        ["nothing is long, no element becomes a spring", "2 of 3 elements stay", "[3] 0.1 N/m at 1e-4 s is short"]
+    {
+        assert!(text.contains(part), "{part}: {text}");
+    }
 }

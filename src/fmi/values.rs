@@ -56,26 +56,31 @@ impl Instance {
         }
     }
 
-    /// fmi2GetReal
+    /// fmi2GetReal: all of the values or none; asked for at every communication point, so nothing is allocated.
     pub(super) fn get_reals(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), Fault> {
-        let found = self.get(references, Kind::Real)?;
-        for (place, value) in values.iter_mut().zip(found) {
-            if let Value::Real(value) = value {
+        self.check(references, Kind::Real)?;
+        for (place, &reference) in values.iter_mut().zip(references) {
+            if let Value::Real(value) = self.get_one(reference, Kind::Real)? {
                 *place = value;
             }
         }
         Ok(())
     }
 
-    /// fmi2GetInteger
+    /// fmi2GetInteger: as [`get_reals`](Self::get_reals).
     pub(super) fn get_integers(&mut self, references: &[u32], values: &mut [i32]) -> Result<(), Fault> {
-        let found = self.get(references, Kind::Integer)?;
-        for (place, value) in values.iter_mut().zip(found) {
-            if let Value::Integer(value) = value {
+        self.check(references, Kind::Integer)?;
+        for (place, &reference) in values.iter_mut().zip(references) {
+            if let Value::Integer(value) = self.get_one(reference, Kind::Integer)? {
                 *place = value;
             }
         }
         Ok(())
+    }
+
+    /// Refuses what has no value of the type `kind`.
+    fn check(&mut self, references: &[u32], kind: Kind) -> Result<(), Fault> {
+        references.iter().try_for_each(|&reference| self.get_one(reference, kind).map(|_| ()))
     }
 
     /// fmi2GetString: the values stay until the next call of it.

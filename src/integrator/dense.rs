@@ -178,6 +178,9 @@ impl Dense<'_> {
         let along_x = kind.is_along_x();
         let of = |(x, z): (f64, f64)| if along_x { x } else { z };
         let mut force = law.stiffness * of(point.elongation) + law.damping * of(point.rate);
+        if law.still > 0.0 {
+            force -= law.still * self.model.still_dashpot(kind, link);
+        }
         let mut rows = self.model.rows_of(kind).peekable();
         if rows.peek().is_none() {
             return force;

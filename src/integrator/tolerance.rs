@@ -23,11 +23,7 @@ pub(super) const NEWTON_SHARE: f64 = 0.05;
 impl Tolerance {
     /// The tolerances of `model` for a relative and an absolute (m) one.
     pub fn new(model: &Model, relative: f64, absolute: f64) -> Self {
-        let glassy = LinkKind::ALL.map(|kind| {
-            let maxwell: f64 = model.rows.iter().filter(|row| row.kind == kind).map(|row| row.stiffness).sum();
-            model.links[kind as usize].stiffness + maxwell
-        });
-        Self { relative, position: absolute, velocity: absolute * model.stiffest_frequency(), glassy }
+        Self { relative, position: absolute, velocity: absolute * model.stiffest_frequency(), glassy: model.glassy }
     }
 
     /// The square of the error allowed of a position of this size, m².

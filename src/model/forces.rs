@@ -31,6 +31,7 @@ impl Forces {
         for kind in LinkKind::ALL {
             let law = &model.links[kind as usize];
             self.spring_and_damper(kind, (law.stiffness, law.damping), &motion, &[]);
+            model.subtract_still(kind, &mut self.link[kind as usize]);
         }
         for row in &model.rows {
             let elongations = &state.maxwell[row.range.clone()];

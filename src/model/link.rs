@@ -2,26 +2,44 @@
 
 use std::ops::Range;
 
-use crate::scene::{Layer, Link, LinkKind};
+use super::reduction::{Reduction, Replacement};
+use crate::scene::{Initial, Layer, Link, LinkKind};
 
 /// The spring and the damper of one kind of link.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LinkLaw {
     /// Whether the scene has the link at all; an absent one has no forces, no energy and no work.
     pub present: bool,
-    /// Stiffness c, N/m.
+    /// Stiffness c, N/m, with that of the Maxwell elements replaced by springs.
     pub stiffness: f64,
-    /// Damping d, N s/m.
+    /// Damping d, N s/m, with that of the Maxwell elements replaced by dampers.
     pub damping: f64,
+    /// Of the stiffness the part whose springs hang on dashpots that stand still where they stood at the start, N/m.
+    pub still: f64,
 }
 
 impl LinkLaw {
-    pub(super) fn new(link: Option<&Link>) -> Self {
-        link.map_or_else(Self::default, |link| Self {
+    pub(super) fn new(layer: &Layer, kind: LinkKind, reduction: Option<&Reduction>) -> Self {
+        let Some(link) = layer.link(kind) else { return Self::default() };
+        let mut law = Self {
             present: true,
             stiffness: link.stiffness.unwrap_or(0.0),
             damping: link.damping.unwrap_or(0.0),
-        })
+            still: 0.0,
+        };
+        // Along x every link is at rest at the start; undeformed, every dashpot.
+        let stands = layer.initial == Initial::Relaxed && !kind.is_along_x();
+        let replaced = reduction.map_or(&[][..], |reduction| &reduction.replaced);
+        for one in replaced.iter().filter(|one| one.kind == kind) {
+            match one.by {
+                Replacement::Spring => law.stiffness += one.element.stiffness,
+                Replacement::Damper => law.damping += one.element.stiffness * one.element.relaxation_time,
+            }
+            if one.by == Replacement::Spring && stands {
+                law.still += one.element.stiffness;
+            }
+        }
+        law
     }
 }
 
@@ -41,12 +59,20 @@ pub struct MaxwellRow {
     pub range: Range<usize>,
 }
 
-/// The rows of a layer, and their relaxation times, each once.
-pub(super) fn maxwell_rows(layer: &Layer) -> (Vec<MaxwellRow>, Vec<f64>) {
+/// c + Σ c_j, N/m.
+pub(super) fn glassy_stiffness(link: &Link) -> f64 {
+    let maxwell: f64 = link.maxwell.iter().map(|element| element.stiffness).sum();
+    link.stiffness.unwrap_or(0.0) + maxwell
+}
+
+/// The rows of the elements that stay, and their relaxation times, each once.
+pub(super) fn maxwell_rows(layer: &Layer, reduction: Option<&Reduction>) -> (Vec<MaxwellRow>, Vec<f64>) {
+    let stays = |kind: LinkKind, index: usize| reduction.is_none_or(|all| all.replacement(kind, index).is_none());
     let (mut rows, mut times) = (Vec::new(), Vec::new());
     let mut start = 0;
     for kind in LinkKind::ALL {
-        for element in layer.link(kind).iter().flat_map(|link| &link.maxwell) {
+        let elements = layer.link(kind).map_or(&[][..], |link| &link.maxwell).iter().enumerate();
+        for (_, element) in elements.filter(|&(index, _)| stays(kind, index)) {
             let end = start + kind.count(layer.masses);
             let tau = element.relaxation_time;
             let time_index = times.iter().position(|&known| known == tau).unwrap_or_else(|| {

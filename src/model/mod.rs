@@ -5,12 +5,14 @@ mod carrier;
 mod forces;
 mod link;
 mod power;
+mod reduction;
 mod state;
 
 pub use carrier::{Carrier, CarrierPoint};
 pub use forces::{ContactForces, Forces, LinkMotion};
 pub use link::{LinkLaw, MaxwellRow};
 pub use power::{Exchange, Power, elastic_energy, kinetic_energy};
+pub use reduction::{Reduction, Replaced, Replacement};
 pub use state::{Mode, State};
 
 use crate::math::{Numbers, Spline, visit_all};
@@ -52,6 +54,8 @@ pub struct Model {
     pub rows: Vec<MaxwellRow>,
     /// The relaxation times of the Maxwell elements, each once, s.
     pub relaxation_times: Vec<f64>,
+    /// c + Σ c_j of each kind of link, N/m, as the scene has it: tolerances go by the whole, whatever is replaced.
+    pub glassy: [f64; 4],
     /// The rigid profile z_r(x).
     pub profile: Spline,
     /// Coulomb's coefficient μ.
@@ -62,6 +66,9 @@ pub struct Model {
     pub has_friction: bool,
     /// How the dashpots start.
     pub initial: Initial,
+    /// Elongations of the vertical links at the start, m: where the dashpots of [`LinkLaw::still`] stand. Empty where there
+    /// are none.
+    pub still: Vec<f64>,
 }
 
 impl Model {
@@ -70,15 +77,19 @@ impl Model {
         let layer = &scene.layer;
         let k = layer.masses;
         let friction = scene.friction.as_ref();
-        let (rows, relaxation_times) = link::maxwell_rows(layer);
         let roughness = |i| layer.roughness.get(i).copied().unwrap_or(0.0);
+        let reduction = Reduction::new(scene);
+        let links = LinkKind::ALL.map(|kind| LinkLaw::new(layer, kind, reduction.as_ref()));
+        let (rows, relaxation_times) = link::maxwell_rows(layer, reduction.as_ref());
         Self {
             mass: layer.mass,
             rest_x: (0..k).map(|i| layer.place(i)).collect(),
             rest_z: (0..k).map(|i| layer.clearance + roughness(i)).collect(),
-            links: LinkKind::ALL.map(|kind| LinkLaw::new(layer.link(kind))),
+            still: if links.iter().any(|link| link.still > 0.0) { vec![0.0; k] } else { Vec::new() },
+            links,
             rows,
             relaxation_times,
+            glassy: LinkKind::ALL.map(|kind| layer.link(kind).map_or(0.0, link::glassy_stiffness)),
             profile: scene.surface.spline(),
             friction_coefficient: friction.and_then(|f| f.coulomb).unwrap_or(0.0),
             shear_force: friction.and_then(|f| f.shear_force).unwrap_or(0.0),
@@ -91,6 +102,34 @@ impl Model {
     #[cfg(test)]
     pub(crate) fn of_text(text: &str) -> Self {
         Self::new(&Scene::parse(text, "test.toml".as_ref()).unwrap_or_else(|error| panic!("{error}")))
+    }
+
+    /// Puts the dashpots that stand still where the masses' places at the start have them: `place` is u there as a place on
+    /// the profile, `w` is w, m. A mass that would lie under the profile is lifted onto it.
+    pub fn stand_still(&mut self, place: f64, w: f64) {
+        for i in 0..self.still.len() {
+            let ground = self.ground(self.rest_x[i] + place);
+            let gap = self.rest_z[i] + w - ground.height;
+            self.still[i] = if gap < 0.0 { ground.height - self.rest_z[i] - w } else { 0.0 };
+        }
+    }
+
+    /// Takes from the forces of a kind of link what its springs lack whose dashpots stand still: F = … - c_j y_j.
+    pub fn subtract_still(&self, kind: LinkKind, forces: &mut [f64]) {
+        let stiffness = self.links[kind as usize].still;
+        if stiffness > 0.0 {
+            forces.iter_mut().zip(self.still_dashpots(kind)).for_each(|(force, y)| *force -= stiffness * y);
+        }
+    }
+
+    /// y of the dashpots that stand still, link by link of a kind that has some, m.
+    pub fn still_dashpots(&self, kind: LinkKind) -> impl Iterator<Item = f64> {
+        (0..kind.count(self.still.len())).map(move |link| self.still_dashpot(kind, link))
+    }
+
+    /// y of the dashpots that stand still in one link of a kind that has some, m.
+    pub fn still_dashpot(&self, kind: LinkKind, link: usize) -> f64 {
+        if kind.is_lateral() { self.still[link + 1] - self.still[link] } else { self.still[link] }
     }
 
     /// Number of masses k.
@@ -117,13 +156,8 @@ impl Model {
 
     /// Largest stiffness that holds one mass, all springs at once, N/m: Σ (c + Σ c_j), lateral links twice.
     pub fn glassy_stiffness(&self) -> f64 {
-        let of = |kind: LinkKind| {
-            let maxwell: f64 = self.rows.iter().filter(|row| row.kind == kind).map(|row| row.stiffness).sum();
-            self.links[kind as usize].stiffness + maxwell
-        };
-        let along_x = of(LinkKind::Horizontal) + 2.0 * of(LinkKind::LateralX);
-        let along_z = of(LinkKind::Vertical) + 2.0 * of(LinkKind::LateralZ);
-        along_x.max(along_z)
+        let [vertical, horizontal, lateral_x, lateral_z] = self.glassy;
+        (horizontal + 2.0 * lateral_x).max(vertical + 2.0 * lateral_z)
     }
 
     /// The stiffest frequency of one mass, rad/s; where the layer has no springs, its fastest damping rate, 1/s, and

@@ -115,7 +115,7 @@ pub fn kinetic_energy(model: &Model, state: &State) -> f64 {
     0.5 * model.mass * (square_sum(state.velocity_x.iter().copied()) + square_sum(state.velocity_z.iter().copied()))
 }
 
-/// V = Σ ½ c e² + Σ_j ½ c_j (e - y_j)², J.
+/// V = Σ ½ c e² + Σ_j ½ c_j (e - y_j)², J, the dashpots that stand still included.
 pub fn elastic_energy(model: &Model, state: &State) -> f64 {
     let springs: f64 = LinkKind::ALL.map(|kind| spring_energy(model, state, kind)).iter().sum();
     let row_energy =
@@ -124,12 +124,22 @@ pub fn elastic_energy(model: &Model, state: &State) -> f64 {
 }
 
 fn spring_energy(model: &Model, state: &State, kind: LinkKind) -> f64 {
-    let sum = match kind {
-        LinkKind::Vertical => square_sum(state.elongation_z.iter().copied()),
-        LinkKind::Horizontal => square_sum(state.elongation_x.iter().copied()),
-        LinkKind::LateralX => square_sum(state.elongation_x.windows(2).map(|e| e[1] - e[0])),
+    let law = &model.links[kind as usize];
+    match kind {
+        LinkKind::Vertical => springs_energy(model, kind, state.elongation_z.iter().copied()),
+        LinkKind::Horizontal => 0.5 * law.stiffness * square_sum(state.elongation_x.iter().copied()),
+        LinkKind::LateralX => 0.5 * law.stiffness * square_sum(state.elongation_x.windows(2).map(|e| e[1] - e[0])),
         // ζ is counted from rest, so roughness does not stretch the links between the masses.
-        LinkKind::LateralZ => square_sum(state.elongation_z.windows(2).map(|e| e[1] - e[0])),
-    };
-    0.5 * model.links[kind as usize].stiffness * sum
+        LinkKind::LateralZ => springs_energy(model, kind, state.elongation_z.windows(2).map(|e| e[1] - e[0])),
+    }
+}
+
+/// Σ ½ c e², of the part whose dashpots stand still ½ c_j (e - y_j)².
+fn springs_energy(model: &Model, kind: LinkKind, elongations: impl Iterator<Item = f64> + Clone) -> f64 {
+    let law = &model.links[kind as usize];
+    let whole = 0.5 * (law.stiffness - law.still) * square_sum(elongations.clone());
+    if law.still == 0.0 {
+        return whole;
+    }
+    whole + 0.5 * law.still * square_sum(elongations.zip(model.still_dashpots(kind)).map(|(e, y)| e - y))
 }

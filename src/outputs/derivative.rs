@@ -153,10 +153,12 @@ impl Moment<'_> {
         self.maxwell_sum(change, |row| 2.0 * row.stiffness / row.relaxation_time)
     }
 
-    /// Of Σ ½ c e² + Σ_j ½ c_j a_j².
+    /// Of Σ ½ c e² + Σ_j ½ c_j a_j²; of dashpots that stand still, a_j = e - y_j.
     fn elastic_energy_change(&self, change: &Change) -> f64 {
         let spring = |kind: LinkKind, elongations: &[f64], moved: f64| {
-            self.model.links[kind as usize].stiffness * moved * elongations.iter().sum::<f64>()
+            let law = &self.model.links[kind as usize];
+            let still = if law.still > 0.0 { law.still * self.model.still_dashpots(kind).sum::<f64>() } else { 0.0 };
+            moved * (law.stiffness * elongations.iter().sum::<f64>() - still)
         };
         spring(LinkKind::Horizontal, &self.state.elongation_x, change.elongation.0)
             + spring(LinkKind::Vertical, &self.state.elongation_z, change.elongation.1)

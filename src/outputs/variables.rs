@@ -137,7 +137,10 @@ fn can_have(scene: &Scene, output: Output) -> bool {
     let links = [&layer.vertical, &layer.horizontal, &layer.lateral_x, &layer.lateral_z];
     let any = |test: fn(&Link) -> bool| links.iter().any(|link| link.as_ref().is_some_and(test));
     match output {
-        Output::DamperEnergy => any(|link| link.damping.is_some()),
+        // A Maxwell element may be replaced by a damper.
+        Output::DamperEnergy => {
+            any(|link| link.damping.is_some()) || (scene.solver.reduce > 0.0 && any(|link| !link.maxwell.is_empty()))
+        }
         Output::MaxwellEnergy => any(|link| !link.maxwell.is_empty()),
         Output::FrictionEnergy => scene.friction.is_some(),
         _ => true,

@@ -43,6 +43,7 @@ pub(super) const POINTS_PER_WAVELENGTH: WholeRange = WholeRange { low: 4, high: 
 pub(super) const FRICTION_COEFFICIENT: Range = NOT_NEGATIVE;
 pub(super) const SHEAR_FORCE: Range = NOT_NEGATIVE;
 pub(super) const RELATIVE_TOLERANCE: Range = Range { low: Bound::Excluded(0.0), high: Bound::Included(0.1) };
+pub(super) const REDUCE: Range = Range { low: Bound::Included(0.0), high: Bound::Included(0.1) };
 pub(super) const ABSOLUTE_TOLERANCE: Range = POSITIVE;
 /// FMI's Integer has 32 bits.
 pub(super) const MAX_STEPS: WholeRange = WholeRange { low: 1, high: i32::MAX as i64 };

@@ -150,6 +150,8 @@ pub struct Solver {
     pub absolute_tolerance: Option<f64>,
     /// Steps that one communication step or one phase may take.
     pub max_steps: u64,
+    /// Bound on the error of a link's force for leaving Maxwell elements out, as a share of it; 0 leaves none out.
+    pub reduce: f64,
 }
 
 /// How mode changes are treated.

@@ -7,7 +7,13 @@ use super::{Extrapolation, Friction, Method, OutputGroup, SceneError, Solver};
 impl Default for Solver {
     /// The settings of a scene without `[solver]`.
     fn default() -> Self {
-        Self { method: Method::Event, relative_tolerance: 1.0e-6, absolute_tolerance: None, max_steps: 10_000_000 }
+        Self {
+            method: Method::Event,
+            relative_tolerance: 1.0e-6,
+            absolute_tolerance: None,
+            max_steps: 10_000_000,
+            reduce: 0.0,
+        }
     }
 }
 
@@ -24,7 +30,7 @@ pub(super) fn read_friction(table: &mut TableReader<'_>) -> Result<Friction, Sce
 }
 
 pub(super) fn read_solver(table: &mut TableReader<'_>) -> Result<Solver, SceneError> {
-    table.allow(&["method", "relative_tolerance", "absolute_tolerance", "max_steps"], &["reduce"])?;
+    table.allow(&["method", "relative_tolerance", "absolute_tolerance", "max_steps", "reduce"], &[])?;
     let defaults = Solver::default();
     let relative_tolerance = table.optional_number("relative_tolerance", &allowed::RELATIVE_TOLERANCE)?;
     let max_steps = table.optional_whole("max_steps", &allowed::MAX_STEPS)?;
@@ -33,6 +39,7 @@ pub(super) fn read_solver(table: &mut TableReader<'_>) -> Result<Solver, SceneEr
         relative_tolerance: relative_tolerance.unwrap_or(defaults.relative_tolerance),
         absolute_tolerance: table.optional_number("absolute_tolerance", &allowed::ABSOLUTE_TOLERANCE)?,
         max_steps: max_steps.map_or(defaults.max_steps, i64::unsigned_abs),
+        reduce: table.optional_number("reduce", &allowed::REDUCE)?.unwrap_or(defaults.reduce),
     })
 }
 

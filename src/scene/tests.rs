@@ -23,8 +23,13 @@ fn what_is_left_out_is_absent() {
     assert_eq!((layer.initial, &layer.roughness), (Initial::Relaxed, &Vec::new()));
     assert_eq!([&layer.vertical, &layer.horizontal, &layer.lateral_x, &layer.lateral_z], [&None; 4]);
     assert_eq!((&scene.description, &scene.friction, scene.extrapolation), (&None, &None, Extrapolation::Linear));
-    let defaults =
-        Solver { method: Method::Event, relative_tolerance: 1e-6, absolute_tolerance: None, max_steps: 10_000_000 };
+    let defaults = Solver {
+        method: Method::Event,
+        relative_tolerance: 1e-6,
+        absolute_tolerance: None,
+        max_steps: 10_000_000,
+        reduce: 0.0,
+    };
     assert_eq!(scene.solver, defaults);
     assert_eq!(scene.outputs, [OutputGroup::Forces, OutputGroup::Dissipation]);
     assert_eq!((scene.excitation.len(), scene.files.len(), scene.warnings.len()), (0, 0, 0));

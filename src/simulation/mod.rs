@@ -133,7 +133,9 @@ impl Simulation {
     }
 
     fn started(scene: &Scene, start: &Start) -> Self {
-        let model = Arc::new(Model::new(scene));
+        let mut model = Model::new(scene);
+        model.stand_still(model.profile.reduce(start.u), start.w);
+        let model = Arc::new(model);
         let settings = Settings::new(scene, &model);
         let followed = Followed { energy: settings.accounts.energy, tangents: settings.accounts.tangents };
         let integrator = Integrator::new(&model, followed);

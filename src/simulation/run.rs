@@ -27,6 +27,8 @@ pub(super) struct Run {
     pub(super) tangents: [f64; 4],
     /// Whether the integrator's rates at the start of the next step hold.
     pub(super) rates_hold: bool,
+    /// u and w at the start of the run, m.
+    pub(super) start: [f64; 2],
 }
 
 impl Run {
@@ -44,16 +46,29 @@ impl Run {
             since_event: 0.0,
             tangents: [0.0; 4],
             rates_hold: false,
+            start: [start.u, start.w],
         }
     }
 
     /// Takes over `other`, a run of the same scene, without allocating.
     pub(super) fn copy_from(&mut self, other: &Self) {
-        let Self { carrier, s, state, energies, counters, step_size, event_spacing, since_event, tangents, rates_hold } =
-            self;
+        let Self {
+            carrier,
+            s,
+            state,
+            energies,
+            counters,
+            step_size,
+            event_spacing,
+            since_event,
+            tangents,
+            rates_hold,
+            start,
+        } = self;
         (*carrier, *s, *energies, *counters) = (other.carrier, other.s, other.energies, other.counters);
         (*event_spacing, *since_event) = (other.event_spacing, other.since_event);
         (*step_size, *tangents, *rates_hold) = (other.step_size, other.tangents, other.rates_hold);
+        *start = other.start;
         state.copy_from(&other.state);
     }
 
@@ -109,9 +124,10 @@ impl Numbers for Run {
             since_event,
             tangents,
             rates_hold: _,
+            start,
         } = self;
         visit_all([carrier, s, state, energies, counters], visit);
-        visit_all([step_size, event_spacing, since_event, tangents], visit);
+        visit_all([step_size, event_spacing, since_event, tangents, start], visit);
     }
 }
 

@@ -1,5 +1,7 @@
 //! A run as it stands, to be kept outside of the program and gone on with bit for bit.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
 use super::run::Checkpoint;
@@ -86,6 +88,9 @@ impl Simulation {
         saved.write_into(&mut simulation.before, &simulation.model)?;
         check_ground(&simulation.before, &simulation.model, slack)?;
         simulation.go_back();
+        let [u, w] = simulation.run.start;
+        let model = Arc::make_mut(&mut simulation.model);
+        model.stand_still(model.profile.reduce(u), w);
         Ok(simulation)
     }
 }

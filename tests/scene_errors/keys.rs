@@ -37,7 +37,7 @@ fn unknown_keys() {
                 21,
                 "tolerance = 1",
                 21,
-                "solver.tolerance: unknown; allowed: method, relative_tolerance, absolute_tolerance, max_steps",
+                "solver.tolerance: unknown; allowed: method, relative_tolerance, absolute_tolerance, max_steps, reduce",
             ),
             (24, "hold = true", 24, "input.hold: unknown; allowed: extrapolation"),
             (27, "groups = []", 27, "fmu.groups: unknown; allowed: outputs"),
@@ -99,7 +99,6 @@ fn what_is_not_yet_supported() {
     let root = "name, description, layer, surface, friction, solver, input, fmu, excitation";
     let kinds = r#""flat", "sinusoid", "points", "file""#;
     let friction = "not yet supported; allowed: coulomb, shear_force";
-    let solver = "method, relative_tolerance, absolute_tolerance, max_steps";
     assert_refusals(
         "later",
         &[
@@ -122,7 +121,6 @@ fn what_is_not_yet_supported() {
             (18, "shear_strength = 1e5", 18, &format!("friction.shear_strength: {friction}")),
             (21, "method = 'step'", 21, r#"solver.method = 'step': not yet supported; allowed: "event""#),
             (21, "method = 'auto'", 21, r#"solver.method = 'auto': not yet supported; allowed: "event""#),
-            (21, "reduce = 0.0", 21, &format!("solver.reduce: not yet supported; allowed: {solver}")),
             (
                 31,
                 "until_pressure = 2e5",

@@ -119,6 +119,7 @@ fn values_out_of_range() {
             (21, "relative_tolerance = 0", 21, "solver.relative_tolerance = 0: expected a number > 0 and <= 0.1"),
             (21, "relative_tolerance = 0.2", 21, "solver.relative_tolerance = 0.2: expected a number > 0 and <= 0.1"),
             (21, "absolute_tolerance = 0", 21, "solver.absolute_tolerance = 0: expected a number > 0"),
+            (21, "reduce = 0.2", 21, "solver.reduce = 0.2: expected a number >= 0 and <= 0.1"),
             (21, "max_steps = 0", 21, &format!("solver.max_steps = 0: expected {steps}")),
             (21, "max_steps = 2147483648", 21, &format!("solver.max_steps = 2147483648: expected {steps}")),
             (21, "method = 'fast'", 21, r#"solver.method = 'fast': expected "event""#),

@@ -163,7 +163,7 @@ impl StageSolver {
         rates: &mut Rates,
     ) -> Result<(), NoConvergence> {
         self.place(model, point);
-        self.forces(point);
+        self.forces(model, point);
         if self.slips.is_empty() {
             self.solve_linear(model, point)?;
         } else {
@@ -179,7 +179,7 @@ impl StageSolver {
         self.system.solve();
         let change = self.correct();
         self.place(model, point);
-        self.forces(point);
+        self.forces(model, point);
         if change.is_finite() { Ok(()) } else { Err(NoConvergence) }
     }
 
@@ -194,7 +194,7 @@ impl StageSolver {
             self.system.solve();
             let change = self.correct();
             self.place(model, point);
-            self.forces(point);
+            self.forces(model, point);
             let left = self.residuals(model, point.beta);
             let next = change * (left / residual);
             let settled = left.min(next) <= tolerance;
@@ -228,12 +228,13 @@ impl StageSolver {
     }
 
     /// Forces of the links and on the masses, by the stage's law.
-    fn forces(&mut self, point: &StagePoint) {
+    fn forces(&mut self, model: &Model, point: &StagePoint) {
         let motion = LinkMotion::of(&self.state, &point.carrier);
         for kind in LinkKind::ALL {
             let law = &self.laws[kind as usize];
             let known = &self.history.force[kind as usize];
             self.forces.spring_and_damper(kind, (law.stiffness, law.damping), &motion, known);
+            model.subtract_still(kind, &mut self.forces.link[kind as usize]);
         }
         self.forces.sum_on_masses();
     }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::Spline;
+use super::{Spline, floor};
 
 const UNEVEN: [f64; 9] = [-1.0, -0.97, -0.2, -0.19, 0.4, 1.3, 1.31, 1.7, 3.0];
 const HEIGHTS: [f64; 9] = [0.3, 0.1, -0.4, -0.38, 0.9, 0.2, 0.25, -0.7, 0.3];
@@ -245,4 +245,14 @@ fn a_range_over_many_intervals_falls_back_to_all_of_them() {
     let everywhere = spline.local_bounds(0.4, 0.8);
     assert!(everywhere.z_max >= 1.0 - 1e-12 && everywhere.z_max < 1.1);
     assert!(spline.local_bounds(0.45, 0.55).z_max < 0.2);
+}
+
+#[test]
+fn the_floor_is_that_of_the_standard_library() {
+    let edges =
+        [0.0, 0.5, 1.0, 1.0 - f64::EPSILON, 4_503_599_627_370_495.5, 4_503_599_627_370_496.0, 1e300, f64::INFINITY];
+    for x in edges.into_iter().flat_map(|x| [x, -x]).chain((-1000..1000).map(|i| 0.137 * f64::from(i))) {
+        assert_eq!(floor(x), x.floor(), "{x}");
+    }
+    assert!(floor(f64::NAN).is_nan());
 }

@@ -1,5 +1,6 @@
 //! The layer, its order and the profile in a description.
 
+use asperity::model::Model;
 use asperity::scene::{Link, Parameter, Scene, Surface};
 
 use super::{LEFT_OUT, Row, number, or_left_out, under, word};
@@ -81,7 +82,7 @@ fn paper_order(scene: &Scene) -> String {
 }
 
 fn order_as_coded(scene: &Scene) -> String {
-    let maxwell = maxwell_variables(scene);
+    let maxwell = Model::new(scene).maxwell_variables();
     let order = 4 * scene.layer.masses + maxwell;
     format!("as coded {order}: two places and two velocities a mass, {maxwell} Maxwell variables")
 }

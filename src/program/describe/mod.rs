@@ -1,6 +1,7 @@
 //! `asperity describe`: what is in a scene and what is left out.
 
 mod layer;
+mod reduction;
 
 use std::io::Write as _;
 use std::path::Path as FilePath;
@@ -43,7 +44,9 @@ pub(super) fn rows(scene: &Scene) -> Vec<Row> {
     let mut rows = layer::rows(scene);
     rows.extend(friction(scene));
     rows.extend(outputs(scene));
-    rows.extend([("Solver", solver(scene)), ("Input", input(scene))]);
+    rows.push(("Solver", solver(scene)));
+    rows.extend(reduction::rows(scene));
+    rows.push(("Input", input(scene)));
     rows.extend(excitation(scene));
     rows
 }

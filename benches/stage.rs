@@ -1,0 +1,115 @@
+//! One implicit stage against the number of masses k and of Maxwell elements n, and against its floor:
+//! `cargo bench --bench stage`.
+
+#![allow(missing_docs, clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "like a test")]
+
+#[allow(dead_code, unreachable_pub, reason = "shared with the other benchmarks")]
+mod common;
+#[allow(unreachable_pub, reason = "a benchmark's own")]
+#[path = "common/floor.rs"]
+mod floor;
+
+use std::time::Duration;
+
+use asperity::integrator::{Followed, Integrator, STAGES, Tolerance};
+use asperity::model::{Carrier, Forces, Mode, Model, State};
+use asperity::scene::Path;
+use common::{layer, parse, prints_tables, side_by_side};
+use criterion::{BenchmarkId, Criterion, Throughput};
+use floor::Floor;
+
+/// Length of the step, s.
+const STEP: f64 = 1e-6;
+/// The implicit stages of a step: a benchmark takes them all, so that the earlier ones are there to be summed.
+const IMPLICIT: usize = STAGES - 1;
+
+fn main() {
+    let mut criterion = common::criterion();
+    against_masses(&mut criterion);
+    against_elements(&mut criterion);
+    criterion.final_summary();
+    if prints_tables() {
+        print_ratios();
+    }
+}
+
+/// A layer and the room to try steps of it.
+struct Stages {
+    model: Model,
+    state: State,
+    carrier: Carrier,
+    integrator: Integrator,
+    tolerance: Tolerance,
+}
+
+impl Stages {
+    /// A free layer, or one that slips.
+    fn new(masses: usize, elements: usize, mode: Mode) -> Self {
+        let model = Model::new(&parse(&layer(masses, elements, 1e-2)));
+        let mut state = State::new(masses, model.maxwell_variables());
+        let noise = |i: usize| ((i * 7919) % 1000) as f64 * 1e-3;
+        for i in 0..masses {
+            (state.elongation_x[i], state.velocity_x[i]) = (1e-7 * noise(i), 1e-2 * (1.0 + noise(i + 1)));
+            (state.elongation_z[i], state.velocity_z[i]) = (1e-7 * noise(i + 2), 1e-2 * noise(i + 3));
+            if mode.slips() {
+                let ground = model.ground(model.rest_x[i] + state.elongation_x[i]);
+                state.elongation_z[i] = ground.height - model.rest_z[i];
+                state.velocity_z[i] = ground.slope * state.velocity_x[i];
+                (state.mode[i], state.ground[i]) = (mode, ground);
+            }
+        }
+        let still = (Path::default(), Path::default());
+        let carrier = Carrier::new(0.0, (0.0, 0.0), still, &model.profile);
+        let mut forces = Forces::new(&model);
+        forces.evaluate(&model, &state, &carrier.at(0.0));
+        let mut integrator = Integrator::new(&model, Followed::default());
+        integrator.begin(&model, &state, &carrier.at(0.0), &forces);
+        let tolerance = Tolerance::new(&model, 1e-6, 1e-11);
+        Self { model, state, carrier, integrator, tolerance }
+    }
+
+    /// All stages of a step, and its error estimate.
+    fn run(&mut self) {
+        let Self { model, state, carrier, integrator, tolerance } = self;
+        std::hint::black_box(integrator.attempt(model, state, carrier, (0.0, STEP), tolerance).unwrap());
+    }
+}
+
+fn against_masses(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("stage against k, n = 3");
+    for masses in [100, 1000, 10_000, 100_000] {
+        group.throughput(Throughput::Elements((masses * IMPLICIT) as u64));
+        for (name, mode) in [("free", Mode::Free), ("slipping", Mode::Forward)] {
+            let mut stages = Stages::new(masses, 3, mode);
+            group.bench_function(BenchmarkId::new(name, masses), |bencher| bencher.iter(|| stages.run()));
+        }
+    }
+    group.finish();
+}
+
+fn against_elements(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("stage against n, k = 1000");
+    group.throughput(Throughput::Elements((1000 * IMPLICIT) as u64));
+    for elements in [0, 1, 3, 7, 15] {
+        let mut stages = Stages::new(1000, elements, Mode::Free);
+        group.bench_function(BenchmarkId::new("free", elements), |bencher| bencher.iter(|| stages.run()));
+    }
+    group.finish();
+}
+
+/// Stage and floor in turns, ns a mass and stage.
+fn print_ratios() {
+    println!("\none stage of the free layer and its floor, ns a mass");
+    println!("{:>8} {:>4} {:>8} {:>8} {:>6}", "k", "n", "stage", "floor", "ratio");
+    for masses in [100, 1000, 10_000, 100_000] {
+        for elements in [0, 3, 15] {
+            let mut stages = Stages::new(masses, elements, Mode::Free);
+            let mut floor = Floor::new(&stages.model, STEP);
+            floor.stages();
+            assert!(floor.residual() < 1e-12, "the floor solves its equations: {}", floor.residual());
+            let times = side_by_side([&mut || stages.run(), &mut || floor.stages()], Duration::from_secs(2));
+            let [stage, floor] = times.shortest.map(|time| 1e9 * time / (masses * IMPLICIT) as f64);
+            println!("{masses:>8} {elements:>4} {stage:>8.1} {floor:>8.1} {:>6.2}", times.ratio);
+        }
+    }
+}
