@@ -97,7 +97,7 @@ fn errors_fall_with_the_tolerance_down_to_what_the_reference_knows() {
     assert_eq!(number(reference[0], "tolerance"), 1e-11);
     for (i, row) in event.iter().enumerate() {
         assert_eq!(number(row, "tolerance"), format!("1e-{}", i + 2).parse::<f64>().unwrap());
-        assert!(number(row, "time") > 0.0 && number(row, "steps") > 0.0 && row["failure"].is_empty());
+        assert!(number(row, "run_time") > 0.0 && number(row, "steps") > 0.0 && row["failure"].is_empty());
     }
     for column in ["error_F_x", "error_F_z", "error_E_diss"] {
         // Eight powers of ten of the tolerance; half of them at least in the error, whatever the scene's constant.
@@ -135,11 +135,12 @@ fn communication_steps_have_their_ladder() {
 fn peers_have_their_lines_and_those_of_other_scenes_none() {
     let folder = scratch("report-peers");
     let peers = folder.join("peers.csv");
-    let head = "scene,program,method,tolerance,error_F_x,error_F_z,error_E_diss,time,steps,events";
+    let head = "scene,program,method,tolerance,error_F_x,error_F_z,error_E_diss,run_time,steps,events";
     let lines = [
         "sinusoid,CVODE,klu,1e-3,2e-3,3e-4,4e-4,0.25,1234567,1",
         "sinusoid,CVODE,klu,1e-6,2e-6,3e-7,4e-7,0.5,3575,1",
         "sinusoid,scipy,Radau,1e-6,,,,,,",
+        "sinusoid,asperity,event,1e-6,2e-6,3e-7,4e-7,0.5,7654321,1",
         "another,CVODE,cond,1e-6,2e-6,3e-7,4e-7,0.5,7654321,1",
     ];
     fs::write(&peers, format!("{head}\n{}\n", lines.join("\n"))).unwrap();
@@ -151,7 +152,7 @@ fn peers_have_their_lines_and_those_of_other_scenes_none() {
     assert!(!page.contains("7654321") && !page.contains("cond"));
     let rows = errors(&folder);
     let klu: Vec<&Row> = rows.iter().filter(|row| row["method"] == "klu").collect();
-    assert_eq!(klu.iter().map(|row| number(row, "time")).collect::<Vec<_>>(), [0.25, 0.5]);
+    assert_eq!(klu.iter().map(|row| number(row, "run_time")).collect::<Vec<_>>(), [0.25, 0.5]);
     assert!(rows.iter().any(|row| row["method"] == "Radau" && row["failure"] == "no run time"));
     let none = changed(&folder, "name = \"sinusoid\"", "name = \"unheard-of\"");
     let text = report(&none, &folder, &options);
@@ -169,7 +170,7 @@ fn peers_that_cannot_be_read_are_named_before_anything_is_run() {
     fs::write(&peers, "scene,program\nsinusoid,CVODE\n").unwrap();
     let text = refused();
     assert!(text.contains("no column method; there are scene, program"), "{text}");
-    let head = "scene,program,method,tolerance,error_F_x,error_F_z,error_E_diss,time,steps,events";
+    let head = "scene,program,method,tolerance,error_F_x,error_F_z,error_E_diss,run_time,steps,events";
     fs::write(&peers, format!("{head}\nsinusoid,CVODE,klu,1e-3,soon,1,1,1,1,1\n")).unwrap();
     let text = refused();
     assert!(text.contains("line 2: expected a number, found \"soon\""), "{text}");
@@ -194,7 +195,7 @@ fn a_rung_that_gives_up_says_why() {
     let (failed, done): (Vec<&Row>, Vec<&Row>) =
         of_method(&rows, "event").into_iter().partition(|row| !row["failure"].is_empty());
     assert!(!failed.is_empty() && !done.is_empty(), "{rows:?}");
-    assert!(failed.iter().all(|row| row["failure"].contains("solver.max_steps") && row["time"].is_empty()));
+    assert!(failed.iter().all(|row| row["failure"].contains("solver.max_steps") && row["run_time"].is_empty()));
     let page = fs::read_to_string(folder.join("index.html")).unwrap();
     assert!(page.contains("class=\"reason\"") && page.contains("solver.max_steps"));
     let reference = of_method(&rows, "reference")[0];

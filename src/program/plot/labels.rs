@@ -57,7 +57,7 @@ impl Labels {
         let [left, top, right, bottom] = rectangle(corner, size);
         let [area_left, area_top, area_right, area_bottom] = self.area;
         let inside = left >= area_left && top >= area_top && right <= area_right && bottom <= area_bottom;
-        let apart = |other: &Rectangle| other[2] < left || other[0] > right || other[3] < top || other[1] > bottom;
+        let apart = |other: &Rectangle| other[2] <= left || other[0] >= right || other[3] <= top || other[1] >= bottom;
         inside && self.taken.iter().all(apart)
     }
 }

@@ -187,7 +187,7 @@ impl Ladder {
     }
 
     /// The rungs that have a place on logarithmic axes.
-    fn drawn(&self) -> impl Iterator<Item = &Rung> {
+    fn drawn(&self) -> impl Iterator<Item = &Rung> + Clone {
         self.rungs.iter().filter(|rung| is_drawn(rung.x) && is_drawn(rung.y))
     }
 }

@@ -81,7 +81,12 @@ pub(super) fn climb(reference: &Reference, progress: &Progress) -> Vec<Row> {
             table.push(compare(given, Some(step), measured, parts));
         }
     }
-    table.push(compare(Given::Motion, None, own.map_err(|error| error.to_string()), finest));
+    let mut own = compare(Given::Motion, None, own.map_err(|error| error.to_string()), finest);
+    if let Ok((figures, _)) = &mut own.result {
+        // It was spent on the rows: there are as many as communication points at the finest.
+        figures.time = None;
+    }
+    table.push(own);
     table
 }
 

@@ -4,12 +4,22 @@ use std::path::Path;
 
 use csv::StringRecord;
 
-use super::ladder::{Figures, Row};
+use super::ladder::{Figures, PROGRAM, Row};
 use crate::program::error::ProgramError;
 
-/// scene, program, method, tolerance; errors over the largest value; processor time in s; steps and mode changes.
-const COLUMNS: [&str; 10] =
-    ["scene", "program", "method", "tolerance", "error_F_x", "error_F_z", "error_E_diss", "time", "steps", "events"];
+/// Errors over the largest value, processor time in s, steps and mode changes.
+const COLUMNS: [&str; 10] = [
+    "scene",
+    "program",
+    "method",
+    "tolerance",
+    "error_F_x",
+    "error_F_z",
+    "error_E_diss",
+    "run_time",
+    "steps",
+    "events",
+];
 
 /// The peers' rows, and the scenes that the file has.
 #[derive(Debug, Default)]
@@ -20,7 +30,7 @@ pub(super) struct Peers {
     pub(super) scenes: Vec<String>,
 }
 
-/// Reads the rows of the scene that goes by one of `names`.
+/// Reads the rows of the scene that goes by one of `names`. Those of this program are left out: its own are measured here.
 pub(super) fn read(path: &Path, names: &[&str]) -> Result<Peers, ProgramError> {
     let wrong = |message: String| ProgramError::ResultFile { path: path.to_owned(), message };
     let file = std::fs::File::open(path).map_err(ProgramError::file("read", path))?;
@@ -34,7 +44,7 @@ pub(super) fn read(path: &Path, names: &[&str]) -> Result<Peers, ProgramError> {
         if !peers.scenes.iter().any(|scene| scene == fields[0]) {
             peers.scenes.push(fields[0].to_owned());
         }
-        if names.contains(&fields[0]) {
+        if names.contains(&fields[0]) && fields[1] != PROGRAM {
             let line = record.position().map_or(0, csv::Position::line);
             peers.rows.push(row(fields).map_err(|message| wrong(format!("line {line}: {message}")))?);
         }

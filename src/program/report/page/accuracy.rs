@@ -64,7 +64,10 @@ fn left_out(reasons: &[String]) -> String {
 fn peers(command: &Report) -> String {
     let text = |path: &std::path::PathBuf| {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        format!(" Dashed: other programs, whose errors and times are those in <code>{}</code>.", escape(&*name))
+        format!(
+            " Dashed: other programs, whose errors and times, of whole processes, are those in <code>{}</code>.",
+            escape(&*name)
+        )
     };
     command.peers.as_ref().map_or_else(String::new, text)
 }
