@@ -2,7 +2,7 @@
 
 use super::{Attempt, Integrator, METHOD, Rates, STAGES, Tolerance};
 use crate::math::{sum_of, weighted_sum};
-use crate::model::{CarrierPoint, LinkKind, Model};
+use crate::model::{CarrierPoint, LinkKind, Mode, Model};
 
 /// The estimated errors of one step, and room for them.
 #[derive(Clone, Debug)]
@@ -30,26 +30,27 @@ impl ErrorRoom {
 impl Integrator {
     /// The embedded estimate of the step of length `h` tried last, in the tolerance's norm and of F_z.
     ///
-    /// The carrier's displacement is known, not integrated; yet a step must be able to see it: the dense output, the
-    /// events between the stages and the energies do. So what the method would miss of it counts as an error too: where
-    /// every mass sticks, there is no other.
+    /// The carrier's displacement is known, not integrated; yet where masses are in contact a step must be able to see it:
+    /// the dense output, the events between the stages and the energies do. So what the method would miss of it counts as
+    /// an error too: where every mass sticks, there is no other.
     pub(super) fn error(&mut self, model: &Model, h: f64, tolerance: &Tolerance) -> Attempt {
-        self.collect_errors(h);
+        let carrier_error = carrier_error(&self.carrier, h);
+        self.collect_errors(h, &carrier_error);
         let rates = &self.carrier[STAGES - 1];
         let (end, room) = (&self.solver.state, &self.error_room);
-        let (u, w) = carrier_error(&self.carrier, h);
         let masses = model.masses();
-        let along = |(error, carrier_error): (&[f64], f64), elongation: &[f64]| {
-            let square = |i: usize| error[i] * error[i] + carrier_error * carrier_error;
-            sum_of(masses, |i| square(i) / tolerance.of_position(elongation[i]))
+        let place = |error: &[f64], elongation: &[f64]| {
+            sum_of(masses, |i| error[i] * error[i] / tolerance.of_position(elongation[i]))
         };
         let speed = |error: &[f64], velocity: &[f64], carrier_rate: f64| {
             sum_of(masses, |i| error[i] * error[i] / tolerance.of_velocity(velocity[i] - carrier_rate))
         };
-        let mut sum = along((&room.x, u), &end.elongation_x)
-            + along((&room.z, w), &end.elongation_z)
+        let (in_contact, unseen) = self.unseen(&carrier_error, tolerance);
+        let mut sum = place(&room.x, &end.elongation_x)
+            + place(&room.z, &end.elongation_z)
             + speed(&room.v_x, &end.velocity_x, rates.u_rate)
-            + speed(&room.v_z, &end.velocity_z, rates.w_rate);
+            + speed(&room.v_z, &end.velocity_z, rates.w_rate)
+            + in_contact;
         let vertical = &model.links[LinkKind::Vertical as usize];
         let mut force_error = sum_of(masses, |i| vertical.stiffness * room.z[i] + vertical.damping * room.v_z[i]);
         for kind in LinkKind::ALL {
@@ -61,21 +62,42 @@ impl Integrator {
                 force_error += self.error_room.force.iter().sum::<f64>();
             }
         }
-        Attempt { error: (sum / masses as f64).sqrt(), force_error }
+        let mean = |sum: f64| (sum / masses as f64).sqrt();
+        Attempt { error: mean(sum), unseen: mean(unseen), force_error }
     }
 
-    /// The errors of places and velocities; along z those of a contact follow its slope.
-    fn collect_errors(&mut self, h: f64) {
+    /// The squares of what the method misses of the carrier's displacement, over the masses in contact and over the free ones.
+    fn unseen(&self, (position, _): &CarrierErrors, tolerance: &Tolerance) -> (f64, f64) {
+        let (mut in_contact, mut free) = (0.0, 0.0);
+        if position.0 == 0.0 && position.1 == 0.0 {
+            return (in_contact, free);
+        }
+        let end = &self.solver.state;
+        for (mode, (x, z)) in end.mode.iter().zip(end.elongation_x.iter().zip(&end.elongation_z)) {
+            let square = position.0 * position.0 / tolerance.of_position(*x)
+                + position.1 * position.1 / tolerance.of_position(*z);
+            if mode.in_contact() { in_contact += square } else { free += square }
+        }
+        (in_contact, free)
+    }
+
+    /// The errors of places and velocities against the carrier. A sticking mass has none, and along z those of a contact
+    /// follow its slope.
+    fn collect_errors(&mut self, h: f64, (position, velocity): &CarrierErrors) {
         let stages = &self.stages;
-        let sum = |errors: &mut [f64], rate: fn(&Rates) -> &[f64]| {
+        let sum = |errors: &mut [f64], rate: fn(&Rates) -> &[f64], of_carrier: f64| {
             weighted_sum(errors, stages.iter().zip(&METHOD.error).map(|(stage, weight)| (h * weight, rate(stage))));
+            errors.iter_mut().for_each(|error| *error -= of_carrier);
         };
         let (room, end) = (&mut self.error_room, &self.solver.state);
-        sum(&mut room.x, |stage| &stage.velocity_x);
-        sum(&mut room.z, |stage| &stage.velocity_z);
-        sum(&mut room.v_x, |stage| &stage.acceleration_x);
-        sum(&mut room.v_z, |stage| &stage.acceleration_z);
+        sum(&mut room.x, |stage| &stage.velocity_x, position.0);
+        sum(&mut room.z, |stage| &stage.velocity_z, position.1);
+        sum(&mut room.v_x, |stage| &stage.acceleration_x, velocity.0);
+        sum(&mut room.v_z, |stage| &stage.acceleration_z, velocity.1);
         for &i in self.solver.contacts() {
+            if end.mode[i] == Mode::Stick {
+                (room.x[i], room.v_x[i]) = (0.0, 0.0);
+            }
             let slope = end.ground[i].slope;
             (room.z[i], room.v_z[i]) = (slope * room.x[i], slope * room.v_x[i]);
         }
@@ -97,8 +119,15 @@ impl Integrator {
     }
 }
 
-/// The embedded estimate of u and w, as if their rates were integrated, m.
-fn carrier_error(carrier: &[CarrierPoint; STAGES], h: f64) -> (f64, f64) {
-    let stages = carrier.iter().zip(&METHOD.error).map(|(at, weight)| (at, h * weight));
-    stages.fold((0.0, 0.0), |(u, w), (at, weight)| (u + weight * at.u_rate, w + weight * at.w_rate))
+/// What the method's embedded estimate says of u and w (m), and of u̇ and ẇ (m/s), as if they were integrated.
+type CarrierErrors = ((f64, f64), (f64, f64));
+
+fn carrier_error(carrier: &[CarrierPoint; STAGES], h: f64) -> CarrierErrors {
+    let (mut position, mut velocity) = ((0.0, 0.0), (0.0, 0.0));
+    for (at, weight) in carrier.iter().zip(&METHOD.error) {
+        let step = h * weight;
+        position = (position.0 + step * at.u_rate, position.1 + step * at.w_rate);
+        velocity = (velocity.0 + step * at.u_acceleration, velocity.1 + step * at.w_acceleration);
+    }
+    (position, velocity)
 }

@@ -62,6 +62,9 @@ pub struct Followed {
 pub struct Attempt {
     /// The error estimate over the tolerance: at most 1 for a good step.
     pub error: f64,
+    /// What the step did not see of the carrier's motion over the free masses, against the tolerance: of account only where
+    /// one of them may touch.
+    pub unseen: f64,
     /// The error estimate of F_z, N.
     pub force_error: f64,
 }
@@ -134,9 +137,11 @@ impl Integrator {
             let at = carrier.at(s + METHOD.c[i] * h);
             self.carrier[i] = at;
             self.collect_history(state, h, i);
+            let driven = self.drive(h, i);
+            let place = (carrier.place + at.du, carrier.w + at.dw);
+            let moved = carrier.moved(s, METHOD.c[i] * h).0;
+            let point = StagePoint { beta, carrier: at, driven, moved, place: place.0, w: place.1 };
             self.predict(state, beta, i);
-            let moved = carrier.moved(s, METHOD.c[i] * h);
-            let point = StagePoint { beta, carrier: at, moved, place: carrier.place + at.du, w: carrier.w + at.dw };
             self.solver.solve(model, &point, tolerance.newton(beta), &mut self.stages[i])?;
             if self.accounts_energy {
                 self.exchange[i] = Exchange::evaluate(model, &self.solver.state, &at, &self.solver.forces);
@@ -263,6 +268,27 @@ impl Integrator {
         for kind in LinkKind::ALL.into_iter().filter(|&kind| self.maxwell.has(kind)) {
             self.maxwell.known_force(kind, i, earlier, &mut history.force[kind as usize]);
         }
+    }
+
+    /// How far stage `i` takes the carrier to have moved, along x and z, m: by the method's own quadrature of its rate.
+    ///
+    /// So the elongations are integrated as the differences that they are, ė = ẋ - u̇, and the velocities against the
+    /// carrier's, with -ü as a load: a carrier that swings far leaves no error in a layer that swings with it. The starred
+    /// velocities take over what the quadrature of ü misses of u̇.
+    fn drive(&mut self, h: f64, i: usize) -> (f64, f64) {
+        let (mut moved, mut missed) = ((0.0, 0.0), (0.0, 0.0));
+        for (at, weight) in self.carrier[..=i].iter().zip(&METHOD.a[i]) {
+            let step = h * weight;
+            moved = (moved.0 + step * at.u_rate, moved.1 + step * at.w_rate);
+            missed = (missed.0 + step * at.u_acceleration, missed.1 + step * at.w_acceleration);
+        }
+        let (start, here) = (&self.carrier[0], &self.carrier[i]);
+        let history = &mut self.solver.history;
+        let by_x = here.u_rate - start.u_rate - missed.0;
+        let by_z = here.w_rate - start.w_rate - missed.1;
+        history.velocity_x.iter_mut().for_each(|star| *star += by_x);
+        history.velocity_z.iter_mut().for_each(|star| *star += by_z);
+        moved
     }
 
     /// The velocities from which Newton's iterations start. For slipping masses the accelerations of the earlier stages are

@@ -64,6 +64,11 @@ impl Carrier {
         self.u_path.period().min(self.w_path.period())
     }
 
+    /// The amplitude of w's sine, m.
+    pub fn swing(&self) -> f64 {
+        self.w_path.amplitude.abs()
+    }
+
     /// The rates u̇, ẇ just after the start of the piece, m/s.
     pub fn initial_rates(&self) -> (f64, f64) {
         let start = self.at(0.0);

@@ -25,6 +25,9 @@ const MOST_DEFECT: f64 = 5.0;
 ///
 /// Recommended 1.5 to 3: shorter ones end before there is an event, longer ones are less accurate where they are cut.
 const OF_SPACING: f64 = 2.0;
+/// Share of a sine's amplitude by which the quintic of the dense output may be off it: (ωh)⁶/46080 with h a quarter of the
+/// period at most, [`OF_PERIOD`].
+const UNSEEN: f64 = 5e-4;
 /// What is left of a step whose stages could not be solved.
 const AFTER_FAILURE: f64 = 0.25;
 
@@ -252,13 +255,25 @@ impl Simulation {
         let run = &self.run;
         let tolerance = &self.settings.tolerance;
         let attempt = self.integrator.attempt(&self.model, &run.state, &run.carrier, (run.s, h), tolerance);
-        let error = attempt.map_or(f64::NAN, |attempt| attempt.error);
+        let mut error = attempt.map_or(f64::NAN, |attempt| attempt.error);
+        if attempt.is_ok_and(|attempt| attempt.unseen > error.max(1.0)) && self.may_touch(h) {
+            error = attempt.map_or(error, |attempt| attempt.unseen);
+        }
         if error <= 1.0 || (any_error && error.is_finite()) {
             return attempt.ok();
         }
         self.run.counters.rejected += 1;
         self.run.step_size = h * if error.is_finite() { growth(error).min(SAFETY) } else { AFTER_FAILURE };
         None
+    }
+
+    /// Whether a free mass may have come to the profile in the step of length `h` tried last, which did not see all of the
+    /// carrier's motion.
+    fn may_touch(&self, h: f64) -> bool {
+        let dense = self.integrator.dense(&self.model, &self.run.carrier, &self.run.state, (self.run.s, h));
+        let reach = self.model.profile.bounds().z_max + UNSEEN * self.run.carrier.swing();
+        let modes = self.run.state.mode.iter().enumerate();
+        modes.into_iter().any(|(i, mode)| !mode.in_contact() && dense.height(i).range().0 <= reach)
     }
 
     fn count_work(&self, work: &mut u64) -> Result<(), SimulationError> {

@@ -43,8 +43,10 @@ pub(super) struct StagePoint {
     pub beta: f64,
     /// The carrier at the stage.
     pub carrier: CarrierPoint,
-    /// How far the carrier has moved since the start of the step, along x and z, m.
-    pub moved: (f64, f64),
+    /// How far the stage takes the carrier to have moved since the start of the step, along x and z, m.
+    pub driven: (f64, f64),
+    /// How far it has moved along x, m: what a sticking mass stays behind.
+    pub moved: f64,
     /// u at the stage as a place on the profile, m.
     pub place: f64,
     /// w at the stage, m.
@@ -215,10 +217,12 @@ impl StageSolver {
     fn place(&mut self, model: &Model, point: &StagePoint) {
         let beta = point.beta;
         let (state, history) = (&mut self.state, &self.history);
-        carry(&mut state.elongation_x, &history.elongation_x, (beta, &state.velocity_x), point.moved.0);
-        carry(&mut state.elongation_z, &history.elongation_z, (beta, &state.velocity_z), point.moved.1);
+        carry(&mut state.elongation_x, &history.elongation_x, (beta, &state.velocity_x), point.driven.0);
+        carry(&mut state.elongation_z, &history.elongation_z, (beta, &state.velocity_z), point.driven.1);
         for &i in &self.contacts {
-            if state.mode[i] != Mode::Stick {
+            if state.mode[i] == Mode::Stick {
+                state.elongation_x[i] = history.elongation_x[i] - point.moved;
+            } else {
                 let ground = model.ground(model.rest_x[i] + (point.place + state.elongation_x[i]));
                 state.velocity_z[i] = ground.slope * state.velocity_x[i];
                 state.ground[i] = ground;
