@@ -1,8 +1,9 @@
 //! The embedded error estimate of a step.
 
-use super::{Attempt, Integrator, METHOD, Rates, STAGES, Tolerance};
+use super::maxwell::Maxwell;
+use super::{Attempt, Rates, Tableau, Tolerance};
 use crate::math::{sum_of, weighted_sum};
-use crate::model::{CarrierPoint, LinkKind, Model};
+use crate::model::{CarrierPoint, LinkKind, Model, State};
 
 /// The estimated errors of one step, and room for them.
 #[derive(Clone, Debug)]
@@ -27,17 +28,29 @@ impl ErrorRoom {
     }
 }
 
-impl Integrator {
-    /// The embedded estimate of the step of length `h` tried last, in the tolerance's norm and of F_z.
+/// A step that was tried.
+#[derive(Clone, Copy)]
+pub(super) struct Tried<'a, const STAGES: usize> {
+    pub tableau: &'a Tableau<STAGES>,
+    pub maxwell: &'a Maxwell<STAGES>,
+    pub stages: &'a [Rates],
+    /// The carrier at the stages.
+    pub carrier: &'a [CarrierPoint],
+    pub end: &'a State,
+    /// The masses in contact.
+    pub contacts: &'a [usize],
+}
+
+impl<const STAGES: usize> Tried<'_, STAGES> {
+    /// The embedded estimate of the step, of length `h`, in the tolerance's norm and of F_z.
     ///
     /// The carrier's displacement is known, not integrated; yet a step must be able to see it: the dense output, the
     /// events between the stages and the energies do. So what the method would miss of it counts as an error too: where
     /// every mass sticks, there is no other.
-    pub(super) fn error(&mut self, model: &Model, h: f64, tolerance: &Tolerance) -> Attempt {
-        self.collect_errors(h);
-        let rates = &self.carrier[STAGES - 1];
-        let (end, room) = (&self.solver.state, &self.error_room);
-        let (u, w) = carrier_error(&self.carrier, h);
+    pub(super) fn error(&self, model: &Model, h: f64, tolerance: &Tolerance, room: &mut ErrorRoom) -> Attempt {
+        self.collect(h, room);
+        let (end, rates) = (self.end, &self.carrier[STAGES - 1]);
+        let (u, w) = self.carrier_error(h);
         let masses = model.masses();
         let along = |(error, carrier_error): (&[f64], f64), elongation: &[f64]| {
             let square = |i: usize| error[i] * error[i] + carrier_error * carrier_error;
@@ -56,37 +69,36 @@ impl Integrator {
             if !self.maxwell.has(kind) {
                 continue;
             }
-            sum += self.maxwell_error(kind, tolerance);
+            sum += self.maxwell_error(kind, tolerance, room);
             if kind == LinkKind::Vertical {
-                force_error += self.error_room.force.iter().sum::<f64>();
+                force_error += room.force.iter().sum::<f64>();
             }
         }
         Attempt { error: (sum / masses as f64).sqrt(), force_error }
     }
 
     /// The errors of places and velocities; along z those of a contact follow its slope.
-    fn collect_errors(&mut self, h: f64) {
-        let stages = &self.stages;
+    fn collect(&self, h: f64, room: &mut ErrorRoom) {
+        let weights = &self.tableau.error;
         let sum = |errors: &mut [f64], rate: fn(&Rates) -> &[f64]| {
-            weighted_sum(errors, stages.iter().zip(&METHOD.error).map(|(stage, weight)| (h * weight, rate(stage))));
+            let counting = self.stages.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
+            weighted_sum(errors, counting.map(|(stage, weight)| (h * weight, rate(stage))));
         };
-        let (room, end) = (&mut self.error_room, &self.solver.state);
         sum(&mut room.x, |stage| &stage.velocity_x);
         sum(&mut room.z, |stage| &stage.velocity_z);
         sum(&mut room.v_x, |stage| &stage.acceleration_x);
         sum(&mut room.v_z, |stage| &stage.acceleration_z);
-        for &i in self.solver.contacts() {
-            let slope = end.ground[i].slope;
+        for &i in self.contacts {
+            let slope = self.end.ground[i].slope;
             (room.z[i], room.v_z[i]) = (slope * room.x[i], slope * room.v_x[i]);
         }
     }
 
     /// The sum of squares of the errors of the Maxwell elements' forces of the links of `kind`.
-    fn maxwell_error(&mut self, kind: LinkKind, tolerance: &Tolerance) -> f64 {
-        let end = &self.solver.state;
-        let e = if kind.is_along_x() { &end.elongation_x } else { &end.elongation_z };
-        let force = &mut self.error_room.force[..kind.count(e.len())];
-        self.maxwell.force_error(kind, &self.stages, force);
+    fn maxwell_error(&self, kind: LinkKind, tolerance: &Tolerance, room: &mut ErrorRoom) -> f64 {
+        let e = if kind.is_along_x() { &self.end.elongation_x } else { &self.end.elongation_z };
+        let force = &mut room.force[..kind.count(e.len())];
+        self.maxwell.force_error(kind, self.stages, force);
         let per_glassy = tolerance.per_glassy(kind);
         let error = |i: usize| per_glassy * force[i];
         if kind.is_lateral() {
@@ -95,10 +107,10 @@ impl Integrator {
             sum_of(force.len(), |i| error(i) * error(i) / tolerance.of_position(e[i]))
         }
     }
-}
 
-/// The embedded estimate of u and w, as if their rates were integrated, m.
-fn carrier_error(carrier: &[CarrierPoint; STAGES], h: f64) -> (f64, f64) {
-    let stages = carrier.iter().zip(&METHOD.error).map(|(at, weight)| (at, h * weight));
-    stages.fold((0.0, 0.0), |(u, w), (at, weight)| (u + weight * at.u_rate, w + weight * at.w_rate))
+    /// The embedded estimate of u and w, as if their rates were integrated, m.
+    fn carrier_error(&self, h: f64) -> (f64, f64) {
+        let stages = self.carrier.iter().zip(&self.tableau.error).map(|(at, weight)| (at, h * weight));
+        stages.fold((0.0, 0.0), |(u, w), (at, weight)| (u + weight * at.u_rate, w + weight * at.w_rate))
+    }
 }
