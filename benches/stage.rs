@@ -11,7 +11,7 @@ mod floor;
 
 use std::time::Duration;
 
-use asperity::integrator::{Followed, Integrator, STAGES, Tolerance};
+use asperity::integrator::{Followed, Integrator, STAGES, Steps, Tolerance};
 use asperity::model::{Carrier, Forces, Mode, Model, State};
 use asperity::scene::Path;
 use common::{layer, parse, prints_tables, side_by_side};
@@ -62,7 +62,7 @@ impl Stages {
         let carrier = Carrier::new(0.0, (0.0, 0.0), still, &model.profile);
         let mut forces = Forces::new(&model);
         forces.evaluate(&model, &state, &carrier.at(0.0));
-        let mut integrator = Integrator::new(&model, Followed::default());
+        let mut integrator = Integrator::new(&model, Followed::default(), Steps::Accurate);
         integrator.begin(&model, &state, &carrier.at(0.0), &forces);
         let tolerance = Tolerance::new(&model, 1e-6, 1e-11);
         Self { model, state, carrier, integrator, tolerance }

@@ -98,6 +98,29 @@ fn value(variables: &[Variable], values: &[f64], name: &str) -> f64 {
     values[variables.iter().position(|variable| variable.name == name).unwrap()]
 }
 
+/// Nor does a run by time steps, nor one that goes from one driver to the other.
+#[test]
+fn other_methods_allocate_nothing() {
+    for method in ["step", "auto"] {
+        let text = format!("{RATTLE}\n[solver]\nmethod = \"{method}\"\nrelative_tolerance = 1e-3");
+        let scene = Scene::parse(&text, FilePath::new("rattle.toml")).unwrap();
+        let mut simulation = Simulation::new(&scene, &Start { w: -5e-6, ..Start::default() }).unwrap();
+        simulation.advance(&SWING).unwrap();
+        let variables = variables(&scene);
+        let mut values = vec![0.0; variables.len()];
+        let times: [f64; 11] = std::array::from_fn(|i| 1e-5 * i as f64);
+        let count = allocations(|| {
+            for _ in 0..40 {
+                let row = |_: f64, now: &mut Simulation| now.evaluate(&variables, &mut values);
+                simulation.advance_observed(&SWING, &times, row).unwrap();
+            }
+        });
+        simulation.evaluate(&variables, &mut values);
+        assert_eq!(count, 0, "{method}");
+        assert!(value(&variables, &values, "solver.events") > 200.0, "a lively run");
+    }
+}
+
 /// The counter counts: a test of the tests.
 #[test]
 fn an_allocation_is_counted() {

@@ -1,9 +1,11 @@
-//! Contact: when modes change (`events`, `gap`), and what follows (`rules`).
+//! Contact: when modes change (`events`, `gap`), what follows (`rules`), and both at once at the end of a step (`step_end`).
 
 mod events;
 mod gap;
 mod rules;
+mod step_end;
 
 pub use events::{EventTolerance, first_event, is_due};
 pub use gap::first_touch;
 pub use rules::{CarrierPlace, decide_modes, free_unloaded, impacts_due, place_layer, stop_reversed};
+pub use step_end::{End, HeldStep, Settled, StepEnd};

@@ -84,17 +84,20 @@ pub fn impacts_due(model: &Model, state: &mut State, at: CarrierPlace, reach: f6
     lost
 }
 
-/// v_n⁺ = 0 with the impulse J = -m v_n; v_t⁺ = sign(v_t) max(|v_t| - μ J/m, 0).
 fn impact(model: &Model, state: &mut State, i: usize, w: f64, ground: &SurfacePoint) -> f64 {
-    let s = ground.slope;
+    let (after, lost) = collision(model, (state.velocity_x[i], state.velocity_z[i]), ground.slope);
+    touch_down(model, state, i, w, ground, after / (1.0 + ground.slope * ground.slope).sqrt());
+    state.mode[i] = Mode::along(after);
+    lost
+}
+
+/// v_n⁺ = 0 with the impulse J = -m v_n; v_t⁺ = sign(v_t) max(|v_t| - μ J/m, 0): v_t⁺, m/s, and the energy lost, J.
+pub(super) fn collision(model: &Model, (v_x, v_z): (f64, f64), s: f64) -> (f64, f64) {
     let q = (1.0 + s * s).sqrt();
-    let (v_x, v_z) = (state.velocity_x[i], state.velocity_z[i]);
     let v_n = (v_z - s * v_x) / q;
     let v_t = (v_x + s * v_z) / q;
     let after = (v_t.abs() + model.friction_coefficient * v_n).max(0.0).copysign(v_t);
-    touch_down(model, state, i, w, ground, after / q);
-    state.mode[i] = Mode::along(after);
-    0.5 * model.mass * (v_n * v_n + v_t * v_t - after * after)
+    (after, 0.5 * model.mass * (v_n * v_n + v_t * v_t - after * after))
 }
 
 /// Brings slipping masses whose velocity has passed 0 to rest, so that the rule for *stop* decides on them.
@@ -121,7 +124,7 @@ pub fn decide_modes(model: &Model, state: &mut State, forces: &Forces) {
     }
 }
 
-fn decided(model: &Model, state: &State, forces: &Forces, i: usize) -> Mode {
+pub(super) fn decided(model: &Model, state: &State, forces: &Forces, i: usize) -> Mode {
     let (mode, v) = (state.mode[i], state.velocity_x[i]);
     let contact = forces.contact(model, i, v, &state.ground[i]);
     if contact.normal < 0.0 {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::outputs::{self, Output, Variable};
 use crate::scene::{OutputGroup, Parameter, Scene, Unit, Value};
-use crate::simulation::ModeChange;
+use crate::simulation::{Handover, ModeChange};
 
 use super::catalogue::Catalogue;
 use super::clock::Clock;
@@ -129,12 +129,12 @@ impl Instance {
     /// fmi2DoStep
     pub(super) fn do_step(&mut self, point: f64, h: f64) -> Result<(), Fault> {
         let result = self.run.step(point, h);
-        let events = self.take_events();
+        let (events, handovers) = self.take_records();
         // What a discarded step went through has not happened.
         result?;
         self.outputs.outdate();
         self.tell_events(&events);
-        self.tell_work();
+        self.tell_work(&handovers);
         Ok(())
     }
 
@@ -194,18 +194,19 @@ impl Instance {
         self.run.clock.time
     }
 
-    /// Mode changes are recorded only while someone listens.
+    /// Mode changes and handovers are recorded only while someone listens.
     fn record_events(&mut self) {
-        let on = self.log.tells(Category::Events);
+        let (events, solver) = (self.log.tells(Category::Events), self.log.tells(Category::Solver));
         if let (false, Ok(simulation)) = (self.run.state.before_run(), self.run.simulation()) {
-            simulation.record_mode_changes(on);
+            simulation.record_mode_changes(events);
+            simulation.record_handovers(solver);
         }
     }
 
-    fn take_events(&mut self) -> Vec<ModeChange> {
+    fn take_records(&mut self) -> (Vec<ModeChange>, Vec<Handover>) {
         match self.run.simulation() {
-            Ok(simulation) => simulation.take_mode_changes(),
-            Err(_) => Vec::new(),
+            Ok(simulation) => (simulation.take_mode_changes(), simulation.take_handovers()),
+            Err(_) => (Vec::new(), Vec::new()),
         }
     }
 
@@ -215,7 +216,10 @@ impl Instance {
         }
     }
 
-    fn tell_work(&mut self) {
+    fn tell_work(&mut self, handovers: &[Handover]) {
+        for text in handovers.iter().map(ToString::to_string) {
+            self.log.add(Message { status: Status::Ok, category: Category::Solver, text });
+        }
         let (true, Ok(simulation)) = (self.log.tells(Category::Solver), self.run.simulation()) else { return };
         let mut values = [0.0; 3];
         simulation.evaluate(&[Output::Steps, Output::Rejected, Output::Events].map(count), &mut values);

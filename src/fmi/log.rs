@@ -13,7 +13,7 @@ pub enum Category {
     Discard,
     /// Mode changes of the masses.
     Events,
-    /// The integrator's work, a line a step.
+    /// The integrator's work, a line a step, and each handover between its drivers.
     Solver,
 }
 
@@ -39,7 +39,7 @@ impl Category {
             Self::Warning => "What is worth telling though nothing failed; always told",
             Self::Discard => "Why a step was discarded; always told",
             Self::Events => "Every change of a mass between free, slipping and sticking",
-            Self::Solver => "The integrator's work, one line a communication step",
+            Self::Solver => "The integrator's work, one line a communication step, and handovers of the method auto",
         }
     }
 

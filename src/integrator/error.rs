@@ -1,8 +1,9 @@
 //! The embedded error estimate of a step.
 
-use super::{Attempt, Integrator, METHOD, Rates, STAGES, Tolerance};
+use super::maxwell::Maxwell;
+use super::{Attempt, Rates, Tableau, Tolerance};
 use crate::math::{sum_of, weighted_sum};
-use crate::model::{CarrierPoint, LinkKind, Mode, Model};
+use crate::model::{CarrierPoint, LinkKind, Mode, Model, State};
 
 /// The estimated errors of one step, and room for them.
 #[derive(Clone, Debug)]
@@ -27,17 +28,29 @@ impl ErrorRoom {
     }
 }
 
-impl Integrator {
-    /// The embedded estimate of the step of length `h` tried last, in the tolerance's norm and of F_z.
+/// A step that was tried.
+#[derive(Clone, Copy)]
+pub(super) struct Tried<'a, const STAGES: usize> {
+    pub tableau: &'a Tableau<STAGES>,
+    pub maxwell: &'a Maxwell<STAGES>,
+    pub stages: &'a [Rates],
+    /// The carrier at the stages.
+    pub carrier: &'a [CarrierPoint],
+    pub end: &'a State,
+    /// The masses in contact.
+    pub contacts: &'a [usize],
+}
+
+impl<const STAGES: usize> Tried<'_, STAGES> {
+    /// The embedded estimate of the step, of length `h`, in the tolerance's norm and of F_z.
     ///
     /// The carrier's displacement is known, not integrated; yet where masses are in contact a step must be able to see it:
     /// the dense output, the events between the stages and the energies do. So what the method would miss of it counts as
     /// an error too: where every mass sticks, there is no other.
-    pub(super) fn error(&mut self, model: &Model, h: f64, tolerance: &Tolerance) -> Attempt {
-        let carrier_error = carrier_error(&self.carrier, h);
-        self.collect_errors(h, &carrier_error);
-        let rates = &self.carrier[STAGES - 1];
-        let (end, room) = (&self.solver.state, &self.error_room);
+    pub(super) fn error(&self, model: &Model, h: f64, tolerance: &Tolerance, room: &mut ErrorRoom) -> Attempt {
+        let carrier_error = self.carrier_error(h);
+        self.collect(h, &carrier_error, room);
+        let (end, rates) = (self.end, &self.carrier[STAGES - 1]);
         let masses = model.masses();
         let place = |error: &[f64], elongation: &[f64]| {
             sum_of(masses, |i| error[i] * error[i] / tolerance.of_position(elongation[i]))
@@ -57,9 +70,9 @@ impl Integrator {
             if !self.maxwell.has(kind) {
                 continue;
             }
-            sum += self.maxwell_error(kind, tolerance);
+            sum += self.maxwell_error(kind, tolerance, room);
             if kind == LinkKind::Vertical {
-                force_error += self.error_room.force.iter().sum::<f64>();
+                force_error += room.force.iter().sum::<f64>();
             }
         }
         let mean = |sum: f64| (sum / masses as f64).sqrt();
@@ -72,7 +85,7 @@ impl Integrator {
         if position.0 == 0.0 && position.1 == 0.0 {
             return (in_contact, free);
         }
-        let end = &self.solver.state;
+        let end = self.end;
         for (mode, (x, z)) in end.mode.iter().zip(end.elongation_x.iter().zip(&end.elongation_z)) {
             let square = position.0 * position.0 / tolerance.of_position(*x)
                 + position.1 * position.1 / tolerance.of_position(*z);
@@ -83,32 +96,31 @@ impl Integrator {
 
     /// The errors of places and velocities against the carrier. A sticking mass has none, and along z those of a contact
     /// follow its slope.
-    fn collect_errors(&mut self, h: f64, (position, velocity): &CarrierErrors) {
-        let stages = &self.stages;
+    fn collect(&self, h: f64, (position, velocity): &CarrierErrors, room: &mut ErrorRoom) {
+        let weights = &self.tableau.error;
         let sum = |errors: &mut [f64], rate: fn(&Rates) -> &[f64], of_carrier: f64| {
-            weighted_sum(errors, stages.iter().zip(&METHOD.error).map(|(stage, weight)| (h * weight, rate(stage))));
+            let counting = self.stages.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
+            weighted_sum(errors, counting.map(|(stage, weight)| (h * weight, rate(stage))));
             errors.iter_mut().for_each(|error| *error -= of_carrier);
         };
-        let (room, end) = (&mut self.error_room, &self.solver.state);
         sum(&mut room.x, |stage| &stage.velocity_x, position.0);
         sum(&mut room.z, |stage| &stage.velocity_z, position.1);
         sum(&mut room.v_x, |stage| &stage.acceleration_x, velocity.0);
         sum(&mut room.v_z, |stage| &stage.acceleration_z, velocity.1);
-        for &i in self.solver.contacts() {
-            if end.mode[i] == Mode::Stick {
+        for &i in self.contacts {
+            if self.end.mode[i] == Mode::Stick {
                 (room.x[i], room.v_x[i]) = (0.0, 0.0);
             }
-            let slope = end.ground[i].slope;
+            let slope = self.end.ground[i].slope;
             (room.z[i], room.v_z[i]) = (slope * room.x[i], slope * room.v_x[i]);
         }
     }
 
     /// The sum of squares of the errors of the Maxwell elements' forces of the links of `kind`.
-    fn maxwell_error(&mut self, kind: LinkKind, tolerance: &Tolerance) -> f64 {
-        let end = &self.solver.state;
-        let e = if kind.is_along_x() { &end.elongation_x } else { &end.elongation_z };
-        let force = &mut self.error_room.force[..kind.count(e.len())];
-        self.maxwell.force_error(kind, &self.stages, force);
+    fn maxwell_error(&self, kind: LinkKind, tolerance: &Tolerance, room: &mut ErrorRoom) -> f64 {
+        let e = if kind.is_along_x() { &self.end.elongation_x } else { &self.end.elongation_z };
+        let force = &mut room.force[..kind.count(e.len())];
+        self.maxwell.force_error(kind, self.stages, force);
         let per_glassy = tolerance.per_glassy(kind);
         let error = |i: usize| per_glassy * force[i];
         if kind.is_lateral() {
@@ -117,17 +129,17 @@ impl Integrator {
             sum_of(force.len(), |i| error(i) * error(i) / tolerance.of_position(e[i]))
         }
     }
+
+    fn carrier_error(&self, h: f64) -> CarrierErrors {
+        let (mut position, mut velocity) = ((0.0, 0.0), (0.0, 0.0));
+        for (at, weight) in self.carrier.iter().zip(&self.tableau.error) {
+            let step = h * weight;
+            position = (position.0 + step * at.u_rate, position.1 + step * at.w_rate);
+            velocity = (velocity.0 + step * at.u_acceleration, velocity.1 + step * at.w_acceleration);
+        }
+        (position, velocity)
+    }
 }
 
 /// What the method's embedded estimate says of u and w (m), and of u̇ and ẇ (m/s), as if they were integrated.
 type CarrierErrors = ((f64, f64), (f64, f64));
-
-fn carrier_error(carrier: &[CarrierPoint; STAGES], h: f64) -> CarrierErrors {
-    let (mut position, mut velocity) = ((0.0, 0.0), (0.0, 0.0));
-    for (at, weight) in carrier.iter().zip(&METHOD.error) {
-        let step = h * weight;
-        position = (position.0 + step * at.u_rate, position.1 + step * at.w_rate);
-        velocity = (velocity.0 + step * at.u_acceleration, velocity.1 + step * at.w_acceleration);
-    }
-    (position, velocity)
-}

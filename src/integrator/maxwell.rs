@@ -58,6 +58,11 @@ impl<const STAGES: usize> Maxwell<STAGES> {
         Self { courses, kinds }
     }
 
+    /// No elements, for a method that is not used.
+    pub(super) fn none() -> Self {
+        Self { courses: Vec::new(), kinds: LinkKind::ALL.map(|_| KindSums::new(0)) }
+    }
+
     /// Begins a step of length `h` from the elongations `a`.
     pub(super) fn begin(&mut self, model: &Model, tableau: &Tableau<STAGES>, a: &[f64], h: f64) {
         for (course, relaxation_time) in self.courses.iter_mut().zip(&model.relaxation_times) {
@@ -102,11 +107,16 @@ impl<const STAGES: usize> Maxwell<STAGES> {
 
     /// The elongations `end` at the end of a step from `start`.
     pub(super) fn finish(&self, model: &Model, start: &[f64], stages: &[Rates], end: &mut [f64]) {
+        self.at_stage(model, STAGES - 1, (start, stages), end);
+    }
+
+    /// The elongations `a` at stage `i` of a step from `start`.
+    pub(super) fn at_stage(&self, model: &Model, i: usize, (start, stages): (&[f64], &[Rates]), a: &mut [f64]) {
         for row in &model.rows {
             let course = &self.courses[row.time_index];
-            let from = std::iter::once((course.start[STAGES - 1], &start[row.range.clone()]));
-            let driven = by_rate(row.kind, &course.rate[STAGES - 1], stages);
-            weighted_sum(&mut end[row.range.clone()], from.chain(driven));
+            let from = std::iter::once((course.start[i], &start[row.range.clone()]));
+            let driven = by_rate(row.kind, &course.rate[i][..=i], stages);
+            weighted_sum(&mut a[row.range.clone()], from.chain(driven));
         }
     }
 

@@ -5,21 +5,26 @@ mod energy;
 mod error;
 mod maxwell;
 mod rates;
+mod sdirk;
 mod stage;
 mod tableau;
 mod tangent;
 mod tolerance;
+mod within;
 
 pub use dense::{Dense, DenseRoom};
 pub use rates::{NO_LIMIT, Rates};
+pub use sdirk::{SDIRK2, TWO_STAGES};
 pub use stage::NoConvergence;
 pub use tableau::{ESDIRK5, Tableau, WeightsWithin};
 pub use tolerance::Tolerance;
+pub use within::Within;
 
 use crate::math::weighted_sum;
 use crate::model::{Carrier, CarrierPoint, Exchange, Forces, LinkKind, Model, Power, State};
-use error::ErrorRoom;
+use error::{ErrorRoom, Tried};
 use maxwell::Maxwell;
+use sdirk::TwoStages;
 use stage::{StagePoint, StageSolver};
 use tangent::{Tangent, Target};
 
@@ -43,6 +48,8 @@ pub struct Integrator {
     error_room: ErrorRoom,
     predictor: [[f64; STAGES]; STAGES],
     weights_within: WeightsWithin<STAGES>,
+    /// The other method, for steps of two stages.
+    two_stages: TwoStages,
     accounts_energy: bool,
     /// How the run follows the targets of u and w; empty where nobody asks.
     tangents: Vec<Tangent>,
@@ -55,6 +62,32 @@ pub struct Followed {
     pub energy: bool,
     /// The forces' sensitivities to the carrier's targets.
     pub tangents: bool,
+}
+
+/// Which steps an integrator has room for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Steps {
+    /// Steps of [`METHOD`] alone.
+    Accurate,
+    /// Steps of two stages alone.
+    TwoStages,
+    /// Both.
+    Both,
+}
+
+impl Steps {
+    fn accurate(self) -> bool {
+        self != Self::TwoStages
+    }
+
+    fn two_stages(self) -> bool {
+        self != Self::Accurate
+    }
+
+    /// Stages, the one at the start included.
+    fn stages(self) -> usize {
+        if self.accurate() { STAGES } else { TWO_STAGES }
+    }
 }
 
 /// A step that was tried.
@@ -71,19 +104,20 @@ pub struct Attempt {
 
 impl Integrator {
     /// Room for steps of `model`.
-    pub fn new(model: &Model, followed: Followed) -> Self {
+    pub fn new(model: &Model, followed: Followed, steps: Steps) -> Self {
         let targets: &[Target] = if followed.tangents { &[Target::U, Target::W] } else { &[] };
         Self {
-            stages: vec![Rates::new(model); STAGES],
+            stages: vec![Rates::new(model); steps.stages()],
             carrier: [CarrierPoint::default(); STAGES],
             exchange: [Exchange::default(); STAGES],
-            maxwell: Maxwell::new(model),
+            maxwell: if steps.accurate() { Maxwell::new(model) } else { Maxwell::none() },
             solver: StageSolver::new(model),
             error_room: ErrorRoom::new(model),
             predictor: predictor(&METHOD.c),
             weights_within: WeightsWithin::new(&METHOD),
+            two_stages: TwoStages::new(model, steps.two_stages()),
             accounts_energy: followed.energy,
-            tangents: targets.iter().map(|&target| Tangent::new(model, target)).collect(),
+            tangents: targets.iter().map(|&target| Tangent::new(model, target, steps.stages())).collect(),
         }
     }
 
@@ -137,7 +171,7 @@ impl Integrator {
             let at = carrier.at(s + METHOD.c[i] * h);
             self.carrier[i] = at;
             self.collect_history(state, h, i);
-            let driven = self.drive(h, i);
+            let driven = self.drive((h, &METHOD.a[i]), i);
             let place = (carrier.place + at.du, carrier.w + at.dw);
             let moved = carrier.moved(s, METHOD.c[i] * h).0;
             let point = StagePoint { beta, carrier: at, driven, moved, place: place.0, w: place.1 };
@@ -146,21 +180,29 @@ impl Integrator {
             if self.accounts_energy {
                 self.exchange[i] = Exchange::evaluate(model, &self.solver.state, &at, &self.solver.forces);
             }
-            self.vary(model, &point, (s, h), i);
+            self.vary(model, &point, (s + METHOD.c[i] * h, h), (i, &METHOD.a[i]));
         }
         self.maxwell.finish(model, &state.maxwell, &self.stages, &mut self.solver.state.maxwell);
-        Ok(self.error(model, h, tolerance))
+        let tried = Tried {
+            tableau: &METHOD,
+            maxwell: &self.maxwell,
+            stages: &self.stages,
+            carrier: &self.carrier,
+            end: &self.solver.state,
+            contacts: self.solver.contacts(),
+        };
+        Ok(tried.error(model, h, tolerance, &mut self.error_room))
     }
 
-    /// The tangents at a stage just solved.
-    fn vary(&mut self, model: &Model, point: &StagePoint, (s, h): (f64, f64), i: usize) {
+    /// The tangents at the stage just solved, the `i`-th, at `s` in a step of length `h`; the earlier ones have `weights`.
+    fn vary(&mut self, model: &Model, point: &StagePoint, (s, h): (f64, f64), (i, weights): (usize, &[f64])) {
         if self.tangents.is_empty() {
             return;
         }
         self.solver.factor_at_solution(model, point.beta);
         for tangent in &mut self.tangents {
-            tangent.collect_history(h, i);
-            let carrier = tangent.carrier(s + METHOD.c[i] * h);
+            tangent.collect_history(h, &weights[..i]);
+            let carrier = tangent.carrier(s);
             self.solver.vary(model, point, &carrier, tangent, (i, &self.stages[i]));
         }
     }
@@ -207,8 +249,9 @@ impl Integrator {
         let masses = rates.velocity_x.len();
         let links: usize = rates.elongation_rate.iter().map(Vec::len).sum();
         // By mass: the rates and the starred values; three blocks, a right side and a column; errors and polynomials.
-        let by_mass = (STAGES + 1) * 6 + 4 + (3 * 4 + 2 + 3) + 4;
-        (by_mass * masses + (STAGES + 1) * links + 2 * self.maxwell.floats()) * size_of::<f64>()
+        let stages = self.stages.len() + 1;
+        let by_mass = stages * 6 + 4 + (3 * 4 + 2 + 3) + 4;
+        (by_mass * masses + stages * links + 2 * (self.maxwell.floats() + self.two_stages.floats())) * size_of::<f64>()
     }
 
     /// The rates at the stages of the step tried last.
@@ -244,30 +287,41 @@ impl Integrator {
 
     /// Takes the step tried last: `state` becomes its end, and the rates there those at the start of the next step.
     pub fn accept(&mut self, state: &mut State) {
+        self.accept_stage(state, STAGES - 1);
+    }
+
+    /// Takes the step tried last, which ended with stage `last`.
+    fn accept_stage(&mut self, state: &mut State, last: usize) {
         std::mem::swap(state, &mut self.solver.state);
-        self.stages.swap(0, STAGES - 1);
-        self.exchange.swap(0, STAGES - 1);
+        self.stages.swap(0, last);
+        self.exchange.swap(0, last);
         for tangent in &mut self.tangents {
-            tangent.accept();
+            tangent.accept(last);
         }
     }
 
     /// What the earlier stages give to stage `i`.
     fn collect_history(&mut self, state: &State, h: f64, i: usize) {
+        self.collect_motion(state, (h, &METHOD.a[i][..i]));
         let history = &mut self.solver.history;
-        let earlier = &self.stages[..i];
-        let weights = &METHOD.a[i];
+        for kind in LinkKind::ALL.into_iter().filter(|&kind| self.maxwell.has(kind)) {
+            self.maxwell.known_force(kind, i, &self.stages[..i], &mut history.force[kind as usize]);
+        }
+    }
+
+    /// The starred values: what the earlier stages of a step of length `h`, with these weights, give to a stage.
+    fn collect_motion(&mut self, state: &State, (h, weights): (f64, &[f64])) {
+        let history = &mut self.solver.history;
+        let earlier = &self.stages;
         let sum = |star: &mut [f64], start: &[f64], rate: fn(&Rates) -> &[f64]| {
-            let terms = earlier.iter().zip(weights).map(|(stage, weight)| (h * weight, rate(stage)));
+            let counting = earlier.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
+            let terms = counting.map(|(stage, weight)| (h * weight, rate(stage)));
             weighted_sum(star, std::iter::once((1.0, start)).chain(terms));
         };
         sum(&mut history.elongation_x, &state.elongation_x, |stage| &stage.velocity_x);
         sum(&mut history.elongation_z, &state.elongation_z, |stage| &stage.velocity_z);
         sum(&mut history.velocity_x, &state.velocity_x, |stage| &stage.acceleration_x);
         sum(&mut history.velocity_z, &state.velocity_z, |stage| &stage.acceleration_z);
-        for kind in LinkKind::ALL.into_iter().filter(|&kind| self.maxwell.has(kind)) {
-            self.maxwell.known_force(kind, i, earlier, &mut history.force[kind as usize]);
-        }
     }
 
     /// How far stage `i` takes the carrier to have moved, along x and z, m: by the method's own quadrature of its rate.
@@ -275,9 +329,9 @@ impl Integrator {
     /// So the elongations are integrated as the differences that they are, ė = ẋ - u̇, and the velocities against the
     /// carrier's, with -ü as a load: a carrier that swings far leaves no error in a layer that swings with it. The starred
     /// velocities take over what the quadrature of ü misses of u̇.
-    fn drive(&mut self, h: f64, i: usize) -> (f64, f64) {
+    fn drive(&mut self, (h, weights): (f64, &[f64]), i: usize) -> (f64, f64) {
         let (mut moved, mut missed) = ((0.0, 0.0), (0.0, 0.0));
-        for (at, weight) in self.carrier[..=i].iter().zip(&METHOD.a[i]) {
+        for (at, weight) in self.carrier[..=i].iter().zip(weights) {
             let step = h * weight;
             moved = (moved.0 + step * at.u_rate, moved.1 + step * at.w_rate);
             missed = (missed.0 + step * at.u_acceleration, missed.1 + step * at.w_acceleration);

@@ -70,23 +70,49 @@ impl Rates {
     pub fn evaluate(&mut self, model: &Model, state: &State, forces: &Forces) {
         self.clear_contacts();
         for i in 0..model.masses() {
-            let v = state.velocity_x[i];
-            self.velocity_x[i] = v;
-            self.velocity_z[i] = state.velocity_z[i];
-            let (f_x, f_z) = (forces.on_mass_x[i], forces.on_mass_z[i]);
-            let mode = state.mode[i];
-            if mode == Mode::Free {
-                self.acceleration_x[i] = f_x / model.mass;
-                self.acceleration_z[i] = f_z / model.mass;
-            } else {
-                let ground = &state.ground[i];
-                let contact = ContactForces::new(model, (f_x, f_z), v, ground);
-                self.acceleration_x[i] = contact.acceleration(model, mode, v, ground);
-                self.contact(model, i, (mode, v), ground, &contact);
-            }
+            self.evaluate_mass(model, state, forces, i);
         }
         for (mine, rate) in self.elongation_rate.iter_mut().zip(&forces.rate) {
             mine.copy_from_slice(rate);
+        }
+    }
+
+    /// Velocity, acceleration and what a contact leaves of mass `i`, whose contact was cleared, by the forces in `state`.
+    #[inline]
+    fn evaluate_mass(&mut self, model: &Model, state: &State, forces: &Forces, i: usize) {
+        let v = state.velocity_x[i];
+        self.velocity_x[i] = v;
+        self.velocity_z[i] = state.velocity_z[i];
+        let (f_x, f_z) = (forces.on_mass_x[i], forces.on_mass_z[i]);
+        let mode = state.mode[i];
+        if mode == Mode::Free {
+            self.acceleration_x[i] = f_x / model.mass;
+            self.acceleration_z[i] = f_z / model.mass;
+        } else {
+            let ground = &state.ground[i];
+            let contact = ContactForces::new(model, (f_x, f_z), v, ground);
+            self.acceleration_x[i] = contact.acceleration(model, mode, v, ground);
+            self.contact(model, i, (mode, v), ground, &contact);
+        }
+    }
+
+    /// Computes the rates of mass `i` and of its links afresh, from the forces in `state` under the carrier.
+    pub fn refresh(&mut self, model: &Model, state: &State, forces: &Forces, i: usize, carrier: &CarrierPoint) {
+        (self.normal[i], self.margin[i]) = (NO_LIMIT, NO_LIMIT);
+        self.evaluate_mass(model, state, forces, i);
+        for kind in LinkKind::ALL {
+            let (velocity, carrier_rate) = if kind.is_along_x() {
+                (&state.velocity_x, carrier.u_rate)
+            } else {
+                (&state.velocity_z, carrier.w_rate)
+            };
+            let rate = &mut self.elongation_rate[kind as usize];
+            for link in if kind.is_lateral() { i.saturating_sub(1)..i + 1 } else { i..i + 1 } {
+                if let Some(rate) = rate.get_mut(link) {
+                    *rate = if kind.is_lateral() { velocity[link + 1] } else { velocity[link] };
+                    *rate -= if kind.is_lateral() { velocity[link] } else { carrier_rate };
+                }
+            }
         }
     }
 

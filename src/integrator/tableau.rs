@@ -93,6 +93,13 @@ impl<const STAGES: usize> WeightsWithin<STAGES> {
         Self { by_power }
     }
 
+    /// Weights of which the coefficients of θ and of θ² are known.
+    pub(super) fn of_powers(first: [f64; STAGES], second: [f64; STAGES]) -> Self {
+        let mut by_power = [SVector::zeros(); 5];
+        (by_power[0], by_power[1]) = (SVector::from(first), SVector::from(second));
+        Self { by_power }
+    }
+
     /// The weights up to the fraction `theta`.
     pub fn at(&self, theta: f64) -> [f64; STAGES] {
         let sum = self.by_power.iter().rev().fold(SVector::zeros(), |sum, weights| (sum + weights) * theta);

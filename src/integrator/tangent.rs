@@ -3,7 +3,6 @@
 //! Over a motion of the carrier of duration h, let one of its displacements end at û + ε: it is moved by ε s/h on the
 //! way, and its rate by ε/h. Everything here is the derivative with respect to ε at ε = 0, the modes held.
 
-use super::{METHOD, STAGES};
 use crate::model::{Forces, LinkKind, LinkMotion, Mode, Model, State, SurfacePoint};
 
 /// Which displacement's target is varied.
@@ -104,7 +103,7 @@ impl Variation {
 }
 
 impl Tangent {
-    pub(super) fn new(model: &Model, target: Target) -> Self {
+    pub(super) fn new(model: &Model, target: Target, stages: usize) -> Self {
         let zero = vec![0.0; model.masses()];
         let rates = VariationRates {
             v_x: zero.clone(),
@@ -118,7 +117,7 @@ impl Tangent {
             duration: 1.0,
             start: Variation::new(model),
             end: Variation::new(model),
-            stages: vec![rates; STAGES],
+            stages: vec![rates; stages],
             forces: Forces::new(model),
             held: Held::new(model),
         }
@@ -141,12 +140,12 @@ impl Tangent {
         }
     }
 
-    /// What the earlier stages give to stage `i` of a step of length `h`, into `end`.
-    pub(super) fn collect_history(&mut self, h: f64, i: usize) {
+    /// What the earlier stages, with these weights, give to a stage of a step of length `h`, into `end`.
+    pub(super) fn collect_history(&mut self, h: f64, weights: &[f64]) {
         for (end, start) in self.end.parts().into_iter().zip(self.start.parts()) {
             end.copy_from_slice(start);
         }
-        for (stage, weight) in self.stages[..i].iter().zip(&METHOD.a[i]) {
+        for (stage, weight) in self.stages.iter().zip(weights) {
             let step = h * weight;
             let terms = [&stage.v_x, &stage.v_z, &stage.a_x, &stage.a_z, &stage.maxwell];
             for (sum, term) in self.end.parts().into_iter().zip(terms) {
@@ -225,10 +224,10 @@ impl Tangent {
         self.forces.sum_on_masses();
     }
 
-    /// Takes the step tried last.
-    pub(super) fn accept(&mut self) {
+    /// Takes the step tried last, which ended with stage `last`.
+    pub(super) fn accept(&mut self, last: usize) {
         std::mem::swap(&mut self.start, &mut self.end);
-        self.stages.swap(0, STAGES - 1);
+        self.stages.swap(0, last);
     }
 }
 

@@ -1,6 +1,6 @@
 //! Forces of the links and of the contacts at one instant.
 
-use super::{CarrierPoint, LinkKind, Mode, Model, State, SurfacePoint};
+use super::{CarrierPoint, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint};
 use crate::math::sum_of;
 
 /// Forces at one instant, and room for them.
@@ -60,6 +60,59 @@ impl Forces {
         let [vertical, horizontal, lateral_x, lateral_z] = &self.link;
         sum_on_masses(&mut self.on_mass_x, horizontal, lateral_x);
         sum_on_masses(&mut self.on_mass_z, vertical, lateral_z);
+    }
+
+    /// Computes the forces of the links of mass `i` afresh, and those on it and on its neighbours.
+    pub fn refresh(&mut self, model: &Model, state: &State, carrier: &CarrierPoint, i: usize) {
+        let k = model.masses();
+        let motion = LinkMotion::of(state, carrier);
+        for kind in LinkKind::ALL {
+            let links = if kind.is_lateral() { i.saturating_sub(1)..(i + 1).min(k - 1) } else { i..i + 1 };
+            for link in links.filter(|_| model.links[kind as usize].present) {
+                self.refresh_link(model, state, &motion, kind, link);
+            }
+        }
+        for i in i.saturating_sub(1)..(i + 2).min(k) {
+            let [vertical, horizontal, lateral_x, lateral_z] = &self.link;
+            self.on_mass_x[i] = sum_on_mass(i, horizontal, lateral_x);
+            self.on_mass_z[i] = sum_on_mass(i, vertical, lateral_z);
+        }
+    }
+
+    /// Follows a change of the velocity of mass `i` by (`dx`, `dz`), m/s: the dampers' forces on it and on its neighbours.
+    pub fn add_velocity(&mut self, model: &Model, i: usize, (dx, dz): (f64, f64)) {
+        for kind in LinkKind::ALL.into_iter().filter(|&kind| model.links[kind as usize].present) {
+            let change = if kind.is_along_x() { dx } else { dz };
+            let by = model.links[kind as usize].damping * change;
+            let force = &mut self.link[kind as usize];
+            let on_mass = if kind.is_along_x() { &mut self.on_mass_x } else { &mut self.on_mass_z };
+            if i < force.len() {
+                let sign = if kind.is_lateral() { -1.0 } else { 1.0 };
+                force[i] += sign * by;
+                on_mass[i] -= by;
+            }
+            if kind.is_lateral() && i < force.len() {
+                on_mass[i + 1] += by;
+            }
+            if kind.is_lateral() && i > 0 {
+                force[i - 1] += by;
+                on_mass[i - 1] += by;
+                on_mass[i] -= by;
+            }
+        }
+    }
+
+    fn refresh_link(&mut self, model: &Model, state: &State, motion: &LinkMotion<'_>, kind: LinkKind, link: usize) {
+        let law = &model.links[kind as usize];
+        let (place, velocity, carrier_rate) = motion.along(kind);
+        let (e, rate) = if kind.is_lateral() {
+            (place[link + 1] - place[link], velocity[link + 1] - velocity[link])
+        } else {
+            (place[link], velocity[link] - carrier_rate)
+        };
+        let element = |row: &MaxwellRow| row.stiffness * state.maxwell[row.range.start + link];
+        let maxwell: f64 = model.rows_of(kind).map(element).sum();
+        self.link[kind as usize][link] = law.stiffness * e + law.damping * rate + maxwell;
     }
 
     /// F_x of the layer on the carrier, N.
@@ -159,6 +212,11 @@ fn sum_on_masses(sum: &mut [f64], to_carrier: &[f64], lateral: &[f64]) {
     for (sum, force) in sum.iter_mut().skip(1).zip(lateral.windows(2)) {
         *sum += force[1] - force[0];
     }
+}
+
+fn sum_on_mass(i: usize, to_carrier: &[f64], lateral: &[f64]) -> f64 {
+    let of = |link: Option<&f64>| link.copied().unwrap_or(0.0);
+    of(lateral.get(i)) - of(to_carrier.get(i)) - if i > 0 { of(lateral.get(i - 1)) } else { 0.0 }
 }
 
 /// The forces in one contact, from (6)-(9).

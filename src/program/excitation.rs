@@ -1,7 +1,7 @@
 //! The excitation of a scene, followed phase by phase.
 
 use asperity::scene::{Phase, Scene};
-use asperity::simulation::{Motion, Simulation, SimulationError, Start};
+use asperity::simulation::{Handover, Motion, Simulation, SimulationError, Start};
 
 use super::warn;
 
@@ -74,7 +74,14 @@ impl Run {
             ..Start::default()
         };
         let carrier = Carrier { time: start.time, u: start.u, w: start.w };
-        Ok(Self { simulation: Simulation::new(scene, &start)?, carrier, rows })
+        let mut simulation = Simulation::new(scene, &start)?;
+        simulation.record_handovers(true);
+        Ok(Self { simulation, carrier, rows })
+    }
+
+    /// Between which drivers the run went to and fro since the last call: of the method *auto* alone.
+    pub(crate) fn take_handovers(&mut self) -> Vec<Handover> {
+        self.simulation.take_handovers()
     }
 
     /// The simulation where the run stands.

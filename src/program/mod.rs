@@ -57,7 +57,12 @@ fn check_output(output: &Path, others: &[PathBuf]) -> Result<(), ProgramError> {
 }
 
 /// Tells the user what is worth knowing though the program goes on.
-#[expect(clippy::print_stderr, reason = "warnings are for the terminal")]
 fn warn(message: &str) {
-    eprintln!("asperity: warning: {message}");
+    note(&format!("warning: {message}"));
+}
+
+/// Tells the user how the program goes on.
+#[expect(clippy::print_stderr, reason = "what is no result is for the terminal")]
+fn note(message: &str) {
+    eprintln!("asperity: {message}");
 }

@@ -2,7 +2,7 @@
 
 use asperity::outputs::{Variable, variables};
 use asperity::scene::Scene;
-use asperity::simulation::Simulation;
+use asperity::simulation::{Handover, Simulation};
 use indicatif::ProgressBar;
 
 use super::arguments::Simulate;
@@ -43,9 +43,21 @@ fn check_outputs(scene: &Scene, command: &Simulate) -> Result<(), ProgramError> 
 fn record(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<(), ProgramError> {
     let shown = recorder.history.as_ref().map_or_else(|| scene.clone(), |history| history.scene().clone());
     let mut run = Run::new(&shown, Rows::PerPhase(command.points)).map_err(ProgramError::Start)?;
-    run.follow(&scene.excitation, |carrier, simulation| recorder.row(carrier, simulation))
-        .map(drop)
-        .map_err(|source| ProgramError::Run { source, time: recorder.time, output: command.output.clone() })
+    let result = run.follow(&scene.excitation, |carrier, simulation| recorder.row(carrier, simulation));
+    tell_of_handovers(&run.take_handovers());
+    result.map(drop).map_err(|source| ProgramError::Run { source, time: recorder.time, output: command.output.clone() })
+}
+
+/// Handovers that are told one by one.
+const HANDOVERS_TOLD: usize = 10;
+
+fn tell_of_handovers(handovers: &[Handover]) {
+    for handover in handovers.iter().take(HANDOVERS_TOLD) {
+        super::note(&handover.to_string());
+    }
+    if handovers.len() > HANDOVERS_TOLD {
+        super::note(&format!("and {} more handovers", handovers.len() - HANDOVERS_TOLD));
+    }
 }
 
 /// Takes the rows of a run: into the file, the plot and the progress bar.

@@ -55,7 +55,8 @@ pub(super) const FORCE: Range = FINITE;
 
 pub(super) const INITIAL: Choices<Initial> =
     Choices { words: &[("relaxed", Initial::Relaxed), ("undeformed", Initial::Undeformed)], later: &[] };
-pub(super) const METHOD: Choices<Method> = Choices { words: &[("event", Method::Event)], later: &["step", "auto"] };
+pub(super) const METHOD: Choices<Method> =
+    Choices { words: &[("event", Method::Event), ("step", Method::Step), ("auto", Method::Auto)], later: &[] };
 pub(super) const EXTRAPOLATION: Choices<Extrapolation> =
     Choices { words: &[("linear", Extrapolation::Linear), ("hold", Extrapolation::Hold)], later: &[] };
 pub(super) const SURFACE: Choices<SurfaceKind> = Choices {

@@ -160,6 +160,10 @@ pub struct Solver {
 pub enum Method {
     /// Every mode change is located.
     Event,
+    /// Mode changes are put at the ends of the steps.
+    Step,
+    /// Located where they are few, at the ends of the steps where they crowd.
+    Auto,
 }
 
 /// How the carrier moves when a master gives values alone.

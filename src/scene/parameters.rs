@@ -149,7 +149,9 @@ impl Parameter {
             }
             Self::Coulomb => "Coulomb's friction coefficient".into(),
             Self::ShearForce => "Adhesive shear force of one mass in contact".into(),
-            Self::Method => "How mode changes are treated: event locates every one".into(),
+            Self::Method => "How mode changes are treated: event locates every one, step puts them at the ends of its steps, auto takes step \
+                 where they crowd"
+                .into(),
             Self::RelativeTolerance => "Relative tolerance of the local error".into(),
             Self::AbsoluteTolerance => {
                 "Absolute tolerance of places; follows the relative one until it is set itself".into()

@@ -1,19 +1,22 @@
 //! The conductor: joins the integrator and the contact rules into a run.
 
 mod derivatives;
+mod handover;
 mod run;
 mod saved;
 mod stepping;
 #[cfg(test)]
 pub(crate) mod tests;
+mod time_stepping;
 
 use std::sync::Arc;
 
-use crate::contact::EventTolerance;
-use crate::integrator::{DenseRoom, Followed, Integrator, Tolerance};
+use crate::contact::{EventTolerance, StepEnd};
+use crate::integrator::{DenseRoom, Followed, Integrator, Steps, Tolerance};
 use crate::model::{Forces, Model, State};
 use crate::outputs::{self, Accounts, Variable};
-use crate::scene::{Path, Scene};
+use crate::scene::{Method, Path, Scene};
+pub use handover::Handover;
 use run::{Checkpoint, Run};
 pub use saved::{RestoreError, Saved};
 
@@ -102,7 +105,10 @@ pub struct Simulation {
     /// Of which step and fraction that is, where it is known.
     within_at: Option<(f64, f64)>,
     dense_room: DenseRoom,
+    /// Mode changes at the end of a time step.
+    step_end: StepEnd,
     mode_changes: Option<Vec<ModeChange>>,
+    handovers: Option<Vec<Handover>>,
 }
 
 /// What of a scene the conductor needs beside the model.
@@ -112,13 +118,20 @@ struct Settings {
     events: EventTolerance,
     max_steps: u64,
     accounts: Accounts,
+    method: Method,
 }
 
 impl Settings {
     fn new(scene: &Scene, model: &Model) -> Self {
         let tolerance = Tolerance::new(model, scene.solver.relative_tolerance, scene.absolute_tolerance());
         let events = EventTolerance::new(model, &tolerance);
-        Self { tolerance, events, max_steps: scene.solver.max_steps, accounts: Accounts::new(scene) }
+        Self {
+            tolerance,
+            events,
+            max_steps: scene.solver.max_steps,
+            accounts: Accounts::new(scene),
+            method: scene.solver.method,
+        }
     }
 }
 
@@ -138,11 +151,17 @@ impl Simulation {
         let model = Arc::new(model);
         let settings = Settings::new(scene, &model);
         let followed = Followed { energy: settings.accounts.energy, tangents: settings.accounts.tangents };
-        let integrator = Integrator::new(&model, followed);
+        let steps = match scene.solver.method {
+            Method::Event => Steps::Accurate,
+            Method::Step => Steps::TwoStages,
+            Method::Auto => Steps::Both,
+        };
+        let integrator = Integrator::new(&model, followed, steps);
         let state = State::new(model.masses(), model.maxwell_variables());
-        let run = Run::new(&model, state.clone(), start);
+        let run = Run::new(&model, state.clone(), start, scene.solver.method == Method::Step);
         let forces = Forces::new(&model);
         let dense_room = DenseRoom::new(&model);
+        let step_end = StepEnd::new(&model);
         let mut simulation = Self {
             model,
             settings,
@@ -157,7 +176,9 @@ impl Simulation {
             within: state,
             within_at: None,
             dense_room,
+            step_end,
             mode_changes: None,
+            handovers: None,
         };
         simulation.place_layer();
         simulation
@@ -232,11 +253,14 @@ impl Simulation {
     ) -> Result<Option<f64>, SimulationError> {
         motion.check()?;
         self.keep_checkpoint();
-        let recorded = self.mode_changes.as_ref().map_or(0, Vec::len);
+        let recorded = (self.mode_changes.as_ref().map_or(0, Vec::len), self.handovers.as_ref().map_or(0, Vec::len));
         let result = self.follow(motion, until, times, observe);
         if result.is_err() {
             if let Some(record) = &mut self.mode_changes {
-                record.truncate(recorded);
+                record.truncate(recorded.0);
+            }
+            if let Some(record) = &mut self.handovers {
+                record.truncate(recorded.1);
             }
             self.go_back();
         }

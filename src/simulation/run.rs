@@ -29,10 +29,14 @@ pub(super) struct Run {
     pub(super) rates_hold: bool,
     /// u and w at the start of the run, m.
     pub(super) start: [f64; 2],
+    /// Whether the time-stepping driver has the run, or the event-driven one.
+    pub(super) stepping: bool,
+    /// Mode changes on one time step, in the mean of the last ones; of the method *auto* alone.
+    pub(super) crowding: f64,
 }
 
 impl Run {
-    pub(super) fn new(model: &Model, state: State, start: &Start) -> Self {
+    pub(super) fn new(model: &Model, state: State, start: &Start, stepping: bool) -> Self {
         let path = |rate| Path { rate, ..Path::default() };
         let paths = (path(start.u_rate), path(start.w_rate));
         Self {
@@ -47,6 +51,8 @@ impl Run {
             tangents: [0.0; 4],
             rates_hold: false,
             start: [start.u, start.w],
+            stepping,
+            crowding: 0.0,
         }
     }
 
@@ -64,11 +70,14 @@ impl Run {
             tangents,
             rates_hold,
             start,
+            stepping,
+            crowding,
         } = self;
         (*carrier, *s, *energies, *counters) = (other.carrier, other.s, other.energies, other.counters);
         (*event_spacing, *since_event) = (other.event_spacing, other.since_event);
         (*step_size, *tangents, *rates_hold) = (other.step_size, other.tangents, other.rates_hold);
         *start = other.start;
+        (*stepping, *crowding) = (other.stepping, other.crowding);
         state.copy_from(&other.state);
     }
 
@@ -110,7 +119,7 @@ pub(super) struct Checkpoint {
     pub(super) exchange: Exchange,
 }
 
-/// All but the modes, the counts and whether the rates hold.
+/// All but the modes, the counts, whether the rates hold and which driver has the run.
 impl Numbers for Run {
     fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
         let Self {
@@ -125,9 +134,11 @@ impl Numbers for Run {
             tangents,
             rates_hold: _,
             start,
+            stepping: _,
+            crowding,
         } = self;
         visit_all([carrier, s, state, energies, counters], visit);
-        visit_all([step_size, event_spacing, since_event, tangents, start], visit);
+        visit_all([step_size, event_spacing, since_event, tangents, start, crowding], visit);
     }
 }
 

@@ -8,7 +8,7 @@ use super::run::Checkpoint;
 use super::{Simulation, Start};
 use crate::math::Numbers;
 use crate::model::{Mode, Model};
-use crate::scene::Scene;
+use crate::scene::{Method, Scene};
 
 /// Everything of a run that changes, but for the processor time and the mode changes recorded.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -20,6 +20,8 @@ pub struct Saved {
     /// Accepted steps, rejected steps, mode changes.
     counts: [u64; 3],
     rates_hold: bool,
+    /// Whether the run is stepped, or driven by events.
+    stepping: bool,
 }
 
 /// Why a run cannot go on from what was saved.
@@ -75,6 +77,7 @@ impl Simulation {
             modes: now.run.state.mode.iter().map(|mode| mode.number()).collect(),
             counts: [counters.steps, counters.rejected, counters.events],
             rates_hold: now.run.rates_hold,
+            stepping: now.run.stepping,
         }
     }
 
@@ -86,6 +89,9 @@ impl Simulation {
         let mut simulation = Self::started(scene, &Start::default());
         let slack = simulation.settings.tolerance.position;
         saved.write_into(&mut simulation.before, &simulation.model)?;
+        if scene.solver.method == Method::Auto {
+            simulation.before.run.stepping = saved.stepping;
+        }
         check_ground(&simulation.before, &simulation.model, slack)?;
         simulation.go_back();
         let [u, w] = simulation.run.start;

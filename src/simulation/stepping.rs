@@ -6,7 +6,7 @@ use super::{ModeChange, Motion, Simulation, SimulationError};
 use crate::contact::{decide_modes, first_event, free_unloaded, impacts_due, is_due, place_layer, stop_reversed};
 use crate::integrator::{Attempt, METHOD};
 use crate::math::bracketed_root;
-use crate::model::{Carrier, CarrierPoint, elastic_energy, kinetic_energy};
+use crate::model::{Carrier, CarrierPoint, Power, elastic_energy, kinetic_energy};
 
 /// A new step is this share of what the error estimate allows, so that few are rejected.
 const SAFETY: f64 = 0.9;
@@ -14,7 +14,7 @@ const SAFETY: f64 = 0.9;
 const GROWTH: (f64, f64) = (0.2, 5.0);
 /// The longest step, as a share of the period of the carrier's sine: a longer one could leap from swing to swing, where all
 /// stages see the same and the error estimate nothing.
-const OF_PERIOD: f64 = 0.25;
+pub(super) const OF_PERIOD: f64 = 0.25;
 /// The most that the dense output may miss of the equations of motion where a step is cut at an event, as a velocity
 /// gained over the step, against the tolerance.
 ///
@@ -29,13 +29,13 @@ const OF_SPACING: f64 = 2.0;
 /// period at most, [`OF_PERIOD`].
 const UNSEEN: f64 = 5e-4;
 /// What is left of a step whose stages could not be solved.
-const AFTER_FAILURE: f64 = 0.25;
+pub(super) const AFTER_FAILURE: f64 = 0.25;
 
 /// A step that was tried with the length `h` (s) and is taken up to its fraction `share`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Stride {
-    h: f64,
-    share: f64,
+pub(super) struct Stride {
+    pub(super) h: f64,
+    pub(super) share: f64,
 }
 
 impl Simulation {
@@ -71,7 +71,7 @@ impl Simulation {
         let mut work = 0;
         let mut risen = self.has_risen(until);
         while self.run.s < motion.duration && !risen {
-            let mut stride = self.step(motion.duration, &mut work)?;
+            let mut stride = self.next_step(motion.duration, &mut work)?;
             if let Some(share) = self.rises_within(&stride, until) {
                 stride = self.cut_step(share * stride.h)?;
                 risen = true;
@@ -80,7 +80,7 @@ impl Simulation {
             while let Some(time) = rows.next_if(|&time| time < end) {
                 self.show_within(stride.h, (time - self.run.s) / stride.h, |simulation| observe(time, simulation));
             }
-            self.accept(&stride, end);
+            self.take_step(&stride, end);
             risen = risen || self.has_risen(until);
             if risen || end >= motion.duration {
                 self.find_tangents();
@@ -107,12 +107,11 @@ impl Simulation {
         Some(bracketed_root(|theta| self.force_z_within(h, theta) - force, (0.0, share), 1e-14))
     }
 
-    /// A shorter step in place of a good one: no worse, and free of events.
+    /// A shorter step in place of a good one: no worse, and free of events, or with fewer.
     fn cut_step(&mut self, h: f64) -> Result<Stride, SimulationError> {
-        match self.try_step(h, true) {
-            Some(_) => Ok(Stride { h, share: 1.0 }),
-            None => Err(SimulationError::StepTooSmall { time: self.run.time(), step: h }),
-        }
+        let attempt = if self.run.stepping { self.try_time_step(h, true) } else { self.try_step(h, true) };
+        let stride = attempt.map(|_| Stride { h, share: 1.0 });
+        stride.ok_or(SimulationError::StepTooSmall { time: self.run.time(), step: h })
     }
 
     /// F_z now, N.
@@ -164,7 +163,7 @@ impl Simulation {
 
     /// Impacts due, stops, then every contact decided anew from the forces, which have jumped; and the rates after it. Masses within
     /// `reach` (m) of the profile count as touching.
-    fn change_modes(&mut self, reach: f64) {
+    pub(super) fn change_modes(&mut self, reach: f64) {
         let carrier = self.run.carrier.at(self.run.s);
         let at = self.run.place();
         let (model, state) = (&*self.model, &mut self.run.state);
@@ -179,7 +178,7 @@ impl Simulation {
         self.count_mode_changes();
     }
 
-    fn count_mode_changes(&mut self) {
+    pub(super) fn count_mode_changes(&mut self) {
         let time = self.run.time();
         let modes = self.within.mode.iter().zip(&self.run.state.mode).enumerate();
         for (mass, (from, to)) in modes.filter(|(_, (from, to))| from != to) {
@@ -199,7 +198,7 @@ impl Simulation {
     }
 
     /// Tries steps until one is good up to its first event.
-    fn step(&mut self, duration: f64, work: &mut u64) -> Result<Stride, SimulationError> {
+    pub(super) fn step(&mut self, duration: f64, work: &mut u64) -> Result<Stride, SimulationError> {
         let remaining = duration - self.run.s;
         let shortest = 4.0 * f64::EPSILON * (self.run.s + 1e-3 * duration);
         let longest = OF_PERIOD * self.run.carrier.shortest_period();
@@ -250,7 +249,7 @@ impl Simulation {
     }
 
     /// Tries a step of length `h`; `None` where it is no good, and the run's step size is then a better one.
-    fn try_step(&mut self, h: f64, any_error: bool) -> Option<Attempt> {
+    pub(super) fn try_step(&mut self, h: f64, any_error: bool) -> Option<Attempt> {
         self.within_at = None;
         let run = &self.run;
         let tolerance = &self.settings.tolerance;
@@ -276,7 +275,7 @@ impl Simulation {
         modes.into_iter().any(|(i, mode)| !mode.in_contact() && dense.height(i).range().0 <= reach)
     }
 
-    fn count_work(&self, work: &mut u64) -> Result<(), SimulationError> {
+    pub(super) fn count_work(&self, work: &mut u64) -> Result<(), SimulationError> {
         if *work >= self.settings.max_steps {
             return Err(SimulationError::TooManySteps { time: self.run.time(), steps: self.settings.max_steps });
         }
@@ -291,7 +290,7 @@ impl Simulation {
         if h < limit { grown } else { grown.max(self.run.step_size) }
     }
 
-    fn note_error(&mut self, attempt: &Attempt) {
+    pub(super) fn note_error(&mut self, attempt: &Attempt) {
         if self.settings.accounts.solver {
             self.run.counters.note_error(attempt.force_error, self.integrator.end_force_z());
         }
@@ -304,7 +303,7 @@ impl Simulation {
     }
 
     /// Goes to the end of a stride, at the time `end` of the piece, and changes the modes if that is due.
-    fn accept(&mut self, stride: &Stride, end: f64) {
+    pub(super) fn accept(&mut self, stride: &Stride, end: f64) {
         let Stride { h, share } = *stride;
         if self.settings.accounts.energy {
             let gain = self.integrator.energies(&self.model, &self.run.state, h, share);
@@ -331,7 +330,7 @@ impl Simulation {
     fn show_within(&mut self, h: f64, theta: f64, show: impl FnOnce(&mut Self)) {
         let (s, energies) = (self.run.s, self.run.energies);
         if self.settings.accounts.energy {
-            let gain = self.integrator.energies(&self.model, &self.run.state, h, theta);
+            let gain = self.energies_within(h, theta);
             self.run.energies.channels.add(1.0, &gain);
         }
         self.look_within(h, theta);
@@ -343,12 +342,24 @@ impl Simulation {
         (self.run.s, self.run.energies, self.within) = (s, energies, within);
     }
 
+    /// Energies through the channels from the start of the step of length `h` tried last to its fraction `theta`.
+    fn energies_within(&mut self, h: f64, theta: f64) -> Power {
+        if self.run.stepping {
+            self.integrator.two_stage_energies(&self.model, &self.run.state, h, theta)
+        } else {
+            self.integrator.energies(&self.model, &self.run.state, h, theta)
+        }
+    }
+
     /// The state at the fraction `theta` of the step of length `h` tried last, into `within`.
     fn look_within(&mut self, h: f64, theta: f64) {
         if self.within_at == Some((h, theta)) {
             return;
         }
         self.within_at = Some((h, theta));
+        if self.run.stepping {
+            return self.look_within_time_step(h, theta);
+        }
         let dense = self.integrator.dense(&self.model, &self.run.carrier, &self.run.state, (self.run.s, h));
         dense.state_at(theta, &mut self.dense_room, &mut self.within);
     }
@@ -367,7 +378,7 @@ fn growth(error: f64) -> f64 {
 }
 
 /// A step that leaves no scrap before the end of the piece.
-fn fitted(step_size: f64, remaining: f64) -> f64 {
+pub(super) fn fitted(step_size: f64, remaining: f64) -> f64 {
     if step_size >= remaining {
         remaining
     } else if step_size > 0.5 * remaining {

@@ -71,3 +71,25 @@ fn mode_changes_are_heard_only_when_asked_for() {
     assert!(messages.iter().all(|message| message.category == "logEvents" && message.status == OK));
     assert!(messages.iter().any(|message| message.text.ends_with(" to free")), "{messages:?}");
 }
+
+/// The carrier drags the rough layer fast: mode changes crowd, and the method auto says that it goes over to time steps.
+#[test]
+fn a_handover_of_auto_is_heard_with_the_solver() {
+    let drag = |method: &str| {
+        let fmu = Fmu::of(&SCENE.replace("masses = 2", "masses = 60"), false);
+        let reference = fmu.reference("solver.method");
+        assert_eq!(fmu.set_text(reference, method), OK);
+        assert_eq!(fmu.set_real("solver.relative_tolerance", 1e-2), OK);
+        assert_eq!((fmu.enter(), fmu.set_real("w", -3e-7), fmu.set_rate("u", 5.0), fmu.exit()), (OK, OK, OK, OK));
+        assert_eq!(fmu.set_debug_logging(true, &[c"logSolver"]), OK);
+        for i in 0..40 {
+            let point = 1e-5 * f64::from(i);
+            assert_eq!((fmu.set_real("u", 5.0 * (point + 1e-5)), fmu.set_rate("u", 5.0)), (OK, OK));
+            assert_eq!(fmu.step(point, 1e-5), OK);
+        }
+        let told = |message: &Message| message.text.contains("time-stepping from here on");
+        fmu.messages().iter().filter(|message| told(message)).count()
+    };
+    assert_eq!((drag("event"), drag("step")), (0, 0));
+    assert!(drag("auto") > 0);
+}

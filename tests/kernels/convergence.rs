@@ -157,7 +157,7 @@ pub fn sliding(model: &Model, velocity: f64, w: f64) -> State {
 }
 
 /// The slider by the classical Runge-Kutta method on the dense equations of motion: its place ξ and ẋ at `time`.
-fn reference(layer: &Layer, start: &State, u_rate: f64, time: f64, steps: u32) -> (f64, f64, DVector<f64>) {
+pub fn reference(layer: &Layer, start: &State, u_rate: f64, time: f64, steps: u32) -> (f64, f64, DVector<f64>) {
     let (model, matrices) = (layer.model(), Matrices::new(layer));
     let n = matrices.relaxation_times.len();
     let derivative = |t: f64, z: &DVector<f64>| {

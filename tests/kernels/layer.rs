@@ -2,7 +2,7 @@
 
 use std::path::Path as FilePath;
 
-use asperity::integrator::{Attempt, Dense, DenseRoom, Followed, Integrator, Tolerance};
+use asperity::integrator::{Attempt, Dense, DenseRoom, Followed, Integrator, Steps, TWO_STAGES, Tolerance, Within};
 use asperity::model::{Carrier, Forces, LinkKind, Model, State};
 use asperity::scene::{Path, Scene};
 use asperity::simulation::Simulation;
@@ -99,6 +99,8 @@ pub struct Stepper {
     pub integrator: Integrator,
     pub tolerance: Tolerance,
     pub s: f64,
+    /// Whether the steps have two stages.
+    two_stages: bool,
 }
 
 impl Stepper {
@@ -107,21 +109,35 @@ impl Stepper {
         let carrier = Carrier::new(0.0, (0.0, 0.0), (u, w), &model.profile);
         let tolerance = Tolerance::new(&model, tolerance, tolerance);
         let mut forces = Forces::new(&model);
-        let mut integrator = Integrator::new(&model, Followed::default());
+        let mut integrator = Integrator::new(&model, Followed::default(), Steps::Both);
         forces.evaluate(&model, &state, &carrier.at(0.0));
         integrator.begin(&model, &state, &carrier.at(0.0), &forces);
-        Self { model, carrier, state, integrator, tolerance, s: 0.0 }
+        Self { model, carrier, state, integrator, tolerance, s: 0.0, two_stages: false }
+    }
+
+    /// The same by the method of two stages.
+    pub fn by_two_stages(self) -> Self {
+        Self { two_stages: true, ..self }
     }
 
     /// Tries a step without taking it.
     pub fn attempt(&mut self, h: f64) -> Attempt {
-        self.integrator.attempt(&self.model, &self.state, &self.carrier, (self.s, h), &self.tolerance).unwrap()
+        let (integrator, span) = (&mut self.integrator, (self.s, h));
+        if self.two_stages {
+            integrator.attempt_two_stages(&self.model, &self.state, &self.carrier, span, &self.tolerance).unwrap()
+        } else {
+            integrator.attempt(&self.model, &self.state, &self.carrier, span, &self.tolerance).unwrap()
+        }
     }
 
     /// Takes a step of length `h`.
     pub fn step(&mut self, h: f64) {
         self.attempt(h);
-        self.integrator.accept(&mut self.state);
+        if self.two_stages {
+            self.integrator.accept_two_stages(&mut self.state);
+        } else {
+            self.integrator.accept(&mut self.state);
+        }
         self.s += h;
     }
 
@@ -140,6 +156,18 @@ impl Stepper {
     pub fn within(&self, h: f64, theta: f64) -> State {
         let mut state = self.state.clone();
         self.dense(h).state_at(theta, &mut DenseRoom::new(&self.model), &mut state);
+        state
+    }
+}
+
+impl Stepper {
+    /// The state at the fraction `theta` of the step of two stages of length `h` tried last.
+    pub fn within_two_stages(&self, h: f64, theta: f64) -> State {
+        let mut state = self.state.clone();
+        let stages = self.integrator.stages();
+        let (start, end) = ((&self.state, &stages[1]), (self.integrator.end(), &stages[TWO_STAGES - 1]));
+        self.integrator.first_stage_maxwell(&self.model, &self.state, &mut state.maxwell);
+        Within::new(&self.model, &self.carrier, (self.s, h), start, end).state_at(theta, &mut state);
         state
     }
 }

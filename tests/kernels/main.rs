@@ -12,3 +12,4 @@ mod missed_events;
 mod rollback;
 mod stiff;
 mod tableau;
+mod two_stages;

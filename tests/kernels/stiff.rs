@@ -6,13 +6,13 @@ use crate::convergence::{Exact, PATHS, differences, slider, sliding};
 use crate::layer::{Layer, Link, Stepper, at_rate};
 
 /// One mass with a spring and one Maxwell element along either axis.
-fn oscillator(relaxation_time: f64) -> Layer {
+pub fn oscillator(relaxation_time: f64) -> Layer {
     let link = || Link::new(100.0, 0.5, &[(100.0, relaxation_time)]);
     Layer { links: [link(), link(), None, None], clearance: 10.0, ..Layer::default() }
 }
 
 /// Away from rest, every Maxwell element on its slow manifold: a = τ ė, but for O(τ²).
-fn on_slow_manifold(relaxation_time: f64) -> State {
+pub fn on_slow_manifold(relaxation_time: f64) -> State {
     let mut state = State::new(1, 2);
     (state.elongation_x[0], state.elongation_z[0]) = (0.1, -0.2);
     (state.velocity_x[0], state.velocity_z[0]) = (1.0, 0.5);
@@ -122,6 +122,6 @@ fn an_undamped_oscillator_never_gains_energy() {
     }
 }
 
-fn energy(stepper: &Stepper) -> f64 {
+pub fn energy(stepper: &Stepper) -> f64 {
     kinetic_energy(&stepper.model, &stepper.state) + elastic_energy(&stepper.model, &stepper.state)
 }

@@ -119,8 +119,6 @@ fn what_is_not_yet_supported() {
             ),
             (18, "rate_shear = { force = 1 }", 18, &format!("friction.rate_shear: {friction}")),
             (18, "shear_strength = 1e5", 18, &format!("friction.shear_strength: {friction}")),
-            (21, "method = 'step'", 21, r#"solver.method = 'step': not yet supported; allowed: "event""#),
-            (21, "method = 'auto'", 21, r#"solver.method = 'auto': not yet supported; allowed: "event""#),
             (
                 31,
                 "until_pressure = 2e5",

@@ -122,7 +122,7 @@ fn values_out_of_range() {
             (21, "reduce = 0.2", 21, "solver.reduce = 0.2: expected a number >= 0 and <= 0.1"),
             (21, "max_steps = 0", 21, &format!("solver.max_steps = 0: expected {steps}")),
             (21, "max_steps = 2147483648", 21, &format!("solver.max_steps = 2147483648: expected {steps}")),
-            (21, "method = 'fast'", 21, r#"solver.method = 'fast': expected "event""#),
+            (21, "method = 'fast'", 21, r#"solver.method = 'fast': expected one of "event", "step", "auto""#),
             (24, "extrapolation = 'no'", 24, r#"input.extrapolation = 'no': expected one of "linear", "hold""#),
             (27, "outputs = ['force']", 27, &format!("fmu.outputs[1] = 'force': expected one of {outputs}")),
             (27, "outputs = ['forces', 'forces']", 27, "fmu.outputs[2] = 'forces': expected each group once"),

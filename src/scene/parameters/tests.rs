@@ -137,8 +137,7 @@ fn refuses_what_the_reader_refuses() {
         ("solver.absolute_tolerance", "0", "solver.absolute_tolerance = 0.0: expected a number > 0"),
         ("solver.max_steps", "0", "solver.max_steps = 0: expected a whole number from 1 to 2147483647"),
         ("solver.max_steps", "3e9", "solver.max_steps = 3e9: expected a whole number from 1 to 2147483647"),
-        ("solver.method", "auto", "solver.method = \"auto\": not yet supported; allowed: \"event\""),
-        ("solver.method", "fast", "solver.method = \"fast\": expected \"event\""),
+        ("solver.method", "fast", "solver.method = \"fast\": expected one of \"event\", \"step\", \"auto\""),
         ("layer.initial", "cold", "layer.initial = \"cold\": expected one of \"relaxed\", \"undeformed\""),
         ("input.extrapolation", "no", "input.extrapolation = \"no\": expected one of \"linear\", \"hold\""),
     ];

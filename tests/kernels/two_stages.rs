@@ -1,0 +1,178 @@
+//! The method of two stages: its coefficients, its order, its estimate, what lies within its steps, and stiffness.
+
+use asperity::integrator::SDIRK2;
+use asperity::model::State;
+use nalgebra::DVector;
+
+use crate::convergence::{Exact, PATHS, chain, differences, displaced, reference, slider, sliding};
+use crate::layer::{Layer, Link, Stepper, at_rate, last_order};
+use crate::stiff::{energy, on_slow_manifold, oscillator};
+
+fn stepper(layer: &Layer, start: &State) -> Stepper {
+    Stepper::new(layer.model(), PATHS, start.clone(), 1e-12).by_two_stages()
+}
+
+/// b = the last row of A; Σ b = 1, Σ b c = ½, A 1 = c; and L-stable: the stability function
+/// (1 + (1 - 2γ) z)/(1 - γz)² falls to 0 and is at most 1 along the imaginary axis.
+#[test]
+fn the_coefficients_are_of_order_two_and_l_stable() {
+    let (c, a) = (SDIRK2.c, SDIRK2.a);
+    let b = a[2];
+    for i in 0..3 {
+        assert!((a[i].iter().sum::<f64>() - c[i]).abs() < 1e-15);
+    }
+    assert!((b.iter().sum::<f64>() - 1.0).abs() < 1e-15);
+    assert!((b.iter().zip(c).map(|(b, c)| b * c).sum::<f64>() - 0.5).abs() < 1e-15);
+    let gamma = b[2];
+    assert_eq!(a[1][1], gamma);
+    for y in [0.1, 1.0, 10.0, 1e3, 1e6] {
+        let size = (1.0 + (1.0 - 2.0 * gamma).powi(2) * y * y).sqrt() / (1.0 + gamma * gamma * y * y);
+        assert!(size <= 1.0 + 1e-15, "{y}: {size}");
+    }
+}
+
+/// Places, velocities and Maxwell elongations of a free chain, against the matrix exponential.
+#[test]
+fn a_free_chain_converges_with_order_two() {
+    let layer = chain();
+    let start = displaced(&layer.model());
+    let expected = Exact::new(&layer).at(&start, 1.0);
+    let errors = [100, 200, 400].map(|steps| {
+        let mut stepper = stepper(&layer, &start);
+        stepper.run(1.0, steps);
+        differences(&stepper.state, &expected)
+    });
+    for part in 0..3 {
+        let order = last_order(&errors.map(|error| error[part]));
+        assert!((1.9..2.1).contains(&order), "part {part}: {order} from {errors:?}");
+    }
+}
+
+/// A slipping mass with friction over a curved profile, against an explicit method on the dense equations.
+#[test]
+fn a_slipping_mass_converges_with_order_two() {
+    let layer = slider();
+    for velocity in [2.0, -1.2] {
+        let start = sliding(&layer.model(), velocity, 0.0);
+        let (place, speed, maxwell) = reference(&layer, &start, 1.5 * velocity, 0.4, 4000);
+        let errors = [20, 40, 80].map(|steps| {
+            let paths = (at_rate(1.5 * velocity), at_rate(0.0));
+            let mut stepper = Stepper::new(layer.model(), paths, start.clone(), 1e-13).by_two_stages();
+            stepper.run(0.4, steps);
+            let state = &stepper.state;
+            let xi = 1.5 * velocity * 0.4 + state.elongation_x[0];
+            let a = DVector::from_column_slice(&state.maxwell);
+            [(xi - place).abs(), (state.velocity_x[0] - speed).abs(), (a - &maxwell).amax()]
+        });
+        for part in 0..3 {
+            let order = last_order(&errors.map(|error| error[part]));
+            assert!((1.85..2.15).contains(&order), "part {part}: {order} from {errors:?}");
+        }
+    }
+}
+
+/// The estimate is that of a method of order 1: the global error, of order 2, falls as it does.
+#[test]
+fn the_error_estimate_falls_with_the_square() {
+    let layer = chain();
+    let mut stepper = stepper(&layer, &displaced(&layer.model()));
+    let tolerance = &mut stepper.tolerance;
+    (tolerance.relative, tolerance.position, tolerance.velocity) = (0.0, 1e-9, 1e-9);
+    let attempts = [4e-3, 2e-3, 1e-3].map(|h| stepper.attempt(h));
+    let order = last_order(&attempts.map(|attempt| attempt.error));
+    let force_order = last_order(&attempts.map(|attempt| attempt.force_error.abs()));
+    assert!((1.9..2.1).contains(&order) && (1.8..2.2).contains(&force_order), "{order} {force_order}");
+}
+
+/// Within a step places miss O(h³), velocities and Maxwell elongations O(h²); its ends come out as they are.
+#[test]
+fn the_inside_of_a_step_has_its_order() {
+    let layer = chain();
+    let start = displaced(&layer.model());
+    let exact = Exact::new(&layer);
+    let mut stepper = stepper(&layer, &start);
+    let errors = [1e-2, 5e-3, 2.5e-3].map(|h| {
+        stepper.attempt(h);
+        let mut worst = [0.0_f64; 3];
+        for theta in [0.0, 0.13, 0.29, 0.5, 0.81, 1.0] {
+            let within = stepper.within_two_stages(h, theta);
+            let found = differences(&within, &exact.at(&start, theta * h));
+            worst = std::array::from_fn(|part| worst[part].max(found[part]));
+            let ends = [(0.0, &start), (1.0, stepper.integrator.end())];
+            if let Some((_, end)) = ends.into_iter().find(|(at, _)| *at == theta) {
+                // Roundings of sums of numbers of size 1.
+                assert!(differences(&within, end).into_iter().all(|difference| difference < 1e-14));
+            }
+        }
+        worst
+    });
+    for (part, expected) in [3.0, 2.0, 2.0].into_iter().enumerate() {
+        let order = last_order(&errors.map(|error| error[part]));
+        assert!(order > expected - 0.2, "part {part}: {order} from {errors:?}");
+    }
+}
+
+/// A Maxwell element far from its slow manifold, a = τ ė, is there after one step but for some τ/h of the way.
+#[test]
+fn a_maxwell_element_falls_onto_its_slow_manifold() {
+    let h = 0.05;
+    for exponent in 4..=13 {
+        let tau = 10.0_f64.powi(-exponent);
+        let mut state = on_slow_manifold(tau);
+        state.maxwell.fill(0.3);
+        let mut stepper = stepper(&oscillator(tau), &state);
+        stepper.step(h);
+        let carrier = stepper.carrier.at(h);
+        let rates = [stepper.state.velocity_z[0] - carrier.w_rate, stepper.state.velocity_x[0] - carrier.u_rate];
+        for (a, rate) in stepper.state.maxwell.iter().zip(rates) {
+            let off = (a - tau * rate).abs();
+            // Times the factor that the stability function falls with, (1 - 2γ)/γ².
+            assert!(off < 10.0 * tau / h, "{tau:e}: {off:e}");
+        }
+    }
+}
+
+/// A damper so strong that h d/m is 1e3 to 1e13 holds a mass within a step.
+#[test]
+fn a_strong_damper_stops_the_mass_within_a_step() {
+    let h = 0.01;
+    for exponent in 5..=15 {
+        let damping = 10.0_f64.powi(exponent);
+        let link = || Link::new(100.0, damping, &[(100.0, 0.1)]);
+        let links = [link(), link(), None, None];
+        let free = Layer { links: links.clone(), ..oscillator(1.0) };
+        let slipping = Layer { links, ..slider() };
+        let mut state = State::new(1, 2);
+        (state.velocity_x[0], state.velocity_z[0]) = (1.0, 1.0);
+        for (layer, start) in [(&free, state), (&slipping, sliding(&slipping.model(), 1.0, 0.0))] {
+            let paths = (at_rate(0.0), at_rate(0.0));
+            let mut stepper = Stepper::new(layer.model(), paths, start.clone(), 1e-12).by_two_stages();
+            stepper.step(h);
+            let moved = differences(&stepper.state, &start)[0];
+            let speed = stepper.state.velocity_x[0].abs().max(stepper.state.velocity_z[0].abs());
+            assert!(speed < 10.0 / (h * damping), "{damping:e}: {speed:e}");
+            // The way m v/d, m = 1 kg at most, and roundings of numbers of size 1.
+            assert!(moved < 1.1 / damping + 1e-15, "{damping:e}: {moved:e}");
+        }
+    }
+}
+
+/// The energy of an undamped oscillator never grows, however long the steps are against its period.
+#[test]
+fn an_undamped_oscillator_never_gains_energy() {
+    for phase in [1e-3, 0.03, 0.3, 1.0, 3.0, 30.0, 1e4] {
+        let link = || Link::new(100.0, 0.0, &[]);
+        let layer = Layer { links: [link(), link(), None, None], ..Layer::default() };
+        let mut state = State::new(1, 0);
+        (state.elongation_x[0], state.velocity_z[0]) = (0.1, 1.0);
+        let mut stepper = Stepper::new(layer.model(), (at_rate(0.0), at_rate(0.0)), state, 1e-12).by_two_stages();
+        let first = energy(&stepper);
+        let mut highest = 0.0_f64;
+        for _ in 0..10_000 {
+            stepper.step(0.1 * phase);
+            highest = highest.max(energy(&stepper) / first);
+        }
+        // The roundings of 10 000 steps, which add up like a random walk at most.
+        assert!(highest < 1.0 + 1e-13, "hω = {phase}: {highest}");
+    }
+}
