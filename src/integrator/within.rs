@@ -67,9 +67,11 @@ impl<'a> Within<'a> {
 
     /// The velocity of mass `i` at the fraction `theta` of the step, m/s.
     pub fn velocity(&self, i: usize, theta: f64) -> (f64, f64) {
+        let weights = along(theta);
+        let of = |values: [f64; 3]| values.iter().zip(weights).map(|(value, weight)| weight * value).sum();
         (
-            along(theta, [self.start.velocity_x[i], self.first.velocity_x[i], self.end.velocity_x[i]]),
-            along(theta, [self.start.velocity_z[i], self.first.velocity_z[i], self.end.velocity_z[i]]),
+            of([self.start.velocity_x[i], self.first.velocity_x[i], self.end.velocity_x[i]]),
+            of([self.start.velocity_z[i], self.first.velocity_z[i], self.end.velocity_z[i]]),
         )
     }
 
@@ -93,8 +95,9 @@ impl<'a> Within<'a> {
             self.constrain(i, &here, state);
         }
         // Which are those at the first stage so far.
-        for (i, a) in state.maxwell.iter_mut().enumerate() {
-            *a = along(theta, [from.maxwell[i], *a, to.maxwell[i]]);
+        let [of_start, of_first, of_end] = along(theta);
+        for (a, (start, end)) in state.maxwell.iter_mut().zip(from.maxwell.iter().zip(&to.maxwell)) {
+            *a = of_start * start + of_first * *a + of_end * end;
         }
     }
 
@@ -124,11 +127,13 @@ fn through(theta: f64, middle: f64, end: f64) -> f64 {
     first * velocity + last * (end - (1.0 - GAMMA) * velocity) / GAMMA
 }
 
-/// The two lines through the values at the start, the first stage and the end.
-fn along(theta: f64, [start, middle, end]: [f64; 3]) -> f64 {
+/// The two lines through the values at the start, the first stage and the end: what each of these weighs.
+#[inline]
+fn along(theta: f64) -> [f64; 3] {
     if theta < GAMMA {
-        start + theta / GAMMA * (middle - start)
+        [1.0 - theta / GAMMA, theta / GAMMA, 0.0]
     } else {
-        middle + (theta - GAMMA) / (1.0 - GAMMA) * (end - middle)
+        let share = (theta - GAMMA) / (1.0 - GAMMA);
+        [0.0, 1.0 - share, share]
     }
 }

@@ -1,7 +1,7 @@
 //! Power and energy of the layer. E_in = [T + V] + E_damper + E_maxwell + E_friction + E_impact holds exactly in the model,
 //! so what it misses in a run is the run's numerical error.
 
-use crate::math::{Numbers, visit_all};
+use crate::math::{Numbers, dot, visit_all};
 
 use super::{CarrierPoint, Forces, LinkKind, Model, State};
 
@@ -75,7 +75,7 @@ impl Numbers for Power {
 
 fn damper(model: &Model, forces: &Forces, kind: LinkKind) -> f64 {
     let damping = model.links[kind as usize].damping;
-    if damping == 0.0 { 0.0 } else { damping * square_sum(forces.rate[kind as usize].iter().copied()) }
+    if damping == 0.0 { 0.0 } else { damping * dot(&forces.rate[kind as usize], &forces.rate[kind as usize]) }
 }
 
 fn square_sum(values: impl Iterator<Item = f64>) -> f64 {
@@ -84,7 +84,7 @@ fn square_sum(values: impl Iterator<Item = f64>) -> f64 {
 
 fn maxwell(model: &Model, state: &State) -> f64 {
     let row_power = |row: &super::MaxwellRow| {
-        row.stiffness * square_sum(state.maxwell[row.range.clone()].iter().copied()) / row.relaxation_time
+        row.stiffness * dot(&state.maxwell[row.range.clone()], &state.maxwell[row.range.clone()]) / row.relaxation_time
     };
     model.rows.iter().map(row_power).sum()
 }
@@ -118,8 +118,9 @@ pub fn kinetic_energy(model: &Model, state: &State) -> f64 {
 /// V = Σ ½ c e² + Σ_j ½ c_j (e - y_j)², J, the dashpots that stand still included.
 pub fn elastic_energy(model: &Model, state: &State) -> f64 {
     let springs: f64 = LinkKind::ALL.map(|kind| spring_energy(model, state, kind)).iter().sum();
-    let row_energy =
-        |row: &super::MaxwellRow| 0.5 * row.stiffness * square_sum(state.maxwell[row.range.clone()].iter().copied());
+    let row_energy = |row: &super::MaxwellRow| {
+        0.5 * row.stiffness * dot(&state.maxwell[row.range.clone()], &state.maxwell[row.range.clone()])
+    };
     springs + model.rows.iter().map(row_energy).sum::<f64>()
 }
 
