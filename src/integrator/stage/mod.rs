@@ -243,8 +243,9 @@ impl StageSolver {
         self.forces.sum_on_masses();
     }
 
-    /// Adds the corrections to the velocities; the largest, m/s.
+    /// Adds the corrections to the velocities, which is one iteration; the largest, m/s.
     fn correct(&mut self) -> f64 {
+        self.iterations += 1;
         let velocities = self.state.velocity_x.iter_mut().zip(&mut self.state.velocity_z);
         for ((v_x, v_z), correction) in velocities.zip(&self.system.right) {
             *v_x += correction.x;

@@ -48,7 +48,7 @@ impl Logarithmic {
     }
 
     fn is_short(self) -> bool {
-        self.decades() < SHORT
+        self.decades() <= SHORT + ROUNDING
     }
 
     /// The values at some multiples of powers of ten that are on the axis.
@@ -133,6 +133,7 @@ mod tests {
     #[test]
     fn a_short_axis_has_plain_numbers_and_a_long_one_powers() {
         assert_eq!(labels(Logarithmic { low: 0.2, high: 10.0 }), ["0.2", "0.5", "1", "2", "5", "10"]);
+        assert_eq!(labels(Logarithmic { low: 0.05, high: 5.0 }), ["0.05", "0.1", "0.2", "0.5", "1", "2", "5"]);
         assert_eq!(labels(Logarithmic { low: 2e-5, high: 1e-4 }), ["2·10⁻⁵", "5·10⁻⁵", "10⁻⁴"]);
         assert_eq!(labels(Logarithmic { low: 0.05, high: 200.0 }), ["10⁻¹", "10⁰", "10¹", "10²"]);
         assert_eq!(labels(Logarithmic { low: 1e-12, high: 1.0 })[..2], ["10⁻¹²", "10⁻¹⁰"]);

@@ -8,7 +8,7 @@ use asperity::simulation::Simulation;
 use super::ladder::Figures;
 use super::progress::{Progress, weight};
 use super::reference::{Comparison, Reference};
-use super::runs::{Measured, Recorder, at_tolerance, run};
+use super::runs::{Measured, Recorder, at_tolerance, exact, run};
 use super::trace::{Errors, Trace};
 use crate::program::excitation::{Carrier, Rows};
 
@@ -61,7 +61,7 @@ pub(super) fn climb(reference: &Reference, progress: &Progress) -> Vec<Row> {
     let longest = round_down(LONGEST * duration(scene));
     let finest = 1 << (RUNGS - 1);
     let rows = Rows::Within { longest, parts: finest };
-    let tight = at_tolerance(scene, reference.tolerance);
+    let tight = exact(&at_tolerance(scene, reference.tolerance));
     let message = "reference at the communication points";
     let tight = progress.during(message, weight(reference.tolerance), |tick| run(&tight, rows, 0.0, tick));
     let Ok(tight) = tight.map(|measured| measured.trace) else { return Vec::new() };

@@ -4,7 +4,7 @@ use asperity::scene::Scene;
 use asperity::simulation::SimulationError;
 
 use super::progress::{Progress, weight};
-use super::runs::{Counts, Measured, at_tolerance, run, with_durations};
+use super::runs::{Counts, Measured, at_tolerance, exact, run, with_durations};
 use super::trace::{Errors, Trace, WINDOWS};
 use crate::program::arguments::tenth;
 use crate::program::excitation::Rows;
@@ -106,9 +106,9 @@ pub(super) fn find(
     progress: &Progress,
 ) -> Result<Reference, SimulationError> {
     let rows = Rows::PerPhase(points);
-    let (rung, base) = tightest(scene, ladder, rows, progress)?;
+    let (rung, base) = tightest(&exact(scene), ladder, rows, progress)?;
     let scene = with_durations(scene, &base.durations);
-    let search = Search { scene: &scene, rows, progress };
+    let search = Search { scene: &exact(&scene), rows, progress };
     let (run, check) = match search.tighter(ladder[rung], &base.counts) {
         None => ((ladder[rung], base), search.looser(&ladder[..rung])),
         Some((tolerance, run)) => {

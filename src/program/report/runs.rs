@@ -1,7 +1,7 @@
 //! One run of a scene for a report: its rows, what it took, how long.
 
 use asperity::outputs::{Output, Variable, variables};
-use asperity::scene::{OutputGroup, Phase, Scene};
+use asperity::scene::{Method, OutputGroup, Phase, Scene};
 use asperity::simulation::{Simulation, SimulationError};
 
 use super::trace::Trace;
@@ -61,6 +61,13 @@ pub(super) fn at_tolerance(scene: &Scene, tolerance: f64) -> Scene {
     let ratio = tolerance / scene.solver.relative_tolerance;
     scene.solver.absolute_tolerance = scene.solver.absolute_tolerance.map(|absolute| absolute * ratio);
     scene.solver.relative_tolerance = tolerance;
+    scene
+}
+
+/// The scene as the reference runs it: every mode change located, no Maxwell element left out.
+pub(super) fn exact(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    (scene.solver.method, scene.solver.reduce) = (Method::Event, 0.0);
     scene
 }
 

@@ -153,7 +153,9 @@ fn figure_cells(figures: &Figures, below: [bool; 3]) -> Vec<Cell> {
 }
 
 fn reference(reference: &Reference) -> String {
-    let run = format!("A run by the method <code>event</code> at the relative tolerance {:e}.", reference.tolerance);
+    let reduced = if reference.scene.solver.reduce > 0.0 { ", with all Maxwell elements" } else { "" };
+    let run =
+        format!("A run by the method <code>event</code> at the relative tolerance {:e}{reduced}.", reference.tolerance);
     match reference.check {
         Some(check) => {
             let own = in_words(&reference.own);
