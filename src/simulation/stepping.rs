@@ -60,6 +60,11 @@ impl Simulation {
         mut observe: impl FnMut(f64, &mut Self),
     ) -> Result<Option<f64>, SimulationError> {
         let clock = self.settings.accounts.solver.then(ThreadTime::now);
+        let before = self.run.counters.run_time;
+        let mut observe = |time: f64, simulation: &mut Self| {
+            simulation.note_run_time(clock.as_ref(), before);
+            observe(time, simulation);
+        };
         let mut rows = times.iter().copied().peekable();
         while let Some(time) = rows.next_if(|&time| time <= 0.0) {
             observe(time, self);
@@ -89,10 +94,15 @@ impl Simulation {
                 observe(time, self);
             }
         }
-        if let Some(clock) = clock {
-            self.run.counters.run_time += clock.elapsed().as_secs_f64();
-        }
+        self.note_run_time(clock.as_ref(), before);
         Ok(risen.then_some(self.run.s))
+    }
+
+    /// The processor time since the start: what the motion under way has taken added to that `before` it, s.
+    fn note_run_time(&mut self, clock: Option<&ThreadTime>, before: f64) {
+        if let Some(clock) = clock {
+            self.run.counters.run_time = before + clock.elapsed().as_secs_f64();
+        }
     }
 
     /// Whether F_z has reached the force `until`.
