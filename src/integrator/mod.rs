@@ -248,10 +248,12 @@ impl Integrator {
         let rates = &self.stages[0];
         let masses = rates.velocity_x.len();
         let links: usize = rates.elongation_rate.iter().map(Vec::len).sum();
-        // By mass: the rates and the starred values; three blocks, a right side and a column; errors and polynomials.
         let stages = self.stages.len() + 1;
-        let by_mass = stages * 6 + 4 + (3 * 4 + 2 + 3) + 4;
-        (by_mass * masses + stages * links + 2 * (self.maxwell.floats() + self.two_stages.floats())) * size_of::<f64>()
+        // By mass: the rates and the starred values; five blocks and a right side; a row, a column and a slip; errors.
+        let by_mass = stages * 6 + 4 + (5 * 4 + 2) + (3 + 3 + 11) + 5;
+        let elements = 2 * (self.maxwell.floats() + self.two_stages.floats());
+        let tangents: usize = self.tangents.iter().map(Tangent::floats).sum();
+        (by_mass * masses + stages * links + elements + tangents) * size_of::<f64>()
     }
 
     /// The rates at the stages of the step tried last.

@@ -123,6 +123,13 @@ impl Tangent {
         }
     }
 
+    /// Numbers that this holds.
+    pub(super) fn floats(&self) -> usize {
+        let (masses, maxwell) = (self.start.x.len(), self.start.maxwell.len());
+        // The start, the end and the stages; forces, their links and what is held.
+        (2 + self.stages.len()) * (4 * masses + maxwell) + self.forces.bytes() / size_of::<f64>() + 4 * masses
+    }
+
     /// Begins a motion of `duration` (s): the layer as it stands does not depend on where the carrier will go.
     pub(super) fn begin(&mut self, duration: f64) {
         self.duration = duration;

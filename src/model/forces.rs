@@ -46,9 +46,9 @@ impl Forces {
     pub fn spring_and_damper(&mut self, kind: LinkKind, law: (f64, f64), motion: &LinkMotion<'_>, known: &[f64]) {
         let (rate, force) = (&mut self.rate[kind as usize][..], &mut self.link[kind as usize][..]);
         if kind.is_lateral() {
-            motion.between_masses(kind, rate, force, law);
+            motion.pull_on_neighbours(kind, rate, force, law);
         } else {
-            motion.to_carrier(kind, rate, force, law);
+            motion.pull_on_carrier(kind, rate, force, law);
         }
         for (force, known) in force.iter_mut().zip(known) {
             *force += known;
@@ -166,7 +166,7 @@ impl<'a> LinkMotion<'a> {
         }
     }
 
-    fn to_carrier(&self, kind: LinkKind, rate: &mut [f64], force: &mut [f64], (stiffness, damping): (f64, f64)) {
+    fn pull_on_carrier(&self, kind: LinkKind, rate: &mut [f64], force: &mut [f64], (stiffness, damping): (f64, f64)) {
         let (place, velocity, carrier_rate) = self.along(kind);
         for ((force, rate), (e, v)) in force.iter_mut().zip(rate).zip(place.iter().zip(velocity)) {
             *rate = v - carrier_rate;
@@ -174,7 +174,13 @@ impl<'a> LinkMotion<'a> {
         }
     }
 
-    fn between_masses(&self, kind: LinkKind, rate: &mut [f64], force: &mut [f64], (stiffness, damping): (f64, f64)) {
+    fn pull_on_neighbours(
+        &self,
+        kind: LinkKind,
+        rate: &mut [f64],
+        force: &mut [f64],
+        (stiffness, damping): (f64, f64),
+    ) {
         let (place, velocity, _) = self.along(kind);
         let elongations = place.iter().zip(place.iter().skip(1));
         let rates = velocity.iter().zip(velocity.iter().skip(1));
