@@ -23,22 +23,27 @@ pub(super) fn lost<const STAGES: usize>(
     room: &mut [f64],
 ) -> Power {
     let mut energy = Power::default();
+    let mut products = [[[0.0; STAGES]; STAGES]; 4];
     for kind in LinkKind::ALL {
         let damping = model.links[kind as usize].damping;
         if damping == 0.0 && !maxwell.has(kind) {
             continue;
         }
-        let products = products::<STAGES>(stages, kind, maxwell.has(kind));
+        let products = &mut products[kind as usize];
+        *products = products_of(stages, kind, maxwell.has(kind));
         energy.damper += h * damping * (0..STAGES).map(|i| weights[i] * products[i][i]).sum::<f64>();
-        for (row, course) in maxwell.rows(model, kind) {
-            let square = row_squares(row, course, a, stages, &products, weights, room);
-            energy.maxwell += h * row.stiffness / row.relaxation_time * square;
+    }
+    for (index, course) in maxwell.courses().iter().enumerate() {
+        let squares = Squares::new(course, weights);
+        for row in model.rows.iter().filter(|row| row.time_index == index) {
+            let sum = squares.sum(row, &a[row.range.clone()], stages, &products[row.kind as usize], room);
+            energy.maxwell += h * row.stiffness / row.relaxation_time * sum;
         }
     }
     energy
 }
 
-fn products<const STAGES: usize>(stages: &[Rates], kind: LinkKind, all: bool) -> Products<STAGES> {
+fn products_of<const STAGES: usize>(stages: &[Rates], kind: LinkKind, all: bool) -> Products<STAGES> {
     let mut products = [[0.0; STAGES]; STAGES];
     for i in 0..STAGES {
         let rate = &stages[i].elongation_rate[kind as usize];
@@ -49,33 +54,43 @@ fn products<const STAGES: usize>(stages: &[Rates], kind: LinkKind, all: bool) ->
     products
 }
 
-/// Σ_i weight_i Σ a_i² over the elements of one row: a_i = p_i a_0 + h Σ_j q_ij ė_j multiplied out into
-/// Σ a_0 (S a_0 + Σ_j R_j ė_j), which is summed in `room`, and the products of the rates.
-fn row_squares<const STAGES: usize>(
-    row: &MaxwellRow,
-    course: &Course<STAGES>,
-    a: &[f64],
-    stages: &[Rates],
-    products: &Products<STAGES>,
-    weights: &[f64; STAGES],
-    room: &mut [f64],
-) -> f64 {
-    let a = &a[row.range.clone()];
-    let (mut by_start, mut by_rate, mut square) = (weights[0], [0.0; STAGES], 0.0);
-    for i in 1..STAGES {
-        let (p, q) = (course.start[i], &course.rate[i]);
-        by_start += weights[i] * p * p;
-        for j in 0..=i {
-            by_rate[j] += 2.0 * weights[i] * p * q[j];
-            let below: f64 = (0..j).map(|l| q[l] * products[j][l]).sum();
-            square += weights[i] * q[j] * (2.0 * below + q[j] * products[j][j]);
+/// Σ_i weight_i a_i² of an element: a_i = p_i a_0 + h Σ_j q_ij ė_j multiplied out.
+struct Squares<const STAGES: usize> {
+    /// Of a_0².
+    start: f64,
+    /// Of a_0 ė_j, s.
+    mixed: [f64; STAGES],
+    /// Of ė_j ė_l for l ≤ j, s².
+    rates: [[f64; STAGES]; STAGES],
+}
+
+impl<const STAGES: usize> Squares<STAGES> {
+    fn new(course: &Course<STAGES>, weights: &[f64; STAGES]) -> Self {
+        let mut squares = Self { start: weights[0], mixed: [0.0; STAGES], rates: [[0.0; STAGES]; STAGES] };
+        for i in 1..STAGES {
+            let (p, q) = (course.start[i], &course.rate[i]);
+            squares.start += weights[i] * p * p;
+            for j in 0..=i {
+                let weighed = weights[i] * q[j];
+                squares.mixed[j] += 2.0 * weighed * p;
+                for l in 0..j {
+                    squares.rates[j][l] += 2.0 * weighed * q[l];
+                }
+                squares.rates[j][j] += weighed * q[j];
+            }
         }
+        squares
     }
-    let rates =
-        by_rate.iter().zip(stages).map(|(&factor, stage)| (factor, &stage.elongation_rate[row.kind as usize][..]));
-    let room = &mut room[..a.len()];
-    weighted_sum(room, std::iter::once((by_start, a)).chain(rates));
-    square + dot(a, room)
+
+    /// The sum over the elements of one row, which start with the elongations `a`.
+    fn sum(&self, row: &MaxwellRow, a: &[f64], stages: &[Rates], products: &Products<STAGES>, room: &mut [f64]) -> f64 {
+        let rates = self.mixed.iter().zip(stages);
+        let mixed = rates.map(|(&factor, stage)| (factor, &stage.elongation_rate[row.kind as usize][..]));
+        let room = &mut room[..a.len()];
+        weighted_sum(room, std::iter::once((self.start, a)).chain(mixed));
+        let of_rates = self.rates.iter().flatten().zip(products.iter().flatten());
+        dot(a, room) + of_rates.map(|(factor, product)| factor * product).sum::<f64>()
+    }
 }
 
 #[cfg(test)]
@@ -117,7 +132,8 @@ mod tests {
             for kind in LinkKind::ALL {
                 let squares: f64 = stages[i].elongation_rate[kind as usize].iter().map(|rate| rate * rate).sum();
                 expected.damper += h * weight * model.links[kind as usize].damping * squares;
-                for (row, course) in maxwell.rows(&model, kind) {
+                for row in model.rows_of(kind) {
+                    let course = &maxwell.courses()[row.time_index];
                     for (link, a) in start[row.range.clone()].iter().enumerate() {
                         let rate = |j: usize| course.rate[i][j] * stages[j].elongation_rate[kind as usize][link];
                         let a = course.start[i] * a + (0..=i).map(rate).sum::<f64>();

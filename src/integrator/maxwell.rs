@@ -82,13 +82,9 @@ impl<const STAGES: usize> Maxwell<STAGES> {
         !self.kinds[kind as usize].error_start.is_empty()
     }
 
-    /// The rows of `kind` and the courses that they follow.
-    pub(super) fn rows<'a>(
-        &'a self,
-        model: &'a Model,
-        kind: LinkKind,
-    ) -> impl Iterator<Item = (&'a MaxwellRow, &'a Course<STAGES>)> {
-        model.rows_of(kind).map(|row| (row, &self.courses[row.time_index]))
+    /// The courses, one for each relaxation time of the model.
+    pub(super) fn courses(&self) -> &[Course<STAGES>] {
+        &self.courses
     }
 
     /// P_i + h Σ_{j<i} Q_ij ė_j of the links of `kind`: what is known of their elements' forces before stage `i`, N.

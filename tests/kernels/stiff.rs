@@ -50,7 +50,8 @@ fn the_error_of_a_step_does_not_depend_on_short_relaxation_times() {
             State { maxwell: vec![tau * v_z, tau * v_x], ..unforced.clone() }
         };
         let errors = error(&layer, &start, &reference);
-        assert!(errors[0] < 1.1 * base[0] && errors[1] < 1.2 * base[1], "{tau:e}: {errors:?}, not {base:?}");
+        // An element of 1e-3 s is not yet a mere damper of 1e-3 of the spring.
+        assert!(errors[0] < 1.1 * base[0] && errors[1] < 1.3 * base[1], "{tau:e}: {errors:?}, not {base:?}");
         // a = τ ė with the error of ė; and the start misses the slow manifold by some τ² ë.
         assert!(errors[2] < 1.1 * base[1] * tau + 4.0 * tau * tau, "{tau:e}: {errors:?}");
     }
