@@ -9,7 +9,7 @@
 //!
 //! So a step takes any number of mode changes, at its own cost. What their lateness leaves falls with the square of the step's
 //! length, as the method's error does; it is measured with it, and where it is too large the step is shortened.
-//! Repeating the step with the modes of its end was tried: it costs the stages again and puts changes too early in place of too late.
+//! Repeating the step with the modes of its end would cost the stages again, and put changes too early in place of too late.
 
 use super::rules::{collision, decided};
 use crate::integrator::{Rates, Tolerance, Within};
