@@ -9,8 +9,8 @@ rms 5e-6 m, its highest point at 0. free-chain-1000: no surface near, three Maxw
 fro by 1 mm at 100 Hz.
 """
 
+import argparse
 import math
-import sys
 from pathlib import Path
 
 # name: masses, speed of pressing in m/s, time of sliding in s, power of the amplitudes.
@@ -131,4 +131,6 @@ def write(folder):
 
 
 if __name__ == "__main__":
-    write(Path(sys.argv[1]))
+    arguments = argparse.ArgumentParser(description="Makes the scenes of the benchmark and their profiles.")
+    arguments.add_argument("folder", type=Path, metavar="FOLDER", help="where to write them")
+    write(arguments.parse_args().folder)
