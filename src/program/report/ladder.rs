@@ -1,6 +1,6 @@
 //! The ladder of tolerances: each rung run by each method.
 
-use asperity::scene::Scene;
+use asperity::scene::{Method, Scene};
 
 use super::progress::{Progress, weight};
 use super::reference::Reference;
@@ -10,8 +10,10 @@ use crate::program::excitation::Rows;
 
 /// What runs of this program are called, beside those of its peers.
 pub(super) const PROGRAM: &str = "asperity";
-/// The methods that a report compares, as solver.method names them.
-pub(super) const METHODS: [&str; 2] = ["event", "step"];
+/// The methods that a report compares, and how solver.method names them.
+const METHODS: [(Method, &str); 2] = [(Method::Event, "event"), (Method::Step, "step")];
+/// Once a method has taken so many times the reference's work, by Newton's iterations, its tighter rungs are left out.
+pub(super) const PATIENCE: u64 = 3;
 /// What the reference is called among the methods.
 pub(super) const REFERENCE: &str = "reference";
 
@@ -58,43 +60,53 @@ pub(super) struct Ladder<'a> {
     pub(super) repeat: u32,
 }
 
-/// The rungs of all methods, and what the scene's reader says of those that it refuses.
-#[derive(Debug, Default)]
-pub(super) struct Rungs {
-    /// The rows, method by method.
-    pub(super) rows: Vec<Row>,
-    /// Why a method is not there.
-    pub(super) left_out: Vec<String>,
-}
-
 impl Ladder<'_> {
     /// What it weighs.
     pub(super) fn weight(&self) -> f64 {
-        let all: f64 = self.tolerances.iter().map(|&tolerance| weight(tolerance)).sum();
-        all * f64::from(self.repeat) * METHODS.len() as f64
+        let rungs = METHODS.iter().flat_map(|&(method, _)| self.tolerances.iter().map(move |&rung| (method, rung)));
+        f64::from(self.repeat) * rungs.map(|(method, rung)| self.rung_weight(method, rung)).sum::<f64>()
     }
 
-    /// Runs all rungs against the reference.
-    pub(super) fn run(&self, reference: &Reference, progress: &Progress) -> Rungs {
-        let mut rungs = Rungs::default();
-        for method in METHODS {
-            let mut scene = reference.scene.clone();
-            match scene.set_by_name("solver.method", method) {
-                Ok(()) => rungs.rows.extend(self.tolerances.iter().map(|&tolerance| {
-                    let result = self.rung(&at_tolerance(&scene, tolerance), method, reference, progress);
-                    Row { program: PROGRAM.into(), method: method.into(), tolerance, result }
-                })),
-                Err(error) => rungs.left_out.push(error.to_string()),
-            }
+    /// What a rung is likely to take, as [`weight`]. The method "step" is of order 2: as quick as the other at a thousandth,
+    /// its steps follow the square root, until it is given up.
+    fn rung_weight(&self, method: Method, tolerance: f64) -> f64 {
+        const EVEN: f64 = 1e-3;
+        let most = 3.0 * PATIENCE as f64 * self.tolerances.last().map_or(1.0, |&tightest| weight(tightest));
+        match method {
+            Method::Step => (weight(EVEN) * (EVEN / tolerance).sqrt()).min(most),
+            _ => weight(tolerance),
         }
-        rungs
+    }
+
+    /// Runs all rungs against the reference, method by method.
+    pub(super) fn run(&self, reference: &Reference, progress: &Progress) -> Vec<Row> {
+        METHODS.iter().flat_map(|&(method, name)| self.climb(method, name, reference, progress)).collect()
+    }
+
+    /// The rungs of one method, until they take far more work than the reference: a tighter one would tell nobody anything.
+    fn climb(&self, method: Method, name: &str, reference: &Reference, progress: &Progress) -> Vec<Row> {
+        let mut scene = reference.scene.clone();
+        scene.solver.method = method;
+        let most = reference.measured.counts.iterations;
+        let mut last = 0;
+        let mut row = |&tolerance: &f64| {
+            let result = if last > PATIENCE * most {
+                Err(format!("left out: a looser one took {last} Newton iterations, the reference {most}"))
+            } else {
+                self.rung(&at_tolerance(&scene, tolerance), name, reference, progress)
+            };
+            last = result.as_ref().ok().and_then(|figures| figures.iterations).unwrap_or(last);
+            Row { program: PROGRAM.into(), method: name.into(), tolerance, result }
+        };
+        self.tolerances.iter().map(&mut row).collect()
     }
 
     fn rung(&self, scene: &Scene, method: &str, reference: &Reference, progress: &Progress) -> Result<Figures, String> {
         let tolerance = scene.solver.relative_tolerance;
+        let weight = self.rung_weight(scene.solver.method, tolerance);
         let measure = |rows: Rows, what: &str| {
             let message = format!("{method}, tolerance {tolerance:e}{what}");
-            let measured = progress.during(&message, weight(tolerance), |tick| run(scene, rows, 0.0, tick));
+            let measured = progress.during(&message, weight, |tick| run(scene, rows, 0.0, tick));
             measured.map_err(|error| error.to_string())
         };
         let mut times = Vec::new();

@@ -76,8 +76,6 @@ struct Parts {
     reference: reference::Reference,
     /// This program's rungs, then the peers'.
     rows: Vec<ladder::Row>,
-    /// Why a method is not there.
-    left_out: Vec<String>,
     communication: Vec<communication::Row>,
 }
 
@@ -94,12 +92,11 @@ fn run(command: &Report, scene: &Scene, peers: Peers) -> Result<Parts, ProgramEr
         progress.finish();
         return Err(ProgramError::NoRun("takes no time: every phase of its [[excitation]] ends at once"));
     }
-    let mut rungs = ladder.run(&reference, &progress);
+    let mut rows = ladder.run(&reference, &progress);
     let communication = communication::climb(&reference, &progress);
     progress.finish();
-    rungs.left_out.iter().for_each(|reason| super::warn(&format!("a method is left out: {reason}")));
-    rungs.rows.extend(peers.rows);
-    Ok(Parts { reference, rows: rungs.rows, left_out: rungs.left_out, communication })
+    rows.extend(peers.rows);
+    Ok(Parts { reference, rows, communication })
 }
 
 /// The peers' rows of this scene; a file that has none of it is worth a warning.

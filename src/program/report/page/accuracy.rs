@@ -8,7 +8,7 @@ use super::{begin_group, count, errors, head, number, reason, seconds, short};
 use crate::program::arguments::Report;
 use crate::program::html::{Cell, fill, table};
 use crate::program::report::Parts;
-use crate::program::report::ladder::{Figures, PROGRAM, Row};
+use crate::program::report::ladder::{Figures, PATIENCE, PROGRAM, Row};
 use crate::program::report::reference::{DISPLACEMENT, Reference};
 use crate::program::report::trace::{Errors, QUANTITIES, WINDOWS};
 
@@ -26,9 +26,9 @@ pub(in crate::program::report) fn section(command: &Report, parts: &Parts, pictu
         ("comparison", comparison(&parts.reference)),
         ("repeat", if command.repeat == 1 { "one run".into() } else { format!("{} runs", command.repeat) }),
         ("build", build().into()),
-        ("left_out", left_out(&parts.left_out)),
         ("picture", picture.into()),
         ("peers", peers(command)),
+        ("patience", PATIENCE.to_string()),
         ("choices", choices(&parts.rows)?),
         ("table", runs(parts)?),
         ("reference", reference(&parts.reference)),
@@ -54,11 +54,6 @@ fn build() -> &'static str {
     } else {
         ""
     }
-}
-
-fn left_out(reasons: &[String]) -> String {
-    let text = |reason: &String| format!("<p class=\"warning\">A method is left out: {}.</p>\n", escape(reason));
-    reasons.iter().map(text).collect()
 }
 
 fn peers(command: &Report) -> String {
