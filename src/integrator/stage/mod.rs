@@ -266,6 +266,9 @@ impl StageSolver {
         rates.clear_contacts();
         for &i in &self.contacts {
             let (mode, v, ground) = (state.mode[i], state.velocity_x[i], &state.ground[i]);
+            if mode == Mode::Stick {
+                rates.acceleration_x[i] = 0.0;
+            }
             let contact = self.forces.contact(model, i, v, ground);
             rates.contact(model, i, (mode, v), ground, &contact);
         }
