@@ -85,7 +85,8 @@ impl Run {
     pub(super) fn note_event(&mut self) {
         // A mean from long ago counts no more than the latest.
         let mean = self.event_spacing.min(self.since_event / SPACING_GAIN);
-        self.event_spacing = mean + SPACING_GAIN * (self.since_event - mean);
+        let latest = mean + SPACING_GAIN * (self.since_event - mean);
+        self.event_spacing = latest.max(LEAST_SPACING * self.step_size);
         self.since_event = 0.0;
     }
 
@@ -110,6 +111,10 @@ const FIRST_STEP: f64 = 0.1;
 
 /// The weight of the latest in the mean time between events.
 const SPACING_GAIN: f64 = 0.3;
+
+/// The least that this mean falls to, as a share of the step that the error allows: many events at one instant say nothing
+/// of what comes.
+const LEAST_SPACING: f64 = 0.01;
 
 /// The run as it was before the motion under way.
 #[derive(Clone, Debug)]
