@@ -7,14 +7,32 @@
 use super::maxwell::{Course, Maxwell};
 use super::rates::Rates;
 use crate::math::{dot, weighted_sum};
-use crate::model::{LinkKind, MaxwellRow, Model, Power};
+use crate::model::{Exchange, LinkKind, MaxwellRow, Model, Power};
 
 /// Σ ė_i ė_j over the links of one kind, m²/s², for j ≤ i.
 type Products<const STAGES: usize> = [[f64; STAGES]; STAGES];
 
+/// Energies through all channels over a step of length `h` whose stages count with `weights`, as in [`lost`]; `exchange` are
+/// the powers through the surface and the carrier at the stages.
+pub(super) fn through<const STAGES: usize>(
+    model: &Model,
+    maxwell: &Maxwell<STAGES>,
+    a: &[f64],
+    (stages, exchange): (&[Rates], &[Exchange]),
+    (h, weights): (f64, &[f64; STAGES]),
+    room: &mut [f64],
+) -> Power {
+    let mut energy = lost(model, maxwell, a, stages, (h, weights), room);
+    for (weight, exchange) in weights.iter().zip(exchange) {
+        energy.friction += h * weight * exchange.friction;
+        energy.input += h * weight * exchange.input;
+    }
+    energy
+}
+
 /// Energies lost in the dampers and Maxwell elements over a step of length `h` whose stages count with `weights`; the
 /// elongations at the start are `a`. `room` takes as many numbers as there are masses.
-pub(super) fn lost<const STAGES: usize>(
+fn lost<const STAGES: usize>(
     model: &Model,
     maxwell: &Maxwell<STAGES>,
     a: &[f64],

@@ -87,11 +87,13 @@ impl<const STAGES: usize> Maxwell<STAGES> {
         &self.courses
     }
 
-    /// P_i + h Σ_{j<i} Q_ij ė_j of the links of `kind`: what is known of their elements' forces before stage `i`, N.
-    pub(super) fn known_force(&self, kind: LinkKind, i: usize, stages: &[Rates], force: &mut [f64]) {
-        let sums = &self.kinds[kind as usize];
-        let start = std::iter::once((1.0, &sums.start[i][..]));
-        weighted_sum(force, start.chain(by_rate(kind, &sums.rate[i][..i], stages)));
+    /// P_i + h Σ_{j<i} Q_ij ė_j by kind of link: what is known of the elements' forces before stage `i`, N.
+    pub(super) fn known_forces(&self, i: usize, stages: &[Rates], forces: &mut [Vec<f64>; 4]) {
+        for kind in LinkKind::ALL.into_iter().filter(|&kind| self.has(kind)) {
+            let sums = &self.kinds[kind as usize];
+            let start = std::iter::once((1.0, &sums.start[i][..]));
+            weighted_sum(&mut forces[kind as usize], start.chain(by_rate(kind, &sums.rate[i][..i], stages)));
+        }
     }
 
     /// The embedded estimate of the error of the elements' forces of the links of `kind`, N.

@@ -21,7 +21,7 @@ pub use tolerance::Tolerance;
 pub use within::Within;
 
 use crate::math::weighted_sum;
-use crate::model::{Carrier, CarrierPoint, Exchange, Forces, LinkKind, Model, Power, State};
+use crate::model::{Carrier, CarrierPoint, Exchange, Forces, Model, Power, State};
 use error::{ErrorRoom, Tried};
 use maxwell::Maxwell;
 use sdirk::TwoStages;
@@ -168,19 +168,11 @@ impl Integrator {
         self.solver.begin(model, state, beta);
         self.maxwell.begin(model, &METHOD, &state.maxwell, h);
         for i in 1..STAGES {
-            let at = carrier.at(s + METHOD.c[i] * h);
-            self.carrier[i] = at;
-            self.collect_history(state, h, i);
-            let driven = self.drive((h, &METHOD.a[i]), i);
-            let place = (carrier.place + at.du, carrier.w + at.dw);
-            let moved = carrier.moved(s, METHOD.c[i] * h).0;
-            let point = StagePoint { beta, carrier: at, driven, moved, place: place.0, w: place.1 };
+            let stage = (i, METHOD.c[i], &METHOD.a[i][..]);
+            let point = self.prepare_stage(state, carrier, (s, h), stage, beta);
+            self.maxwell.known_forces(i, &self.stages[..i], &mut self.solver.history.force);
             self.predict(state, beta, i);
-            self.solver.solve(model, &point, tolerance.newton(beta), &mut self.stages[i])?;
-            if self.accounts_energy {
-                self.exchange[i] = Exchange::evaluate(model, &self.solver.state, &at, &self.solver.forces);
-            }
-            self.vary(model, &point, (s + METHOD.c[i] * h, h), (i, &METHOD.a[i]));
+            self.solve_stage(model, &point, (s, h), stage, tolerance.newton(beta))?;
         }
         self.maxwell.finish(model, &state.maxwell, &self.stages, &mut self.solver.state.maxwell);
         let tried = Tried {
@@ -192,6 +184,42 @@ impl Integrator {
             contacts: self.solver.contacts(),
         };
         Ok(tried.error(model, h, tolerance, &mut self.error_room))
+    }
+
+    /// The motion that the earlier stages of a step of length `h` from `state`, `s` seconds after the start of the carrier's
+    /// piece, give to stage `i`, with its place `c` and its weights; and where it stands.
+    fn prepare_stage(
+        &mut self,
+        state: &State,
+        carrier: &Carrier,
+        (s, h): (f64, f64),
+        (i, c, weights): (usize, f64, &[f64]),
+        beta: f64,
+    ) -> StagePoint {
+        let at = carrier.at(s + c * h);
+        self.carrier[i] = at;
+        self.collect_motion(state, (h, &weights[..i]));
+        let driven = self.drive((h, weights), i);
+        let moved = carrier.moved(s, c * h).0;
+        StagePoint { beta, carrier: at, driven, moved, place: carrier.place + at.du, w: carrier.w + at.dw }
+    }
+
+    /// Solves a stage that is prepared, to `newton` (m/s), and what follows from it.
+    fn solve_stage(
+        &mut self,
+        model: &Model,
+        point: &StagePoint,
+        (s, h): (f64, f64),
+        (i, c, weights): (usize, f64, &[f64]),
+        newton: f64,
+    ) -> Result<(), NoConvergence> {
+        self.solver.solve(model, point, newton, &mut self.stages[i])?;
+        if self.accounts_energy {
+            let solver = &self.solver;
+            self.exchange[i] = Exchange::evaluate(model, &solver.state, &point.carrier, &solver.forces);
+        }
+        self.vary(model, point, (s + c * h, h), (i, weights));
+        Ok(())
     }
 
     /// The tangents at the stage just solved, the `i`-th, at `s` in a step of length `h`; the earlier ones have `weights`.
@@ -278,13 +306,8 @@ impl Integrator {
     /// Energies through the channels over the step of length `h` from `start` tried last, up to its fraction `theta`.
     pub fn energies(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> Power {
         let weights = if theta < 1.0 { &self.weights_within.at(theta) } else { METHOD.weights() };
-        let room = self.error_room.any();
-        let mut energy = energy::lost(model, &self.maxwell, &start.maxwell, &self.stages, (h, weights), room);
-        for (weight, exchange) in weights.iter().zip(&self.exchange) {
-            energy.friction += h * weight * exchange.friction;
-            energy.input += h * weight * exchange.input;
-        }
-        energy
+        let stages = (&self.stages[..], &self.exchange[..]);
+        energy::through(model, &self.maxwell, &start.maxwell, stages, (h, weights), self.error_room.any())
     }
 
     /// Takes the step tried last: `state` becomes its end, and the rates there those at the start of the next step.
@@ -299,15 +322,6 @@ impl Integrator {
         self.exchange.swap(0, last);
         for tangent in &mut self.tangents {
             tangent.accept(last);
-        }
-    }
-
-    /// What the earlier stages give to stage `i`.
-    fn collect_history(&mut self, state: &State, h: f64, i: usize) {
-        self.collect_motion(state, (h, &METHOD.a[i][..i]));
-        let history = &mut self.solver.history;
-        for kind in LinkKind::ALL.into_iter().filter(|&kind| self.maxwell.has(kind)) {
-            self.maxwell.known_force(kind, i, &self.stages[..i], &mut history.force[kind as usize]);
         }
     }
 
@@ -342,8 +356,12 @@ impl Integrator {
         let history = &mut self.solver.history;
         let by_x = here.u_rate - start.u_rate - missed.0;
         let by_z = here.w_rate - start.w_rate - missed.1;
-        history.velocity_x.iter_mut().for_each(|star| *star += by_x);
-        history.velocity_z.iter_mut().for_each(|star| *star += by_z);
+        // Along straight paths there is nothing to take over.
+        for (star, by) in [(&mut history.velocity_x, by_x), (&mut history.velocity_z, by_z)] {
+            if by != 0.0 {
+                star.iter_mut().for_each(|star| *star += by);
+            }
+        }
         moved
     }
 

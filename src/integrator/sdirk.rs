@@ -3,9 +3,9 @@
 
 use super::error::Tried;
 use super::maxwell::Maxwell;
-use super::stage::{NoConvergence, StagePoint};
+use super::stage::NoConvergence;
 use super::{Attempt, Integrator, Rates, STAGES, Tableau, Tolerance, WeightsWithin, energy};
-use crate::model::{Carrier, CarrierPoint, Exchange, Forces, LinkKind, Mode, Model, Power, State};
+use crate::model::{Carrier, CarrierPoint, Forces, Mode, Model, Power, State};
 
 /// The two stages, and before them the start of the step: the method needs its rates for a guess alone.
 pub const TWO_STAGES: usize = 3;
@@ -84,21 +84,11 @@ impl Integrator {
         self.solver.begin(model, state, beta);
         self.two_stages.maxwell.begin(model, &SDIRK2, &state.maxwell, h);
         for i in 1..TWO_STAGES {
-            let (c, weights) = (SDIRK2.c[i], &SDIRK2.a[i]);
-            let at = carrier.at(s + c * h);
-            self.carrier[i] = at;
-            self.collect_motion(state, (h, &weights[..i]));
-            let driven = self.drive((h, weights), i);
-            self.collect_elements(i);
+            let stage = (i, SDIRK2.c[i], &SDIRK2.a[i][..]);
+            let point = self.prepare_stage(state, carrier, (s, h), stage, beta);
+            self.two_stages.maxwell.known_forces(i, &self.stages[..i], &mut self.solver.history.force);
             self.guess(&state.mode, beta, i);
-            let (moved, place) = (carrier.moved(s, c * h).0, carrier.place + at.du);
-            let point = StagePoint { beta, carrier: at, driven, moved, place, w: carrier.w + at.dw };
-            let newton = NEWTON_SLACK * tolerance.newton(beta);
-            self.solver.solve(model, &point, newton, &mut self.stages[i])?;
-            if self.accounts_energy {
-                self.exchange[i] = Exchange::evaluate(model, &self.solver.state, &at, &self.solver.forces);
-            }
-            self.vary(model, &point, (s + c * h, h), (i, weights));
+            self.solve_stage(model, &point, (s, h), stage, NEWTON_SLACK * tolerance.newton(beta))?;
         }
         let (maxwell, end) = (&self.two_stages.maxwell, &mut self.solver.state);
         maxwell.finish(model, &state.maxwell, &self.stages, &mut end.maxwell);
@@ -108,14 +98,6 @@ impl Integrator {
         let attempt = tried.error(model, h, tolerance, &mut self.error_room);
         // Touches are looked for where the step ends, so the carrier has to be seen whether masses are near or not.
         Ok(Attempt { error: attempt.error.hypot(attempt.unseen), ..attempt })
-    }
-
-    /// What the Maxwell elements give to stage `i`.
-    fn collect_elements(&mut self, i: usize) {
-        let (maxwell, history) = (&self.two_stages.maxwell, &mut self.solver.history);
-        for kind in LinkKind::ALL.into_iter().filter(|&kind| maxwell.has(kind)) {
-            maxwell.known_force(kind, i, &self.stages[..i], &mut history.force[kind as usize]);
-        }
     }
 
     /// The velocities from which Newton's iterations start: where the accelerations known last lead to. Just after a jump
@@ -155,13 +137,8 @@ impl Integrator {
     pub fn two_stage_energies(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> Power {
         let room = &self.two_stages;
         let weights = if theta < 1.0 { &room.weights_within.at(theta) } else { SDIRK2.weights() };
-        let sums = self.error_room.any();
-        let mut energy = energy::lost(model, &room.maxwell, &start.maxwell, &self.stages, (h, weights), sums);
-        for (weight, exchange) in weights.iter().zip(&self.exchange) {
-            energy.friction += h * weight * exchange.friction;
-            energy.input += h * weight * exchange.input;
-        }
-        energy
+        let stages = (&self.stages[..], &self.exchange[..]);
+        energy::through(model, &room.maxwell, &start.maxwell, stages, (h, weights), self.error_room.any())
     }
 
     /// The Maxwell elements' elongations at the first stage of the step of two stages from `start` tried last, into `a`.
