@@ -150,6 +150,19 @@ fn fmu_with_sines(name: &'static str) {
     case.compare(&drive(&fmu, &motion, &[FINE]).every(STEPS), FINE, AT_DEFAULT);
 }
 
+/// The run's own estimate against its true error: the reference's error is far below both.
+fn estimate(name: &'static str) {
+    let case = Case::new(name, "estimate");
+    let wanted = case.reference.column("F_z");
+    for (method, tolerance) in [("event", 1e-3), ("event", 1e-4), ("event", 1e-5), ("step", 1e-2), ("step", 1e-3)] {
+        let settings = [format!("solver.method={method}"), format!("solver.relative_tolerance={tolerance}")];
+        let found = simulate(&case.scene, &case.folder, &["--set", &settings[0], "--set", &settings[1]]);
+        let error = difference(&found.column("F_z"), &wanted) / largest(&wanted);
+        let ratio = found.column("solver.error").last().unwrap() / error;
+        assert!((0.1..10.0).contains(&ratio), "{name}, {method}, {tolerance}: {ratio} times the error, {error:e}");
+    }
+}
+
 macro_rules! cases {
     ($($test:ident: $name:literal, $bounds:expr;)*) => {
         mod by_the_program {
@@ -159,6 +172,16 @@ macro_rules! cases {
             #[test]
             fn free_chain() {
                 program("free-chain", AT_FINE);
+            }
+        }
+
+        mod by_its_own_estimate {
+            use super::*;
+            $(#[test] fn $test() { estimate($name); })*
+
+            #[test]
+            fn free_chain() {
+                estimate("free-chain");
             }
         }
 

@@ -42,7 +42,7 @@ pub(super) struct Tried<'a, const STAGES: usize> {
 }
 
 impl<const STAGES: usize> Tried<'_, STAGES> {
-    /// The embedded estimate of the step, of length `h`, in the tolerance's norm and of F_z.
+    /// The embedded estimate of the step, of length `h`, in the tolerance's norm.
     ///
     /// The carrier's displacement is known, not integrated; yet where masses are in contact a step must be able to see it:
     /// the dense output, the events between the stages and the energies do. So what the method would miss of it counts as
@@ -64,19 +64,11 @@ impl<const STAGES: usize> Tried<'_, STAGES> {
             + speed(&room.v_x, &end.velocity_x, rates.u_rate)
             + speed(&room.v_z, &end.velocity_z, rates.w_rate)
             + in_contact;
-        let vertical = &model.links[LinkKind::Vertical as usize];
-        let mut force_error = sum_of(masses, |i| vertical.stiffness * room.z[i] + vertical.damping * room.v_z[i]);
-        for kind in LinkKind::ALL {
-            if !self.maxwell.has(kind) {
-                continue;
-            }
+        for kind in LinkKind::ALL.into_iter().filter(|&kind| self.maxwell.has(kind)) {
             sum += self.maxwell_error(kind, tolerance, room);
-            if kind == LinkKind::Vertical {
-                force_error += room.force.iter().sum::<f64>();
-            }
         }
         let mean = |sum: f64| (sum / masses as f64).sqrt();
-        Attempt { error: mean(sum), unseen: mean(unseen), force_error }
+        Attempt { error: mean(sum), unseen: mean(unseen) }
     }
 
     /// The squares of what the method misses of the carrier's displacement, over the masses in contact and over the free ones.

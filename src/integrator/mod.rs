@@ -98,8 +98,6 @@ pub struct Attempt {
     /// What the step did not see of the carrier's motion over the free masses, against the tolerance: of account only where
     /// one of them may touch.
     pub unseen: f64,
-    /// The error estimate of F_z, N.
-    pub force_error: f64,
 }
 
 impl Integrator {
@@ -264,11 +262,6 @@ impl Integrator {
     /// The state at the end of the step tried last.
     pub fn end(&self) -> &State {
         &self.solver.state
-    }
-
-    /// F_z at the end of the step tried last, N.
-    pub fn end_force_z(&self) -> f64 {
-        self.solver.forces.on_carrier_z()
     }
 
     /// Bytes that the stages hold, those to go back to included.

@@ -6,7 +6,7 @@ use crate::model::{CarrierPoint, ContactForces, Forces, Mode, Model, Power, Stat
 use crate::scene::{OutputGroup, Scene};
 
 /// What a scene asks to be added up along the way.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Accounts {
     /// Energies: the groups `dissipation` and `energy`.
     pub energy: bool,
@@ -64,30 +64,39 @@ pub struct Counters {
     pub events: u64,
     /// Processor time, s.
     pub run_time: f64,
-    /// Sum of the squares of the steps' error estimates of F_z, N².
-    error_squares: f64,
-    /// Largest |F_z| so far, N.
+    /// By how much F_z was off that of a finer run at most, N.
+    largest_error: f64,
+    /// The largest |F_z| of the finer run so far, N.
     largest_force: f64,
 }
 
 impl Counters {
-    /// Adds a step with this error estimate of F_z and this F_z at its end, N.
-    pub fn note_error(&mut self, error: f64, force: f64) {
-        self.error_squares += error * error;
-        self.largest_force = self.largest_force.max(force.abs());
+    /// Compares F_z with that of a finer run at the same time, N. `share` of the error shows in the difference.
+    pub fn note_error(&mut self, force: f64, finer: f64, share: f64) {
+        self.largest_error = self.largest_error.max((force - finer).abs() / share);
+        self.largest_force = self.largest_force.max(finer.abs());
     }
 
-    /// Estimated error of F_z over its largest value so far; the steps' errors count as independent of each other.
+    /// F_z is `force` (N), and nothing is known of its error: it counts as large as the force.
+    pub fn note_unknown(&mut self, force: f64) {
+        self.note_error(2.0 * force, force, 1.0);
+    }
+
+    /// Estimated error of F_z over its largest value so far: 0 until there is one.
     pub fn estimated_error(&self) -> f64 {
-        if self.largest_force > 0.0 { self.error_squares.sqrt() / self.largest_force } else { 0.0 }
+        match (self.largest_error, self.largest_force) {
+            (0.0, _) => 0.0,
+            (_, 0.0) => 1.0,
+            (error, force) => (error / force).min(f64::MAX),
+        }
     }
 }
 
 /// All but the whole numbers and the processor time, which is no part of a run's state.
 impl Numbers for Counters {
     fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        let Self { steps: _, rejected: _, events: _, run_time: _, error_squares, largest_force } = self;
-        visit_all([error_squares, largest_force], visit);
+        let Self { steps: _, rejected: _, events: _, run_time: _, largest_error, largest_force } = self;
+        visit_all([largest_error, largest_force], visit);
     }
 }
 

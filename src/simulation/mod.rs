@@ -1,5 +1,6 @@
 //! The conductor: joins the integrator and the contact rules into a run.
 
+mod companion;
 mod derivatives;
 mod handover;
 mod run;
@@ -16,6 +17,7 @@ use crate::integrator::{DenseRoom, Followed, Integrator, Steps, Tolerance};
 use crate::model::{Forces, Model, State};
 use crate::outputs::{self, Accounts, Variable};
 use crate::scene::{Method, Path, Scene};
+use companion::Companion;
 pub use handover::Handover;
 use run::{Checkpoint, Run};
 pub use saved::{RestoreError, Saved};
@@ -109,6 +111,8 @@ pub struct Simulation {
     step_end: StepEnd,
     mode_changes: Option<Vec<ModeChange>>,
     handovers: Option<Vec<Handover>>,
+    /// A finer run beside this one, where its error is asked for.
+    companion: Option<Companion>,
 }
 
 /// What of a scene the conductor needs beside the model.
@@ -150,15 +154,21 @@ impl Simulation {
         model.stand_still(model.profile.reduce(start.u), start.w);
         let model = Arc::new(model);
         let settings = Settings::new(scene, &model);
+        let finer = settings.accounts.solver.then(|| settings.finer(&model));
+        let companion = finer.map(|finer| Companion::new(Self::with(Arc::clone(&model), finer, start)));
+        Self { companion, ..Self::with(model, settings, start) }
+    }
+
+    fn with(model: Arc<Model>, settings: Settings, start: &Start) -> Self {
         let followed = Followed { energy: settings.accounts.energy, tangents: settings.accounts.tangents };
-        let steps = match scene.solver.method {
+        let steps = match settings.method {
             Method::Event => Steps::Accurate,
             Method::Step => Steps::TwoStages,
             Method::Auto => Steps::Both,
         };
         let integrator = Integrator::new(&model, followed, steps);
         let state = State::new(model.masses(), model.maxwell_variables());
-        let run = Run::new(&model, state.clone(), start, scene.solver.method == Method::Step);
+        let run = Run::new(&model, state.clone(), start, settings.method == Method::Step);
         let forces = Forces::new(&model);
         let dense_room = DenseRoom::new(&model);
         let step_end = StepEnd::new(&model);
@@ -179,6 +189,7 @@ impl Simulation {
             step_end,
             mode_changes: None,
             handovers: None,
+            companion: None,
         };
         simulation.place_layer();
         simulation
@@ -205,6 +216,7 @@ impl Simulation {
             + self.integrator.bytes()
             + 2 * self.forces.bytes()
             + self.dense_room.bytes()
+            + self.companion.as_ref().map_or(0, |companion| companion.finer().bytes())
     }
 
     /// Follows `motion` to its end.
@@ -270,12 +282,24 @@ impl Simulation {
     fn go_back(&mut self) {
         self.run.copy_from(&self.before.run);
         self.integrator.restore(&self.before.rates, self.before.exchange);
+        if let Some(companion) = &mut self.companion {
+            companion.go_back();
+        }
+    }
+
+    /// Goes on from where `other`, a run of the same scene, stands.
+    fn take_over(&mut self, other: &Self) {
+        self.run.copy_from(&other.run);
+        self.integrator.restore(other.integrator.start_rates(), other.integrator.start_exchange());
     }
 
     fn keep_checkpoint(&mut self) {
         self.before.run.copy_from(&self.run);
         self.before.rates.copy_from(self.integrator.start_rates());
         self.before.exchange = self.integrator.start_exchange();
+        if let Some(companion) = &mut self.companion {
+            companion.keep_checkpoint();
+        }
     }
 
     /// Writes the values of `variables`, in their order, into `values`; Integers as whole numbers.

@@ -13,6 +13,14 @@ use crate::scene::{Method, Scene};
 /// Everything of a run that changes, but for the processor time and the mode changes recorded.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Saved {
+    run: SavedRun,
+    /// The finer run beside it.
+    companion: Option<SavedRun>,
+}
+
+/// What changes in one run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct SavedRun {
     /// All numbers, SI units, in the order in which [`Numbers`] visits them.
     numbers: Vec<f64>,
     /// The modes as [`Mode::number`] gives them.
@@ -64,6 +72,10 @@ pub enum RestoreError {
 impl Simulation {
     /// Everything that the run has become.
     pub fn save(&self) -> Saved {
+        Saved { run: self.save_run(), companion: self.companion.as_ref().map(|companion| companion.finer().save_run()) }
+    }
+
+    fn save_run(&self) -> SavedRun {
         let mut now = Checkpoint {
             run: self.run.clone(),
             rates: self.integrator.start_rates().clone(),
@@ -72,7 +84,7 @@ impl Simulation {
         let mut numbers = Vec::new();
         now.visit(&mut |number| numbers.push(*number));
         let counters = &now.run.counters;
-        Saved {
+        SavedRun {
             numbers,
             modes: now.run.state.mode.iter().map(|mode| mode.number()).collect(),
             counts: [counters.steps, counters.rejected, counters.events],
@@ -87,21 +99,34 @@ impl Simulation {
     /// [`RestoreError`] where `saved` is not of a run of this scene.
     pub fn restore(scene: &Scene, saved: &Saved) -> Result<Self, RestoreError> {
         let mut simulation = Self::started(scene, &Start::default());
-        let slack = simulation.settings.tolerance.position;
-        saved.write_into(&mut simulation.before, &simulation.model)?;
-        if scene.solver.method == Method::Auto {
-            simulation.before.run.stepping = saved.stepping;
+        simulation.read(&saved.run)?;
+        match (&mut simulation.companion, &saved.companion) {
+            (Some(companion), Some(saved)) => companion.finer_mut().read(saved)?,
+            (companion, saved) => {
+                check_length("finer runs", usize::from(saved.is_some()), usize::from(companion.is_some()))?;
+            }
         }
-        check_ground(&simulation.before, &simulation.model, slack)?;
         simulation.go_back();
         let [u, w] = simulation.run.start;
         let model = Arc::make_mut(&mut simulation.model);
         model.stand_still(model.profile.reduce(u), w);
+        if let Some(companion) = &mut simulation.companion {
+            companion.finer_mut().model = Arc::clone(&simulation.model);
+        }
         Ok(simulation)
+    }
+
+    /// Reads `saved` as the run to go back to.
+    fn read(&mut self, saved: &SavedRun) -> Result<(), RestoreError> {
+        saved.write_into(&mut self.before, &self.model)?;
+        if self.settings.method == Method::Auto {
+            self.before.run.stepping = saved.stepping;
+        }
+        check_ground(&self.before, &self.model, self.settings.tolerance.position)
     }
 }
 
-impl Saved {
+impl SavedRun {
     fn write_into(&self, to: &mut Checkpoint, model: &Model) -> Result<(), RestoreError> {
         self.write_numbers(to)?;
         self.write_modes(&mut to.run.state.mode, model.has_friction)?;
@@ -223,14 +248,14 @@ mod tests {
             change(&mut saved);
             Simulation::restore(&scene, &saved).unwrap_err().to_string()
         };
-        assert!(refused(&|saved| saved.numbers.truncate(7)).starts_with("7 numbers, expected "));
-        assert!(refused(&|saved| saved.modes.push(0)).starts_with("7 modes, expected 6"));
+        assert!(refused(&|saved| saved.run.numbers.truncate(7)).starts_with("7 numbers, expected "));
+        assert!(refused(&|saved| saved.run.modes.push(0)).starts_with("7 modes, expected 6"));
         for bad in [f64::NAN, f64::INFINITY] {
-            assert!(refused(&|saved| saved.numbers[20] = bad).contains("which no run gets to"));
+            assert!(refused(&|saved| saved.run.numbers[20] = bad).contains("which no run gets to"));
         }
-        assert_eq!(refused(&|saved| saved.modes[2] = 7), "mass 3 is in the mode 7, which the scene does not have");
+        assert_eq!(refused(&|saved| saved.run.modes[2] = 7), "mass 3 is in the mode 7, which the scene does not have");
         // time, u, w, two paths of three numbers, then s.
-        assert!(refused(&|saved| saved.numbers[9] = -1.0).contains("the carrier's last kink"));
+        assert!(refused(&|saved| saved.run.numbers[9] = -1.0).contains("the carrier's last kink"));
     }
 
     #[test]

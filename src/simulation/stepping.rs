@@ -62,6 +62,7 @@ impl Simulation {
         let clock = self.settings.accounts.solver.then(ThreadTime::now);
         let before = self.run.counters.run_time;
         let mut observe = |time: f64, simulation: &mut Self| {
+            simulation.note_error();
             simulation.note_run_time(clock.as_ref(), before);
             observe(time, simulation);
         };
@@ -73,6 +74,9 @@ impl Simulation {
             return Ok(Some(0.0));
         }
         self.enter(motion);
+        if let Some(companion) = &mut self.companion {
+            companion.enter(motion);
+        }
         let mut work = 0;
         let mut risen = self.has_risen(until);
         while self.run.s < motion.duration && !risen {
@@ -80,6 +84,9 @@ impl Simulation {
             if let Some(share) = self.rises_within(&stride, until) {
                 stride = self.cut_step(share * stride.h)?;
                 risen = true;
+            }
+            if let Some(companion) = &mut self.companion {
+                companion.note_step(stride.h);
             }
             let end = self.end_of(&stride, motion.duration);
             while let Some(time) = rows.next_if(|&time| time < end) {
@@ -94,6 +101,7 @@ impl Simulation {
                 observe(time, self);
             }
         }
+        self.end_beside();
         self.note_run_time(clock.as_ref(), before);
         Ok(risen.then_some(self.run.s))
     }
@@ -118,14 +126,14 @@ impl Simulation {
     }
 
     /// A shorter step in place of a good one: no worse, and free of events, or with fewer.
-    fn cut_step(&mut self, h: f64) -> Result<Stride, SimulationError> {
+    pub(super) fn cut_step(&mut self, h: f64) -> Result<Stride, SimulationError> {
         let attempt = if self.run.stepping { self.try_time_step(h, true) } else { self.try_step(h, true) };
         let stride = attempt.map(|_| Stride { h, share: 1.0 });
         stride.ok_or(SimulationError::StepTooSmall { time: self.run.time(), step: h })
     }
 
     /// F_z now, N.
-    fn force_z(&mut self) -> f64 {
+    pub(super) fn force_z(&mut self) -> f64 {
         self.evaluate_forces();
         self.forces.on_carrier_z()
     }
@@ -138,13 +146,13 @@ impl Simulation {
     }
 
     /// F_z at the fraction `theta` of the step of length `h` tried last, N.
-    fn force_z_within(&mut self, h: f64, theta: f64) -> f64 {
+    pub(super) fn force_z_within(&mut self, h: f64, theta: f64) -> f64 {
         self.evaluate_within(h, theta);
         self.forces.on_carrier_z()
     }
 
     /// Begins a smooth piece of the carrier's motion. At a kink the damper forces jump, so all modes are decided anew.
-    fn enter(&mut self, motion: &Motion) {
+    pub(super) fn enter(&mut self, motion: &Motion) {
         let run = &mut self.run;
         let rates = |carrier: &Carrier, s: f64| (carrier.at(s).u_rate, carrier.at(s).w_rate);
         let before = rates(&run.carrier, run.s);
@@ -233,7 +241,6 @@ impl Simulation {
             let share = event.filter(|_| h > shortest).map_or(1.0, |theta| theta.max(shortest / h));
             if share >= 1.0 || self.is_good_within(h, share) {
                 self.run.step_size = proposed;
-                self.note_error(&attempt);
                 return Ok(Stride { h, share });
             }
             h *= share;
@@ -300,14 +307,8 @@ impl Simulation {
         if h < limit { grown } else { grown.max(self.run.step_size) }
     }
 
-    pub(super) fn note_error(&mut self, attempt: &Attempt) {
-        if self.settings.accounts.solver {
-            self.run.counters.note_error(attempt.force_error, self.integrator.end_force_z());
-        }
-    }
-
     /// The end of a stride: exactly that of the piece where it is the last.
-    fn end_of(&self, stride: &Stride, duration: f64) -> f64 {
+    pub(super) fn end_of(&self, stride: &Stride, duration: f64) -> f64 {
         let whole = stride.share >= 1.0 && stride.h >= duration - self.run.s;
         if whole { duration } else { self.run.s + stride.share * stride.h }
     }

@@ -34,7 +34,6 @@ impl Simulation {
             if let Some(attempt) = self.try_time_step(h, h <= shortest) {
                 let grown = h * growth(attempt.error);
                 self.run.step_size = if h < remaining { grown } else { grown.max(self.run.step_size) };
-                self.note_error(&attempt);
                 return Ok(Stride { h, share: 1.0 });
             }
             if h <= shortest {

@@ -4,6 +4,7 @@
 use asperity::fmi::{Carrier as Inputs, Input};
 use asperity::scene::{Phase, Scene};
 use asperity::simulation::Simulation;
+use cpu_time::ThreadTime;
 
 use super::ladder::Figures;
 use super::progress::{Progress, weight};
@@ -113,6 +114,7 @@ fn compared(measured: &Measured, tight: &Trace, reference: &Reference) -> (Figur
 fn drive(scene: &Scene, given: Given, rows: Rows, tick: &dyn Fn(f64)) -> Result<Measured, String> {
     let whole = duration(scene);
     let mut master = Master::new(scene, given)?;
+    let clock = ThreadTime::now();
     for phase in &scene.excitation {
         let start = master.carrier;
         let mut from = 0.0;
@@ -123,7 +125,7 @@ fn drive(scene: &Scene, given: Given, rows: Rows, tick: &dyn Fn(f64)) -> Result<
         }
     }
     let durations: Vec<f64> = scene.excitation.iter().map(|phase| phase.duration).collect();
-    let time = master.simulation.run_time();
+    let time = clock.elapsed().as_secs_f64();
     let (values, counts) = master.recorder.finish(&master.simulation);
     Ok(Measured { trace: Trace::new(values, &durations, rows), counts, time, durations })
 }

@@ -3,6 +3,7 @@
 use asperity::outputs::{Output, Variable, variables};
 use asperity::scene::{Method, OutputGroup, Phase, Scene};
 use asperity::simulation::{Simulation, SimulationError};
+use cpu_time::ThreadTime;
 
 use super::trace::Trace;
 use crate::program::excitation::{Rows, Run};
@@ -49,10 +50,11 @@ const WATCHED: [Output; 10] = [
     Output::Events,
 ];
 
-/// The scene with the output groups that a report needs and no others: every run pays for the same.
+/// The scene with the output groups that a report needs and no others: every run pays for the same, and none for an
+/// estimate of its error.
 pub(super) fn watched(scene: &Scene) -> Scene {
-    use OutputGroup::{Dissipation, Energy, Forces, Solver};
-    Scene { outputs: vec![Forces, Dissipation, Energy, Solver], ..scene.clone() }
+    use OutputGroup::{Dissipation, Energy, Forces};
+    Scene { outputs: vec![Forces, Dissipation, Energy], ..scene.clone() }
 }
 
 /// The scene at the relative tolerance `tolerance`; an absolute one of its own goes along.
@@ -83,12 +85,13 @@ pub(super) fn run(scene: &Scene, rows: Rows, u: f64, tick: &dyn Fn(f64)) -> Resu
     let duration: f64 = scene.excitation.iter().map(|phase| phase.duration).sum();
     let mut recorder = Recorder::new(scene);
     let mut run = Run::displaced(scene, rows, u)?;
+    let clock = ThreadTime::now();
     let durations = run.follow(&scene.excitation, |carrier, simulation| {
         recorder.row(simulation);
         tick(carrier.time / duration);
     })?;
+    let time = clock.elapsed().as_secs_f64();
     let (values, counts) = recorder.finish(run.simulation());
-    let time = run.simulation().run_time();
     Ok(Measured { trace: Trace::new(values, &durations, rows), counts, time, durations })
 }
 
@@ -108,7 +111,9 @@ pub(super) struct Recorder {
 impl Recorder {
     /// No rows yet of a run of `scene`, which is [`watched`].
     pub(super) fn new(scene: &Scene) -> Self {
-        let all = variables(scene);
+        let mut outputs = scene.outputs.clone();
+        outputs.push(OutputGroup::Solver);
+        let all = variables(&Scene { outputs, ..scene.clone() });
         let find = |output: &Output| all.iter().find(|variable| variable.output == *output).cloned();
         Self {
             variables: WATCHED.iter().filter_map(find).collect(),
