@@ -71,7 +71,11 @@ pub fn read() -> Vec<Case> {
     let mut files: Vec<_> = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.sort();
     let is_family = |path: &&std::path::PathBuf| !path.ends_with("bases.toml") && !path.ends_with("known.toml");
-    files.iter().filter(is_family).flat_map(|file| families(&table(file), &bases)).collect()
+    let cases: Vec<Case> = files.iter().filter(is_family).flat_map(|file| families(&table(file), &bases)).collect();
+    let mut names: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
+    names.sort_unstable();
+    names.windows(2).for_each(|pair| assert_ne!(pair[0], pair[1], "two scenes of one name"));
+    cases
 }
 
 pub fn table(file: &Path) -> Table {
@@ -115,15 +119,22 @@ fn lay_over(table: &mut Table, over: &Table) {
 /// The name given, or what is varied.
 fn label(entry: &Table) -> String {
     let given = entry.get("run").and_then(|run| run.get("name")).and_then(Value::as_str);
-    given.map_or_else(|| leaves(entry).join(", "), str::to_owned)
+    given.map_or_else(|| leaves(entry, "").join(", "), str::to_owned)
 }
 
-fn leaves(entry: &Table) -> Vec<String> {
+/// Every value with its key, after that of its table where that is a link.
+fn leaves(entry: &Table, within: &str) -> Vec<String> {
     let leaf = |(key, value): (&String, &Value)| match value {
-        Value::Table(_) if key == "run" => Vec::new(),
-        Value::Table(inner) => leaves(inner),
-        Value::Float(number) => vec![format!("{key} {number:e}")],
-        value => vec![format!("{key} {value}").replace('"', "")],
+        Value::Table(run) if key == "run" => {
+            run.get("start").map_or_else(Vec::new, |start| leaves(start.as_table().unwrap(), ""))
+        }
+        Value::Table(inner) if within == "layer" => leaves(inner, &format!("{key} ")),
+        Value::Table(inner) => leaves(inner, if key == "layer" { key } else { "" }),
+        value => {
+            let link = within.trim_start_matches("layer");
+            let text = value.as_float().map_or_else(|| generated::inline(value), |number| format!("{number:e}"));
+            vec![format!("{link}{key} {text}").replace('"', "")]
+        }
     };
     entry.iter().flat_map(leaf).collect()
 }
@@ -149,7 +160,9 @@ fn case(name: &str, phrase: &str, mut scene: Table) -> Case {
         tight: run.get("tight").map_or(1e-3, number),
         sensitive: text("sensitive"),
         fmu_steps: run.get("fmu").map(|steps| steps.as_integer().unwrap().try_into().unwrap()),
-        script: run.get("script").map(|steps| Script { steps: steps.as_array().unwrap().iter().map(steps_of).collect() }),
+        script: run
+            .get("script")
+            .map(|steps| Script { steps: steps.as_array().unwrap().iter().map(steps_of).collect() }),
         error: text("error").map(|error| (error, text("reason").expect("an error has its reason"))),
         free_of_work: run.get("free_of_work").is_some_and(|flag| flag.as_bool().unwrap()),
         scene,
@@ -157,7 +170,10 @@ fn case(name: &str, phrase: &str, mut scene: Table) -> Case {
 }
 
 pub fn number(value: &Value) -> f64 {
-    value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64)).unwrap_or_else(|| panic!("{value}"))
+    value
+        .as_float()
+        .or_else(|| value.as_integer().map(|whole| whole as f64))
+        .unwrap_or_else(|| panic!("no number: {value:?}"))
 }
 
 fn steps_of(value: &Value) -> Steps {

@@ -1,7 +1,5 @@
 //! A run of a case through the C interface, in this process.
 
-use std::sync::Arc;
-
 use asperity::scene::Scene;
 
 use crate::catalogue::{Answer, Case, Steps};
@@ -73,7 +71,8 @@ impl Drive {
 
     fn look(&mut self) {
         self.read();
-        self.watch.note(self.time);
+        let carrier = ["u", "w"].map(|name| self.fmu.real(name));
+        self.watch.note(self.time, carrier);
     }
 
     fn follow(&mut self, steps: &Steps) -> Result<(), String> {
@@ -121,7 +120,9 @@ impl Drive {
             }
             self.look();
         } else {
-            if (self.fmu.bits(), self.fmu.last_successful_time()) != before {
+            // In the state error that time is not to be asked for.
+            let time = if answer == Answer::Error { before.1 } else { self.fmu.last_successful_time() };
+            if (self.fmu.bits(), time) != before {
                 self.note("kept", format!("{answer:?} of a step of {h:e} s changed the outputs"));
             }
             if self.fmu.set_state(state) != OK {
@@ -131,7 +132,6 @@ impl Drive {
         assert_eq!(self.fmu.free_state(&mut state), OK);
         let said = self.fmu.messages().into_iter().map(|message| message.text).collect::<Vec<_>>().join("; ");
         if answer != expect {
-            self.watch.outcome.findings.retain(|_| true);
             return Err(format!("{answer:?}, not {expect:?}, for a step of {h:e} s: {said}"));
         }
         if answer != Answer::Ok {
@@ -141,7 +141,10 @@ impl Drive {
             // What was given goes back to where the carrier stands.
             let bad = |place: f64| !place.is_finite();
             let [u, w] = ["u", "w"].map(|name| self.fmu.real(name));
-            self.place = [if bad(self.place[0]) { u } else { self.place[0] }, if bad(self.place[1]) { w } else { self.place[1] }];
+            self.place = [
+                if bad(self.place[0]) { u } else { self.place[0] },
+                if bad(self.place[1]) { w } else { self.place[1] },
+            ];
         }
         Ok(())
     }
@@ -159,4 +162,3 @@ impl Drive {
         self.watch.outcome.findings.push(Finding { rule, text });
     }
 }
-

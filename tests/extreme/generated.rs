@@ -104,7 +104,7 @@ pub fn text(scene: &Table) -> String {
     scene.iter().map(|(key, value)| format!("{key} = {}\n", inline(value))).collect()
 }
 
-fn inline(value: &Value) -> String {
+pub fn inline(value: &Value) -> String {
     match value {
         Value::Table(table) => {
             let fields: Vec<String> = table.iter().map(|(key, value)| format!("{key} = {}", inline(value))).collect();
@@ -113,6 +113,8 @@ fn inline(value: &Value) -> String {
         Value::Array(values) => format!("[{}]", values.iter().map(inline).collect::<Vec<_>>().join(", ")),
         Value::Float(number) => format!("{number:?}"),
         Value::String(text) => format!("{text:?}"),
-        other => other.to_string(),
+        Value::Integer(number) => number.to_string(),
+        Value::Boolean(flag) => flag.to_string(),
+        Value::Datetime(_) => panic!("no scene has a date"),
     }
 }

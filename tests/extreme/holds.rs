@@ -1,7 +1,5 @@
 //! What must hold of every run.
 
-use asperity::contact::EventTolerance;
-use asperity::integrator::Tolerance;
 use asperity::model::Model;
 use asperity::outputs::{Output, Variable};
 use asperity::scene::Scene;
@@ -23,8 +21,12 @@ pub struct Limits {
     relative: f64,
     /// m.
     absolute: f64,
-    /// How far a limit of a force may be passed before the mode changes, N.
+    /// What the absolute tolerance of positions is as a force on one mass, N: as far may a limit of a force be passed. An event
+    /// is located within a tenth of it, on places that are themselves known within it.
     force: f64,
+    masses: f64,
+    /// c + Σ c_j of the links to the carrier, N/m.
+    stiffness: f64,
     friction: (f64, f64),
 }
 
@@ -37,13 +39,14 @@ impl Limits {
     pub fn new(scene: &Scene) -> Self {
         let model = Model::new(scene);
         let (relative, absolute) = (scene.solver.relative_tolerance, scene.absolute_tolerance());
-        let events = EventTolerance::new(&model, &Tolerance::new(&model, relative, absolute));
         let friction = scene.friction.as_ref();
         let part = |part: fn(&asperity::scene::Friction) -> Option<f64>| friction.and_then(part).unwrap_or_default();
         Self {
             relative,
             absolute,
-            force: events.force,
+            force: absolute * model.glassy_stiffness().max(model.mass * model.stiffest_frequency().powi(2)),
+            masses: model.masses() as f64,
+            stiffness: model.glassy[0] + model.glassy[1],
             friction: (part(|friction| friction.coulomb), part(|friction| friction.shear_force)),
             model,
         }
@@ -96,24 +99,30 @@ impl Limits {
 
     /// The rules for a whole run.
     pub fn check_run(&self, outcome: &mut Outcome) {
-        let checks = [("energy", self.energy(outcome)), ("work", work(outcome)), ("channels", channels(outcome))];
+        let checks = [("energy", self.energy(outcome)), ("work", work(outcome)), ("channels", channels(self, outcome))];
         let found = checks.into_iter().filter_map(|(rule, text)| Some(Finding { rule, text: text? }));
         let found: Vec<_> = found.collect();
         outcome.findings.extend(found);
     }
 
-    /// The residual within ten times the tolerance of the largest energy that went through.
+    /// The residual within ten times the tolerance: the relative one of the largest energy that went through, the absolute one as a
+    /// force on every mass along the carrier's path.
     fn energy(&self, outcome: &Outcome) -> Option<String> {
         let (residual, scale) = (outcome.largest("energy.residual"), energy_scale(outcome));
-        let allowed = ENERGY * self.relative * scale + ROUNDING * scale;
-        (residual > allowed).then(|| format!("residual {:.1} tolerances of {scale:e} J", residual / scale / self.relative))
+        let path = outcome.path;
+        let absolute = self.absolute * self.stiffness * self.masses * path;
+        let allowed = ENERGY * (self.relative * scale + absolute) + ROUNDING * scale;
+        let share = residual / allowed * ENERGY;
+        (residual > allowed)
+            .then(|| format!("residual {residual:.1e} J, {share:.1} tolerances; largest energy {scale:.1e} J"))
     }
 
     /// A run that stopped left everything as it was.
     pub fn kept(&self, before: &[f64], after: &[f64], findings: &mut Vec<Finding>) {
         let same = before.iter().zip(after).all(|(a, b)| a.to_bits() == b.to_bits());
         if !same {
-            findings.push(Finding { rule: "kept", text: "the state is not the one before the motion that failed".into() });
+            findings
+                .push(Finding { rule: "kept", text: "the state is not the one before the motion that failed".into() });
         }
     }
 }
@@ -135,12 +144,13 @@ fn work(outcome: &Outcome) -> Option<String> {
 }
 
 /// What is lost stays lost: no channel ever gives energy back.
-fn channels(outcome: &Outcome) -> Option<String> {
+fn channels(limits: &Limits, outcome: &Outcome) -> Option<String> {
     let names = ["dissipation.E_damper", "dissipation.E_maxwell", "dissipation.E_friction", "dissipation.E_impact"];
     let scale = energy_scale(outcome);
     names.iter().find_map(|name| {
         let column = outcome.column(name);
         let fall = column.windows(2).map(|pair| pair[0] - pair[1]).fold(0.0, f64::max);
-        (fall > 1e-6 * scale).then(|| format!("{name} falls by {fall:e} of {scale:e} J"))
+        (fall > ENERGY * limits.relative * scale + limits.absolute * limits.stiffness * limits.masses * outcome.path)
+            .then(|| format!("{name} falls by {fall:e} of {scale:e} J"))
     })
 }

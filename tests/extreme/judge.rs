@@ -58,6 +58,26 @@ pub struct Verdict {
     pub time: f64,
 }
 
+impl Verdict {
+    /// A run that panicked.
+    pub fn panicked(case: &Case, text: String) -> Self {
+        Self {
+            case: case.name.clone(),
+            phrase: case.phrase.clone(),
+            way: Way::Event,
+            error: None,
+            findings: vec![Finding { rule: "panic", text }],
+            steps: 0.0,
+            events: 0.0,
+            rejected: 0.0,
+            residual: 0.0,
+            true_error: f64::NAN,
+            estimate: 0.0,
+            time: 0.0,
+        }
+    }
+}
+
 /// All runs of a case.
 pub fn judge(case: &Case) -> Vec<Verdict> {
     let mut ways = Vec::new();
@@ -115,7 +135,8 @@ fn verdict(case: &Case, way: Way, mut outcome: Outcome, (straight, tight): (Way,
 /// The largest difference of F_z, over the largest |F_z| so far.
 fn error_against(outcome: &Outcome, tight: &Outcome) -> f64 {
     let (found, right) = (outcome.column("F_z"), tight.column("F_z"));
-    let mut largest = 0.0_f64;
+    // Before there is a force, everything is large against it.
+    let mut largest = EARLY * right.iter().fold(0.0, |largest: f64, force| largest.max(force.abs()));
     let errors = found.iter().zip(&right).map(|(found, right)| {
         largest = largest.max(right.abs());
         if largest > 0.0 { (found - right).abs() / largest } else { (found - right).abs() }
@@ -123,6 +144,8 @@ fn error_against(outcome: &Outcome, tight: &Outcome) -> f64 {
     errors.fold(0.0, f64::max)
 }
 
+/// A force below this share of the largest to come is not yet one that an error can be held against.
+const EARLY: f64 = 1e-6;
 /// How many times their estimates two methods may differ: each is to be within a factor of ten of the truth.
 const OF_ESTIMATES: f64 = 10.0;
 /// Below this share of the largest force, differences are roundings.

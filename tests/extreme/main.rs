@@ -41,17 +41,30 @@ fn judge_all(cases: &[Case]) -> Vec<Verdict> {
     std::thread::scope(|scope| {
         for _ in 0..workers {
             scope.spawn(|| {
-                while let Some((place, case)) = Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|i| Some((i, cases.get(i)?))) {
-                    let clock = std::time::Instant::now();
-                    let found = judge(case);
-                    let time = clock.elapsed().as_secs_f64();
-                    if time > 2.0 { println!("slow: {} {time:.1} s", case.name); }
+                let take = || {
+                    let place = next.fetch_add(1, Ordering::Relaxed);
+                    Some((place, cases.get(place)?))
+                };
+                while let Some((place, case)) = take() {
+                    let found = judge_or_panic(case);
                     verdicts.lock().unwrap().insert(place, found);
                 }
             });
         }
     });
     verdicts.into_inner().unwrap().into_values().flatten().collect()
+}
+
+/// A run that panics is a finding like any other.
+fn judge_or_panic(case: &Case) -> Vec<Verdict> {
+    let result = std::panic::catch_unwind(|| judge(case));
+    result.unwrap_or_else(|panic| {
+        let text = panic
+            .downcast_ref::<String>()
+            .cloned()
+            .or_else(|| panic.downcast_ref::<&str>().map(|text| (*text).to_owned()));
+        vec![Verdict::panicked(case, text.unwrap_or_default())]
+    })
 }
 
 /// Findings that are known, by case and way of running.
@@ -68,6 +81,7 @@ fn every_scene_keeps_what_must_hold() {
     let cases = asked();
     let verdicts = judge_all(&cases);
     report::write(&verdicts);
+    report::write_scenes(&cases, &verdicts);
     report::print_counts(&cases, &verdicts);
     report::print_ratios(&verdicts);
     let known = known();

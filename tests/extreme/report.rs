@@ -7,10 +7,21 @@ use crate::catalogue::Case;
 use crate::common;
 use crate::html::{self, Cell};
 use crate::judge::{FLOOR, Verdict};
+use crate::run;
 
 const HEAD: [&str; 12] = [
-    "scene", "phrase", "method", "status", "steps", "events", "rejected", "energy_residual", "true_error", "estimate",
-    "run_time", "what",
+    "scene",
+    "phrase",
+    "method",
+    "status",
+    "steps",
+    "events",
+    "rejected",
+    "energy_residual",
+    "true_error",
+    "estimate",
+    "run_time",
+    "what",
 ];
 
 /// Writes `extreme.csv` and `extreme.html` below the folder where cargo builds.
@@ -61,6 +72,20 @@ fn fields(verdict: &Verdict) -> [String; 12] {
     ]
 }
 
+/// Writes the scene files of the findings below `extreme/scenes`, for the program.
+pub fn write_scenes(cases: &[Case], verdicts: &[Verdict]) {
+    let folder = common::target().join("extreme/scenes");
+    fs::create_dir_all(&folder).unwrap();
+    for case in cases {
+        let found = verdicts.iter().find(|verdict| verdict.case == case.name && !verdict.findings.is_empty());
+        let Some(verdict) = found else { continue };
+        let method = if verdict.way.name().starts_with("event") { "event" } else { "step" };
+        let letter = |letter: char| if letter.is_alphanumeric() { letter } else { '-' };
+        let name: String = case.name.chars().map(letter).take(80).collect();
+        fs::write(folder.join(name + ".toml"), run::scene_text(case, method, 1.0)).unwrap();
+    }
+}
+
 /// How many scenes and runs there were, by phrase.
 pub fn print_counts(cases: &[Case], verdicts: &[Verdict]) {
     let mut phrases: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
@@ -83,7 +108,11 @@ pub fn print_ratios(verdicts: &[Verdict]) {
     }
     let within = ratios.iter().filter(|(ratio, _)| (0.1..=10.0).contains(ratio)).count();
     let quantile = |share: f64| ratios[((ratios.len() - 1) as f64 * share).round() as usize].0;
-    println!("solver.error over the true error, {} runs: {:.1} % within ten", ratios.len(), 100.0 * within as f64 / ratios.len() as f64);
+    println!(
+        "solver.error over the true error, {} runs: {:.1} % within ten",
+        ratios.len(),
+        100.0 * within as f64 / ratios.len() as f64
+    );
     for share in [0.0, 0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99, 1.0] {
         println!("  quantile {share:4}: {:.1e}", quantile(share));
     }

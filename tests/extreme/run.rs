@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use asperity::outputs::{self, Variable};
-use asperity::scene::{Method, Scene};
+use asperity::scene::Scene;
 use asperity::simulation::{Motion, Simulation, Start};
 use toml::{Table, Value};
 
@@ -22,6 +22,8 @@ pub struct Outcome {
     pub names: Arc<Vec<String>>,
     /// Time and these variables.
     pub rows: Vec<(f64, Vec<f64>)>,
+    /// The carrier's path between the rows, m.
+    pub path: f64,
     /// What it ended with before its end.
     pub error: Option<String>,
     /// What did not hold.
@@ -112,6 +114,7 @@ pub struct Watch {
     pub outcome: Outcome,
     pub limits: Limits,
     pub values: Vec<f64>,
+    carrier: Option<[f64; 2]>,
 }
 
 impl Watch {
@@ -122,17 +125,22 @@ impl Watch {
             limits: Limits::new(scene),
             outcome: Outcome { names: Arc::new(names), ..Outcome::default() },
             values: vec![0.0; variables.len()],
+            carrier: None,
             variables,
         }
     }
 
     fn look(&mut self, simulation: &mut Simulation) {
         simulation.evaluate(&self.variables, &mut self.values);
-        self.note(simulation.time());
+        let (u, w) = simulation.carrier();
+        self.note(simulation.time(), [u, w]);
     }
 
-    /// Takes `values` as the row at `time`.
-    pub fn note(&mut self, time: f64) {
+    /// Takes `values` as the row at `time`, with the carrier at u and w.
+    pub fn note(&mut self, time: f64, carrier: [f64; 2]) {
+        let [from_u, from_w] = *self.carrier.get_or_insert(carrier);
+        self.outcome.path += (carrier[0] - from_u).abs() + (carrier[1] - from_w).abs();
+        self.carrier = Some(carrier);
         self.limits.check_row(time, &self.variables, &self.values, &mut self.outcome.findings);
         let globals = self.outcome.names.len();
         self.outcome.rows.push((time, self.values[..globals].to_vec()));
@@ -150,14 +158,5 @@ impl Watch {
         self.outcome.error = error;
         self.limits.check_run(&mut self.outcome);
         self.outcome
-    }
-}
-
-/// The word for a method.
-pub fn word(method: Method) -> &'static str {
-    match method {
-        Method::Event => "event",
-        Method::Step => "step",
-        Method::Auto => "auto",
     }
 }
