@@ -60,7 +60,7 @@ pub struct Case {
     pub script: Option<Script>,
     /// Part of the message of the error that it has to end with, and the reason.
     pub error: Option<(String, String)>,
-    /// Energy that must not grow: T + V once the carrier rests.
+    /// Whether nothing is lost or gained once the first phase is over: T + V never grows, and what each step loses adds up.
     pub free_of_work: bool,
 }
 

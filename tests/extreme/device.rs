@@ -32,7 +32,7 @@ struct Drive {
 impl Drive {
     fn new(case: &Case, text: &str, scene: &Scene) -> Self {
         let fmu = Fmu::of(text, false);
-        let watch = Watch::new(scene);
+        let watch = Watch::new(scene, case.free_of_work);
         // The inputs, then the outputs in their order.
         let numbered = |real: bool| {
             let of_kind = move |(_, variable): &(usize, &asperity::outputs::Variable)| {

@@ -28,15 +28,17 @@ pub struct Limits {
     /// c + Σ c_j of the links to the carrier, N/m.
     stiffness: f64,
     friction: (f64, f64),
+    /// Whether nothing forgets an error, so that every step may make its own.
+    adds_up: bool,
 }
 
 /// The largest residual of the energies over the largest energy and the tolerance.
-const ENERGY: f64 = 10.0;
+pub const ENERGY: f64 = 10.0;
 /// Roundings of a sum of as many terms as there are steps: of random signs, with room.
 const ROUNDING: f64 = 1e-13;
 
 impl Limits {
-    pub fn new(scene: &Scene) -> Self {
+    pub fn new(scene: &Scene, adds_up: bool) -> Self {
         let model = Model::new(scene);
         let (relative, absolute) = (scene.solver.relative_tolerance, scene.absolute_tolerance());
         let friction = scene.friction.as_ref();
@@ -48,6 +50,7 @@ impl Limits {
             masses: model.masses() as f64,
             stiffness: model.glassy[0] + model.glassy[1],
             friction: (part(|friction| friction.coulomb), part(|friction| friction.shear_force)),
+            adds_up,
             model,
         }
     }
@@ -112,6 +115,7 @@ impl Limits {
         let path = outcome.path;
         let absolute = self.absolute * self.stiffness * self.masses * path;
         let allowed = ENERGY * (self.relative * scale + absolute) + ROUNDING * scale;
+        let allowed = if self.adds_up { allowed * outcome.last("solver.steps").max(1.0) } else { allowed };
         let share = residual / allowed * ENERGY;
         (residual > allowed)
             .then(|| format!("residual {residual:.1e} J, {share:.1} tolerances; largest energy {scale:.1e} J"))

@@ -1,8 +1,8 @@
 //! The runs of a case, held against each other: method against method, and both against a tight run.
 
-use crate::catalogue::Case;
+use crate::catalogue::{Case, number};
 use crate::device::by_device;
-use crate::holds::{Finding, energy_scale};
+use crate::holds::{ENERGY, Finding, energy_scale};
 use crate::run::{Outcome, by_library};
 
 /// Which run.
@@ -107,7 +107,7 @@ fn verdict(case: &Case, way: Way, mut outcome: Outcome, (straight, tight): (Way,
         (None, None) => {}
     }
     if case.free_of_work {
-        outcome.findings.extend(energy_grows(&outcome));
+        outcome.findings.extend(energy_grows(case, &outcome));
     }
     let comparable = way.is_fmu() == straight.is_fmu() && outcome.error.is_none() && tight.error.is_none();
     let true_error = if comparable { error_against(&outcome, tight) } else { f64::NAN };
@@ -188,12 +188,17 @@ fn sensitive_disagreement(event: &Outcome, step: &Outcome) -> Option<String> {
     of("F_x").or_else(|| of("F_z")).or(lost)
 }
 
-/// With a carrier at rest T + V never grows, but for the tolerance of every step.
-fn energy_grows(outcome: &Outcome) -> Option<Finding> {
+/// Once the carrier rests T + V never grows, but for the tolerance within which a row between two steps is known.
+fn energy_grows(case: &Case, outcome: &Outcome) -> Option<Finding> {
     let (kinetic, elastic) = (outcome.column("energy.kinetic"), outcome.column("energy.elastic"));
     let stored: Vec<f64> = kinetic.iter().zip(&elastic).map(|(kinetic, elastic)| kinetic + elastic).collect();
     let scale = stored.iter().fold(0.0, |a: f64, b| a.max(*b));
-    let growth = stored.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+    let growth = stored[(case.rows as usize).min(stored.len() - 1)..]
+        .windows(2)
+        .map(|pair| pair[1] - pair[0])
+        .fold(0.0, f64::max);
+    let solver = case.scene.get("solver").and_then(|solver| solver.get("relative_tolerance"));
+    let relative = solver.map_or(1e-6, number);
     let text = format!("T + V grows by {growth:e} of {scale:e} J between two rows");
-    (growth > 1e-12 * scale).then_some(Finding { rule: "grows", text })
+    (growth > ENERGY * relative * scale).then_some(Finding { rule: "grows", text })
 }

@@ -87,7 +87,7 @@ pub fn by_library(case: &Case, method: &str, tight: f64) -> Outcome {
         w_rate: first.map_or(0.0, |phase| phase.w.velocity(0.0)),
         ..case.start
     };
-    let mut watch = Watch::new(&scene);
+    let mut watch = Watch::new(&scene, case.free_of_work);
     let mut simulation = match Simulation::new(&scene, &start) {
         Ok(simulation) => simulation,
         Err(error) => return watch.end(Some(error.to_string())),
@@ -118,11 +118,11 @@ pub struct Watch {
 }
 
 impl Watch {
-    pub fn new(scene: &Scene) -> Self {
+    pub fn new(scene: &Scene, adds_up: bool) -> Self {
         let variables = outputs::variables(scene);
         let names = variables.iter().filter(|v| v.is_output()).map(|v| v.name.clone()).collect();
         Self {
-            limits: Limits::new(scene),
+            limits: Limits::new(scene, adds_up),
             outcome: Outcome { names: Arc::new(names), ..Outcome::default() },
             values: vec![0.0; variables.len()],
             carrier: None,
