@@ -75,6 +75,7 @@ fn fields(verdict: &Verdict) -> [String; 12] {
 /// Writes the scene files of the findings below `extreme/scenes`, for the program.
 pub fn write_scenes(cases: &[Case], verdicts: &[Verdict]) {
     let folder = common::target().join("extreme/scenes");
+    let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).unwrap();
     for case in cases {
         let found = verdicts.iter().find(|verdict| verdict.case == case.name && !verdict.findings.is_empty());
