@@ -1,0 +1,164 @@
+//! A run of a case through the C interface, in this process.
+
+use asperity::scene::Scene;
+
+use crate::catalogue::{Answer, Case, Steps};
+use crate::holds::Finding;
+use crate::master::{DISCARD, ERROR, Fmu, OK};
+use crate::run::{self, Outcome, Watch};
+
+/// Follows the script, or the excitation in even communication steps with the rates given.
+pub fn by_device(case: &Case, method: &str, tight: f64) -> Outcome {
+    let text = run::scene_text(case, method, tight);
+    let scene = run::scene(case, method, tight);
+    let mut drive = Drive::new(case, &text, &scene);
+    let result = match &case.script {
+        Some(script) => script.steps.iter().try_for_each(|steps| drive.follow(steps)),
+        None => drive.follow_excitation(&scene, case.fmu_steps.unwrap_or(1)),
+    };
+    drive.watch.end(result.err())
+}
+
+struct Drive {
+    fmu: Fmu,
+    watch: Watch,
+    time: f64,
+    /// u and w as they are given, m.
+    place: [f64; 2],
+    reals: (Vec<u32>, Vec<usize>),
+    integers: (Vec<u32>, Vec<usize>),
+}
+
+impl Drive {
+    fn new(case: &Case, text: &str, scene: &Scene) -> Self {
+        let fmu = Fmu::of(text, false);
+        let watch = Watch::new(scene, case.free_of_work);
+        // The inputs, then the outputs in their order.
+        let numbered = |real: bool| {
+            let of_kind = move |(_, variable): &(usize, &asperity::outputs::Variable)| {
+                (variable.kind == asperity::outputs::Kind::Real) == real
+            };
+            let places: Vec<usize> = watch.variables.iter().enumerate().filter(of_kind).map(|(i, _)| i).collect();
+            (places.iter().map(|&i| i as u32 + 2).collect(), places)
+        };
+        let (reals, integers) = (numbered(true), numbered(false));
+        let start = case.start;
+        assert_eq!((fmu.setup(start.time), fmu.enter()), (OK, OK), "{}", case.name);
+        let first = scene.excitation.first();
+        let rates = [
+            first.map_or(start.u_rate, |phase| phase.u.velocity(0.0)),
+            first.map_or(start.w_rate, |phase| phase.w.velocity(0.0)),
+        ];
+        let place = [start.u, start.w];
+        for (name, (value, rate)) in ["u", "w"].into_iter().zip(place.into_iter().zip(rates)) {
+            assert_eq!((fmu.set_real(name, value), fmu.set_rate(name, rate)), (OK, OK), "{}", case.name);
+        }
+        assert_eq!(fmu.exit(), OK, "{}: {:?}", case.name, fmu.messages());
+        let mut drive = Self { fmu, watch, time: start.time, place, reals, integers };
+        drive.look();
+        drive
+    }
+
+    /// Reads every output as a master does.
+    fn read(&mut self) {
+        let mut values = vec![f64::NAN; self.reals.0.len()];
+        assert_eq!(self.fmu.get_reals(&self.reals.0, &mut values), OK);
+        self.reals.1.iter().zip(&values).for_each(|(&i, &value)| self.watch.values[i] = value);
+        let mut values = vec![0; self.integers.0.len()];
+        assert_eq!(self.fmu.get_integers(&self.integers.0, &mut values), OK);
+        self.integers.1.iter().zip(&values).for_each(|(&i, &value)| self.watch.values[i] = f64::from(value));
+    }
+
+    fn look(&mut self) {
+        self.read();
+        let carrier = ["u", "w"].map(|name| self.fmu.real(name));
+        self.watch.note(self.time, carrier);
+    }
+
+    fn follow(&mut self, steps: &Steps) -> Result<(), String> {
+        for (place, jump) in self.place.iter_mut().zip(steps.jump) {
+            *place = jump.unwrap_or(*place);
+        }
+        for i in 0..steps.count {
+            self.step(steps.h[i % steps.h.len()], steps.rate, steps.expect)?;
+        }
+        Ok(())
+    }
+
+    fn follow_excitation(&mut self, scene: &Scene, count: usize) -> Result<(), String> {
+        for phase in &scene.excitation {
+            let start = self.place;
+            let at = |i: usize| phase.duration * i as f64 / count as f64;
+            for i in 0..count {
+                let h = at(i + 1) - at(i);
+                let rates = [phase.u.change(at(i), h) / h, phase.w.change(at(i), h) / h];
+                self.place = [start[0] + phase.u.at(at(i)), start[1] + phase.w.at(at(i))];
+                self.step(h, rates.map(Some), Answer::Ok)?;
+            }
+            self.place = [start[0] + phase.u.at(phase.duration), start[1] + phase.w.at(phase.duration)];
+        }
+        Ok(())
+    }
+
+    /// One step; where it has to fail, what was before it has to be kept, and a good one has to go on from there.
+    fn step(&mut self, h: f64, rates: [Option<f64>; 2], expect: Answer) -> Result<(), String> {
+        let before = (self.fmu.bits(), self.fmu.last_successful_time());
+        let mut state = self.fmu.state();
+        let given = self.place;
+        self.give(given, rates);
+        let status = self.fmu.step(self.time, h);
+        let answer = match status {
+            OK => Answer::Ok,
+            DISCARD => Answer::Discard,
+            ERROR => Answer::Error,
+            other => return Err(format!("status {other}")),
+        };
+        if answer == Answer::Ok {
+            self.time = self.fmu.last_successful_time();
+            for (place, rate) in self.place.iter_mut().zip(rates) {
+                *place += rate.unwrap_or_default() * h;
+            }
+            self.look();
+        } else {
+            // In the state error that time is not to be asked for.
+            let time = if answer == Answer::Error { before.1 } else { self.fmu.last_successful_time() };
+            if (self.fmu.bits(), time) != before {
+                self.note("kept", format!("{answer:?} of a step of {h:e} s changed the outputs"));
+            }
+            if self.fmu.set_state(state) != OK {
+                self.note("kept", format!("after {answer:?} the state before is not taken"));
+            }
+        }
+        assert_eq!(self.fmu.free_state(&mut state), OK);
+        let said = self.fmu.messages().into_iter().map(|message| message.text).collect::<Vec<_>>().join("; ");
+        if answer != expect {
+            return Err(format!("{answer:?}, not {expect:?}, for a step of {h:e} s: {said}"));
+        }
+        if answer != Answer::Ok {
+            if said.is_empty() {
+                self.note("reason", format!("{answer:?} without a reason"));
+            }
+            // What was given goes back to where the carrier stands.
+            let bad = |place: f64| !place.is_finite();
+            let [u, w] = ["u", "w"].map(|name| self.fmu.real(name));
+            self.place = [
+                if bad(self.place[0]) { u } else { self.place[0] },
+                if bad(self.place[1]) { w } else { self.place[1] },
+            ];
+        }
+        Ok(())
+    }
+
+    fn give(&mut self, place: [f64; 2], rates: [Option<f64>; 2]) {
+        for (name, (value, rate)) in ["u", "w"].into_iter().zip(place.into_iter().zip(rates)) {
+            assert_eq!(self.fmu.set_real(name, value), OK);
+            if let Some(rate) = rate {
+                assert_eq!(self.fmu.set_rate(name, rate), OK);
+            }
+        }
+    }
+
+    fn note(&mut self, rule: &'static str, text: String) {
+        self.watch.outcome.findings.push(Finding { rule, text });
+    }
+}

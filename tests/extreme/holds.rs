@@ -1,0 +1,160 @@
+//! What must hold of every run.
+
+use asperity::model::Model;
+use asperity::outputs::{Output, Variable};
+use asperity::scene::Scene;
+
+use crate::run::{MOST_STEPS, Outcome};
+
+/// Something that does not hold.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// Which rule.
+    pub rule: &'static str,
+    /// What was seen.
+    pub text: String,
+}
+
+/// The limits of one scene.
+pub struct Limits {
+    model: Model,
+    relative: f64,
+    /// m.
+    absolute: f64,
+    /// What the absolute tolerance of positions is as a force on one mass, N: as far may a limit of a force be passed. An event
+    /// is located within a tenth of it, on places that are themselves known within it.
+    force: f64,
+    masses: f64,
+    /// c + Σ c_j of the links to the carrier, N/m.
+    stiffness: f64,
+    friction: (f64, f64),
+    /// Whether nothing forgets an error, so that every step may make its own.
+    adds_up: bool,
+}
+
+/// The largest residual of the energies over the largest energy and the tolerance.
+pub const ENERGY: f64 = 10.0;
+/// Roundings of a sum of as many terms as there are steps: of random signs, with room.
+const ROUNDING: f64 = 1e-13;
+
+impl Limits {
+    pub fn new(scene: &Scene, adds_up: bool) -> Self {
+        let model = Model::new(scene);
+        let (relative, absolute) = (scene.solver.relative_tolerance, scene.absolute_tolerance());
+        let friction = scene.friction.as_ref();
+        let part = |part: fn(&asperity::scene::Friction) -> Option<f64>| friction.and_then(part).unwrap_or_default();
+        Self {
+            relative,
+            absolute,
+            force: absolute * model.glassy_stiffness().max(model.mass * model.stiffest_frequency().powi(2)),
+            masses: model.masses() as f64,
+            stiffness: model.glassy[0] + model.glassy[1],
+            friction: (part(|friction| friction.coulomb), part(|friction| friction.shear_force)),
+            adds_up,
+            model,
+        }
+    }
+
+    /// The rules for one row; of each rule the first finding is kept.
+    pub fn check_row(&self, time: f64, variables: &[Variable], values: &[f64], findings: &mut Vec<Finding>) {
+        let mut note = |rule: &'static str, text: String| {
+            if !findings.iter().any(|finding| finding.rule == rule) {
+                findings.push(Finding { rule, text: format!("t = {time:e}: {text}") });
+            }
+        };
+        if let Some(i) = values.iter().position(|value| !value.is_finite()) {
+            note("finite", format!("{} = {}", variables[i].name, values[i]));
+        }
+        for (i, mass) in variables.iter().zip(values.windows(5)).filter(|(variable, _)| is_first(variable)) {
+            let [x, z, normal, friction, mode] = *mass else { continue };
+            let name = &i.name;
+            if let Some(text) = self.normal(normal, mode) {
+                note("normal", format!("{name}: {text}"));
+            }
+            if let Some(text) = self.gap(x, z) {
+                note("gap", format!("{name}: {text}"));
+            }
+            if let Some(text) = self.friction(normal, friction) {
+                note("friction", format!("{name}: {text}, mode {mode}"));
+            }
+        }
+    }
+
+    /// F_N ≥ 0, but for the tolerance within which a lift is located.
+    fn normal(&self, normal: f64, mode: f64) -> Option<String> {
+        (normal < -self.force).then(|| format!("F_N = {normal:e} below -{:e}, mode {mode}", self.force))
+    }
+
+    /// g ≥ -tolerance, and no worse than the roundings of the place and of the height.
+    fn gap(&self, x: f64, z: f64) -> Option<String> {
+        let point = self.model.ground(x);
+        let rounding = 8.0 * f64::EPSILON * (z.abs() + point.height.abs() + x.abs() * point.slope.abs());
+        let gap = z - point.height;
+        (gap < -self.absolute - rounding).then(|| format!("g = {gap:e} below -{:e}", self.absolute))
+    }
+
+    /// |F_T| ≤ T, but for the tolerance within which a break is located and the rounding of T.
+    fn friction(&self, normal: f64, friction: f64) -> Option<String> {
+        let limit = self.friction.0 * normal.max(0.0) + self.friction.1;
+        let slack = self.force * (1.0 + self.friction.0) + 1e-12 * limit;
+        (friction.abs() > limit + slack).then(|| format!("|F_T| = {:e} above {limit:e}", friction.abs()))
+    }
+
+    /// The rules for a whole run.
+    pub fn check_run(&self, outcome: &mut Outcome) {
+        let checks = [("energy", self.energy(outcome)), ("work", work(outcome)), ("channels", channels(self, outcome))];
+        let found = checks.into_iter().filter_map(|(rule, text)| Some(Finding { rule, text: text? }));
+        let found: Vec<_> = found.collect();
+        outcome.findings.extend(found);
+    }
+
+    /// The residual within ten times the tolerance: the relative one of the largest energy that went through, the absolute one as a
+    /// force on every mass along the carrier's path.
+    fn energy(&self, outcome: &Outcome) -> Option<String> {
+        let (residual, scale) = (outcome.largest("energy.residual"), energy_scale(outcome));
+        let path = outcome.path;
+        let absolute = self.absolute * self.stiffness * self.masses * path;
+        let allowed = ENERGY * (self.relative * scale + absolute) + ROUNDING * scale;
+        let allowed = if self.adds_up { allowed * outcome.last("solver.steps").max(1.0) } else { allowed };
+        let share = residual / allowed * ENERGY;
+        (residual > allowed)
+            .then(|| format!("residual {residual:.1e} J, {share:.1} tolerances; largest energy {scale:.1e} J"))
+    }
+
+    /// A run that stopped left everything as it was.
+    pub fn kept(&self, before: &[f64], after: &[f64], findings: &mut Vec<Finding>) {
+        let same = before.iter().zip(after).all(|(a, b)| a.to_bits() == b.to_bits());
+        if !same {
+            findings
+                .push(Finding { rule: "kept", text: "the state is not the one before the motion that failed".into() });
+        }
+    }
+}
+
+fn is_first(variable: &Variable) -> bool {
+    matches!(variable.output, Output::ElementX(_))
+}
+
+/// The largest energy that went through or was stored, J.
+pub fn energy_scale(outcome: &Outcome) -> f64 {
+    let names = ["energy.input", "energy.kinetic", "energy.elastic", "E_diss"];
+    names.iter().map(|name| outcome.largest(name)).fold(0.0, f64::max)
+}
+
+/// One bound for every scene.
+fn work(outcome: &Outcome) -> Option<String> {
+    let tried = outcome.work();
+    (tried > MOST_STEPS as f64).then(|| format!("{tried} steps tried"))
+}
+
+/// What is lost stays lost: no channel ever gives energy back.
+fn channels(limits: &Limits, outcome: &Outcome) -> Option<String> {
+    let names = ["dissipation.E_damper", "dissipation.E_maxwell", "dissipation.E_friction", "dissipation.E_impact"];
+    let scale = energy_scale(outcome);
+    names.iter().find_map(|name| {
+        let column = outcome.column(name);
+        let fall = column.windows(2).map(|pair| pair[0] - pair[1]).fold(0.0, f64::max);
+        (fall > ENERGY * limits.relative * scale + limits.absolute * limits.stiffness * limits.masses * outcome.path)
+            .then(|| format!("{name} falls by {fall:e} of {scale:e} J"))
+    })
+}

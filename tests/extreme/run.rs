@@ -1,0 +1,162 @@
+//! A run of a case: by the library along the excitation, or through the C interface, each row looked at as it comes.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use asperity::outputs::{self, Variable};
+use asperity::scene::Scene;
+use asperity::simulation::{Motion, Simulation, Start};
+use toml::{Table, Value};
+
+use crate::catalogue::Case;
+use crate::generated;
+use crate::holds::{Finding, Limits};
+
+/// Steps tried that a run may take, whatever its scene.
+pub const MOST_STEPS: u64 = 200_000;
+
+/// What came of a run.
+#[derive(Clone, Debug, Default)]
+pub struct Outcome {
+    /// The variables that are not the elements'.
+    pub names: Arc<Vec<String>>,
+    /// Time and these variables.
+    pub rows: Vec<(f64, Vec<f64>)>,
+    /// The carrier's path between the rows, m.
+    pub path: f64,
+    /// What it ended with before its end.
+    pub error: Option<String>,
+    /// What did not hold.
+    pub findings: Vec<Finding>,
+}
+
+impl Outcome {
+    /// A column by its name; empty where the scene has no such variable.
+    pub fn column(&self, name: &str) -> Vec<f64> {
+        let place = self.names.iter().position(|other| other == name);
+        place.map_or_else(Vec::new, |place| self.rows.iter().map(|(_, values)| values[place]).collect())
+    }
+
+    /// The last value, 0 where there is none.
+    pub fn last(&self, name: &str) -> f64 {
+        self.column(name).last().copied().unwrap_or_default()
+    }
+
+    /// The largest absolute value.
+    pub fn largest(&self, name: &str) -> f64 {
+        self.column(name).iter().fold(0.0, |largest: f64, value| largest.max(value.abs()))
+    }
+
+    /// Steps tried.
+    pub fn work(&self) -> f64 {
+        self.last("solver.steps") + self.last("solver.rejected")
+    }
+}
+
+const OUTPUTS: [&str; 7] = ["forces", "dissipation", "friction", "contact", "energy", "solver", "elements"];
+
+/// The scene's file with this method, the tolerance times `tight`.
+pub fn scene_text(case: &Case, method: &str, tight: f64) -> String {
+    let mut table = case.scene.clone();
+    table.insert("name".into(), Value::String("extreme".into()));
+    let outputs = OUTPUTS.map(|group| Value::String(group.into())).to_vec();
+    table.entry("fmu").or_insert(Value::Table(Table::from_iter([("outputs".into(), Value::Array(outputs))])));
+    let solver = table.entry("solver").or_insert(Value::Table(Table::new())).as_table_mut().unwrap();
+    let relative = solver.get("relative_tolerance").map_or(1e-6, crate::catalogue::number);
+    solver.insert("relative_tolerance".into(), Value::Float(relative * tight));
+    if let Some(absolute) = solver.get("absolute_tolerance").map(crate::catalogue::number) {
+        solver.insert("absolute_tolerance".into(), Value::Float(absolute * tight));
+    }
+    solver.insert("method".into(), Value::String(method.into()));
+    solver.entry("max_steps").or_insert(Value::Integer(MOST_STEPS as i64));
+    generated::text(&table)
+}
+
+/// The scene with this method, the tolerance times `tight`.
+pub fn scene(case: &Case, method: &str, tight: f64) -> Scene {
+    let text = scene_text(case, method, tight);
+    Scene::parse(&text, Path::new("extreme.toml")).unwrap_or_else(|error| panic!("{}: {error}", case.name))
+}
+
+/// Follows the excitation by the library.
+pub fn by_library(case: &Case, method: &str, tight: f64) -> Outcome {
+    let scene = scene(case, method, tight);
+    let first = scene.excitation.first();
+    let start = Start {
+        u_rate: first.map_or(0.0, |phase| phase.u.velocity(0.0)),
+        w_rate: first.map_or(0.0, |phase| phase.w.velocity(0.0)),
+        ..case.start
+    };
+    let mut watch = Watch::new(&scene, case.free_of_work);
+    let mut simulation = match Simulation::new(&scene, &start) {
+        Ok(simulation) => simulation,
+        Err(error) => return watch.end(Some(error.to_string())),
+    };
+    watch.look(&mut simulation);
+    for phase in &scene.excitation {
+        let motion = Motion { duration: phase.duration, u: phase.u, w: phase.w };
+        let rows: Vec<f64> = (1..=case.rows)
+            .map(|i| if i == case.rows { phase.duration } else { phase.duration * f64::from(i) / f64::from(case.rows) })
+            .collect();
+        let before = watch.values_of(&mut simulation);
+        if let Err(error) = simulation.advance_observed(&motion, &rows, |_, simulation| watch.look(simulation)) {
+            let after = watch.values_of(&mut simulation);
+            watch.limits.kept(&before, &after, &mut watch.outcome.findings);
+            return watch.end(Some(error.to_string()));
+        }
+    }
+    watch.end(None)
+}
+
+/// Looks at the rows of a run.
+pub struct Watch {
+    pub variables: Vec<Variable>,
+    pub outcome: Outcome,
+    pub limits: Limits,
+    pub values: Vec<f64>,
+    carrier: Option<[f64; 2]>,
+}
+
+impl Watch {
+    pub fn new(scene: &Scene, adds_up: bool) -> Self {
+        let variables = outputs::variables(scene);
+        let names = variables.iter().filter(|v| v.is_output()).map(|v| v.name.clone()).collect();
+        Self {
+            limits: Limits::new(scene, adds_up),
+            outcome: Outcome { names: Arc::new(names), ..Outcome::default() },
+            values: vec![0.0; variables.len()],
+            carrier: None,
+            variables,
+        }
+    }
+
+    fn look(&mut self, simulation: &mut Simulation) {
+        simulation.evaluate(&self.variables, &mut self.values);
+        let (u, w) = simulation.carrier();
+        self.note(simulation.time(), [u, w]);
+    }
+
+    /// Takes `values` as the row at `time`, with the carrier at u and w.
+    pub fn note(&mut self, time: f64, carrier: [f64; 2]) {
+        let [from_u, from_w] = *self.carrier.get_or_insert(carrier);
+        self.outcome.path += (carrier[0] - from_u).abs() + (carrier[1] - from_w).abs();
+        self.carrier = Some(carrier);
+        self.limits.check_row(time, &self.variables, &self.values, &mut self.outcome.findings);
+        let globals = self.outcome.names.len();
+        self.outcome.rows.push((time, self.values[..globals].to_vec()));
+    }
+
+    /// All values but the processor time.
+    fn values_of(&mut self, simulation: &mut Simulation) -> Vec<f64> {
+        simulation.evaluate(&self.variables, &mut self.values);
+        let counts = self.variables.iter().zip(&self.values);
+        counts.filter(|(variable, _)| variable.name != "solver.run_time").map(|(_, value)| *value).collect()
+    }
+
+    /// The outcome of the whole.
+    pub fn end(mut self, error: Option<String>) -> Outcome {
+        self.outcome.error = error;
+        self.limits.check_run(&mut self.outcome);
+        self.outcome
+    }
+}
