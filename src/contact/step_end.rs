@@ -108,6 +108,11 @@ impl StepEnd {
         (sum / step.model.masses() as f64).sqrt()
     }
 
+    /// Whether [`find`](Self::find) found nothing.
+    pub fn is_settled(&self) -> bool {
+        self.touches.is_empty() && self.contacts.is_empty()
+    }
+
     /// How late free mass `i` touches.
     fn find_touch(&mut self, step: &Within<'_>, i: usize) -> Option<Late> {
         let height = step.height(i, 1.0);
@@ -156,7 +161,7 @@ impl StepEnd {
 
     /// Settles what [`find`](Self::find) found; `None` where that is nothing.
     pub fn settle(&mut self, step: HeldStep<'_>, end: End<'_>) -> Option<Settled> {
-        if self.touches.is_empty() && self.contacts.is_empty() {
+        if self.is_settled() {
             return None;
         }
         let (s, h) = step.span;

@@ -90,12 +90,18 @@ impl Companion {
                 None => self.finer.next_step(self.duration, &mut self.work)?,
             };
             let end = self.finer.end_of(&stride, self.duration);
-            if s < end {
+            let theta = (s - self.finer.run.s) / stride.h;
+            if s < end && self.finer.can_show_within(stride.h, theta) {
                 self.stride = Some(stride);
-                return Ok(self.finer.force_z_within(stride.h, (s - self.finer.run.s) / stride.h));
+                return Ok(self.finer.force_z_within(stride.h, theta));
             }
             self.stride = None;
-            self.finer.take_step(&stride, end);
+            if s < end {
+                let cut = self.finer.cut_step(s - self.finer.run.s)?;
+                self.finer.take_step(&cut, s);
+            } else {
+                self.finer.take_step(&stride, end);
+            }
         }
         Ok(self.finer.force_z())
     }

@@ -79,6 +79,8 @@ impl Simulation {
         }
         let mut work = 0;
         let mut risen = self.has_risen(until);
+        // A row at the end of a step that was cut for it.
+        let mut due = None;
         while self.run.s < motion.duration && !risen {
             let mut stride = self.next_step(motion.duration, &mut work)?;
             if let Some(share) = self.rises_within(&stride, until) {
@@ -88,16 +90,22 @@ impl Simulation {
             if let Some(companion) = &mut self.companion {
                 companion.note_step(stride.h);
             }
-            let end = self.end_of(&stride, motion.duration);
+            let mut end = self.end_of(&stride, motion.duration);
             while let Some(time) = rows.next_if(|&time| time < end) {
-                self.show_within(stride.h, (time - self.run.s) / stride.h, |simulation| observe(time, simulation));
+                let (elapsed, h) = (time - self.run.s, stride.h);
+                if self.can_show_within(h, elapsed / h) {
+                    self.show_within(h, elapsed / h, |simulation| observe(time, simulation));
+                } else {
+                    (stride, end, risen) = (self.cut_step(elapsed)?, time, false);
+                    due = Some(time);
+                }
             }
             self.take_step(&stride, end);
             risen = risen || self.has_risen(until);
             if risen || end >= motion.duration {
                 self.find_tangents();
             }
-            while let Some(time) = rows.next_if(|&time| time <= end) {
+            while let Some(time) = due.take().or_else(|| rows.next_if(|&time| time <= end)) {
                 observe(time, self);
             }
         }
@@ -253,12 +261,20 @@ impl Simulation {
         first_event(&dense, self.integrator.stages(), &self.settings.events, &mut self.dense_room)
     }
 
-    /// Whether the run can go on from the fraction `share` of the step of length `h` tried last: whether the dense output
-    /// obeys the equations of motion there as well as the step's error does.
+    /// Whether the run can go on from the fraction `share` of the step of length `h` tried last.
     fn is_good_within(&mut self, h: f64, share: f64) -> bool {
-        if self.integrator.has_tangents() {
-            return false;
-        }
+        !self.integrator.has_tangents() && self.obeys_within(h, share)
+    }
+
+    /// Whether what is known of the step of length `h` tried last is good at its fraction `theta`. A time step's mode changes are
+    /// settled at its end, and what lies before is not.
+    pub(super) fn can_show_within(&mut self, h: f64, theta: f64) -> bool {
+        if self.run.stepping { self.step_end.is_settled() } else { self.obeys_within(h, theta) }
+    }
+
+    /// Whether the dense output of the step of length `h` tried last obeys the equations of motion at its fraction `share` as
+    /// well as the step's error does.
+    fn obeys_within(&mut self, h: f64, share: f64) -> bool {
         self.evaluate_within(h, share);
         let dense = self.integrator.dense(&self.model, &self.run.carrier, &self.run.state, (self.run.s, h));
         let defect = dense.defect(share, (&self.within, &self.forces), &self.dense_room, &self.settings.tolerance);
