@@ -264,6 +264,11 @@ impl Integrator {
         &self.solver.state
     }
 
+    /// The forces at the end of the step tried last.
+    pub fn end_forces(&self) -> &Forces {
+        &self.solver.forces
+    }
+
     /// Bytes that the stages hold, those to go back to included.
     pub fn bytes(&self) -> usize {
         let rates = &self.stages[0];

@@ -3,7 +3,9 @@
 use cpu_time::ThreadTime;
 
 use super::{ModeChange, Motion, Simulation, SimulationError};
-use crate::contact::{decide_modes, first_event, free_unloaded, impacts_due, is_due, place_layer, stop_reversed};
+use crate::contact::{
+    decide_modes, first_event, free_unloaded, impacts_due, is_due, longest_unstable, place_layer, stop_reversed,
+};
 use crate::integrator::{Attempt, METHOD};
 use crate::math::bracketed_root;
 use crate::model::{Carrier, CarrierPoint, Power, elastic_energy, kinetic_energy};
@@ -21,6 +23,9 @@ pub(super) const OF_PERIOD: f64 = 0.25;
 /// Recommended 1 to 5: what is missed swings about 0 through the step, so less of it is left in the velocity; with 5 the
 /// errors of whole runs are those of 1, and fewer steps are done again.
 const MOST_DEFECT: f64 = 5.0;
+/// The most that it may miss where a row is shown within a step, from which nothing goes on. In smooth motion it misses up to some
+/// tens; where a step leaps over what follows an event in no time, thousands and more.
+const MOST_SHOWN: f64 = 100.0;
 /// The longest step, as a multiple of the mean time between the events of late: a longer one would be cut.
 ///
 /// Recommended 1.5 to 3: shorter ones end before there is an event, longer ones are less accurate where they are cut.
@@ -244,7 +249,9 @@ impl Simulation {
                 h = self.run.step_size;
                 continue;
             };
-            let proposed = *proposal.get_or_insert_with(|| self.proposal(h, remaining.min(limit), attempt.error));
+            let proposed = *proposal.get_or_insert_with(|| {
+                self.proposal(h, remaining.min(limit), attempt.error).min(self.longest_unstable())
+            });
             let event = self.first_event(h);
             let share = event.filter(|_| h > shortest).map_or(1.0, |theta| theta.max(shortest / h));
             if share >= 1.0 || self.is_good_within(h, share) {
@@ -263,22 +270,20 @@ impl Simulation {
 
     /// Whether the run can go on from the fraction `share` of the step of length `h` tried last.
     fn is_good_within(&mut self, h: f64, share: f64) -> bool {
-        !self.integrator.has_tangents() && self.obeys_within(h, share)
+        !self.integrator.has_tangents() && self.defect_within(h, share) <= MOST_DEFECT
     }
 
     /// Whether what is known of the step of length `h` tried last is good at its fraction `theta`. A time step's mode changes are
     /// settled at its end, and what lies before is not.
     pub(super) fn can_show_within(&mut self, h: f64, theta: f64) -> bool {
-        if self.run.stepping { self.step_end.is_settled() } else { self.obeys_within(h, theta) }
+        if self.run.stepping { self.step_end.is_settled() } else { self.defect_within(h, theta) <= MOST_SHOWN }
     }
 
-    /// Whether the dense output of the step of length `h` tried last obeys the equations of motion at its fraction `share` as
-    /// well as the step's error does.
-    fn obeys_within(&mut self, h: f64, share: f64) -> bool {
+    /// What the dense output of the step of length `h` tried last misses of the equations of motion at its fraction `share`.
+    fn defect_within(&mut self, h: f64, share: f64) -> f64 {
         self.evaluate_within(h, share);
         let dense = self.integrator.dense(&self.model, &self.run.carrier, &self.run.state, (self.run.s, h));
-        let defect = dense.defect(share, (&self.within, &self.forces), &self.dense_room, &self.settings.tolerance);
-        defect <= MOST_DEFECT
+        dense.defect(share, (&self.within, &self.forces), &self.dense_room, &self.settings.tolerance)
     }
 
     /// Tries a step of length `h`; `None` where it is no good, and the run's step size is then a better one.
@@ -291,12 +296,22 @@ impl Simulation {
         if attempt.is_ok_and(|attempt| attempt.unseen > error.max(1.0)) && self.may_touch(h) {
             error = attempt.map_or(error, |attempt| attempt.unseen);
         }
-        if error <= 1.0 || (any_error && error.is_finite()) {
+        if any_error && error.is_finite() {
+            return attempt.ok();
+        }
+        let longest = self.longest_unstable();
+        if error <= 1.0 && h <= longest {
             return attempt.ok();
         }
         self.run.counters.rejected += 1;
-        self.run.step_size = h * if error.is_finite() { growth(error).min(SAFETY) } else { AFTER_FAILURE };
+        let shorter = h * if error.is_finite() { growth(error).min(SAFETY) } else { AFTER_FAILURE };
+        self.run.step_size = shorter.min(longest);
         None
+    }
+
+    /// The longest step, s, that lets unstable contacts leave their places as they are at the end of the step tried last.
+    pub(super) fn longest_unstable(&self) -> f64 {
+        longest_unstable(&self.model, self.integrator.end(), self.integrator.end_forces())
     }
 
     /// Whether a free mass may have come to the profile in the step of length `h` tried last, which did not see all of the
