@@ -20,3 +20,4 @@ mod run;
 mod sliding;
 mod start;
 mod symmetry;
+mod unstable;
