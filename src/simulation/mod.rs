@@ -9,6 +9,7 @@ mod stepping;
 #[cfg(test)]
 pub(crate) mod tests;
 mod time_stepping;
+mod within;
 
 use std::sync::Arc;
 

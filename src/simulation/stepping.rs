@@ -7,8 +7,7 @@ use crate::contact::{
     decide_modes, first_event, free_unloaded, impacts_due, is_due, longest_unstable, place_layer, stop_reversed,
 };
 use crate::integrator::{Attempt, METHOD};
-use crate::math::bracketed_root;
-use crate::model::{Carrier, CarrierPoint, Power, elastic_energy, kinetic_energy};
+use crate::model::{Carrier, CarrierPoint, elastic_energy, kinetic_energy};
 
 /// A new step is this share of what the error estimate allows, so that few are rejected.
 const SAFETY: f64 = 0.9;
@@ -17,15 +16,6 @@ const GROWTH: (f64, f64) = (0.2, 5.0);
 /// The longest step, as a share of the period of the carrier's sine: a longer one could leap from swing to swing, where all
 /// stages see the same and the error estimate nothing.
 pub(super) const OF_PERIOD: f64 = 0.25;
-/// The most that the dense output may miss of the equations of motion where a step is cut at an event, as a velocity
-/// gained over the step, against the tolerance.
-///
-/// Recommended 1 to 5: what is missed swings about 0 through the step, so less of it is left in the velocity; with 5 the
-/// errors of whole runs are those of 1, and fewer steps are done again.
-const MOST_DEFECT: f64 = 5.0;
-/// The most that it may miss where a row is shown within a step, from which nothing goes on. In smooth motion it misses up to some
-/// tens; where a step leaps over what follows an event in no time, thousands and more.
-const MOST_SHOWN: f64 = 100.0;
 /// The longest step, as a multiple of the mean time between the events of late: a longer one would be cut.
 ///
 /// Recommended 1.5 to 3: shorter ones end before there is an event, longer ones are less accurate where they are cut.
@@ -131,13 +121,6 @@ impl Simulation {
         until.is_some_and(|force| self.force_z() >= force)
     }
 
-    /// The share of the step tried last after which F_z is the force `until`; `None` where `stride` ends below.
-    fn rises_within(&mut self, stride: &Stride, until: Option<f64>) -> Option<f64> {
-        let Stride { h, share } = *stride;
-        let force = until.filter(|&force| self.force_z_within(h, share) >= force)?;
-        Some(bracketed_root(|theta| self.force_z_within(h, theta) - force, (0.0, share), 1e-14))
-    }
-
     /// A shorter step in place of a good one: no worse, and free of events, or with fewer.
     pub(super) fn cut_step(&mut self, h: f64) -> Result<Stride, SimulationError> {
         let attempt = if self.run.stepping { self.try_time_step(h, true) } else { self.try_step(h, true) };
@@ -156,12 +139,6 @@ impl Simulation {
         let carrier = self.run.carrier.at(self.run.s);
         self.forces.evaluate(&self.model, &self.run.state, &carrier);
         carrier
-    }
-
-    /// F_z at the fraction `theta` of the step of length `h` tried last, N.
-    pub(super) fn force_z_within(&mut self, h: f64, theta: f64) -> f64 {
-        self.evaluate_within(h, theta);
-        self.forces.on_carrier_z()
     }
 
     /// Begins a smooth piece of the carrier's motion. At a kink the damper forces jump, so all modes are decided anew.
@@ -268,24 +245,6 @@ impl Simulation {
         first_event(&dense, self.integrator.stages(), &self.settings.events, &mut self.dense_room)
     }
 
-    /// Whether the run can go on from the fraction `share` of the step of length `h` tried last.
-    fn is_good_within(&mut self, h: f64, share: f64) -> bool {
-        !self.integrator.has_tangents() && self.defect_within(h, share) <= MOST_DEFECT
-    }
-
-    /// Whether what is known of the step of length `h` tried last is good at its fraction `theta`. A time step's mode changes are
-    /// settled at its end, and what lies before is not.
-    pub(super) fn can_show_within(&mut self, h: f64, theta: f64) -> bool {
-        if self.run.stepping { self.step_end.is_settled() } else { self.defect_within(h, theta) <= MOST_SHOWN }
-    }
-
-    /// What the dense output of the step of length `h` tried last misses of the equations of motion at its fraction `share`.
-    fn defect_within(&mut self, h: f64, share: f64) -> f64 {
-        self.evaluate_within(h, share);
-        let dense = self.integrator.dense(&self.model, &self.run.carrier, &self.run.state, (self.run.s, h));
-        dense.defect(share, (&self.within, &self.forces), &self.dense_room, &self.settings.tolerance)
-    }
-
     /// Tries a step of length `h`; `None` where it is no good, and the run's step size is then a better one.
     pub(super) fn try_step(&mut self, h: f64, any_error: bool) -> Option<Attempt> {
         self.within_at = None;
@@ -366,50 +325,6 @@ impl Simulation {
             self.run.s = end;
             self.change_modes_if_due();
         }
-    }
-
-    /// Calls `show` with the simulation as it stood at the fraction `theta` of the step of length `h` tried last.
-    fn show_within(&mut self, h: f64, theta: f64, show: impl FnOnce(&mut Self)) {
-        let (s, energies) = (self.run.s, self.run.energies);
-        if self.settings.accounts.energy {
-            let gain = self.energies_within(h, theta);
-            self.run.energies.channels.add(1.0, &gain);
-        }
-        self.look_within(h, theta);
-        let mut within = std::mem::take(&mut self.within);
-        self.run.s += theta * h;
-        std::mem::swap(&mut self.run.state, &mut within);
-        show(self);
-        std::mem::swap(&mut self.run.state, &mut within);
-        (self.run.s, self.run.energies, self.within) = (s, energies, within);
-    }
-
-    /// Energies through the channels from the start of the step of length `h` tried last to its fraction `theta`.
-    fn energies_within(&mut self, h: f64, theta: f64) -> Power {
-        if self.run.stepping {
-            self.integrator.two_stage_energies(&self.model, &self.run.state, h, theta)
-        } else {
-            self.integrator.energies(&self.model, &self.run.state, h, theta)
-        }
-    }
-
-    /// The state at the fraction `theta` of the step of length `h` tried last, into `within`.
-    fn look_within(&mut self, h: f64, theta: f64) {
-        if self.within_at == Some((h, theta)) {
-            return;
-        }
-        self.within_at = Some((h, theta));
-        if self.run.stepping {
-            return self.look_within_time_step(h, theta);
-        }
-        let dense = self.integrator.dense(&self.model, &self.run.carrier, &self.run.state, (self.run.s, h));
-        dense.state_at(theta, &mut self.dense_room, &mut self.within);
-    }
-
-    /// The state and the forces at the fraction `theta` of the step of length `h` tried last.
-    fn evaluate_within(&mut self, h: f64, theta: f64) {
-        self.look_within(h, theta);
-        self.forces.evaluate(&self.model, &self.within, &self.run.carrier.at(self.run.s + theta * h));
     }
 }
 
