@@ -343,6 +343,29 @@ fn tangents_are_those_of_a_difference_quotient() {
     }
 }
 
+/// A mass that comes down fast on a bend goes on along it with the speed that its impact left: from the touch to the end of the
+/// step the bend is counted once.
+#[test]
+fn a_mass_that_touches_on_a_bend_keeps_its_speed() {
+    let text = "name = 'bend'
+        layer = { masses = 1, spacing = 1e-4, mass = 1e-7, vertical = { stiffness = 10.0 } }
+        surface = { kind = 'sinusoid', amplitude = 4e-6, wavelength = 4e-5 }
+        solver = { method = 'step', relative_tolerance = 1e-4 }
+        fmu = { outputs = ['energy', 'dissipation', 'contact', 'solver'] }";
+    let scene = Scene::parse(text, FilePath::new("bend.toml")).unwrap();
+    for i in 0..10 {
+        // Nothing holds the mass along x, so it flies at the speed that it started with.
+        let start = Start { u: 4e-6 * f64::from(i), w: 6e-6, u_rate: 5.0, w_rate: -1.0, ..Start::default() };
+        let mut simulation = Simulation::new(&scene, &start).unwrap();
+        let kinetic = value(&scene, &mut simulation, "energy.kinetic");
+        simulation.advance(&straight(2e-4, 0.0, 0.0)).unwrap();
+        assert!(value(&scene, &mut simulation, "dissipation.E_impact") > 0.0, "it touches");
+        let residual = value(&scene, &mut simulation, "energy.residual");
+        // The tolerance.
+        assert!(residual.abs() <= 1e-4 * kinetic, "start {i}: {residual:e} J of {kinetic:e} J");
+    }
+}
+
 /// Stiff beyond reason: the run goes on in bounded work and its numbers stay finite; its balance holds to two percent, but where
 /// a position's tolerance alone makes forces of any size.
 #[test]

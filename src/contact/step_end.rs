@@ -363,7 +363,9 @@ impl Settling<'_> {
             + 2.0 * model.links[LinkKind::LateralX as usize].damping
             + model.links[LinkKind::Vertical as usize].damping * ground.slope * ground.slope;
         let slowing = time * (damping + time * model.glassy_stiffness()) / model.mass;
-        let after = v + time * contact.acceleration(model, mode, v, &ground) / (1.0 + slowing);
+        // No term in κ: how the profile bends from the touch to here is in v already.
+        let pull = (contact.tangential - contact.friction(mode)) / (model.mass * contact.q);
+        let after = v + time * pull / (1.0 + slowing);
         self.set_speed(i, if model.has_friction && mode.direction() * after < 0.0 { 0.0 } else { after });
     }
 

@@ -52,7 +52,7 @@ fn lost<const STAGES: usize>(
         energy.damper += h * damping * (0..STAGES).map(|i| weights[i] * products[i][i]).sum::<f64>();
     }
     for (index, course) in maxwell.courses().iter().enumerate() {
-        let squares = Squares::new(course, weights);
+        let squares = Squares::new(course, h / model.relaxation_times[index], weights);
         for row in model.rows.iter().filter(|row| row.time_index == index) {
             let sum = squares.sum(row, &a[row.range.clone()], stages, &products[row.kind as usize], room);
             energy.maxwell += h * row.stiffness / row.relaxation_time * sum;
@@ -73,6 +73,10 @@ fn products_of<const STAGES: usize>(stages: &[Rates], kind: LinkKind, all: bool)
 }
 
 /// Σ_i weight_i a_i² of an element: a_i = p_i a_0 + h Σ_j q_ij ė_j multiplied out.
+///
+/// An element that does not yet follow its link, a_0 ≠ τė_0, after a start undeformed or a jump of ė, may relax in a time far
+/// shorter than a step that is good at its end, and no stage sees it. So what belongs to a_0 - τė_0 is put in as what the sum
+/// stands for.
 struct Squares<const STAGES: usize> {
     /// Of a_0².
     start: f64,
@@ -80,11 +84,22 @@ struct Squares<const STAGES: usize> {
     mixed: [f64; STAGES],
     /// Of ė_j ė_l for l ≤ j, s².
     rates: [[f64; STAGES]; STAGES],
+    /// `None` of an element slower than the step, all of which the stages see.
+    late: Option<Late>,
+}
+
+/// What the stages miss of l = a_0 - τė_0, which falls as e^(-zθ) beside τė_0.
+struct Late {
+    /// Of l²: ∫ e^(-2zθ) dθ less Σ_i weight_i p_i².
+    square: f64,
+    /// Of 2 l τė_0: ∫ e^(-zθ) dθ less Σ_i weight_i p_i.
+    mixed: f64,
 }
 
 impl<const STAGES: usize> Squares<STAGES> {
-    fn new(course: &Course<STAGES>, weights: &[f64; STAGES]) -> Self {
-        let mut squares = Self { start: weights[0], mixed: [0.0; STAGES], rates: [[0.0; STAGES]; STAGES] };
+    /// For the ratio `z` of step and relaxation time; the weights add up to the fraction of the step that they are for.
+    fn new(course: &Course<STAGES>, z: f64, weights: &[f64; STAGES]) -> Self {
+        let mut squares = Self { start: weights[0], mixed: [0.0; STAGES], rates: [[0.0; STAGES]; STAGES], late: None };
         for i in 1..STAGES {
             let (p, q) = (course.start[i], &course.rate[i]);
             squares.start += weights[i] * p * p;
@@ -97,6 +112,7 @@ impl<const STAGES: usize> Squares<STAGES> {
                 squares.rates[j][j] += weighed * q[j];
             }
         }
+        squares.late = (z > 1.0).then(|| Late::new(z, course, weights, squares.start));
         squares
     }
 
@@ -107,7 +123,33 @@ impl<const STAGES: usize> Squares<STAGES> {
         let room = &mut room[..a.len()];
         weighted_sum(room, std::iter::once((self.start, a)).chain(mixed));
         let of_rates = self.rates.iter().flatten().zip(products.iter().flatten());
-        dot(a, room) + of_rates.map(|(factor, product)| factor * product).sum::<f64>()
+        let sum = dot(a, room) + of_rates.map(|(factor, product)| factor * product).sum::<f64>();
+        sum + self.late.as_ref().map_or(0.0, |late| late.sum(row, a, stages, products))
+    }
+}
+
+impl Late {
+    fn new<const STAGES: usize>(z: f64, course: &Course<STAGES>, weights: &[f64; STAGES], squares: f64) -> Self {
+        let fraction = weights.iter().sum::<f64>();
+        let integral = |z: f64| -(-z * fraction).exp_m1() / z;
+        Self { square: integral(2.0 * z) - squares, mixed: integral(z) - dot(weights, &course.start) }
+    }
+
+    /// The sum over the elements of one row; 0 where they follow their links as nearly as ė changes through the step:
+    /// then l is what ë leaves.
+    fn sum<const STAGES: usize>(
+        &self,
+        row: &MaxwellRow,
+        a: &[f64],
+        stages: &[Rates],
+        products: &Products<STAGES>,
+    ) -> f64 {
+        let (tau, rate) = (row.relaxation_time, &stages[0].elongation_rate[row.kind as usize][..]);
+        let start = products[0][0];
+        let mixed = tau * dot(a, rate) - tau * tau * start;
+        let square = dot(a, a) - tau * tau * start - 2.0 * mixed;
+        let change = (1..STAGES).map(|i| products[i][i] - 2.0 * products[i][0] + start).fold(0.0, f64::max);
+        if square > tau * tau * change { self.square * square + 2.0 * self.mixed * mixed } else { 0.0 }
     }
 }
 

@@ -80,3 +80,22 @@ fn with_adhesive_shear() {
 fn with_both() {
     balances("[friction]\ncoulomb = 0.2\nshear_force = 1e-3");
 }
+
+/// An element that starts undeformed holds ½ c_j e² and loses it in some τ_j, of which a step sees nothing where τ_j is far shorter.
+#[test]
+fn what_a_fast_element_loses_within_a_step_is_counted() {
+    let (c, e, relative) = (1.0e3, 1.0e-5, 1.0e-4);
+    for tau in [1.0e-10, 1.0e-8, 3.0e-8, 1.0e-7, 1.0e-6] {
+        let vertical = link("vertical", &Law::with_maxwell(2.0e4, 1.0e-3, &[(c, tau)]));
+        let solver = solver(relative, 1.0e-6 * relative);
+        let text = format!(
+            "[layer]\nmasses = 1\nspacing = 1e-4\nmass = 1e-7\ninitial = \"undeformed\"\n{vertical}\
+             [surface]\nkind = \"flat\"\n{solver}"
+        );
+        let mut run = Run::new(&text, Start { w: -e, ..Start::default() });
+        run.drive(1.0e-4, rate(0.0), rate(0.0));
+        let (lost, held) = (run.get("dissipation.E_maxwell"), 0.5 * c * e * e);
+        // The force is good to the tolerance of the whole spring's, twenty-one times the element's: so is what it lost.
+        assert!((lost - held).abs() <= 21.0 * relative * held, "τ = {tau:e}: {lost:e} J of {held:e} J");
+    }
+}

@@ -1,0 +1,25 @@
+//! What must hold whatever the scene: properties tested with random ones.
+//!
+//! PROPTEST_CASES sets how many cases each property is tested with, PROPTEST_RNG_SEED which ones.
+
+#![allow(
+    missing_docs,
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "tests may fail, and say what ran"
+)]
+
+mod case;
+mod check;
+mod contact;
+mod energy;
+mod found;
+mod random;
+mod saving;
+mod scaling;
+mod scene_file;
+mod splitting;
+mod superposition;
+mod symmetry;
+mod trust;
