@@ -20,8 +20,8 @@ pub(in crate::program::report) const WRONG: f64 = 1000.0;
 const WRONG_ANYHOW: f64 = 0.1;
 /// What a moved start may do, over the error, for the error to say something of the run.
 const SENSITIVE: f64 = 0.1;
-/// The work that the tight run may take, over that of the run; never more than the run's bound. A method of order 5 needs
-/// 2.5 times as much.
+/// The work that the tight run may take, over that of the run: a method of order 5 needs 2.5 times as much, and more where
+/// rounding is near.
 const TIGHT_WORK: u64 = 5;
 /// A short run may need more than its share.
 const LEAST_WORK: u64 = 1000;
@@ -191,6 +191,8 @@ pub(super) struct Runner<'a> {
     pub(super) points: u32,
     /// The most work of a run, but for what a master's steps need.
     pub(super) bound: u64,
+    /// How many times its usual share, and the bound, the tight run may take.
+    pub(super) patience: u64,
 }
 
 impl Runner<'_> {
@@ -211,31 +213,32 @@ impl Runner<'_> {
             Err(Stop::TooMuchWork(time)) => Fate::TooExpensive(time),
             Err(Stop::Failed(reason)) => Fate::Stopped(reason),
             Ok(ran) => {
-                let check = check(scene, course, &ran, bound);
+                let check = self.check(scene, course, &ran, bound);
                 Fate::Ended { counts: ran.counts, communication_steps, check }
             }
         }
     }
-}
 
-fn check(scene: &Scene, course: Course, ran: &Ran, bound: u64) -> Check {
-    let tolerance = scene.solver.relative_tolerance;
-    let tight_scene = exact(&at_tolerance(scene, tolerance / TIGHTER));
-    let most = TIGHT_WORK.saturating_mul(ran.counts.work()).saturating_add(LEAST_WORK);
-    let bound = Bound(most.min(bound));
-    let tight = match course.run(&tight_scene, 0.0, bound) {
-        Ok(tight) => tight,
-        Err(Stop::Failed(reason)) => return Check::Unknown(reason),
-        Err(Stop::TooMuchWork(_)) => return Check::Unknown(format!("more than {} steps", bound.0)),
-    };
-    let error = Difference::new(ran, &tight);
-    if error.share <= NOTABLE * tolerance {
-        return Check::Error(error);
+    /// Compares a run with a tight one.
+    fn check(&self, scene: &Scene, course: Course, ran: &Ran, bound: u64) -> Check {
+        let tolerance = scene.solver.relative_tolerance;
+        let tight_scene = exact(&at_tolerance(scene, tolerance / TIGHTER));
+        let most = TIGHT_WORK.saturating_mul(ran.counts.work()).saturating_add(LEAST_WORK);
+        let bound = Bound(self.patience.saturating_mul(most.min(bound)));
+        let tight = match course.run(&tight_scene, 0.0, bound) {
+            Ok(tight) => tight,
+            Err(Stop::Failed(reason)) => return Check::Unknown(reason),
+            Err(Stop::TooMuchWork(_)) => return Check::Unknown(format!("more than {} steps", bound.0)),
+        };
+        let error = Difference::new(ran, &tight);
+        if error.share <= NOTABLE * tolerance {
+            return Check::Error(error);
+        }
+        let moved = course.run(&tight_scene, DISPLACEMENT, bound);
+        let moved = moved.map_or(0.0, |moved| Difference::new(&moved, &tight).share);
+        let sensitive = moved > parting(scene).max(SENSITIVE * error.share);
+        if sensitive { Check::Sensitive { error, moved } } else { Check::Error(error) }
     }
-    let moved = course.run(&tight_scene, DISPLACEMENT, bound);
-    let moved = moved.map_or(0.0, |moved| Difference::new(&moved, &tight).share);
-    let sensitive = moved > parting(scene).max(SENSITIVE * error.share);
-    if sensitive { Check::Sensitive { error, moved } } else { Check::Error(error) }
 }
 
 impl Difference {

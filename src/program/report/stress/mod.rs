@@ -25,6 +25,8 @@ pub(super) use quantity::{Place, Quantity};
 pub(super) const TOO_EXPENSIVE: u64 = 20;
 /// Whatever the scene, so many steps are not.
 const CHEAP: u64 = 1000;
+/// The tight runs of what is scaled by itself may take so many times what those of the pairs may.
+const PATIENCE: u64 = 3;
 /// The powers of ten of the pairs are so many that this share of the cells is likely to be run.
 const MOST_OF_THEM: f64 = 0.8;
 /// What a run that was too expensive would have taken is not known; likely so many times its bound.
@@ -51,7 +53,7 @@ pub(super) struct Stress {
 /// Runs the scene of `reference` under stress by so many powers of ten each way; the pairs may take about `seconds`.
 pub(super) fn run(reference: &Reference, powers: u32, points: u32, seconds: f64) -> Stress {
     let scene = &reference.scene;
-    let unbounded = Runner { scene, points, bound: scene.solver.max_steps };
+    let unbounded = Runner { scene, points, bound: scene.solver.max_steps, patience: PATIENCE };
     let unstressed = unbounded.run(Place::default());
     let work = unstressed.counts().unwrap_or(&reference.measured.counts).work();
     let bound = TOO_EXPENSIVE * work.max(CHEAP / TOO_EXPENSIVE);
@@ -67,7 +69,7 @@ pub(super) fn run(reference: &Reference, powers: u32, points: u32, seconds: f64)
     let runner = Runner { bound, ..unbounded };
     let singles = stress.missing(stress.quantities.iter().flat_map(|&quantity| stress.line(quantity)));
     stress.run_all(runner, singles, f64::INFINITY, "stress, one by one");
-    stress.run_pairs(runner, seconds);
+    stress.run_pairs(Runner { patience: 1, ..runner }, seconds);
     stress
 }
 
