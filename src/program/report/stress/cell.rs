@@ -20,12 +20,6 @@ pub(in crate::program::report) const WRONG: f64 = 1000.0;
 const WRONG_ANYHOW: f64 = 0.1;
 /// What a moved start may do, over the error, for the error to say something of the run.
 const SENSITIVE: f64 = 0.1;
-/// The work that the tight run may take, over that of the run: a method of order 5 needs 2.5 times as much, and more where
-/// rounding is near.
-const TIGHT_WORK: u64 = 5;
-/// A short run may need more than its share.
-const LEAST_WORK: u64 = 1000;
-
 /// A stressed scene, run.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::program::report) struct Cell {
@@ -191,7 +185,7 @@ pub(super) struct Runner<'a> {
     pub(super) points: u32,
     /// The most work of a run, but for what a master's steps need.
     pub(super) bound: u64,
-    /// How many times its usual share, and the bound, the tight run may take.
+    /// How many times the bound the tight run may take.
     pub(super) patience: u64,
 }
 
@@ -223,8 +217,7 @@ impl Runner<'_> {
     fn check(&self, scene: &Scene, course: Course, ran: &Ran, bound: u64) -> Check {
         let tolerance = scene.solver.relative_tolerance;
         let tight_scene = exact(&at_tolerance(scene, tolerance / TIGHTER));
-        let most = TIGHT_WORK.saturating_mul(ran.counts.work()).saturating_add(LEAST_WORK);
-        let bound = Bound(self.patience.saturating_mul(most.min(bound)));
+        let bound = Bound(self.patience.saturating_mul(bound));
         let tight = match course.run(&tight_scene, 0.0, bound) {
             Ok(tight) => tight,
             Err(Stop::Failed(reason)) => return Check::Unknown(reason),

@@ -228,7 +228,8 @@ fn two_digits(value: f64) -> String {
     match value {
         value if value >= 1e4 => format!("{value:.1e}"),
         value if value >= 9.95 => format!("{value:.0}"),
-        _ => format!("{value:.1}"),
+        value if value >= 0.095 || value == 0.0 => format!("{value:.1}"),
+        _ => format!("{value:.0e}"),
     }
 }
 
