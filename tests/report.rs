@@ -28,9 +28,10 @@ fn of_method<'a>(rows: &'a [Row], method: &str) -> Vec<&'a Row> {
     rows.iter().filter(|row| row["program"] == "asperity" && row["method"] == method).collect()
 }
 
-/// What the program says while it writes the report of `scene` into `folder`.
+/// What the program says while it writes the report of `scene` into `folder`, without stress unless that is asked for.
 fn report(scene: &Path, folder: &Path, options: &[&str]) -> String {
-    let output = asperity().arg("report").arg(scene).arg("-o").arg(folder).args(options).output().unwrap();
+    let stress = if options.contains(&"--stress") { [].as_slice() } else { &["--stress", "0"] };
+    let output = asperity().arg("report").arg(scene).arg("-o").arg(folder).args(options).args(stress).output().unwrap();
     let text = String::from_utf8(output.stderr).unwrap();
     assert!(output.status.success() && output.stdout.is_empty(), "{text}");
     text
@@ -61,7 +62,7 @@ fn errors(folder: &Path) -> Vec<Row> {
 #[test]
 fn every_file_is_there_and_the_page_is_whole() {
     let folder = scratch("report-files").join("made/if/need/be");
-    report(&root().join(SINUSOID), &folder, &["--repeat", "1"]);
+    report(&root().join(SINUSOID), &folder, &["--repeat", "1", "--stress", "1"]);
     for name in ["error-run-time", "error-communication-step"] {
         let svg = fs::read_to_string(folder.join(name).with_extension("svg")).unwrap();
         assert!(svg.starts_with("<svg") && svg.contains("error of F_z"), "{name}");
@@ -263,7 +264,7 @@ fn where_runs_part_means_are_compared() {
     // Runs that stay together say nothing of it.
     report(&root().join(SINUSOID), &folder, &["--repeat", "1", "--tolerances", "1e-4..1e-7"]);
     let page = fs::read_to_string(folder.join("index.html")).unwrap();
-    assert!(!page.contains("sensitive") && page.contains("compared row by row"));
+    assert!(!page.contains("The motion is sensitive") && page.contains("compared row by row"));
 }
 
 const HOPPING: &str = "
@@ -331,4 +332,108 @@ fn tolerances_are_a_range() {
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8(output.stderr).unwrap().contains("expected LOOSEST..TIGHTEST"));
     assert!(run(asperity().args(["report", "--help"])).contains("[default: 1e-2..1e-10]"));
+}
+
+/// The factors of a cell, the last empty without a master.
+const FACTORS: [&str; 5] = ["stiffness", "mass", "relaxation_times", "speed", "communication_step"];
+
+/// The cells of the scene under stress, without the ladders' runs; and the page.
+fn stressed(scene: &Path, folder: &Path, options: &[&str]) -> (Vec<Row>, String) {
+    let quick = ["--repeat", "1", "--points", "10", "--tolerances", "1e-6..1e-6", "--stress", "1"];
+    report(scene, folder, &[&quick, options].concat());
+    (rows(&folder.join("stress.csv")), fs::read_to_string(folder.join("index.html")).unwrap())
+}
+
+/// The cell where these are scaled and nothing else.
+fn cell<'a>(cells: &'a [Row], scaled: &[(&str, &str)]) -> &'a Row {
+    let factor = |name: &str| {
+        let unscaled = if name == "communication_step" { "" } else { "1" };
+        scaled.iter().find(|(scaled, _)| *scaled == name).map_or(unscaled, |(_, factor)| *factor)
+    };
+    cells.iter().find(|row| FACTORS.iter().all(|name| row[*name] == factor(name))).expect("a cell")
+}
+
+#[test]
+fn a_scene_under_stress_has_a_cell_for_each_pair_of_factors() {
+    let folder = scratch("report-stress");
+    let (cells, page) = stressed(&root().join(SINUSOID), &folder, &[]);
+    // The scene itself; four of its quantities by themselves and in six pairs; and with each of them a master, in
+    // communication steps of three lengths.
+    assert_eq!(cells.len(), 1 + 4 * 2 + 6 * 4 + 3 * (1 + 4 * 2));
+    for (i, row) in cells.iter().enumerate() {
+        assert!(cells[..i].iter().all(|other| FACTORS.iter().any(|name| other[*name] != row[*name])), "twice: {row:?}");
+        assert!(!row["status"].is_empty() && !row["reason"].is_empty(), "{row:?}");
+        let times = number(row, "times_the_steps");
+        assert!(times > 0.0 && times <= 20.0 && number(row, "energy_residual") < 1e-4, "{row:?}");
+    }
+    let unstressed = cell(&cells, &[]);
+    assert_eq!((unstressed["status"].as_str(), number(unstressed, "times_the_steps")), ("kept", 1.0));
+    assert!(number(unstressed, "error") < 1e-5 && number(unstressed, "error") > 0.0);
+    // A master that gives rates follows straight phases exactly: the same run, but for its communication points.
+    let driven = cell(&cells, &[("communication_step", "1")]);
+    assert!(number(driven, "steps") >= 1000.0 && driven["status"] == "kept", "{driven:?}");
+    // Each cell tells in the page what it tells in the table.
+    for row in &cells {
+        assert!(page.contains(&row["reason"]), "{row:?}");
+    }
+    assert!(page.contains("<h2>Under stress</h2>") && page.contains("<h3>In pairs</h3>"));
+    assert!(page.contains("title=\"stiffness × 10, mass × 10⁻¹: error "));
+    assert!(page.contains("stiffness, mass, relaxation times, speed and communication step scaled"));
+}
+
+/// A cell is the run of the scene with these values.
+#[test]
+fn a_stressed_scene_is_the_scene_with_other_values() {
+    let folder = scratch("report-stress-values");
+    let (cells, _) = stressed(&root().join(SINUSOID), &folder, &[]);
+    let same = |cell: &Row, scene: &Path, options: &[&str]| {
+        let (others, _) = stressed(scene, &folder, options);
+        let other = others.iter().find(|row| FACTORS[..4].iter().all(|name| row[*name] == "1")).unwrap();
+        for column in ["steps", "rejected", "events", "newton_iterations", "error", "energy_residual"] {
+            assert_eq!(cell[column], other[column], "{column}: {cell:?}, {other:?}");
+        }
+    };
+    let scene = root().join(SINUSOID);
+    same(cell(&cells, &[("mass", "10")]), &scene, &["--set", "layer.mass=1e-6"]);
+    let stiff =
+        ["layer.vertical.stiffness=2e4", "layer.vertical.maxwell[1].stiffness=3e4", "layer.horizontal.stiffness=5e4"];
+    let both = [stiff.as_slice(), &["layer.vertical.maxwell[1].relaxation_time=2e-3"]].concat();
+    let set: Vec<&str> = both.iter().flat_map(|pair| ["--set", pair]).collect();
+    same(cell(&cells, &[("stiffness", "10"), ("relaxation_times", "10")]), &scene, &set);
+    let text = fs::read_to_string(&scene).unwrap();
+    let fast = text
+        .replace("0.0005", "0.00005")
+        .replace("-0.12", "-1.2")
+        .replace("0.004\nu_rate = 0.5", "0.0004\nu_rate = 5.0");
+    let scene = folder.join("fast.toml");
+    fs::write(&scene, fast).unwrap();
+    same(cell(&cells, &[("speed", "10")]), &scene, &[]);
+}
+
+#[test]
+fn what_a_scene_does_not_have_is_not_stressed() {
+    let folder = scratch("report-stress-absent");
+    let scene = changed(&folder, "maxwell = [{ stiffness = 3000.0, relaxation_time = 0.0002 }]", "");
+    let (cells, page) = stressed(&scene, &folder, &[]);
+    assert_eq!(cells.len(), 1 + 3 * 2 + 3 * 4 + 3 * (1 + 3 * 2));
+    assert!(cells.iter().all(|row| row["relaxation_times"] == "1"));
+    assert!(page.contains("stiffness, mass, speed and communication step scaled"));
+    report(&scene, &folder.join("none"), &["--repeat", "1", "--tolerances", "1e-6..1e-6"]);
+    assert!(!folder.join("none/stress.csv").exists());
+    assert!(!fs::read_to_string(folder.join("none/index.html")).unwrap().contains("Under stress"));
+}
+
+/// Ten times the largest number is none.
+#[test]
+fn a_cell_that_cannot_be_run_says_why() {
+    let folder = scratch("report-stress-refused");
+    let longest = ["--set", "layer.vertical.maxwell[1].relaxation_time=1e308", "--stress-time", "0"];
+    let (cells, page) = stressed(&root().join(SINUSOID), &folder, &longest);
+    let refused = cell(&cells, &[("relaxation_times", "10")]);
+    assert_eq!((refused["status"].as_str(), refused["steps"].as_str()), ("stopped", ""));
+    assert!(refused["reason"].contains("layer.vertical.maxwell[1].relaxation_time = inf: expected"), "{refused:?}");
+    assert!(page.contains("<h3>What stops or is wrong</h3>") && page.contains("relaxation times × 10</td>"));
+    // Without time, no pair is tried, and it says so.
+    let pair = cell(&cells, &[("stiffness", "10"), ("mass", "10")]);
+    assert!(pair["status"] == "left out" && page.contains("were not tried: <code>--stress-time</code>"), "{pair:?}");
 }

@@ -116,6 +116,12 @@ pub(crate) struct Report {
     /// How often each run is timed: the median counts.
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) repeat: u32,
+    /// Powers of ten by which the scene is stressed each way, one quantity by one and in pairs; 0: not at all.
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(..=12))]
+    pub(crate) stress: u32,
+    /// About how long the stressed pairs may take, s: the cheap ones come first.
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = seconds)]
+    pub(crate) stress_time: f64,
     /// Lines of other programs, as benches/peers/run writes them.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) peers: Option<PathBuf>,
@@ -155,6 +161,11 @@ pub(crate) fn tenth(number: f64) -> f64 {
     let written = format!("{number:e}");
     let parts = written.split_once('e').and_then(|(digits, power)| Some((digits, power.parse::<i32>().ok()?)));
     parts.and_then(|(digits, power)| format!("{digits}e{}", power - 1).parse().ok()).unwrap_or(number / 10.0)
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse().ok().filter(|seconds| (0.0..).contains(seconds));
+    number.ok_or_else(|| "expected a number of seconds, 0 or more".into())
 }
 
 fn key_and_value(text: &str) -> Result<(String, String), String> {

@@ -50,6 +50,17 @@ impl Rows {
     }
 }
 
+/// The carrier at `u` (m) at time 0, moving as the first phase begins.
+pub(crate) fn start(scene: &Scene, u: f64) -> Start {
+    let first = scene.excitation.first();
+    Start {
+        u_rate: first.map_or(0.0, |phase| phase.u.velocity(0.0)),
+        w_rate: first.map_or(0.0, |phase| phase.w.velocity(0.0)),
+        u,
+        ..Start::default()
+    }
+}
+
 /// A run of a scene along its excitation.
 #[derive(Debug)]
 pub(crate) struct Run {
@@ -66,13 +77,7 @@ impl Run {
 
     /// The same with the carrier at `u` (m) instead of 0.
     pub(crate) fn displaced(scene: &Scene, rows: Rows, u: f64) -> Result<Self, SimulationError> {
-        let first = scene.excitation.first();
-        let start = Start {
-            u_rate: first.map_or(0.0, |phase| phase.u.velocity(0.0)),
-            w_rate: first.map_or(0.0, |phase| phase.w.velocity(0.0)),
-            u,
-            ..Start::default()
-        };
+        let start = start(scene, u);
         let carrier = Carrier { time: start.time, u: start.u, w: start.w };
         let mut simulation = Simulation::new(scene, &start)?;
         simulation.record_handovers(true);

@@ -16,11 +16,13 @@ pub(crate) struct Cell {
     pub(crate) class: String,
     /// The columns that it fills.
     pub(crate) span: usize,
+    /// What it says more of where it is pointed at; empty for nothing.
+    pub(crate) title: String,
 }
 
 impl<T: Into<String>> From<T> for Cell {
     fn from(text: T) -> Self {
-        Self { text: text.into(), class: String::new(), span: 1 }
+        Self { text: text.into(), class: String::new(), span: 1, title: String::new() }
     }
 }
 
@@ -29,11 +31,13 @@ pub(crate) fn fill(template: &str, fields: &[(&str, String)]) -> String {
     fields.iter().fold(template.to_owned(), |page, (field, text)| page.replace(&format!("{{{{{field}}}}}"), text))
 }
 
-/// A table with one line of names above its rows.
+/// A table with one line of names above its rows, if there are any.
 pub(crate) fn table(head: &[Cell], rows: &[Vec<Cell>]) -> io::Result<String> {
     let mut html = Writer::new_with_indent(Vec::new(), b' ', 1);
     html.create_element("table").write_inner_content(|html| {
-        write_row(html, "th", head)?;
+        if !head.is_empty() {
+            write_row(html, "th", head)?;
+        }
         rows.iter().try_for_each(|cells| write_row(html, "td", cells))
     })?;
     String::from_utf8(html.into_inner()).map_err(io::Error::other)
@@ -45,7 +49,9 @@ fn write_row(html: &mut Html, element: &str, cells: &[Cell]) -> io::Result<()> {
             let span = cell.span.to_string();
             let class = (!cell.class.is_empty()).then_some(("class", cell.class.as_str()));
             let span = (cell.span != 1).then_some(("colspan", span.as_str()));
-            let html = html.create_element(element).with_attributes(class.into_iter().chain(span));
+            let title = (!cell.title.is_empty()).then_some(("title", cell.title.as_str()));
+            let attributes = class.into_iter().chain(span).chain(title);
+            let html = html.create_element(element).with_attributes(attributes);
             html.write_text_content(BytesText::new(&cell.text)).map(drop)
         })
     })?;

@@ -35,9 +35,8 @@ pub fn write(verdicts: &[Verdict]) {
     file.flush().unwrap();
     let head = HEAD.map(Cell::from);
     let cell = |(i, text): (usize, &String)| Cell {
-        text: text.clone(),
         class: if (4..11).contains(&i) { "number" } else { "" }.into(),
-        span: 1,
+        ..Cell::from(text)
     };
     let cells: Vec<Vec<Cell>> = rows.iter().map(|row| row.iter().enumerate().map(cell).collect()).collect();
     let table = html::table(&head, &cells).unwrap();

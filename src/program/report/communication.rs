@@ -1,9 +1,9 @@
 //! What a user of the FMU meets: a carrier that follows the excitation through a master's values, with rates and without,
 //! at ever shorter communication steps. The rules are the FMU's own.
 
-use asperity::fmi::{Carrier as Inputs, Input};
+use asperity::fmi::{Carrier as Inputs, Input, InputNotFinite};
 use asperity::scene::{Phase, Scene};
-use asperity::simulation::Simulation;
+use asperity::simulation::{Simulation, SimulationError};
 use cpu_time::ThreadTime;
 
 use super::ladder::Figures;
@@ -113,13 +113,13 @@ fn compared(measured: &Measured, tight: &Trace, reference: &Reference) -> (Figur
 /// Drives `scene` as a master drives the FMU: communication points at the `rows`, the ends of phases among them.
 fn drive(scene: &Scene, given: Given, rows: Rows, tick: &dyn Fn(f64)) -> Result<Measured, String> {
     let whole = duration(scene);
-    let mut master = Master::new(scene, given)?;
+    let mut master = Master::new(scene, given, 0.0).map_err(|error| error.to_string())?;
     let clock = ThreadTime::now();
     for phase in &scene.excitation {
         let start = master.carrier;
         let mut from = 0.0;
         for to in rows.times(phase.duration) {
-            master.step(phase, start, (from, to))?;
+            master.step(phase, start, (from, to)).map_err(|error| error.to_string())?;
             from = to;
             tick(master.carrier.time / whole);
         }
@@ -130,42 +130,54 @@ fn drive(scene: &Scene, given: Given, rows: Rows, tick: &dyn Fn(f64)) -> Result<
     Ok(Measured { trace: Trace::new(values, &durations, rows), counts, time, durations })
 }
 
+/// Why a communication step is not done.
+#[derive(Debug, thiserror::Error)]
+#[error(transparent)]
+pub(super) enum StepError {
+    /// What the master gave.
+    Input(#[from] InputNotFinite),
+    /// What the run met.
+    Run(#[from] SimulationError),
+}
+
 /// A master with the unit that it drives.
-struct Master<'a> {
+#[derive(Debug)]
+pub(super) struct Master<'a> {
     scene: &'a Scene,
     given: Given,
     inputs: Inputs,
-    simulation: Simulation,
-    recorder: Recorder,
+    pub(super) simulation: Simulation,
+    pub(super) recorder: Recorder,
     /// Where the excitation stands at the communication point.
-    carrier: Carrier,
+    pub(super) carrier: Carrier,
 }
 
 impl<'a> Master<'a> {
-    fn new(scene: &'a Scene, given: Given) -> Result<Self, String> {
+    /// The carrier at `u` (m) at time 0.
+    pub(super) fn new(scene: &'a Scene, given: Given, u: f64) -> Result<Self, SimulationError> {
         let mut inputs = Inputs::default();
+        inputs.set_input(Input::U, u);
         if let Some(phase) = scene.excitation.first().filter(|_| given == Given::Rates) {
             set_rates(&mut inputs, phase, 0.0);
         }
-        let mut simulation = Simulation::new(scene, &inputs.start(0.0)).map_err(|error| error.to_string())?;
+        let mut simulation = Simulation::new(scene, &inputs.start(0.0))?;
         let mut recorder = Recorder::new(scene);
         recorder.row(&mut simulation);
-        let carrier = Carrier { time: 0.0, u: 0.0, w: 0.0 };
+        let carrier = Carrier { time: 0.0, u, w: 0.0 };
         Ok(Self { scene, given, inputs, simulation, recorder, carrier })
     }
 
     /// Gives what there is to give at the communication point and does the step between two times of the phase, s after
     /// it began at `start`.
-    fn step(&mut self, phase: &Phase, start: Carrier, (from, to): (f64, f64)) -> Result<(), String> {
+    pub(super) fn step(&mut self, phase: &Phase, start: Carrier, (from, to): (f64, f64)) -> Result<(), StepError> {
         self.inputs.set_input(Input::U, self.carrier.u);
         self.inputs.set_input(Input::W, self.carrier.w);
         if self.given == Given::Rates {
             set_rates(&mut self.inputs, phase, from);
         }
         let (stands, h) = (self.simulation.carrier(), to - from);
-        let motion = self.inputs.motion(stands, self.carrier.time, h, self.scene.extrapolation);
-        let motion = motion.map_err(|error| error.to_string())?;
-        self.simulation.advance(&motion).map_err(|error| error.to_string())?;
+        let motion = self.inputs.motion(stands, self.carrier.time, h, self.scene.extrapolation)?;
+        self.simulation.advance(&motion)?;
         self.inputs.count_step(h);
         self.recorder.row(&mut self.simulation);
         self.carrier = start.moved(phase, to);
@@ -179,7 +191,7 @@ fn set_rates(inputs: &mut Inputs, phase: &Phase, s: f64) {
 }
 
 /// How long the excitation takes, s.
-fn duration(scene: &Scene) -> f64 {
+pub(super) fn duration(scene: &Scene) -> f64 {
     scene.excitation.iter().map(|phase| phase.duration).sum()
 }
 

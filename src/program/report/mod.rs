@@ -10,6 +10,7 @@ mod pictures;
 mod progress;
 mod reference;
 mod runs;
+mod stress;
 mod table;
 mod trace;
 
@@ -24,11 +25,14 @@ use super::plot::{Ladders, png};
 use ladder::Ladder;
 use peers::Peers;
 use progress::Progress;
+use stress::Stress;
 
 /// The page.
 const PAGE: &str = "index.html";
 /// The table and the pictures of errors and run times, without their endings.
 const ERRORS: &str = "error-run-time";
+/// The table of the scene under stress.
+const STRESS: &str = "stress";
 /// Those of errors and communication steps.
 const COMMUNICATION: &str = "error-communication-step";
 
@@ -50,6 +54,9 @@ pub(crate) fn report(command: &Report) -> Result<(), ProgramError> {
         &parts.reference,
         &parts.communication,
     )?;
+    if let Some(stress) = &parts.stress {
+        table::write_stress(&folder.file(STRESS, "csv"), &scene.name, stress)?;
+    }
     let errors = folder.draw(ERRORS, &pictures::errors(&parts.reference, &parts.rows))?;
     let communication = pictures::communication(&parts.reference, &parts.communication);
     let communication = folder.draw(COMMUNICATION, &communication)?;
@@ -66,7 +73,10 @@ fn write_page(
     parts: &Parts,
     [errors, communication]: [&str; 2],
 ) -> std::io::Result<()> {
-    let sections = [page::accuracy(command, parts, errors)?, page::communication(scene, parts, communication)?];
+    let mut sections = vec![page::accuracy(command, parts, errors)?, page::communication(scene, parts, communication)?];
+    if let Some(stress) = &parts.stress {
+        sections.push(page::stress(scene, stress)?);
+    }
     fs::write(path, page::page(scene, &sections)?)
 }
 
@@ -77,6 +87,8 @@ struct Parts {
     /// This program's rungs, then the peers'.
     rows: Vec<ladder::Row>,
     communication: Vec<communication::Row>,
+    /// The scene under stress, where that was asked for.
+    stress: Option<Stress>,
 }
 
 fn run(command: &Report, scene: &Scene, peers: Peers) -> Result<Parts, ProgramError> {
@@ -96,7 +108,9 @@ fn run(command: &Report, scene: &Scene, peers: Peers) -> Result<Parts, ProgramEr
     let communication = communication::climb(&reference, &progress);
     progress.finish();
     rows.extend(peers.rows);
-    Ok(Parts { reference, rows, communication })
+    let stress =
+        (command.stress > 0).then(|| stress::run(&reference, command.stress, command.points, command.stress_time));
+    Ok(Parts { reference, rows, communication, stress })
 }
 
 /// The peers' rows of this scene; a file that has none of it is worth a warning.
@@ -124,7 +138,8 @@ impl Folder {
         let taken: Vec<PathBuf> =
             super::sources(&command.scene, scene).into_iter().chain(command.peers.clone()).collect();
         let files = [ERRORS, COMMUNICATION].into_iter().flat_map(|name| ["csv", "svg", "png"].map(|end| (name, end)));
-        for file in files.map(|(name, end)| folder.file(name, end)).chain([folder.path.join(PAGE)]) {
+        let others = [folder.file(STRESS, "csv"), folder.path.join(PAGE)];
+        for file in files.map(|(name, end)| folder.file(name, end)).chain(others) {
             super::check_output(&file, &taken)?;
         }
         Ok(folder)

@@ -61,13 +61,18 @@ pub(super) enum Comparison {
 
 impl Sensitivity {
     fn new(scene: &Scene, differences: Errors) -> Self {
-        Self { differences, limit: (OF_HEIGHT * DISPLACEMENT / scene.height()).max(PARTED) }
+        Self { differences, limit: parting(scene) }
     }
 
     /// Whether the two runs went apart.
     pub(super) fn parted(&self) -> bool {
         self.differences[..2].iter().flatten().any(|&difference| difference > self.limit)
     }
+}
+
+/// The difference above which two runs have parted whose starts differ by [`DISPLACEMENT`].
+pub(super) fn parting(scene: &Scene) -> f64 {
+    (OF_HEIGHT * DISPLACEMENT / scene.height()).max(PARTED)
 }
 
 impl Comparison {

@@ -36,6 +36,13 @@ pub(super) struct Counts {
     pub(super) residual: f64,
 }
 
+impl Counts {
+    /// Steps, accepted and rejected.
+    pub(super) fn work(&self) -> u64 {
+        self.steps + self.rejected
+    }
+}
+
 /// What is read at every row, in this order.
 const WATCHED: [Output; 10] = [
     Output::ForceX,
@@ -134,6 +141,11 @@ impl Recorder {
         self.residual = self.residual.max(residual.abs());
         let [steps, rejected, events] = [steps, rejected, events].map(|count| count as u64);
         self.counts = Counts { steps, rejected, events, ..self.counts };
+    }
+
+    /// What the run has taken so far, but for Newton's iterations.
+    pub(super) fn counts(&self) -> &Counts {
+        &self.counts
     }
 
     /// The rows, and what the run took.

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::communication;
 use super::ladder::Row;
 use super::reference::Reference;
+use super::stress::{Quantity, Stress};
 use super::trace::{Errors, QUANTITIES};
 use crate::program::error::ProgramError;
 use crate::program::result_file::real;
@@ -44,6 +45,25 @@ const COMMUNICATION: [&str; 14] = [
     "failure",
 ];
 
+const STRESS: [&str; 16] = [
+    "scene",
+    "stiffness",
+    "mass",
+    "relaxation_times",
+    "speed",
+    "communication_step",
+    "status",
+    "reason",
+    "error",
+    "moved_start_changes",
+    "energy_residual",
+    "steps",
+    "times_the_steps",
+    "rejected",
+    "events",
+    "newton_iterations",
+];
+
 /// Writes the rows of errors and run times, the reference's own first.
 pub(super) fn write_errors(path: &Path, scene: &str, reference: &Reference, rows: &[Row]) -> Result<(), ProgramError> {
     let own = reference.row();
@@ -79,6 +99,31 @@ pub(super) fn write_communication(
         fields
     });
     write(path, &COMMUNICATION, records)
+}
+
+/// Writes the cells of the scene under stress: the factors of what is scaled, and what became of each run.
+pub(super) fn write_stress(path: &Path, scene: &str, stress: &Stress) -> Result<(), ProgramError> {
+    let records = stress.cells().map(|(place, cell)| {
+        let mut fields = vec![scene.to_owned()];
+        fields.extend(Quantity::ALL.map(|quantity| optional(place.factor(quantity))));
+        fields.extend([stress.status(cell).name().to_owned(), stress.reason(cell)]);
+        let (error, moved) = cell.check().map_or((None, None), |check| (check.error(), check.moved()));
+        let counts = cell.counts();
+        let error = error.map(|error| error.share);
+        fields.extend([error, moved, counts.map(|counts| counts.residual)].map(optional));
+        fields.push(count(counts.map(|counts| counts.steps)));
+        fields.push(optional(stress.times_the_steps(cell).map(short)));
+        let rest = counts.map(|counts| [counts.rejected, counts.events, counts.iterations]);
+        fields.extend([0, 1, 2].map(|i| count(rest.map(|rest| rest[i]))));
+        fields
+    });
+    write(path, &STRESS, records)
+}
+
+/// As many digits as a ratio of counts is worth.
+fn short(ratio: f64) -> f64 {
+    const DIGITS: f64 = 1e4;
+    (ratio * DIGITS).round() / DIGITS
 }
 
 fn write(path: &Path, head: &[&str], records: impl Iterator<Item = Vec<String>>) -> Result<(), ProgramError> {

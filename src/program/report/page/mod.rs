@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod communication;
+mod stress;
 
 use std::io;
 
@@ -14,6 +15,7 @@ use crate::program::html::{Cell, fill, table};
 
 pub(super) use accuracy::section as accuracy;
 pub(super) use communication::section as communication;
+pub(super) use stress::section as stress;
 
 const TEMPLATE: &str = include_str!("page.html");
 /// Stands where there is nothing to tell.
@@ -73,7 +75,7 @@ fn errors(errors: &Errors, below: [bool; 3]) -> impl Iterator<Item = Cell> {
 
 /// Why there are no figures, over the `span` columns that they would fill.
 fn reason(text: &str, span: usize) -> Cell {
-    Cell { text: text.to_owned(), class: "reason".into(), span }
+    Cell { class: "reason".into(), span, ..Cell::from(text) }
 }
 
 /// Three digits, with an exponent where the number is far from 1.
