@@ -49,12 +49,14 @@ fn obeys(row: &Row<'_>) -> Result<(), TestCaseError> {
     // An event is located where its limit is passed by a tenth of the tolerance at most; the dense output within a step is as good as
     // the tolerance.
     let (gap_allowed, force_allowed) = (units.length(0.0), units.force(row.record.largest(Output::ForceZ)));
-    let (mut sum_x, mut sum_z, mut size) = (0.0, 0.0, 0.0);
+    let (mut sum_x, mut sum_z, mut allowed) = (0.0, 0.0, 0.0);
+    // A mass that was located where it came to stick stays where its elongation has it, off the profile that it is held to by less than
+    // the absolute tolerance: a tenth of that was seen, as long as it stuck. So its slope is known no better.
     for i in 0..case.scene.layer.masses {
         let [x, z, normal, friction] =
             [Output::ElementX(i), Output::ElementZ(i), Output::ElementNormalForce(i), Output::ElementFrictionForce(i)]
                 .map(|output| row.get(output));
-        let (height, slope, ..) = spline.evaluate(x);
+        let (height, slope, curvature, _) = spline.evaluate(x);
         let rounding = 4.0 * f64::EPSILON * (x.abs() + z.abs()) * (1.0 + slope.abs());
         let gap = z - height;
         let mode = row.get(Output::ElementMode(i));
@@ -68,11 +70,9 @@ fn obeys(row: &Row<'_>) -> Result<(), TestCaseError> {
         let q = slope.hypot(1.0);
         sum_x += (-normal * slope - friction) / q;
         sum_z += (normal - friction * slope) / q;
-        size += normal.abs() + friction.abs();
+        allowed += (1e-6 + curvature.abs() * gap_allowed) * (normal.abs() + friction.abs());
     }
     let (found_x, found_z) = (row.get(Output::ContactForceX), row.get(Output::ContactForceZ));
-    // The slope is that at the place as output, which is rounded.
-    let allowed = 1e-6 * size;
     prop_assert!((sum_x - found_x).abs() <= allowed, "row {}: contact.F_x {found_x:e}, not {sum_x:e}", row.row);
     prop_assert!((sum_z - found_z).abs() <= allowed, "row {}: contact.F_z {found_z:e}, not {sum_z:e}", row.row);
     Ok(())
