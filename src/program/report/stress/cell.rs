@@ -283,7 +283,7 @@ mod tests {
 
     #[test]
     fn grades_follow_the_tolerance() {
-        let grades = [1e-5, 1e-4, 1e-3, 1e-2, f64::INFINITY, f64::NAN].map(|error| grade(error, 1e-6));
+        let grades = [9e-6, 9e-5, 9e-4, 1e-2, f64::INFINITY, f64::NAN].map(|error| grade(error, 1e-6));
         assert_eq!(
             grades,
             [Status::Within, Status::Above, Status::FarAbove, Status::Wrong, Status::Wrong, Status::Wrong]
