@@ -4,7 +4,7 @@
 //! each as the impulse times the mean of the velocities before and after it: that closes the account however stiff a damper is and
 //! however large a friction.
 
-use super::rules::{collision, decided};
+use super::rules::{collision, decided, energy_at, has_reversed};
 use crate::integrator::{Rates, Within};
 use crate::math::bracketed_root;
 use crate::model::{Carrier, CarrierPoint, Forces, LinkKind, Mode, Model, Power, State, SurfacePoint};
@@ -268,11 +268,10 @@ impl<'a> Settling<'a> {
 
     /// Brings a slip that has reversed to rest, so that the rule for *stop* decides.
     pub(super) fn stop(&mut self, i: usize) {
-        let (mode, v) = (self.end.state.mode[i], self.end.state.velocity_x[i]);
-        let model = self.step.model;
-        if model.has_friction && mode.slips() && mode.direction() * v < 0.0 {
-            let slope = self.end.state.ground[i].slope;
-            self.settled.channels.friction += 0.5 * model.mass * (1.0 + slope * slope) * v * v;
+        let (model, state) = (self.step.model, &*self.end.state);
+        let v = state.velocity_x[i];
+        if model.has_friction && has_reversed(state.mode[i], v) {
+            self.settled.channels.friction += energy_at(model, (v, state.ground[i].slope * v));
             self.set_speed(i, 0.0);
         }
     }

@@ -177,7 +177,7 @@ impl Simulation {
         let (model, state) = (&*self.model, &mut self.run.state);
         self.within.mode.copy_from_slice(&state.mode);
         self.run.energies.impact += impacts_due(model, state, at, reach);
-        stop_reversed(model, state);
+        self.run.energies.channels.friction += stop_reversed(model, state);
         self.forces.evaluate(model, state, &carrier);
         decide_modes(model, state, &self.forces);
         self.integrator.begin(model, state, &carrier, &self.forces);
