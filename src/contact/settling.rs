@@ -194,7 +194,7 @@ impl<'a> Settling<'a> {
         // No term in κ: how the profile bends from the touch to here is in v_t already.
         let acceleration = (contact.tangential + self.not_passed(i, rest) - friction) / model.mass;
         let after = v_t + time * acceleration / (1.0 + slowing);
-        if friction != 0.0 && mode.direction() * after < 0.0 {
+        if model.has_friction && contact.normal >= 0.0 && mode.direction() * after < 0.0 {
             let way = -0.5 * v_t * v_t / acceleration;
             self.settled.channels.friction += friction * way;
             self.stop_after(i, (way - v_t * time) / q, time);

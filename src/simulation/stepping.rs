@@ -19,8 +19,8 @@ pub(super) const OF_PERIOD: f64 = 0.25;
 /// The least share of a step at which it is cut at an event; where there is less, the step is done again.
 ///
 /// A mass that a large friction stops in so small a share is thrown back that many times as fast by the rest of the step, and the
-/// energies up to the event would be what is left of powers as many times squared: with 1e-4 they keep eight digits.
-const LEAST_SHARE: f64 = 1e-4;
+/// energies up to the event would be what is left of powers as many times squared: with 1e-6 they keep some digits.
+const LEAST_SHARE: f64 = 1e-6;
 /// The longest step, as a multiple of the mean time between the events of late: a longer one would be cut.
 ///
 /// Recommended 1.5 to 3: shorter ones end before there is an event, longer ones are less accurate where they are cut.
