@@ -1,14 +1,16 @@
-//! Contact: when modes change (`events`, `gap`), what follows (`rules`), both at once at the end of a step (`step_end`), and how long
-//! a step may be where a contact is unstable (`growth`).
+//! Contact: when modes change (`events`, `gap`), what follows (`rules`), both at once at the end of a step (`step_end`, `settling`),
+//! and how long a step may be where a contact is unstable (`growth`).
 
 mod events;
 mod gap;
 mod growth;
 mod rules;
+mod settling;
 mod step_end;
 
 pub use events::{EventTolerance, first_event, is_due};
 pub use gap::first_touch;
 pub use growth::longest_unstable;
 pub use rules::{CarrierPlace, decide_modes, free_unloaded, impacts_due, place_layer, stop_reversed};
-pub use step_end::{End, HeldStep, Settled, StepEnd};
+pub use settling::{End, HeldStep, Settled};
+pub use step_end::StepEnd;

@@ -100,16 +100,28 @@ pub(super) fn collision(model: &Model, (v_x, v_z): (f64, f64), s: f64) -> (f64, 
     (after, 0.5 * model.mass * (v_n * v_n + v_t * v_t - after * after))
 }
 
-/// Brings slipping masses whose velocity has passed 0 to rest, so that the rule for *stop* decides on them.
-pub fn stop_reversed(model: &Model, state: &mut State) {
-    if !model.has_friction {
-        return;
-    }
-    for i in 0..model.masses() {
-        if state.mode[i].slips() && state.mode[i].direction() * state.velocity_x[i] < 0.0 {
+/// Brings slipping masses whose velocity has passed 0 to rest, so that the rule for *stop* decides on them. Returns the work, J,
+/// of the friction that does so: it takes back what it gave them past the stop.
+pub fn stop_reversed(model: &Model, state: &mut State) -> f64 {
+    let mut work = 0.0;
+    for i in 0..if model.has_friction { model.masses() } else { 0 } {
+        let velocity = (state.velocity_x[i], state.velocity_z[i]);
+        if has_reversed(state.mode[i], velocity.0) {
+            work += energy_at(model, velocity);
             (state.velocity_x[i], state.velocity_z[i]) = (0.0, 0.0);
         }
     }
+    work
+}
+
+/// Whether a slip at ẋ = `v` goes against its direction.
+pub(super) fn has_reversed(mode: Mode, v: f64) -> bool {
+    mode.slips() && mode.direction() * v < 0.0
+}
+
+/// Energy of a mass at this velocity, J.
+pub(super) fn energy_at(model: &Model, (v_x, v_z): (f64, f64)) -> f64 {
+    0.5 * model.mass * (v_x * v_x + v_z * v_z)
 }
 
 /// Decides every contact anew from the forces after a jump.

@@ -11,19 +11,16 @@
 //! length, as the method's error does; it is measured with it, and where it is too large the step is shortened.
 //! Repeating the step with the modes of its end would cost the stages again, and put changes too early in place of too late.
 
-use super::rules::{collision, decided};
-use crate::integrator::{Rates, Tolerance, Within};
-use crate::math::{Bounds, bracketed_root};
-use crate::model::{Carrier, CarrierPoint, Forces, LinkKind, Mode, Model, Power, State, SurfacePoint};
+use super::settling::{End, HeldStep, Settled, Settling};
+use crate::integrator::{Tolerance, Within};
+use crate::math::Bounds;
+use crate::model::{Mode, Model};
 
 /// How much the lateness of mode changes weighs in the error of a step.
 ///
 /// Recommended 3 to 10. With 5, masses that touch and lift at a relative tolerance of 1e-2 add errors of some 1e-2 to the forces of
 /// a layer; larger costs rejected steps where many do.
 const LATENESS: f64 = 5.0;
-
-/// To which share of a step the instant of a touch is found: what it misses is smaller than the parabola's own error.
-const INSTANT: f64 = 1e-4;
 
 /// How many masses to each side feel that one is put right: the neighbours get impulses, and theirs feel these.
 const REACH: usize = 2;
@@ -39,41 +36,6 @@ pub struct StepEnd {
     concerned: Vec<bool>,
     /// The extremes of the profile.
     profile: Bounds,
-}
-
-/// A step that was tried with its modes held: what settling does not change.
-#[derive(Clone, Copy, Debug)]
-pub struct HeldStep<'a> {
-    /// The model.
-    pub model: &'a Model,
-    /// The carrier's motion.
-    pub carrier: &'a Carrier,
-    /// Start of the step after the start of the carrier's piece and its length, s.
-    pub span: (f64, f64),
-    /// State at the start.
-    pub start: &'a State,
-    /// Rates at the first stage.
-    pub first: &'a Rates,
-}
-
-/// The end of that step, to be settled.
-#[derive(Debug)]
-pub struct End<'a> {
-    /// The state.
-    pub state: &'a mut State,
-    /// The forces in it.
-    pub forces: &'a mut Forces,
-    /// The rates in it.
-    pub rates: &'a mut Rates,
-}
-
-/// Energies of the mode changes at the end of a step, J.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Settled {
-    /// Lost in impacts.
-    pub impact: f64,
-    /// Through the channels, from the instants of the impacts on: what the masses in contact do beyond what free ones would.
-    pub channels: Power,
 }
 
 impl StepEnd {
@@ -164,8 +126,7 @@ impl StepEnd {
         if self.is_settled() {
             return None;
         }
-        let (s, h) = step.span;
-        let mut settling = Settling { here: step.carrier.at(s + h), step, end, settled: Settled::default() };
+        let mut settling = Settling::new(step, end);
         for &i in &self.touches {
             settling.touch(i);
         }
@@ -180,7 +141,7 @@ impl StepEnd {
             settling.decide(j);
             *concerned = false;
         }
-        Some(settling.settled)
+        Some(settling.settled())
     }
 }
 
@@ -202,7 +163,8 @@ impl Late {
 }
 
 impl Within<'_> {
-    fn gap(&self, i: usize, theta: f64) -> f64 {
+    /// The height of mass `i` above the profile at the fraction `theta` of the step, m.
+    pub(super) fn gap(&self, i: usize, theta: f64) -> f64 {
         self.height(i, theta) - self.model.ground(self.place(i, theta)).height
     }
 
@@ -211,189 +173,5 @@ impl Within<'_> {
     fn time_below(&self, first: f64, last: f64) -> f64 {
         let fall = (first - last) / (1.0 - Self::FIRST);
         self.span.1 * if fall > -last { -last / fall } else { 1.0 }
-    }
-
-    /// The fraction of the step at which free mass `i`, below the profile at the end, came there.
-    fn touch(&self, i: usize) -> f64 {
-        if self.gap(i, 0.0) <= 0.0 { 0.0 } else { bracketed_root(|theta| self.gap(i, theta), (0.0, 1.0), INSTANT) }
-    }
-}
-
-/// A step whose end is being settled.
-struct Settling<'a> {
-    step: HeldStep<'a>,
-    /// The carrier at the end.
-    here: CarrierPoint,
-    end: End<'a>,
-    settled: Settled,
-}
-
-/// What is left of the step for a mass after its impact, s, and its velocity then.
-#[derive(Clone, Copy)]
-struct Rest {
-    time: f64,
-    /// As it would have gone on freely, in the mean.
-    free: (f64, f64),
-    /// Along the profile.
-    held: (f64, f64),
-}
-
-impl Settling<'_> {
-    fn within(&self) -> Within<'_> {
-        let HeldStep { model, carrier, span, start, first } = self.step;
-        Within::new(model, carrier, span, (start, first), (self.end.state, self.end.rates))
-    }
-
-    /// Mass `i`, free and below the profile, goes back to its touch, has its impact, and goes on along the profile.
-    fn touch(&mut self, i: usize) {
-        let (model, within) = (self.step.model, self.within());
-        let theta = within.touch(i);
-        let (x, velocity, end) = (within.place(i, theta), within.velocity(i, theta), within.velocity(i, 1.0));
-        let from = (within.place(i, 1.0), within.height(i, 1.0));
-        let slope = model.ground(x).slope;
-        if velocity.1 >= slope * velocity.0 {
-            return self.raise(i, from);
-        }
-        let (v_t, lost) = collision(model, velocity, slope);
-        let v_x = v_t / (1.0 + slope * slope).sqrt();
-        let free = (0.5 * (velocity.0 + end.0), 0.5 * (velocity.1 + end.1));
-        let rest = Rest { time: (1.0 - theta) * self.step.span.1, free, held: (v_x, slope * v_x) };
-        self.settled.impact += lost;
-        self.count_dampers(i, &rest);
-        let ground = model.ground(x + rest.time * v_x);
-        self.put(i, from, (x + rest.time * v_x, ground), rest.time);
-        self.end.state.mode[i] = Mode::along(v_t);
-        self.set_speed(i, v_t / (1.0 + ground.slope * ground.slope).sqrt());
-        self.go_on(i, rest.time);
-    }
-
-    /// A mass that moves out of the profile already is put on it, and stays free.
-    fn raise(&mut self, i: usize, from: (f64, f64)) {
-        let ground = self.step.model.ground(from.0);
-        self.put(i, from, (from.0, ground), self.step.span.1);
-    }
-
-    /// Moves mass `i` to the place `x` on `ground`. What it has moved in the last `time` (s) its dashpots have not, and the
-    /// lateral dampers have passed on to the neighbours as an impulse.
-    fn put(&mut self, i: usize, from: (f64, f64), (x, ground): (f64, SurfacePoint), time: f64) {
-        let moved = (x - from.0, ground.height - from.1);
-        let state = &mut *self.end.state;
-        state.elongation_x[i] += moved.0;
-        state.elongation_z[i] = ground.height - self.step.model.rest_z[i] - (self.step.carrier.w + self.here.dw);
-        state.ground[i] = ground;
-        for row in &self.step.model.rows {
-            let along = if row.kind.is_along_x() { moved.0 } else { moved.1 };
-            let by = along * row.relaxation_time / (row.relaxation_time + time);
-            let a = &mut state.maxwell[row.range.clone()];
-            if !row.kind.is_lateral() {
-                a[i] += by;
-                continue;
-            }
-            if let Some(a) = a.get_mut(i) {
-                *a -= by;
-            }
-            if i > 0 {
-                a[i - 1] += by;
-            }
-        }
-        self.end.forces.refresh(self.step.model, self.end.state, &self.here, i);
-        for j in [i.wrapping_sub(1), i + 1] {
-            if j < self.step.model.masses() {
-                self.pass_on(j, moved, time);
-            }
-        }
-    }
-
-    /// The impulse d Δ of the lateral dampers on neighbour `j` of a mass that was moved by Δ; `time` (s) bounds the
-    /// velocity that it makes where the dampers are faster than that.
-    fn pass_on(&mut self, j: usize, moved: (f64, f64), time: f64) {
-        let model = self.step.model;
-        let gain = |kind: LinkKind| {
-            let damping = model.links[kind as usize].damping;
-            damping / (model.mass + 2.0 * time * damping)
-        };
-        let (x, z) = (moved.0 * gain(LinkKind::LateralX), moved.1 * gain(LinkKind::LateralZ));
-        if x == 0.0 && z == 0.0 {
-            return;
-        }
-        let state = &*self.end.state;
-        let (mode, slope, v) = (state.mode[j], state.ground[j].slope, (state.velocity_x[j], state.velocity_z[j]));
-        if mode == Mode::Free {
-            self.set_velocity(j, (v.0 + x, v.1 + z));
-        } else if mode.slips() {
-            let after = v.0 + (x + slope * z) / (1.0 + slope * slope);
-            // Whether a slip reverses is for forces to decide, not for this correction.
-            if !model.has_friction || after * v.0 > 0.0 {
-                self.set_speed(j, after);
-            }
-        }
-    }
-
-    /// What the dampers of mass `i` did otherwise in the rest of the step: their loss, and the power of the carrier.
-    fn count_dampers(&mut self, i: usize, rest: &Rest) {
-        let state = &*self.end.state;
-        for kind in LinkKind::ALL {
-            let damping = self.step.model.links[kind as usize].damping;
-            let pick = |(x, z): (f64, f64)| if kind.is_along_x() { x } else { z };
-            let (free, held) = (pick(rest.free), pick(rest.held));
-            let carrier = pick((self.here.u_rate, self.here.w_rate));
-            let velocity = if kind.is_along_x() { &state.velocity_x } else { &state.velocity_z };
-            let more = |other: f64| rest.time * damping * ((held - other).powi(2) - (free - other).powi(2));
-            let channels = &mut self.settled.channels;
-            if kind.is_lateral() {
-                let neighbours = [i.wrapping_sub(1), i + 1].map(|j| velocity.get(j).map_or(0.0, |&v| more(v)));
-                channels.damper += neighbours[0] + neighbours[1];
-            } else {
-                channels.damper += more(carrier);
-                channels.input -= rest.time * damping * (held - free) * carrier;
-            }
-        }
-    }
-
-    /// What the forces make of the speed of mass `i` in the `time` (s) since its impact: an implicit step for it alone.
-    fn go_on(&mut self, i: usize, time: f64) {
-        let model = self.step.model;
-        let (mode, v, ground) = (self.end.state.mode[i], self.end.state.velocity_x[i], self.end.state.ground[i]);
-        let contact = self.end.forces.contact(model, i, v, &ground);
-        if contact.normal < 0.0 {
-            return;
-        }
-        self.settled.channels.friction += time * contact.friction(mode) * v * contact.q;
-        let damping = model.links[LinkKind::Horizontal as usize].damping
-            + 2.0 * model.links[LinkKind::LateralX as usize].damping
-            + model.links[LinkKind::Vertical as usize].damping * ground.slope * ground.slope;
-        let slowing = time * (damping + time * model.glassy_stiffness()) / model.mass;
-        // No term in κ: how the profile bends from the touch to here is in v already.
-        let pull = (contact.tangential - contact.friction(mode)) / (model.mass * contact.q);
-        let after = v + time * pull / (1.0 + slowing);
-        self.set_speed(i, if model.has_friction && mode.direction() * after < 0.0 { 0.0 } else { after });
-    }
-
-    /// Brings a slip that has reversed to rest, so that the rule for *stop* decides.
-    fn stop(&mut self, i: usize) {
-        let (mode, v) = (self.end.state.mode[i], self.end.state.velocity_x[i]);
-        if self.step.model.has_friction && mode.slips() && mode.direction() * v < 0.0 {
-            self.set_speed(i, 0.0);
-        }
-    }
-
-    /// The velocity of mass `i` along the profile, by its ẋ.
-    fn set_speed(&mut self, i: usize, v_x: f64) {
-        self.set_velocity(i, (v_x, self.end.state.ground[i].slope * v_x));
-    }
-
-    fn set_velocity(&mut self, i: usize, (v_x, v_z): (f64, f64)) {
-        let state = &mut *self.end.state;
-        let change = (v_x - state.velocity_x[i], v_z - state.velocity_z[i]);
-        (state.velocity_x[i], state.velocity_z[i]) = (v_x, v_z);
-        self.end.forces.add_velocity(self.step.model, i, change);
-    }
-
-    /// Decides contact `j` anew by the forces as they are, and finds the rates of mass `j` anew.
-    fn decide(&mut self, j: usize) {
-        if self.end.state.mode[j].in_contact() {
-            self.end.state.mode[j] = decided(self.step.model, self.end.state, self.end.forces, j);
-        }
-        self.end.rates.refresh(self.step.model, self.end.state, self.end.forces, j, &self.here);
     }
 }

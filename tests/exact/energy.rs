@@ -99,3 +99,56 @@ fn what_a_fast_element_loses_within_a_step_is_counted() {
         assert!((lost - held).abs() <= 21.0 * relative * held, "τ = {tau:e}: {lost:e} J of {held:e} J");
     }
 }
+
+/// Eight masses pressed fast onto waves and slid at `speed` (m/s), and what is extreme about them: the balance misses ten times the
+/// relative tolerance of the largest energy at most, and nothing that was lost comes back.
+fn stands(method: &str, (friction, horizontal, lateral_z): (&str, f64, f64), (surface, speed): (&str, f64)) {
+    let links = link("vertical", &Law::with_maxwell(2.0e3, 8.0e-3, &[(1.0e3, 1.0e-4)]))
+        + &link("horizontal", &Law::new(1.0e3, horizontal))
+        + &link("lateral_x", &Law::new(500.0, 2.0e-3))
+        + &link("lateral_z", &Law::new(500.0, lateral_z));
+    let text = format!(
+        "[layer]\nmasses = 8\nspacing = 1e-4\nmass = 1e-7\n{links}[surface]\n{surface}\n[friction]\n{friction}\n\
+         [solver]\nmethod = '{method}'\nrelative_tolerance = 1e-6\n"
+    );
+    let mut run = Run::new(&text, Start { w_rate: -0.1, ..Start::default() });
+    let (mut worst, mut size, mut falls) = (0.0_f64, 0.0_f64, 0.0_f64);
+    for (duration, u, w) in [(2.0e-4, rate(0.0), rate(-0.1)), (6.0e-5 / speed, rate(speed), rate(0.0))] {
+        let columns = run.sample(&Motion { duration, u, w }, &steps((0.0, duration), 40), &CHANNELS);
+        worst = worst.max(largest(&columns[0])).max(run.get("energy.residual").abs());
+        size = size.max(largest(&columns[1])).max(largest(&columns[2]));
+        let lost = columns[2..].iter().flat_map(|channel| channel.windows(2));
+        falls = lost.map(|pair| pair[0] - pair[1]).fold(falls, f64::max);
+    }
+    let case = format!("{method}, {friction}, {horizontal:e}, {lateral_z:e}, {surface}, {speed} m/s");
+    assert!(worst <= 1e-5 * size, "{case}: the balance misses {worst:e} J of {size:e} J");
+    assert!(falls <= 1e-6 * size, "{case}: {falls:e} J of {size:e} J come back");
+}
+
+const WAVES: &str = "kind = 'sinusoid'\namplitude = 5e-6\nwavelength = 2.3e-4";
+
+/// The friction stops a mass within a ten-millionth of a step.
+#[test]
+fn with_a_friction_beyond_all_other_forces() {
+    for method in ["step", "event"] {
+        for friction in ["shear_force = 1e3", "shear_force = 1e9", "coulomb = 10.0\nshear_force = 1e3"] {
+            stands(method, (friction, 8.0e-3, 2.0e-3), (WAVES, 0.2));
+        }
+    }
+}
+
+/// Dampers a million times critical bring masses together within a hundred-thousandth of a step.
+#[test]
+fn with_dampers_far_beyond_critical() {
+    stands("step", ("coulomb = 0.3", 3.0e4, 2.0e-3), (WAVES, 0.2));
+    stands("step", ("coulomb = 0.3", 8.0e-3, 3.0e4), (WAVES, 0.2));
+}
+
+/// The profile bends far between a touch and the end of its step.
+#[test]
+fn where_a_mass_strikes_a_bend() {
+    let spike = "kind = 'points'\nx = [0.0, 1e-4, 1.9e-4, 2e-4, 2.1e-4, 3e-4, 5e-4, 1e-3]\n\
+                 z = [0.0, 0.0, 0.0, 2e-5, 0.0, 0.0, 0.0, 0.0]";
+    stands("step", ("coulomb = 0.3", 8.0e-3, 2.0e-3), (spike, 0.2));
+    stands("step", ("coulomb = 0.3", 8.0e-3, 2.0e-3), (WAVES, 100.0));
+}
