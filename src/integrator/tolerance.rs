@@ -44,8 +44,8 @@ impl Rod {
 
 /// The error of a rod's force just after a jump, as a share of it.
 ///
-/// Recommended 0.001 to 0.03: what is left of it is gone with the jump's own force.
-const TRANSIENT: f64 = 0.01;
+/// Recommended 0.01 to 0.3: what is left of it goes with the force of the jump.
+const TRANSIENT: f64 = 0.1;
 
 /// Newton's iterations are left to this share of the tolerance.
 ///
