@@ -23,14 +23,21 @@ pub struct EventTolerance {
 /// what limits the accuracy; smaller only costs steps.
 const SHARE: f64 = 0.1;
 
+/// How many roundings a force may be off by.
+const ROUNDINGS: f64 = 4.0;
+
 impl EventTolerance {
     /// The tolerances that go with those of the steps.
     pub fn new(model: &Model, tolerance: &Tolerance) -> Self {
-        let stiffness = model.glassy_stiffness().max(model.mass * model.stiffest_frequency().powi(2));
+        let stiffness = model.felt_stiffness().max(model.mass * model.felt_frequency().powi(2));
+        // A rod makes a force of the rounding of its elongation: of the layer's height, the absolute tolerance over the
+        // relative one, at most.
+        let height = tolerance.position / tolerance.relative;
+        let rounding = ROUNDINGS * f64::EPSILON * height * model.glassy_stiffness();
         Self {
             gap: SHARE * tolerance.position,
             velocity: SHARE * tolerance.velocity,
-            force: SHARE * tolerance.position * stiffness,
+            force: (SHARE * tolerance.position * stiffness).max(rounding),
         }
     }
 

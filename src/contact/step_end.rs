@@ -54,7 +54,7 @@ impl StepEnd {
     pub fn find(&mut self, step: &Within<'_>, tolerance: &Tolerance) -> f64 {
         self.touches.clear();
         self.contacts.clear();
-        let frequency = step.model.stiffest_frequency();
+        let frequency = step.model.felt_frequency();
         let stiffness = step.model.mass * frequency * frequency;
         let mut sum = 0.0;
         for i in 0..step.model.masses() {

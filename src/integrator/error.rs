@@ -1,6 +1,7 @@
 //! The embedded error estimate of a step.
 
 use super::maxwell::Maxwell;
+use super::tolerance::Rod;
 use super::{Attempt, Rates, Tableau, Tolerance};
 use crate::math::{sum_of, weighted_sum};
 use crate::model::{CarrierPoint, LinkKind, Mode, Model, State};
@@ -64,8 +65,13 @@ impl<const STAGES: usize> Tried<'_, STAGES> {
             + speed(&room.v_x, &end.velocity_x, rates.u_rate)
             + speed(&room.v_z, &end.velocity_z, rates.w_rate)
             + in_contact;
-        for kind in LinkKind::ALL.into_iter().filter(|&kind| self.maxwell.has(kind)) {
-            sum += self.maxwell_error(kind, tolerance, room);
+        for kind in LinkKind::ALL {
+            if let Some(rod) = tolerance.rod(kind) {
+                sum += self.rod_error(kind, (rod, h), tolerance, room);
+            }
+            if self.maxwell.has(kind) {
+                sum += self.maxwell_error(kind, tolerance, room);
+            }
         }
         let mean = |sum: f64| (sum / masses as f64).sqrt();
         Attempt { error: mean(sum), unseen: mean(unseen) }
@@ -113,13 +119,36 @@ impl<const STAGES: usize> Tried<'_, STAGES> {
         let e = if kind.is_along_x() { &self.end.elongation_x } else { &self.end.elongation_z };
         let force = &mut room.force[..kind.count(e.len())];
         self.maxwell.force_error(kind, self.stages, force);
-        let per_glassy = tolerance.per_glassy(kind);
-        let error = |i: usize| per_glassy * force[i];
+        let per_force = tolerance.per_force(kind);
+        let error = |i: usize| per_force * force[i];
         if kind.is_lateral() {
             sum_of(force.len(), |i| error(i) * error(i) / tolerance.of_position(e[i + 1] - e[i]))
         } else {
             sum_of(force.len(), |i| error(i) * error(i) / tolerance.of_position(e[i]))
         }
+    }
+
+    /// The sum of squares of the errors c δe + d δė of the forces of the links of `kind`, which are rods.
+    fn rod_error(&self, kind: LinkKind, (rod, h): (Rod, f64), tolerance: &Tolerance, room: &ErrorRoom) -> f64 {
+        let (end, carrier) = (self.end, &self.carrier[STAGES - 1]);
+        let (errors, e, v, carrier_rate) = if kind.is_along_x() {
+            ((&room.x, &room.v_x), &end.elongation_x, &end.velocity_x, carrier.u_rate)
+        } else {
+            ((&room.z, &room.v_z), &end.elongation_z, &end.velocity_z, carrier.w_rate)
+        };
+        let force = |places: &[f64], speeds: &[f64], carrier_rate: f64, i: usize| {
+            if kind.is_lateral() {
+                rod.stiffness * (places[i + 1] - places[i]) + rod.damping * (speeds[i + 1] - speeds[i])
+            } else {
+                rod.stiffness * places[i] + rod.damping * (speeds[i] - carrier_rate)
+            }
+        };
+        let (per_force, relative) = (tolerance.per_force(kind), tolerance.relative + rod.transient(h));
+        sum_of(kind.count(e.len()), |i| {
+            let error = per_force * force(errors.0, errors.1, 0.0, i);
+            let allowed = tolerance.position + relative * (per_force * force(e, v, carrier_rate, i)).abs();
+            error * error / (allowed * allowed)
+        })
     }
 
     fn carrier_error(&self, h: f64) -> CarrierErrors {

@@ -25,7 +25,7 @@ use crate::model::{Carrier, CarrierPoint, Exchange, Forces, Model, Power, State}
 use error::{ErrorRoom, Tried};
 use maxwell::Maxwell;
 use sdirk::TwoStages;
-use stage::{StagePoint, StageSolver};
+use stage::{Accuracy, StagePoint, StageSolver};
 use tangent::{Tangent, Target};
 
 /// The method that the integrator uses.
@@ -170,7 +170,7 @@ impl Integrator {
             let point = self.prepare_stage(state, carrier, (s, h), stage, beta);
             self.maxwell.known_forces(i, &self.stages[..i], &mut self.solver.history.force);
             self.predict(state, beta, i);
-            self.solve_stage(model, &point, (s, h), stage, tolerance.newton(beta))?;
+            self.solve_stage(model, &point, (s, h), stage, Accuracy::new(tolerance, beta, 1.0))?;
         }
         self.maxwell.finish(model, &state.maxwell, &self.stages, &mut self.solver.state.maxwell);
         let tried = Tried {
@@ -202,16 +202,16 @@ impl Integrator {
         StagePoint { beta, carrier: at, driven, moved, place: carrier.place + at.du, w: carrier.w + at.dw }
     }
 
-    /// Solves a stage that is prepared, to `newton` (m/s), and what follows from it.
+    /// Solves a stage that is prepared, to `accuracy`, and what follows from it.
     fn solve_stage(
         &mut self,
         model: &Model,
         point: &StagePoint,
         (s, h): (f64, f64),
         (i, c, weights): (usize, f64, &[f64]),
-        newton: f64,
+        accuracy: Accuracy,
     ) -> Result<(), NoConvergence> {
-        self.solver.solve(model, point, newton, &mut self.stages[i])?;
+        self.solver.solve(model, point, accuracy, &mut self.stages[i])?;
         if self.accounts_energy {
             let solver = &self.solver;
             self.exchange[i] = Exchange::evaluate(model, &solver.state, &point.carrier, &solver.forces);

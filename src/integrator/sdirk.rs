@@ -3,7 +3,7 @@
 
 use super::error::Tried;
 use super::maxwell::Maxwell;
-use super::stage::NoConvergence;
+use super::stage::{Accuracy, NoConvergence};
 use super::{Attempt, Integrator, Rates, STAGES, Tableau, Tolerance, WeightsWithin, energy};
 use crate::model::{Carrier, CarrierPoint, Forces, Mode, Model, Power, State};
 
@@ -88,7 +88,7 @@ impl Integrator {
             let point = self.prepare_stage(state, carrier, (s, h), stage, beta);
             self.two_stages.maxwell.known_forces(i, &self.stages[..i], &mut self.solver.history.force);
             self.guess(&state.mode, beta, i);
-            self.solve_stage(model, &point, (s, h), stage, NEWTON_SLACK * tolerance.newton(beta))?;
+            self.solve_stage(model, &point, (s, h), stage, Accuracy::new(tolerance, beta, NEWTON_SLACK))?;
         }
         let (maxwell, end) = (&self.two_stages.maxwell, &mut self.solver.state);
         maxwell.finish(model, &state.maxwell, &self.stages, &mut end.maxwell);

@@ -156,15 +156,57 @@ impl Model {
 
     /// Largest stiffness that holds one mass, all springs at once, N/m: Σ (c + Σ c_j), lateral links twice.
     pub fn glassy_stiffness(&self) -> f64 {
-        let [vertical, horizontal, lateral_x, lateral_z] = self.glassy;
-        (horizontal + 2.0 * lateral_x).max(vertical + 2.0 * lateral_z)
+        holding(self.glassy)
+    }
+
+    /// The same without the links that are [rods](Self::is_rod): what an error of a place is felt with, N/m.
+    pub fn felt_stiffness(&self) -> f64 {
+        let beyond = BEYOND * BEYOND * self.usual_stiffness();
+        holding(self.glassy.map(|stiffness| if stiffness > beyond { 0.0 } else { stiffness }))
+    }
+
+    /// Whether the links of `kind` are so stiff, or their dampers so strong, beside the other springs that they work as
+    /// rods: their forces are what the other forces leave to them, and no place or velocity within its own tolerance
+    /// says what they are.
+    pub fn is_rod(&self, kind: LinkKind) -> bool {
+        let usual = self.usual_stiffness();
+        let (stiffness, damping) = (self.glassy[kind as usize], self.links[kind as usize].damping);
+        usual > 0.0 && (stiffness > BEYOND * BEYOND * usual || damping > BEYOND * (usual * self.mass).sqrt())
+    }
+
+    /// What springs are judged by: the vertical ones, whose elongation is forced on them, or the softest of the others
+    /// where those are stiffer, N/m.
+    fn usual_stiffness(&self) -> f64 {
+        let [vertical, others @ ..] = self.glassy;
+        let softest = others.into_iter().filter(|&stiffness| stiffness > 0.0).reduce(f64::min);
+        vertical.max(softest.unwrap_or(0.0))
     }
 
     /// The stiffest frequency of one mass, rad/s; where the layer has no springs, its fastest damping rate, 1/s, and
     /// where it has nothing, 1.
     pub fn stiffest_frequency(&self) -> f64 {
-        let frequency = (self.glassy_stiffness() / self.mass).sqrt();
+        self.frequency_of(self.glassy_stiffness())
+    }
+
+    /// The same without the springs of [rods](Self::is_rod).
+    pub fn felt_frequency(&self) -> f64 {
+        self.frequency_of(self.felt_stiffness())
+    }
+
+    fn frequency_of(&self, stiffness: f64) -> f64 {
+        let frequency = (stiffness / self.mass).sqrt();
         let damping = self.links.iter().map(|link| link.damping).fold(0.0, f64::max) / self.mass;
         [frequency, damping].into_iter().find(|&rate| rate > 0.0).unwrap_or(1.0)
     }
 }
+
+/// What springs of these stiffnesses hold one mass with, N/m.
+fn holding([vertical, horizontal, lateral_x, lateral_z]: [f64; 4]) -> f64 {
+    (horizontal + 2.0 * lateral_x).max(vertical + 2.0 * lateral_z)
+}
+
+/// A rod's own motion is this many times as fast as the masses swing on the other springs.
+///
+/// Recommended 30 to 1000. A layer of a material has (H/Δx)², some thousands at most, between the stiffness of its lateral
+/// links and that of those to the carrier; its dampers are critical or weaker.
+const BEYOND: f64 = 100.0;

@@ -9,6 +9,7 @@ mod equations;
 mod layer;
 mod matrices;
 mod missed_events;
+mod rods;
 mod rollback;
 mod stiff;
 mod tableau;

@@ -12,7 +12,7 @@ mod newton;
 mod variation;
 
 use super::rates::Rates;
-use super::tolerance::NEWTON_SHARE;
+use super::tolerance::{NEWTON_SHARE, Tolerance};
 use crate::math::BlockTridiagonal;
 use crate::model::{CarrierPoint, Forces, LinkKind, LinkMotion, Mode, Model, State};
 use newton::{Column, Row, Slip, largest};
@@ -51,6 +51,23 @@ pub(super) struct StagePoint {
     pub place: f64,
     /// w at the stage, m.
     pub w: f64,
+}
+
+/// To what corrections of the velocities a stage is solved, m/s.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Accuracy {
+    /// Where Newton's iterations end.
+    newton: f64,
+    /// Where they may end if the corrections no longer fall, since roundings are left.
+    roundings: f64,
+}
+
+impl Accuracy {
+    /// For a stage with β = `beta` (s); `slack` times what the tolerance recommends.
+    pub(super) fn new(tolerance: &Tolerance, beta: f64, slack: f64) -> Self {
+        let newton = slack * tolerance.newton(beta);
+        Self { newton: newton.min(tolerance.newton_of_rods(beta)), roundings: newton / NEWTON_SHARE }
+    }
 }
 
 /// c and D of one kind of link.
@@ -153,7 +170,7 @@ impl StageSolver {
         &self.contacts
     }
 
-    /// Solves the stage to `tolerance` (m/s) and writes its rates.
+    /// Solves the stage to `accuracy` and writes its rates.
     ///
     /// # Errors
     /// [`NoConvergence`] where Newton's iterations do not settle.
@@ -161,7 +178,7 @@ impl StageSolver {
         &mut self,
         model: &Model,
         point: &StagePoint,
-        tolerance: f64,
+        accuracy: Accuracy,
         rates: &mut Rates,
     ) -> Result<(), NoConvergence> {
         self.place(model, point);
@@ -169,7 +186,7 @@ impl StageSolver {
         if self.slips.is_empty() {
             self.solve_linear(model, point)?;
         } else {
-            self.iterate(model, point, tolerance)?;
+            self.iterate(model, point, accuracy)?;
         }
         self.finish(model, point, rates);
         Ok(())
@@ -187,7 +204,7 @@ impl StageSolver {
 
     /// Newton's iterations. What is left after one is known in two ways, both from the residual at the new place: the
     /// inertia alone would turn it into a velocity at most so large; and as the residual fell, so will the correction.
-    fn iterate(&mut self, model: &Model, point: &StagePoint, tolerance: f64) -> Result<(), NoConvergence> {
+    fn iterate(&mut self, model: &Model, point: &StagePoint, accuracy: Accuracy) -> Result<(), NoConvergence> {
         let mut residual = self.residuals(model, point.beta);
         let mut last = f64::INFINITY;
         for _ in 0..MOST_ITERATIONS {
@@ -199,9 +216,9 @@ impl StageSolver {
             self.forces(model, point);
             let left = self.residuals(model, point.beta);
             let next = change * (left / residual);
-            let settled = left.min(next) <= tolerance;
+            let settled = left.min(next) <= accuracy.newton;
             // Roundings alone are left when the corrections no longer fall and are below what the step may err by.
-            let stalled = change >= 0.25 * last && change <= tolerance / NEWTON_SHARE;
+            let stalled = change >= 0.25 * last && change <= accuracy.roundings;
             if !(change.is_finite() && left.is_finite()) {
                 return Err(NoConvergence);
             }
