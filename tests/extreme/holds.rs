@@ -67,7 +67,7 @@ impl Limits {
     ) {
         let mut note = |rule: &'static str, text: String| {
             if !findings.iter().any(|finding| finding.rule == rule) {
-                findings.push(Finding { rule, text: format!("t = {time:e}: {text}") });
+                findings.push(Finding { rule, text: format!("t = {time:.2e}: {text}") });
             }
         };
         if let Some(i) = values.iter().position(|value| !value.is_finite()) {
@@ -75,7 +75,7 @@ impl Limits {
         }
         for (i, mass) in variables.iter().zip(values.windows(5)).filter(|(variable, _)| is_first(variable)) {
             let [x, z, normal, friction, mode] = *mass else { continue };
-            let name = &i.name;
+            let name = i.name.trim_end_matches(".x");
             if let Some(text) = self.normal(normal, mode) {
                 note("normal", format!("{name}: {text}"));
             }
@@ -90,7 +90,7 @@ impl Limits {
 
     /// F_N ≥ 0, but for the tolerance within which a lift is located.
     fn normal(&self, normal: f64, mode: f64) -> Option<String> {
-        (normal < -self.force).then(|| format!("F_N = {normal:e} below -{:e}, mode {mode}", self.force))
+        (normal < -self.force).then(|| format!("F_N = {normal:.1e} below -{:.1e}, mode {mode}", self.force))
     }
 
     /// g ≥ -tolerance, and no worse than the roundings of the place, of u and X_i that it is the sum of, and of the height.
@@ -99,14 +99,14 @@ impl Limits {
         let along = x.abs() + u.abs() + self.farthest;
         let rounding = 8.0 * f64::EPSILON * (z.abs() + point.height.abs() + along * point.slope.abs());
         let gap = z - point.height;
-        (gap < -self.absolute - rounding).then(|| format!("g = {gap:e} below -{:e}", self.absolute))
+        (gap < -self.absolute - rounding).then(|| format!("g = {gap:.1e} below -{:.1e}", self.absolute))
     }
 
     /// |F_T| ≤ T, but for the tolerance within which a break is located and the rounding of T.
     fn friction(&self, normal: f64, friction: f64) -> Option<String> {
         let limit = self.friction.0 * normal.max(0.0) + self.friction.1;
         let slack = self.force * (1.0 + self.friction.0) + 1e-12 * limit;
-        (friction.abs() > limit + slack).then(|| format!("|F_T| = {:e} above {limit:e}", friction.abs()))
+        (friction.abs() > limit + slack).then(|| format!("|F_T| = {:.2e} above {limit:.2e}", friction.abs()))
     }
 
     /// The rules for a whole run.
@@ -172,6 +172,6 @@ fn channels(limits: &Limits, outcome: &Outcome) -> Option<String> {
         let column = outcome.column(name);
         let fall = column.windows(2).map(|pair| pair[0] - pair[1]).fold(0.0, f64::max);
         (fall > ENERGY * limits.relative * scale + limits.force * limits.masses * outcome.path)
-            .then(|| format!("{name} falls by {fall:e} of {scale:e} J"))
+            .then(|| format!("{name} falls by {fall:.1e} of {scale:.1e} J"))
     })
 }

@@ -247,6 +247,6 @@ fn energy_grows(case: &Case, outcome: &Outcome) -> Option<Finding> {
         .map(|pair| pair[1] - pair[0])
         .fold(0.0, f64::max);
     let relative = relative_tolerance(case);
-    let text = format!("T + V grows by {growth:e} of {scale:e} J between two rows");
+    let text = format!("T + V grows by {growth:.1e} of {scale:.1e} J between two rows");
     (growth > ENERGY * relative * scale).then_some(Finding { rule: "grows", text })
 }

@@ -24,7 +24,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use catalogue::Case;
-use judge::{Verdict, judge};
+use judge::{Verdict, Way, judge};
 
 /// The cases named by an environment variable while one is looked for; all otherwise.
 fn asked() -> Vec<Case> {
@@ -115,6 +115,8 @@ fn every_scene_keeps_what_must_hold() {
     report::print_ratios(&verdicts);
     let wrong = compare(&verdicts, &known());
     assert!(wrong.is_empty(), "{} findings:\n{}", wrong.len(), wrong.join("\n"));
+    let chatter = verdicts.iter().filter(|verdict| verdict.item == "10⁴ changes" && verdict.way == Way::Event);
+    chatter.for_each(|verdict| assert!(verdict.events >= 1e4, "{}: {} mode changes", verdict.case, verdict.events));
     if std::env::var_os("EXTREME").is_none() {
         report::check_honesty(&verdicts);
     }
