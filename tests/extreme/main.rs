@@ -111,6 +111,7 @@ fn every_scene_keeps_what_must_hold() {
     let verdicts = judge_all(&cases);
     report::write(&verdicts);
     report::write_scenes(&cases, &verdicts);
+    report::write_findings(&verdicts);
     report::print_counts(&cases, &verdicts);
     report::print_ratios(&verdicts);
     let wrong = compare(&verdicts, &known());

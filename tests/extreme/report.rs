@@ -150,6 +150,20 @@ pub fn write_scenes(cases: &[Case], verdicts: &[Verdict]) {
     }
 }
 
+/// Writes what does not hold below `extreme/known.toml`, as `data/known.toml` lists it.
+pub fn write_findings(verdicts: &[Verdict]) {
+    let entry = |verdict: &Verdict| {
+        let rules: Vec<&str> = verdict.findings.iter().map(|finding| finding.rule).collect();
+        let seen: Vec<&str> = verdict.findings.iter().map(|finding| finding.text.as_str()).collect();
+        let (case, way) = (&verdict.case, verdict.way.name());
+        let (rules, seen) = (rules.join(" "), seen.join("; "));
+        format!("\n[[finding]]\nscene = {case:?}\nway = {way:?}\nrules = {rules:?}\nseen = {seen:?}\n")
+    };
+    let found = verdicts.iter().filter(|verdict| !verdict.findings.is_empty());
+    let text: String = found.map(entry).collect();
+    fs::write(common::target().join("extreme/known.toml"), text).unwrap();
+}
+
 /// How many scenes and runs there were, by phrase and item.
 pub fn print_counts(cases: &[Case], verdicts: &[Verdict]) {
     let mut items: BTreeMap<(&str, &str), (usize, usize)> = BTreeMap::new();
