@@ -43,8 +43,9 @@ pub enum Answer {
 #[derive(Clone, Debug)]
 pub struct Case {
     pub name: String,
-    /// The phrase of the specification that it stands for.
+    /// The phrase of the specification that it stands for, and the item in it.
     pub phrase: String,
+    pub item: String,
     /// The scene, but for method, tolerance and outputs.
     pub scene: Table,
     pub start: Start,
@@ -58,10 +59,21 @@ pub struct Case {
     pub fmu_steps: Option<usize>,
     /// The steps where it is run through the C interface alone.
     pub script: Option<Script>,
-    /// Part of the message of the error that it has to end with, and the reason.
-    pub error: Option<(String, String)>,
-    /// Whether nothing is lost or gained once the first phase is over: T + V never grows, and what each step loses adds up.
+    /// The errors that it has to end with.
+    pub ends: Ends,
+    /// Whether nothing forgets an error, so that every step may make its own.
+    pub undamped: bool,
+    /// Whether, beside that, nothing is lost or gained once the first phase is over: T + V never grows, and what each step loses adds up.
     pub free_of_work: bool,
+}
+
+/// How a case ends before its end, by method: the name of the error, one of [`Stop`](crate::run::Stop)'s.
+#[derive(Clone, Debug, Default)]
+pub struct Ends {
+    pub event: Option<String>,
+    pub step: Option<String>,
+    /// Why that is right.
+    pub reason: String,
 }
 
 /// All scenes, in the order of the tables.
@@ -70,7 +82,8 @@ pub fn read() -> Vec<Case> {
     let bases = table(&folder.join("bases.toml"));
     let mut files: Vec<_> = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.sort();
-    let is_family = |path: &&std::path::PathBuf| !path.ends_with("bases.toml") && !path.ends_with("known.toml");
+    let others = ["bases.toml", "known.toml", "phrases.toml"];
+    let is_family = |path: &&std::path::PathBuf| !others.iter().any(|other| path.ends_with(other));
     let cases: Vec<Case> = files.iter().filter(is_family).flat_map(|file| families(&table(file), &bases)).collect();
     let mut names: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
     names.sort_unstable();
@@ -100,7 +113,7 @@ fn scenes(family: &Table, bases: &Table) -> Vec<Case> {
             let entry = entry.as_table().unwrap();
             let mut scene = common.clone();
             lay_over(&mut scene, entry);
-            case(&format!("{}: {}", text("name"), label(entry)), text("phrase"), scene)
+            case(&format!("{}: {}", text("name"), label(entry)), [text("phrase"), text("item")], scene)
         })
         .collect()
 }
@@ -139,16 +152,31 @@ fn leaves(entry: &Table, within: &str) -> Vec<String> {
     entry.iter().flat_map(leaf).collect()
 }
 
-fn case(name: &str, phrase: &str, mut scene: Table) -> Case {
+fn case(name: &str, [phrase, item]: [&str; 2], mut scene: Table) -> Case {
     let run = scene.remove("run").map_or_else(Table::new, |run| run.as_table().unwrap().clone());
     let text = |key: &str| run.get(key).map(|value| value.as_str().unwrap().to_owned());
+    let flag = |key: &str| run.get(key).is_some_and(|flag| flag.as_bool().unwrap());
     let start = |key: &str| run.get("start").and_then(|start| start.get(key)).map_or(0.0, number);
-    let known = ["name", "start", "rows", "tight", "sensitive", "fmu", "script", "error", "reason", "free_of_work"];
+    let known = [
+        "name",
+        "item",
+        "start",
+        "rows",
+        "tight",
+        "sensitive",
+        "fmu",
+        "script",
+        "error",
+        "reason",
+        "undamped",
+        "free_of_work",
+    ];
     run.keys().for_each(|key| assert!(known.contains(&key.as_str()), "{name}: run.{key}"));
     generated::expand(&mut scene);
     Case {
         name: name.to_owned(),
         phrase: phrase.to_owned(),
+        item: text("item").unwrap_or_else(|| item.to_owned()),
         start: Start {
             time: start("time"),
             u: start("u"),
@@ -163,8 +191,13 @@ fn case(name: &str, phrase: &str, mut scene: Table) -> Case {
         script: run
             .get("script")
             .map(|steps| Script { steps: steps.as_array().unwrap().iter().map(steps_of).collect() }),
-        error: text("error").map(|error| (error, text("reason").expect("an error has its reason"))),
-        free_of_work: run.get("free_of_work").is_some_and(|flag| flag.as_bool().unwrap()),
+        ends: run.get("error").map_or_else(Ends::default, |error| Ends {
+            event: error.get("event").map(|name| name.as_str().unwrap().to_owned()),
+            step: error.get("step").map(|name| name.as_str().unwrap().to_owned()),
+            reason: text("reason").expect("an error has its reason"),
+        }),
+        undamped: flag("undamped") || flag("free_of_work"),
+        free_of_work: flag("free_of_work"),
         scene,
     }
 }

@@ -1,11 +1,12 @@
 //! A run of a case through the C interface, in this process.
 
-use asperity::scene::Scene;
+use asperity::scene::{Path, Scene};
+use asperity::simulation::{Motion, Simulation, Start};
 
 use crate::catalogue::{Answer, Case, Steps};
 use crate::holds::Finding;
 use crate::master::{DISCARD, ERROR, Fmu, OK};
-use crate::run::{self, Outcome, Watch};
+use crate::run::{self, Outcome, Stop, Watch};
 
 /// Follows the script, or the excitation in even communication steps with the rates given.
 pub fn by_device(case: &Case, method: &str, tight: f64) -> Outcome {
@@ -27,12 +28,15 @@ struct Drive {
     place: [f64; 2],
     reals: (Vec<u32>, Vec<usize>),
     integers: (Vec<u32>, Vec<usize>),
+    /// The library along the same pieces, as long as every rate is given.
+    twin: Option<(Simulation, Watch)>,
 }
 
 impl Drive {
     fn new(case: &Case, text: &str, scene: &Scene) -> Self {
         let fmu = Fmu::of(text, false);
-        let watch = Watch::new(scene, case.free_of_work);
+        let watch = Watch::new(scene, case.undamped);
+        let beside = Watch::new(scene, case.undamped);
         // The inputs, then the outputs in their order.
         let numbered = |real: bool| {
             let of_kind = move |(_, variable): &(usize, &asperity::outputs::Variable)| {
@@ -54,8 +58,11 @@ impl Drive {
             assert_eq!((fmu.set_real(name, value), fmu.set_rate(name, rate)), (OK, OK), "{}", case.name);
         }
         assert_eq!(fmu.exit(), OK, "{}: {:?}", case.name, fmu.messages());
-        let mut drive = Self { fmu, watch, time: start.time, place, reals, integers };
+        let from = Start { u_rate: rates[0], w_rate: rates[1], ..start };
+        let twin = Simulation::new(scene, &from).ok().map(|simulation| (simulation, beside));
+        let mut drive = Self { fmu, watch, time: start.time, place, reals, integers, twin };
         drive.look();
+        drive.compare();
         drive
     }
 
@@ -75,7 +82,41 @@ impl Drive {
         self.watch.note(self.time, carrier);
     }
 
-    fn follow(&mut self, steps: &Steps) -> Result<(), String> {
+    /// Takes the twin along a step that the instance has done.
+    fn take_along(&mut self, h: f64, given: [f64; 2], rates: [Option<f64>; 2]) {
+        let ([Some(u_rate), Some(w_rate)], Some((simulation, _))) = (rates, &mut self.twin) else {
+            self.twin = None;
+            return;
+        };
+        let (u, w) = simulation.carrier();
+        let path = |stands: f64, value: f64, rate: f64| {
+            // A place that is given but for its rounding is where the carrier stands.
+            let same = (stands - value).abs() <= 4.0 * f64::EPSILON * stands.abs().max(value.abs());
+            Path { rate: if same { rate } else { (value + h * rate - stands) / h }, ..Path::default() }
+        };
+        let motion = Motion { duration: h, u: path(u, given[0], u_rate), w: path(w, given[1], w_rate) };
+        match simulation.advance(&motion) {
+            Ok(()) => self.compare(),
+            Err(error) => self.note("same", format!("the library stops where the instance does not: {error}")),
+        }
+    }
+
+    /// The instance and the library give the same, bit for bit.
+    fn compare(&mut self) {
+        let Some((simulation, watch)) = &mut self.twin else { return };
+        simulation.evaluate(&watch.variables, &mut watch.values);
+        let pairs = watch.variables.iter().zip(watch.values.iter().zip(&self.watch.values));
+        let differs = pairs
+            .filter(|(variable, _)| variable.name != "solver.run_time")
+            .find(|(_, (library, instance))| library.to_bits() != instance.to_bits());
+        if let Some((variable, (library, instance))) = differs {
+            let text = format!("t = {:e}: {} is {instance:e}, {library:e} by the library", self.time, variable.name);
+            self.twin = None;
+            self.note("same", text);
+        }
+    }
+
+    fn follow(&mut self, steps: &Steps) -> Result<(), Stop> {
         for (place, jump) in self.place.iter_mut().zip(steps.jump) {
             *place = jump.unwrap_or(*place);
         }
@@ -85,7 +126,7 @@ impl Drive {
         Ok(())
     }
 
-    fn follow_excitation(&mut self, scene: &Scene, count: usize) -> Result<(), String> {
+    fn follow_excitation(&mut self, scene: &Scene, count: usize) -> Result<(), Stop> {
         for phase in &scene.excitation {
             let start = self.place;
             let at = |i: usize| phase.duration * i as f64 / count as f64;
@@ -101,7 +142,7 @@ impl Drive {
     }
 
     /// One step; where it has to fail, what was before it has to be kept, and a good one has to go on from there.
-    fn step(&mut self, h: f64, rates: [Option<f64>; 2], expect: Answer) -> Result<(), String> {
+    fn step(&mut self, h: f64, rates: [Option<f64>; 2], expect: Answer) -> Result<(), Stop> {
         let before = (self.fmu.bits(), self.fmu.last_successful_time());
         let mut state = self.fmu.state();
         let given = self.place;
@@ -111,7 +152,7 @@ impl Drive {
             OK => Answer::Ok,
             DISCARD => Answer::Discard,
             ERROR => Answer::Error,
-            other => return Err(format!("status {other}")),
+            other => return Err(Stop { name: "status", text: format!("status {other}") }),
         };
         if answer == Answer::Ok {
             self.time = self.fmu.last_successful_time();
@@ -119,6 +160,7 @@ impl Drive {
                 *place += rate.unwrap_or_default() * h;
             }
             self.look();
+            self.take_along(h, given, rates);
         } else {
             // In the state error that time is not to be asked for.
             let time = if answer == Answer::Error { before.1 } else { self.fmu.last_successful_time() };
@@ -132,7 +174,10 @@ impl Drive {
         assert_eq!(self.fmu.free_state(&mut state), OK);
         let said = self.fmu.messages().into_iter().map(|message| message.text).collect::<Vec<_>>().join("; ");
         if answer != expect {
-            return Err(format!("{answer:?}, not {expect:?}, for a step of {h:e} s: {said}"));
+            // The instance says no more of an error than its text.
+            let gave_up = answer == Answer::Discard && said.contains("the limit solver.max_steps");
+            let name = if gave_up { "TooManySteps" } else { "answer" };
+            return Err(Stop { name, text: format!("{answer:?}, not {expect:?}, for a step of {h:e} s: {said}") });
         }
         if answer != Answer::Ok {
             if said.is_empty() {

@@ -3,6 +3,7 @@
 use asperity::model::Model;
 use asperity::outputs::{Output, Variable};
 use asperity::scene::Scene;
+use asperity::simulation::Saved;
 
 use crate::run::{MOST_STEPS, Outcome};
 
@@ -21,12 +22,13 @@ pub struct Limits {
     relative: f64,
     /// m.
     absolute: f64,
-    /// What the absolute tolerance of positions is as a force on one mass, N: as far may a limit of a force be passed. An event
-    /// is located within a tenth of it, on places that are themselves known within it.
-    force: f64,
+    /// What the absolute tolerance of places is as a force of the softest link between carrier and mass, N: as far may a limit
+    /// of a force be passed. An event is located within a tenth of it, on places that are themselves known within it. Of
+    /// a stiff link the elongation is known far better than within that tolerance.
+    pub force: f64,
+    /// The largest |X_i|, m.
+    farthest: f64,
     masses: f64,
-    /// c + Σ c_j of the links to the carrier, N/m.
-    stiffness: f64,
     friction: (f64, f64),
     /// Whether nothing forgets an error, so that every step may make its own.
     adds_up: bool,
@@ -46,20 +48,26 @@ impl Limits {
         Self {
             relative,
             absolute,
-            force: absolute * model.glassy_stiffness().max(model.mass * model.stiffest_frequency().powi(2)),
+            force: absolute * softest(&model),
+            farthest: model.rest_x.iter().fold(0.0, |farthest: f64, x| farthest.max(x.abs())),
             masses: model.masses() as f64,
-            stiffness: model.glassy[0] + model.glassy[1],
             friction: (part(|friction| friction.coulomb), part(|friction| friction.shear_force)),
             adds_up,
             model,
         }
     }
 
-    /// The rules for one row; of each rule the first finding is kept.
-    pub fn check_row(&self, time: f64, variables: &[Variable], values: &[f64], findings: &mut Vec<Finding>) {
+    /// The rules for the row at a time, the carrier at u; of each rule the first finding is kept.
+    pub fn check_row(
+        &self,
+        (time, u): (f64, f64),
+        variables: &[Variable],
+        values: &[f64],
+        findings: &mut Vec<Finding>,
+    ) {
         let mut note = |rule: &'static str, text: String| {
             if !findings.iter().any(|finding| finding.rule == rule) {
-                findings.push(Finding { rule, text: format!("t = {time:e}: {text}") });
+                findings.push(Finding { rule, text: format!("t = {time:.2e}: {text}") });
             }
         };
         if let Some(i) = values.iter().position(|value| !value.is_finite()) {
@@ -67,11 +75,11 @@ impl Limits {
         }
         for (i, mass) in variables.iter().zip(values.windows(5)).filter(|(variable, _)| is_first(variable)) {
             let [x, z, normal, friction, mode] = *mass else { continue };
-            let name = &i.name;
+            let name = i.name.trim_end_matches(".x");
             if let Some(text) = self.normal(normal, mode) {
                 note("normal", format!("{name}: {text}"));
             }
-            if let Some(text) = self.gap(x, z) {
+            if let Some(text) = self.gap(u, x, z) {
                 note("gap", format!("{name}: {text}"));
             }
             if let Some(text) = self.friction(normal, friction) {
@@ -82,22 +90,23 @@ impl Limits {
 
     /// F_N ≥ 0, but for the tolerance within which a lift is located.
     fn normal(&self, normal: f64, mode: f64) -> Option<String> {
-        (normal < -self.force).then(|| format!("F_N = {normal:e} below -{:e}, mode {mode}", self.force))
+        (normal < -self.force).then(|| format!("F_N = {normal:.1e} below -{:.1e}, mode {mode}", self.force))
     }
 
-    /// g ≥ -tolerance, and no worse than the roundings of the place and of the height.
-    fn gap(&self, x: f64, z: f64) -> Option<String> {
+    /// g ≥ -tolerance, and no worse than the roundings of the place, of u and X_i that it is the sum of, and of the height.
+    fn gap(&self, u: f64, x: f64, z: f64) -> Option<String> {
         let point = self.model.ground(x);
-        let rounding = 8.0 * f64::EPSILON * (z.abs() + point.height.abs() + x.abs() * point.slope.abs());
+        let along = x.abs() + u.abs() + self.farthest;
+        let rounding = 8.0 * f64::EPSILON * (z.abs() + point.height.abs() + along * point.slope.abs());
         let gap = z - point.height;
-        (gap < -self.absolute - rounding).then(|| format!("g = {gap:e} below -{:e}", self.absolute))
+        (gap < -self.absolute - rounding).then(|| format!("g = {gap:.1e} below -{:.1e}", self.absolute))
     }
 
     /// |F_T| ≤ T, but for the tolerance within which a break is located and the rounding of T.
     fn friction(&self, normal: f64, friction: f64) -> Option<String> {
         let limit = self.friction.0 * normal.max(0.0) + self.friction.1;
         let slack = self.force * (1.0 + self.friction.0) + 1e-12 * limit;
-        (friction.abs() > limit + slack).then(|| format!("|F_T| = {:e} above {limit:e}", friction.abs()))
+        (friction.abs() > limit + slack).then(|| format!("|F_T| = {:.2e} above {limit:.2e}", friction.abs()))
     }
 
     /// The rules for a whole run.
@@ -113,7 +122,7 @@ impl Limits {
     fn energy(&self, outcome: &Outcome) -> Option<String> {
         let (residual, scale) = (outcome.largest("energy.residual"), energy_scale(outcome));
         let path = outcome.path;
-        let absolute = self.absolute * self.stiffness * self.masses * path;
+        let absolute = self.force * self.masses * path;
         let allowed = ENERGY * (self.relative * scale + absolute) + ROUNDING * scale;
         let allowed = if self.adds_up { allowed * outcome.last("solver.steps").max(1.0) } else { allowed };
         let share = residual / allowed * ENERGY;
@@ -122,13 +131,21 @@ impl Limits {
     }
 
     /// A run that stopped left everything as it was.
-    pub fn kept(&self, before: &[f64], after: &[f64], findings: &mut Vec<Finding>) {
-        let same = before.iter().zip(after).all(|(a, b)| a.to_bits() == b.to_bits());
-        if !same {
+    pub fn kept(&self, before: &(Vec<f64>, Saved), after: &(Vec<f64>, Saved), findings: &mut Vec<Finding>) {
+        let same = before.0.iter().zip(&after.0).all(|(a, b)| a.to_bits() == b.to_bits());
+        if !same || before.1 != after.1 {
             findings
                 .push(Finding { rule: "kept", text: "the state is not the one before the motion that failed".into() });
         }
     }
+}
+
+/// c + Σ c_j of the softest link to the carrier that has springs; of the others where none has, and of the dampers where nothing has,
+/// N/m.
+fn softest(model: &Model) -> f64 {
+    let softest = |kinds: &[f64]| kinds.iter().copied().filter(|&c| c > 0.0).reduce(f64::min);
+    let [carrier, between] = [&model.glassy[..2], &model.glassy[2..]].map(softest);
+    carrier.or(between).unwrap_or_else(|| model.mass * model.stiffest_frequency().powi(2))
 }
 
 fn is_first(variable: &Variable) -> bool {
@@ -154,7 +171,7 @@ fn channels(limits: &Limits, outcome: &Outcome) -> Option<String> {
     names.iter().find_map(|name| {
         let column = outcome.column(name);
         let fall = column.windows(2).map(|pair| pair[0] - pair[1]).fold(0.0, f64::max);
-        (fall > ENERGY * limits.relative * scale + limits.absolute * limits.stiffness * limits.masses * outcome.path)
-            .then(|| format!("{name} falls by {fall:e} of {scale:e} J"))
+        (fall > ENERGY * limits.relative * scale + limits.force * limits.masses * outcome.path)
+            .then(|| format!("{name} falls by {fall:.1e} of {scale:.1e} J"))
     })
 }

@@ -3,7 +3,7 @@
 use crate::catalogue::{Case, number};
 use crate::device::by_device;
 use crate::holds::{ENERGY, Finding, energy_scale};
-use crate::run::{Outcome, by_library};
+use crate::run::{Outcome, Stop, by_library};
 
 /// Which run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,30 +42,51 @@ impl Way {
 pub struct Verdict {
     pub case: String,
     pub phrase: String,
+    pub item: String,
     pub way: Way,
-    pub error: Option<String>,
+    pub error: Option<Stop>,
+    /// Why the error is right, where it is.
+    pub reason: String,
     pub findings: Vec<Finding>,
     pub steps: f64,
     pub events: f64,
     pub rejected: f64,
     /// The largest residual of the energies over the largest energy.
     pub residual: f64,
-    /// The largest error of F_z against the tight run, over the largest |F_z| so far; NaN where there is no tight run.
+    /// The largest error of F_z against the tight run over the largest |F_z|; NaN where there is no tight run.
     pub true_error: f64,
     /// `solver.error` at the end.
     pub estimate: f64,
+    /// The error below which nothing is known of it: roundings, and the absolute tolerance as a force over the largest |F_z|.
+    pub floor: f64,
     /// Processor time, s.
     pub time: f64,
 }
 
 impl Verdict {
+    /// Estimated over true error. Below the floor nothing is known of either: forces are sums with roundings, and the tight run's
+    /// places too are right within an absolute tolerance, which is a force.
+    pub fn ratio(&self) -> f64 {
+        let [estimate, right] = [self.estimate, self.true_error].map(|error| error.max(self.floor));
+        if estimate == right { 1.0 } else { estimate / right }
+    }
+
+    /// The estimate is below the true error by more than it may ever be.
+    fn lies(&self) -> Option<Finding> {
+        let lies = !self.way.is_fmu() && self.ratio() < 1.0 / BELOW;
+        let text = format!("solver.error is {:.1e}, the error {:.1e}", self.estimate, self.true_error);
+        lies.then_some(Finding { rule: "estimate", text })
+    }
+
     /// A run that panicked.
     pub fn panicked(case: &Case, text: String) -> Self {
         Self {
             case: case.name.clone(),
             phrase: case.phrase.clone(),
+            item: case.item.clone(),
             way: Way::Event,
             error: None,
+            reason: String::new(),
             findings: vec![Finding { rule: "panic", text }],
             steps: 0.0,
             events: 0.0,
@@ -73,6 +94,7 @@ impl Verdict {
             residual: 0.0,
             true_error: f64::NAN,
             estimate: 0.0,
+            floor: FLOOR,
             time: 0.0,
         }
     }
@@ -92,34 +114,40 @@ pub fn judge(case: &Case) -> Vec<Verdict> {
         let found = disagreement(case, &pair[0].1, &pair[1].1);
         pair[1].1.findings.extend(found.map(|text| Finding { rule: "agreement", text }));
     }
-    let straight = outcomes.first().map_or(Way::Event, |(way, _)| *way);
-    let tight = straight.run(case, case.tight);
+    let (straight, first) = &outcomes[0];
+    let straight = *straight;
+    // Where the run stops, a tight one does.
+    let tight = if first.error.is_some() { Outcome::default() } else { straight.run(case, case.tight) };
     outcomes.into_iter().map(|(way, outcome)| verdict(case, way, outcome, (straight, &tight))).collect()
 }
 
 fn verdict(case: &Case, way: Way, mut outcome: Outcome, (straight, tight): (Way, &Outcome)) -> Verdict {
-    match (&outcome.error, &case.error) {
-        (Some(error), Some((expected, _))) if error.contains(expected) => {}
-        (Some(error), _) => outcome.findings.push(Finding { rule: "ends", text: error.clone() }),
-        (None, Some((expected, _))) => {
-            outcome.findings.push(Finding { rule: "error", text: format!("no error with {expected:?}") });
+    let expected = if way.method() == "event" { &case.ends.event } else { &case.ends.step };
+    match (&outcome.error, expected) {
+        (Some(error), Some(expected)) if error.name == expected => {}
+        (Some(error), _) => outcome.findings.push(Finding { rule: "ends", text: error.text.clone() }),
+        (None, Some(expected)) => {
+            outcome.findings.push(Finding { rule: "error", text: format!("runs to its end without {expected}") });
         }
         (None, None) => {}
     }
     if case.free_of_work {
         outcome.findings.extend(energy_grows(case, &outcome));
     }
-    let comparable = way.is_fmu() == straight.is_fmu() && outcome.error.is_none() && tight.error.is_none();
+    let stopped = outcome.error.is_some() || tight.error.is_some() || tight.rows.is_empty();
+    let comparable = way.is_fmu() == straight.is_fmu() && !stopped;
     let true_error = if comparable { error_against(&outcome, tight) } else { f64::NAN };
     if way == straight && tight.error.is_some() && outcome.error.is_none() {
-        let text = format!("the tight run: {}", tight.error.as_deref().unwrap_or_default());
-        outcome.findings.push(Finding { rule: "tight", text });
+        let text = tight.error.as_ref().map_or("", |error| error.text.as_str());
+        outcome.findings.push(Finding { rule: "tight", text: format!("the tight run: {text}") });
     }
     let scale = energy_scale(&outcome).max(f64::MIN_POSITIVE);
-    Verdict {
+    let mut verdict = Verdict {
         case: case.name.clone(),
         phrase: case.phrase.clone(),
+        item: case.item.clone(),
         way,
+        floor: floor(outcome.known, tight.largest("F_z")),
         steps: outcome.last("solver.steps"),
         events: outcome.last("solver.events"),
         rejected: outcome.last("solver.rejected"),
@@ -127,33 +155,44 @@ fn verdict(case: &Case, way: Way, mut outcome: Outcome, (straight, tight): (Way,
         true_error,
         estimate: outcome.last("solver.error"),
         time: outcome.last("solver.run_time"),
+        reason: outcome.error.as_ref().map_or_else(String::new, |_| case.ends.reason.clone()),
         error: outcome.error,
         findings: outcome.findings,
-    }
+    };
+    verdict.findings.extend(verdict.lies());
+    verdict
 }
 
-/// The largest difference of F_z, over the largest |F_z| so far.
+/// The largest difference of F_z over the largest |F_z|, as `solver.error` means it.
 fn error_against(outcome: &Outcome, tight: &Outcome) -> f64 {
-    let (found, right) = (outcome.column("F_z"), tight.column("F_z"));
-    // Before there is a force, everything is large against it.
-    let mut largest = EARLY * right.iter().fold(0.0, |largest: f64, force| largest.max(force.abs()));
-    let errors = found.iter().zip(&right).map(|(found, right)| {
-        largest = largest.max(right.abs());
-        if largest > 0.0 { (found - right).abs() / largest } else { (found - right).abs() }
-    });
-    errors.fold(0.0, f64::max)
+    let (difference, largest) = (difference(outcome, tight, "F_z"), tight.largest("F_z"));
+    if largest > 0.0 { difference / largest } else { difference }
 }
 
-/// A force below this share of the largest to come is not yet one that an error can be held against.
-const EARLY: f64 = 1e-6;
+/// The largest difference of a column in two runs.
+fn difference(one: &Outcome, other: &Outcome, name: &str) -> f64 {
+    let (one, other) = (one.column(name), other.column(name));
+    one.iter().zip(&other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
+}
+
+/// No estimate is below the true error by more than this factor.
+const BELOW: f64 = 100.0;
 /// How many times their estimates two methods may differ: each is to be within a factor of ten of the truth.
 const OF_ESTIMATES: f64 = 10.0;
+/// How many relative tolerances they may differ by where nothing is estimated.
+const OF_TOLERANCE: f64 = 100.0;
 /// Below this share of the largest force, differences are roundings.
 pub const FLOOR: f64 = 1e-9;
 /// The means and losses of a sensitive motion may differ by this share of the largest.
 const SENSITIVE: f64 = 0.1;
 
-/// Where event-driven and time-stepping runs differ by more than their estimates allow.
+/// What a force that is known within `known` is at least in error, over the largest.
+fn floor(known: f64, largest: f64) -> f64 {
+    if known > 0.0 { FLOOR + known / largest } else { FLOOR }
+}
+
+/// Where event-driven and time-stepping runs differ by more than their estimates allow. These are of F_z; of F_x, which is
+/// held against the larger of the two, nothing is estimated, and errors within the tolerance of each step add up.
 fn disagreement(case: &Case, event: &Outcome, step: &Outcome) -> Option<String> {
     if event.error.is_some() || step.error.is_some() {
         return None;
@@ -161,16 +200,21 @@ fn disagreement(case: &Case, event: &Outcome, step: &Outcome) -> Option<String> 
     if case.sensitive.is_some() {
         return sensitive_disagreement(event, step);
     }
-    let difference = error_against(step, event);
-    let estimates = event.last("solver.error") + step.last("solver.error");
-    let allowed = OF_ESTIMATES * estimates + FLOOR;
-    (difference > allowed).then(|| {
-        format!(
-            "F_z differs by {difference:.1e}, estimates {:.1e} and {:.1e}",
-            event.last("solver.error"),
-            step.last("solver.error")
-        )
-    })
+    let [one, other] = [event, step].map(|outcome| outcome.last("solver.error"));
+    let largest_z = event.largest("F_z");
+    let largest = [largest_z, largest_z.max(event.largest("F_x"))];
+    let more = [0.0, OF_TOLERANCE * relative_tolerance(case)];
+    // The force of every mass is known within the tolerance alone.
+    let known = event.known * event.masses;
+    let allowed = |i: usize| (OF_ESTIMATES * (one + other) + FLOOR + more[i]) * largest[i] + known;
+    let of = |(i, name): (usize, &str)| {
+        let difference = difference(step, event, name);
+        (difference > allowed(i)).then(|| {
+            let share = difference / largest[i];
+            format!("{name} differs by {share:.1e} of {:.1e} N, estimates {one:.1e} and {other:.1e}", largest[i])
+        })
+    };
+    ["F_z", "F_x"].into_iter().enumerate().find_map(of)
 }
 
 fn sensitive_disagreement(event: &Outcome, step: &Outcome) -> Option<String> {
@@ -188,6 +232,11 @@ fn sensitive_disagreement(event: &Outcome, step: &Outcome) -> Option<String> {
     of("F_x").or_else(|| of("F_z")).or(lost)
 }
 
+fn relative_tolerance(case: &Case) -> f64 {
+    let solver = case.scene.get("solver").and_then(|solver| solver.get("relative_tolerance"));
+    solver.map_or(1e-6, number)
+}
+
 /// Once the carrier rests T + V never grows, but for the tolerance within which a row between two steps is known.
 fn energy_grows(case: &Case, outcome: &Outcome) -> Option<Finding> {
     let (kinetic, elastic) = (outcome.column("energy.kinetic"), outcome.column("energy.elastic"));
@@ -197,8 +246,7 @@ fn energy_grows(case: &Case, outcome: &Outcome) -> Option<Finding> {
         .windows(2)
         .map(|pair| pair[1] - pair[0])
         .fold(0.0, f64::max);
-    let solver = case.scene.get("solver").and_then(|solver| solver.get("relative_tolerance"));
-    let relative = solver.map_or(1e-6, number);
-    let text = format!("T + V grows by {growth:e} of {scale:e} J between two rows");
+    let relative = relative_tolerance(case);
+    let text = format!("T + V grows by {growth:.1e} of {scale:.1e} J between two rows");
     (growth > ENERGY * relative * scale).then_some(Finding { rule: "grows", text })
 }
