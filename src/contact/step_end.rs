@@ -14,7 +14,7 @@
 use super::settling::{End, HeldStep, Settled, Settling};
 use crate::integrator::{Tolerance, Within};
 use crate::math::Bounds;
-use crate::model::{Mode, Model};
+use crate::model::{LinkKind, Mode, Model};
 
 /// How much the lateness of mode changes weighs in the error of a step.
 ///
@@ -32,6 +32,8 @@ pub struct StepEnd {
     touches: Vec<usize>,
     /// Contacts past a limit at the end.
     contacts: Vec<usize>,
+    /// By how much settling them may change the forces on the carrier, N.
+    force: f64,
     /// The masses whose forces these change.
     concerned: Vec<bool>,
     /// The extremes of the profile.
@@ -45,6 +47,7 @@ impl StepEnd {
         Self {
             touches: Vec::with_capacity(k),
             contacts: Vec::with_capacity(k),
+            force: 0.0,
             concerned: vec![false; k],
             profile: model.profile.bounds(),
         }
@@ -54,6 +57,7 @@ impl StepEnd {
     pub fn find(&mut self, step: &Within<'_>, tolerance: &Tolerance) -> f64 {
         self.touches.clear();
         self.contacts.clear();
+        self.force = 0.0;
         let frequency = step.model.felt_frequency();
         let stiffness = step.model.mass * frequency * frequency;
         let mut sum = 0.0;
@@ -70,9 +74,14 @@ impl StepEnd {
         (sum / step.model.masses() as f64).sqrt()
     }
 
-    /// Whether [`find`](Self::find) found nothing.
-    pub fn is_settled(&self) -> bool {
+    fn is_settled(&self) -> bool {
         self.touches.is_empty() && self.contacts.is_empty()
+    }
+
+    /// By how much settling what [`find`](Self::find) found may change the forces on the carrier, N: by the springs' and the
+    /// dampers' forces of what goes below the profile, and by what goes past the limits.
+    pub fn unsettled_force(&self) -> f64 {
+        self.force
     }
 
     /// How late free mass `i` touches.
@@ -88,6 +97,8 @@ impl StepEnd {
         }
         self.touches.push(i);
         let closing = ground.slope * step.end.velocity_x[i] - step.end.velocity_z[i];
+        let link = &step.model.links[LinkKind::Vertical as usize];
+        self.force += link.stiffness * -gap + link.damping * closing.max(0.0);
         let time = if closing > 0.0 { (-gap / closing).min(step.span.1) } else { step.span.1 };
         Some(Late { length: -gap, time })
     }
@@ -118,6 +129,7 @@ impl StepEnd {
             return None;
         };
         self.contacts.push(i);
+        self.force += stiffness * late.length;
         Some(late)
     }
 

@@ -14,6 +14,9 @@ const MOST_DEFECT: f64 = 5.0;
 /// The most that it may miss where a row is shown within a step, from which nothing goes on. In smooth motion it misses up to some
 /// tens; where a step leaps over what follows an event in no time, thousands and more.
 const MOST_SHOWN: f64 = 100.0;
+/// The most that mode changes not yet settled may make of F_z where a row is shown within a time step, as a multiple of the
+/// relative tolerance. That is a bound for all of them together at the step's end; what a row misses is a third of it, and less.
+const MOST_UNSETTLED: f64 = 3.0;
 
 impl Simulation {
     /// The share of the step tried last after which F_z is the force `until`; `None` where `stride` ends below.
@@ -30,9 +33,14 @@ impl Simulation {
     }
 
     /// Whether what is known of the step of length `h` tried last is good at its fraction `theta`. A time step's mode changes are
-    /// settled at its end, and what lies before is not.
+    /// settled at its end, and what lies before is not: it is shown where that makes little of F_z.
     pub(super) fn can_show_within(&mut self, h: f64, theta: f64) -> bool {
-        if self.run.stepping { self.step_end.is_settled() } else { self.defect_within(h, theta) <= MOST_SHOWN }
+        if self.run.stepping {
+            let force = self.integrator.end_forces().on_carrier_z().abs();
+            self.step_end.unsettled_force() <= MOST_UNSETTLED * self.settings.tolerance.relative * force
+        } else {
+            self.defect_within(h, theta) <= MOST_SHOWN
+        }
     }
 
     /// Whether the run can go on from the fraction `share` of the step of length `h` tried last.
