@@ -8,11 +8,11 @@ use arbitrary::{Arbitrary, Unstructured};
 use asperity::fmi::bindings::*;
 use asperity::fmi::*;
 
-use super::fmu::{self, Fmu, MOST_STEPS, OK, Outputs, checked, sites};
+use super::fmu::{self, Fmu, MOST_STEPS, OK, Outputs, checked, show, sites};
 use super::number::Number;
 
 /// Calls of one case, and elements of an array of arguments.
-const MOST_CALLS: usize = 40;
+const MOST_CALLS: usize = 24;
 const MOST_ELEMENTS: usize = 6;
 
 /// Instances at a time.
@@ -95,6 +95,7 @@ enum Call {
 /// Runs a sequence of calls.
 pub fn run(bytes: &[u8]) {
     let Ok(case) = Case::arbitrary_take_rest(Unstructured::new(bytes)) else { return };
+    show(&case);
     let mut master = Master::default();
     master.put(0, case.site);
     if let (Some(inputs), Some(fmu)) = (case.started, &master.slots[0]) {
@@ -159,7 +160,9 @@ impl Text {
             ["event", "step", "auto", "relaxed", "undeformed", "linear", "hold", "logEvents", "logSolver"];
         match self {
             Self::Word(i) => CString::new(WORDS[usize::from(*i) % WORDS.len()]).ok(),
-            Self::Bytes(bytes) => CString::new(bytes.iter().copied().take_while(|&byte| byte != 0).collect::<Vec<_>>()).ok(),
+            Self::Bytes(bytes) => {
+                CString::new(bytes.iter().copied().take_while(|&byte| byte != 0).collect::<Vec<_>>()).ok()
+            }
             Self::Null => None,
         }
     }
@@ -283,7 +286,9 @@ impl Master {
             Call::SerializedSize(handle, null) => {
                 let mut size = [0];
                 // SAFETY: an instance that lives, any handle, a place or NULL.
-                checked(unsafe { fmi2SerializedFMUstateSize(fmu.c, self.handle(handle), or_null(null == 7, &mut size)) });
+                checked(unsafe {
+                    fmi2SerializedFMUstateSize(fmu.c, self.handle(handle), or_null(null == 7, &mut size))
+                });
             }
             Call::Serialize { state, off, null } => self.serialise(fmu, self.handle(state), off, null),
             Call::DeSerialize { which, change, null } => self.deserialise(slot, fmu, which, change, null),
@@ -367,8 +372,7 @@ impl Master {
         let Some((other, bytes)) = self.slots[from].and_then(|other| Some((other, other.frozen()?))) else { return };
         let mut state = ptr::null_mut();
         // SAFETY: an instance that lives, a slice of the length given.
-        let status =
-            checked(unsafe { fmi2DeSerializeFMUstate(fmu.c, bytes.as_ptr().cast(), bytes.len(), &mut state) });
+        let status = checked(unsafe { fmi2DeSerializeFMUstate(fmu.c, bytes.as_ptr().cast(), bytes.len(), &mut state) });
         assert_eq!(status == OK, ptr::eq(other.site, fmu.site), "a state of another scene");
         if status == OK {
             let expected = other.outputs();
@@ -465,9 +469,13 @@ fn call_function(fmu: Fmu, call: &Call) {
                 fmi2SetReal(c, array.pointer(&vr), vr.len(), or_null(*null, &mut values))
             }
             Call::SetInteger(array, null) => {
-                let capped = |reference: u32, value: i32| if reference == fmu.site.max_steps { value.min(MOST_STEPS) } else { value };
-                let (vr, mut values): (Vec<_>, Vec<_>) =
-                    array.taken().map(|(reference, value)| (reference.number(), capped(reference.number(), *value))).unzip();
+                let capped = |reference: u32, value: i32| {
+                    if reference == fmu.site.max_steps { value.min(MOST_STEPS) } else { value }
+                };
+                let (vr, mut values): (Vec<_>, Vec<_>) = array
+                    .taken()
+                    .map(|(reference, value)| (reference.number(), capped(reference.number(), *value)))
+                    .unzip();
                 fmi2SetInteger(c, array.pointer(&vr), vr.len(), or_null(*null, &mut values))
             }
             Call::SetBoolean(array, null) => {

@@ -2,7 +2,7 @@
 
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::sync::{Mutex, OnceLock};
-use std::{env, fs, mem, process, ptr};
+use std::{env, fmt, fs, mem, process, ptr};
 
 use asperity::fmi::bindings::*;
 use asperity::fmi::{self, Catalogue, Entry, Kind, SCENE_FILE, Sources};
@@ -44,10 +44,10 @@ const SCENES: [&str; 6] = [
     "name = 'bare'\nlayer = { masses = 1, spacing = 1e-4, mass = 1e-7, vertical = { stiffness = 2e3 } }\n\
      surface = { kind = 'flat' }\n",
     "name = 'loose'\nlayer = { masses = 1, spacing = 1e-4, mass = 1e-7 }\nsurface = { kind = 'flat' }\n",
-    "solver = { method = 'event', relative_tolerance = 1e-4, max_steps = 60 }\n",
-    "solver = { method = 'step', relative_tolerance = 1e-4, max_steps = 60 }\n",
-    "solver = { method = 'auto', relative_tolerance = 1e-4, max_steps = 60 }\n",
-    "solver = { method = 'auto', relative_tolerance = 1e-4, max_steps = 60, reduce = 0.05 }\ninput = { extrapolation = 'hold' }\n",
+    "solver = { method = 'event', relative_tolerance = 1e-4, max_steps = 30 }\n",
+    "solver = { method = 'step', relative_tolerance = 1e-4, max_steps = 30 }\n",
+    "solver = { method = 'auto', relative_tolerance = 1e-4, max_steps = 30 }\n",
+    "solver = { method = 'auto', relative_tolerance = 1e-4, max_steps = 30, reduce = 0.05 }\ninput = { extrapolation = 'hold' }\n",
 ];
 
 /// Two masses with everything that a scene can have.
@@ -115,7 +115,8 @@ impl Site {
 
     /// An instance that is as a new one, and how often it has been used.
     pub fn take(&'static self) -> (Fmu, usize) {
-        let (c, uses) = self.pool.lock().unwrap().pop().unwrap_or_else(|| (self.instantiate(false).expose_provenance(), 0));
+        let (c, uses) =
+            self.pool.lock().unwrap().pop().unwrap_or_else(|| (self.instantiate(false).expose_provenance(), 0));
         (Fmu { c: ptr::with_exposed_provenance_mut(c), site: self }, uses)
     }
 
@@ -123,7 +124,10 @@ impl Site {
     pub fn give_back(&self, fmu: Fmu, uses: usize) {
         // SAFETY: an instance that lives, and is freed once.
         unsafe {
-            if uses < MOST_USES && fmi::fmi2Reset(fmu.c) == OK && fmi::fmi2SetDebugLogging(fmu.c, 0, 0, ptr::null()) == OK {
+            if uses < MOST_USES
+                && fmi::fmi2Reset(fmu.c) == OK
+                && fmi::fmi2SetDebugLogging(fmu.c, 0, 0, ptr::null()) == OK
+            {
                 self.pool.lock().unwrap().push((fmu.c.expose_provenance(), uses + 1));
             } else {
                 fmi::fmi2FreeInstance(fmu.c);
@@ -177,6 +181,14 @@ pub fn callbacks() -> fmi2CallbackFunctions {
     }
 }
 
+/// Tells what a case is where FUZZ_SHOW is set.
+pub fn show(case: &impl fmt::Debug) {
+    static SHOWN: OnceLock<bool> = OnceLock::new();
+    if *SHOWN.get_or_init(|| env::var_os("FUZZ_SHOW").is_some()) {
+        eprintln!("{case:#?}");
+    }
+}
+
 /// A status that is one, and of no panic.
 pub fn checked(status: fmi2Status) -> fmi2Status {
     assert!(status == OK || status == DISCARD || status == fmi2Status_fmi2Error, "status {status}");
@@ -227,8 +239,7 @@ impl Fmu {
     pub fn time(&self) -> Option<f64> {
         let mut time = f64::NAN;
         // SAFETY: as above.
-        let status =
-            unsafe { fmi::fmi2GetRealStatus(self.c, fmi2StatusKind_fmi2LastSuccessfulTime, &mut time) };
+        let status = unsafe { fmi::fmi2GetRealStatus(self.c, fmi2StatusKind_fmi2LastSuccessfulTime, &mut time) };
         (checked(status) == OK).then_some(time)
     }
 
@@ -285,8 +296,12 @@ impl Fmu {
 
     /// A step, and all that holds after it: numbers where it was done, nothing changed where it was refused.
     pub fn checked_step(&self, point: f64, h: f64) -> fmi2Status {
-        let (outputs, time, frozen) = (self.outputs(), self.time(), self.frozen());
+        let (outputs, time, kept) = (self.outputs(), self.time(), self.keep());
         let status = self.step(point, h);
+        let frozen = if status == OK { None } else { self.serialised(kept) };
+        if !kept.is_null() {
+            self.forget(kept);
+        }
         if status == OK {
             self.outputs_of_step();
             assert_eq!(self.last_status(), OK);
@@ -312,21 +327,22 @@ impl Fmu {
         status
     }
 
-    /// All derivatives that there are, each a number or refused.
+    /// Derivatives of all outputs by the inputs and of the forces by time: numbers, or refused.
     pub fn check_derivatives(&self, direction: [f64; 2]) {
-        for reference in &self.site.reals {
-            let mut value = 0.0;
-            // SAFETY: as above.
-            let (first, second) = unsafe {
-                let (knowns, direction) = ([0, 1], direction.as_ptr());
-                let first =
-                    fmi::fmi2GetDirectionalDerivative(self.c, reference, 1, knowns.as_ptr(), 2, direction, &mut value);
-                assert!(value.is_finite(), "{value}");
-                (first, fmi::fmi2GetRealOutputDerivatives(self.c, reference, 1, &1, &mut value))
-            };
-            assert!(value.is_finite(), "{value}");
-            (checked(first), checked(second));
-        }
+        let (reals, mut values) = (&self.site.reals, vec![0.0; self.site.reals.len()]);
+        // SAFETY: an instance that lives, slices of the lengths given.
+        let (first, second) = unsafe {
+            let (knowns, unknowns, direction, place) =
+                ([0, 1], reals.as_ptr(), direction.as_ptr(), values.as_mut_ptr());
+            let first =
+                fmi::fmi2GetDirectionalDerivative(self.c, unknowns, reals.len(), knowns.as_ptr(), 2, direction, place);
+            assert!(values.iter().all(|value| value.is_finite()), "{values:?}");
+            // F_x and F_z are the first.
+            let orders = [1, 1];
+            (first, fmi::fmi2GetRealOutputDerivatives(self.c, unknowns, 2, orders.as_ptr(), values.as_mut_ptr()))
+        };
+        assert!(values.iter().all(|value| value.is_finite()), "{values:?}");
+        (checked(first), checked(second));
     }
 }
 

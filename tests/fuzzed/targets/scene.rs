@@ -7,8 +7,8 @@ use asperity::scene::{OutputGroup, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
 
 /// What a scene may ask for here: a fuzzer finds the large numbers that are allowed, and memory and time are no mistakes.
-const MOST_MASSES: usize = 8;
-const MOST_STEPS: u64 = 60;
+const MOST_MASSES: usize = 4;
+const MOST_STEPS: u64 = 30;
 const MOST_DIGITS: usize = 4;
 
 /// Reads a scene and runs it for a few steps.

@@ -7,7 +7,7 @@ use arbitrary::{Arbitrary, Unstructured};
 use asperity::fmi;
 use uuid::Uuid;
 
-use super::fmu::{CHECKSUM, Fmu, MOST_STEPS, OK, sites};
+use super::fmu::{CHECKSUM, Fmu, MOST_STEPS, OK, checked, show, sites};
 use super::number::Number;
 
 /// What is done with a state.
@@ -53,6 +53,7 @@ thread_local! {
 /// Makes up a state, takes it up if it is accepted, and steps on.
 pub fn run(bytes: &[u8]) {
     let Ok(case) = Case::arbitrary_take_rest(Unstructured::new(bytes)) else { return };
+    show(&case);
     BASES.with(|bases| bases.get_or_init(|| Box::leak(Box::new(Bases::new()))).run(&case));
 }
 
@@ -82,7 +83,7 @@ impl Bases {
         // SAFETY: an instance that lives, a slice of the length given.
         let mut state = ptr::null_mut();
         let status = unsafe { fmi::fmi2DeSerializeFMUstate(fmu.c, bytes.as_ptr().cast(), bytes.len(), &mut state) };
-        let status = super::fmu::checked(status);
+        let status = checked(status);
         assert_eq!(status == OK, !state.is_null());
         if status != OK {
             return;
@@ -107,7 +108,7 @@ fn go_on(fmu: &Fmu, steps: &[(Number, Number, Number)]) {
     }
     for (u, w, h) in steps.iter().take(4) {
         // SAFETY: as above.
-        super::fmu::checked(unsafe { fmi::fmi2SetReal(fmu.c, [0, 1].as_ptr(), 2, [u.value(), w.value()].as_ptr()) });
+        checked(unsafe { fmi::fmi2SetReal(fmu.c, [0, 1].as_ptr(), 2, [u.value(), w.value()].as_ptr()) });
         let point = fmu.time().unwrap_or_default();
         if fmu.checked_step(point, h.value()) == OK {
             fmu.check_derivatives([1.0, 1.0]);
