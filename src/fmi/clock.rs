@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::scene::LARGEST;
+use crate::scene::{LARGEST, SMALLEST};
 
 use super::fault::Fault;
 
@@ -53,6 +53,10 @@ impl Clock {
         let slack = ROUNDING * self.time.abs().max(h);
         let difference = (point - self.time).abs();
         let changes = self.time + h != self.time;
+        // A damper over such a step is no finite stiffness.
+        if changes && h < SMALLEST {
+            return Err(Fault::StepSize(h));
+        }
         // Written so that a point that is not a number is refused.
         if !(difference <= slack && (difference < h / 2.0 || !changes)) {
             return Err(Fault::OtherPoint { given: point, own: self.time });
@@ -105,7 +109,7 @@ mod tests {
 
     #[test]
     fn sizes_that_are_none_are_refused() {
-        for h in [-1.0, f64::NAN, f64::INFINITY, 1e300] {
+        for h in [-1.0, f64::NAN, f64::INFINITY, 1e300, f64::MIN_POSITIVE] {
             assert!(matches!(clock(0.0).step(0.0, h), Err(Fault::StepSize(_))));
         }
     }

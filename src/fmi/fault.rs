@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use crate::scene::{LARGEST, ParameterError, SceneError};
+use crate::scene::{LARGEST, ParameterError, SMALLEST, SceneError};
 use crate::simulation::SimulationError;
 
 use super::carrier::InputOutOfRange;
@@ -66,7 +66,7 @@ pub(super) enum Fault {
     OutOfRange { what: &'static str, value: f64 },
     #[error("the stop time {stop} s lies before the start time {start} s")]
     StopBeforeStart { start: f64, stop: f64 },
-    #[error("the communication step size is {0:?} s, expected a number from 0 to {LARGEST:?}")]
+    #[error("the communication step size is {0:?} s, expected 0 or a number from {SMALLEST:?} to {LARGEST:?}")]
     StepSize(f64),
     #[error("the current communication point {given} s is not the time {own} s that the FMU has reached")]
     OtherPoint { given: f64, own: f64 },

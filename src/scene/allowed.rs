@@ -11,7 +11,7 @@ use super::{Extrapolation, Initial, Method, OutputGroup, Problem};
 pub const LARGEST: f64 = 1e30;
 
 /// The smallest size of a number that is divided by or has a square that may not be lost in rounding to 0.
-pub(super) const SMALLEST: f64 = 1e-30;
+pub const SMALLEST: f64 = 1e-30;
 
 /// Numbers whose size lies between two bounds, both included; 0 and negative numbers where they are allowed.
 #[derive(Clone, Copy, Debug)]
