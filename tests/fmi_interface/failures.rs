@@ -153,3 +153,18 @@ fn numbers_or_nothing_changed(fmu: &Fmu, h: f64) -> bool {
     }
     status == OK
 }
+
+/// A mass without links slides on, whatever the carrier does: few steps do for any time.
+#[test]
+fn a_mass_without_links_takes_few_steps() {
+    let scene = "name = 'loose'\nlayer = { masses = 1, spacing = 1e-4, mass = 1e-7 }\nsurface = { kind = 'flat' }\n\
+                 fmu = { outputs = ['forces', 'solver', 'elements'] }\nsolver = { max_steps = 200 }\n";
+    let fmu = Fmu::initialising_with(scene);
+    assert_eq!((fmu.set_real("w", -1.0), fmu.set_rate("u", -1.0), fmu.set_rate("w", -5e-324)), (OK, OK, OK));
+    assert_eq!(fmu.exit(), OK);
+    for i in 0..5 {
+        assert_eq!(fmu.step(f64::from(i) * 44e-6, 44e-6), OK);
+    }
+    eprintln!("{} {}", fmu.real("element[1].x"), fmu.real("element[1].z"));
+    assert_eq!(fmu.step(fmu.last_successful_time(), 1e15), OK, "{:?}", fmu.messages());
+}
