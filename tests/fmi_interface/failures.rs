@@ -91,9 +91,8 @@ fn a_step_beyond_all_places_is_an_error() {
     assert_eq!((fmu.set_rate("u", 1e200), fmu.step(1e-10, 1e-3)), (OK, ERROR));
     one_message(&fmu, "logStatusError", &["the input u is 1e197 at t = "]);
     let fmu = started(300);
-    assert_eq!((fmu.set_real("w", 1e20), fmu.step(1e-10, 1e-20)), (OK, OK), "shorter than the resolution of time");
-    assert_eq!(fmu.step(1e-10, 1e-12), ERROR);
-    one_message(&fmu, "logStatusError", &["the carrier's motion is out of range: rate of w = 1e32"]);
+    assert_eq!((fmu.set_real("w", 1e20), fmu.step(1e-10, 1e-12)), (OK, ERROR));
+    one_message(&fmu, "logStatusError", &["the carrier's motion is out of range: rate of w = "]);
 }
 
 #[test]
@@ -152,19 +151,4 @@ fn numbers_or_nothing_changed(fmu: &Fmu, h: f64) -> bool {
         _ => assert_eq!(fmu.bits(), before.0, "{:?}", fmu.messages()),
     }
     status == OK
-}
-
-/// A mass without links slides on, whatever the carrier does: few steps do for any time.
-#[test]
-fn a_mass_without_links_takes_few_steps() {
-    let scene = "name = 'loose'\nlayer = { masses = 1, spacing = 1e-4, mass = 1e-7 }\nsurface = { kind = 'flat' }\n\
-                 fmu = { outputs = ['forces', 'solver', 'elements'] }\nsolver = { max_steps = 200 }\n";
-    let fmu = Fmu::initialising_with(scene);
-    assert_eq!((fmu.set_real("w", -1.0), fmu.set_rate("u", -1.0), fmu.set_rate("w", -5e-324)), (OK, OK, OK));
-    assert_eq!(fmu.exit(), OK);
-    for i in 0..5 {
-        assert_eq!(fmu.step(f64::from(i) * 44e-6, 44e-6), OK);
-    }
-    eprintln!("{} {}", fmu.real("element[1].x"), fmu.real("element[1].z"));
-    assert_eq!(fmu.step(fmu.last_successful_time(), 1e15), OK, "{:?}", fmu.messages());
 }
