@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::scene::{Extrapolation, LARGEST, Path};
+use crate::scene::{Extrapolation, Path, is_possible};
 use crate::simulation::{Motion, Start};
 
 use super::catalogue::Input;
@@ -33,7 +33,7 @@ struct Past {
     step: f64,
 }
 
-/// The master gave an input that is no number or larger than [`LARGEST`], or a rate that leads to such a one.
+/// The master gave an input that is no number or larger than [`LARGEST`](crate::scene::LARGEST), or a rate that leads to such a one.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("the input {name} is {value:?} at t = {time} s: no step can be done")]
 pub struct InputOutOfRange {
@@ -94,7 +94,7 @@ impl Carrier {
     /// Whether a run can have come to it: what was followed was finite. Values and rates not yet followed may be anything.
     pub(super) fn is_sound(&self) -> bool {
         let pasts = self.axes.iter().filter_map(|axis| axis.past.as_ref());
-        pasts.into_iter().all(|past| past.value.abs() <= LARGEST && 0.0 < past.step && past.step <= LARGEST)
+        pasts.into_iter().all(|past| is_possible(past.value) && is_possible(past.step) && past.step > 0.0)
     }
 
     /// Counts a step of `h` as done: its derivatives are used up.
@@ -132,8 +132,7 @@ impl Axis {
     /// [`target`](Self::target), where the carrier can be there.
     fn checked_target(&self, input: Input, time: f64, h: f64, rule: Extrapolation) -> Result<f64, InputOutOfRange> {
         let target = self.target(h, rule);
-        // Written so that what is not a number is refused.
-        match [self.value, target].into_iter().find(|value| !(value.abs() <= LARGEST)) {
+        match [self.value, target].into_iter().find(|value| !is_possible(*value)) {
             Some(value) => Err(InputOutOfRange { name: input.name(), value, time }),
             None => Ok(target),
         }

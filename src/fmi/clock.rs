@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::scene::{LARGEST, SMALLEST};
+use crate::scene::{SMALLEST, is_possible};
 
 use super::fault::Fault;
 
@@ -22,9 +22,9 @@ impl Clock {
     /// A clock that stands at `start`.
     ///
     /// # Errors
-    /// [`Fault`] where a time is no number or larger than [`LARGEST`], or the stop time lies before the start.
+    /// [`Fault`] where a time is no number or larger than [`LARGEST`](crate::scene::LARGEST), or the stop time lies before the start.
     pub(super) fn new(start: f64, stop: Option<f64>) -> Result<Self, Fault> {
-        let check = |what, value| if is_time(value) { Ok(()) } else { Err(Fault::OutOfRange { what, value }) };
+        let check = |what, value| if is_possible(value) { Ok(()) } else { Err(Fault::OutOfRange { what, value }) };
         check("the start time", start)?;
         if let Some(stop) = stop {
             check("the stop time", stop)?;
@@ -37,7 +37,7 @@ impl Clock {
 
     /// Whether its times are numbers.
     pub(super) fn is_sound(&self) -> bool {
-        is_time(self.time) && self.stop.is_none_or(is_time)
+        is_possible(self.time) && self.stop.is_none_or(is_possible)
     }
 
     /// The clock after a step of `h` from `point`; `None` where the step is too short to change the time.
@@ -46,8 +46,7 @@ impl Clock {
     /// [`Fault`] where the step size is no step size, the point is another one than the clock's, or the step goes beyond
     /// the stop time. Differences by rounding are none.
     pub(super) fn step(&self, point: f64, h: f64) -> Result<Option<Self>, Fault> {
-        // Written so that what is not a number is refused.
-        if !(0.0 <= h && h <= LARGEST) {
+        if !(is_possible(h) && h >= 0.0) {
             return Err(Fault::StepSize(h));
         }
         let slack = ROUNDING * self.time.abs().max(h);
@@ -64,21 +63,17 @@ impl Clock {
         let end = point + h;
         match self.stop {
             Some(stop) if end > stop + slack => Err(Fault::BeyondStop { end, stop }),
-            _ if !is_time(end) => Err(Fault::OutOfRange { what: "the end of the step", value: end }),
+            _ if !is_possible(end) => Err(Fault::OutOfRange { what: "the end of the step", value: end }),
             _ => Ok(changes.then_some(Self { time: end, ..*self })),
         }
     }
-}
-
-/// Whether the clock can stand there.
-fn is_time(time: f64) -> bool {
-    time.abs() <= LARGEST
 }
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use crate::scene::LARGEST;
 
     fn clock(time: f64) -> Clock {
         Clock::new(time, Some(10.0)).unwrap()

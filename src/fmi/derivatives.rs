@@ -1,7 +1,7 @@
 //! Derivatives: of outputs by inputs with the states held, and of the forces by time.
 
 use crate::outputs::{self, Output, Variable};
-use crate::scene::LARGEST;
+use crate::scene::is_possible;
 
 use super::catalogue::{Entry, Input, Kind};
 use super::fault::Fault;
@@ -35,8 +35,7 @@ impl Instance {
         let (mut du, mut dw) = (0.0, 0.0);
         for (&reference, &step) in knowns.iter().zip(steps) {
             match self.catalogue.find(reference, Kind::Real)? {
-                // Written so that what is not a number is refused.
-                _ if !(step.abs() <= LARGEST) => {
+                _ if !is_possible(step) => {
                     return Err(Fault::OutOfRange { what: "a value of dvKnown", value: step });
                 }
                 Entry::Input(Input::U) => du += step,

@@ -10,6 +10,11 @@ use super::{Extrapolation, Initial, Method, OutputGroup, Problem};
 /// of factors, and 1e30 to the tenth power is a number.
 pub const LARGEST: f64 = 1e30;
 
+/// Whether a carrier or a master may give `number`: it is one, and of a size up to [`LARGEST`].
+pub fn is_possible(number: f64) -> bool {
+    number.abs() <= LARGEST
+}
+
 /// The smallest size of a number that is divided by or has a square that may not be lost in rounding to 0.
 pub const SMALLEST: f64 = 1e-30;
 

@@ -6,7 +6,7 @@ use crate::integrator::Rates;
 use crate::math::{Numbers, visit_all};
 use crate::model::{Carrier, Exchange, Model, State};
 use crate::outputs::{Counters, Energies};
-use crate::scene::{LARGEST, Path};
+use crate::scene::{Path, is_possible};
 
 /// The run: where it stands and what it has added up.
 #[derive(Clone, Debug)]
@@ -183,8 +183,7 @@ impl Motion {
 }
 
 fn check_size(quantities: &[(&'static str, f64)]) -> Result<(), SimulationError> {
-    // Written so that what is not a number is refused.
-    match quantities.iter().find(|(_, value)| !(value.abs() <= LARGEST)) {
+    match quantities.iter().find(|(_, value)| !is_possible(*value)) {
         Some(&(what, value)) => Err(SimulationError::OutOfRange { what, value }),
         None => Ok(()),
     }

@@ -343,7 +343,8 @@ impl Fmu {
             (first, fmi::fmi2GetRealOutputDerivatives(self.c, unknowns, 2, orders.as_ptr(), values.as_mut_ptr()))
         };
         assert!(values.iter().all(|value| value.is_finite()), "{values:?}");
-        (checked(first), checked(second));
+        checked(first);
+        checked(second);
     }
 }
 
