@@ -69,14 +69,27 @@ fn driven_from_c_stick_slip_and_impacts_are_those_of_fmpy() {
     the_host_gives_what_fmpy_gives(SCENE, "host-impacts");
 }
 
-#[test]
-fn valgrind_finds_no_error_and_nothing_lost() {
+/// What the host says under valgrind, which must find nothing.
+fn under_valgrind(folder: &str, options: &[&str]) -> String {
     const VALGRIND: &str =
         "valgrind --error-exitcode=99 --leak-check=full --errors-for-leak-kinds=definite,indirect,possible";
-    let packed = packed(SCENE, "host-valgrind");
-    let output = packed.host(&["--points", "60", "--instances", "2", "--under", VALGRIND]).output().unwrap();
-    let text = String::from_utf8_lossy(&output.stderr);
+    let packed = packed(SCENE, folder);
+    let output = packed.host(&[options, &["--under", VALGRIND]].concat()).output().unwrap();
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.success() && text.contains("ERROR SUMMARY: 0 errors"), "{text}");
+    text
+}
+
+#[test]
+fn valgrind_finds_no_error_and_nothing_lost() {
+    under_valgrind("host-valgrind", &["--points", "60", "--instances", "2"]);
+}
+
+/// States kept, gone back to and freed in each, one of them by fmi2FreeInstance.
+#[test]
+fn of_a_thousand_instances_nothing_is_lost() {
+    let text = under_valgrind("host-thousand", &["--points", "3", "--instances", "1000"]);
+    assert!(text.contains("host: 1000 instances"), "{text}");
 }
 
 /// What the host says of its memory, kB: after a tenth of the instances and at the end.

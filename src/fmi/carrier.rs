@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::scene::{Extrapolation, Path};
+use crate::scene::{Extrapolation, Path, is_possible};
 use crate::simulation::{Motion, Start};
 
 use super::catalogue::Input;
@@ -33,10 +33,10 @@ struct Past {
     step: f64,
 }
 
-/// The master gave an input that is no finite number, or a rate that leads to none.
+/// The master gave an input that is no number or larger than [`LARGEST`](crate::scene::LARGEST), or a rate that leads to such a one.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("the input {name} is {value} at t = {time} s: no step can be done")]
-pub struct InputNotFinite {
+#[error("the input {name} is {value:?} at t = {time} s: no step can be done")]
+pub struct InputOutOfRange {
     /// The input's name.
     pub name: &'static str,
     /// What it is or would become.
@@ -72,12 +72,18 @@ impl Carrier {
     /// add up: the next motion starts from where this one ended.
     ///
     /// # Errors
-    /// [`InputNotFinite`] where a value or a derivative is not a finite number.
-    pub fn motion(&self, (u, w): (f64, f64), time: f64, h: f64, rule: Extrapolation) -> Result<Motion, InputNotFinite> {
+    /// [`InputOutOfRange`] where a value is no number or too large, or a derivative leads to such a one.
+    pub fn motion(
+        &self,
+        (u, w): (f64, f64),
+        time: f64,
+        h: f64,
+        rule: Extrapolation,
+    ) -> Result<Motion, InputOutOfRange> {
         let path = |input: Input, from: f64| {
             let axis = &self.axes[input as usize];
-            let target = axis.finite_target(input, time, h, rule)?;
-            Ok::<_, InputNotFinite>(Path {
+            let target = axis.checked_target(input, time, h, rule)?;
+            Ok::<_, InputOutOfRange>(Path {
                 rate: axis.given_rate(from).unwrap_or((target - from) / h),
                 ..Path::default()
             })
@@ -88,7 +94,7 @@ impl Carrier {
     /// Whether a run can have come to it: what was followed was finite. Values and rates not yet followed may be anything.
     pub(super) fn is_sound(&self) -> bool {
         let pasts = self.axes.iter().filter_map(|axis| axis.past.as_ref());
-        pasts.into_iter().all(|past| past.value.is_finite() && past.step.is_finite() && past.step > 0.0)
+        pasts.into_iter().all(|past| is_possible(past.value) && is_possible(past.step) && past.step > 0.0)
     }
 
     /// Counts a step of `h` as done: its derivatives are used up.
@@ -123,10 +129,11 @@ impl Axis {
         }
     }
 
-    fn finite_target(&self, input: Input, time: f64, h: f64, rule: Extrapolation) -> Result<f64, InputNotFinite> {
+    /// [`target`](Self::target), where the carrier can be there.
+    fn checked_target(&self, input: Input, time: f64, h: f64, rule: Extrapolation) -> Result<f64, InputOutOfRange> {
         let target = self.target(h, rule);
-        match [self.value, target].into_iter().find(|value| !value.is_finite()) {
-            Some(value) => Err(InputNotFinite { name: input.name(), value, time }),
+        match [self.value, target].into_iter().find(|value| !is_possible(*value)) {
+            Some(value) => Err(InputOutOfRange { name: input.name(), value, time }),
             None => Ok(target),
         }
     }

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::scene::{SMALLEST, is_possible};
+
 use super::fault::Fault;
 
 /// Times that differ by less than this part of the larger of time and step size differ by rounding.
@@ -20,12 +22,12 @@ impl Clock {
     /// A clock that stands at `start`.
     ///
     /// # Errors
-    /// [`Fault`] where a time is not finite or the stop time lies before the start.
+    /// [`Fault`] where a time is no number or larger than [`LARGEST`](crate::scene::LARGEST), or the stop time lies before the start.
     pub(super) fn new(start: f64, stop: Option<f64>) -> Result<Self, Fault> {
-        let finite = |what, value: f64| if value.is_finite() { Ok(()) } else { Err(Fault::NotFinite { what, value }) };
-        finite("the start time", start)?;
+        let check = |what, value| if is_possible(value) { Ok(()) } else { Err(Fault::OutOfRange { what, value }) };
+        check("the start time", start)?;
         if let Some(stop) = stop {
-            finite("the stop time", stop)?;
+            check("the stop time", stop)?;
             if stop < start {
                 return Err(Fault::StopBeforeStart { start, stop });
             }
@@ -35,7 +37,7 @@ impl Clock {
 
     /// Whether its times are numbers.
     pub(super) fn is_sound(&self) -> bool {
-        self.time.is_finite() && self.stop.is_none_or(f64::is_finite)
+        is_possible(self.time) && self.stop.is_none_or(is_possible)
     }
 
     /// The clock after a step of `h` from `point`; `None` where the step is too short to change the time.
@@ -44,12 +46,16 @@ impl Clock {
     /// [`Fault`] where the step size is no step size, the point is another one than the clock's, or the step goes beyond
     /// the stop time. Differences by rounding are none.
     pub(super) fn step(&self, point: f64, h: f64) -> Result<Option<Self>, Fault> {
-        if !(h.is_finite() && h >= 0.0) {
+        if !(is_possible(h) && h >= 0.0) {
             return Err(Fault::StepSize(h));
         }
         let slack = ROUNDING * self.time.abs().max(h);
         let difference = (point - self.time).abs();
         let changes = self.time + h != self.time;
+        // A damper over such a step is no finite stiffness.
+        if changes && h < SMALLEST {
+            return Err(Fault::StepSize(h));
+        }
         // Written so that a point that is not a number is refused.
         if !(difference <= slack && (difference < h / 2.0 || !changes)) {
             return Err(Fault::OtherPoint { given: point, own: self.time });
@@ -57,6 +63,7 @@ impl Clock {
         let end = point + h;
         match self.stop {
             Some(stop) if end > stop + slack => Err(Fault::BeyondStop { end, stop }),
+            _ if !is_possible(end) => Err(Fault::OutOfRange { what: "the end of the step", value: end }),
             _ => Ok(changes.then_some(Self { time: end, ..*self })),
         }
     }
@@ -66,6 +73,7 @@ impl Clock {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use crate::scene::LARGEST;
 
     fn clock(time: f64) -> Clock {
         Clock::new(time, Some(10.0)).unwrap()
@@ -96,7 +104,7 @@ mod tests {
 
     #[test]
     fn sizes_that_are_none_are_refused() {
-        for h in [-1.0, f64::NAN, f64::INFINITY] {
+        for h in [-1.0, f64::NAN, f64::INFINITY, 1e300, f64::MIN_POSITIVE] {
             assert!(matches!(clock(0.0).step(0.0, h), Err(Fault::StepSize(_))));
         }
     }
@@ -109,9 +117,12 @@ mod tests {
     }
 
     #[test]
-    fn times_are_finite_and_in_order() {
+    fn times_are_in_range_and_in_order() {
         assert!(Clock::new(f64::NAN, None).is_err());
         assert!(Clock::new(0.0, Some(f64::INFINITY)).is_err());
+        assert!(Clock::new(1e300, None).is_err());
+        let clock = Clock::new(LARGEST, None).unwrap();
+        assert!(matches!(clock.step(LARGEST, LARGEST), Err(Fault::OutOfRange { .. })));
         assert!(Clock::new(1.0, Some(0.0)).is_err());
         assert!(Clock::new(-5.0, Some(-5.0)).is_ok());
     }

@@ -1,6 +1,7 @@
 //! Derivatives: of outputs by inputs with the states held, and of the forces by time.
 
 use crate::outputs::{self, Output, Variable};
+use crate::scene::is_possible;
 
 use super::catalogue::{Entry, Input, Kind};
 use super::fault::Fault;
@@ -34,7 +35,9 @@ impl Instance {
         let (mut du, mut dw) = (0.0, 0.0);
         for (&reference, &step) in knowns.iter().zip(steps) {
             match self.catalogue.find(reference, Kind::Real)? {
-                _ if !step.is_finite() => return Err(Fault::NotFinite { what: "a value of dvKnown", value: step }),
+                _ if !is_possible(step) => {
+                    return Err(Fault::OutOfRange { what: "a value of dvKnown", value: step });
+                }
                 Entry::Input(Input::U) => du += step,
                 Entry::Input(Input::W) => dw += step,
                 entry => return Err(Fault::NoKnown(entry.name())),

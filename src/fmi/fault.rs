@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use crate::scene::{ParameterError, SceneError};
+use crate::scene::{LARGEST, ParameterError, SMALLEST, SceneError};
 use crate::simulation::SimulationError;
 
-use super::carrier::InputNotFinite;
+use super::carrier::InputOutOfRange;
 use super::catalogue::Kind;
 use super::lifecycle::State;
 use super::serial::Misfit;
@@ -62,18 +62,18 @@ pub(super) enum Fault {
     NoValue { name: String, value: f64 },
     #[error("unknown log category \"{0}\"")]
     UnknownCategory(String),
-    #[error("{what} is {value}, expected a finite number")]
-    NotFinite { what: &'static str, value: f64 },
+    #[error("{what} is {value:?}, expected a number up to ±{LARGEST:?}")]
+    OutOfRange { what: &'static str, value: f64 },
     #[error("the stop time {stop} s lies before the start time {start} s")]
     StopBeforeStart { start: f64, stop: f64 },
-    #[error("the communication step size is {0} s, expected a finite number of at least 0")]
+    #[error("the communication step size is {0:?} s, expected 0 or a number from {SMALLEST:?} to {LARGEST:?}")]
     StepSize(f64),
     #[error("the current communication point {given} s is not the time {own} s that the FMU has reached")]
     OtherPoint { given: f64, own: f64 },
     #[error("the step to {end} s goes beyond the stop time {stop} s")]
     BeyondStop { end: f64, stop: f64 },
     #[error(transparent)]
-    Input(#[from] InputNotFinite),
+    Input(#[from] InputOutOfRange),
     #[error(transparent)]
     Simulation(#[from] SimulationError),
     #[error("no values: the initialisation failed")]

@@ -180,7 +180,8 @@ impl Instance {
 
     /// fmi2DeSerializeFMUstate: keeps the state in `bytes` and gives its handle.
     pub(super) fn deserialise_state(&mut self, bytes: &[u8]) -> Result<usize, Fault> {
-        let run = serial::read(bytes, &self.guid, &self.original)?;
+        let mut run = serial::read(bytes, &self.guid, &self.original)?;
+        serial::check_outputs(&mut run, self.catalogue.outputs())?;
         Ok(self.memory.keep_new(run))
     }
 

@@ -27,7 +27,7 @@ mod values;
 #[rustfmt::skip]
 pub mod bindings;
 
-pub use carrier::{Carrier, InputNotFinite};
+pub use carrier::{Carrier, InputOutOfRange};
 pub use catalogue::{Catalogue, Entry, Input, Kind};
 pub use exports::*;
 pub use guid::{Sources, guid};

@@ -11,6 +11,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use uuid::Uuid;
 
+use crate::outputs::Variable;
 use crate::scene::{ParameterError, Value};
 use crate::simulation::{RestoreError, Saved, Simulation};
 
@@ -95,6 +96,15 @@ pub(super) fn read(bytes: &[u8], guid: &str, original: &Arc<Parameters>) -> Resu
     let simulation = written.simulation.as_ref().map(restore).transpose()?;
     let Written { state, carrier, clock, last_step, .. } = written;
     Ok(Run { state, parameters, carrier, clock, last_step, simulation })
+}
+
+/// A run that goes on from numbers shows numbers; one that was made up of large ones need not.
+pub(super) fn check_outputs(run: &mut Run, outputs: &[Variable]) -> Result<(), Misfit> {
+    let Some(simulation) = &mut run.simulation else { return Ok(()) };
+    let mut values = vec![0.0; outputs.len()];
+    simulation.evaluate(outputs, &mut values);
+    let finite = values.iter().all(|value| value.is_finite());
+    if finite { Ok(()) } else { Err(Misfit::Unsound("its outputs are no finite numbers")) }
 }
 
 impl Written {
@@ -212,6 +222,7 @@ mod tests {
                     _ => instance.directional_derivatives(&[reference], (&[0, 1], &[1.0, 1.0]), &mut value),
                 });
                 assert!(status != Status::Fatal && value[0].is_finite(), "{call} {reference}: {value:?}");
+                assert!(call != Function::GetReal || status == Status::Ok, "no value of {reference}");
             }
         }
     }

@@ -98,7 +98,7 @@ impl Instance {
 
     /// fmi2SetReal, fmi2SetInteger and fmi2SetString: all of the values or none.
     ///
-    /// An input that is not a finite number is taken here and refused by the step: a master may write it for as long as
+    /// An input that is no number, or none that a carrier can be at, is taken here and refused by the step: a master may write it for as long as
     /// it does not ask the model to follow it.
     pub(super) fn set(&mut self, references: &[u32], values: impl Iterator<Item = Value>) -> Result<(), Fault> {
         let mut parameters = Arc::clone(&self.run.parameters);

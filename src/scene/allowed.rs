@@ -1,15 +1,30 @@
 //! What is allowed: the ranges of numbers and the words to choose from, for the scene file and for parameters alike.
 
 use std::fmt;
-use std::ops::{Bound, RangeBounds};
 
 use super::{Extrapolation, Initial, Method, OutputGroup, Problem};
 
-/// Finite numbers between two bounds.
+/// The largest size of a number in SI units that a scene, a carrier or a master may give: m, s, N/m, whatever it is.
+///
+/// Beyond all physics, and still so small that no product of the model overflows: c e², m κ ẋ² and the like have a handful
+/// of factors, and 1e30 to the tenth power is a number.
+pub const LARGEST: f64 = 1e30;
+
+/// Whether a carrier or a master may give `number`: it is one, and of a size up to [`LARGEST`].
+pub fn is_possible(number: f64) -> bool {
+    number.abs() <= LARGEST
+}
+
+/// The smallest size of a number that is divided by or has a square that may not be lost in rounding to 0.
+pub const SMALLEST: f64 = 1e-30;
+
+/// Numbers whose size lies between two bounds, both included; 0 and negative numbers where they are allowed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Range {
-    low: Bound<f64>,
-    high: Bound<f64>,
+    smallest: f64,
+    largest: f64,
+    zero: bool,
+    negative: bool,
 }
 
 /// Whole numbers from `low` to `high`, both included.
@@ -26,14 +41,14 @@ pub(super) struct Choices<T: 'static> {
     later: &'static [&'static str],
 }
 
-const POSITIVE: Range = Range { low: Bound::Excluded(0.0), high: Bound::Unbounded };
-const NOT_NEGATIVE: Range = Range { low: Bound::Included(0.0), high: Bound::Unbounded };
-const FINITE: Range = Range { low: Bound::Unbounded, high: Bound::Unbounded };
+const POSITIVE: Range = Range { smallest: SMALLEST, largest: LARGEST, zero: false, negative: false };
+const NOT_NEGATIVE: Range = Range { zero: true, ..POSITIVE };
+const ANY: Range = Range { smallest: 0.0, negative: true, ..NOT_NEGATIVE };
 
 pub(super) const MASSES: WholeRange = WholeRange { low: 1, high: 10_000_000 };
 pub(super) const SPACING: Range = POSITIVE;
-pub(super) const PLACE: Range = FINITE;
-pub(super) const HEIGHT: Range = FINITE;
+pub(super) const PLACE: Range = ANY;
+pub(super) const HEIGHT: Range = ANY;
 pub(super) const MASS: Range = POSITIVE;
 pub(super) const STIFFNESS: Range = NOT_NEGATIVE;
 pub(super) const DAMPING: Range = NOT_NEGATIVE;
@@ -42,16 +57,16 @@ pub(super) const WAVELENGTH: Range = POSITIVE;
 pub(super) const POINTS_PER_WAVELENGTH: WholeRange = WholeRange { low: 4, high: 10_000_000 };
 pub(super) const FRICTION_COEFFICIENT: Range = NOT_NEGATIVE;
 pub(super) const SHEAR_FORCE: Range = NOT_NEGATIVE;
-pub(super) const RELATIVE_TOLERANCE: Range = Range { low: Bound::Excluded(0.0), high: Bound::Included(0.1) };
-pub(super) const REDUCE: Range = Range { low: Bound::Included(0.0), high: Bound::Included(0.1) };
+pub(super) const RELATIVE_TOLERANCE: Range = Range { largest: 0.1, ..POSITIVE };
+pub(super) const REDUCE: Range = Range { largest: 0.1, ..NOT_NEGATIVE };
 pub(super) const ABSOLUTE_TOLERANCE: Range = POSITIVE;
 /// FMI's Integer has 32 bits.
 pub(super) const MAX_STEPS: WholeRange = WholeRange { low: 1, high: i32::MAX as i64 };
 pub(super) const DURATION: Range = POSITIVE;
-pub(super) const RATE: Range = FINITE;
-pub(super) const AMPLITUDE: Range = FINITE;
+pub(super) const RATE: Range = ANY;
+pub(super) const AMPLITUDE: Range = ANY;
 pub(super) const FREQUENCY: Range = NOT_NEGATIVE;
-pub(super) const FORCE: Range = FINITE;
+pub(super) const FORCE: Range = ANY;
 
 pub(super) const INITIAL: Choices<Initial> =
     Choices { words: &[("relaxed", Initial::Relaxed), ("undeformed", Initial::Undeformed)], later: &[] };
@@ -93,7 +108,9 @@ pub(super) enum SurfaceKind {
 
 impl Range {
     pub(super) fn holds(&self, number: f64) -> bool {
-        number.is_finite() && (self.low, self.high).contains(&number)
+        let size = number.abs();
+        let in_range = self.smallest <= size && size <= self.largest && (self.negative || number > 0.0);
+        in_range || (self.zero && number == 0.0)
     }
 }
 
@@ -129,21 +146,9 @@ impl<T> Choices<T> {
 
 impl fmt::Display for Range {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let low = match self.low {
-            Bound::Included(low) => format!(">= {low}"),
-            Bound::Excluded(low) => format!("> {low}"),
-            Bound::Unbounded => String::new(),
-        };
-        let high = match self.high {
-            Bound::Included(high) => format!("<= {high}"),
-            Bound::Excluded(high) => format!("< {high}"),
-            Bound::Unbounded => String::new(),
-        };
-        match (low.is_empty(), high.is_empty()) {
-            (true, true) => write!(f, "a finite number"),
-            (false, false) => write!(f, "a number {low} and {high}"),
-            _ => write!(f, "a number {low}{high}"),
-        }
+        let low = if self.negative { -self.largest } else { self.smallest };
+        let zero = if self.zero && !self.negative { "0 or " } else { "" };
+        write!(f, "{zero}a number from {low:?} to {:?}", self.largest)
     }
 }
 

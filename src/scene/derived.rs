@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::points::peak_to_valley;
-use super::{Path, Scene};
+use super::{Path, Scene, allowed};
 
 impl Scene {
     /// The scene's name as a C identifier: letters, digits and underscores, no digit first.
@@ -20,9 +20,11 @@ impl Scene {
         if height > 0.0 { height } else { self.layer.spacing }
     }
 
-    /// The absolute tolerance, m: as it was set, or the relative one times the [`height`](Self::height).
+    /// The absolute tolerance, m: as it was set, or the relative one times the [`height`](Self::height), as far as that may
+    /// be set.
     pub fn absolute_tolerance(&self) -> f64 {
-        self.solver.absolute_tolerance.unwrap_or_else(|| self.solver.relative_tolerance * self.height())
+        let default = || (self.solver.relative_tolerance * self.height()).max(allowed::SMALLEST);
+        self.solver.absolute_tolerance.unwrap_or_else(default)
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// Why a scene is refused: what was expected, what was found, and where.
 ///
-/// It reads like `scene.toml:12: layer.mass = -1.0: expected a number > 0`.
+/// It reads like `scene.toml:12: layer.mass = -1.0: expected a number from 1e-30 to 1e30`.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct SceneError(Box<Refusal>);

@@ -28,6 +28,7 @@ use serde::Serialize;
 
 use crate::math::{Numbers, visit_all};
 
+pub use allowed::{LARGEST, SMALLEST, is_possible};
 pub use error::{Problem, SceneError};
 pub use link_kind::LinkKind;
 pub use parameters::{Parameter, ParameterError, Value};

@@ -57,7 +57,7 @@ pub enum Value {
 
 /// Why a parameter's value, or its name, is refused.
 ///
-/// It reads like `layer.mass = -1.0: expected a number > 0`.
+/// It reads like `layer.mass = -1.0: expected a number from 1e-30 to 1e30`.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}", problem.about(name))]
 pub struct ParameterError {

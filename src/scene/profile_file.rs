@@ -4,6 +4,7 @@
 use std::fs;
 use std::path::Path;
 
+use super::allowed;
 use super::error::Place;
 use super::points::{self, Axis};
 use super::table::Entry;
@@ -110,10 +111,10 @@ fn parse_row(fields: &[String], number: usize, line: &str) -> Result<[f64; 2], P
 }
 
 fn parse_number(field: &str, line: usize, column: &'static str) -> Result<f64, ProfileError> {
-    let number = field.parse().ok().filter(|number: &f64| number.is_finite());
+    let number = field.parse().ok().filter(|&number| allowed::PLACE.holds(number));
     number.ok_or_else(|| {
         let given = format!("\"{}\"", field.chars().take(60).collect::<String>());
-        refuse(line, column, &given, "a finite number")
+        refuse(line, column, &given, &allowed::PLACE.to_string())
     })
 }
 

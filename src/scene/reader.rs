@@ -13,6 +13,9 @@ use super::{Problem, Scene, SceneError, excitation, layer, settings, warnings};
 const KEYS: [&str; 9] = ["name", "description", "layer", "surface", "friction", "solver", "input", "fmu", "excitation"];
 const LATER: [&str; 1] = ["material"];
 
+/// Letters of a scene's name.
+const LONGEST_NAME: usize = 200;
+
 impl Scene {
     /// Reads the scene file at `path` and the files that it names.
     ///
@@ -71,11 +74,12 @@ fn read_scene(source: Source<'_>, document: &DeTable<'_>) -> Result<Scene, Scene
     })
 }
 
-/// The name ends up in XML attributes and, changed into an identifier, in file names.
+/// The name ends up in XML attributes and, changed into an identifier, in file names, which hold 255 letters.
 fn read_name(entry: &Entry<'_>) -> Result<String, SceneError> {
-    let expected = "a text, not empty and without control characters";
-    let name = entry.text(expected)?;
-    let legal = !name.trim().is_empty() && !name.contains(char::is_control);
+    let expected = format!("a text, not empty, without control characters and of at most {LONGEST_NAME} letters");
+    let name = entry.text(&expected)?;
+    let short = name.chars().nth(LONGEST_NAME).is_none();
+    let legal = short && !name.trim().is_empty() && !name.contains(char::is_control);
     if legal { Ok(name.to_owned()) } else { Err(entry.refuse(expected)) }
 }
 

@@ -36,13 +36,19 @@ pub(super) fn read_surface(entry: &Entry<'_>, found: &mut Found) -> Result<Surfa
             SurfaceKind::File => read_file(table, found),
         })?;
     let spline = surface.spline();
+    let bounds = spline.bounds();
     let finite = surface.x.iter().all(|&x| spline.evaluate(x).2.is_finite());
-    if finite {
+    if finite && bounds.slope_max_abs <= STEEPEST && bounds.curvature_max_abs <= allowed::LARGEST {
         Ok(surface)
     } else {
-        Err(entry.refuse("points that a spline can be laid through: no finite one exists"))
+        let limits = format!("slopes up to {STEEPEST:e} and curvatures up to {:e} 1/m", allowed::LARGEST);
+        Err(entry.refuse(format_args!("points with a spline of {limits}")))
     }
 }
+
+/// The largest slope of a profile: a step of a metre from one atom to the next has less, and its square times that of the
+/// largest speed is a number.
+const STEEPEST: f64 = 1e12;
 
 fn read_flat(table: &TableReader<'_>) -> Result<Surface, SceneError> {
     table.allow(&[KIND], &[])?;

@@ -17,7 +17,7 @@ use crate::contact::{EventTolerance, StepEnd};
 use crate::integrator::{DenseRoom, Followed, Integrator, Steps, Tolerance};
 use crate::model::{Forces, Model, State};
 use crate::outputs::{self, Accounts, Variable};
-use crate::scene::{Method, Path, Scene};
+use crate::scene::{LARGEST, Method, Path, Scene};
 use companion::Companion;
 pub use handover::Handover;
 use run::{Checkpoint, Run};
@@ -68,9 +68,9 @@ pub enum SimulationError {
         /// The step size, s.
         step: f64,
     },
-    /// The carrier's motion is not a number, or not finite.
-    #[error("the carrier's motion is not finite: {what} = {value}")]
-    NotFinite {
+    /// The carrier's motion is not a number, or larger than [`LARGEST`].
+    #[error("the carrier's motion is out of range: {what} = {value:?}, expected a number up to ±{LARGEST:?}")]
+    OutOfRange {
         /// Which quantity.
         what: &'static str,
         /// Its value.
@@ -144,7 +144,7 @@ impl Simulation {
     /// Puts the layer under the carrier at rest or in motion; what lies under the profile is lifted onto it.
     ///
     /// # Errors
-    /// [`SimulationError::NotFinite`] where `start` is not finite.
+    /// [`SimulationError::OutOfRange`] where `start` is not finite.
     pub fn new(scene: &Scene, start: &Start) -> Result<Self, SimulationError> {
         start.check()?;
         Ok(Self::started(scene, start))

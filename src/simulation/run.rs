@@ -6,7 +6,7 @@ use crate::integrator::Rates;
 use crate::math::{Numbers, visit_all};
 use crate::model::{Carrier, Exchange, Model, State};
 use crate::outputs::{Counters, Energies};
-use crate::scene::Path;
+use crate::scene::{Path, is_possible};
 
 /// The run: where it stands and what it has added up.
 #[derive(Clone, Debug)]
@@ -163,7 +163,7 @@ impl Start {
             ("rate of u", self.u_rate),
             ("rate of w", self.w_rate),
         ];
-        check_finite(&quantities)
+        check_size(&quantities)
     }
 }
 
@@ -178,13 +178,13 @@ impl Motion {
             ("amplitude of w", self.w.amplitude),
             ("frequency of w", self.w.frequency),
         ];
-        check_finite(&quantities)
+        check_size(&quantities)
     }
 }
 
-fn check_finite(quantities: &[(&'static str, f64)]) -> Result<(), SimulationError> {
-    match quantities.iter().find(|(_, value)| !value.is_finite()) {
-        Some(&(what, value)) => Err(SimulationError::NotFinite { what, value }),
+fn check_size(quantities: &[(&'static str, f64)]) -> Result<(), SimulationError> {
+    match quantities.iter().find(|(_, value)| !is_possible(*value)) {
+        Some(&(what, value)) => Err(SimulationError::OutOfRange { what, value }),
         None => Ok(()),
     }
 }

@@ -72,7 +72,7 @@ impl From<SimulationError> for Stop {
         let name = match error {
             SimulationError::TooManySteps { .. } => "TooManySteps",
             SimulationError::StepTooSmall { .. } => "StepTooSmall",
-            SimulationError::NotFinite { .. } => "NotFinite",
+            SimulationError::OutOfRange { .. } => "OutOfRange",
         };
         Self { name, text: error.to_string() }
     }

@@ -1,5 +1,7 @@
 //! Runs that fail on purpose: the status, the message and the state after it.
 
+use asperity::fmi::{Entry, Kind};
+
 use crate::master::{DISCARD, ERROR, EVERYTHING, Fmu, Message, OK};
 
 /// What a failed step may not change: outputs and time.
@@ -66,7 +68,7 @@ fn a_rate_that_is_no_number_is_an_error_too() {
 /// Huge steps end, with numbers or with a reason.
 #[test]
 fn a_huge_step_is_done_or_discarded_and_never_endless() {
-    for (h, rate) in [(1e3, 1e-2), (1e3, 0.0), (1e300, 0.0), (1e-4, 1e9), (1e9, -1e3)] {
+    for (h, rate) in [(1e3, 1e-2), (1e3, 0.0), (1e30, 0.0), (1e-4, 1e9), (1e9, -1e3)] {
         let (fmu, untried) = (started(300), started(300));
         let before = seen(&fmu);
         assert_eq!(fmu.set_rate("u", rate), OK);
@@ -82,10 +84,71 @@ fn a_huge_step_is_done_or_discarded_and_never_endless() {
     }
 }
 
-/// Where the carrier would go beyond what numbers hold, no smaller step of any use can help.
+/// Where the carrier would go beyond what is a place, no smaller step of any use can help.
 #[test]
-fn a_step_beyond_all_numbers_is_an_error() {
+fn a_step_beyond_all_places_is_an_error() {
     let fmu = started(300);
-    assert_eq!((fmu.set_rate("u", 1e200), fmu.step(1e-10, 1e200)), (OK, ERROR));
-    one_message(&fmu, "logStatusError", &["the input u is inf"]);
+    assert_eq!((fmu.set_rate("u", 1e200), fmu.step(1e-10, 1e-3)), (OK, ERROR));
+    one_message(&fmu, "logStatusError", &["the input u is 1e197 at t = "]);
+    let fmu = started(300);
+    assert_eq!((fmu.set_real("w", 1e20), fmu.step(1e-10, 1e-12)), (OK, ERROR));
+    one_message(&fmu, "logStatusError", &["the carrier's motion is out of range: rate of w = "]);
+}
+
+#[test]
+fn times_and_steps_beyond_all_times_are_refused_and_change_nothing() {
+    let fmu = started(300);
+    let before = seen(&fmu);
+    for h in [1e31, 1e300, -1e-9, f64::NAN, f64::INFINITY] {
+        assert_eq!(fmu.step(1e-10, h), ERROR);
+        one_message(
+            &fmu,
+            "logStatusError",
+            &["the communication step size is ", "expected 0 or a number from 1e-30 to 1e30"],
+        );
+        assert_eq!((seen(&fmu), fmu.last_step()), (before.clone(), (OK, OK)));
+    }
+    // A damper over so short a step is no finite stiffness: the tangents would be infinite.
+    let fmu = Fmu::running_with(EVERYTHING);
+    assert_eq!(fmu.step(0.0, f64::MIN_POSITIVE), ERROR);
+    one_message(&fmu, "logStatusError", &["the communication step size is 2.2250738585072014e-308 s"]);
+    assert_eq!(fmu.step(0.0, 1e-30), OK);
+    fmu.bits();
+    let fmu = Fmu::new();
+    assert_eq!(fmu.setup(1e300), ERROR);
+    assert!(fmu.message().contains("the start time is 1e300, expected a number up to ±1e30"));
+}
+
+/// Every number at both ends of its range, under steps of all sizes: done with numbers, or refused with all as it was.
+#[test]
+fn at_the_ends_of_all_ranges_a_step_has_numbers_or_changes_nothing() {
+    let is_real = |entry: &Entry<'_>| matches!(entry, Entry::Parameter(_, Kind::Real));
+    let fmu = Fmu::of(EVERYTHING, false);
+    let parameters: Vec<u32> =
+        fmu.catalogue.entries().filter(|(_, entry)| is_real(entry)).map(|(reference, _)| reference).collect();
+    let mut done = 0;
+    for (&parameter, end) in parameters.iter().flat_map(|parameter| [1e-30, 1e30].map(|end| (parameter, end))) {
+        for place in [0.0, -1e-6, 1e30, -1e30] {
+            let fmu = Fmu::initialising_with(EVERYTHING);
+            assert_eq!(fmu.set_integers(&[fmu.reference("solver.max_steps")], &[20]), OK);
+            fmu.set_reals(&[parameter], &[end]);
+            assert_eq!((fmu.set_real("u", place), fmu.set_real("w", place), fmu.exit()), (OK, OK, OK));
+            for h in [1e-30, 1e-9, 1e-3, 1e30] {
+                done += usize::from(numbers_or_nothing_changed(&fmu, h));
+            }
+        }
+    }
+    // Most are too much for twenty steps; those that are done show that the rest is not refused for another reason.
+    assert!(done > parameters.len(), "{done} steps done with {} parameters", parameters.len());
+}
+
+/// Whether a step is done; `bits` fails where an output is no finite number.
+fn numbers_or_nothing_changed(fmu: &Fmu, h: f64) -> bool {
+    let before = seen(fmu);
+    let status = fmu.step(fmu.last_successful_time(), h);
+    match status {
+        OK => drop(fmu.bits()),
+        _ => assert_eq!(fmu.bits(), before.0, "{:?}", fmu.messages()),
+    }
+    status == OK
 }

@@ -7,7 +7,8 @@
    Between them the carrier moves straight, and the FMU is told so, by the values at a point and the rates to the next.
    COLUMN: r or i, for a Real or an Integer, and a value reference. OUTPUTS: a line for each point, the columns with as
    many digits as it takes to read the same number back. INSTANCES: as many are made, run and freed, one after another;
-   the first writes. How much memory the process took at most, after a tenth of them and at the end, is told where the
+   the first writes, the others do every step twice, from an FMU state that went through a byte string, and leave the
+   last one to fmi2FreeInstance. How much memory the process took at most, after a tenth of them and at the end, is told where the
    system knows it. */
 #if !defined(_WIN32)
 #define _POSIX_C_SOURCE 200809L
@@ -66,6 +67,12 @@ typedef struct {
     fmi2GetRealTYPE *get_real;
     fmi2GetIntegerTYPE *get_integer;
     fmi2DoStepTYPE *do_step;
+    fmi2GetFMUstateTYPE *get_state;
+    fmi2SetFMUstateTYPE *set_state;
+    fmi2FreeFMUstateTYPE *free_state;
+    fmi2SerializedFMUstateSizeTYPE *serialized_size;
+    fmi2SerializeFMUstateTYPE *serialize;
+    fmi2DeSerializeFMUstateTYPE *deserialize;
 } Functions;
 
 static void stop(const char *what, const char *which) {
@@ -159,6 +166,12 @@ static Functions find_functions(void *library) {
     fmi.get_real = (fmi2GetRealTYPE *)find(library, "fmi2GetReal");
     fmi.get_integer = (fmi2GetIntegerTYPE *)find(library, "fmi2GetInteger");
     fmi.do_step = (fmi2DoStepTYPE *)find(library, "fmi2DoStep");
+    fmi.get_state = (fmi2GetFMUstateTYPE *)find(library, "fmi2GetFMUstate");
+    fmi.set_state = (fmi2SetFMUstateTYPE *)find(library, "fmi2SetFMUstate");
+    fmi.free_state = (fmi2FreeFMUstateTYPE *)find(library, "fmi2FreeFMUstate");
+    fmi.serialized_size = (fmi2SerializedFMUstateSizeTYPE *)find(library, "fmi2SerializedFMUstateSize");
+    fmi.serialize = (fmi2SerializeFMUstateTYPE *)find(library, "fmi2SerializeFMUstate");
+    fmi.deserialize = (fmi2DeSerializeFMUstateTYPE *)find(library, "fmi2DeSerializeFMUstate");
     return fmi;
 }
 
@@ -269,13 +282,42 @@ static void step(const Functions *fmi, fmi2Component component, const Motion *mo
     check(fmi->do_step(component, here->time, here[1].time - here->time, fmi2True), "fmi2DoStep");
 }
 
-/* One instance along the whole motion; without columns it writes nothing. */
+/* The state as it is when it has gone through a byte string. */
+static fmi2FMUstate copy_of(const Functions *fmi, fmi2Component component, fmi2FMUstate state) {
+    fmi2FMUstate copy = NULL;
+    fmi2Byte *bytes;
+    size_t size;
+    check(fmi->serialized_size(component, state, &size), "fmi2SerializedFMUstateSize");
+    bytes = resized(NULL, size);
+    check(fmi->serialize(component, state, bytes, size), "fmi2SerializeFMUstate");
+    check(fmi->deserialize(component, bytes, size, &copy), "fmi2DeSerializeFMUstate");
+    free(bytes);
+    return copy;
+}
+
+/* A step, done, undone and done again; the state gone back to is left. */
+static void step_twice(const Functions *fmi, fmi2Component component, const Motion *motion, size_t i) {
+    fmi2FMUstate before = NULL, copy;
+    check(fmi->get_state(component, &before), "fmi2GetFMUstate");
+    step(fmi, component, motion, i);
+    copy = copy_of(fmi, component, before);
+    check(fmi->free_state(component, &before), "fmi2FreeFMUstate");
+    check(fmi->set_state(component, copy), "fmi2SetFMUstate");
+    step(fmi, component, motion, i);
+    if (i + 2 < motion->count) {
+        check(fmi->free_state(component, &copy), "fmi2FreeFMUstate");
+    }
+}
+
+/* One instance along the whole motion; without columns it writes nothing and does every step twice. */
 static void run(const Functions *fmi, fmi2Component component, const Motion *motion, const Columns *columns) {
     size_t i;
     initialise(fmi, component, motion);
     for (i = 0; i < motion->count; i++) {
-        if (i > 0) {
+        if (i > 0 && columns) {
             step(fmi, component, motion, i - 1);
+        } else if (i > 0) {
+            step_twice(fmi, component, motion, i - 1);
         }
         if (columns) {
             write_row(fmi, component, columns);

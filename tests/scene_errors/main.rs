@@ -90,7 +90,7 @@ fn assert_refusals(name: &str, cases: &[(usize, &str, usize, &str)]) {
 }
 
 const PATH: &str = "a relative path of a file beside or below the scene file, without `..` and backslashes";
-const NAME: &str = "a text, not empty and without control characters";
+const NAME: &str = "a text, not empty, without control characters and of at most 200 letters";
 
 #[test]
 fn the_base_is_a_scene() {
@@ -105,9 +105,9 @@ fn an_error_can_be_asked_for_its_parts() {
     let error = Scene::parse(&with_line(6, "mass = -1.0"), "some/scene.toml".as_ref()).unwrap_err();
     assert_eq!(error.file(), PathBuf::from("some/scene.toml"));
     assert_eq!((error.line(), error.key()), (Some(6), "layer.mass"));
-    let expected = Problem::Value { given: "-1.0".into(), expected: "a number > 0".into() };
+    let expected = Problem::Value { given: "-1.0".into(), expected: "a number from 1e-30 to 1e30".into() };
     assert_eq!(*error.problem(), expected);
-    assert_eq!(error.to_string(), "some/scene.toml:6: layer.mass = -1.0: expected a number > 0");
+    assert_eq!(error.to_string(), "some/scene.toml:6: layer.mass = -1.0: expected a number from 1e-30 to 1e30");
 }
 
 #[test]

@@ -48,7 +48,13 @@ fn points_that_are_no_profile() {
                 15,
                 "kind = 'points'\nx = [0, 1e-320, 1]\nz = [0, 1, 0]",
                 14,
-                "surface = [surface]: expected points that a spline can be laid through: no finite one exists",
+                "surface = [surface]: expected points with a spline of slopes up to 1e12 and curvatures up to 1e30 1/m",
+            ),
+            (
+                15,
+                "kind = 'points'\nx = [0, 1e-20, 1]\nz = [0, 1, 0]",
+                14,
+                "surface = [surface]: expected points with a spline of slopes up to 1e12 and curvatures up to 1e30 1/m",
             ),
         ],
     );
@@ -75,7 +81,7 @@ fn roughness_that_does_not_fit_the_masses() {
                 7,
                 "roughness = { kind = 'points', z = [0, nan, 1] }",
                 7,
-                "layer.roughness.z[2] = nan: expected a finite number",
+                "layer.roughness.z[2] = nan: expected a number from -1e30 to 1e30",
             ),
             (
                 7,
@@ -113,8 +119,8 @@ fn profiles_that_are_none() {
     let cases = [
         ("", false, "1: points = 0: expected at least 2 points for a profile"),
         ("x,z\n0,1\n", false, "2: points = 1: expected at least 2 points for a profile"),
-        ("x,z\n0,1\n1,high\n", false, "3: z = \"high\": expected a finite number"),
-        ("x,z\n0,1\n1,nan\n", false, "3: z = \"nan\": expected a finite number"),
+        ("x,z\n0,1\n1,high\n", false, "3: z = \"high\": expected a number from -1e30 to 1e30"),
+        ("x,z\n0,1\n1,nan\n", false, "3: z = \"nan\": expected a number from -1e30 to 1e30"),
         (
             "x,z\n0,1\n1,2,3\n",
             false,

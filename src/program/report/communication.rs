@@ -1,7 +1,7 @@
 //! What a user of the FMU meets: a carrier that follows the excitation through a master's values, with rates and without,
 //! at ever shorter communication steps. The rules are the FMU's own.
 
-use asperity::fmi::{Carrier as Inputs, Input, InputNotFinite};
+use asperity::fmi::{Carrier as Inputs, Input, InputOutOfRange};
 use asperity::scene::{Phase, Scene};
 use asperity::simulation::{Simulation, SimulationError};
 use cpu_time::ThreadTime;
@@ -135,7 +135,7 @@ fn drive(scene: &Scene, given: Given, rows: Rows, tick: &dyn Fn(f64)) -> Result<
 #[error(transparent)]
 pub(super) enum StepError {
     /// What the master gave.
-    Input(#[from] InputNotFinite),
+    Input(#[from] InputOutOfRange),
     /// What the run met.
     Run(#[from] SimulationError),
 }

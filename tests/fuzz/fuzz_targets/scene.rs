@@ -1,0 +1,8 @@
+//! The text of a scene.
+#![no_main]
+#![allow(dead_code, reason = "each target is one of those")]
+
+#[path = "../../fuzzed/targets/mod.rs"]
+mod targets;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| targets::scene::run(bytes));

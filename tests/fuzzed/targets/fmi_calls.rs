@@ -1,0 +1,565 @@
+//! Sequences of FMI calls on several instances, with any arguments that the standard's contract allows a master: wrong
+//! values, wrong references, NULL, wrong sizes, calls out of order, states freed or of another instance.
+
+use std::ffi::{CString, c_char};
+use std::ptr;
+
+use arbitrary::{Arbitrary, Unstructured};
+use asperity::fmi::bindings::*;
+use asperity::fmi::*;
+
+use super::fmu::{self, Fmu, MOST_STEPS, OK, Outputs, checked, show, sites};
+use super::number::Number;
+
+/// Calls of one case, and elements of an array of arguments.
+const MOST_CALLS: usize = 24;
+const MOST_ELEMENTS: usize = 6;
+
+/// Instances at a time.
+const SLOTS: usize = 3;
+
+#[derive(Debug, Arbitrary)]
+struct Case {
+    /// The scene of the first instance, which can step from the start where `started` says so.
+    site: u8,
+    started: Option<[Number; 4]>,
+    calls: Vec<(u8, Call)>,
+}
+
+/// A value reference: small ones are there, 255 stands for the largest.
+#[derive(Clone, Copy, Debug, Arbitrary)]
+struct Reference(u8);
+
+/// A place for FMU states: those kept so far, freed or not, NULL and one that never was.
+#[derive(Clone, Copy, Debug, Arbitrary)]
+struct Handle(u8);
+
+/// An array; NULL where `null` is 7, so seldom.
+#[derive(Debug, Arbitrary)]
+struct Array<T> {
+    null: u8,
+    elements: Vec<T>,
+}
+
+#[derive(Debug, Arbitrary)]
+enum Text {
+    Word(u8),
+    Bytes(Vec<u8>),
+    Null,
+}
+
+#[derive(Debug, Arbitrary)]
+enum Call {
+    // Ways that lead far.
+    Start { site: u8, logging: bool, inputs: [Number; 4] },
+    Inputs { u: Number, w: Number },
+    Rates { u: Number, w: Number },
+    Step { h: Number },
+    StepsOfMicroseconds { count: u8, h: u8 },
+    StepTwice { h: Number },
+    Parameter { which: u8, value: Number },
+    Thaw { from: u8 },
+    // Each function with anything.
+    Instantiate { name: Text, kind: u8, guid: Text, location: Text, functions: bool, logging: bool, site: u8 },
+    Free,
+    SetDebugLogging { on: bool, categories: Array<Text> },
+    SetupExperiment { tolerance: Option<Number>, start: Number, stop: Option<Number> },
+    EnterInitializationMode,
+    ExitInitializationMode,
+    Terminate,
+    Reset,
+    GetReal(Array<Reference>, bool),
+    GetInteger(Array<Reference>, bool),
+    GetBoolean(Array<Reference>, bool),
+    GetString(Array<Reference>, bool),
+    SetReal(Array<(Reference, Number)>, bool),
+    SetInteger(Array<(Reference, i32)>, bool),
+    SetBoolean(Array<(Reference, i32)>, bool),
+    SetString(Array<(Reference, Text)>, bool),
+    GetState { over: Option<Handle>, null: u8 },
+    SetState(Handle),
+    FreeState(Handle, u8),
+    SerializedSize(Handle, u8),
+    Serialize { state: Handle, off: i8, null: u8 },
+    DeSerialize { which: u8, change: Option<(u16, u8)>, null: u8 },
+    DirectionalDerivative { unknowns: Array<Reference>, knowns: Array<(Reference, Number)>, null: bool },
+    AllDerivatives { u: Number, w: Number },
+    SetInputDerivatives(Array<(Reference, i32, Number)>, bool),
+    GetOutputDerivatives(Array<(Reference, i32)>, bool),
+    DoStep { point: Option<Number>, h: Number },
+    CancelStep,
+    GetStatus { kind: u8, which: u8, null: bool },
+    OnNothing,
+}
+
+/// Runs a sequence of calls.
+pub fn run(bytes: &[u8]) {
+    let Ok(case) = Case::arbitrary_take_rest(Unstructured::new(bytes)) else { return };
+    show(&case);
+    let mut master = Master::default();
+    master.put(0, case.site);
+    if let (Some(inputs), Some(fmu)) = (case.started, &master.slots[0]) {
+        fmu.start(inputs.map(Number::value));
+    }
+    for (slot, call) in case.calls.iter().take(MOST_CALLS) {
+        master.call(usize::from(*slot) % SLOTS, call);
+    }
+}
+
+/// A state as it was kept.
+struct Kept {
+    handle: fmi2FMUstate,
+    slot: usize,
+    /// What it showed; `None` where it is freed, made from bytes or showed nothing.
+    outputs: Option<Outputs>,
+}
+
+/// What a master has in hand.
+#[derive(Default)]
+struct Master {
+    slots: [Option<Fmu>; SLOTS],
+    /// How often the instance of a slot has been used before.
+    uses: [usize; SLOTS],
+    states: Vec<Kept>,
+    bytes: Vec<Vec<u8>>,
+}
+
+impl Drop for Master {
+    fn drop(&mut self) {
+        // After a failed assertion no instance is used again.
+        if !std::thread::panicking() {
+            (0..SLOTS).for_each(|slot| self.give_back(slot));
+        }
+    }
+}
+
+impl Reference {
+    fn number(self) -> u32 {
+        if self.0 == u8::MAX { u32::MAX } else { self.0.into() }
+    }
+}
+
+impl<T> Array<T> {
+    fn taken(&self) -> impl Iterator<Item = &T> {
+        self.elements.iter().take(MOST_ELEMENTS)
+    }
+
+    /// The pointer to pass for `values`, made from the elements.
+    fn pointer<V>(&self, values: &[V]) -> *const V {
+        if self.null == 7 { ptr::null() } else { values.as_ptr() }
+    }
+}
+
+fn or_null<V>(null: bool, place: &mut [V]) -> *mut V {
+    if null { ptr::null_mut() } else { place.as_mut_ptr() }
+}
+
+impl Text {
+    fn string(&self) -> Option<CString> {
+        const WORDS: [&str; 9] =
+            ["event", "step", "auto", "relaxed", "undeformed", "linear", "hold", "logEvents", "logSolver"];
+        match self {
+            Self::Word(i) => CString::new(WORDS[usize::from(*i) % WORDS.len()]).ok(),
+            Self::Bytes(bytes) => {
+                CString::new(bytes.iter().copied().take_while(|&byte| byte != 0).collect::<Vec<_>>()).ok()
+            }
+            Self::Null => None,
+        }
+    }
+}
+
+fn pointer(string: &Option<CString>) -> *const c_char {
+    string.as_ref().map_or(ptr::null(), |string| string.as_ptr())
+}
+
+impl Master {
+    fn put(&mut self, slot: usize, site: u8) {
+        self.give_back(slot);
+        let (fmu, uses) = sites()[usize::from(site) % sites().len()].take();
+        (self.slots[slot], self.uses[slot]) = (Some(fmu), uses);
+    }
+
+    /// Frees the states and keeps the instance for another case.
+    fn give_back(&mut self, slot: usize) {
+        let Some(fmu) = self.slots[slot].take() else { return };
+        for kept in self.states.iter_mut().filter(|kept| kept.slot == slot) {
+            // SAFETY: an instance that lives, any handle.
+            unsafe { fmi2FreeFMUstate(fmu.c, &mut kept.handle) };
+            kept.outputs = None;
+        }
+        fmu.site.give_back(fmu, self.uses[slot]);
+    }
+
+    fn free(&mut self, slot: usize) {
+        if let Some(fmu) = self.slots[slot].take() {
+            // SAFETY: from fmi2Instantiate, and freed once.
+            unsafe { fmi2FreeInstance(fmu.c) };
+            self.states.iter_mut().filter(|kept| kept.slot == slot).for_each(|kept| kept.outputs = None);
+        }
+    }
+
+    fn handle(&self, handle: Handle) -> fmi2FMUstate {
+        match (handle.0, self.states.len()) {
+            (255, _) | (_, 0) => ptr::null_mut(),
+            (254, _) => ptr::without_provenance_mut(8),
+            (i, count) => self.states[usize::from(i) % count].handle,
+        }
+    }
+
+    /// What is known of a state of the instance in `slot`.
+    fn kept(&mut self, slot: usize, handle: fmi2FMUstate) -> Option<&mut Kept> {
+        self.states.iter_mut().rev().find(|kept| kept.handle == handle && kept.slot == slot)
+    }
+
+    fn call(&mut self, slot: usize, call: &Call) {
+        match call {
+            Call::Start { site, logging, inputs } => {
+                self.put(slot, *site);
+                if let Some(fmu) = &self.slots[slot] {
+                    // SAFETY: an instance that lives.
+                    checked(unsafe { fmi2SetDebugLogging(fmu.c, (*logging).into(), 0, ptr::null()) });
+                    fmu.start(inputs.map(Number::value));
+                }
+            }
+            Call::Instantiate { name, kind, guid, location, functions, logging, site } => {
+                let strings = [name, guid, location].map(Text::string);
+                self.instantiate(slot, (strings, *kind), *functions, *logging, *site);
+            }
+            Call::Free => self.free(slot),
+            Call::OnNothing => on_nothing(),
+            _ => {
+                if let Some(fmu) = self.slots[slot] {
+                    self.call_on(slot, fmu, call);
+                }
+            }
+        }
+    }
+
+    fn call_on(&mut self, slot: usize, fmu: Fmu, call: &Call) {
+        match call {
+            Call::GetState { .. }
+            | Call::SetState(_)
+            | Call::FreeState(..)
+            | Call::SerializedSize(..)
+            | Call::Serialize { .. }
+            | Call::DeSerialize { .. }
+            | Call::Thaw { .. } => self.call_on_states(slot, fmu, call),
+            Call::Inputs { .. }
+            | Call::Rates { .. }
+            | Call::Step { .. }
+            | Call::StepsOfMicroseconds { .. }
+            | Call::StepTwice { .. }
+            | Call::DoStep { .. } => step(fmu, call),
+            _ => call_function(fmu, call),
+        }
+    }
+
+    fn instantiate(
+        &mut self,
+        slot: usize,
+        ([name, guid, location], kind): ([Option<CString>; 3], u8),
+        functions: bool,
+        logging: bool,
+        site: u8,
+    ) {
+        self.free(slot);
+        let site = &sites()[usize::from(site) % sites().len()];
+        let callbacks = fmu::callbacks();
+        let functions = if functions { ptr::from_ref(&callbacks) } else { ptr::null() };
+        // A short text stands for the right one.
+        let right = |text: &Option<CString>, right: *const c_char| match text {
+            Some(text) if text.as_bytes().len() < 2 => right,
+            text => pointer(text),
+        };
+        let (guid, location) = (right(&guid, site.guid.as_ptr()), right(&location, site.location.as_ptr()));
+        let kind = fmi2Type::from(kind & 1);
+        // SAFETY: strings that live or NULL, callbacks that live or NULL.
+        let c = unsafe { fmi2Instantiate(pointer(&name), kind, guid, location, functions, 0, logging.into()) };
+        (self.slots[slot], self.uses[slot]) = ((!c.is_null()).then_some(Fmu { c, site }), 0);
+    }
+
+    fn call_on_states(&mut self, slot: usize, fmu: Fmu, call: &Call) {
+        match *call {
+            Call::GetState { over, null } => self.get_state(slot, fmu, over.map(|handle| self.handle(handle)), null),
+            Call::SetState(handle) => self.set_state(slot, fmu, self.handle(handle)),
+            Call::FreeState(handle, null) => self.free_state(fmu, self.handle(handle), null),
+            Call::SerializedSize(handle, null) => {
+                let mut size = [0];
+                // SAFETY: an instance that lives, any handle, a place or NULL.
+                checked(unsafe {
+                    fmi2SerializedFMUstateSize(fmu.c, self.handle(handle), or_null(null == 7, &mut size))
+                });
+            }
+            Call::Serialize { state, off, null } => self.serialise(fmu, self.handle(state), off, null),
+            Call::DeSerialize { which, change, null } => self.deserialise(slot, fmu, which, change, null),
+            Call::Thaw { from } => self.thaw(slot, fmu, usize::from(from) % SLOTS),
+            _ => (),
+        }
+    }
+
+    fn get_state(&mut self, slot: usize, fmu: Fmu, over: Option<fmi2FMUstate>, null: u8) {
+        let mut place = [over.unwrap_or(ptr::null_mut())];
+        let before = place[0];
+        // SAFETY: an instance that lives, a place that holds any handle, or NULL.
+        let status = checked(unsafe { fmi2GetFMUstate(fmu.c, or_null(null == 7, &mut place)) });
+        assert!(status == OK || place[0] == before);
+        if status == OK {
+            assert!(null != 7 && !place[0].is_null());
+            self.states.push(Kept { handle: place[0], slot, outputs: fmu.outputs() });
+        }
+    }
+
+    fn set_state(&mut self, slot: usize, fmu: Fmu, handle: fmi2FMUstate) {
+        let before = fmu.outputs();
+        // SAFETY: an instance that lives, any handle.
+        let status = checked(unsafe { fmi2SetFMUstate(fmu.c, handle) });
+        let after = fmu.outputs();
+        if status != OK {
+            assert_eq!(after, before);
+        } else if let Some(expected) = self.kept(slot, handle).and_then(|kept| kept.outputs.as_ref()) {
+            assert_eq!(after.as_ref(), Some(expected));
+        }
+    }
+
+    fn free_state(&mut self, fmu: Fmu, handle: fmi2FMUstate, null: u8) {
+        let mut place = [handle];
+        // SAFETY: an instance that lives, a place that holds any handle, or NULL.
+        let status = checked(unsafe { fmi2FreeFMUstate(fmu.c, or_null(null == 7, &mut place)) });
+        if status == OK && null != 7 {
+            assert!(place[0].is_null());
+            // The same handle may be given again, to another state.
+            self.states.iter_mut().filter(|kept| kept.handle == handle).for_each(|kept| kept.outputs = None);
+        }
+    }
+
+    fn serialise(&mut self, fmu: Fmu, state: fmi2FMUstate, off: i8, null: u8) {
+        let mut size = 0;
+        // SAFETY: an instance that lives, any handle, slices of the lengths given or NULL.
+        unsafe {
+            checked(fmi2SerializedFMUstateSize(fmu.c, state, &mut size));
+            let wrong = size.saturating_add_signed(off.into());
+            let mut bytes = vec![0_u8; wrong];
+            let status = checked(fmi2SerializeFMUstate(fmu.c, state, or_null(null == 7, &mut bytes).cast(), wrong));
+            if status == OK && self.bytes.len() < 8 {
+                assert!(wrong == size && size > 0);
+                self.bytes.push(bytes);
+            }
+        }
+    }
+
+    fn deserialise(&mut self, slot: usize, fmu: Fmu, which: u8, change: Option<(u16, u8)>, null: u8) {
+        if self.bytes.is_empty() {
+            return;
+        }
+        let mut bytes = self.bytes[usize::from(which) % self.bytes.len()].clone();
+        if let Some((place, byte)) = change {
+            let place = usize::from(place) % bytes.len();
+            bytes[place] = byte;
+        }
+        let mut place = [ptr::null_mut()];
+        let from = if null == 9 { ptr::null() } else { bytes.as_ptr().cast() };
+        // SAFETY: an instance that lives, slices of the lengths given or NULL.
+        let status =
+            checked(unsafe { fmi2DeSerializeFMUstate(fmu.c, from, bytes.len(), or_null(null == 7, &mut place)) });
+        assert_eq!(status == OK, !place[0].is_null());
+        if status == OK {
+            self.states.push(Kept { handle: place[0], slot, outputs: None });
+        }
+    }
+
+    /// One instance goes on where another of the same scene stands.
+    fn thaw(&mut self, slot: usize, fmu: Fmu, from: usize) {
+        let Some((other, bytes)) = self.slots[from].and_then(|other| Some((other, other.frozen()?))) else { return };
+        let mut state = ptr::null_mut();
+        // SAFETY: an instance that lives, a slice of the length given.
+        let status = checked(unsafe { fmi2DeSerializeFMUstate(fmu.c, bytes.as_ptr().cast(), bytes.len(), &mut state) });
+        assert_eq!(status == OK, ptr::eq(other.site, fmu.site), "a state of another scene");
+        if status == OK {
+            let expected = other.outputs();
+            self.set_state(slot, fmu, state);
+            fmu.forget(state);
+            assert_eq!(fmu.outputs(), expected);
+        }
+    }
+}
+
+fn step(fmu: Fmu, call: &Call) {
+    let own = || fmu.time().unwrap_or_default();
+    match *call {
+        Call::Inputs { u, w } => {
+            // SAFETY: an instance that lives, slices of the lengths given.
+            checked(unsafe { fmi2SetReal(fmu.c, [0, 1].as_ptr(), 2, [u.value(), w.value()].as_ptr()) });
+        }
+        Call::Rates { u, w } => {
+            fmu.set_rates([u, w].map(Number::value));
+        }
+        Call::Step { h } => {
+            fmu.checked_step(own(), h.value());
+        }
+        Call::StepsOfMicroseconds { count, h } => {
+            (0..count % 8).for_each(|_| {
+                fmu.checked_step(own(), f64::from(h) * 1e-6);
+            });
+        }
+        Call::StepTwice { h } => step_twice(fmu, own(), h.value()),
+        Call::DoStep { point, h } => {
+            fmu.checked_step(point.map_or_else(own, Number::value), h.value());
+        }
+        _ => (),
+    }
+}
+
+/// From the same state a step gives the same, bit for bit.
+fn step_twice(fmu: Fmu, point: f64, h: f64) {
+    let state = fmu.keep();
+    if state.is_null() {
+        return;
+    }
+    let first = (fmu.checked_step(point, h), fmu.outputs(), fmu.frozen());
+    // SAFETY: an instance that lives, a state of it.
+    assert_eq!(unsafe { fmi2SetFMUstate(fmu.c, state) }, OK);
+    let second = (fmu.step(point, h), fmu.outputs(), fmu.frozen());
+    assert!(first == second, "another result from the same state");
+    fmu.forget(state);
+}
+
+fn call_function(fmu: Fmu, call: &Call) {
+    let c = fmu.c;
+    let references = |array: &Array<Reference>| array.taken().map(|one| one.number()).collect::<Vec<u32>>();
+    // SAFETY: an instance that lives; slices of the lengths given, or NULL.
+    let status = unsafe {
+        match call {
+            Call::Parameter { which, value } => {
+                let reference = fmu.site.parameters[usize::from(*which) % fmu.site.parameters.len()];
+                fmi2SetReal(c, &reference, 1, &value.value())
+            }
+            Call::SetDebugLogging { on, categories } => {
+                let strings: Vec<_> = categories.taken().map(Text::string).collect();
+                let pointers: Vec<_> = strings.iter().map(pointer).collect();
+                fmi2SetDebugLogging(c, (*on).into(), pointers.len(), categories.pointer(&pointers))
+            }
+            Call::SetupExperiment { tolerance, start, stop } => {
+                let value = |number: &Option<Number>| number.map_or(0.0, Number::value);
+                let (has_tolerance, has_stop) = (tolerance.is_some().into(), stop.is_some().into());
+                fmi2SetupExperiment(c, has_tolerance, value(tolerance), start.value(), has_stop, value(stop))
+            }
+            Call::EnterInitializationMode => fmi2EnterInitializationMode(c),
+            Call::ExitInitializationMode => fmi2ExitInitializationMode(c),
+            Call::Terminate => fmi2Terminate(c),
+            Call::Reset => reset(fmu),
+            Call::GetReal(array, null) => {
+                let (vr, mut values) = (references(array), [0.0; MOST_ELEMENTS]);
+                fmi2GetReal(c, array.pointer(&vr), vr.len(), or_null(*null, &mut values))
+            }
+            Call::GetInteger(array, null) => {
+                let (vr, mut values) = (references(array), [0; MOST_ELEMENTS]);
+                fmi2GetInteger(c, array.pointer(&vr), vr.len(), or_null(*null, &mut values))
+            }
+            Call::GetBoolean(array, null) => {
+                let (vr, mut values) = (references(array), [0; MOST_ELEMENTS]);
+                fmi2GetBoolean(c, array.pointer(&vr), vr.len(), or_null(*null, &mut values))
+            }
+            Call::GetString(array, null) => {
+                let (vr, mut values) = (references(array), [ptr::null(); MOST_ELEMENTS]);
+                fmi2GetString(c, array.pointer(&vr), vr.len(), or_null(*null, &mut values))
+            }
+            Call::SetReal(array, null) => {
+                let (vr, mut values): (Vec<_>, Vec<_>) =
+                    array.taken().map(|(reference, value)| (reference.number(), value.value())).unzip();
+                fmi2SetReal(c, array.pointer(&vr), vr.len(), or_null(*null, &mut values))
+            }
+            Call::SetInteger(array, null) => {
+                let capped = |reference: u32, value: i32| {
+                    if reference == fmu.site.max_steps { value.min(MOST_STEPS) } else { value }
+                };
+                let (vr, mut values): (Vec<_>, Vec<_>) = array
+                    .taken()
+                    .map(|(reference, value)| (reference.number(), capped(reference.number(), *value)))
+                    .unzip();
+                fmi2SetInteger(c, array.pointer(&vr), vr.len(), or_null(*null, &mut values))
+            }
+            Call::SetBoolean(array, null) => {
+                let (vr, mut values): (Vec<_>, Vec<_>) =
+                    array.taken().map(|(reference, value)| (reference.number(), *value)).unzip();
+                fmi2SetBoolean(c, array.pointer(&vr), vr.len(), or_null(*null, &mut values))
+            }
+            Call::SetString(array, null) => {
+                // References of other types are tried by the other functions.
+                let reference = |one: &Reference| match fmu.site.texts.get(usize::from(one.0)) {
+                    Some(&text) => text,
+                    None => one.number(),
+                };
+                let strings: Vec<_> = array.taken().map(|(_, text)| text.string()).collect();
+                let (vr, mut values): (Vec<_>, Vec<_>) =
+                    array.taken().zip(&strings).map(|((one, _), text)| (reference(one), pointer(text))).unzip();
+                fmi2SetString(c, array.pointer(&vr), vr.len(), or_null(*null, &mut values))
+            }
+            Call::DirectionalDerivative { unknowns, knowns, null } => {
+                let unknown = references(unknowns);
+                let (known, direction): (Vec<_>, Vec<_>) =
+                    knowns.taken().map(|(reference, value)| (reference.number(), value.value())).unzip();
+                let (known, count, steps) = (knowns.pointer(&known), known.len(), direction.as_ptr());
+                let mut values = [0.0; MOST_ELEMENTS];
+                let place = or_null(*null, &mut values);
+                let (unknowns, unknown_count) = (unknowns.pointer(&unknown), unknown.len());
+                let status = fmi2GetDirectionalDerivative(c, unknowns, unknown_count, known, count, steps, place);
+                assert!(values.iter().all(|value| value.is_finite()));
+                status
+            }
+            Call::AllDerivatives { u, w } => {
+                fmu.check_derivatives([u, w].map(|number| number.value()));
+                OK
+            }
+            Call::SetInputDerivatives(array, null) => {
+                let vr: Vec<_> = array.taken().map(|one| one.0.number()).collect();
+                let orders: Vec<_> = array.taken().map(|one| one.1).collect();
+                let mut values: Vec<_> = array.taken().map(|one| one.2.value()).collect();
+                let place = or_null(*null, &mut values);
+                fmi2SetRealInputDerivatives(c, array.pointer(&vr), vr.len(), orders.as_ptr(), place)
+            }
+            Call::GetOutputDerivatives(array, null) => {
+                let vr: Vec<_> = array.taken().map(|one| one.0.number()).collect();
+                let orders: Vec<_> = array.taken().map(|one| one.1).collect();
+                let mut values = [0.0; MOST_ELEMENTS];
+                let place = or_null(*null, &mut values);
+                fmi2GetRealOutputDerivatives(c, array.pointer(&vr), vr.len(), orders.as_ptr(), place)
+            }
+            Call::CancelStep => fmi2CancelStep(c),
+            Call::GetStatus { kind, which, null } => get_status(c, (*kind).into(), *which, *null),
+            _ => OK,
+        }
+    };
+    checked(status);
+}
+
+/// Back to what a new instance is, but for what cannot be seen.
+fn reset(fmu: Fmu) -> fmi2Status {
+    // SAFETY: an instance that lives.
+    let status = checked(unsafe { fmi2Reset(fmu.c) });
+    assert!(fmu.frozen().as_ref() == Some(&fmu.site.fresh), "a reset instance is not as a new one");
+    status
+}
+
+unsafe fn get_status(c: fmi2Component, kind: fmi2StatusKind, which: u8, null: bool) -> fmi2Status {
+    // SAFETY: an instance that lives, places or NULL.
+    unsafe {
+        match which % 5 {
+            0 => fmi2GetStatus(c, kind, or_null(null, &mut [0])),
+            1 => fmi2GetRealStatus(c, kind, or_null(null, &mut [0.0])),
+            2 => fmi2GetIntegerStatus(c, kind, or_null(null, &mut [0])),
+            3 => fmi2GetBooleanStatus(c, kind, or_null(null, &mut [0])),
+            _ => fmi2GetStringStatus(c, kind, or_null(null, &mut [ptr::null()])),
+        }
+    }
+}
+
+/// Functions that take no instance, or NULL for one.
+fn on_nothing() {
+    // SAFETY: NULL is what is tested.
+    unsafe {
+        assert!(!fmi2GetVersion().is_null() && !fmi2GetTypesPlatform().is_null());
+        let c = ptr::null_mut();
+        fmi2FreeInstance(c);
+        assert_eq!((fmi2DoStep(c, 0.0, 1.0, 1), fmi2Reset(c)), (fmi2Status_fmi2Error, fmi2Status_fmi2Error));
+    }
+}

@@ -1,0 +1,388 @@
+//! Small FMUs to fuzz, and what every call of theirs must keep to.
+
+use std::ffi::{CStr, CString, c_char, c_void};
+use std::sync::{Mutex, OnceLock};
+use std::{env, fmt, fs, mem, process, ptr};
+
+use asperity::fmi::bindings::*;
+use asperity::fmi::{self, Catalogue, Entry, Kind, SCENE_FILE, Sources};
+use asperity::scene::{OutputGroup, Scene};
+
+pub const OK: fmi2Status = fmi2Status_fmi2OK;
+pub const DISCARD: fmi2Status = fmi2Status_fmi2Discard;
+
+/// The largest number of steps that a call may ask for here.
+pub const MOST_STEPS: i32 = 40;
+
+/// A folder with a scene, and what its model description would say.
+pub struct Site {
+    pub guid: CString,
+    pub location: CString,
+    pub reals: Vec<u32>,
+    pub integers: Vec<u32>,
+    /// Fixed parameters: reals, the number of steps, texts.
+    pub parameters: Vec<u32>,
+    pub max_steps: u32,
+    pub texts: Vec<u32>,
+    pub time: u32,
+    /// A new instance as a byte string.
+    pub fresh: Vec<u8>,
+    /// Instances that can be used again: a new one reads its scene, which takes longer than most cases do.
+    pool: Mutex<Vec<(usize, usize)>>,
+}
+
+/// The scenes: without friction on a flat floor, with a bit of all on a wave and on points.
+pub fn sites() -> &'static [Site] {
+    static SITES: OnceLock<Vec<Site>> = OnceLock::new();
+    SITES.get_or_init(|| SCENES.iter().enumerate().map(|(i, text)| Site::new(i, text)).collect())
+}
+
+/// An instance is freed after so many cases.
+const MOST_USES: usize = 200;
+
+const SCENES: [&str; 6] = [
+    "name = 'bare'\nlayer = { masses = 1, spacing = 1e-4, mass = 1e-7, vertical = { stiffness = 2e3 } }\n\
+     surface = { kind = 'flat' }\nsolver = { max_steps = 30 }\n",
+    "name = 'loose'\nlayer = { masses = 1, spacing = 1e-4, mass = 1e-7 }\nsurface = { kind = 'flat' }\n\
+     solver = { method = 'auto', max_steps = 30 }\n",
+    "solver = { method = 'event', relative_tolerance = 1e-4, max_steps = 30 }\n",
+    "solver = { method = 'step', relative_tolerance = 1e-4, max_steps = 30 }\n",
+    "solver = { method = 'auto', relative_tolerance = 1e-4, max_steps = 30 }\n",
+    "solver = { method = 'auto', relative_tolerance = 1e-4, max_steps = 30, reduce = 0.05 }\ninput = { extrapolation = 'hold' }\n",
+];
+
+/// Two masses with everything that a scene can have.
+const EVERYTHING: &str = "
+name = 'everything'
+[layer]
+masses = 2
+spacing = 0.7e-4
+mass = 1.0e-7
+roughness = { kind = 'points', z = [0.0, 1e-7] }
+vertical = { stiffness = 2e3, damping = 8e-3, maxwell = [{ stiffness = 1e3, relaxation_time = 1e-4 }] }
+horizontal = { stiffness = 1e3, damping = 8e-3, maxwell = [{ stiffness = 5e2, relaxation_time = 1e-5 }] }
+lateral_x = { stiffness = 5e2, damping = 2e-3, maxwell = [{ stiffness = 2e2, relaxation_time = 1e-5 }] }
+lateral_z = { stiffness = 3e2, damping = 2e-3 }
+[surface]
+kind = 'points'
+x = [0.0, 1e-4, 2e-4]
+z = [0.0, 1e-6, 0.0]
+periodic = true
+[friction]
+coulomb = 0.3
+shear_force = 1e-5
+";
+
+impl Site {
+    fn new(number: usize, text: &str) -> Self {
+        let groups: Vec<String> = OutputGroup::ALL.iter().map(|group| format!("'{}'", group.name())).collect();
+        let base = if text.starts_with("name") { "" } else { EVERYTHING };
+        let scene = format!("{text}fmu = {{ outputs = [{}] }}\n{base}", groups.join(", "));
+        let folder = env::temp_dir().join(format!("asperity-fmu-{}-{number}", process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        let file = folder.join(SCENE_FILE);
+        fs::write(&file, scene).unwrap();
+        let scene = Scene::load(&file).unwrap();
+        let catalogue = Catalogue::new(&scene);
+        let guid = fmi::guid(&Sources::read(&file, &scene).unwrap(), &catalogue);
+        let of = |take: &dyn Fn(&Entry<'_>) -> bool| {
+            catalogue.entries().filter(|(_, entry)| take(entry)).map(|(reference, _)| reference).collect::<Vec<_>>()
+        };
+        let is_output = |entry: &Entry<'_>| matches!(entry, Entry::Output(..)) && entry.name() != "solver.run_time";
+        let named = |name: &str| of(&|entry| entry.name() == name)[0];
+        let mut site = Self {
+            guid: CString::new(guid).unwrap(),
+            location: CString::new(folder.to_str().unwrap()).unwrap(),
+            reals: of(&|entry| is_output(entry) && entry.kind() == Kind::Real),
+            integers: of(&|entry| is_output(entry) && entry.kind() == Kind::Integer),
+            parameters: of(&|entry| matches!(entry, Entry::Parameter(_, Kind::Real))),
+            max_steps: named("solver.max_steps"),
+            texts: of(&|entry| entry.kind() == Kind::Text),
+            time: named("solver.run_time"),
+            fresh: Vec::new(),
+            pool: Mutex::default(),
+        };
+        site.fresh = site.fresh_bytes();
+        site
+    }
+
+    fn fresh_bytes(&self) -> Vec<u8> {
+        let c = self.instantiate(false);
+        let bytes = frozen(c);
+        // SAFETY: from fmi2Instantiate, and freed once.
+        unsafe { fmi::fmi2FreeInstance(c) };
+        bytes.unwrap()
+    }
+
+    /// An instance that is as a new one, and how often it has been used.
+    pub fn take(&'static self) -> (Fmu, usize) {
+        let (c, uses) =
+            self.pool.lock().unwrap().pop().unwrap_or_else(|| (self.instantiate(false).expose_provenance(), 0));
+        (Fmu { c: ptr::with_exposed_provenance_mut(c), site: self }, uses)
+    }
+
+    /// Keeps an instance for another case, or frees it.
+    pub fn give_back(&self, fmu: Fmu, uses: usize) {
+        // SAFETY: an instance that lives, and is freed once.
+        unsafe {
+            if uses < MOST_USES
+                && fmi::fmi2Reset(fmu.c) == OK
+                && fmi::fmi2SetDebugLogging(fmu.c, 0, 0, ptr::null()) == OK
+            {
+                self.pool.lock().unwrap().push((fmu.c.expose_provenance(), uses + 1));
+            } else {
+                fmi::fmi2FreeInstance(fmu.c);
+            }
+        }
+    }
+
+    pub fn instantiate(&self, logging: bool) -> fmi2Component {
+        let kind = fmi2Type_fmi2CoSimulation;
+        let (guid, location, callbacks) = (self.guid.as_ptr(), self.location.as_ptr(), callbacks());
+        // SAFETY: strings and callbacks that live.
+        unsafe { fmi::fmi2Instantiate(c"fuzzed".as_ptr(), kind, guid, location, &callbacks, 0, logging.into()) }
+    }
+}
+
+/// Reads every message, and lets no panic pass that was caught at the interface.
+unsafe extern "C" fn receive(
+    _environment: *mut c_void,
+    instance: *const c_char,
+    status: fmi2Status,
+    category: *const c_char,
+    text: *const c_char,
+) {
+    // SAFETY: strings of the FMU's.
+    let [instance, category, text] = [instance, category, text].map(|string| unsafe { CStr::from_ptr(string) });
+    assert!(instance.to_str().is_ok() && category.to_str().is_ok_and(|name| name.starts_with("log")));
+    assert!(text.to_str().is_ok_and(|text| !text.is_empty()));
+    if status == fmi2Status_fmi2Fatal {
+        fail(&text.to_string_lossy());
+    }
+}
+
+/// A panic cannot leave a function of C.
+fn fail(message: &str) {
+    eprintln!("{message}");
+    process::abort();
+}
+
+/// Callbacks whose memory functions are NULL, so that using them would be seen.
+pub fn callbacks() -> fmi2CallbackFunctions {
+    type Receive = unsafe extern "C" fn(*mut c_void, *const c_char, fmi2Status, *const c_char, *const c_char);
+    type Logger = unsafe extern "C" fn(*mut c_void, *const c_char, fmi2Status, *const c_char, *const c_char, ...);
+    // SAFETY: Rust cannot define a variadic function; one that ignores the variadic part is called in the same way.
+    let logger = unsafe { mem::transmute::<Receive, Logger>(receive) };
+    fmi2CallbackFunctions {
+        logger: Some(logger),
+        allocateMemory: None,
+        freeMemory: None,
+        stepFinished: None,
+        componentEnvironment: ptr::null_mut(),
+    }
+}
+
+/// Tells what a case is where FUZZ_SHOW is set.
+pub fn show(case: &impl fmt::Debug) {
+    static SHOWN: OnceLock<bool> = OnceLock::new();
+    if *SHOWN.get_or_init(|| env::var_os("FUZZ_SHOW").is_some()) {
+        eprintln!("{case:#?}");
+    }
+}
+
+/// A status that is one, and of no panic.
+pub fn checked(status: fmi2Status) -> fmi2Status {
+    assert!(status == OK || status == DISCARD || status == fmi2Status_fmi2Error, "status {status}");
+    status
+}
+
+/// An instance and its site; not freed by itself.
+#[derive(Clone, Copy)]
+pub struct Fmu {
+    pub c: fmi2Component,
+    pub site: &'static Site,
+}
+
+/// All outputs but the processor time, bit by bit.
+pub type Outputs = Vec<u64>;
+
+impl Fmu {
+    /// The outputs; `None` where they cannot be read.
+    pub fn outputs(&self) -> Option<Outputs> {
+        let (reals, integers) = (&self.site.reals, &self.site.integers);
+        let (mut values, mut counts) = (vec![f64::NAN; reals.len()], vec![-9; integers.len()]);
+        // SAFETY: an instance that lives, slices of the lengths given.
+        let (first, second) = unsafe {
+            (
+                fmi::fmi2GetReal(self.c, reals.as_ptr(), reals.len(), values.as_mut_ptr()),
+                fmi::fmi2GetInteger(self.c, integers.as_ptr(), integers.len(), counts.as_mut_ptr()),
+            )
+        };
+        let (first, second) = (checked(first), checked(second));
+        if first != OK {
+            assert!(values.iter().all(|value| value.is_nan()), "written though refused");
+            return None;
+        }
+        assert!(second == OK && values.iter().all(|value| value.is_finite()), "{values:?}");
+        Some(values.iter().map(|value| value.to_bits()).chain(counts.iter().map(|&count| count as u64)).collect())
+    }
+
+    /// The outputs after a step that is said to be done: all are there.
+    pub fn outputs_of_step(&self) -> Outputs {
+        let mut time = f64::NAN;
+        // SAFETY: as above.
+        assert_eq!(unsafe { fmi::fmi2GetReal(self.c, &self.site.time, 1, &mut time) }, OK);
+        assert!(time >= 0.0);
+        self.outputs().expect("outputs after a step")
+    }
+
+    /// The time reached, where it is told.
+    pub fn time(&self) -> Option<f64> {
+        let mut time = f64::NAN;
+        // SAFETY: as above.
+        let status = unsafe { fmi::fmi2GetRealStatus(self.c, fmi2StatusKind_fmi2LastSuccessfulTime, &mut time) };
+        (checked(status) == OK).then_some(time)
+    }
+
+    /// A state that is kept; NULL where none can be.
+    pub fn keep(&self) -> fmi2FMUstate {
+        keep(self.c)
+    }
+
+    pub fn forget(&self, state: fmi2FMUstate) {
+        forget(self.c, state);
+    }
+
+    /// A state as a byte string.
+    pub fn serialised(&self, state: fmi2FMUstate) -> Option<Vec<u8>> {
+        serialised(self.c, state)
+    }
+
+    /// The instance as it stands, as a byte string.
+    pub fn frozen(&self) -> Option<Vec<u8>> {
+        frozen(self.c)
+    }
+
+    /// The work that a step may do.
+    pub fn max_steps(&self) -> i32 {
+        let mut steps = 0;
+        // SAFETY: as above.
+        let status = unsafe { fmi::fmi2GetInteger(self.c, &self.site.max_steps, 1, &mut steps) };
+        if checked(status) == OK { steps } else { 0 }
+    }
+
+    /// From the instantiation to where it can step; whether that went well.
+    pub fn start(&self, [u, w, u_rate, w_rate]: [f64; 4]) -> bool {
+        // SAFETY: as above.
+        unsafe {
+            checked(fmi::fmi2SetupExperiment(self.c, 0, 0.0, 0.0, 0, 0.0)) == OK
+                && checked(fmi::fmi2EnterInitializationMode(self.c)) == OK
+                && checked(fmi::fmi2SetReal(self.c, [0, 1].as_ptr(), 2, [u, w].as_ptr())) == OK
+                && self.set_rates([u_rate, w_rate]) == OK
+                && checked(fmi::fmi2ExitInitializationMode(self.c)) == OK
+        }
+    }
+
+    pub fn set_rates(&self, rates: [f64; 2]) -> fmi2Status {
+        // SAFETY: as above.
+        checked(unsafe {
+            fmi::fmi2SetRealInputDerivatives(self.c, [0, 1].as_ptr(), 2, [1, 1].as_ptr(), rates.as_ptr())
+        })
+    }
+
+    pub fn step(&self, point: f64, h: f64) -> fmi2Status {
+        // SAFETY: as above.
+        checked(unsafe { fmi::fmi2DoStep(self.c, point, h, 1) })
+    }
+
+    /// A step, and all that holds after it: numbers where it was done, nothing changed where it was refused.
+    pub fn checked_step(&self, point: f64, h: f64) -> fmi2Status {
+        let (outputs, time, kept) = (self.outputs(), self.time(), self.keep());
+        let status = self.step(point, h);
+        let frozen = if status == OK { None } else { self.serialised(kept) };
+        if !kept.is_null() {
+            self.forget(kept);
+        }
+        if status == OK {
+            self.outputs_of_step();
+            assert_eq!(self.last_status(), OK);
+            let (before, after) = (time.expect("time before a step"), self.time().expect("time after a step"));
+            assert!(after == point + h || (after == before && before + h == before), "{before} + {h}: {after}");
+            return status;
+        }
+        assert_eq!(self.outputs(), outputs);
+        assert!(self.time().is_none_or(|after| time.is_none_or(|before| before == after)));
+        // The lifecycle and the status of the last step, a byte each, and the checksum tell of it.
+        if let (Some(before), Some(after)) = (frozen, self.frozen()) {
+            let end = before.len() - CHECKSUM;
+            let changed = before[..end].iter().zip(&after).filter(|(before, after)| before != after).count();
+            assert!(before.len() == after.len() && changed <= 2, "{changed} bytes changed by a step that was refused");
+        }
+        status
+    }
+
+    fn last_status(&self) -> fmi2Status {
+        let mut status = fmi2Status_fmi2Pending;
+        // SAFETY: as above.
+        assert_eq!(unsafe { fmi::fmi2GetStatus(self.c, fmi2StatusKind_fmi2DoStepStatus, &mut status) }, OK);
+        status
+    }
+
+    /// Derivatives of all outputs by the inputs and of the forces by time: numbers, or refused.
+    pub fn check_derivatives(&self, direction: [f64; 2]) {
+        let (reals, mut values) = (&self.site.reals, vec![0.0; self.site.reals.len()]);
+        // SAFETY: an instance that lives, slices of the lengths given.
+        let (first, second) = unsafe {
+            let (knowns, unknowns, direction, place) =
+                ([0, 1], reals.as_ptr(), direction.as_ptr(), values.as_mut_ptr());
+            let first =
+                fmi::fmi2GetDirectionalDerivative(self.c, unknowns, reals.len(), knowns.as_ptr(), 2, direction, place);
+            assert!(values.iter().all(|value| value.is_finite()), "{values:?}");
+            // F_x and F_z are the first.
+            let orders = [1, 1];
+            (first, fmi::fmi2GetRealOutputDerivatives(self.c, unknowns, 2, orders.as_ptr(), values.as_mut_ptr()))
+        };
+        assert!(values.iter().all(|value| value.is_finite()), "{values:?}");
+        checked(first);
+        checked(second);
+    }
+}
+
+fn keep(c: fmi2Component) -> fmi2FMUstate {
+    let mut state = ptr::null_mut();
+    // SAFETY: an instance that lives.
+    let status = unsafe { fmi::fmi2GetFMUstate(c, &mut state) };
+    assert_eq!(checked(status) == OK, !state.is_null());
+    state
+}
+
+fn forget(c: fmi2Component, mut state: fmi2FMUstate) {
+    // SAFETY: an instance that lives.
+    assert_eq!(unsafe { fmi::fmi2FreeFMUstate(c, &mut state) }, OK);
+    assert!(state.is_null());
+}
+
+fn serialised(c: fmi2Component, state: fmi2FMUstate) -> Option<Vec<u8>> {
+    let mut size = 0;
+    // SAFETY: an instance that lives, any handle.
+    let status = unsafe { fmi::fmi2SerializedFMUstateSize(c, state, &mut size) };
+    if checked(status) != OK {
+        return None;
+    }
+    let mut bytes = vec![0_u8; size];
+    // SAFETY: as above, a slice of the length given.
+    assert_eq!(unsafe { fmi::fmi2SerializeFMUstate(c, state, bytes.as_mut_ptr().cast(), size) }, OK);
+    Some(bytes)
+}
+
+fn frozen(c: fmi2Component) -> Option<Vec<u8>> {
+    let state = keep(c);
+    let bytes = serialised(c, state);
+    if !state.is_null() {
+        forget(c, state);
+    }
+    bytes
+}
+
+/// Bytes of the checksum at the end of a serialised state.
+pub const CHECKSUM: usize = 16;

@@ -1,0 +1,9 @@
+//! What is fuzzed: four functions of arbitrary bytes that panic where the library breaks a promise.
+
+pub mod fmi_calls;
+pub mod profile;
+pub mod scene;
+pub mod state;
+
+mod fmu;
+mod number;

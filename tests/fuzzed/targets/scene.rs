@@ -1,0 +1,109 @@
+//! The text of a scene: refused with a place and a reason, or run.
+
+use std::path::Path;
+
+use asperity::outputs::{Variable, variables};
+use asperity::scene::{OutputGroup, Scene};
+use asperity::simulation::{Motion, Simulation, Start};
+
+/// What a scene may ask for here: a fuzzer finds the large numbers that are allowed, and memory and time are no mistakes.
+const MOST_MASSES: usize = 4;
+const MOST_STEPS: u64 = 30;
+const MOST_DIGITS: usize = 4;
+
+/// Reads a scene and runs it for a few steps.
+pub fn run(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    if longest_integer(bytes) > MOST_DIGITS {
+        return;
+    }
+    // No file lies beside it.
+    let file = Path::new("/dev/null/scene.toml");
+    match Scene::parse(text, file) {
+        Ok(scene) => run_scene(scene),
+        Err(error) => {
+            let message = error.to_string();
+            assert!(message.starts_with("/dev/null/scene.toml"), "{message}");
+            assert!(!message.contains('\n'), "{message}");
+            let lines = text.split('\n').count();
+            assert!(error.line().is_none_or(|line| (1..=lines).contains(&line)), "{message}");
+        }
+    }
+}
+
+/// Digits of the longest whole number, decimal or not; those after a point are none.
+fn longest_integer(bytes: &[u8]) -> usize {
+    let (mut longest, mut run, mut after_point) = (0, 0, false);
+    for &byte in bytes {
+        match byte {
+            b'_' if run > 0 => (),
+            b'0'..=b'9' | b'a'..=b'f' | b'A'..=b'F' if run > 0 || byte.is_ascii_digit() => {
+                run += usize::from(!after_point);
+                longest = longest.max(run);
+            }
+            // Counted on: 0x10000.
+            b'x' | b'o' if run == 1 => (),
+            _ => (run, after_point) = (0, byte == b'.'),
+        }
+    }
+    longest
+}
+
+/// The promise of a run: what is done leaves finite numbers, what is refused leaves everything as it was.
+pub fn run_scene(mut scene: Scene) {
+    assert!(!scene.model_identifier().is_empty());
+    if scene.layer.masses > MOST_MASSES {
+        return;
+    }
+    scene.solver.max_steps = scene.solver.max_steps.min(MOST_STEPS);
+    scene.outputs = OutputGroup::ALL.to_vec();
+    let variables = variables(&scene);
+    let mut simulation = Simulation::new(&scene, &Start::default()).unwrap();
+    let mut before = values(&mut simulation, &variables);
+    assert_finite(&variables, &before);
+    for (motion, until) in motions(&scene) {
+        let times = [0.0, 0.3 * motion.duration, motion.duration];
+        let result = match until {
+            Some(force) => simulation.advance_until_force(&motion, force, &times, |_, _| ()).map(drop),
+            None => simulation.advance_observed(&motion, &times, |_, _| ()),
+        };
+        let after = values(&mut simulation, &variables);
+        match result {
+            Ok(()) => assert_finite(&variables, &after),
+            Err(error) => {
+                assert_eq!(bits(&after), bits(&before), "{error}");
+                assert!(!error.to_string().is_empty());
+                return;
+            }
+        }
+        before = after;
+    }
+}
+
+/// The first phases of the scene, and a press that touches in many scenes.
+fn motions(scene: &Scene) -> Vec<(Motion, Option<f64>)> {
+    let press = Motion {
+        duration: 1e-5,
+        u: asperity::scene::Path { rate: 0.1, ..Default::default() },
+        w: asperity::scene::Path { rate: -1.0, ..Default::default() },
+    };
+    let phases = scene.excitation.iter().take(2);
+    let phases = phases.map(|phase| (Motion { duration: phase.duration, u: phase.u, w: phase.w }, phase.until_force));
+    phases.chain([(press, None)]).collect()
+}
+
+fn values(simulation: &mut Simulation, variables: &[Variable]) -> Vec<f64> {
+    let mut values = vec![0.0; variables.len()];
+    simulation.evaluate(variables, &mut values);
+    values
+}
+
+fn bits(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|value| value.to_bits()).collect()
+}
+
+fn assert_finite(variables: &[Variable], values: &[f64]) {
+    for (variable, value) in variables.iter().zip(values) {
+        assert!(value.is_finite(), "{} = {value}", variable.name);
+    }
+}
