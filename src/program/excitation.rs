@@ -124,16 +124,12 @@ impl Run {
         let start = self.carrier;
         let at = |s: f64| start.moved(phase, s);
         let show = |s: f64, simulation: &mut Simulation| observe(at(s), simulation);
-        match phase.until_force.filter(|_| reached.is_some()) {
-            Some(force) => self.simulation.advance_until_force(&motion, force, &times, show).map(|_| ())?,
-            None => self.simulation.advance_observed(&motion, &times, show)?,
-        }
+        self.simulation.advance_observed(&Motion { duration, ..motion }, &times, show)?;
         self.carrier = Carrier { time: self.simulation.time(), ..at(duration) };
         Ok(duration)
     }
 
-    /// When F_z rises to `force`. Found on a copy, which takes the very same steps, so that the rows can divide the phase
-    /// evenly.
+    /// When F_z rises to `force`. Found on a copy, so that the rows can divide the phase evenly.
     fn time_of_force(&self, motion: &Motion, force: Option<f64>) -> Result<Option<f64>, SimulationError> {
         force.map_or(Ok(None), |force| self.simulation.clone().advance_until_force(motion, force, &[], |_, _| ()))
     }
