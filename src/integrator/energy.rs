@@ -84,12 +84,9 @@ struct Squares<const STAGES: usize> {
     mixed: [f64; STAGES],
     /// Of ė_j ė_l for l ≤ j, s².
     rates: [[f64; STAGES]; STAGES],
-    /// `None` of an element that is not so fast beside the step: the stages see all of it.
+    /// `None` of an element slower than the step, all of which the stages see.
     late: Option<Late>,
 }
-
-/// The ratio of step and relaxation time from which on the stages may miss that an element relaxes.
-const UNSEEN: f64 = 10.0;
 
 /// What the stages miss of l = a_0 - τė_0, which falls as e^(-zθ) beside τė_0.
 struct Late {
@@ -115,7 +112,7 @@ impl<const STAGES: usize> Squares<STAGES> {
                 squares.rates[j][j] += weighed * q[j];
             }
         }
-        squares.late = (z > UNSEEN).then(|| Late::new(z, course, weights, squares.start));
+        squares.late = (z > 1.0).then(|| Late::new(z, course, weights, squares.start));
         squares
     }
 
