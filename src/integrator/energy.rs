@@ -149,9 +149,7 @@ impl Late {
         let mixed = tau * dot(a, rate) - tau * tau * start;
         let square = dot(a, a) - tau * tau * start - 2.0 * mixed;
         let change = (1..STAGES).map(|i| products[i][i] - 2.0 * products[i][0] + start).fold(0.0, f64::max);
-        // From one to the other without a leap, so that a rounding decides nothing.
-        let share = if square > 0.0 { tau * tau * change / square } else { 1.0 };
-        (1.0 - share * share).max(0.0) * (self.square * square + 2.0 * self.mixed * mixed)
+        if square > tau * tau * change { self.square * square + 2.0 * self.mixed * mixed } else { 0.0 }
     }
 }
 
