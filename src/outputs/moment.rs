@@ -189,10 +189,10 @@ impl Moment<'_> {
         }
     }
 
-    /// |F_x|/F_z, 0 where F_z ≤ 0.
+    /// |F_x|/F_z, 0 where F_z ≤ 0; held at the largest number where next to nothing presses.
     fn friction_coefficient(&self) -> f64 {
         let normal = self.forces.on_carrier_z();
-        if normal > 0.0 { self.forces.on_carrier_x().abs() / normal } else { 0.0 }
+        if normal > 0.0 { (self.forces.on_carrier_x().abs() / normal).min(f64::MAX) } else { 0.0 }
     }
 
     /// The surface pushes a mass with F_N n - F_T t, n = (-s, 1)/q, t = (1, s)/q (6), (7).
