@@ -96,11 +96,7 @@ fn extrapolated(values: &Table) -> Table {
 fn assert_close(name: &str, found: &[f64], own: &[f64]) {
     assert!(found.len() == own.len() || found.len() == own.len() - 1, "{name}: {} rows", found.len());
     let error = difference(found, &own[own.len() - found.len()..]) / largest(own);
-    // What elements lose that relax within a step goes by small differences of the stages' rates, which the roundings of a
-    // master's kinks reach sooner than the forces: to 3e-6 of it, some times the run's own tolerance.
-    let by_elements = name.ends_with("E_diss") || name.ends_with("E_maxwell");
-    let tolerance = if by_elements { 1e-5 } else { TOLERANCE };
-    assert!(error <= tolerance, "{name}: {error:e} of the largest");
+    assert!(error <= TOLERANCE, "{name}: {error:e} of the largest");
 }
 
 #[test]

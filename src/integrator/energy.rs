@@ -6,7 +6,7 @@
 
 use super::maxwell::{Course, Maxwell};
 use super::rates::Rates;
-use crate::math::{dot, weighted_sum};
+use crate::math::{dot, sum_of, weighted_sum};
 use crate::model::{Exchange, LinkKind, MaxwellRow, Model, Power};
 
 /// Σ ė_i ė_j over the links of one kind, m²/s², for j ≤ i.
@@ -42,6 +42,7 @@ fn lost<const STAGES: usize>(
 ) -> Power {
     let mut energy = Power::default();
     let mut products = [[[0.0; STAGES]; STAGES]; 4];
+    let mut changes = [None; 4];
     for kind in LinkKind::ALL {
         let damping = model.links[kind as usize].damping;
         if damping == 0.0 && !maxwell.has(kind) {
@@ -54,7 +55,12 @@ fn lost<const STAGES: usize>(
     for (index, course) in maxwell.courses().iter().enumerate() {
         let squares = Squares::new(course, h / model.relaxation_times[index], weights);
         for row in model.rows.iter().filter(|row| row.time_index == index) {
-            let sum = squares.sum(row, &a[row.range.clone()], stages, &products[row.kind as usize], room);
+            let (kind, a) = (row.kind as usize, &a[row.range.clone()]);
+            let mut sum = squares.sum(row, a, stages, &products[kind], room);
+            if let Some(late) = &squares.late {
+                let change = *changes[kind].get_or_insert_with(|| largest_change(stages, row.kind));
+                sum += late.sum(row.relaxation_time, a, &stages[0].elongation_rate[kind], change);
+            }
             energy.maxwell += h * row.stiffness / row.relaxation_time * sum;
         }
     }
@@ -72,6 +78,18 @@ fn products_of<const STAGES: usize>(stages: &[Rates], kind: LinkKind, all: bool)
     products
 }
 
+/// The largest Σ (ė_i - ė_0)² of a stage over the links of one kind, m²/s². Not by the products, whose rounding is more than
+/// the change of a steady motion.
+fn largest_change(stages: &[Rates], kind: LinkKind) -> f64 {
+    let [start, later @ ..] = stages else { return 0.0 };
+    let start = &start.elongation_rate[kind as usize];
+    let change = |stage: &Rates| {
+        let rate = &stage.elongation_rate[kind as usize];
+        sum_of(start.len(), |i| (rate[i] - start[i]) * (rate[i] - start[i]))
+    };
+    later.iter().map(change).fold(0.0, f64::max)
+}
+
 /// Σ_i weight_i a_i² of an element: a_i = p_i a_0 + h Σ_j q_ij ė_j multiplied out.
 ///
 /// An element that does not yet follow its link, a_0 ≠ τė_0, after a start undeformed or a jump of ė, may relax in a time far
@@ -87,6 +105,11 @@ struct Squares<const STAGES: usize> {
     /// `None` of an element slower than the step, all of which the stages see.
     late: Option<Late>,
 }
+
+/// The ratio of step and relaxation time up to which the stages see all of an element; from twice of it on, all that they
+/// miss is put in. In between it grows evenly: a step as long as the relaxation time is usual where a master's is, and what
+/// was lost must not hang on the rounding of its length.
+const SEEN: f64 = 1.0;
 
 /// What the stages miss of l = a_0 - τė_0, which falls as e^(-zθ) beside τė_0.
 struct Late {
@@ -112,7 +135,7 @@ impl<const STAGES: usize> Squares<STAGES> {
                 squares.rates[j][j] += weighed * q[j];
             }
         }
-        squares.late = (z > 1.0).then(|| Late::new(z, course, weights, squares.start));
+        squares.late = (z > SEEN).then(|| Late::new(z, course, weights, squares.start));
         squares
     }
 
@@ -123,8 +146,7 @@ impl<const STAGES: usize> Squares<STAGES> {
         let room = &mut room[..a.len()];
         weighted_sum(room, std::iter::once((self.start, a)).chain(mixed));
         let of_rates = self.rates.iter().flatten().zip(products.iter().flatten());
-        let sum = dot(a, room) + of_rates.map(|(factor, product)| factor * product).sum::<f64>();
-        sum + self.late.as_ref().map_or(0.0, |late| late.sum(row, a, stages, products))
+        dot(a, room) + of_rates.map(|(factor, product)| factor * product).sum::<f64>()
     }
 }
 
@@ -132,24 +154,27 @@ impl Late {
     fn new<const STAGES: usize>(z: f64, course: &Course<STAGES>, weights: &[f64; STAGES], squares: f64) -> Self {
         let fraction = weights.iter().sum::<f64>();
         let integral = |z: f64| -(-z * fraction).exp_m1() / z;
-        Self { square: integral(2.0 * z) - squares, mixed: integral(z) - dot(weights, &course.start) }
+        let share = (z / SEEN - 1.0).min(1.0);
+        Self {
+            square: share * (integral(2.0 * z) - squares),
+            mixed: share * (integral(z) - dot(weights, &course.start)),
+        }
     }
 
-    /// The sum over the elements of one row; 0 where they follow their links as nearly as ė changes through the step:
-    /// then l is what ë leaves.
-    fn sum<const STAGES: usize>(
-        &self,
-        row: &MaxwellRow,
-        a: &[f64],
-        stages: &[Rates],
-        products: &Products<STAGES>,
-    ) -> f64 {
-        let (tau, rate) = (row.relaxation_time, &stages[0].elongation_rate[row.kind as usize][..]);
-        let start = products[0][0];
-        let mixed = tau * dot(a, rate) - tau * tau * start;
-        let square = dot(a, a) - tau * tau * start - 2.0 * mixed;
-        let change = (1..STAGES).map(|i| products[i][i] - 2.0 * products[i][0] + start).fold(0.0, f64::max);
-        if square > tau * tau * change { self.square * square + 2.0 * self.mixed * mixed } else { 0.0 }
+    /// The sum over elements of relaxation time `tau` with the elongations `a`, whose links start with `rate` and change it by
+    /// [`largest_change`] in the step.
+    ///
+    /// Where they follow their links as nearly as ė changes, l is what ë leaves, which the stages see: then it is 0, and it
+    /// goes there without a jump.
+    fn sum(&self, tau: f64, a: &[f64], rate: &[f64], change: f64) -> f64 {
+        let late = |i: usize| a[i] - tau * rate[i];
+        let square = sum_of(a.len(), |i| late(i) * late(i));
+        let left = tau * tau * change;
+        if square <= left {
+            return 0.0;
+        }
+        let mixed = tau * sum_of(a.len(), |i| late(i) * rate[i]);
+        (1.0 - left / square) * (self.square * square + 2.0 * self.mixed * mixed)
     }
 }
 
