@@ -109,7 +109,9 @@ impl Spline {
     fn wrap(&self, x: f64, period: f64) -> f64 {
         let first = self.first();
         let place = x - period * floor((x - first) / period);
-        if place >= self.last() { first.max(place - period) } else { place.max(first) }
+        let place = if place >= self.last() { place - period } else { place };
+        // Below the first by a rounding; or so far away that the rounding is more than a period, and any place as right.
+        if (first..self.last()).contains(&place) { place } else { first }
     }
 
     #[inline]

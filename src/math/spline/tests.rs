@@ -179,6 +179,18 @@ fn a_place_is_reduced_into_the_period_even_at_its_ends() {
     }
 }
 
+/// Where the rounding of the place is some metres.
+#[test]
+fn however_far_away_a_height_is_the_profiles() {
+    let spline = Spline::periodic(&[0.1, 0.2, 0.4], &[0.0, 1.0, 0.0]);
+    for power in 10..30 {
+        for x in [3.3, -7.7].map(|factor| factor * 10_f64.powi(power)) {
+            let place = spline.reduce(x);
+            assert!((0.1..0.4).contains(&place), "{x} reduced to {place}");
+        }
+    }
+}
+
 #[test]
 fn finds_every_interval() {
     let nearly_even: Vec<f64> = (0..50).map(|i| f64::from(i) + 0.2 * f64::from(i % 3 - 1)).collect();
