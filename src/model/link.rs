@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::reduction::{Reduction, Replacement};
-use crate::scene::{Initial, Layer, Link, LinkKind};
+use crate::scene::{Initial, Link, LinkKind, Scene};
 
 /// The spring and the damper of one kind of link.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -19,8 +19,8 @@ pub struct LinkLaw {
 }
 
 impl LinkLaw {
-    pub(super) fn new(layer: &Layer, kind: LinkKind, reduction: Option<&Reduction>) -> Self {
-        let Some(link) = layer.link(kind) else { return Self::default() };
+    pub(super) fn new(scene: &Scene, kind: LinkKind, reduction: Option<&Reduction>) -> Self {
+        let Some(link) = scene.link(kind) else { return Self::default() };
         let mut law = Self {
             present: true,
             stiffness: link.stiffness.unwrap_or(0.0),
@@ -28,7 +28,7 @@ impl LinkLaw {
             still: 0.0,
         };
         // Along x every link is at rest at the start; undeformed, every dashpot.
-        let stands = layer.initial == Initial::Relaxed && !kind.is_along_x();
+        let stands = scene.layer.initial == Initial::Relaxed && !kind.is_along_x();
         let replaced = reduction.map_or(&[][..], |reduction| &reduction.replaced);
         for one in replaced.iter().filter(|one| one.kind == kind) {
             match one.by {
@@ -66,14 +66,14 @@ pub(super) fn glassy_stiffness(link: &Link) -> f64 {
 }
 
 /// The rows of the elements that stay, and their relaxation times, each once.
-pub(super) fn maxwell_rows(layer: &Layer, reduction: Option<&Reduction>) -> (Vec<MaxwellRow>, Vec<f64>) {
+pub(super) fn maxwell_rows(scene: &Scene, reduction: Option<&Reduction>) -> (Vec<MaxwellRow>, Vec<f64>) {
     let stays = |kind: LinkKind, index: usize| reduction.is_none_or(|all| all.replacement(kind, index).is_none());
     let (mut rows, mut times) = (Vec::new(), Vec::new());
     let mut start = 0;
     for kind in LinkKind::ALL {
-        let elements = layer.link(kind).map_or(&[][..], |link| &link.maxwell).iter().enumerate();
-        for (_, element) in elements.filter(|&(index, _)| stays(kind, index)) {
-            let end = start + kind.count(layer.masses);
+        let elements = scene.link(kind).map_or_else(Vec::new, |link| link.maxwell);
+        for (_, element) in elements.iter().enumerate().filter(|&(index, _)| stays(kind, index)) {
+            let end = start + kind.count(scene.layer.masses);
             let tau = element.relaxation_time;
             let time_index = times.iter().position(|&known| known == tau).unwrap_or_else(|| {
                 times.push(tau);

@@ -79,21 +79,24 @@ impl Model {
         let friction = scene.friction.as_ref();
         let roughness = |i| layer.roughness.get(i).copied().unwrap_or(0.0);
         let reduction = Reduction::new(scene);
-        let links = LinkKind::ALL.map(|kind| LinkLaw::new(layer, kind, reduction.as_ref()));
-        let (rows, relaxation_times) = link::maxwell_rows(layer, reduction.as_ref());
+        let links = LinkKind::ALL.map(|kind| LinkLaw::new(scene, kind, reduction.as_ref()));
+        let (rows, relaxation_times) = link::maxwell_rows(scene, reduction.as_ref());
         Self {
-            mass: layer.mass,
+            mass: scene.mass(),
             rest_x: (0..k).map(|i| layer.place(i)).collect(),
             rest_z: (0..k).map(|i| layer.clearance + roughness(i)).collect(),
             still: if links.iter().any(|link| link.still > 0.0) { vec![0.0; k] } else { Vec::new() },
             links,
             rows,
             relaxation_times,
-            glassy: LinkKind::ALL.map(|kind| layer.link(kind).map_or(0.0, link::glassy_stiffness)),
+            glassy: LinkKind::ALL.map(|kind| scene.link(kind).as_ref().map_or(0.0, link::glassy_stiffness)),
             profile: scene.surface.spline(),
             friction_coefficient: friction.and_then(|f| f.coulomb).unwrap_or(0.0),
-            shear_force: friction.and_then(|f| f.shear_force).unwrap_or(0.0),
-            has_friction: friction.is_some_and(|f| [f.coulomb, f.shear_force].iter().flatten().any(|&part| part > 0.0)),
+            shear_force: scene.shear_force().unwrap_or(0.0),
+            has_friction: [friction.and_then(|f| f.coulomb), scene.shear_force()]
+                .iter()
+                .flatten()
+                .any(|&part| part > 0.0),
             initial: layer.initial,
         }
     }

@@ -90,12 +90,12 @@ impl Reduction {
             scene.excitation.iter().map(|phase| phase.duration).sum()
         };
         let frequency = carrier_frequency(scene).max(passage_frequency(scene)).max(own_frequency(scene));
-        let stiffness =
-            LinkKind::ALL.map(|kind| scene.layer.link(kind).map_or(0.0, |link| complex_stiffness(link, 1.0 / run).0));
+        let links = LinkKind::ALL.map(|kind| scene.link(kind).unwrap_or_default());
+        let stiffness = links.each_ref().map(|link| complex_stiffness(link, 1.0 / run).0);
         let mut replaced = Vec::new();
         for kind in LinkKind::ALL {
             let allowed = scene.solver.reduce * stiffness[kind as usize];
-            let elements = scene.layer.link(kind).map_or(&[][..], |link| &link.maxwell);
+            let elements = &links[kind as usize].maxwell;
             let relaxed = scene.layer.initial == Initial::Relaxed;
             let candidates = elements.iter().enumerate().filter_map(|(index, &element)| {
                 let (by, bound) = better(&element, run, relaxed.then_some(frequency))?;
@@ -164,12 +164,12 @@ fn shortest_wave(x: &[f64], profile: &Spline) -> f64 {
 /// The largest ω at which m ω² = |K*(ω)|, rad/s, from above.
 fn own_frequency(scene: &Scene) -> f64 {
     let along = |to_carrier: LinkKind, lateral: LinkKind| {
+        let links = [to_carrier, lateral].map(|kind| scene.link(kind).unwrap_or_default());
         let stiffness = |omega: f64| {
-            let of = |kind| scene.layer.link(kind).map_or((0.0, 0.0), |link| complex_stiffness(link, omega));
-            let (carrier, lateral) = (of(to_carrier), of(lateral));
+            let [carrier, lateral] = links.each_ref().map(|link| complex_stiffness(link, omega));
             (carrier.0 + 4.0 * lateral.0).hypot(carrier.1 + 4.0 * lateral.1)
         };
-        largest_balance(scene.layer.mass, stiffness)
+        largest_balance(scene.mass(), stiffness)
     };
     along(LinkKind::Horizontal, LinkKind::LateralX).max(along(LinkKind::Vertical, LinkKind::LateralZ))
 }

@@ -15,7 +15,7 @@
 //! - T, everything integrated, and everything counted are states or follow from states alone.
 
 use super::Output;
-use crate::scene::{Link, Scene};
+use crate::scene::{Link, LinkKind, Scene};
 
 /// Whether something depends directly on u and on w.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -85,7 +85,7 @@ fn dissipated_power(scene: &Scene, elastic: Dependencies) -> Dependencies {
 /// Which carrier links have what `test` asks for: the horizontal ones stretch with u, the vertical ones with w.
 fn links(scene: &Scene, test: fn(&Link) -> bool) -> Dependencies {
     Dependencies {
-        on_u: scene.layer.horizontal.as_ref().is_some_and(test),
-        on_w: scene.layer.vertical.as_ref().is_some_and(test),
+        on_u: scene.link(LinkKind::Horizontal).as_ref().is_some_and(test),
+        on_w: scene.link(LinkKind::Vertical).as_ref().is_some_and(test),
     }
 }

@@ -1,6 +1,6 @@
 //! The output variables of a scene: names, units, order.
 
-use crate::scene::{Link, OutputGroup, Scene, Unit};
+use crate::scene::{Link, LinkKind, OutputGroup, Scene, Unit};
 
 /// The quantity behind an output variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -133,9 +133,8 @@ fn group_variables(scene: &Scene, group: OutputGroup) -> Vec<Variable> {
 
 /// A channel of dissipation that the scene cannot have is no variable.
 fn can_have(scene: &Scene, output: Output) -> bool {
-    let layer = &scene.layer;
-    let links = [&layer.vertical, &layer.horizontal, &layer.lateral_x, &layer.lateral_z];
-    let any = |test: fn(&Link) -> bool| links.iter().any(|link| link.as_ref().is_some_and(test));
+    let any =
+        |test: fn(&Link) -> bool| LinkKind::ALL.into_iter().any(|kind| scene.link(kind).as_ref().is_some_and(test));
     match output {
         // A Maxwell element may be replaced by a damper.
         Output::DamperEnergy => {

@@ -67,6 +67,8 @@ pub(crate) struct Run {
     simulation: Simulation,
     carrier: Carrier,
     rows: Rows,
+    /// Of the layer, m², if the scene gives it.
+    area: Option<f64>,
 }
 
 impl Run {
@@ -81,7 +83,7 @@ impl Run {
         let carrier = Carrier { time: start.time, u: start.u, w: start.w };
         let mut simulation = Simulation::new(scene, &start)?;
         simulation.record_handovers(true);
-        Ok(Self { simulation, carrier, rows })
+        Ok(Self { simulation, carrier, rows, area: scene.layer.area() })
     }
 
     /// Between which drivers the run went to and fro since the last call: of the method *auto* alone.
@@ -112,8 +114,9 @@ impl Run {
         observe: &mut impl FnMut(Carrier, &mut Simulation),
     ) -> Result<f64, SimulationError> {
         let motion = Motion { duration: phase.duration, u: phase.u, w: phase.w };
-        let reached = self.time_of_force(&motion, phase.until_force)?;
-        if phase.until_force.is_some() && reached.is_none() {
+        let force = phase.end_force(self.area);
+        let reached = self.time_of_force(&motion, force)?;
+        if force.is_some() && reached.is_none() {
             warn_of_force(index, phase);
         }
         let duration = reached.unwrap_or(phase.duration);
@@ -136,12 +139,11 @@ impl Run {
 }
 
 fn warn_of_force(index: usize, phase: &Phase) {
-    let force = phase.until_force.unwrap_or_default();
-    warn(&format!(
-        "phase {} of the excitation: F_z did not rise to until_force = {force} N within {} s",
-        index + 1,
-        phase.duration
-    ));
+    let end = match (phase.until_force, phase.until_pressure) {
+        (None, Some(pressure)) => format!("F_z over the layer's area did not rise to until_pressure = {pressure} Pa"),
+        (force, _) => format!("F_z did not rise to until_force = {} N", force.unwrap_or_default()),
+    };
+    warn(&format!("phase {} of the excitation: {end} within {} s", index + 1, phase.duration));
 }
 
 impl Carrier {

@@ -50,6 +50,16 @@ pub(super) const SPACING: Range = POSITIVE;
 pub(super) const PLACE: Range = ANY;
 pub(super) const HEIGHT: Range = ANY;
 pub(super) const MASS: Range = POSITIVE;
+pub(super) const THICKNESS: Range = POSITIVE;
+pub(super) const WIDTH: Range = POSITIVE;
+pub(super) const DENSITY: Range = POSITIVE;
+pub(super) const POISSON_RATIO: Range = Range { largest: 0.5, ..NOT_NEGATIVE };
+pub(super) const MODULUS: Range = NOT_NEGATIVE;
+pub(super) const VISCOSITY: Range = NOT_NEGATIVE;
+pub(super) const WLF_C1: Range = NOT_NEGATIVE;
+pub(super) const WLF_C2: Range = POSITIVE;
+/// Above absolute zero.
+pub(super) const TEMPERATURE: Range = POSITIVE;
 pub(super) const STIFFNESS: Range = NOT_NEGATIVE;
 pub(super) const DAMPING: Range = NOT_NEGATIVE;
 pub(super) const RELAXATION_TIME: Range = POSITIVE;
@@ -57,6 +67,7 @@ pub(super) const WAVELENGTH: Range = POSITIVE;
 pub(super) const POINTS_PER_WAVELENGTH: WholeRange = WholeRange { low: 4, high: 10_000_000 };
 pub(super) const FRICTION_COEFFICIENT: Range = NOT_NEGATIVE;
 pub(super) const SHEAR_FORCE: Range = NOT_NEGATIVE;
+pub(super) const SHEAR_STRENGTH: Range = NOT_NEGATIVE;
 pub(super) const RELATIVE_TOLERANCE: Range = Range { largest: 0.1, ..POSITIVE };
 pub(super) const REDUCE: Range = Range { largest: 0.1, ..NOT_NEGATIVE };
 pub(super) const ABSOLUTE_TOLERANCE: Range = POSITIVE;
@@ -67,6 +78,7 @@ pub(super) const RATE: Range = ANY;
 pub(super) const AMPLITUDE: Range = ANY;
 pub(super) const FREQUENCY: Range = NOT_NEGATIVE;
 pub(super) const FORCE: Range = ANY;
+pub(super) const PRESSURE: Range = ANY;
 
 pub(super) const INITIAL: Choices<Initial> =
     Choices { words: &[("relaxed", Initial::Relaxed), ("undeformed", Initial::Undeformed)], later: &[] };

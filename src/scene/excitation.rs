@@ -1,19 +1,21 @@
 //! Reading of `[[excitation]]`.
 
 use super::allowed;
+use super::form::{Form, FormKeys};
 use super::table::TableReader;
 use super::{Path, Phase, SceneError};
 
-const KEYS: [&str; 6] = ["duration", "u_rate", "w_rate", "u_sine", "w_sine", "until_force"];
-const LATER: [&str; 1] = ["until_pressure"];
+const KEYS: [&str; 5] = ["duration", "u_rate", "w_rate", "u_sine", "w_sine"];
+const OF_FORM: FormKeys = FormKeys { direct: &["until_force"], material: &["until_pressure"] };
 
-pub(super) fn read_phase(table: &mut TableReader<'_>) -> Result<Phase, SceneError> {
-    table.allow(&KEYS, &LATER)?;
+pub(super) fn read_phase(table: &mut TableReader<'_>, form: Form) -> Result<Phase, SceneError> {
+    form.allow(table, &KEYS, &OF_FORM, &[])?;
     Ok(Phase {
         duration: table.number("duration", &allowed::DURATION)?,
         u: read_path(table, "u_rate", "u_sine")?,
         w: read_path(table, "w_rate", "w_sine")?,
         until_force: table.optional_number("until_force", &allowed::FORCE)?,
+        until_pressure: table.optional_number("until_pressure", &allowed::PRESSURE)?,
     })
 }
 

@@ -1,29 +1,21 @@
 //! Reading of `[layer]`: the masses, their roughness and their links.
 
 use super::allowed::{self, SurfaceKind};
+use super::form::{Form, FormKeys};
 use super::surface::{self, Found, KIND};
 use super::table::{Entry, TableReader, read_table};
 use super::{Initial, Layer, Link, MaxwellElement, SceneError, warnings};
 
-const KEYS: [&str; 11] = [
-    "masses",
-    "spacing",
-    "origin",
-    "clearance",
-    "mass",
-    "initial",
-    "roughness",
-    "vertical",
-    "horizontal",
-    "lateral_x",
-    "lateral_z",
-];
-const LATER: [&str; 2] = ["thickness", "width"];
+const KEYS: [&str; 6] = ["masses", "spacing", "origin", "clearance", "initial", "roughness"];
+const OF_FORM: FormKeys = FormKeys {
+    direct: &["mass", "vertical", "horizontal", "lateral_x", "lateral_z"],
+    material: &["thickness", "width"],
+};
 
-pub(super) fn read_layer(entry: &Entry<'_>, found: &mut Found) -> Result<Layer, SceneError> {
+pub(super) fn read_layer(entry: &Entry<'_>, form: Form, found: &mut Found) -> Result<Layer, SceneError> {
     read_table(entry, |table| {
-        table.allow(&KEYS, &LATER)?;
-        let mut layer = read_masses(table)?;
+        form.allow(table, &KEYS, &OF_FORM, &[])?;
+        let mut layer = read_masses(table, form)?;
         layer.vertical = table.optional_table("vertical", read_link)?;
         layer.horizontal = table.optional_table("horizontal", read_link)?;
         layer.lateral_x = table.optional_table("lateral_x", read_link)?;
@@ -36,14 +28,16 @@ pub(super) fn read_layer(entry: &Entry<'_>, found: &mut Found) -> Result<Layer, 
 }
 
 /// The layer without its roughness and its links.
-fn read_masses(table: &mut TableReader<'_>) -> Result<Layer, SceneError> {
+fn read_masses(table: &mut TableReader<'_>, form: Form) -> Result<Layer, SceneError> {
     let masses = table.required("masses", allowed::MASSES)?.whole(&allowed::MASSES)?;
     Ok(Layer {
         masses: usize::try_from(masses).unwrap_or(usize::MAX),
         spacing: table.number("spacing", &allowed::SPACING)?,
         origin: table.optional_number("origin", &allowed::PLACE)?.unwrap_or(0.0),
         clearance: table.optional_number("clearance", &allowed::HEIGHT)?.unwrap_or(0.0),
-        mass: table.number("mass", &allowed::MASS)?,
+        mass: form.number(Form::Direct, table, "mass", &allowed::MASS)?,
+        thickness: form.number(Form::Material, table, "thickness", &allowed::THICKNESS)?,
+        width: form.number(Form::Material, table, "width", &allowed::WIDTH)?,
         initial: table.optional_choice("initial", &allowed::INITIAL)?.unwrap_or(Initial::Relaxed),
         roughness: Vec::new(),
         vertical: None,

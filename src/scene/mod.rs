@@ -7,11 +7,15 @@ mod allowed;
 mod derived;
 mod error;
 mod excitation;
+mod form;
 mod layer;
 mod link_kind;
+mod material;
+mod material_reader;
 mod parameters;
 mod points;
 mod profile_file;
+mod prony_file;
 mod reader;
 mod settings;
 mod surface;
@@ -31,6 +35,7 @@ use crate::math::{Numbers, visit_all};
 pub use allowed::{LARGEST, SMALLEST, is_possible};
 pub use error::{Problem, SceneError};
 pub use link_kind::LinkKind;
+pub use material::{Material, PronyTerm, Wlf};
 pub use parameters::{Parameter, ParameterError, Value};
 pub use unit::Unit;
 
@@ -43,6 +48,8 @@ pub struct Scene {
     pub description: Option<String>,
     /// The elastic layer.
     pub layer: Layer,
+    /// What the layer is made of, in the material form; `None`: its masses and links are given (direct form).
+    pub material: Option<Material>,
     /// The rigid surface below it.
     pub surface: Surface,
     /// Friction in the contacts; `None` is frictionless.
@@ -74,13 +81,17 @@ pub struct Layer {
     pub origin: f64,
     /// Height of the layer above the profile's datum at w = 0, m.
     pub clearance: f64,
-    /// Mass of one point mass, kg.
-    pub mass: f64,
+    /// Mass of one point mass, kg; in the direct form alone, see [`Scene::mass`].
+    pub mass: Option<f64>,
+    /// Thickness H, m; in the material form alone.
+    pub thickness: Option<f64>,
+    /// Width B, m; in the material form alone.
+    pub width: Option<f64>,
     /// How the dashpots start.
     pub initial: Initial,
     /// Heights h_i of the elastic body's roughness, m: k values, or none for a smooth body.
     pub roughness: Vec<f64>,
-    /// Carrier to mass, along z.
+    /// Carrier to mass, along z. All four in the direct form alone, see [`Scene::link`].
     pub vertical: Option<Link>,
     /// Carrier to mass, along x.
     pub horizontal: Option<Link>,
@@ -136,8 +147,10 @@ pub struct Surface {
 pub struct Friction {
     /// Coulomb's coefficient μ, 1.
     pub coulomb: Option<f64>,
-    /// Adhesive shear force A τ_0 of one mass in contact, N.
+    /// Adhesive shear force A τ_0 of one mass in contact, N; in the direct form alone, see [`Scene::shear_force`].
     pub shear_force: Option<f64>,
+    /// Adhesive shear strength τ_0, Pa; in the material form alone.
+    pub shear_strength: Option<f64>,
 }
 
 /// The integrator's settings.
@@ -228,8 +241,10 @@ pub struct Phase {
     pub u: Path,
     /// Motion along z from the phase's start on.
     pub w: Path,
-    /// The phase ends when F_z rises to this force, N.
+    /// The phase ends when F_z rises to this force, N; in the direct form alone, see [`Phase::end_force`].
     pub until_force: Option<f64>,
+    /// The phase ends when F_z over the layer's area rises to this pressure, Pa; in the material form alone.
+    pub until_pressure: Option<f64>,
 }
 
 /// A displacement from where it stood: rate · s + amplitude · sin(2π frequency s), s the time since the start.

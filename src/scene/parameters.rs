@@ -66,6 +66,10 @@ pub struct ParameterError {
 }
 
 impl ParameterError {
+    pub(super) fn new(name: impl Into<String>, problem: Problem) -> Self {
+        Self { name: name.into(), problem }
+    }
+
     /// The name of the parameter, as it was given.
     pub fn name(&self) -> &str {
         &self.name
@@ -78,7 +82,7 @@ impl ParameterError {
 }
 
 impl Layer {
-    /// The link of a kind, if the scene has it.
+    /// The link of a kind as it is given; in the direct form alone, see [`Scene::link`].
     pub fn link(&self, kind: LinkKind) -> Option<&Link> {
         match kind {
             LinkKind::Vertical => self.vertical.as_ref(),
@@ -176,7 +180,9 @@ impl Scene {
     /// The parameters that this scene has, in the order of the scene's keys.
     pub fn parameters(&self) -> Vec<Parameter> {
         use Parameter::{AbsoluteTolerance, Extrapolation, MaxSteps, Method, RelativeTolerance};
-        let mut parameters = vec![Parameter::Clearance, Parameter::Mass, Parameter::Initial];
+        let mut parameters = vec![Parameter::Clearance];
+        parameters.extend(self.layer.mass.map(|_| Parameter::Mass));
+        parameters.push(Parameter::Initial);
         for kind in LinkKind::ALL {
             parameters.extend(self.layer.link(kind).into_iter().flat_map(|link| link_parameters(kind, link)));
         }

@@ -41,12 +41,8 @@ pub(super) fn read(entry: &Entry<'_>, path: &Path, periodic: bool) -> Result<Sur
 }
 
 fn parse(bytes: &[u8], periodic: bool) -> Result<Surface, ProfileError> {
-    if bytes.contains(&0) {
-        return Err(refuse(1, "", "bytes that are zero", "text in UTF-8, not UTF-16 or binary data"));
-    }
-    // A header may hold units in an older encoding; numbers never do.
-    let text = String::from_utf8_lossy(bytes);
-    let mut table = parse_lines(text.strip_prefix('\u{feff}').unwrap_or(&text))?;
+    let text = text_of(bytes).map_err(|problem| ProfileError { line: 1, column: "", problem })?;
+    let mut table = parse_lines(&text)?;
     let (x, z) = (&table.x, &mut table.z);
     points::check(x, z, periodic).map_err(|refusal| match refusal.index {
         Some(i) => {
@@ -61,19 +57,32 @@ fn parse(bytes: &[u8], periodic: bool) -> Result<Surface, ProfileError> {
     Ok(Surface { x: table.x, z: table.z, periodic })
 }
 
+/// The text of a file of columns, without a byte order mark.
+pub(super) fn text_of(bytes: &[u8]) -> Result<String, Problem> {
+    if bytes.contains(&0) {
+        let (given, expected) = ("bytes that are zero".into(), "text in UTF-8, not UTF-16 or binary data".into());
+        return Err(Problem::Value { given, expected });
+    }
+    // A header may hold units in an older encoding; numbers never do.
+    let text = String::from_utf8_lossy(bytes);
+    Ok(text.strip_prefix('\u{feff}').unwrap_or(&text).to_owned())
+}
+
+/// The lines that hold data, without comments and a header: their numbers, counted from 1, themselves and their columns.
+pub(super) fn data_lines(text: &str) -> impl Iterator<Item = (usize, &str, Vec<String>)> {
+    let numbered = text.lines().zip(1..).map(|(line, number)| (line.trim(), number));
+    let filled = numbered.filter(|(line, _)| !line.is_empty() && !line.starts_with('#'));
+    let columns = filled.map(|(line, number)| (number, line, split(line))).enumerate();
+    columns.filter(|(count, (_, _, fields))| *count > 0 || !is_header(fields)).map(|(_, line)| line)
+}
+
 fn refuse(line: usize, column: &'static str, given: &str, expected: &str) -> ProfileError {
     ProfileError { line, column, problem: Problem::Value { given: given.to_owned(), expected: expected.to_owned() } }
 }
 
 fn parse_lines(text: &str) -> Result<Table, ProfileError> {
     let mut table = Table::default();
-    let numbered = text.lines().zip(1..).map(|(line, number)| (line.trim(), number));
-    let filled = numbered.filter(|(line, _)| !line.is_empty() && !line.starts_with('#'));
-    for (count, (line, number)) in filled.enumerate() {
-        let fields = split(line);
-        if count == 0 && is_header(&fields) {
-            continue;
-        }
+    for (number, line, fields) in data_lines(text) {
         let [x, z] = parse_row(&fields, number, line)?;
         table.x.push(x);
         table.z.push(z);

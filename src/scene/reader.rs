@@ -6,12 +6,13 @@ use std::path::Path;
 use toml::de::DeTable;
 
 use super::error::Place;
+use super::form::Form;
 use super::surface::{Found, read_surface};
 use super::table::{Entry, Source, TableReader};
-use super::{Problem, Scene, SceneError, excitation, layer, settings, warnings};
+use super::{Problem, Scene, SceneError, excitation, layer, material_reader, settings, warnings};
 
-const KEYS: [&str; 9] = ["name", "description", "layer", "surface", "friction", "solver", "input", "fmu", "excitation"];
-const LATER: [&str; 1] = ["material"];
+const KEYS: [&str; 10] =
+    ["name", "description", "layer", "material", "surface", "friction", "solver", "input", "fmu", "excitation"];
 
 /// Letters of a scene's name.
 const LONGEST_NAME: usize = 200;
@@ -45,24 +46,28 @@ fn read_text(path: &Path) -> Result<String, SceneError> {
 
 fn read_scene(source: Source<'_>, document: &DeTable<'_>) -> Result<Scene, SceneError> {
     let mut root = TableReader::root(source, document);
-    root.allow(&KEYS, &LATER)?;
+    root.allow(&KEYS, &[])?;
     let name = read_name(&root.required("name", "a text")?)?;
     let description = root.entry("description").map(|entry| read_description(&entry)).transpose()?;
     let mut found = Found::default();
-    let layer = layer::read_layer(&root.required("layer", "a table")?, &mut found)?;
+    let of_material = root.entry("material");
+    let form = if of_material.is_some() { Form::Material } else { Form::Direct };
+    let layer = layer::read_layer(&root.required("layer", "a table")?, form, &mut found)?;
+    let material = of_material.as_ref().map(|entry| material_reader::read_material(entry, &mut found)).transpose()?;
     let surface = read_surface(&root.required("surface", "a table")?, &mut found)?;
-    let friction = root.optional_table("friction", settings::read_friction)?;
+    let friction = root.optional_table("friction", |table| settings::read_friction(table, form))?;
     let solver = root.optional_table("solver", settings::read_solver)?.unwrap_or_default();
     let extrapolation = root.optional_table("input", settings::read_input)?.unwrap_or_default();
     let outputs = root.optional_table("fmu", settings::read_fmu)?.unwrap_or_else(settings::default_outputs);
-    let excitation = root.tables("excitation", excitation::read_phase)?;
+    let excitation = root.tables("excitation", |table| excitation::read_phase(table, form))?;
     root.finish()?;
     let Found { files, mut warnings } = found;
     warnings.extend(warnings::short_profile(&layer, &surface, &excitation));
-    Ok(Scene {
+    let scene = Scene {
         name,
         description,
         layer,
+        material,
         surface,
         friction,
         solver,
@@ -71,7 +76,11 @@ fn read_scene(source: Source<'_>, document: &DeTable<'_>) -> Result<Scene, Scene
         excitation,
         files,
         warnings,
-    })
+    };
+    match (scene.check(), of_material) {
+        (Err(error), Some(material)) => Err(SceneError::new(material.place(), error.name(), error.problem().clone())),
+        _ => Ok(scene),
+    }
 }
 
 /// The name ends up in XML attributes and, changed into an identifier, in file names, which hold 255 letters.

@@ -1,6 +1,7 @@
 //! Reading of `[friction]`, `[solver]`, `[input]` and `[fmu]`.
 
 use super::allowed;
+use super::form::{Form, FormKeys};
 use super::table::{Entry, TableReader};
 use super::{Extrapolation, Friction, Method, OutputGroup, SceneError, Solver};
 
@@ -21,11 +22,14 @@ pub(super) fn default_outputs() -> Vec<OutputGroup> {
     vec![OutputGroup::Forces, OutputGroup::Dissipation]
 }
 
-pub(super) fn read_friction(table: &mut TableReader<'_>) -> Result<Friction, SceneError> {
-    table.allow(&["coulomb", "shear_force"], &["rate_shear", "shear_strength"])?;
+const FRICTION_OF_FORM: FormKeys = FormKeys { direct: &["shear_force"], material: &["shear_strength"] };
+
+pub(super) fn read_friction(table: &mut TableReader<'_>, form: Form) -> Result<Friction, SceneError> {
+    form.allow(table, &["coulomb"], &FRICTION_OF_FORM, &["rate_shear"])?;
     Ok(Friction {
         coulomb: table.optional_number("coulomb", &allowed::FRICTION_COEFFICIENT)?,
         shear_force: table.optional_number("shear_force", &allowed::SHEAR_FORCE)?,
+        shear_strength: table.optional_number("shear_strength", &allowed::SHEAR_STRENGTH)?,
     })
 }
 

@@ -26,6 +26,15 @@ pub(super) struct Found {
     pub(super) warnings: Vec<String>,
 }
 
+impl Found {
+    /// Notes a file that the scene reads, each once.
+    pub(super) fn add_file(&mut self, path: PathBuf) {
+        if !self.files.contains(&path) {
+            self.files.push(path);
+        }
+    }
+}
+
 /// The surface given by the table `entry`; the file that it names, if any, is added to those `found`.
 pub(super) fn read_surface(entry: &Entry<'_>, found: &mut Found) -> Result<Surface, SceneError> {
     let surface =
@@ -97,16 +106,14 @@ fn read_file(table: &mut TableReader<'_>, found: &mut Found) -> Result<Surface, 
     let entry = table.required("path", PATH_EXPECTED)?;
     let path = read_path(&entry)?;
     let profile = profile_file::read(&entry, &path, periodic)?;
-    if !found.files.contains(&path) {
-        found.files.push(path);
-    }
+    found.add_file(path);
     Ok(profile)
 }
 
 const PATH_EXPECTED: &str = "a relative path of a file beside or below the scene file, without `..` and backslashes";
 
 /// Only files beside or below the scene can go into the archive with it.
-fn read_path(entry: &Entry<'_>) -> Result<PathBuf, SceneError> {
+pub(super) fn read_path(entry: &Entry<'_>) -> Result<PathBuf, SceneError> {
     let path = entry.text(PATH_EXPECTED)?;
     let below = |part: &Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
     let normal: PathBuf = Path::new(path).components().filter(|part| matches!(part, Component::Normal(_))).collect();

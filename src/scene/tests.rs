@@ -19,7 +19,10 @@ const FLAT: &str = "[surface]\nkind = 'flat'";
 fn what_is_left_out_is_absent() {
     let scene = scene("", FLAT);
     let layer = &scene.layer;
-    assert_eq!((layer.masses, layer.spacing, layer.origin, layer.clearance, layer.mass), (4, 0.25, 0.0, 0.0, 1.0));
+    assert_eq!(
+        (layer.masses, layer.spacing, layer.origin, layer.clearance, layer.mass),
+        (4, 0.25, 0.0, 0.0, Some(1.0))
+    );
     assert_eq!((layer.initial, &layer.roughness), (Initial::Relaxed, &Vec::new()));
     assert_eq!([&layer.vertical, &layer.horizontal, &layer.lateral_x, &layer.lateral_z], [&None; 4]);
     assert_eq!((&scene.description, &scene.friction, scene.extrapolation), (&None, &None, Extrapolation::Linear));
@@ -68,8 +71,11 @@ fn reads_phases() {
     let still = Path::default();
     let pressed = Path { rate: -2.0, ..still };
     let shaken = Path { rate: 0.0, amplitude: -1.0, frequency: 5.0 };
-    assert_eq!(excitation[0], Phase { duration: 1.0, u: still, w: pressed, until_force: Some(3.0) });
-    assert_eq!(excitation[1], Phase { duration: 2.0, u: shaken, w: still, until_force: None });
+    assert_eq!(
+        excitation[0],
+        Phase { duration: 1.0, u: still, w: pressed, until_force: Some(3.0), until_pressure: None }
+    );
+    assert_eq!(excitation[1], Phase { duration: 2.0, u: shaken, w: still, until_force: None, until_pressure: None });
 }
 
 #[test]

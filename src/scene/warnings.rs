@@ -63,7 +63,11 @@ fn carrier_reach(excitation: &[Phase]) -> Reach {
         whole = Reach { low: whole.low.min(during.low), high: whole.high.max(during.high) };
         let end = phase.u.at(phase.duration);
         // A phase that a force ends can end anywhere on its way.
-        start = if phase.until_force.is_some() { during } else { start.plus(Reach { low: end, high: end }) };
+        start = if phase.until_force.or(phase.until_pressure).is_some() {
+            during
+        } else {
+            start.plus(Reach { low: end, high: end })
+        };
     }
     whole
 }

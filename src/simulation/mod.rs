@@ -17,7 +17,7 @@ use crate::contact::{EventTolerance, StepEnd};
 use crate::integrator::{DenseRoom, Followed, Integrator, Steps, Tolerance};
 use crate::model::{Forces, Model, State};
 use crate::outputs::{self, Accounts, Variable};
-use crate::scene::{LARGEST, Method, Path, Scene};
+use crate::scene::{LARGEST, Method, ParameterError, Path, Scene};
 use companion::Companion;
 pub use handover::Handover;
 use run::{Checkpoint, Run};
@@ -76,6 +76,9 @@ pub enum SimulationError {
         /// Its value.
         value: f64,
     },
+    /// Parameters that do not go together, as [`Scene::check`] finds.
+    #[error(transparent)]
+    Scene(#[from] ParameterError),
 }
 
 /// What happened to one mass at one instant.
@@ -144,9 +147,11 @@ impl Simulation {
     /// Puts the layer under the carrier at rest or in motion; what lies under the profile is lifted onto it.
     ///
     /// # Errors
-    /// [`SimulationError::OutOfRange`] where `start` is not finite.
+    /// [`SimulationError::OutOfRange`] where `start` is not finite, [`SimulationError::Scene`] where parameters set one by
+    /// one do not go together.
     pub fn new(scene: &Scene, start: &Start) -> Result<Self, SimulationError> {
         start.check()?;
+        scene.check()?;
         Ok(Self::started(scene, start))
     }
 

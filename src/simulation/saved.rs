@@ -8,7 +8,7 @@ use super::run::Checkpoint;
 use super::{Simulation, Start};
 use crate::math::Numbers;
 use crate::model::{Mode, Model, SurfacePoint};
-use crate::scene::{Method, Scene};
+use crate::scene::{Method, ParameterError, Scene};
 
 /// Everything of a run that changes, but for the processor time and the mode changes recorded.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -35,6 +35,9 @@ struct SavedRun {
 /// Why a run cannot go on from what was saved.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RestoreError {
+    /// The scene cannot run at all.
+    #[error(transparent)]
+    Scene(#[from] ParameterError),
     /// It was saved from a run of another scene.
     #[error("{found} {what}, expected {expected}")]
     Length {
@@ -103,6 +106,7 @@ impl Simulation {
     /// # Errors
     /// [`RestoreError`] where `saved` is not of a run of this scene.
     pub fn restore(scene: &Scene, saved: &Saved) -> Result<Self, RestoreError> {
+        scene.check()?;
         let mut simulation = Self::started(scene, &Start::default());
         simulation.read(&saved.run)?;
         match (&mut simulation.companion, &saved.companion) {

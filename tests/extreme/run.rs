@@ -73,6 +73,7 @@ impl From<SimulationError> for Stop {
             SimulationError::TooManySteps { .. } => "TooManySteps",
             SimulationError::StepTooSmall { .. } => "StepTooSmall",
             SimulationError::OutOfRange { .. } => "OutOfRange",
+            SimulationError::Scene(_) => "Scene",
         };
         Self { name, text: error.to_string() }
     }

@@ -51,7 +51,7 @@ impl Case {
 
     /// The kinetic energy of the layer at this speed (m/s), J.
     pub(crate) fn moving(&self, speed: f64) -> f64 {
-        0.5 * self.scene.layer.masses as f64 * self.scene.layer.mass * speed * speed
+        0.5 * self.scene.layer.masses as f64 * self.scene.mass() * speed * speed
     }
 
     /// The kinetic energy of the layer at the speeds by which the carrier's velocity jumps, summed, J.
@@ -108,7 +108,7 @@ impl Case {
             layer.spacing,
             layer.origin,
             layer.clearance,
-            layer.mass,
+            self.scene.mass(),
             format!("{:?}", layer.initial).to_lowercase(),
             roughness(&layer.roughness),
         );

@@ -74,6 +74,7 @@ pub(crate) fn cases_by(method: Method) -> impl Strategy<Value = Case> {
                     name: "case".into(),
                     description: None,
                     layer,
+                    material: None,
                     surface,
                     friction,
                     solver,
@@ -99,7 +100,9 @@ fn layer(scales: Scales) -> impl Strategy<Value = Layer> {
                 spacing: scales.spacing,
                 origin: origin * scales.spacing,
                 clearance: clearance * scales.height,
-                mass: scales.mass,
+                mass: Some(scales.mass),
+                thickness: None,
+                width: None,
                 initial,
                 roughness: Vec::new(),
                 vertical,
@@ -172,7 +175,7 @@ fn friction(scales: Scales) -> impl Strategy<Value = Friction> {
     let shear = decades(-2.5..0.5).prop_map(move |part| part * scales.stiffness * scales.height);
     let both = (coulomb.clone(), shear.clone()).prop_map(|(mu, force)| (Some(mu), Some(force)));
     prop_oneof![coulomb.prop_map(|mu| (Some(mu), None)), shear.prop_map(|force| (None, Some(force))), both]
-        .prop_map(|(coulomb, shear_force)| Friction { coulomb, shear_force })
+        .prop_map(|(coulomb, shear_force)| Friction { coulomb, shear_force, shear_strength: None })
 }
 
 /// Tolerances as they are used with a method: time-stepping is for coarse ones.

@@ -68,7 +68,7 @@ impl Powers {
         {
             *value *= length;
         }
-        layer.mass *= mass;
+        layer.mass.iter_mut().for_each(|each| *each *= mass);
         let links = [&mut layer.vertical, &mut layer.horizontal, &mut layer.lateral_x, &mut layer.lateral_z];
         links.into_iter().flatten().for_each(|link| self.link(link));
         scene.surface.x.iter_mut().chain(&mut scene.surface.z).for_each(|value| *value *= length);

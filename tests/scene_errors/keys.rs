@@ -7,8 +7,8 @@ use crate::{PATH, assert_refusals};
 #[test]
 fn unknown_keys() {
     let layer =
-        "masses, spacing, origin, clearance, mass, initial, roughness, vertical, horizontal, lateral_x, lateral_z";
-    let root = "name, description, layer, surface, friction, solver, input, fmu, excitation";
+        "masses, spacing, origin, clearance, initial, roughness, mass, vertical, horizontal, lateral_x, lateral_z";
+    let root = "name, description, layer, material, surface, friction, solver, input, fmu, excitation";
     let phase = "duration, u_rate, w_rate, u_sine, w_sine, until_force";
     assert_refusals(
         "unknown",
@@ -114,17 +114,11 @@ fn missing_keys() {
 
 #[test]
 fn what_is_not_yet_supported() {
-    let layer =
-        "masses, spacing, origin, clearance, mass, initial, roughness, vertical, horizontal, lateral_x, lateral_z";
-    let root = "name, description, layer, surface, friction, solver, input, fmu, excitation";
     let kinds = r#""flat", "sinusoid", "points", "file""#;
     let friction = "not yet supported; allowed: coulomb, shear_force";
     assert_refusals(
         "later",
         &[
-            (17, "[material]", 17, &format!("material: not yet supported; allowed: {root}")),
-            (7, "thickness = 1", 7, &format!("layer.thickness: not yet supported; allowed: {layer}")),
-            (7, "width = 1", 7, &format!("layer.width: not yet supported; allowed: {layer}")),
             (
                 15,
                 "kind = 'self_affine'\nhurst = 0.8",
@@ -138,14 +132,6 @@ fn what_is_not_yet_supported() {
                 &format!("layer.roughness.kind = 'self_affine': not yet supported; allowed: {kinds}"),
             ),
             (18, "rate_shear = { force = 1 }", 18, &format!("friction.rate_shear: {friction}")),
-            (18, "shear_strength = 1e5", 18, &format!("friction.shear_strength: {friction}")),
-            (
-                31,
-                "until_pressure = 2e5",
-                31,
-                "excitation[1].until_pressure: not yet supported; \
-                 allowed: duration, u_rate, w_rate, u_sine, w_sine, until_force",
-            ),
         ],
     );
 }

@@ -1,12 +1,12 @@
 //! The layer, its order and the profile in a description.
 
 use asperity::model::Model;
-use asperity::scene::{Link, Parameter, Scene, Surface};
+use asperity::scene::{Link, LinkKind, Parameter, Scene, Surface};
 
 use super::{LEFT_OUT, Row, number, or_left_out, under, word};
 
 /// A kind of link: its name, the links of that kind, their number.
-type LinkKind<'a> = (&'static str, Option<&'a Link>, usize);
+type Links = (&'static str, Option<Link>, usize);
 
 /// The rows on the layer and the surface.
 pub(super) fn rows(scene: &Scene) -> Vec<Row> {
@@ -22,7 +22,7 @@ fn masses(scene: &Scene) -> String {
     format!(
         "{} masses of {} kg, {} m apart from x = {} m, clearance {} m, {} at the start",
         layer.masses,
-        number(layer.mass),
+        number(scene.mass()),
         number(layer.spacing),
         number(layer.origin),
         number(layer.clearance),
@@ -35,21 +35,15 @@ fn roughness(scene: &Scene) -> String {
     if heights.is_empty() { LEFT_OUT.into() } else { format!("{} m peak to valley", number(peak_to_valley(heights))) }
 }
 
-fn links(scene: &Scene) -> [LinkKind<'_>; 4] {
-    let layer = &scene.layer;
-    [
-        ("vertical", layer.vertical.as_ref(), layer.masses),
-        ("horizontal", layer.horizontal.as_ref(), layer.masses),
-        ("lateral_x", layer.lateral_x.as_ref(), layer.masses - 1),
-        ("lateral_z", layer.lateral_z.as_ref(), layer.masses - 1),
-    ]
+fn links(scene: &Scene) -> [Links; 4] {
+    LinkKind::ALL.map(|kind| (kind.name(), scene.link(kind), kind.count(scene.layer.masses)))
 }
 
-fn link((name, link, count): LinkKind<'_>) -> String {
+fn link((name, link, count): Links) -> String {
     let Some(link) = link else { return format!("{name:<12}{LEFT_OUT}") };
     let stiffness = or_left_out(link.stiffness, " N/m");
     let damping = or_left_out(link.damping, " N s/m");
-    format!("{name:<12}{count} of c {stiffness}, d {damping}, n = {}{}", link.maxwell.len(), elements(link))
+    format!("{name:<12}{count} of c {stiffness}, d {damping}, n = {}{}", link.maxwell.len(), elements(&link))
 }
 
 fn elements(link: &Link) -> String {
@@ -68,7 +62,7 @@ fn common_n(scene: &Scene) -> Option<usize> {
 }
 
 fn maxwell_variables(scene: &Scene) -> usize {
-    links(scene).iter().map(|(_, link, count)| count * link.map_or(0, |link| link.maxwell.len())).sum()
+    links(scene).iter().map(|(_, link, count)| count * link.as_ref().map_or(0, |link| link.maxwell.len())).sum()
 }
 
 /// Coordinates and internal variables of the free layer, as the paper counts them.

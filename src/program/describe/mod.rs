@@ -73,7 +73,14 @@ fn number(value: f64) -> String {
 fn friction(scene: &Scene) -> Vec<Row> {
     let Some(friction) = &scene.friction else { return vec![("Friction", LEFT_OUT.into())] };
     let coulomb = format!("coulomb      {}", or_left_out(friction.coulomb, ""));
-    let shear = format!("shear_force  {}", or_left_out(friction.shear_force, " N a mass in contact"));
+    let shear = match friction.shear_strength {
+        Some(strength) => format!(
+            "shear        {} Pa: {} N a mass in contact",
+            number(strength),
+            number(scene.shear_force().unwrap_or(0.0))
+        ),
+        None => format!("shear_force  {}", or_left_out(friction.shear_force, " N a mass in contact")),
+    };
     under("Friction", [coulomb, shear])
 }
 
@@ -123,7 +130,11 @@ fn phase_text(index: usize, phase: &Phase) -> String {
     let motions = [("u", &phase.u), ("w", &phase.w)].map(|(name, path)| path_text(name, path));
     let motion = motions.concat();
     let motion = if motion.is_empty() { ", held".into() } else { motion };
-    let end = phase.until_force.map_or_else(String::new, |force| format!(", until F_z = {} N", number(force)));
+    let end = match (phase.until_force, phase.until_pressure) {
+        (Some(force), _) => format!(", until F_z = {} N", number(force)),
+        (None, Some(pressure)) => format!(", until F_z = {} Pa times the layer's area", number(pressure)),
+        (None, None) => String::new(),
+    };
     format!("{index}  {} s{motion}{end}", number(phase.duration))
 }
 

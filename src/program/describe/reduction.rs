@@ -40,7 +40,7 @@ fn frequency(scene: &Scene, reduction: &Reduction) -> String {
 }
 
 fn link(scene: &Scene, reduction: &Reduction, kind: LinkKind) -> Vec<String> {
-    let Some(link) = scene.layer.link(kind).filter(|link| !link.maxwell.is_empty()) else { return Vec::new() };
+    let Some(link) = scene.link(kind).filter(|link| !link.maxwell.is_empty()) else { return Vec::new() };
     let stiffness = reduction.stiffness[kind as usize];
     let replaced: Vec<_> = reduction.replaced.iter().filter(|one| one.kind == kind).collect();
     let left = link.maxwell.len() - replaced.len();

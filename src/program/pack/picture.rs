@@ -3,7 +3,7 @@
 mod canvas;
 
 use asperity::math::Spline;
-use asperity::scene::Scene;
+use asperity::scene::{LinkKind, Scene};
 use canvas::{Canvas, Colour, Point};
 
 /// Pixels: width, height.
@@ -72,11 +72,11 @@ impl<'a> View<'a> {
     }
 
     fn draw_links(&self, canvas: &mut Canvas) {
-        let layer = &self.scene.layer;
-        if layer.lateral_x.is_some() || layer.lateral_z.is_some() {
+        let has = |kinds: [LinkKind; 2]| kinds.into_iter().any(|kind| self.scene.link(kind).is_some());
+        if has([LinkKind::LateralX, LinkKind::LateralZ]) {
             canvas.polyline(self.masses.iter().copied(), LINE, LINK);
         }
-        if layer.vertical.is_some() || layer.horizontal.is_some() {
+        if has([LinkKind::Vertical, LinkKind::Horizontal]) {
             self.masses.iter().for_each(|&mass| canvas.polyline(spring(mass), LINE, LINK));
         }
     }

@@ -83,7 +83,8 @@ pub(super) fn exact(scene: &Scene) -> Scene {
 /// The scene with phases that take `durations` (s) whatever F_z does: the same motion for all runs.
 pub(super) fn with_durations(scene: &Scene, durations: &[f64]) -> Scene {
     let phases = scene.excitation.iter().zip(durations);
-    let fixed = phases.map(|(phase, &duration)| Phase { duration, until_force: None, ..phase.clone() });
+    let fixed =
+        phases.map(|(phase, &duration)| Phase { duration, until_force: None, until_pressure: None, ..phase.clone() });
     Scene { excitation: fixed.collect(), ..scene.clone() }
 }
 

@@ -56,7 +56,7 @@ impl Scene {
     fn real(&self, parameter: Parameter) -> Option<f64> {
         match parameter {
             Parameter::Clearance => Some(self.layer.clearance),
-            Parameter::Mass => Some(self.layer.mass),
+            Parameter::Mass => self.layer.mass,
             Parameter::Stiffness(kind) => self.layer.link(kind)?.stiffness,
             Parameter::Damping(kind) => self.layer.link(kind)?.damping,
             Parameter::MaxwellStiffness(kind, j) => Some(self.layer.link(kind)?.maxwell.get(j)?.stiffness),
@@ -73,7 +73,7 @@ impl Scene {
     fn real_mut(&mut self, parameter: Parameter) -> Option<&mut f64> {
         match parameter {
             Parameter::Clearance => Some(&mut self.layer.clearance),
-            Parameter::Mass => Some(&mut self.layer.mass),
+            Parameter::Mass => self.layer.mass.as_mut(),
             Parameter::Stiffness(kind) => self.layer.link_mut(kind)?.stiffness.as_mut(),
             Parameter::Damping(kind) => self.layer.link_mut(kind)?.damping.as_mut(),
             Parameter::MaxwellStiffness(kind, j) => Some(&mut self.layer.link_mut(kind)?.maxwell.get_mut(j)?.stiffness),

@@ -50,7 +50,7 @@ fn scene(periodic: bool) -> String {
 fn with_links(mut scene: Scene, method: Method) -> Scene {
     let link = Link { stiffness: Some(2e3), damping: Some(8e-3), maxwell: Vec::new() };
     (scene.layer.vertical, scene.layer.horizontal) = (Some(link.clone()), Some(link));
-    scene.friction = Some(Friction { coulomb: Some(0.3), shear_force: None });
+    scene.friction = Some(Friction { coulomb: Some(0.3), ..Friction::default() });
     scene.solver.method = method;
     scene
 }

@@ -1,0 +1,212 @@
+//! The material form of a scene: moduli, density and the layer's thickness instead of the constants of links.
+
+use serde::Serialize;
+
+use super::allowed::{self, Range};
+use super::{Layer, Link, LinkKind, MaxwellElement, ParameterError, Phase, Problem, Scene};
+
+/// A linear viscoelastic solid: a spring, a dashpot and Maxwell elements in parallel, as moduli.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Material {
+    /// Density ρ, kg/m³.
+    pub density: f64,
+    /// Poisson's ratio ν, 1; the same at every frequency.
+    pub poisson_ratio: f64,
+    /// Modulus E_∞ after all relaxation, Pa.
+    pub equilibrium_modulus: f64,
+    /// Kelvin-Voigt viscosity η, Pa s, at the reference temperature.
+    pub viscosity: Option<f64>,
+    /// The Prony series (E_j, τ_j), at the reference temperature.
+    pub prony: Vec<PronyTerm>,
+    /// How times move with temperature; `None`: the scene has no temperature.
+    pub wlf: Option<Wlf>,
+}
+
+/// A term of a Prony series: a Maxwell element of the material.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PronyTerm {
+    /// Relaxation time τ_j at the reference temperature, s.
+    pub relaxation_time: f64,
+    /// Modulus E_j, Pa.
+    pub modulus: f64,
+}
+
+/// The shift of all times with temperature after Williams, Landel and Ferry.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Wlf {
+    /// C_1, 1.
+    pub c1: f64,
+    /// C_2, K.
+    pub c2: f64,
+    /// T_ref, at which the times of the material are given, K.
+    pub reference_temperature: f64,
+    /// The layer's temperature T, K.
+    pub temperature: f64,
+}
+
+impl Wlf {
+    /// a_T: log10 a_T = -C_1 (T - T_ref)/(C_2 + T - T_ref), for T above [`lowest_temperature`](Self::lowest_temperature).
+    pub fn shift_factor(&self) -> f64 {
+        let above = self.temperature - self.reference_temperature;
+        10.0_f64.powf(-self.c1 * above / (self.c2 + above))
+    }
+
+    /// T_ref - C_2, K: above it alone the law holds.
+    pub fn lowest_temperature(&self) -> f64 {
+        self.reference_temperature - self.c2
+    }
+}
+
+impl Material {
+    /// a_T, the factor of every time at the layer's temperature; 1 without a temperature.
+    pub fn shift_factor(&self) -> f64 {
+        self.wlf.map_or(1.0, |wlf| wlf.shift_factor())
+    }
+
+    /// E'(ω) and E''(ω) at the layer's temperature, Pa, for ω ≥ 0 in rad/s (2), as the links have them:
+    /// E*(ω) = E_∞ + iω a_T η + Σ_j E_j iω a_T τ_j/(1 + iω a_T τ_j).
+    pub fn complex_modulus(&self, omega: f64) -> (f64, f64) {
+        let shifted = omega * self.shift_factor();
+        let start = (self.equilibrium_modulus, shifted * self.viscosity.unwrap_or(0.0));
+        self.prony.iter().fold(start, |(storage, loss), term| {
+            // Finite however long or short τ is.
+            let x = shifted * term.relaxation_time;
+            let inverse = 1.0 / x;
+            (storage + term.modulus / (1.0 + inverse * inverse), loss + term.modulus / (x + inverse))
+        })
+    }
+
+    /// A link whose constants are the moduli times `size`, m (model.md, section 7).
+    fn link(&self, size: f64) -> Link {
+        let shift = self.shift_factor();
+        let element = |term: &PronyTerm| MaxwellElement {
+            stiffness: term.modulus * size,
+            relaxation_time: shift * term.relaxation_time,
+        };
+        Link {
+            stiffness: Some(self.equilibrium_modulus * size),
+            damping: self.viscosity.map(|eta| shift * eta * size),
+            maxwell: self.prony.iter().map(element).collect(),
+        }
+    }
+}
+
+impl Layer {
+    /// Area A = B Δx of the layer that one mass stands for, m²; in the material form alone.
+    pub fn element_area(&self) -> Option<f64> {
+        self.width.map(|width| width * self.spacing)
+    }
+
+    /// Area k A of the whole layer, m²; in the material form alone.
+    pub fn area(&self) -> Option<f64> {
+        self.element_area().map(|area| area * self.masses as f64)
+    }
+
+    /// What turns a modulus into the stiffness of a link, m: A/H to the carrier, H B/Δx to the neighbour; times
+    /// G/E = 1/(2(1 + ν)) where the link is sheared.
+    fn link_size(&self, kind: LinkKind, poisson_ratio: f64) -> Option<f64> {
+        let (thickness, width) = (self.thickness?, self.width?);
+        let size = if kind.is_lateral() { thickness * width / self.spacing } else { self.spacing * width / thickness };
+        let sheared = matches!(kind, LinkKind::Horizontal | LinkKind::LateralZ);
+        Some(if sheared { size / (2.0 * (1.0 + poisson_ratio)) } else { size })
+    }
+}
+
+impl Phase {
+    /// F_z at which the phase of a layer of this area (m²) ends, N, if it does: given, or of the pressure.
+    pub fn end_force(&self, area: Option<f64>) -> Option<f64> {
+        self.until_force.or_else(|| Some(self.until_pressure? * area?))
+    }
+}
+
+impl Scene {
+    /// The link of a kind, if the scene has it: given, or following from the material.
+    pub fn link(&self, kind: LinkKind) -> Option<Link> {
+        match &self.material {
+            Some(material) => self.layer.link_size(kind, material.poisson_ratio).map(|size| material.link(size)),
+            None => self.layer.link(kind).cloned(),
+        }
+    }
+
+    /// The mass of one point mass, kg: given, or ρ A H.
+    pub fn mass(&self) -> f64 {
+        let of_material = || {
+            let area = self.layer.element_area()?;
+            Some(self.material.as_ref()?.density * area * self.layer.thickness?)
+        };
+        self.layer.mass.or_else(of_material).unwrap_or(0.0)
+    }
+
+    /// Adhesive shear force A τ_0 of one mass in contact, N, if the scene has it: given, or of the shear strength.
+    pub fn shear_force(&self) -> Option<f64> {
+        let friction = self.friction.as_ref()?;
+        friction.shear_force.or_else(|| Some(friction.shear_strength? * self.layer.element_area()?))
+    }
+
+    /// The same scene by the constants of its links; itself where it is given so.
+    pub fn direct_form(&self) -> Self {
+        let mut scene = self.clone();
+        if scene.material.take().is_some() {
+            let [vertical, horizontal, lateral_x, lateral_z] = LinkKind::ALL.map(|kind| self.link(kind));
+            let mass = Some(self.mass());
+            let layer = self.layer.clone();
+            scene.layer =
+                Layer { mass, vertical, horizontal, lateral_x, lateral_z, thickness: None, width: None, ..layer };
+            if let Some(friction) = &mut scene.friction {
+                (friction.shear_force, friction.shear_strength) = (self.shear_force(), None);
+            }
+            for phase in &mut scene.excitation {
+                (phase.until_force, phase.until_pressure) = (phase.end_force(self.layer.area()), None);
+            }
+        }
+        scene
+    }
+
+    /// Checks what follows from several parameters at once, and so cannot be refused when one of them is set: the
+    /// temperature, and the constants that follow from the material.
+    ///
+    /// # Errors
+    /// [`ParameterError`] for the first that is out of range.
+    pub fn check(&self) -> Result<(), ParameterError> {
+        let Some(material) = &self.material else { return Ok(()) };
+        material.wlf.map_or(Ok(()), |wlf| wlf.check())?;
+        in_range("mass of a point mass, from the material", self.mass(), &allowed::MASS)?;
+        LinkKind::ALL
+            .into_iter()
+            .try_for_each(|kind| self.link(kind).map_or(Ok(()), |link| check_link(&link, kind.description())))
+    }
+}
+
+impl Wlf {
+    fn check(&self) -> Result<(), ParameterError> {
+        if self.c2 + (self.temperature - self.reference_temperature) > 0.0 {
+            return Ok(());
+        }
+        let expected = format!(
+            "more than material.wlf.reference_temperature - c2 = {:?} K, where the shift has its pole",
+            self.lowest_temperature()
+        );
+        let problem = Problem::Value { given: format!("{:?}", self.temperature), expected };
+        Err(ParameterError::new("material.wlf.temperature", problem))
+    }
+}
+
+fn check_link(link: &Link, what: &str) -> Result<(), ParameterError> {
+    let check = |quantity: &str, value: f64, range: &Range| {
+        in_range(&format!("{quantity} of the {what}, from the material"), value, range)
+    };
+    check("stiffness", link.stiffness.unwrap_or(0.0), &allowed::STIFFNESS)?;
+    check("damping", link.damping.unwrap_or(0.0), &allowed::DAMPING)?;
+    link.maxwell.iter().try_for_each(|element| {
+        check("stiffness of an element", element.stiffness, &allowed::STIFFNESS)?;
+        check("relaxation time of an element", element.relaxation_time, &allowed::RELAXATION_TIME)
+    })
+}
+
+fn in_range(what: &str, value: f64, range: &Range) -> Result<(), ParameterError> {
+    if range.holds(value) {
+        return Ok(());
+    }
+    let problem = Problem::Value { given: format!("{value:?}"), expected: range.to_string() };
+    Err(ParameterError::new(what, problem))
+}

@@ -1,0 +1,99 @@
+//! A Prony series in a file: two columns, relaxation time in s and modulus in Pa, separated by comma, semicolon, tab or
+//! blanks, with or without a header line.
+
+use std::fs;
+use std::path::Path;
+
+use super::allowed::{self, Range};
+use super::error::Place;
+use super::profile_file::{data_lines, text_of};
+use super::table::Entry;
+use super::{Problem, PronyTerm, SceneError};
+
+const COLUMNS: [&str; 2] = ["relaxation_time", "modulus"];
+const EXPECTED_COLUMNS: &str = "two, relaxation_time and modulus, separated by comma, semicolon, tab or blanks";
+
+/// What is wrong: the line, the column, the problem.
+type Refusal = (usize, &'static str, Problem);
+
+/// Reads the series at `path`, which `entry` names.
+pub(super) fn read(entry: &Entry<'_>, path: &Path) -> Result<Vec<PronyTerm>, SceneError> {
+    let file = entry.source().beside(path);
+    let bytes = fs::read(&file)
+        .map_err(|error| entry.problem(Problem::Unreadable { given: entry.given(), reason: error.to_string() }))?;
+    parse(&bytes).map_err(|(line, column, problem)| {
+        let place = Place { file, line: Some(line) };
+        SceneError::new(place, column, problem).named_by(entry.place(), entry.key())
+    })
+}
+
+fn parse(bytes: &[u8]) -> Result<Vec<PronyTerm>, Refusal> {
+    let text = text_of(bytes).map_err(|problem| (1, "", problem))?;
+    let terms: Vec<PronyTerm> =
+        data_lines(&text).map(|(line, _, fields)| term(line, &fields)).collect::<Result<_, _>>()?;
+    if terms.is_empty() {
+        return Err((text.lines().count().max(1), "terms", refused("0", "at least one term")));
+    }
+    Ok(terms)
+}
+
+fn term(line: usize, fields: &[String]) -> Result<PronyTerm, Refusal> {
+    let [time, modulus] = fields else {
+        return Err((line, "columns", refused(&fields.len().to_string(), EXPECTED_COLUMNS)));
+    };
+    Ok(PronyTerm {
+        relaxation_time: number(time, line, COLUMNS[0], &allowed::RELAXATION_TIME)?,
+        modulus: number(modulus, line, COLUMNS[1], &allowed::MODULUS)?,
+    })
+}
+
+fn number(field: &str, line: usize, column: &'static str, range: &Range) -> Result<f64, Refusal> {
+    let number = field.parse().ok().filter(|&number| range.holds(number));
+    let given = || format!("\"{}\"", field.chars().take(60).collect::<String>());
+    number.ok_or_else(|| (line, column, refused(&given(), &range.to_string())))
+}
+
+fn refused(given: &str, expected: &str) -> Problem {
+    Problem::Value { given: given.to_owned(), expected: expected.to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reads_every_separator_with_and_without_a_header() {
+        let texts = [
+            "1e-3,2e6\n10,5e5\n",
+            "relaxation_time,modulus\n1e-3,2e6\n10,5e5\n",
+            "relaxation_time [s]; modulus [Pa]\r\n0,001;2000000\r\n1e1;5e5\r\n",
+            "# a compound\n\ntau E\n1e-3 2e6\n# long\n10\t5e5",
+        ];
+        let expected =
+            [(1e-3, 2e6), (10.0, 5e5)].map(|(relaxation_time, modulus)| PronyTerm { relaxation_time, modulus });
+        for text in texts {
+            assert_eq!(parse(text.as_bytes()).as_deref(), Ok(&expected[..]), "{text:?}");
+        }
+    }
+
+    #[test]
+    fn refuses_what_is_no_series() {
+        let cases = [
+            ("", 1, "terms = 0: expected at least one term"),
+            ("tau,E\n", 1, "terms = 0: expected at least one term"),
+            ("tau,E\n1,2\n0,3\n", 3, "relaxation_time = \"0\": expected a number from 1e-30 to 1e30"),
+            ("1,2\n2,-3\n", 2, "modulus = \"-3\": expected 0 or a number from 1e-30 to 1e30"),
+            ("1,2\n2,soft\n", 2, "modulus = \"soft\": expected 0 or a number from 1e-30 to 1e30"),
+            (
+                "1,2,3\n",
+                1,
+                "columns = 3: expected two, relaxation_time and modulus, separated by comma, semicolon, tab or blanks",
+            ),
+            ("1\0,2\n", 1, "bytes that are zero: expected text in UTF-8, not UTF-16 or binary data"),
+        ];
+        for (text, line, message) in cases {
+            let (at, column, problem) = parse(text.as_bytes()).unwrap_err();
+            assert_eq!((at, problem.about(column)), (line, message.to_owned()), "{text:?}");
+        }
+    }
+}
