@@ -44,6 +44,8 @@ impl Numbers for SurfacePoint {
 pub struct Model {
     /// Mass m of one point mass, kg.
     pub mass: f64,
+    /// Area A that one mass stands for, m²; 0 in the direct form, which gives none.
+    pub element_area: f64,
     /// Places X_i of the masses at rest, m.
     pub rest_x: Vec<f64>,
     /// Heights Z_i of the masses at rest, m.
@@ -83,6 +85,7 @@ impl Model {
         let (rows, relaxation_times) = link::maxwell_rows(scene, reduction.as_ref());
         Self {
             mass: scene.mass(),
+            element_area: layer.element_area().unwrap_or(0.0),
             rest_x: (0..k).map(|i| layer.place(i)).collect(),
             rest_z: (0..k).map(|i| layer.clearance + roughness(i)).collect(),
             still: if links.iter().any(|link| link.still > 0.0) { vec![0.0; k] } else { Vec::new() },

@@ -60,6 +60,7 @@ pub fn dependencies(scene: &Scene, output: Output) -> Dependencies {
         | Output::ContactCount
         | Output::StickingCount
         | Output::ContactRatio
+        | Output::ContactArea
         | Output::InputEnergy
         | Output::KineticEnergy
         | Output::TangentXU

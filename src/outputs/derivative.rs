@@ -85,6 +85,7 @@ impl Moment<'_> {
             | Output::ContactCount
             | Output::StickingCount
             | Output::ContactRatio
+            | Output::ContactArea
             | Output::InputEnergy
             | Output::KineticEnergy
             | Output::TangentXU

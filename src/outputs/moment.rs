@@ -163,6 +163,7 @@ impl Moment<'_> {
                 Output::ContactCount => count(|mode| mode.in_contact()),
                 Output::StickingCount => count(|&mode| mode == Mode::Stick),
                 Output::ContactRatio => count(|mode| mode.in_contact()) / self.model.masses() as f64,
+                Output::ContactArea => count(|mode| mode.in_contact()) * self.model.element_area,
                 Output::ContactForceX => sums.hysteresis + sums.adhesion,
                 Output::ContactForceZ => sums.force_z,
                 Output::InputEnergy => channels.input,

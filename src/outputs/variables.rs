@@ -33,6 +33,8 @@ pub enum Output {
     StickingCount,
     /// Masses in contact over all masses.
     ContactRatio,
+    /// Area of the masses in contact, m².
+    ContactArea,
     /// Sum of the contact forces on the masses along x, N.
     ContactForceX,
     /// Sum of the contact forces on the masses along z, N.
@@ -131,7 +133,7 @@ fn group_variables(scene: &Scene, group: OutputGroup) -> Vec<Variable> {
         .collect()
 }
 
-/// A channel of dissipation that the scene cannot have is no variable.
+/// A channel of dissipation that the scene cannot have is no variable, nor is an area that it does not give.
 fn can_have(scene: &Scene, output: Output) -> bool {
     let any =
         |test: fn(&Link) -> bool| LinkKind::ALL.into_iter().any(|kind| scene.link(kind).as_ref().is_some_and(test));
@@ -142,6 +144,7 @@ fn can_have(scene: &Scene, output: Output) -> bool {
         }
         Output::MaxwellEnergy => any(|link| !link.maxwell.is_empty()),
         Output::FrictionEnergy => scene.friction.is_some(),
+        Output::ContactArea => scene.layer.element_area().is_some(),
         _ => true,
     }
 }
@@ -149,10 +152,10 @@ fn can_have(scene: &Scene, output: Output) -> bool {
 type Row = (Output, OutputGroup, &'static str, Kind, Unit, &'static str);
 
 #[rustfmt::skip]
-const TABLE: [Row; 29] = {
+const TABLE: [Row; 30] = {
     use Kind::{Integer, Real};
     use OutputGroup::{Contact, Dissipation, Energy, Forces, Friction, Solver, Tangent};
-    use Unit::{Joule, Newton, NewtonPerMeter, One, Second, Watt};
+    use Unit::{Joule, Newton, NewtonPerMeter, One, Second, SquareMeter, Watt};
     [
         (Output::ForceX, Forces, "F_x", Real, Newton, "Force of the layer on the carrier along x"),
         (Output::ForceZ, Forces, "F_z", Real, Newton, "Force of the layer on the carrier along z, positive when compressed"),
@@ -168,6 +171,7 @@ const TABLE: [Row; 29] = {
         (Output::ContactCount, Contact, "contact.count", Integer, One, "Masses in contact"),
         (Output::StickingCount, Contact, "contact.sticking", Integer, One, "Masses that stick"),
         (Output::ContactRatio, Contact, "contact.ratio", Real, One, "Masses in contact over all masses"),
+        (Output::ContactArea, Contact, "contact.area", Real, SquareMeter, "Area that the masses in contact stand for"),
         (Output::ContactForceX, Contact, "contact.F_x", Real, Newton, "Sum of the contact forces on the masses along x"),
         (Output::ContactForceZ, Contact, "contact.F_z", Real, Newton, "Sum of the contact forces on the masses along z"),
         (Output::InputEnergy, Energy, "energy.input", Real, Joule, "Work of the carrier on the layer since the start"),

@@ -40,7 +40,8 @@ fn load(path: &Path) -> Result<Scene, ProgramError> {
 
 /// Overrides parameters, as `--set` gives them.
 fn set_parameters(scene: &mut Scene, set: &[(String, String)]) -> Result<(), ProgramError> {
-    Ok(set.iter().try_for_each(|(key, value)| scene.set_by_name(key, value))?)
+    set.iter().try_for_each(|(key, value)| scene.set_by_name(key, value))?;
+    Ok(scene.check()?)
 }
 
 /// The files that a scene is read from.

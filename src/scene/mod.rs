@@ -36,7 +36,7 @@ pub use allowed::{LARGEST, SMALLEST, is_possible};
 pub use error::{Problem, SceneError};
 pub use link_kind::LinkKind;
 pub use material::{Material, PronyTerm, Wlf};
-pub use parameters::{Parameter, ParameterError, Value};
+pub use parameters::{MaterialParameter, Parameter, ParameterError, Value};
 pub use unit::Unit;
 
 /// A whole scene, checked. Serialised, it is every number of it: what the scene does not name is null or empty.

@@ -2,12 +2,15 @@
 
 mod access;
 mod by_name;
+mod material;
 #[cfg(test)]
 mod tests;
 
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
+
+pub use material::MaterialParameter;
 
 use super::{Layer, Link, LinkKind, Problem, Scene, Unit};
 
@@ -28,10 +31,14 @@ pub enum Parameter {
     MaxwellStiffness(LinkKind, usize),
     /// `layer.vertical.maxwell[1].relaxation_time` and so on; the element counted from 0
     RelaxationTime(LinkKind, usize),
+    /// `material.density` and so on
+    Material(MaterialParameter),
     /// `friction.coulomb`
     Coulomb,
     /// `friction.shear_force`
     ShearForce,
+    /// `friction.shear_strength`
+    ShearStrength,
     /// `solver.method`
     Method,
     /// `solver.relative_tolerance`
@@ -113,8 +120,10 @@ impl Parameter {
             Self::Damping(link) => format!("layer.{}.damping", link.name()),
             Self::MaxwellStiffness(link, j) => format!("layer.{}.maxwell[{}].stiffness", link.name(), j + 1),
             Self::RelaxationTime(link, j) => format!("layer.{}.maxwell[{}].relaxation_time", link.name(), j + 1),
+            Self::Material(parameter) => parameter.name(),
             Self::Coulomb => "friction.coulomb".into(),
             Self::ShearForce => "friction.shear_force".into(),
+            Self::ShearStrength => "friction.shear_strength".into(),
             Self::Method => "solver.method".into(),
             Self::RelativeTolerance => "solver.relative_tolerance".into(),
             Self::AbsoluteTolerance => "solver.absolute_tolerance".into(),
@@ -131,7 +140,9 @@ impl Parameter {
             Self::Stiffness(_) | Self::MaxwellStiffness(..) => Unit::NewtonPerMeter,
             Self::Damping(_) => Unit::NewtonSecondPerMeter,
             Self::RelaxationTime(..) => Unit::Second,
+            Self::Material(parameter) => parameter.unit(),
             Self::ShearForce => Unit::Newton,
+            Self::ShearStrength => Unit::Pascal,
             Self::Coulomb | Self::RelativeTolerance => Unit::One,
             Self::Initial | Self::Method | Self::MaxSteps | Self::Extrapolation => Unit::One,
         }
@@ -151,8 +162,10 @@ impl Parameter {
             Self::RelaxationTime(link, j) => {
                 format!("Relaxation time of Maxwell element {} of the {}", j + 1, link.description())
             }
+            Self::Material(parameter) => parameter.description(),
             Self::Coulomb => "Coulomb's friction coefficient".into(),
             Self::ShearForce => "Adhesive shear force of one mass in contact".into(),
+            Self::ShearStrength => "Adhesive shear strength of the contact".into(),
             Self::Method => "How mode changes are treated: event locates every one, step puts them at the ends of its steps, auto takes step \
                  where they crowd"
                 .into(),
@@ -186,9 +199,12 @@ impl Scene {
         for kind in LinkKind::ALL {
             parameters.extend(self.layer.link(kind).into_iter().flat_map(|link| link_parameters(kind, link)));
         }
+        let of_material = self.material.as_ref().map_or_else(Vec::new, MaterialParameter::of);
+        parameters.extend(of_material.into_iter().map(Parameter::Material));
         let friction = self.friction.clone().unwrap_or_default();
         parameters.extend(friction.coulomb.map(|_| Parameter::Coulomb));
         parameters.extend(friction.shear_force.map(|_| Parameter::ShearForce));
+        parameters.extend(friction.shear_strength.map(|_| Parameter::ShearStrength));
         parameters.extend([Method, RelativeTolerance, AbsoluteTolerance, MaxSteps, Extrapolation]);
         parameters
     }

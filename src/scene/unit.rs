@@ -17,6 +17,16 @@ pub enum Unit {
     NewtonPerMeter,
     /// N s/m.
     NewtonSecondPerMeter,
+    /// K.
+    Kelvin,
+    /// m².
+    SquareMeter,
+    /// kg/m³.
+    KilogramPerCubicMeter,
+    /// Pa.
+    Pascal,
+    /// Pa s.
+    PascalSecond,
     /// J.
     Joule,
     /// W.
@@ -34,23 +44,33 @@ impl Unit {
             Self::Newton => "N",
             Self::NewtonPerMeter => "N/m",
             Self::NewtonSecondPerMeter => "N.s/m",
+            Self::Kelvin => "K",
+            Self::SquareMeter => "m2",
+            Self::KilogramPerCubicMeter => "kg/m3",
+            Self::Pascal => "Pa",
+            Self::PascalSecond => "Pa.s",
             Self::Joule => "J",
             Self::Watt => "W",
         }
     }
 
-    /// The exponents of kg, m and s in the unit.
-    pub fn exponents(self) -> [i32; 3] {
+    /// The exponents of kg, m, s and K in the unit.
+    pub fn exponents(self) -> [i32; 4] {
         match self {
-            Self::One => [0, 0, 0],
-            Self::Meter => [0, 1, 0],
-            Self::Second => [0, 0, 1],
-            Self::Kilogram => [1, 0, 0],
-            Self::Newton => [1, 1, -2],
-            Self::NewtonPerMeter => [1, 0, -2],
-            Self::NewtonSecondPerMeter => [1, 0, -1],
-            Self::Joule => [1, 2, -2],
-            Self::Watt => [1, 2, -3],
+            Self::One => [0, 0, 0, 0],
+            Self::Meter => [0, 1, 0, 0],
+            Self::Second => [0, 0, 1, 0],
+            Self::Kilogram => [1, 0, 0, 0],
+            Self::Newton => [1, 1, -2, 0],
+            Self::NewtonPerMeter => [1, 0, -2, 0],
+            Self::NewtonSecondPerMeter => [1, 0, -1, 0],
+            Self::Kelvin => [0, 0, 0, 1],
+            Self::SquareMeter => [0, 2, 0, 0],
+            Self::KilogramPerCubicMeter => [1, -3, 0, 0],
+            Self::Pascal => [1, -1, -2, 0],
+            Self::PascalSecond => [1, -1, -1, 0],
+            Self::Joule => [1, 2, -2, 0],
+            Self::Watt => [1, 2, -3, 0],
         }
     }
 }

@@ -12,6 +12,7 @@ mod free;
 mod friction;
 mod hysteresis;
 mod linear;
+mod material;
 mod modulus;
 mod one_mass;
 mod partial;

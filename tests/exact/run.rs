@@ -21,8 +21,13 @@ impl Run {
     pub(crate) fn new(text: &str, start: Start) -> Self {
         let text = format!("name = \"exact\"\n{text}\n[fmu]\n{OUTPUTS}\n");
         let scene = Scene::parse(&text, FilePath::new("exact.toml")).unwrap_or_else(|error| panic!("{error}\n{text}"));
-        let variables = outputs::variables(&scene);
-        let mut simulation = Simulation::new(&scene, &start).unwrap();
+        Self::of(&scene, start)
+    }
+
+    /// Starts a scene.
+    pub(crate) fn of(scene: &Scene, start: Start) -> Self {
+        let variables = outputs::variables(scene);
+        let mut simulation = Simulation::new(scene, &start).unwrap();
         simulation.record_mode_changes(true);
         Self { simulation, values: vec![0.0; variables.len()], variables }
     }

@@ -14,6 +14,7 @@ mod lifecycle;
 mod logging;
 mod many;
 mod master;
+mod material;
 mod serialised;
 mod states;
 mod stepping;

@@ -3,7 +3,7 @@
 use asperity::model::Model;
 use asperity::scene::{Link, LinkKind, Parameter, Scene, Surface};
 
-use super::{LEFT_OUT, Row, number, or_left_out, under, word};
+use super::{LEFT_OUT, Row, material, number, or_left_out, under, word};
 
 /// A kind of link: its name, the links of that kind, their number.
 type Links = (&'static str, Option<Link>, usize);
@@ -11,6 +11,7 @@ type Links = (&'static str, Option<Link>, usize);
 /// The rows on the layer and the surface.
 pub(super) fn rows(scene: &Scene) -> Vec<Row> {
     let mut rows = vec![("Layer", masses(scene)), ("Roughness", roughness(scene))];
+    rows.extend(material::rows(scene));
     rows.extend(under("Links", links(scene).map(link)));
     rows.extend(under("Order", [paper_order(scene), order_as_coded(scene)]));
     rows.push(("Profile", profile(&scene.surface)));

@@ -1,6 +1,7 @@
 //! `asperity describe`: what is in a scene and what is left out.
 
 mod layer;
+mod material;
 mod reduction;
 
 use std::io::Write as _;
@@ -25,7 +26,7 @@ pub(crate) fn describe(command: &Describe) -> Result<(), ProgramError> {
 
 /// The scene as it was read, for other programs.
 fn json(scene: &Scene) -> Result<String, ProgramError> {
-    serde_json::to_string(scene).map(|text| text + "\n").map_err(ProgramError::Json)
+    serde_json::to_string(&material::Described::new(scene)).map(|text| text + "\n").map_err(ProgramError::Json)
 }
 
 fn text(scene: &Scene) -> Result<String, ProgramError> {
@@ -64,8 +65,9 @@ fn or_left_out(value: Option<f64>, unit: &str) -> String {
     value.map_or_else(|| LEFT_OUT.into(), |value| format!("{}{unit}", number(value)))
 }
 
-/// A number for reading: short, with an exponent where it is far from 1.
+/// A number for reading: short, with an exponent where it is far from 1, without the roundings of what it follows from.
 fn number(value: f64) -> String {
+    let value: f64 = format!("{value:.11e}").parse().unwrap_or(value);
     let near = value == 0.0 || (1e-3..1e6).contains(&value.abs());
     if near { format!("{value}") } else { format!("{value:e}") }
 }

@@ -27,7 +27,7 @@ pub(super) fn of(entry: &Entry<'_>) -> Unit {
 }
 
 fn one(xml: &mut Xml, unit: Unit) -> io::Result<()> {
-    let exponents = ["kg", "m", "s"].into_iter().zip(unit.exponents()).filter(|(_, exponent)| *exponent != 0);
+    let exponents = ["kg", "m", "s", "K"].into_iter().zip(unit.exponents()).filter(|(_, exponent)| *exponent != 0);
     let texts: Vec<_> = exponents.map(|(base, exponent)| (base, exponent.to_string())).collect();
     xml.create_element("Unit").with_attribute(("name", unit.name())).write_inner_content(|xml| {
         let attributes = texts.iter().map(|(base, exponent)| (*base, exponent.as_str()));

@@ -13,8 +13,10 @@ impl Parameter {
             Self::Stiffness(_) | Self::MaxwellStiffness(..) => Some(allowed::STIFFNESS),
             Self::Damping(_) => Some(allowed::DAMPING),
             Self::RelaxationTime(..) => Some(allowed::RELAXATION_TIME),
+            Self::Material(parameter) => Some(parameter.range()),
             Self::Coulomb => Some(allowed::FRICTION_COEFFICIENT),
             Self::ShearForce => Some(allowed::SHEAR_FORCE),
+            Self::ShearStrength => Some(allowed::SHEAR_STRENGTH),
             Self::RelativeTolerance => Some(allowed::RELATIVE_TOLERANCE),
             Self::AbsoluteTolerance => Some(allowed::ABSOLUTE_TOLERANCE),
             Self::Initial | Self::Method | Self::MaxSteps | Self::Extrapolation => None,
@@ -61,8 +63,10 @@ impl Scene {
             Parameter::Damping(kind) => self.layer.link(kind)?.damping,
             Parameter::MaxwellStiffness(kind, j) => Some(self.layer.link(kind)?.maxwell.get(j)?.stiffness),
             Parameter::RelaxationTime(kind, j) => Some(self.layer.link(kind)?.maxwell.get(j)?.relaxation_time),
+            Parameter::Material(parameter) => parameter.value(self.material.as_ref()?),
             Parameter::Coulomb => self.friction.as_ref()?.coulomb,
             Parameter::ShearForce => self.friction.as_ref()?.shear_force,
+            Parameter::ShearStrength => self.friction.as_ref()?.shear_strength,
             Parameter::RelativeTolerance => Some(self.solver.relative_tolerance),
             Parameter::AbsoluteTolerance => Some(self.absolute_tolerance()),
             Parameter::Initial | Parameter::Method | Parameter::MaxSteps | Parameter::Extrapolation => None,
@@ -80,15 +84,17 @@ impl Scene {
             Parameter::RelaxationTime(kind, j) => {
                 Some(&mut self.layer.link_mut(kind)?.maxwell.get_mut(j)?.relaxation_time)
             }
+            Parameter::Material(parameter) => parameter.place(self.material.as_mut()?),
             Parameter::Coulomb => self.friction.as_mut()?.coulomb.as_mut(),
             Parameter::ShearForce => self.friction.as_mut()?.shear_force.as_mut(),
+            Parameter::ShearStrength => self.friction.as_mut()?.shear_strength.as_mut(),
             Parameter::RelativeTolerance => Some(&mut self.solver.relative_tolerance),
             Parameter::AbsoluteTolerance => Some(self.solver.absolute_tolerance.get_or_insert(0.0)),
             Parameter::Initial | Parameter::Method | Parameter::MaxSteps | Parameter::Extrapolation => None,
         }
     }
 
-    /// Gives `parameter` a value.
+    /// Gives `parameter` a value. Whether several go together, [`check`](Self::check) says once all are set.
     ///
     /// # Errors
     /// [`ParameterError`] where the value is of the wrong type or out of range, or where the scene has no such

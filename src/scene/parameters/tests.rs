@@ -183,3 +183,80 @@ fn a_parameter_that_the_scene_lacks_cannot_be_set() {
     }
     assert_eq!(bare, before);
 }
+
+const MATERIAL: &str = r#"
+name = "rubber"
+[layer]
+masses = 2
+spacing = 1e-4
+thickness = 5e-3
+width = 1e-2
+[material]
+density = 1100
+poisson_ratio = 0.49
+equilibrium_modulus = 2e6
+viscosity = 10
+prony = [{ modulus = 5e6, relaxation_time = 1e-5 }]
+wlf = { c1 = 7.52, c2 = 119.75, reference_temperature = 293.15, temperature = 313.15 }
+[surface]
+kind = "flat"
+[friction]
+shear_strength = 1e5
+"#;
+
+fn rubber() -> Scene {
+    Scene::parse(MATERIAL, Path::new("rubber.toml")).unwrap()
+}
+
+#[test]
+fn a_material_has_its_own_and_none_of_the_links() {
+    let expected = [
+        ("layer.clearance", Unit::Meter),
+        ("layer.initial", Unit::One),
+        ("material.density", Unit::KilogramPerCubicMeter),
+        ("material.poisson_ratio", Unit::One),
+        ("material.equilibrium_modulus", Unit::Pascal),
+        ("material.viscosity", Unit::PascalSecond),
+        ("material.prony[1].modulus", Unit::Pascal),
+        ("material.prony[1].relaxation_time", Unit::Second),
+        ("material.wlf.c1", Unit::One),
+        ("material.wlf.c2", Unit::Kelvin),
+        ("material.wlf.reference_temperature", Unit::Kelvin),
+        ("material.wlf.temperature", Unit::Kelvin),
+        ("friction.shear_strength", Unit::Pascal),
+    ];
+    let parameters = rubber().parameters();
+    for (parameter, (name, unit)) in parameters.iter().zip(expected) {
+        assert_eq!((parameter.name().as_str(), parameter.unit()), (name, unit));
+        assert!(!parameter.description().is_empty());
+    }
+    assert_eq!(parameters.len(), expected.len() + 5);
+}
+
+#[test]
+fn a_material_is_set_and_its_links_follow() {
+    let mut scene = rubber();
+    for parameter in scene.parameters() {
+        let Value::Real(number) = scene.parameter(parameter) else { continue };
+        scene.set_parameter(parameter, Value::Real(0.5 * number)).unwrap();
+        assert_eq!(scene.parameter(parameter), Value::Real(0.5 * number), "{}", parameter.name());
+    }
+    let mut hot = rubber();
+    let before = hot.link(crate::scene::LinkKind::Vertical).unwrap();
+    hot.set_by_name("material.prony[1].modulus", "1e7").unwrap();
+    let after = hot.link(crate::scene::LinkKind::Vertical).unwrap();
+    assert_eq!(after.maxwell[0].stiffness, 2.0 * before.maxwell[0].stiffness);
+    assert_eq!(after.stiffness, before.stiffness);
+}
+
+#[test]
+fn a_temperature_that_has_no_shift_is_found_once_all_is_set() {
+    let mut scene = rubber();
+    scene.set_by_name("material.wlf.temperature", "173").unwrap();
+    let told = scene.check().unwrap_err().to_string();
+    assert!(told.starts_with("material.wlf.temperature = 173.0: expected more than "), "{told}");
+    scene.set_by_name("material.wlf.reference_temperature", "200").unwrap();
+    assert_eq!(scene.check(), Ok(()));
+    let refused = refusal(&mut scene, "material.wlf.temperature", "0");
+    assert_eq!(refused, "material.wlf.temperature = 0.0: expected a number from 1e-30 to 1e30");
+}

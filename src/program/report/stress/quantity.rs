@@ -1,6 +1,6 @@
 //! What is scaled, and where a cell lies.
 
-use asperity::scene::{Parameter, ParameterError, Path, Phase, Scene, Value};
+use asperity::scene::{MaterialParameter, Parameter, ParameterError, Path, Phase, Scene, Value};
 
 use super::drive::Course;
 
@@ -51,9 +51,17 @@ impl Quantity {
     /// Whether a parameter of the scene is scaled with it.
     fn is_of(self, parameter: Parameter) -> bool {
         match self {
-            Self::Stiffness => matches!(parameter, Parameter::Stiffness(_) | Parameter::MaxwellStiffness(..)),
-            Self::Mass => parameter == Parameter::Mass,
-            Self::RelaxationTimes => matches!(parameter, Parameter::RelaxationTime(..)),
+            Self::Stiffness => matches!(
+                parameter,
+                Parameter::Stiffness(_)
+                    | Parameter::MaxwellStiffness(..)
+                    | Parameter::Material(MaterialParameter::EquilibriumModulus | MaterialParameter::Modulus(_))
+            ),
+            Self::Mass => matches!(parameter, Parameter::Mass | Parameter::Material(MaterialParameter::Density)),
+            Self::RelaxationTimes => matches!(
+                parameter,
+                Parameter::RelaxationTime(..) | Parameter::Material(MaterialParameter::RelaxationTime(_))
+            ),
             Self::Speed | Self::CommunicationStep => false,
         }
     }
@@ -122,6 +130,7 @@ impl Place {
         for quantity in Quantity::ALL.into_iter().filter(|quantity| self.power(*quantity) != Some(0)) {
             quantity.scale(&mut scene, self.factor(quantity).unwrap_or(1.0))?;
         }
+        scene.check()?;
         let course = match self.communication {
             None => Course::Motion { points },
             Some(power) => Course::Steps(power_of_ten(power)),
@@ -170,6 +179,29 @@ u_sine = { amplitude = 1e-5, frequency = 100.0 }
         let by_hand = TEXT.replace("stiffness = 1e3", "stiffness = 1e6").replace("stiffness = 5e2", "stiffness = 5e5");
         assert_eq!(stiff, scene(&by_hand.replace("stiffness = 2e3", "stiffness = 2e6")));
         assert_eq!(course, Course::Motion { points: 7 });
+    }
+
+    #[test]
+    fn of_a_material_moduli_density_and_times_are_scaled() {
+        let text = "name = 'rubber'
+[layer]
+masses = 2
+spacing = 1e-4
+thickness = 1e-3
+width = 1e-2
+[material]
+density = 1100.0
+poisson_ratio = 0.49
+equilibrium_modulus = 2e6
+prony = [{ modulus = 5e6, relaxation_time = 1e-4 }]
+[surface]
+kind = 'flat'";
+        let rubber = scene(text);
+        let at = |quantity| Place::default().with(quantity, 1).stress(&rubber, 1).unwrap().0;
+        let stiff = text.replace("= 2e6", "= 2e7").replace("modulus = 5e6", "modulus = 5e7");
+        assert_eq!(at(Quantity::Stiffness), scene(&stiff));
+        assert_eq!(at(Quantity::Mass), scene(&text.replace("1100.0", "11000.0")));
+        assert_eq!(at(Quantity::RelaxationTimes), scene(&text.replace("= 1e-4 }", "= 1e-3 }")));
     }
 
     #[test]
