@@ -223,7 +223,7 @@ fn hysteresis_is_largest_at_the_shifted_relaxation_time() {
 /// is negligible: the stiffest frequency is far above that of the passage, and damped.
 fn friction(temperature: f64, v: f64) -> f64 {
     let scene = parse(&format!(
-        "[layer]\nmasses = 20\nspacing = 5e-5\nthickness = 1e-3\nwidth = 1e-2\n\
+        "[layer]\nmasses = 20\nspacing = 5e-5\nthickness = 2e-4\nwidth = 1e-2\n\
          [material]\ndensity = 1\npoisson_ratio = 0.49\nequilibrium_modulus = 2e6\nviscosity = 10\n\
          prony = [{{ modulus = 3e6, relaxation_time = 1e-3 }}, {{ modulus = 2e6, relaxation_time = 1e-4 }}]\n\
          wlf = {{ c1 = 2, c2 = 100, reference_temperature = 300, temperature = {temperature:?} }}\n\
@@ -235,7 +235,7 @@ fn friction(temperature: f64, v: f64) -> f64 {
     let motion = Motion { duration: 4.0 * WAVELENGTH / v, u: rate(v), w: REST };
     let columns = run.sample(&motion, &times, &["F_x", "F_z", "contact.ratio"]);
     let ratio = mean(&columns[2]);
-    assert!(0.2 < ratio && ratio < 0.99, "{ratio} in contact");
+    assert!(0.1 < ratio && ratio < 0.99, "{ratio} in contact");
     -mean(&columns[0]) / mean(&columns[1])
 }
 
