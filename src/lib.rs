@@ -60,6 +60,10 @@
 //! | c, d | `LinkLaw::stiffness`, `damping` | N/m, N s/m | spring and damper of a link |
 //! | c_j, τ_j | `MaxwellRow::stiffness`, `relaxation_time` | N/m, s | Maxwell element, d_j = c_j τ_j |
 //! | a_j = e - y_j | `State::maxwell` | m | elongation of a Maxwell element's spring; rows 21, 22 of (13)-(15) |
+//! | E_∞, E_j, η, ν, ρ | `Material::equilibrium_modulus`, `PronyTerm::modulus`, … | Pa, Pa s, 1, kg/m³ | material form |
+//! | H, B, A = B Δx | `Layer::thickness`, `width`, `element_area()` | m, m² | material form |
+//! | a_T | `Material::shift_factor()` | 1 | shift of all times with temperature (Williams, Landel and Ferry) |
+//! | E', E'' | `Material::complex_modulus()` | Pa | storage and loss modulus (2) |
 //! | f_x,i, f_z,i | `Forces::on_mass_x`, `on_mass_z` | N | forces of the links on mass i (3), (4) |
 //! | F_x, F_z | `Forces::on_carrier_x`, `on_carrier_z` | N | forces of the layer on the carrier |
 //! | z_r, s, κ | `SurfacePoint::height`, `slope`, `curvature` | m, 1, 1/m | profile, z_r', z_r'' (5), (9) |

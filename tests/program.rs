@@ -239,6 +239,104 @@ fn a_scene_as_json_is_all_of_it() {
     assert!(common::difference(&heights, &file.column("z")) < 1e-15 * common::largest(&heights));
 }
 
+/// Two masses of rubber, A = 1e-6 m², pressed at 20 mm/s; at 400 K times are a tenth of those at 300 K.
+const RUBBER: &str = "name = 'rubber'
+[layer]
+masses = 2
+spacing = 1e-4
+thickness = 1e-3
+width = 1e-2
+[material]
+density = 1000
+poisson_ratio = 0.25
+equilibrium_modulus = 2e6
+viscosity = 10
+prony = 'compound.csv'
+wlf = { c1 = 2, c2 = 100, reference_temperature = 300, temperature = 400 }
+[surface]
+kind = 'flat'
+[friction]
+shear_strength = 1e4
+[[excitation]]
+duration = 1e-3
+w_rate = -0.02
+until_pressure = 1e4
+";
+
+fn rubber(folder: &Path, text: &str) -> PathBuf {
+    fs::write(folder.join("compound.csv"), "relaxation_time,modulus\n1e-3,5e6\n").unwrap();
+    let scene = folder.join("rubber.toml");
+    fs::write(&scene, text).unwrap();
+    scene
+}
+
+#[test]
+fn a_phase_ends_at_a_pressure_on_the_whole_layer() {
+    let folder = scratch("program-pressure");
+    let scene = rubber(&folder, RUBBER);
+    let table = simulate(&scene, &folder, &["--points", "10"]);
+    let force = table.column("F_z")[10];
+    assert!((force / (2.0 * 1e-6) - 1e4).abs() < 0.1, "{force}");
+    assert!(table.column("time")[10] < 1e-3);
+    let told = warnings(&rubber(&folder, &RUBBER.replace("until_pressure = 1e4", "until_pressure = 1e9")), &folder);
+    assert!(told.contains("warning: phase 1") && told.contains("until_pressure = 1000000000 Pa"), "{told}");
+}
+
+#[test]
+fn a_description_of_a_material_tells_the_links_that_follow_and_the_shift() {
+    let folder = scratch("program-rubber");
+    let scene = rubber(&folder, RUBBER);
+    let text = run(asperity().arg("describe").arg(&scene));
+    for part in [
+        "2 masses of 1e-6 kg",
+        "0.001 m thick, 0.01 m wide, density 1000 kg/m³, Poisson's ratio 0.25",
+        "400 K, times given at 300 K: a_T = 1.0000e-1",
+        "vertical    2 of c 2000 N/m, d 1e-3 N s/m, n = 1: 5000 N/m at 1e-4 s",
+        "lateral_z   1 of c 80000 N/m",
+        "shear        10000 Pa: 0.01 N a mass in contact",
+        "until F_z = 10000 Pa times the layer's area",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    let json = run(asperity().arg("describe").arg(&scene).arg("--json"));
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["material"]["prony"][0]["modulus"], 5e6);
+    let number = |value: &serde_json::Value, expected: f64| {
+        let found = value.as_f64().unwrap();
+        assert!((found / expected - 1.0).abs() < 1e-14, "{found}, not {expected}");
+    };
+    number(&json["shift_factor"], 0.1);
+    number(&json["layer"]["mass"], 1e-6);
+    number(&json["layer"]["horizontal"]["stiffness"], 800.0);
+    number(&json["layer"]["vertical"]["maxwell"][0]["relaxation_time"], 1e-4);
+    number(&json["friction"]["shear_force"], 0.01);
+    number(&json["excitation"][0]["until_force"], 0.02);
+}
+
+#[test]
+fn parameters_that_do_not_go_together_are_refused_once_all_are_set() {
+    let folder = scratch("program-cold");
+    let scene = rubber(&folder, RUBBER);
+    let output = folder.join("out.csv");
+    let arguments = ["simulate", scene.to_str().unwrap(), "-o", output.to_str().unwrap()];
+    let cold = ["--set", "material.wlf.temperature=190"];
+    let text = failure(&[&arguments[..], &cold].concat());
+    assert!(text.contains("material.wlf.temperature = 190.0: expected more than "), "{text}");
+    let both = [&arguments[..], &cold, &["--set", "material.wlf.reference_temperature=200"]].concat();
+    run(asperity().args(both));
+}
+
+#[test]
+fn the_archive_holds_the_compound() {
+    let folder = scratch("program-compound");
+    let (scene, library, fmu) = (rubber(&folder, RUBBER), folder.join("any.so"), folder.join("rubber.fmu"));
+    fs::write(&library, "a library").unwrap();
+    run(asperity().arg("pack").arg(&scene).arg("-o").arg(&fmu).arg("--library").arg(&library));
+    let bytes = fs::read(&fmu).unwrap();
+    let name = b"resources/compound.csv";
+    assert!(bytes.windows(name.len()).any(|window| window == name));
+}
+
 /// One mass on a stiff, a long and a short element: K' = 3, m ω² = 3 + 2, T = 0.1 s.
 #[test]
 fn a_description_tells_which_maxwell_elements_are_replaced_and_why() {

@@ -1,4 +1,5 @@
-//! A file with a profile, read as a scene reads it: refused with a place and a reason, or a spline.
+//! A file with a profile or with a Prony series, read as a scene reads it: refused with a place and a reason, or a spline,
+//! or a material.
 
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -11,13 +12,17 @@ use super::scene::run_scene;
 /// Longer ones are no other profiles.
 const MOST_BYTES: usize = 4096;
 
-/// Writes the bytes behind the first into a file, and reads a scene that names it: periodic where the first is odd.
+/// Writes the bytes behind the first into a file, and reads a scene that names it: a profile, periodic where the first is
+/// odd; a Prony series where the first has the bit 4.
 pub fn run(bytes: &[u8]) {
     let Some((flags, text)) = bytes.split_first().filter(|(_, text)| text.len() <= MOST_BYTES) else { return };
     let scene_file = folder().join("scene.toml");
     fs::write(folder().join("profile.csv"), text).unwrap();
     let periodic = flags & 1 == 1;
-    match Scene::parse(&scene(periodic), &scene_file) {
+    let is_series = flags & 4 == 4;
+    let read = if is_series { rubber() } else { scene(periodic) };
+    match Scene::parse(&read, &scene_file) {
+        Ok(scene) if is_series => run_scene(scene),
         Ok(scene) => {
             check(&scene, periodic);
             run_scene(with_links(scene, if flags & 2 == 2 { Method::Step } else { Method::Event }));
@@ -45,6 +50,14 @@ fn scene(periodic: bool) -> String {
         "name='p'\nlayer={{masses=2,spacing=1e-4,mass=1e-7}}\n\
          surface={{kind='file',path='profile.csv',periodic={periodic}}}"
     )
+}
+
+/// One mass whose material is in the file.
+fn rubber() -> String {
+    "name='r'\nlayer={masses=1,spacing=1e-4,thickness=1e-3,width=1e-2}\n\
+     material={density=1e3,poisson_ratio=0.49,equilibrium_modulus=2e6,prony='profile.csv'}\n\
+     surface={kind='flat'}"
+        .into()
 }
 
 fn with_links(mut scene: Scene, method: Method) -> Scene {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use asperity::outputs::{Variable, variables};
-use asperity::scene::{OutputGroup, Scene};
+use asperity::scene::{OutputGroup, Phase, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
 
 /// What a scene may ask for here: a fuzzer finds the large numbers that are allowed, and memory and time are no mistakes.
@@ -88,7 +88,8 @@ fn motions(scene: &Scene) -> Vec<(Motion, Option<f64>)> {
         w: asperity::scene::Path { rate: -1.0, ..Default::default() },
     };
     let phases = scene.excitation.iter().take(2);
-    let phases = phases.map(|phase| (Motion { duration: phase.duration, u: phase.u, w: phase.w }, phase.until_force));
+    let motion = |phase: &Phase| Motion { duration: phase.duration, u: phase.u, w: phase.w };
+    let phases = phases.map(|phase| (motion(phase), phase.end_force(scene.layer.area())));
     phases.chain([(press, None)]).collect()
 }
 
