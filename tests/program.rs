@@ -291,7 +291,7 @@ fn a_description_of_a_material_tells_the_links_that_follow_and_the_shift() {
         "2 masses of 1e-6 kg",
         "0.001 m thick, 0.01 m wide, density 1000 kg/m³, Poisson's ratio 0.25",
         "400 K, times given at 300 K: a_T = 1.0000e-1",
-        "vertical    2 of c 2000 N/m, d 1e-3 N s/m, n = 1: 5000 N/m at 1e-4 s",
+        "vertical    2 of c 2000 N/m, d 0.001 N s/m, n = 1: 5000 N/m at 1e-4 s",
         "lateral_z   1 of c 80000 N/m",
         "shear        10000 Pa: 0.01 N a mass in contact",
         "until F_z = 10000 Pa times the layer's area",
