@@ -178,7 +178,7 @@ impl Scene {
 }
 
 impl Wlf {
-    fn check(&self) -> Result<(), ParameterError> {
+    pub(super) fn check(&self) -> Result<(), ParameterError> {
         if self.c2 + (self.temperature - self.reference_temperature) > 0.0 {
             return Ok(());
         }

@@ -42,10 +42,13 @@ fn read_term(table: &mut TableReader<'_>) -> Result<PronyTerm, SceneError> {
 
 fn read_wlf(table: &mut TableReader<'_>) -> Result<Wlf, SceneError> {
     table.allow(&["c1", "c2", "reference_temperature", "temperature"], &[])?;
-    Ok(Wlf {
+    let temperature = table.required("temperature", allowed::TEMPERATURE)?;
+    let wlf = Wlf {
         c1: table.number("c1", &allowed::WLF_C1)?,
         c2: table.number("c2", &allowed::WLF_C2)?,
         reference_temperature: table.number("reference_temperature", &allowed::TEMPERATURE)?,
-        temperature: table.number("temperature", &allowed::TEMPERATURE)?,
-    })
+        temperature: temperature.number(&allowed::TEMPERATURE)?,
+    };
+    wlf.check().map_err(|error| temperature.problem(error.problem().clone()))?;
+    Ok(wlf)
 }

@@ -29,12 +29,23 @@ pub(super) fn read(entry: &Entry<'_>, path: &Path) -> Result<Vec<PronyTerm>, Sce
 
 fn parse(bytes: &[u8]) -> Result<Vec<PronyTerm>, Refusal> {
     let text = text_of(bytes).map_err(|problem| (1, "", problem))?;
+    if let Some((line, header)) = swapped_header(&text) {
+        return Err((line, "columns", refused(&format!("`{header}`"), "relaxation_time before modulus")));
+    }
     let terms: Vec<PronyTerm> =
         data_lines(&text).map(|(line, _, fields)| term(line, &fields)).collect::<Result<_, _>>()?;
     if terms.is_empty() {
         return Err((text.lines().count().max(1), "terms", refused("0", "at least one term")));
     }
     Ok(terms)
+}
+
+/// A header that names the columns the other way round: its numbers would be taken for each other.
+fn swapped_header(text: &str) -> Option<(usize, &str)> {
+    let mut numbered = text.lines().zip(1..).map(|(line, number)| (number, line.trim()));
+    let header = numbered.find(|(_, line)| !line.is_empty() && !line.starts_with('#'))?;
+    let names = header.1.to_lowercase();
+    (names.find("modulus")? < names.find("relaxation")?).then_some(header)
 }
 
 fn term(line: usize, fields: &[String]) -> Result<PronyTerm, Refusal> {
@@ -88,6 +99,11 @@ mod tests {
                 "1,2,3\n",
                 1,
                 "columns = 3: expected two, relaxation_time and modulus, separated by comma, semicolon, tab or blanks",
+            ),
+            (
+                "# a compound\nModulus (Pa); Relaxation time (s)\n1e6;1\n",
+                2,
+                "columns = `Modulus (Pa); Relaxation time (s)`: expected relaxation_time before modulus",
             ),
             ("1\0,2\n", 1, "bytes that are zero: expected text in UTF-8, not UTF-16 or binary data"),
         ];
