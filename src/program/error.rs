@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use asperity::scene::{ParameterError, SceneError};
 use asperity::simulation::SimulationError;
 
+use super::fit::Refusal;
+
 /// Why the program stops; its text is the one line that the user sees.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum ProgramError {
@@ -38,6 +40,16 @@ pub(crate) enum ProgramError {
     /// A result file is not one.
     #[error("{}: {message}", .path.display())]
     ResultFile { path: PathBuf, message: String },
+    /// A table of measured moduli is refused.
+    #[error("{}:{refusal}", .path.display())]
+    Moduli { path: PathBuf, refusal: Refusal },
+    /// The fit is written, but its error is larger than was asked for.
+    #[error(
+        "the error asked for, {wanted}, cannot be had: {reached} is about the least of any series with moduli of 0 or more, \
+         and {} has such a one; for less the data are too uneven, and --error takes what is enough",
+        .output.display()
+    )]
+    FitError { wanted: String, reached: String, output: PathBuf },
     /// What the command line asks of `plot` cannot be.
     #[error("--labels gives {labels} names for {files} files")]
     Labels { labels: usize, files: usize },

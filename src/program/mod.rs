@@ -4,6 +4,7 @@ mod arguments;
 mod describe;
 mod error;
 mod excitation;
+mod fit;
 mod html;
 mod pack;
 mod plot;
@@ -27,6 +28,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<(), ProgramError> {
         Command::Plot(command) => plot::plot_files(&command),
         Command::Describe(command) => describe::describe(&command),
         Command::Pack(command) => pack::pack(&command),
+        Command::Fit(command) => fit::fit(&command),
         Command::Report(command) => report::report(&command),
     }
 }

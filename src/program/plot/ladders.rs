@@ -17,7 +17,7 @@ const PANEL: (u32, u32) = (400, 400);
 const RADIUS: i32 = 5 * FINE as i32;
 const LABEL_SIZE: u32 = 13 * FINE;
 /// Room for the ticks and the title of a vertical axis.
-const LEFT: u32 = 72 * FINE;
+pub(super) const LEFT: u32 = 72 * FINE;
 /// Room beside and above markers for what is written there.
 const BESIDE: f64 = 1.1;
 const ABOVE: f64 = 1.6;
@@ -100,7 +100,7 @@ impl Ladders {
     }
 }
 
-type Context<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Logarithmic, Logarithmic>>;
+pub(super) type Context<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Logarithmic, Logarithmic>>;
 
 impl Panel {
     fn draw(&self, canvas: &Canvas<'_>, x_title: &str, (x, y): (Logarithmic, Logarithmic)) -> Drawn {
@@ -152,7 +152,7 @@ impl Panel {
     }
 }
 
-fn draw_axes(context: &mut Context<'_, '_>, x_title: &str, y_title: &str) -> Drawn {
+pub(super) fn draw_axes(context: &mut Context<'_, '_>, x_title: &str, y_title: &str) -> Drawn {
     context
         .configure_mesh()
         .bold_line_style(GRID.stroke_width(FINE))
@@ -269,7 +269,7 @@ impl Legend {
     }
 }
 
-fn length(text: &str, size: u32) -> u32 {
+pub(super) fn length(text: &str, size: u32) -> u32 {
     (text.chars().count() as f64 * f64::from(size) * LETTER_WIDTH) as u32
 }
 

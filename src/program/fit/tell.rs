@@ -1,0 +1,235 @@
+//! What a fit tells: the file of its terms, its figures and the lines for a scene, its picture.
+
+use std::f64::consts::TAU;
+use std::path::Path;
+
+use super::compound::{Compound, Error, Errors, Sample};
+use super::measured::Measured;
+use crate::program::arguments::Fit;
+use crate::program::plot::{Curve, CurvePanel, Curves, Stroke};
+
+/// Points of a drawn line in a decade.
+const POINTS_PER_DECADE: f64 = 20.0;
+
+/// A fit and what it is a fit of.
+#[derive(Debug)]
+pub(super) struct Told<'a> {
+    pub(super) command: &'a Fit,
+    pub(super) measured: &'a Measured,
+    /// At the reference temperature.
+    pub(super) samples: Vec<Sample>,
+    pub(super) compound: Compound,
+    pub(super) errors: Errors,
+}
+
+impl Told<'_> {
+    /// The file of the terms.
+    pub(super) fn file(&self) -> String {
+        let mut text =
+            String::from("# A generalised Maxwell model: Prony terms fitted to measured moduli by `asperity fit`\n");
+        for (name, value) in self.facts() {
+            text += &format!("# {name} = {value}\n");
+        }
+        text += "relaxation_time,modulus\n";
+        let rows = self
+            .compound
+            .terms
+            .iter()
+            .map(|term| format!("{},{}\n", written(term.relaxation_time), written(term.modulus)));
+        text + &rows.collect::<String>()
+    }
+
+    fn facts(&self) -> Vec<(&'static str, String)> {
+        let mut facts = vec![
+            ("equilibrium_modulus", format!("{} Pa", written(self.compound.equilibrium_modulus))),
+            ("units", "relaxation_time in s, modulus in Pa".into()),
+            ("source", name_of(&self.command.data)),
+            ("data", self.data()),
+            ("options", self.options()),
+            (
+                "error",
+                format!(
+                    "{} (root mean square of the relative errors of E' and E'' at all rows)",
+                    share(self.errors.both.rms)
+                ),
+            ),
+            (
+                "largest_error",
+                format!("{} at {}", share(self.errors.both.largest), self.frequency(self.errors.both.at)),
+            ),
+        ];
+        if self.command.viscosity {
+            facts.insert(1, ("viscosity", format!("{} Pa s", written(self.compound.viscosity))));
+        }
+        facts
+    }
+
+    fn data(&self) -> String {
+        let range = |omegas: &mut dyn Iterator<Item = f64>| {
+            omegas.fold((f64::MAX, 0.0_f64), |(low, high), omega| (low.min(omega), high.max(omega)))
+        };
+        let (low, high) = range(&mut self.measured.rows.iter().map(|row| row.sample.omega));
+        let rows = format!("{} rows, {} to {}", self.samples.len(), self.frequency(low), self.frequency(high));
+        let temperatures = || self.measured.rows.iter().filter_map(|row| row.temperature);
+        match self.command.wlf {
+            Some(wlf) if self.measured.temperature.is_some() => {
+                let (cold, hot) =
+                    temperatures().fold((f64::MAX, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
+                let (low, high) = range(&mut self.samples.iter().map(|sample| sample.omega));
+                format!(
+                    "{rows}, {cold:.2} to {hot:.2} K, shifted to {} K: {} to {}",
+                    wlf.reference_temperature,
+                    self.frequency(low),
+                    self.frequency(high)
+                )
+            }
+            _ => rows,
+        }
+    }
+
+    fn options(&self) -> String {
+        let mut text = format!("--error {}", written(self.command.error));
+        if let Some(wlf) = self.command.wlf {
+            text += &format!(" --wlf {},{},{}", written(wlf.c1), written(wlf.c2), written(wlf.reference_temperature));
+        }
+        if self.command.viscosity {
+            text += " --viscosity";
+        }
+        text + &self.command.ignore.iter().map(|name| format!(" --ignore '{name}'")).collect::<String>()
+    }
+
+    /// The figures and the lines for a scene.
+    pub(super) fn text(&self, picture: &Path) -> String {
+        let (compound, errors) = (&self.compound, &self.errors);
+        let mut rows = vec![("Data", self.data()), ("E_inf", format!("{} Pa", written(compound.equilibrium_modulus)))];
+        if self.command.viscosity {
+            rows.push(("Viscosity", format!("{} Pa s", written(compound.viscosity))));
+        }
+        let glassy: f64 = compound.terms.iter().map(|term| term.modulus).sum::<f64>() + compound.equilibrium_modulus;
+        rows.push(("Glassy", format!("{} Pa, the sum of all moduli", short(glassy))));
+        rows.push(("Terms", self.terms()));
+        rows.push((
+            "Error",
+            format!(
+                "{} rms of E' and E'' together; {} was asked for",
+                share(errors.both.rms),
+                share(self.command.error)
+            ),
+        ));
+        rows.push(("", format!("{:<11}{:<11}{:<11}at", "", "rms", "largest")));
+        let row = |name: &str, error: &Error| {
+            ("", format!("{name:<11}{:<11}{:<11}{}", share(error.rms), share(error.largest), self.frequency(error.at)))
+        };
+        rows.extend([row("E'", &errors.storage), row("E''", &errors.loss), row("tan delta", &errors.loss_tangent)]);
+        rows.push(("Written", format!("{}, {}", self.command.output.display(), picture.display())));
+        let figures: String = rows.into_iter().map(|(name, text)| format!("{name:<12}{text}\n")).collect();
+        format!("{figures}\nFor the scene, beside which {} lies:\n\n{}", name_of(&self.command.output), self.scene())
+    }
+
+    fn terms(&self) -> String {
+        match &self.compound.terms[..] {
+            [] => "none".into(),
+            [only] => format!("1, at {} s", written(only.relaxation_time)),
+            [first, .., last] => {
+                let [first, last] = [first, last].map(|term| written(term.relaxation_time));
+                format!("{}, from {first} s to {last} s", self.compound.terms.len())
+            }
+        }
+    }
+
+    fn scene(&self) -> String {
+        let mut lines = vec![
+            "[material]".to_owned(),
+            "# density (kg/m³) and poisson_ratio are not in the data".into(),
+            format!("equilibrium_modulus = {}", written(self.compound.equilibrium_modulus)),
+        ];
+        if self.compound.viscosity > 0.0 {
+            lines.push(format!("viscosity = {}", written(self.compound.viscosity)));
+        }
+        lines.push(match self.compound.terms[..] {
+            [] => "prony = []".into(),
+            _ => format!("prony = {:?}", name_of(&self.command.output)),
+        });
+        if let Some(wlf) = self.command.wlf {
+            let reference = written(wlf.reference_temperature);
+            let (c1, c2) = (written(wlf.c1), written(wlf.c2));
+            lines.push(format!(
+                "wlf = {{ c1 = {c1}, c2 = {c2}, reference_temperature = {reference}, temperature = {reference} }}"
+            ));
+        }
+        lines.iter().map(|line| format!("{line}\n")).collect()
+    }
+
+    /// Data as rings, the fit as lines.
+    pub(super) fn picture(&self) -> Curves {
+        let unit = if self.measured.in_hertz { TAU } else { 1.0 };
+        let omegas = between(&self.samples);
+        let curves = |name: &str, look: usize, measured: fn(&Sample) -> f64, fitted: fn((f64, f64)) -> f64| {
+            let points = self.samples.iter().map(|sample| (sample.omega / unit, measured(sample))).collect();
+            let line =
+                omegas.iter().map(|&omega| (omega / unit, fitted(self.compound.complex_modulus(omega)))).collect();
+            [
+                Curve { name: format!("{name} measured"), look, stroke: Stroke::Rings, points },
+                Curve { name: format!("{name} fitted"), look, stroke: Stroke::Line, points: line },
+            ]
+        };
+        let storage = curves("E'", 0, |sample| sample.storage, |(storage, _)| storage);
+        let loss = curves("E''", 1, |sample| sample.loss, |(_, loss)| loss);
+        let tangent = curves("tan δ", 2, |sample| sample.loss / sample.storage, |(storage, loss)| loss / storage);
+        Curves {
+            title: format!(
+                "{}: {} terms, {} rms",
+                name_of(&self.command.data),
+                self.compound.terms.len(),
+                share(self.errors.both.rms)
+            ),
+            x_title: self.x_title(),
+            panels: vec![
+                CurvePanel { title: "modulus in Pa".into(), curves: [storage, loss].concat() },
+                CurvePanel { title: "tan δ".into(), curves: tangent.to_vec() },
+            ],
+        }
+    }
+
+    fn x_title(&self) -> String {
+        let quantity = if self.measured.in_hertz { "frequency in Hz" } else { "angular frequency in rad/s" };
+        match self.command.wlf {
+            Some(wlf) if self.measured.temperature.is_some() => {
+                format!("{quantity}, shifted to {} K", wlf.reference_temperature)
+            }
+            _ => quantity.into(),
+        }
+    }
+
+    /// A frequency as the data give theirs.
+    fn frequency(&self, omega: f64) -> String {
+        if self.measured.in_hertz { format!("{} Hz", short(omega / TAU)) } else { format!("{} rad/s", short(omega)) }
+    }
+}
+
+/// Angular frequencies from the slowest of `samples` to the fastest, evenly in the logarithm.
+fn between(samples: &[Sample]) -> Vec<f64> {
+    let logarithms = || samples.iter().map(|sample| sample.omega.log10());
+    let (low, high) = (logarithms().fold(f64::MAX, f64::min), logarithms().fold(f64::MIN, f64::max));
+    let intervals = ((high - low) * POINTS_PER_DECADE).ceil().max(1.0);
+    (0..=intervals as usize).map(|i| 10.0_f64.powf(low + (high - low) * i as f64 / intervals)).collect()
+}
+
+fn name_of(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+/// The shortest decimal that reads back as the same number; far from 1 with an exponent.
+fn written(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e5).contains(&value.abs()) { format!("{value}") } else { format!("{value:e}") }
+}
+
+/// Four digits.
+fn short(value: f64) -> String {
+    written(format!("{value:.3e}").parse().unwrap_or(value))
+}
+
+/// A share in per cent, with three digits.
+pub(super) fn share(value: f64) -> String {
+    format!("{} %", written(format!("{:.2e}", 100.0 * value).parse().unwrap_or(100.0 * value)))
+}
