@@ -1,8 +1,10 @@
 //! The command line.
 
+use std::f64::consts::TAU;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
+use asperity::scene::Wlf;
 use clap::{Args, Parser, Subcommand};
 
 /// Simulates rubber on a rough surface and packs the simulation as an FMU.
@@ -25,6 +27,8 @@ pub(crate) enum Command {
     Pack(Pack),
     /// Finds the Prony terms of a compound from its measured moduli.
     Fit(Fit),
+    /// Draws the moduli of a scene's compound over frequency, or the stiffnesses of its links.
+    Material(Material),
     /// Measures how right and how quick a scene's runs are: tables, pictures and a page.
     Report(Report),
 }
@@ -127,6 +131,42 @@ pub(crate) struct Fit {
     pub(crate) plot: Option<PathBuf>,
 }
 
+#[derive(Debug, Args)]
+pub(crate) struct Material {
+    /// The scene file.
+    #[arg(value_name = "SCENE.toml")]
+    pub(crate) scene: PathBuf,
+    /// A file to write: a table as CSV, a picture as SVG or PNG, by its name; may be given several times. Default: a picture
+    /// SCENE-material.svg.
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: Vec<PathBuf>,
+    /// The range of the angular frequency, rad/s, or of the frequency with Hz behind it; default: by the relaxation times.
+    #[arg(long, value_name = "A..B[Hz]", value_parser = Frequencies::parse)]
+    pub(crate) frequencies: Option<Frequencies>,
+    /// The compound's temperature, K, instead of the scene's.
+    #[arg(long, value_name = "T")]
+    pub(crate) temperature: Option<f64>,
+    /// Overrides a parameter by its name, such as material.poisson_ratio=0.48.
+    #[arg(long, value_name = "KEY=VALUE", value_parser = key_and_value)]
+    pub(crate) set: Vec<(String, String)>,
+}
+
+/// A range of angular frequencies, rad/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Frequencies(pub(crate) (f64, f64));
+
+impl Frequencies {
+    fn parse(text: &str) -> Result<Self, String> {
+        let (numbers, unit) = text.trim().strip_suffix("Hz").map_or((text, 1.0), |numbers| (numbers, TAU));
+        let number = |text: &str| text.trim().trim_end_matches("Hz").trim_end().parse::<f64>().ok();
+        let ends = numbers.split_once("..").and_then(|(low, high)| Some((number(low)?, number(high)?)));
+        let possible = |(low, high): &(f64, f64)| *low >= 1e-30 && high > low && *high <= 1e30;
+        let message =
+            || "expected A..B, such as 1..1e5 in rad/s or 0.1..1e4Hz, from 1e-30 to 1e30, A below B".to_owned();
+        ends.filter(possible).map(|(low, high)| Self((low * unit, high * unit))).ok_or_else(message)
+    }
+}
+
 /// Constants of the shift with temperature.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct WlfConstants {
@@ -139,6 +179,12 @@ pub(crate) struct WlfConstants {
 }
 
 impl WlfConstants {
+    /// The shift at `temperature` (K).
+    pub(crate) fn at(&self, temperature: f64) -> Wlf {
+        let Self { c1, c2, reference_temperature } = *self;
+        Wlf { c1, c2, reference_temperature, temperature }
+    }
+
     fn parse(text: &str) -> Result<Self, String> {
         let numbers: Vec<f64> = text.split(',').filter_map(|number| number.trim().parse().ok()).collect();
         match numbers[..] {
@@ -254,6 +300,26 @@ mod tests {
         assert_eq!(Tolerances::parse("1e-3..1e-3").unwrap().0, [1e-3]);
         for wrong in ["1e-3", "1e-10..1e-2", "1..1e-2", "1e-2..0", "1e-2..NaN", "a..b"] {
             assert!(Tolerances::parse(wrong).unwrap_err().contains("1e-2..1e-10"), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn frequencies_are_angular_unless_in_hertz() {
+        assert_eq!(Frequencies::parse("1..1e5"), Ok(Frequencies((1.0, 1e5))));
+        for hertz in ["0.5..10Hz", "0.5Hz..10 Hz"] {
+            assert_eq!(Frequencies::parse(hertz), Ok(Frequencies((0.5 * TAU, 10.0 * TAU))), "{hertz}");
+        }
+        for wrong in ["1", "2..1", "0..1", "1..inf", "a..b"] {
+            assert!(Frequencies::parse(wrong).unwrap_err().contains("1..1e5"), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn wlf_takes_three_positive_numbers() {
+        let constants = WlfConstants::parse("7.52, 119.75,293.15").unwrap();
+        assert_eq!((constants.c1, constants.c2, constants.reference_temperature), (7.52, 119.75, 293.15));
+        for wrong in ["7.52,119.75", "7.52,x,119.75,293.15", "-1,100,300", "1,2,3,4", ""] {
+            assert!(WlfConstants::parse(wrong).unwrap_err().contains("C1,C2,TREF"), "{wrong}");
         }
     }
 

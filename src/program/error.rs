@@ -50,6 +50,12 @@ pub(crate) enum ProgramError {
         .output.display()
     )]
     FitError { wanted: String, reached: String, output: PathBuf },
+    /// A temperature for a scene without any.
+    #[error("--temperature: the scene has no material.wlf, so nothing in it depends on temperature")]
+    NoTemperature,
+    /// A direct form that names no link.
+    #[error("the scene has neither a material nor a link, so there is nothing that a modulus could be of")]
+    NoLinks,
     /// What the command line asks of `plot` cannot be.
     #[error("--labels gives {labels} names for {files} files")]
     Labels { labels: usize, files: usize },

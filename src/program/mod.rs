@@ -6,6 +6,7 @@ mod error;
 mod excitation;
 mod fit;
 mod html;
+mod material;
 mod pack;
 mod plot;
 mod progress;
@@ -29,6 +30,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<(), ProgramError> {
         Command::Describe(command) => describe::describe(&command),
         Command::Pack(command) => pack::pack(&command),
         Command::Fit(command) => fit::fit(&command),
+        Command::Material(command) => material::material(&command),
         Command::Report(command) => report::report(&command),
     }
 }

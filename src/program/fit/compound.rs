@@ -1,5 +1,7 @@
 //! A Prony series and how far it is from measured moduli.
 
+use asperity::scene::PronyTerm;
+
 /// What was measured at one frequency, at the reference temperature.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sample {
@@ -11,15 +13,6 @@ pub(super) struct Sample {
     pub(super) loss: f64,
 }
 
-/// A term of a Prony series.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Term {
-    /// Relaxation time τ_j, s.
-    pub(super) relaxation_time: f64,
-    /// Modulus E_j, Pa.
-    pub(super) modulus: f64,
-}
-
 /// A spring, a dashpot and Maxwell elements in parallel, as moduli.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Compound {
@@ -28,7 +21,7 @@ pub(super) struct Compound {
     /// Kelvin-Voigt viscosity η, Pa s.
     pub(super) viscosity: f64,
     /// (τ_j, E_j), from short to long.
-    pub(super) terms: Vec<Term>,
+    pub(super) terms: Vec<PronyTerm>,
 }
 
 /// Real and imaginary part of iωτ/(1 + iωτ), finite however large or small ωτ is.
@@ -52,7 +45,8 @@ impl Compound {
     pub(super) fn rounded(&self, error: f64) -> Self {
         let digits = (3.0 - error.log10()).ceil().clamp(4.0, 17.0) as usize;
         let round = |value: f64| format!("{value:.*e}", digits - 1).parse().unwrap_or(value);
-        let term = |term: &Term| Term { relaxation_time: round(term.relaxation_time), modulus: round(term.modulus) };
+        let term =
+            |term: &PronyTerm| PronyTerm { relaxation_time: round(term.relaxation_time), modulus: round(term.modulus) };
         Self {
             equilibrium_modulus: round(self.equilibrium_modulus),
             viscosity: round(self.viscosity),

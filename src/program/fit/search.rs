@@ -11,9 +11,10 @@
 
 use std::f64::consts::LN_10;
 
+use asperity::scene::PronyTerm;
 use nalgebra::{DMatrix, DVector};
 
-use super::compound::{Compound, Sample, Term, relaxation};
+use super::compound::{Compound, Sample, relaxation};
 use super::nnls::non_negative_least_squares;
 
 /// How far beyond 1/ω of the data relaxation times may lie, in decades: there a term is a spring or a damper, but for 1e-3
@@ -63,8 +64,8 @@ struct Solution {
 
 impl Solution {
     fn compound(&self) -> Compound {
-        let term = |(time, &modulus): (&f64, &f64)| Term { relaxation_time: time.exp(), modulus };
-        let mut terms: Vec<Term> = self.times.iter().zip(&self.moduli).map(term).collect();
+        let term = |(time, &modulus): (&f64, &f64)| PronyTerm { relaxation_time: time.exp(), modulus };
+        let mut terms: Vec<PronyTerm> = self.times.iter().zip(&self.moduli).map(term).collect();
         terms.sort_by(|a, b| a.relaxation_time.total_cmp(&b.relaxation_time));
         Compound { equilibrium_modulus: self.constants[0], viscosity: self.constants[1], terms }
     }
@@ -229,7 +230,7 @@ mod tests {
     }
 
     fn series(equilibrium_modulus: f64, terms: &[(f64, f64)]) -> Compound {
-        let term = |&(relaxation_time, modulus): &(f64, f64)| Term { relaxation_time, modulus };
+        let term = |&(relaxation_time, modulus): &(f64, f64)| PronyTerm { relaxation_time, modulus };
         Compound { equilibrium_modulus, viscosity: 0.0, terms: terms.iter().map(term).collect() }
     }
 

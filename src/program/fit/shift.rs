@@ -22,20 +22,21 @@ pub(super) fn to_reference(measured: &Measured, wlf: Option<WlfConstants>) -> Re
 }
 
 fn shifted(row: &Row, column: &(usize, String), wlf: WlfConstants) -> Result<Sample, Refusal> {
-    let above = row.temperature.map_or(0.0, |temperature| temperature - wlf.reference_temperature);
-    // Some decades beyond what WLF is good for, and frequencies are no numbers any more.
-    const LARGEST: f64 = 100.0;
-    let exponent = -wlf.c1 * above / (wlf.c2 + above);
-    if wlf.c2 + above > 0.0 && exponent.abs() <= LARGEST {
-        return Ok(Sample { omega: row.sample.omega * 10.0_f64.powf(exponent), ..row.sample });
+    /// Far more than any rubber's shift: closer to the pole, a fit would be one of nothing but the constants.
+    const LARGEST: f64 = 1e60;
+    let temperature = row.temperature.unwrap_or(wlf.reference_temperature);
+    let wlf = wlf.at(temperature);
+    let factor = wlf.shift_factor();
+    if temperature > wlf.lowest_temperature() && (1.0 / LARGEST..=LARGEST).contains(&factor) {
+        return Ok(Sample { omega: row.sample.omega * factor, ..row.sample });
     }
     Err(Refusal {
         line: row.line,
         column: Some(column.clone()),
-        given: format!("{} K", row.temperature.unwrap_or_default()),
+        given: format!("{temperature} K"),
         expected: format!(
-            "more than TREF - C2 = {} K, by far: there the shift has its pole",
-            wlf.reference_temperature - wlf.c2
+            "more than TREF - C2 = {} K, and not close to it: there the shift has its pole",
+            wlf.lowest_temperature()
         ),
     })
 }
