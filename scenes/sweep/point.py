@@ -48,8 +48,8 @@ class Secant:
             middle = (low + high) / 2
             pressed = np.maximum(lifts - middle, 0.0)
             low, high = (middle, high) if settings.stiffness * pressed.mean() > pressure else (low, middle)
-        self.w = low
-        self.first = self.slope = settings.stiffness * np.mean(lifts > low)
+        self.w = float(low)
+        self.first = self.slope = settings.stiffness * float(np.mean(lifts > low))
 
     def off(self, found: float) -> float:
         return found / self.pressure - 1
@@ -61,7 +61,7 @@ class Secant:
             if slope > 0:
                 self.slope = min(max(slope, SLOPES[0] * self.first), SLOPES[1] * self.first)
         self.last = self.w, found
-        self.w += (found - self.pressure) / self.slope
+        self.w += float(found - self.pressure) / self.slope
 
 
 def solve(archive: bytes, settings: Settings, point: Point) -> dict:

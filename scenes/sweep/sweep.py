@@ -10,6 +10,7 @@ import argparse
 import csv
 import hashlib
 import itertools
+import logging
 import math
 import os
 import tomllib
@@ -66,7 +67,8 @@ class Model:
             area=layer["masses"] * layer["spacing"] * layer["width"],
             rest_separation=float(rest - heights.mean()),
             block=float(self.x[-1] - self.x[0]),
-            samples=min(max(len(heights), 128), 2048),
+            # One more than there are intervals, so that masses are seen at all places between the points.
+            samples=min(max(len(self.x), 129), 2049),
             slowest=max(term["relaxation_time"] for term in material["prony"]),
             error=error,
             lifts=tuple(heights - rest),
@@ -186,7 +188,7 @@ def workers(scheduler: str | None, count: int | None):
             yield client
     else:
         # Processes of one thread each: every point has its own FMU, and Python one lock.
-        with LocalCluster(n_workers=count, threads_per_worker=1, dashboard_address=None) as cluster:
+        with LocalCluster(n_workers=count, threads_per_worker=1, dashboard_address=None, silence_logs=logging.ERROR) as cluster:
             with Client(cluster) as client:
                 yield client
 
@@ -236,7 +238,7 @@ def main():
     parser.add_argument("--speeds", required=True, metavar="A..B/N", type=values, help="m/s")
     parser.add_argument("--pressures", required=True, metavar="A,B,...", type=values, help="Pa")
     parser.add_argument("--temperatures", metavar="A,B,...", type=values, help="K; default: the scene's")
-    parser.add_argument("--error", type=float, default=1e-2, help="standard error of the friction coefficient over its mean")
+    parser.add_argument("--error", type=float, default=1e-2, metavar="E", help="standard error of the friction coefficient over its mean")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of a running cluster, such as tcp://head:8786")
     parser.add_argument("--workers", type=int, help="processes of this machine; default: one a core")
     parser.add_argument("--plot", metavar="OUT.svg", type=Path)

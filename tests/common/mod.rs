@@ -59,6 +59,13 @@ pub fn coupled_python() -> &'static Path {
     PYTHON.get_or_init(|| environment("venv-coupled", packages.to_str().unwrap()))
 }
 
+/// A Python with the packages of scenes/sweep/requirements.txt.
+pub fn sweep_python() -> &'static Path {
+    static PYTHON: OnceLock<PathBuf> = OnceLock::new();
+    let packages = root().join("scenes/sweep/requirements.txt");
+    PYTHON.get_or_init(|| environment("venv-sweep", packages.to_str().unwrap()))
+}
+
 fn environment(folder: &str, packages: &str) -> PathBuf {
     let script = root().join("tests/python/environment.sh");
     run(Command::new("bash").arg(script).arg(target().join(folder)).arg(packages)).trim().into()
