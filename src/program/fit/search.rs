@@ -20,7 +20,7 @@ use super::nnls::non_negative_least_squares;
 /// How far beyond 1/ω of the data relaxation times may lie, in decades: there a term is a spring or a damper, but for 1e-3
 /// of its modulus.
 const BEYOND: f64 = 1.5;
-/// Times of the fine grid in a decade. A term half way between two of them is both together, but for some 1e-3.
+/// Times of the fine grid in a decade. A term half way between two of them is both together, but for some 2e-3.
 const PER_DECADE: f64 = 8.0;
 /// Where the error wanted cannot be had, the best series has the fewest terms that come so near to the least error.
 const NEAR: f64 = 1.01;
@@ -41,9 +41,12 @@ pub(super) struct Wanted {
 pub(super) fn search(samples: &[Sample], wanted: &Wanted) -> Compound {
     let problem = Problem::new(samples, wanted.viscosity);
     let fine = problem.solve(&problem.grid());
-    let merged = problem.refine(problem.solve(&fine.merged()));
-    let goal = wanted.error.max(NEAR * fine.error.min(merged.error));
-    let mut best = if merged.error <= goal { merged } else { problem.refine(fine) };
+    let mut best = problem.refine(problem.solve(&fine.merged()));
+    if best.error > wanted.error {
+        let unmerged = problem.refine(fine);
+        best = if NEAR * unmerged.error < best.error { unmerged } else { best };
+    }
+    let goal = wanted.error.max(NEAR * best.error);
     while let Some(fewer) = problem.without_one(&best, goal) {
         best = fewer;
     }
