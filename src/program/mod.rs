@@ -11,6 +11,7 @@ mod progress;
 mod report;
 mod result_file;
 mod simulate;
+mod sweep;
 
 use std::path::{Path, PathBuf};
 
@@ -28,6 +29,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<(), ProgramError> {
         Command::Describe(command) => describe::describe(&command),
         Command::Pack(command) => pack::pack(&command),
         Command::Report(command) => report::report(&command),
+        Command::Sweep(command) => sweep::sweep(&command),
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod axis;
 mod chart;
+mod curves;
 mod files;
 mod history;
 mod labels;
@@ -9,6 +10,7 @@ mod ladders;
 mod logarithmic;
 mod raster;
 
+pub(crate) use curves::{Curve, Curves, CurvesPanel, Stroke};
 pub(crate) use files::plot_files;
 pub(crate) use history::History;
 pub(crate) use ladders::{Ladder, Ladders, Panel, Rung};
