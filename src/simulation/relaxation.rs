@@ -4,7 +4,8 @@
 //! minutes to come there, which is of no use where only the steady state is asked for. Where the elongation e is forced on a link, as
 //! the profile does along z, what an element misses of its steady motion dies away as D e^{-t/τ}: in the mean over a time T of
 //! whole periods that is ā = D (τ/T)(1 - e^{-T/τ}), and at their end ā x/(eˣ - 1) of it are left, x = T/τ. So much is taken off:
-//! all of ā for an element slower than T, nothing for a quick one.
+//! all of ā for an element slower than T, nothing for a quick one. Where masses come and go, e follows the dashpots a little, and a
+//! second time is needed.
 
 use super::Simulation;
 use crate::model::LinkKind;

@@ -31,8 +31,8 @@ const NEAR: f64 = 6e-4;
 /// ... or after so many: what is left, the windows find.
 const SEARCHES: usize = 12;
 /// A part of a block over which w is changed, and one over which that dies away.
-const RAMP: f64 = 0.25;
-const CALM: f64 = 0.25;
+const RAMP: f64 = 0.125;
+const CALM: f64 = 0.125;
 /// A friction coefficient smaller than this is known well enough with the error of this one.
 const SMALL: f64 = 1e-2;
 /// Blocks that a point may take where no distance is given.
@@ -110,7 +110,7 @@ impl<'a> Search<'a> {
             if pressed || !self.has_room(RAMP + CALM + FEWEST as f64) {
                 return Ok(self.row(&average));
             }
-            self.correct(average.load.mean)?;
+            self.correct(average.load.mean, 0.0)?;
         }
     }
 
@@ -126,22 +126,23 @@ impl<'a> Search<'a> {
             if near(means.load - self.secant.load) && near(borne) {
                 return Ok(Some(means));
             }
-            self.correct(means.load - borne)?;
+            self.correct(means.load, borne)?;
         }
         Ok(None)
     }
 
-    /// Changes w where F_z would be `force` (N) in the long run. On a profile that ends, a new run begins where no room is left.
-    fn correct(&mut self, force: f64) -> Result<(), SimulationError> {
-        let change = self.secant.change(force);
+    /// Changes w where F_z was `force`, of which the Maxwell elements bore `borne` (N). On a profile that ends, a new run begins
+    /// where no room is left.
+    fn correct(&mut self, force: f64, borne: f64) -> Result<(), SimulationError> {
+        let change = self.secant.change(force, borne);
         self.runs += 1;
-        if self.slide.has_room(RAMP + CALM + FEWEST as f64) {
-            self.slide.press(RAMP, change)?;
-            return self.slide.press(CALM, 0.0);
+        if !self.slide.has_room(RAMP + CALM + FEWEST as f64) {
+            self.gone += self.slide.distance();
+            self.slide = Slide::new(self.scene, self.way, self.secant.w)?;
+            return self.slide.press(RAMP + CALM, 0.0);
         }
-        self.gone += self.slide.distance();
-        self.slide = Slide::new(self.scene, self.way, self.secant.w)?;
-        self.slide.press(RAMP + CALM, 0.0)
+        self.slide.press(RAMP, change)?;
+        self.slide.press(CALM, 0.0)
     }
 
     fn has_room(&self, blocks: f64) -> bool {

@@ -43,7 +43,7 @@ pub(super) fn tangential_stiffness(
         if (load / secant.load - 1.0).abs() <= LOAD {
             return slope(&mut simulation, way, before, |simulation| read(simulation)[0]).map(Some);
         }
-        let _ = secant.change(load);
+        let _ = secant.change(load, 0.0);
     }
     Ok(None)
 }
