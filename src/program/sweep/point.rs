@@ -25,14 +25,16 @@ use super::table::{Row, STEADY};
 /// The mean of F_z over the window is the load within this share of it.
 const LOAD: f64 = 1e-3;
 /// Standard error of that mean, and its trend: so well known, a correction of w reaches [`LOAD`].
-const LOAD_ERROR: f64 = 4e-4;
+const LOAD_ERROR: f64 = 5e-4;
 /// The search ends with a block as close as this to the load, its dashpots to none ...
-const NEAR: f64 = 6e-4;
+const NEAR: f64 = 5e-4;
 /// ... or after so many: what is left, the windows find.
 const SEARCHES: usize = 12;
 /// A part of a block over which w is changed, and one over which that dies away.
 const RAMP: f64 = 0.125;
 const CALM: f64 = 0.125;
+/// A window of so many blocks whose load has a trend is given up: dashpots are not yet where they will be.
+const GIVEN_UP: usize = 6;
 /// A friction coefficient smaller than this is known well enough with the error of this one.
 const SMALL: f64 = 1e-2;
 /// Blocks that a point may take where no distance is given.
@@ -54,6 +56,8 @@ struct Average {
     friction: Window,
     load: Window,
     steady: bool,
+    /// F_z grows or falls for good.
+    drifts: bool,
 }
 
 /// A layer on its way to a load and to steady means.
@@ -110,14 +114,15 @@ impl<'a> Search<'a> {
             if pressed || !self.has_room(RAMP + CALM + FEWEST as f64) {
                 return Ok(self.row(&average));
             }
-            self.correct(average.load.mean, 0.0)?;
+            let borne = if average.drifts { self.slide.relax() } else { 0.0 };
+            self.correct(average.load.mean, borne)?;
         }
     }
 
     /// Slides on until F_z is near the load and the slow dashpots are where they will be. Returns the last block, if that is so.
     fn press(&mut self) -> Result<Option<Means>, SimulationError> {
         for _ in 0..SEARCHES {
-            if !self.has_room(1.0) {
+            if !self.has_room(1.0) || !self.slide.has_room(1.0) {
                 break;
             }
             let means = self.slide.block()?;
@@ -137,12 +142,17 @@ impl<'a> Search<'a> {
         let change = self.secant.change(force, borne);
         self.runs += 1;
         if !self.slide.has_room(RAMP + CALM + FEWEST as f64) {
-            self.gone += self.slide.distance();
-            self.slide = Slide::new(self.scene, self.way, self.secant.w)?;
-            return self.slide.press(RAMP + CALM, 0.0);
+            return self.start_anew();
         }
         self.slide.press(RAMP, change)?;
         self.slide.press(CALM, 0.0)
+    }
+
+    /// A new run from the start of a profile that ends.
+    fn start_anew(&mut self) -> Result<(), SimulationError> {
+        self.gone += self.slide.distance();
+        self.slide = Slide::new(self.scene, self.way, self.secant.w)?;
+        self.slide.press(RAMP + CALM, 0.0)
     }
 
     fn has_room(&self, blocks: f64) -> bool {
@@ -153,11 +163,15 @@ impl<'a> Search<'a> {
     /// is not even room for a window.
     fn average(&mut self, first: Option<Means>) -> Result<Option<Average>, SimulationError> {
         let mut blocks: Vec<Means> = first.into_iter().collect();
+        if !self.slide.has_room(FEWEST as f64) {
+            blocks.clear();
+            self.start_anew()?;
+        }
         while self.has_room(1.0) && self.slide.has_room(1.0) {
             blocks.push(self.slide.block()?);
             if blocks.len() >= FEWEST {
                 let average = self.judge(&blocks);
-                if average.steady {
+                if average.steady || (blocks.len() % GIVEN_UP == 0 && average.drifts) {
                     return Ok(Some(average));
                 }
             }
@@ -171,7 +185,8 @@ impl<'a> Search<'a> {
         let (friction, load) = (of(|means| means.drag / means.load), of(|means| means.load));
         let steady = friction.is_steady(self.error * friction.mean.abs().max(SMALL))
             && load.is_steady(LOAD_ERROR * self.secant.load);
-        Average { means: Means::mean(used), friction, load, steady }
+        let drifts = load.has_trend(LOAD_ERROR * self.secant.load);
+        Average { means: Means::mean(used), friction, load, steady, drifts }
     }
 
     fn row(&self, average: &Average) -> Row {
