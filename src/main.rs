@@ -1,4 +1,4 @@
-//! The command line program: `asperity simulate`, `plot`, `describe`, `pack`, `fit`, `material` and `report`.
+//! The command line program: `asperity simulate`, `sweep`, `plot`, `describe`, `pack`, `fit`, `material` and `report`.
 
 mod program;
 

@@ -48,7 +48,13 @@ fn a_sweep_over_fmus_is_the_programs() {
     let printed = sweep(&fmu, &table);
     assert_eq!(printed.matches("steady").count(), 4, "{printed}");
     let mut command = asperity();
-    command.arg("sweep").arg(example().join("block.toml")).args(["--speeds", "0.1..1/2", "--pressures", "1e5,2e5", "-o"]);
+    command.arg("sweep").arg(example().join("block.toml")).args([
+        "--speeds",
+        "0.1..1/2",
+        "--pressures",
+        "1e5,2e5",
+        "-o",
+    ]);
     run(command.arg(&program));
     let (found, wanted) = (rows(&table), rows(&program));
     assert_eq!(found.len(), wanted.len());

@@ -6,6 +6,7 @@ use asperity::scene::{ParameterError, SceneError};
 use asperity::simulation::SimulationError;
 
 use super::fit::Refusal;
+use super::sweep::SweepError;
 
 /// Why the program stops; its text is the one line that the user sees.
 #[derive(Debug, thiserror::Error)]
@@ -31,6 +32,9 @@ pub(crate) enum ProgramError {
     /// No run comes to its end, so that there is nothing to compare with.
     #[error("no reference: not even the loosest tolerance comes to its end: {0}")]
     Reference(SimulationError),
+    /// A sweep stops, or has points without a result.
+    #[error(transparent)]
+    Sweep(#[from] SweepError),
     /// A file cannot be read or written.
     #[error("cannot {action} {}: {source}", .path.display())]
     File { action: &'static str, path: PathBuf, source: std::io::Error },

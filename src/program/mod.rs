@@ -13,6 +13,7 @@ mod progress;
 mod report;
 mod result_file;
 mod simulate;
+mod sweep;
 
 use std::path::{Path, PathBuf};
 
@@ -32,6 +33,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<(), ProgramError> {
         Command::Fit(command) => fit::fit(&command),
         Command::Material(command) => material::material(&command),
         Command::Report(command) => report::report(&command),
+        Command::Sweep(command) => sweep::sweep(&command),
     }
 }
 

@@ -3,6 +3,7 @@
 mod companion;
 mod derivatives;
 mod handover;
+mod relaxation;
 mod run;
 mod saved;
 mod stepping;

@@ -8,10 +8,12 @@ mod history;
 mod labels;
 mod ladders;
 mod logarithmic;
+mod panels;
 mod raster;
 
 pub(crate) use curves::{Curve, CurvePanel, Curves, Stroke};
 pub(crate) use files::plot_files;
 pub(crate) use history::History;
 pub(crate) use ladders::{Ladder, Ladders, Panel, Rung};
+pub(crate) use panels::{Dash, FrictionCurve, SidePanel, SidePanels};
 pub(crate) use raster::png;
