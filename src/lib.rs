@@ -73,6 +73,7 @@
 //! | E_in, T, V | `Power::input`, `kinetic_energy`, `elastic_energy` | J | energy balance |
 
 pub mod contact;
+pub mod element;
 pub mod fmi;
 pub mod integrator;
 pub mod math;

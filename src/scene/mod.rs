@@ -191,6 +191,18 @@ pub enum Extrapolation {
     Hold,
 }
 
+impl Extrapolation {
+    /// The word for it in a scene file.
+    pub fn word(self) -> &'static str {
+        allowed::EXTRAPOLATION.word(self)
+    }
+
+    /// What a word stands for.
+    pub fn of_word(word: &str) -> Option<Self> {
+        allowed::EXTRAPOLATION.find(word, word).ok()
+    }
+}
+
 /// The groups of output variables that a scene may ask for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
