@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::table::Place;
+use super::table::{Load, Place};
 
 /// Why a table is refused: what was expected, what was found, and where.
 ///
@@ -67,14 +67,18 @@ pub enum TableProblem {
     #[error("no row of {}; an element needs every point of the table", list(.0.iter().map(ToString::to_string)))]
     Missing(Vec<Place>),
     /// Too few values of an axis to interpolate along it.
-    #[error("{found} pressures, expected at least two: the normal stiffness is the slope between them")]
+    #[error("{found} values of the {load}, expected at least two: the normal stiffness is the slope between them")]
     Pressures {
+        /// Pressure or force.
+        load: &'static str,
         /// How many there are.
         found: usize,
     },
     /// The carrier does not come closer as it presses harder.
-    #[error("separation = {here} m at {place}, but {before} m at the pressure below: expected a smaller one")]
+    #[error("separation = {here} m at {place}, but {before} m at the {load} below: expected a smaller one")]
     Separation {
+        /// Pressure or force.
+        load: &'static str,
         /// Where.
         place: Place,
         /// The separation there, m.
@@ -112,8 +116,9 @@ fn list(texts: impl ExactSizeIterator<Item = String>) -> String {
 pub enum ElementError {
     /// The carrier comes closer than the table goes.
     #[error(
-        "w = {w} m at t = {time} s is a separation of {separation} m, a pressure above {largest} Pa, where the table ends: at {speed} m/s \
-         its separations go down to {least} m (table.extrapolation = \"hold\" goes on beyond)"
+        "w = {w} m at t = {time} s is a separation of {separation} m, a {} above {largest} {}, where the table ends: at {speed} m/s its \
+         separations go down to {least} m (table.extrapolation = \"hold\" goes on beyond)",
+        .load.name(), .load.unit()
     )]
     Pressure {
         /// When, s.
@@ -124,7 +129,9 @@ pub enum ElementError {
         separation: f64,
         /// The least separation of the table at this speed, m.
         least: f64,
-        /// The largest pressure of the table, Pa.
+        /// What the table's loads are.
+        load: Load,
+        /// The largest pressure of the table, Pa, or force, N.
         largest: f64,
         /// The speed, m/s.
         speed: f64,

@@ -13,7 +13,7 @@
 //!
 //! Below the least speed of the table everything is as at the least, above the largest as at the largest.
 
-use super::table::{Quantity, Table};
+use super::table::{Load, Quantity, Table};
 use crate::math::{Expansion, cubic, interval_of, monotone_slopes};
 
 /// The most that y changes over one piece of the approach. Over it the limit of the friction force is so near to a
@@ -40,7 +40,9 @@ pub(super) struct Law {
     pub(super) speed_range: (f64, f64),
     /// The pressures' logarithms.
     pressures: Vec<f64>,
-    /// The largest pressure, Pa.
+    /// What the loads are.
+    pub(super) load: Load,
+    /// The largest pressure, Pa, or force, N.
     pub(super) largest_pressure: f64,
     /// By quantity, where the table knows it, and pressure.
     rows: [Option<Vec<Row>>; Quantity::ALL.len()],
@@ -66,6 +68,7 @@ impl Law {
             speed_range: (table.speeds[0], table.speeds[table.speeds.len() - 1]),
             speeds,
             pressures: table.pressures.iter().map(|pressure| pressure.ln()).collect(),
+            load: table.load,
             largest_pressure: table.pressures[table.pressures.len() - 1],
             rows,
         }

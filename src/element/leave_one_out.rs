@@ -20,8 +20,11 @@ pub struct LeftOut {
 /// The steps that are interpolated over are then twice as long as the table's: of a method of third order, the table's own errors are
 /// some eight times smaller.
 pub fn left_out(table: &Table) -> [LeftOut; 3] {
-    let axes: [(&'static str, usize); 3] =
-        [("speed", table.speeds.len()), ("pressure", table.pressures.len()), ("temperature", table.temperatures.len())];
+    let axes: [(&'static str, usize); 3] = [
+        ("speed", table.speeds.len()),
+        (table.load.name(), table.pressures.len()),
+        ("temperature", table.temperatures.len()),
+    ];
     std::array::from_fn(|axis| {
         let mut result = LeftOut { axis: axes[axis].0, friction: None, force_z: None };
         for at in 1..axes[axis].1.saturating_sub(1) {
@@ -42,7 +45,8 @@ impl LeftOut {
             for j in of(0) {
                 let curve = Curve::new(&law, table.speeds[j]);
                 for i in of(1) {
-                    let place = Place { speed: table.speeds[j], pressure: table.pressures[i], temperature };
+                    let place =
+                        Place { speed: table.speeds[j], pressure: table.pressures[i], load: table.load, temperature };
                     let value = |quantity| table.value(quantity, (k, i, j));
                     let found = curve.at(-value(Quantity::Separation));
                     let force = place.pressure * table.nominal_area;

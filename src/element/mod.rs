@@ -22,4 +22,4 @@ pub use leave_one_out::{LeftOut, left_out};
 pub use outputs::{dependencies, variables};
 pub use run::{Element, Saved};
 pub use settings::PointContact;
-pub use table::{Place, Quantity, Table};
+pub use table::{Load, Place, Quantity, Table};

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::error::TableProblem;
+use crate::scene::is_possible;
 
 /// What is wrong, and in which line, counted from 1.
 pub(super) type Refusal = (Option<usize>, TableProblem);
@@ -47,7 +48,7 @@ impl Text {
         self.columns.iter().position(|column| column == name).ok_or((None, TableProblem::NoColumn(name.into())))
     }
 
-    /// The quantity in a line at the top, which has to be above 0 and of the unit `unit`.
+    /// The quantity in a line at the top, of the unit `unit`.
     pub(super) fn quantity(
         &self,
         key: &'static str,
@@ -58,7 +59,7 @@ impl Text {
         let found = self.head.get(key).map_or("", String::as_str);
         let number = found.strip_suffix(unit).and_then(|number| number.trim().parse().ok());
         let refuse = || (None, TableProblem::Header { key, found: found.to_owned(), expected });
-        number.filter(|&number: &f64| number.is_finite() && allowed(number)).ok_or_else(refuse)
+        number.filter(|&number: &f64| is_possible(number) && allowed(number)).ok_or_else(refuse)
     }
 }
 

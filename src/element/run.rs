@@ -164,6 +164,7 @@ impl Element {
             w,
             separation,
             least,
+            load: self.law.load,
             largest: self.law.largest_pressure,
             speed: speed.abs(),
             within,

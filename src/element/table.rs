@@ -6,21 +6,58 @@ use std::path::Path;
 
 use super::error::{TableError, TableProblem};
 use super::reader::{Refusal, Text};
+use crate::scene::{SMALLEST, is_possible};
+
+/// What presses the layer of a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Load {
+    /// A mean pressure on the nominal area, Pa.
+    Pressure,
+    /// F_z of the whole layer, N: of a scene that has no area.
+    Force,
+}
+
+impl Load {
+    /// The unit of the loads.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Pressure => "Pa",
+            Self::Force => "N",
+        }
+    }
+
+    /// What a load is called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pressure => "pressure",
+            Self::Force => "force",
+        }
+    }
+
+    fn column(self) -> &'static str {
+        match self {
+            Self::Pressure => "pressure [Pa]",
+            Self::Force => "force [N]",
+        }
+    }
+}
 
 /// A point of the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
     /// Speed, m/s.
     pub speed: f64,
-    /// Pressure, Pa.
+    /// Pressure, Pa, or force, N.
     pub pressure: f64,
+    /// Which of both.
+    pub load: Load,
     /// Temperature, K, where the table has any.
     pub temperature: Option<f64>,
 }
 
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} m/s, {} Pa", self.speed, self.pressure)?;
+        write!(f, "{} m/s, {} {}", self.speed, self.pressure, self.load.unit())?;
         self.temperature.map_or(Ok(()), |temperature| write!(f, ", {temperature} K"))
     }
 }
@@ -94,10 +131,10 @@ impl Quantity {
     }
 
     fn allows(self, value: f64) -> bool {
-        value.is_finite()
+        is_possible(value)
             && match self {
                 Self::Separation | Self::Hysteresis => true,
-                Self::Stiffness => value > 0.0,
+                Self::Stiffness => value >= SMALLEST,
                 _ => value >= 0.0,
             }
     }
@@ -111,13 +148,15 @@ pub(super) type Values = [Option<Vec<f64>>; Quantity::ALL.len()];
 pub struct Table {
     /// The name of the scene that was swept.
     pub scene: String,
-    /// Area that the pressure is meant over, m².
+    /// What its loads are.
+    pub load: Load,
+    /// Area that the pressure is meant over, m²; 1 where the loads are forces.
     pub nominal_area: f64,
     /// Separation at w = 0, m.
     pub rest_separation: f64,
     /// Speeds, m/s, rising.
     pub speeds: Vec<f64>,
-    /// Pressures, Pa, rising, at least two.
+    /// Pressures, Pa, or forces, N, rising, at least two.
     pub pressures: Vec<f64>,
     /// Temperatures, K, rising; none where the scene has none.
     pub temperatures: Vec<f64>,
@@ -150,17 +189,19 @@ impl Table {
             Some("1") => (),
             found => return Err((None, TableProblem::Format(found.unwrap_or("none").to_owned()))),
         }
-        let positive = |number| number > 0.0;
+        let load = if text.column(Load::Force.column()).is_ok() { Load::Force } else { Load::Pressure };
+        let area = || text.quantity("nominal_area", "m2", "an area above 0 in m2", |area| area > 0.0);
         let mut table = Self {
+            load,
             scene: text.head.get("scene").cloned().unwrap_or_else(|| "contact".into()),
-            nominal_area: text.quantity("nominal_area", "m2", "an area above 0 in m2", positive)?,
+            nominal_area: if load == Load::Force { 1.0 } else { area()? },
             rest_separation: text.quantity("rest_separation", "m", "a length in m", |_| true)?,
             speeds: Vec::new(),
             pressures: Vec::new(),
             temperatures: Vec::new(),
             values: Default::default(),
         };
-        let places = places(&text)?;
+        let places = places(&text, load)?;
         table.speeds = axis(places.iter().map(|place| place.speed));
         table.pressures = axis(places.iter().map(|place| place.pressure));
         table.temperatures = axis(places.iter().filter_map(|place| place.temperature));
@@ -205,6 +246,7 @@ impl Table {
         Place {
             speed: self.speeds[at % speeds],
             pressure: self.pressures[at / speeds % pressures],
+            load: self.load,
             temperature: self.temperatures.get(at / speeds / pressures).copied(),
         }
     }
@@ -219,7 +261,7 @@ impl Table {
 
     fn fill(&mut self, text: &Text, places: &[Place]) -> Result<(), Refusal> {
         if self.pressures.len() < 2 {
-            return Err((None, TableProblem::Pressures { found: self.pressures.len() }));
+            return Err((None, TableProblem::Pressures { load: self.load.name(), found: self.pressures.len() }));
         }
         let mut rows: Vec<Option<usize>> = vec![None; self.points()];
         for (row, place) in places.iter().enumerate() {
@@ -254,7 +296,8 @@ impl Table {
         for at in above_another {
             let (here, before) = (separations[at], separations[at - speeds]);
             if here >= before {
-                return Err((None, TableProblem::Separation { place: self.place(at), here, before }));
+                let load = self.load.name();
+                return Err((None, TableProblem::Separation { place: self.place(at), load, here, before }));
             }
         }
         Ok(())
@@ -262,18 +305,19 @@ impl Table {
 }
 
 /// The points of the rows.
-fn places(text: &Text) -> Result<Vec<Place>, Refusal> {
-    let names = ["speed [m/s]", "pressure [Pa]", "temperature [K]"];
+fn places(text: &Text, load: Load) -> Result<Vec<Place>, Refusal> {
+    let names = ["speed [m/s]", load.column(), "temperature [K]"];
     let [speed, pressure, temperature] = [text.column(names[0])?, text.column(names[1])?, text.column(names[2])?];
     let place = |(line, fields): &(usize, Vec<String>)| {
         let positive = |column: usize, name: &str| {
-            let number = fields[column].parse().ok().filter(|&number: &f64| number > 0.0 && number.is_finite());
+            let number = fields[column].parse().ok().filter(|&number: &f64| number >= SMALLEST && is_possible(number));
             number.ok_or_else(|| (Some(*line), field(name, &fields[column], "a number above 0")))
         };
         let has_temperature = !fields[temperature].is_empty();
         Ok(Place {
             speed: positive(speed, names[0])?,
             pressure: positive(pressure, names[1])?,
+            load,
             temperature: if has_temperature { Some(positive(temperature, names[2])?) } else { None },
         })
     };

@@ -127,7 +127,7 @@ fn pressed_harder_it_bears_more() {
         let (mut before, mut w) = (0.0, 2e-5);
         let mut steps = 0;
         while let Ok(force) = curve_of(w) {
-            assert!(force >= before && force - before < 0.02 * 8e5 * AREA, "{v} {w}: {force} after {before}");
+            assert!(force >= before && force - before < 0.03 * 8e5 * AREA, "{v} {w}: {force} after {before}");
             (before, w, steps) = (force, w - 1e-7, steps + 1);
         }
         assert!(before > 0.97 * 8e5 * AREA && steps > 200, "{v}: {before}");
@@ -159,17 +159,17 @@ fn a_hysteresis_loop_is_the_jenkins_elements() {
 
 /// Straight motions that press, lift, reverse, rest, leave the contact and come back.
 const MOTIONS: [(f64, f64, f64); 11] = [
-    (2e-3, 0.05, 0.0),
-    (1e-3, 0.02, -4e-3),
-    (5e-4, -0.05, -8e-3),
-    (1e-3, 0.0, 4e-3),
-    (2e-3, -0.01, 2e-3),
-    (1e-3, 0.3, 6e-3),
-    (4e-3, 0.01, 1e-2),
-    (3e-3, -0.02, -1.6e-2),
-    (1e-3, 3e-5, -2e-3),
-    (1e-3, 0.1, -1e-3),
-    (1e-3, 0.0, 0.0),
+    (2e-2, 0.05, 0.0),
+    (1e-2, 0.02, -2e-4),
+    (5e-2, -0.05, -2e-5),
+    (1e-2, 0.0, 2e-4),
+    (2e-2, -0.01, 1e-4),
+    (1e-2, 0.3, 6e-4),
+    (4e-2, 0.01, 1e-3),
+    (3e-2, -0.02, -1.5e-3),
+    (1e-2, 3e-5, -2e-4),
+    (1e-2, 0.1, -1e-4),
+    (1e-2, 0.0, 0.0),
 ];
 
 fn go(element: &mut Element, (duration, u_rate, w_rate): (f64, f64, f64), parts: &[f64]) {
@@ -266,11 +266,11 @@ fn derivatives_are_those_of_difference_quotients() {
 #[test]
 fn the_ends_of_the_table_refuse_or_hold() {
     let mut contact = contact();
-    let mut element = at_w(&contact, separation(1e-4, 4e5, WARM) - REST);
+    let mut element = at_w(&contact, separation(1e-4, 1e5, WARM) - REST);
     let before = element.save();
     let fast = element.advance(1e-6, (-10.1, 0.0)).unwrap_err();
     assert!(fast.to_string().contains("10.1 m/s") && fast.to_string().contains("from 0.0001 to 10 m/s"), "{fast}");
-    let deep = element.advance(1.0, (0.0, -1e-5)).unwrap_err();
+    let deep = element.advance(1.0, (0.0, -2e-5)).unwrap_err();
     assert!(matches!(deep, ElementError::Pressure { within: true, .. }));
     assert!(deep.to_string().contains("800000 Pa") && deep.to_string().contains("table.extrapolation"), "{deep}");
     assert_eq!((element.save(), element.advance(1e-3, (10.0, 0.0))), (before, Ok(())));
@@ -295,7 +295,7 @@ fn below_the_least_speed_it_is_as_at_the_least() {
     let element = |v: f64| {
         let w = separation(1e-4, 3e5, WARM) - REST;
         let mut element = Element::new(&contact(), &Start { w, u_rate: v, ..Start::default() }).unwrap();
-        element.advance(1e-3, (0.1, 0.0)).unwrap();
+        element.advance(1e-1, (0.1, 0.0)).unwrap();
         element.advance(1e-3, (v, 0.0)).unwrap();
         forces(&element)
     };
@@ -358,7 +358,7 @@ fn a_table_that_is_not_full_is_refused_with_what_is_missing() {
     assert!(refused(&text.replace("separation [m]", "separation [mm]")).contains("no column `separation [m]`"));
     assert!(refused(&format!("{text}{}\n", lines[9])).contains("a second row of "));
     let one = Grid { pressures: vec![1e5], ..Grid::plain() };
-    assert!(refused(&one.text()).contains("1 pressures, expected at least two"));
+    assert!(refused(&one.text()).contains("1 values of the pressure, expected at least two"));
     let mut fields: Vec<&str> = lines[6].split(',').collect();
     fields[4] = "fast";
     let wrong = refused(&text.replace(lines[6], &fields.join(",")));

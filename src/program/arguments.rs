@@ -23,7 +23,7 @@ pub(crate) enum Command {
     Plot(Plot),
     /// Prints what is in a scene and what is left out.
     Describe(Describe),
-    /// Packs a scene as an FMI 2.0 co-simulation FMU.
+    /// Packs a scene, or an element from a sweep's table, as an FMI 2.0 co-simulation FMU.
     Pack(Pack),
     /// Measures how right and how quick a scene's runs are: tables, pictures and a page.
     Report(Report),
@@ -92,8 +92,11 @@ pub(crate) struct Describe {
 #[derive(Debug, Args)]
 pub(crate) struct Pack {
     /// The scene file.
-    #[arg(value_name = "SCENE.toml")]
-    pub(crate) scene: PathBuf,
+    #[arg(value_name = "SCENE.toml", required_unless_present = "table", conflicts_with = "table")]
+    pub(crate) scene: Option<PathBuf>,
+    /// A sweep's table: packs a point-contact element, which looks the forces up instead of simulating the layer.
+    #[arg(long, value_name = "TABLE.csv")]
+    pub(crate) table: Option<PathBuf>,
     /// The FMU to write.
     #[arg(short, long, value_name = "OUT.fmu")]
     pub(crate) output: PathBuf,

@@ -33,6 +33,7 @@ use serde::Serialize;
 use crate::math::{Numbers, visit_all};
 
 pub use allowed::{LARGEST, SMALLEST, is_possible};
+pub use derived::identifier;
 pub use error::{Problem, SceneError};
 pub use link_kind::LinkKind;
 pub use material::{Material, PronyTerm, Wlf};
