@@ -134,6 +134,12 @@ impl Element {
         }
     }
 
+    /// The way over which the spring goes from nothing to its limit where the run stands, m; 0 without contact.
+    pub fn slip_way(&self) -> f64 {
+        let contact = self.contact();
+        if contact.stiffness.value > 0.0 { contact.limit.value / contact.stiffness.value } else { 0.0 }
+    }
+
     /// What the contact bears where the run stands.
     pub(super) fn contact(&self) -> Contact {
         self.curve.at(-(self.law.rest_separation + self.state.w))

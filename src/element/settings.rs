@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::outputs;
 use super::table::Table;
 use crate::outputs::Variable;
-use crate::scene::{Extrapolation, Parameter, ParameterError, Problem, Value};
+use crate::scene::{Extrapolation, MaterialParameter, Parameter, ParameterError, Problem, Value};
 
 /// What an element does where its table ends.
 const BEYOND: [(&str, bool); 2] = [("refuse", false), ("hold", true)];
@@ -61,14 +61,15 @@ impl PointContact {
 
     /// Its parameters.
     pub fn parameters(&self) -> Vec<Parameter> {
-        let temperature = (self.table.temperatures.len() > 1).then_some(Parameter::Temperature);
+        let temperature =
+            (self.table.temperatures.len() > 1).then_some(Parameter::Material(MaterialParameter::Temperature));
         temperature.into_iter().chain([Parameter::TableExtrapolation, Parameter::Extrapolation]).collect()
     }
 
     /// The value of a parameter.
     pub fn parameter(&self, parameter: Parameter) -> Value {
         match parameter {
-            Parameter::Temperature => Value::Real(self.temperature),
+            Parameter::Material(MaterialParameter::Temperature) => Value::Real(self.temperature),
             Parameter::TableExtrapolation => {
                 let word = BEYOND.iter().find(|(_, beyond)| *beyond == self.goes_beyond);
                 Value::Text(word.map_or("", |(word, _)| word).into())
@@ -86,7 +87,7 @@ impl PointContact {
             Err(ParameterError::new(parameter.name(), Problem::Value { given: value.to_string(), expected }))
         };
         match (parameter, &value) {
-            (Parameter::Temperature, &Value::Real(temperature)) => {
+            (Parameter::Material(MaterialParameter::Temperature), &Value::Real(temperature)) => {
                 let temperatures = &self.table.temperatures;
                 let (low, high) = (temperatures.first(), temperatures.last());
                 match (low, high) {

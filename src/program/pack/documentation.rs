@@ -7,17 +7,14 @@ use quick_xml::escape::escape;
 
 use super::model_description::clean;
 use super::parts::{ELEMENT_PAGE, PAGE};
-use super::{element, units, variables};
-use crate::program::describe;
+use super::{units, variables};
+use crate::program::describe::Row;
 use crate::program::html::{self, Cell};
 
 /// The page, filled in.
-pub(super) fn write(subject: &Subject, catalogue: &Catalogue) -> io::Result<Vec<u8>> {
-    let (page, rows) = match subject {
-        Subject::Layer(scene) => (PAGE, describe::rows(scene)),
-        Subject::Element(contact) => (ELEMENT_PAGE, element::rows(contact.table())),
-    };
-    let rows: Vec<_> = rows.into_iter().map(|(name, text)| [name.into(), clean(&text)]).collect();
+pub(super) fn write(subject: &Subject, catalogue: &Catalogue, said: &[Row]) -> io::Result<Vec<u8>> {
+    let page = if matches!(subject, Subject::Element(_)) { ELEMENT_PAGE } else { PAGE };
+    let rows: Vec<_> = said.iter().map(|(name, text)| [(*name).into(), clean(text)]).collect();
     let fields = [
         ("name", escape(clean(&subject.name())).into_owned()),
         ("description", escape(clean(&subject.description())).into_owned()),

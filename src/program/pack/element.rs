@@ -30,9 +30,9 @@ pub(super) fn rows(table: &Table) -> Vec<Row> {
     rows
 }
 
-/// Prints them.
-pub(super) fn tell(table: &Table) -> Result<(), ProgramError> {
-    let text: String = rows(table).into_iter().map(|(name, text)| format!("{name:<12}{text}\n")).collect();
+/// Prints rows.
+pub(super) fn tell(rows: &[Row]) -> Result<(), ProgramError> {
+    let text: String = rows.iter().map(|(name, text)| format!("{name:<12}{text}\n")).collect();
     std::io::stdout().write_all(text.as_bytes()).map_err(ProgramError::file("write", Path::new("standard output")))
 }
 

@@ -1,6 +1,7 @@
 //! `asperity pack`: a scene, or a table, and the shared library as one FMU.
 
 mod archive;
+mod check;
 mod documentation;
 mod element;
 mod libraries;
@@ -17,6 +18,7 @@ use asperity::element::{PointContact, Table};
 use asperity::fmi::{Catalogue, Sources, Subject, guid};
 
 use super::arguments::Pack;
+use super::describe::{self, Row};
 use super::error::ProgramError;
 use archive::Entry;
 use parts::PARTS;
@@ -27,13 +29,24 @@ pub(crate) fn pack(command: &Pack) -> Result<(), ProgramError> {
     super::check_output(&command.output, &subject.sources(&path))?;
     let mut entries = libraries::binaries(&subject.model_identifier(), &command.library)?;
     entries.extend(resources(&subject, &path)?);
-    entries.extend(documents(&subject, &path)?);
+    let said = said(command, &subject)?;
+    entries.extend(documents(&subject, &path, &said)?);
     let bytes = archive::zip(entries)?;
     fs::write(&command.output, bytes).map_err(ProgramError::file("write", &command.output))?;
-    match &subject {
-        Subject::Element(contact) => element::tell(contact.table()),
-        Subject::Layer(_) => Ok(()),
+    if matches!(subject, Subject::Element(_)) { element::tell(&said) } else { Ok(()) }
+}
+
+/// What the page says of the scene or of the table, and of how well that is interpolated.
+fn said(command: &Pack, subject: &Subject) -> Result<Vec<Row>, ProgramError> {
+    let contact = match subject {
+        Subject::Layer(scene) => return Ok(describe::rows(scene)),
+        Subject::Element(contact) => contact,
+    };
+    let mut rows = element::rows(contact.table());
+    if let Some(scene) = &command.check {
+        rows.extend(check::check(command, contact, scene)?);
     }
+    Ok(rows)
 }
 
 /// What is packed, and the file that it is read from.
@@ -66,13 +79,13 @@ fn archive_path(file: &Path) -> Result<String, ProgramError> {
     Ok(parts.collect::<Result<Vec<_>, _>>()?.join("/"))
 }
 
-fn documents(subject: &Subject, path: &Path) -> Result<Vec<Entry>, ProgramError> {
+fn documents(subject: &Subject, path: &Path, said: &[Row]) -> Result<Vec<Entry>, ProgramError> {
     let document = |document, source| ProgramError::Document { document, source };
     let catalogue = Catalogue::of(subject);
     let guid = guid(&Sources::of(path, subject).map_err(ProgramError::file("read", path))?, &catalogue);
     let description = model_description::write(subject, &catalogue, &guid);
     let description = description.map_err(|error| document("modelDescription.xml", error))?;
-    let index = documentation::write(subject, &catalogue);
+    let index = documentation::write(subject, &catalogue, said);
     let index = index.map_err(|error| document("documentation/index.html", error))?;
     let picture = match subject {
         Subject::Layer(scene) => picture::png(scene),

@@ -85,7 +85,8 @@ impl Curves {
     }
 }
 
-type Context<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Logarithmic, plotters::coord::types::RangedCoordf64>>;
+type Context<'a, 'b> =
+    ChartContext<'a, SVGBackend<'b>, Cartesian2d<Logarithmic, plotters::coord::types::RangedCoordf64>>;
 
 impl CurvesPanel {
     fn draw(&self, canvas: &Canvas<'_>, x_title: &str, x: Logarithmic, y: &Axis) -> Drawn {

@@ -182,11 +182,8 @@ mod tests {
     #[test]
     fn points_come_by_temperature_load_and_speed() {
         let values = |list: &[f64]| Values(list.to_vec());
-        let grid = Grid {
-            speeds: values(&[1.0, 2.0]),
-            loads: values(&[3.0, 4.0]),
-            temperatures: Some(values(&[5.0, 6.0])),
-        };
+        let grid =
+            Grid { speeds: values(&[1.0, 2.0]), loads: values(&[3.0, 4.0]), temperatures: Some(values(&[5.0, 6.0])) };
         let points = grid.points();
         let expected = [(1.0, 3.0, 5.0), (2.0, 3.0, 5.0), (1.0, 4.0, 5.0)];
         assert_eq!(points.len(), 8);

@@ -29,7 +29,8 @@ fn curves(table: &Table) -> Curves {
     let panels = if loads.len() == 1 {
         let colours = temperatures.iter().enumerate();
         let name = |&temperature: &Option<f64>| kelvin(temperature).unwrap_or_else(|| load_name(loads[0]));
-        let lines = colours.flat_map(|(look, temperature)| lines(&name(temperature), look, &of(loads[0], *temperature)));
+        let lines =
+            colours.flat_map(|(look, temperature)| lines(&name(temperature), look, &of(loads[0], *temperature)));
         let title = temperatures[0].map(|_| load_name(loads[0])).unwrap_or_default();
         vec![CurvesPanel { title, curves: lines.collect() }]
     } else {

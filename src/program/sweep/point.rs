@@ -196,7 +196,10 @@ impl<'a> Search<'a> {
         let way = self.gone + self.slide.distance();
         if !average.steady {
             let error = average.friction.error / average.friction.mean.abs().max(SMALL);
-            format!("not steady after {way:.4} m: standard error of the friction coefficient {:.2} % of it", 100.0 * error)
+            format!(
+                "not steady after {way:.4} m: standard error of the friction coefficient {:.2} % of it",
+                100.0 * error
+            )
         } else if off.abs() > LOAD {
             format!("not pressed after {way:.4} m: mean F_z is off by {:.2} %", 100.0 * off)
         } else {

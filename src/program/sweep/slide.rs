@@ -7,13 +7,8 @@ use asperity::simulation::{Motion, Simulation, SimulationError, Start};
 /// What is sampled at even times of a block; its mean is exact up to the frequency of the samples.
 const SAMPLED: [Output; 4] = [Output::ForceZ, Output::Hysteresis, Output::Adhesion, Output::ContactRatio];
 /// What the run itself adds up; a block's mean is the difference over its duration.
-const ADDED: [Output; 5] = [
-    Output::InputEnergy,
-    Output::DamperEnergy,
-    Output::MaxwellEnergy,
-    Output::FrictionEnergy,
-    Output::ImpactEnergy,
-];
+const ADDED: [Output; 5] =
+    [Output::InputEnergy, Output::DamperEnergy, Output::MaxwellEnergy, Output::FrictionEnergy, Output::ImpactEnergy];
 
 /// Means over one block.
 #[derive(Clone, Debug, Default, PartialEq)]
