@@ -292,7 +292,7 @@ impl Table {
     fn check_separations(&self) -> Result<(), Refusal> {
         let Some(separations) = &self.values[Quantity::Separation as usize] else { return Ok(()) };
         let speeds = self.speeds.len();
-        let above_another = (0..separations.len()).filter(|at| at / speeds % self.pressures.len() > 0);
+        let above_another = (0..separations.len()).filter(|at| !(at / speeds).is_multiple_of(self.pressures.len()));
         for at in above_another {
             let (here, before) = (separations[at], separations[at - speeds]);
             if here >= before {
