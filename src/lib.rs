@@ -12,6 +12,8 @@
 //! checked   forces    stage kernel   events      energy      new modes
 //! ```
 //!
+//! An [`element`] stands beside the simulation: it looks the forces of a layer up in a table that was swept of it.
+//!
 //! Each module looks only to its left; [`math`] looks nowhere.
 //!
 //! ```
@@ -74,9 +76,12 @@
 //! | μ, A τ_0 | `Model::friction_coefficient`, `shear_force` | 1, N | friction law |
 //! | σ | `Mode::direction()` | 1 | direction of slip along t |
 //! | h, γ, β | `h`, `Tableau::gamma()`, `beta` | s, 1, s | step, coefficient of a stage, γh |
+//! | G, K | `Jenkins::force`, `stiffness` | N, N/m | spring of a point-contact element, G = -F_x |
+//! | a, y | `Contact` over the approach | m, 1 | approach of an element's carrier, minus the separation; ln of its pressure |
 //! | E_in, T, V | `Power::input`, `kinetic_energy`, `elastic_energy` | J | energy balance |
 
 pub mod contact;
+pub mod element;
 pub mod fmi;
 pub mod integrator;
 pub mod math;

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms of the library in their order, and where each may look: to the left only, and there not everywhere.
-const ROOMS: [(&str, &[&str]); 8] = [
+const ROOMS: [(&str, &[&str]); 9] = [
     ("math", &[]),
     ("scene", &["math"]),
     ("model", &["math", "scene"]),
@@ -14,7 +14,8 @@ const ROOMS: [(&str, &[&str]); 8] = [
     ("contact", &["math", "scene", "model", "integrator"]),
     ("outputs", &["math", "scene", "model"]),
     ("simulation", &["math", "scene", "model", "integrator", "contact", "outputs"]),
-    ("fmi", &["math", "scene", "model", "integrator", "contact", "outputs", "simulation"]),
+    ("element", &["math", "scene", "model", "outputs", "simulation"]),
+    ("fmi", &["math", "scene", "model", "integrator", "contact", "outputs", "simulation", "element"]),
 ];
 
 /// The two files of the C interface; and the C types, which name unsafe functions but hold none.

@@ -6,6 +6,7 @@ use crate::outputs::{self, Variable};
 use crate::scene::{Parameter, Scene, Value};
 
 use super::fault::Fault;
+use super::subject::Subject;
 
 /// An input: a displacement of the carrier.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,15 +96,20 @@ pub struct Catalogue {
 }
 
 impl Catalogue {
-    /// The variables of `scene`.
+    /// The variables of a scene's layer.
     pub fn new(scene: &Scene) -> Self {
-        let kind = |parameter| match scene.parameter(parameter) {
+        Self::of(&scene.clone().into())
+    }
+
+    /// The variables of what an FMU simulates.
+    pub fn of(subject: &Subject) -> Self {
+        let kind = |parameter| match subject.parameter(parameter) {
             Value::Real(_) => Kind::Real,
             Value::Integer(_) => Kind::Integer,
             Value::Text(_) => Kind::Text,
         };
-        let parameters = scene.parameters().into_iter().map(|parameter| (parameter, kind(parameter))).collect();
-        Self { outputs: outputs::variables(scene), parameters }
+        let parameters = subject.parameters().into_iter().map(|parameter| (parameter, kind(parameter))).collect();
+        Self { outputs: subject.variables(), parameters }
     }
 
     /// The variable with the value reference `reference`.

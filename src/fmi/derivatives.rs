@@ -1,6 +1,6 @@
 //! Derivatives: of outputs by inputs with the states held, and of the forces by time.
 
-use crate::outputs::{self, Output, Variable};
+use crate::outputs::{Output, Variable};
 use crate::scene::is_possible;
 
 use super::catalogue::{Entry, Input, Kind};
@@ -48,9 +48,9 @@ impl Instance {
 
     fn directional_derivative(&mut self, unknown: &Variable, direction: (f64, f64)) -> Result<f64, Fault> {
         // One table says what depends on what, here and in the model description.
-        let direction = outputs::dependencies(self.run.parameters.scene(), unknown.output).part_of(direction);
+        let direction = self.run.parameters.subject().dependencies(unknown.output).part_of(direction);
         let mut value = [0.0];
-        self.run.simulation()?.directional_derivative(std::slice::from_ref(unknown), direction, &mut value);
+        self.run.plant()?.directional_derivative(std::slice::from_ref(unknown), direction, &mut value);
         finite(&unknown.name, value[0])
     }
 
@@ -78,7 +78,7 @@ impl Instance {
         if order != 1 {
             return Err(Fault::DerivativeOrder { name, order });
         }
-        let (x, z) = self.run.simulation()?.force_rates();
+        let (x, z) = self.run.plant()?.force_rates();
         finite(&name, if of_x { x } else { z })
     }
 }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
+use crate::element::{ElementError, TableError};
 use crate::scene::{LARGEST, ParameterError, SMALLEST, SceneError};
 use crate::simulation::SimulationError;
 
@@ -94,10 +95,14 @@ pub(super) enum Fault {
     Guid { given: String, own: String },
     #[error("fmuResourceLocation is NULL, expected the URI of the FMU's folder \"resources\"")]
     NoLocation,
-    #[error("no file {file} in the resources at \"{location}\"; looked in {}", list(.tried))]
-    NoScene { location: String, file: &'static str, tried: Vec<PathBuf> },
+    #[error("no file {} in the resources at \"{location}\"; looked in {}", .files.join(" or "), list(.tried))]
+    NoResource { location: String, files: &'static [&'static str], tried: Vec<PathBuf> },
     #[error(transparent)]
     Scene(#[from] SceneError),
+    #[error(transparent)]
+    Table(#[from] TableError),
+    #[error(transparent)]
+    Element(#[from] ElementError),
     #[error("cannot read {path}: {source}", path = .path.display())]
     Unreadable { path: PathBuf, source: std::io::Error },
     #[error("internal error, the instance is lost: {0}")]
@@ -111,6 +116,7 @@ impl Fault {
             Self::Simulation(SimulationError::TooManySteps { .. } | SimulationError::StepTooSmall { .. }) => {
                 Status::Discard
             }
+            Self::Element(ElementError::Pressure { within: true, .. }) => Status::Discard,
             Self::NoSuchStatus => Status::Discard,
             Self::Panic(_) => Status::Fatal,
             _ => Status::Error,

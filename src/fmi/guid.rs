@@ -9,11 +9,12 @@ use crate::scene::Scene;
 
 use super::catalogue::Catalogue;
 use super::fault::Fault;
+use super::subject::Subject;
 
-/// The bytes that a scene was read from.
+/// The bytes that a scene or a table was read from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sources {
-    /// The scene file, then every file that it reads, in the scene's order.
+    /// Its own file, then every file that it reads, in the scene's order.
     files: Vec<Vec<u8>>,
 }
 
@@ -23,16 +24,20 @@ impl Sources {
     /// # Errors
     /// Where a file cannot be read.
     pub fn read(path: &Path, scene: &Scene) -> std::io::Result<Self> {
-        let folder = path.parent().unwrap_or(Path::new(""));
-        let mut files = vec![fs::read(path)?];
-        for file in &scene.files {
-            files.push(fs::read(folder.join(file))?);
-        }
+        Self::of(path, &scene.clone().into())
+    }
+
+    /// Reads the file at `path` and what else `subject`, which was loaded from it, reads.
+    ///
+    /// # Errors
+    /// Where a file cannot be read.
+    pub fn of(path: &Path, subject: &Subject) -> std::io::Result<Self> {
+        let files = subject.sources(path).iter().map(fs::read).collect::<Result<_, _>>()?;
         Ok(Self { files })
     }
 
-    pub(super) fn read_from(path: &Path, scene: &Scene) -> Result<Self, Fault> {
-        Self::read(path, scene).map_err(|source| Fault::Unreadable { path: path.into(), source })
+    pub(super) fn read_from(path: &Path, subject: &Subject) -> Result<Self, Fault> {
+        Self::of(path, subject).map_err(|source| Fault::Unreadable { path: path.into(), source })
     }
 }
 

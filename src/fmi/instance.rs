@@ -4,7 +4,7 @@ use std::ffi::CString;
 use std::sync::Arc;
 
 use crate::outputs::{self, Output, Variable};
-use crate::scene::{OutputGroup, Parameter, Scene, Unit, Value};
+use crate::scene::{OutputGroup, Parameter, Unit, Value};
 use crate::simulation::{Handover, ModeChange};
 
 use super::catalogue::Catalogue;
@@ -16,9 +16,10 @@ use super::log::{Category, Log, Message};
 use super::memory::Memory;
 use super::panics;
 use super::parameters::Parameters;
-use super::resources::find_scene;
+use super::plant::Plant;
 use super::run::Run;
 use super::serial;
+use super::subject::Subject;
 use super::values::Outputs;
 
 /// An instance of the FMU.
@@ -38,24 +39,23 @@ pub(super) struct Instance {
 }
 
 impl Instance {
-    /// Reads the scene from the resources at `location` and checks that it is the one that the master thinks it is.
+    /// Reads the resources at `location` and checks that they are those that the master thinks they are.
     pub(super) fn new(given_guid: &str, location: &str, logging: bool) -> Result<Self, Fault> {
-        let path = find_scene(location)?;
-        let scene = Scene::load(&path)?;
-        let catalogue = Catalogue::new(&scene);
-        let own = guid(&Sources::read_from(&path, &scene)?, &catalogue);
+        let (subject, path) = Subject::find(location)?;
+        let catalogue = Catalogue::of(&subject);
+        let own = guid(&Sources::read_from(&path, &subject)?, &catalogue);
         if given_guid != own {
             return Err(Fault::Guid { given: given_guid.into(), own });
         }
-        Ok(Self::of(scene, catalogue, own, logging))
+        Ok(Self::of(subject, catalogue, own, logging))
     }
 
-    fn of(scene: Scene, catalogue: Catalogue, guid: String, logging: bool) -> Self {
+    fn of(subject: Subject, catalogue: Catalogue, guid: String, logging: bool) -> Self {
         let mut log = Log::new(logging);
-        for warning in &scene.warnings {
+        for warning in subject.warnings() {
             log.add(Message::of_status(Status::Warning, warning.clone()));
         }
-        let original = Arc::new(Parameters::new(scene));
+        let original = Arc::new(Parameters::new(subject));
         Self {
             catalogue,
             run: Run::new(Arc::clone(&original)),
@@ -96,7 +96,8 @@ impl Instance {
         Ok(())
     }
 
-    /// fmi2SetupExperiment: the tolerance is the parameter `solver.relative_tolerance`, as if set now.
+    /// fmi2SetupExperiment: the tolerance is the parameter `solver.relative_tolerance`, as if set now. An element has none, and
+    /// no error in time to keep to it.
     pub(super) fn setup_experiment(
         &mut self,
         tolerance: Option<f64>,
@@ -104,7 +105,8 @@ impl Instance {
         stop: Option<f64>,
     ) -> Result<(), Fault> {
         let clock = Clock::new(start, stop)?;
-        if let Some(tolerance) = tolerance {
+        let has_tolerance = self.run.parameters.subject().parameters().contains(&Parameter::RelativeTolerance);
+        if let Some(tolerance) = tolerance.filter(|_| has_tolerance) {
             let parameters = Arc::make_mut(&mut self.run.parameters);
             parameters.set(Parameter::RelativeTolerance, Value::Real(tolerance))?;
         }
@@ -119,7 +121,7 @@ impl Instance {
         Ok(())
     }
 
-    /// fmi2ExitInitializationMode: the layer is put under the carrier.
+    /// fmi2ExitInitializationMode: the layer, or the element, is put under the carrier.
     pub(super) fn exit_initialization_mode(&mut self) -> Result<(), Fault> {
         self.run.start()?;
         self.record_events();
@@ -198,22 +200,20 @@ impl Instance {
     /// Mode changes and handovers are recorded only while someone listens.
     fn record_events(&mut self) {
         let (events, solver) = (self.log.tells(Category::Events), self.log.tells(Category::Solver));
-        if let (false, Ok(simulation)) = (self.run.state.before_run(), self.run.simulation()) {
-            simulation.record_mode_changes(events);
-            simulation.record_handovers(solver);
+        if let (false, Ok(plant)) = (self.run.state.before_run(), self.run.plant()) {
+            plant.record(events, solver);
         }
     }
 
     fn take_records(&mut self) -> (Vec<ModeChange>, Vec<Handover>) {
-        match self.run.simulation() {
-            Ok(simulation) => (simulation.take_mode_changes(), simulation.take_handovers()),
-            Err(_) => (Vec::new(), Vec::new()),
-        }
+        self.run.plant().map(Plant::take_records).unwrap_or_default()
     }
 
     fn tell_events(&mut self, events: &[ModeChange]) {
+        let is_layer = matches!(self.run.parameters.subject(), Subject::Layer(_));
         for change in events {
-            self.log.add(Message { status: Status::Ok, category: Category::Events, text: event(change) });
+            let text = event(change, is_layer);
+            self.log.add(Message { status: Status::Ok, category: Category::Events, text });
         }
     }
 
@@ -221,7 +221,8 @@ impl Instance {
         for text in handovers.iter().map(ToString::to_string) {
             self.log.add(Message { status: Status::Ok, category: Category::Solver, text });
         }
-        let (true, Ok(simulation)) = (self.log.tells(Category::Solver), self.run.simulation()) else { return };
+        let (true, Ok(plant)) = (self.log.tells(Category::Solver), self.run.plant()) else { return };
+        let Some(simulation) = plant.simulation() else { return };
         let mut values = [0.0; 3];
         simulation.evaluate(&[Output::Steps, Output::Rejected, Output::Events].map(count), &mut values);
         let [steps, rejected, events] = values;
@@ -231,9 +232,11 @@ impl Instance {
     }
 }
 
-fn event(change: &ModeChange) -> String {
+/// An element has no masses: its contact is one.
+fn event(change: &ModeChange, is_layer: bool) -> String {
     let ModeChange { time, mass, from, to } = change;
-    format!("t = {time} s: mass {} from {} to {}", mass + 1, mode(*from), mode(*to))
+    let what = if is_layer { format!("mass {}", mass + 1) } else { "the contact".into() };
+    format!("t = {time} s: {what} from {} to {}", mode(*from), mode(*to))
 }
 
 fn mode(number: i8) -> &'static str {
@@ -263,6 +266,7 @@ pub(super) mod tests {
     use std::path::Path;
 
     use super::*;
+    use crate::scene::Scene;
 
     /// An instance of a scene with one mass.
     pub(in super::super) fn instance() -> Instance {
@@ -273,7 +277,7 @@ pub(super) mod tests {
     pub(in super::super) fn instance_of(text: &str) -> Instance {
         let scene = Scene::parse(text, Path::new("scene.toml")).unwrap();
         let catalogue = Catalogue::new(&scene);
-        Instance::of(scene, catalogue, "{}".into(), false)
+        Instance::of(scene.into(), catalogue, "{}".into(), false)
     }
 
     #[test]
@@ -293,6 +297,7 @@ pub(super) mod tests {
     #[test]
     fn mode_changes_are_told_in_words() {
         let change = ModeChange { time: 0.5, mass: 2, from: 0, to: -1 };
-        assert_eq!(event(&change), "t = 0.5 s: mass 3 from free to slipping backwards");
+        assert_eq!(event(&change, true), "t = 0.5 s: mass 3 from free to slipping backwards");
+        assert_eq!(event(&change, false), "t = 0.5 s: the contact from free to slipping backwards");
     }
 }

@@ -1,4 +1,5 @@
-//! The FMU: the C interface of FMI 2.0 for co-simulation around a [`Simulation`](crate::simulation::Simulation).
+//! The FMU: the C interface of FMI 2.0 for co-simulation around a [`Simulation`](crate::simulation::Simulation) of a layer, or
+//! an [`Element`](crate::element::Element) that looks the forces up.
 //!
 //! The exports check what a C caller can get wrong and then call a method of an instance in safe Rust. What may be called
 //! when is one table, what a value reference means is one [`Catalogue`], which the writer of the model description uses
@@ -18,9 +19,11 @@ mod log;
 mod memory;
 mod panics;
 mod parameters;
+mod plant;
 mod resources;
 mod run;
 mod serial;
+mod subject;
 mod values;
 
 #[cfg_attr(feature = "verify-bindings", path = "verify.rs")]
@@ -32,7 +35,8 @@ pub use catalogue::{Catalogue, Entry, Input, Kind};
 pub use exports::*;
 pub use guid::{Sources, guid};
 pub use log::Category;
-pub use resources::SCENE_FILE;
+pub use resources::{SCENE_FILE, TABLE_FILE};
+pub use subject::Subject;
 
 /// The capabilities that the model description claims, as attributes of its element `CoSimulation`; those left out are
 /// false.

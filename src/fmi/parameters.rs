@@ -1,27 +1,28 @@
-//! The scene with the parameters as set.
+//! The subject with the parameters as set.
 
 use std::collections::BTreeMap;
 
-use crate::scene::{Parameter, ParameterError, Scene, Value};
+use super::subject::Subject;
+use crate::scene::{Parameter, ParameterError, Value};
 
-/// A scene and what the master set of it.
+/// What is simulated and what the master set of it.
 #[derive(Clone, Debug)]
 pub(super) struct Parameters {
-    scene: Scene,
-    /// What was set, by the parameters' names: with the scene as it came, it gives the scene as it is. A parameter that
+    subject: Subject,
+    /// What was set, by the parameters' names: with the subject as it came, it gives the subject as it is. A parameter that
     /// follows another until it is set itself is not known by its value alone.
     set: BTreeMap<String, Value>,
 }
 
 impl Parameters {
-    /// A scene as it came.
-    pub(super) fn new(scene: Scene) -> Self {
-        Self { scene, set: BTreeMap::new() }
+    /// A subject as it came.
+    pub(super) fn new(subject: Subject) -> Self {
+        Self { subject, set: BTreeMap::new() }
     }
 
-    /// The scene with the parameters as set.
-    pub(super) fn scene(&self) -> &Scene {
-        &self.scene
+    /// The subject with the parameters as set.
+    pub(super) fn subject(&self) -> &Subject {
+        &self.subject
     }
 
     /// What was set.
@@ -31,7 +32,7 @@ impl Parameters {
 
     /// Gives a parameter a value.
     pub(super) fn set(&mut self, parameter: Parameter, value: Value) -> Result<(), ParameterError> {
-        self.scene.set_parameter(parameter, value.clone())?;
+        self.subject.set_parameter(parameter, value.clone())?;
         self.set.insert(parameter.name(), value);
         Ok(())
     }

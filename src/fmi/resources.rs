@@ -1,4 +1,4 @@
-//! From the URI of the resources to the scene file, in all the spellings that masters use.
+//! From the URI of the resources to the scene file or the table, in all the spellings that masters use.
 
 use std::path::PathBuf;
 
@@ -9,15 +9,19 @@ use super::fault::Fault;
 /// The scene's name in the FMU's folder `resources`.
 pub const SCENE_FILE: &str = "scene.toml";
 
-/// The scene file in the resources at `location`.
+/// The name there of an element's table.
+pub const TABLE_FILE: &str = "table.csv";
+
+/// The first of `files` that is in the resources at `location`.
 ///
 /// # Errors
-/// [`Fault::NoScene`] with the places looked in.
-pub(super) fn find_scene(location: &str) -> Result<PathBuf, Fault> {
-    let tried: Vec<_> = folders(location).into_iter().map(|folder| PathBuf::from(folder).join(SCENE_FILE)).collect();
-    match tried.iter().find(|path| path.is_file()) {
-        Some(path) => Ok(path.clone()),
-        None => Err(Fault::NoScene { location: location.into(), file: SCENE_FILE, tried }),
+/// [`Fault::NoResource`] with the folders looked in.
+pub(super) fn find(location: &str, files: &'static [&'static str]) -> Result<PathBuf, Fault> {
+    let tried: Vec<_> = folders(location).into_iter().map(PathBuf::from).collect();
+    let mut paths = tried.iter().flat_map(|folder| files.iter().map(|file| folder.join(file)));
+    match paths.find(|path| path.is_file()) {
+        Some(path) => Ok(path),
+        None => Err(Fault::NoResource { location: location.into(), files, tried }),
     }
 }
 
@@ -115,8 +119,9 @@ mod tests {
 
     #[test]
     fn what_is_not_there_is_told_with_the_places_looked_in() {
-        let message = find_scene("file:///no/such%20place").unwrap_err().to_string();
-        for part in ["scene.toml", "file:///no/such%20place", "/no/such place", "/no/such%20place"] {
+        let message = find("file:///no/such%20place", &[SCENE_FILE, TABLE_FILE]).unwrap_err().to_string();
+        for part in ["no file scene.toml or table.csv", "file:///no/such%20place", "/no/such place", "/no/such%20place"]
+        {
             assert!(message.contains(part), "{message}");
         }
     }

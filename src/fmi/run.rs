@@ -2,20 +2,19 @@
 
 use std::sync::Arc;
 
-use crate::simulation::Simulation;
-
 use super::carrier::Carrier;
 use super::clock::Clock;
 use super::fault::{Fault, Status};
 use super::lifecycle::State;
 use super::parameters::Parameters;
+use super::plant::Plant;
 
 /// A run, from its parameters to where it stands.
 #[derive(Clone, Debug)]
 pub(super) struct Run {
     /// The state of the lifecycle.
     pub(super) state: State,
-    /// The scene with the parameters as set.
+    /// What is simulated, with the parameters as set.
     pub(super) parameters: Arc<Parameters>,
     /// The carrier with the inputs as set.
     pub(super) carrier: Carrier,
@@ -23,8 +22,8 @@ pub(super) struct Run {
     pub(super) clock: Clock,
     /// What the last step returned.
     pub(super) last_step: Status,
-    /// The simulation; before the run, one that would start as things stand.
-    pub(super) simulation: Option<Simulation>,
+    /// The run of it; before the run, one that would start as things stand.
+    pub(super) plant: Option<Plant>,
 }
 
 impl Run {
@@ -36,36 +35,36 @@ impl Run {
             carrier: Carrier::default(),
             clock: Clock::default(),
             last_step: Status::Ok,
-            simulation: None,
+            plant: None,
         }
     }
 
-    /// Forgets the simulation that would have started: something it starts from has changed.
+    /// Forgets the run that would have started: something it starts from has changed.
     pub(super) fn start_anew(&mut self) {
         if self.state.before_run() {
-            self.simulation = None;
+            self.plant = None;
         }
     }
 
-    /// The simulation. Before the run, outputs are those of a run that starts as things stand.
-    pub(super) fn simulation(&mut self) -> Result<&mut Simulation, Fault> {
-        if self.simulation.is_none() && self.state.before_run() {
+    /// What runs. Before the run, outputs are those of a run that starts as things stand.
+    pub(super) fn plant(&mut self) -> Result<&mut Plant, Fault> {
+        if self.plant.is_none() && self.state.before_run() {
             let start = self.carrier.start(self.clock.time);
-            self.simulation = Some(Simulation::new(self.parameters.scene(), &start)?);
+            self.plant = Some(self.parameters.subject().start(&start)?);
         }
-        self.simulation.as_mut().ok_or(Fault::NoRun)
+        self.plant.as_mut().ok_or(Fault::NoRun)
     }
 
     /// Takes over the processor time that `other` has spent: it is no part of the FMU state.
     pub(super) fn go_on_timing(&mut self, other: &Self) {
-        if let (Some(simulation), Some(other)) = (&mut self.simulation, &other.simulation) {
-            simulation.set_run_time(other.run_time());
+        if let (Some(plant), Some(other)) = (&mut self.plant, &other.plant) {
+            plant.go_on_timing(other);
         }
     }
 
     /// Ends the initialisation.
     pub(super) fn start(&mut self) -> Result<(), Fault> {
-        let result = self.simulation().map(|_| ());
+        let result = self.plant().map(|_| ());
         self.state = if result.is_ok() { State::StepComplete } else { State::Error };
         result
     }
@@ -87,9 +86,9 @@ impl Run {
     }
 
     fn advance(&mut self, clock: Clock, h: f64) -> Result<(), Fault> {
-        let (carrier, time, rule) = (self.carrier, self.clock.time, self.parameters.scene().extrapolation);
-        let simulation = self.simulation()?;
-        simulation.advance(&carrier.motion(simulation.carrier(), time, h, rule)?)?;
+        let (carrier, time, rule) = (self.carrier, self.clock.time, self.parameters.subject().extrapolation());
+        let plant = self.plant()?;
+        plant.advance(&carrier.motion(plant.carrier(), time, h, rule)?)?;
         self.carrier.count_step(h);
         self.clock = clock;
         Ok(())

@@ -11,22 +11,24 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use uuid::Uuid;
 
+use crate::element;
 use crate::outputs::Variable;
 use crate::scene::{ParameterError, Value};
-use crate::simulation::{RestoreError, Saved, Simulation};
+use crate::simulation::RestoreError;
 
 use super::carrier::Carrier;
 use super::clock::Clock;
 use super::fault::Status;
 use super::lifecycle::State;
 use super::parameters::Parameters;
+use super::plant::{Plant, Saved};
 use super::run::Run;
 
 /// What every serialised FMU state begins with.
 const MARK: [u8; 8] = *b"asperity";
 
 /// The version of the format: to be raised whenever what is written changes.
-const FORMAT: u32 = 3;
+const FORMAT: u32 = 4;
 
 /// Bytes of the checksum.
 const CHECKSUM: usize = 16;
@@ -44,12 +46,14 @@ pub(super) enum Misfit {
     Changed,
     #[error("{0}")]
     Content(#[from] postcard::Error),
-    #[error("it has the parameter {0}, which the scene does not have")]
+    #[error("it has the parameter {0}, which the FMU does not have")]
     NoParameter(String),
     #[error(transparent)]
     Parameter(#[from] ParameterError),
     #[error(transparent)]
     Simulation(#[from] RestoreError),
+    #[error(transparent)]
+    Element(#[from] element::RestoreError),
     #[error("{0}")]
     Unsound(&'static str),
 }
@@ -63,19 +67,19 @@ struct Written {
     clock: Clock,
     last_step: Status,
     /// None before the run: it would start as things stand.
-    simulation: Option<Saved>,
+    plant: Option<Saved>,
 }
 
 /// Writes `run` of the FMU with this GUID.
 pub(super) fn write(run: &Run, guid: &str) -> Result<Vec<u8>, Misfit> {
-    let Run { state, parameters, carrier, clock, last_step, simulation } = run;
+    let Run { state, parameters, carrier, clock, last_step, plant } = run;
     let written = Written {
         state: *state,
         parameters: parameters.values_set().clone(),
         carrier: *carrier,
         clock: *clock,
         last_step: *last_step,
-        simulation: simulation.as_ref().filter(|_| !state.before_run()).map(Simulation::save),
+        plant: plant.as_ref().filter(|_| !state.before_run()).map(Plant::save),
     };
     let mut bytes = head(guid);
     bytes = postcard::to_extend(&written, bytes)?;
@@ -92,17 +96,16 @@ pub(super) fn read(bytes: &[u8], guid: &str, original: &Arc<Parameters>) -> Resu
     }
     written.check()?;
     let parameters = parameters(original, written.parameters)?;
-    let restore = |saved: &Saved| Simulation::restore(parameters.scene(), saved);
-    let simulation = written.simulation.as_ref().map(restore).transpose()?;
+    let plant = written.plant.as_ref().map(|saved| parameters.subject().restore(saved)).transpose()?;
     let Written { state, carrier, clock, last_step, .. } = written;
-    Ok(Run { state, parameters, carrier, clock, last_step, simulation })
+    Ok(Run { state, parameters, carrier, clock, last_step, plant })
 }
 
 /// A run that goes on from numbers shows numbers; one that was made up of large ones need not.
 pub(super) fn check_outputs(run: &mut Run, outputs: &[Variable]) -> Result<(), Misfit> {
-    let Some(simulation) = &mut run.simulation else { return Ok(()) };
+    let Some(plant) = &mut run.plant else { return Ok(()) };
     let mut values = vec![0.0; outputs.len()];
-    simulation.evaluate(outputs, &mut values);
+    plant.evaluate(outputs, &mut values);
     let finite = values.iter().all(|value| value.is_finite());
     if finite { Ok(()) } else { Err(Misfit::Unsound("its outputs are no finite numbers")) }
 }
@@ -110,8 +113,8 @@ pub(super) fn check_outputs(run: &mut Run, outputs: &[Variable]) -> Result<(), M
 impl Written {
     fn check(&self) -> Result<(), Misfit> {
         let has_run = match self.state {
-            State::Instantiated | State::InitializationMode => self.simulation.is_none(),
-            State::StepComplete | State::StepFailed | State::Terminated => self.simulation.is_some(),
+            State::Instantiated | State::InitializationMode => self.plant.is_none(),
+            State::StepComplete | State::StepFailed | State::Terminated => self.plant.is_some(),
             // After a step or after an initialisation that failed.
             State::Error => true,
             State::Fatal => false,
@@ -127,7 +130,7 @@ impl Written {
 fn parameters(original: &Arc<Parameters>, set: BTreeMap<String, Value>) -> Result<Arc<Parameters>, Misfit> {
     let mut parameters = Arc::clone(original);
     for (name, value) in set {
-        match original.scene().parameter_named(&name) {
+        match original.subject().parameter_named(&name) {
             Some(parameter) => Arc::make_mut(&mut parameters).set(parameter, value)?,
             None => return Err(Misfit::NoParameter(name)),
         }

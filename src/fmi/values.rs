@@ -30,7 +30,7 @@ impl Outputs {
         if self.values.is_none() {
             let mut values = std::mem::take(&mut self.spare);
             values.resize(catalogue.outputs().len(), 0.0);
-            run.simulation()?.evaluate(catalogue.outputs(), &mut values);
+            run.plant()?.evaluate(catalogue.outputs(), &mut values);
             self.values = Some(values);
         }
         Ok(self.values.as_deref().unwrap_or_default())
@@ -46,7 +46,7 @@ impl Instance {
     fn get_one(&mut self, reference: u32, kind: Kind) -> Result<Value, Fault> {
         match self.catalogue.find(reference, kind)? {
             Entry::Input(input) => Ok(Value::Real(self.run.carrier.input(input))),
-            Entry::Parameter(parameter, _) => Ok(self.run.parameters.scene().parameter(parameter)),
+            Entry::Parameter(parameter, _) => Ok(self.run.parameters.subject().parameter(parameter)),
             Entry::Output(place, variable) => match self.outputs.get(&mut self.run, &self.catalogue)?[place] {
                 value if !value.is_finite() => Err(Fault::NoValue { name: variable.name.clone(), value }),
                 value if kind == Kind::Real => Ok(Value::Real(value)),

@@ -1,5 +1,6 @@
 //! Numerical tools that know nothing of the model.
 
+mod monotone;
 mod numbers;
 mod polynomial;
 mod relaxation;
@@ -8,6 +9,7 @@ mod spline;
 mod sums;
 mod tridiagonal;
 
+pub use monotone::{Expansion, cubic, interval_of, monotone_slopes};
 pub use numbers::{Numbers, visit_all};
 pub use polynomial::{Jet, Quintic};
 pub use relaxation::Relaxation;

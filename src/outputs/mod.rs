@@ -7,4 +7,4 @@ mod variables;
 
 pub use dependencies::{Dependencies, dependencies};
 pub use moment::{Accounts, Counters, Energies, Moment};
-pub use variables::{Kind, Output, Variable, unit_of, variables};
+pub use variables::{Kind, Output, Variable, unit_of, variable, variables};

@@ -119,18 +119,16 @@ fn group_variables(scene: &Scene, group: OutputGroup) -> Vec<Variable> {
     if group == OutputGroup::Elements {
         return (0..scene.layer.masses).flat_map(element_variables).collect();
     }
-    TABLE
-        .iter()
-        .filter(|row| row.1 == group && can_have(scene, row.0))
-        .map(|&(output, group, name, kind, unit, description)| Variable {
-            output,
-            group,
-            name: name.into(),
-            unit,
-            kind,
-            description: description.into(),
-        })
-        .collect()
+    TABLE.iter().filter(|row| row.1 == group && can_have(scene, row.0)).map(of_row).collect()
+}
+
+/// The variable of an output, whatever the scene; `None` for those of single elements.
+pub fn variable(output: Output) -> Option<Variable> {
+    TABLE.iter().find(|row| row.0 == output).map(of_row)
+}
+
+fn of_row(&(output, group, name, kind, unit, description): &Row) -> Variable {
+    Variable { output, group, name: name.into(), unit, kind, description: description.into() }
 }
 
 /// A channel of dissipation that the scene cannot have is no variable, nor is an area that it does not give.

@@ -25,7 +25,7 @@ pub(crate) enum Command {
     Plot(Plot),
     /// Prints what is in a scene and what is left out.
     Describe(Describe),
-    /// Packs a scene as an FMI 2.0 co-simulation FMU.
+    /// Packs a scene, or an element from a sweep's table, as an FMI 2.0 co-simulation FMU.
     Pack(Pack),
     /// Finds the Prony terms of a compound from its measured moduli.
     Fit(Fit),
@@ -98,8 +98,18 @@ pub(crate) struct Describe {
 #[derive(Debug, Args)]
 pub(crate) struct Pack {
     /// The scene file.
-    #[arg(value_name = "SCENE.toml")]
-    pub(crate) scene: PathBuf,
+    #[arg(value_name = "SCENE.toml", required_unless_present = "table", conflicts_with = "table")]
+    pub(crate) scene: Option<PathBuf>,
+    /// A sweep's table: packs a point-contact element, which looks the forces up instead of simulating the layer.
+    #[arg(long, value_name = "TABLE.csv")]
+    pub(crate) table: Option<PathBuf>,
+    /// The scene that was swept: compares the element with its layer between the table's points and along a motion to and
+    /// fro, and writes tables and pictures of it to a folder beside the FMU.
+    #[arg(long, value_name = "SCENE.toml", requires = "table")]
+    pub(crate) check: Option<PathBuf>,
+    /// Points that --check compares at most.
+    #[arg(long, value_name = "N", default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) points: u32,
     /// The FMU to write.
     #[arg(short, long, value_name = "OUT.fmu")]
     pub(crate) output: PathBuf,

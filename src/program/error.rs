@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use asperity::element::TableError;
 use asperity::scene::{ParameterError, SceneError};
 use asperity::simulation::SimulationError;
 
@@ -14,6 +15,9 @@ pub(crate) enum ProgramError {
     /// The scene is refused.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// The table is refused.
+    #[error(transparent)]
+    Table(#[from] TableError),
     /// A parameter of the command line is refused.
     #[error("--set: {0}")]
     Parameter(#[from] ParameterError),

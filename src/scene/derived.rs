@@ -5,12 +5,17 @@ use std::f64::consts::TAU;
 use super::points::peak_to_valley;
 use super::{Path, Scene, allowed};
 
+/// A name as a C identifier: letters, digits and underscores, no digit first.
+pub fn identifier(name: &str) -> String {
+    let legal = |letter: char| if letter.is_ascii_alphanumeric() { letter } else { '_' };
+    let identifier: String = name.chars().map(legal).collect();
+    if identifier.starts_with(|first: char| first.is_ascii_digit()) { format!("_{identifier}") } else { identifier }
+}
+
 impl Scene {
     /// The scene's name as a C identifier: letters, digits and underscores, no digit first.
     pub fn model_identifier(&self) -> String {
-        let legal = |letter: char| if letter.is_ascii_alphanumeric() { letter } else { '_' };
-        let identifier: String = self.name.chars().map(legal).collect();
-        if identifier.starts_with(|first: char| first.is_ascii_digit()) { format!("_{identifier}") } else { identifier }
+        identifier(&self.name)
     }
 
     /// The scene's height, m: the peak-to-valley heights of the profile's data points and of the layer's roughness

@@ -33,6 +33,7 @@ use serde::Serialize;
 use crate::math::{Numbers, visit_all};
 
 pub use allowed::{LARGEST, SMALLEST, is_possible};
+pub use derived::identifier;
 pub use error::{Problem, SceneError};
 pub use link_kind::LinkKind;
 pub use material::{Material, PronyTerm, Wlf};
@@ -189,6 +190,18 @@ pub enum Extrapolation {
     Linear,
     /// To the value given, reached at the end of the step.
     Hold,
+}
+
+impl Extrapolation {
+    /// The word for it in a scene file.
+    pub fn word(self) -> &'static str {
+        allowed::EXTRAPOLATION.word(self)
+    }
+
+    /// What a word stands for.
+    pub fn of_word(word: &str) -> Option<Self> {
+        allowed::EXTRAPOLATION.find(word, word).ok()
+    }
 }
 
 /// The groups of output variables that a scene may ask for.

@@ -49,6 +49,8 @@ pub enum Parameter {
     MaxSteps,
     /// `input.extrapolation`
     Extrapolation,
+    /// `table.extrapolation`, of an element from a table
+    TableExtrapolation,
 }
 
 /// A parameter's value.
@@ -73,7 +75,8 @@ pub struct ParameterError {
 }
 
 impl ParameterError {
-    pub(super) fn new(name: impl Into<String>, problem: Problem) -> Self {
+    /// The error of the parameter called `name`.
+    pub(crate) fn new(name: impl Into<String>, problem: Problem) -> Self {
         Self { name: name.into(), problem }
     }
 
@@ -129,6 +132,7 @@ impl Parameter {
             Self::AbsoluteTolerance => "solver.absolute_tolerance".into(),
             Self::MaxSteps => "solver.max_steps".into(),
             Self::Extrapolation => "input.extrapolation".into(),
+            Self::TableExtrapolation => "table.extrapolation".into(),
         }
     }
 
@@ -145,6 +149,7 @@ impl Parameter {
             Self::ShearStrength => Unit::Pascal,
             Self::Coulomb | Self::RelativeTolerance => Unit::One,
             Self::Initial | Self::Method | Self::MaxSteps | Self::Extrapolation => Unit::One,
+            Self::TableExtrapolation => Unit::One,
         }
     }
 
@@ -175,6 +180,9 @@ impl Parameter {
             }
             Self::MaxSteps => "Steps that one communication step or one phase may take".into(),
             Self::Extrapolation => "How the carrier moves when no rates are given: linear or hold".into(),
+            Self::TableExtrapolation => "What happens beyond the table's pressures and speeds: refuse, or hold its ends' \
+                 friction coefficients and stiffnesses"
+                .into(),
         }
     }
 }

@@ -4,9 +4,13 @@
 #[allow(dead_code, reason = "shared by several tests")]
 #[path = "../common/mod.rs"]
 mod common;
+#[allow(dead_code, reason = "shared by several tests")]
+#[path = "../common/sweeps.rs"]
+mod sweeps;
 
 mod alone;
 mod derivatives;
+mod element;
 mod failures;
 mod instantiation;
 mod library;

@@ -6,8 +6,9 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::{fs, mem, process, ptr};
 
+use asperity::element::{PointContact, Table};
 use asperity::fmi::bindings::*;
-use asperity::fmi::{self, Catalogue, SCENE_FILE, Sources};
+use asperity::fmi::{self, Catalogue, SCENE_FILE, Sources, Subject, TABLE_FILE};
 use asperity::scene::Scene;
 
 pub const OK: fmi2Status = fmi2Status_fmi2OK;
@@ -81,6 +82,13 @@ impl Folder {
         folder
     }
 
+    /// A folder with an element's table in it.
+    pub fn with_table(table: &str) -> Self {
+        let folder = Self::new("table");
+        fs::write(folder.path().join(TABLE_FILE), table).unwrap();
+        folder
+    }
+
     pub fn path(&self) -> &Path {
         &self.0
     }
@@ -93,11 +101,16 @@ impl Folder {
         self.0.join(SCENE_FILE)
     }
 
-    /// The GUID and the variables of the scene in it.
+    /// The GUID and the variables of the scene, or the table, in it.
     pub fn description(&self) -> (String, Catalogue) {
-        let scene = Scene::load(&self.scene_file()).unwrap();
-        let catalogue = Catalogue::new(&scene);
-        (fmi::guid(&Sources::read(&self.scene_file(), &scene).unwrap(), &catalogue), catalogue)
+        let table = self.0.join(TABLE_FILE);
+        let (subject, file): (Subject, _) = if table.is_file() {
+            (PointContact::new(Table::load(&table).unwrap()).into(), table)
+        } else {
+            (Scene::load(&self.scene_file()).unwrap().into(), self.scene_file())
+        };
+        let catalogue = Catalogue::of(&subject);
+        (fmi::guid(&Sources::of(&file, &subject).unwrap(), &catalogue), catalogue)
     }
 }
 
@@ -184,7 +197,15 @@ impl Fmu {
     }
 
     pub fn of(scene: &str, logging: bool) -> Self {
-        let folder = Folder::with_scene("", scene);
+        Self::in_folder(Folder::with_scene("", scene), logging)
+    }
+
+    /// An instance of an element of `table`.
+    pub fn of_table(table: &str, logging: bool) -> Self {
+        Self::in_folder(Folder::with_table(table), logging)
+    }
+
+    fn in_folder(folder: Folder, logging: bool) -> Self {
         let (guid, catalogue) = folder.description();
         let messages = Box::new(Messages::default());
         let functions = callbacks(&messages);

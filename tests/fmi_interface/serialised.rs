@@ -127,7 +127,7 @@ fn another_scene_or_format_is_refused_and_named() {
     assert!(refused(&fmu, &other.frozen()).contains("its scene or version is another one"));
     let mut later = fmu.frozen();
     later[8] += 1;
-    assert!(refused(&fmu, &later).contains("its format is 4, expected 3"));
+    assert!(refused(&fmu, &later).contains("its format is 5, expected 4"));
     assert!(refused(&fmu, b"PK").contains("does not begin like one"));
 }
 

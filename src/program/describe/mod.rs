@@ -38,7 +38,7 @@ fn text(scene: &Scene) -> Result<String, ProgramError> {
 }
 
 /// A row: its name, empty where the row goes on with the one above, and its text.
-pub(super) type Row = (&'static str, String);
+pub(crate) type Row = (&'static str, String);
 
 /// What is in the scene and what is left out.
 pub(super) fn rows(scene: &Scene) -> Vec<Row> {

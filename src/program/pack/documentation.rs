@@ -1,33 +1,29 @@
-//! documentation/index.html: what the scene is, what is left out, its variables, its parameters, the equations.
+//! documentation/index.html: what is packed, what is left out, its variables, its parameters, the equations.
 
 use std::io;
 
-use asperity::fmi::{Catalogue, Entry, Kind};
-use asperity::scene::Scene;
+use asperity::fmi::{Catalogue, Entry, Kind, Subject};
 use quick_xml::escape::escape;
 
 use super::model_description::clean;
-use super::parts::PAGE;
+use super::parts::{ELEMENT_PAGE, PAGE};
 use super::{units, variables};
-use crate::program::describe;
+use crate::program::describe::Row;
 use crate::program::html::{self, Cell};
 
 /// The page, filled in.
-pub(super) fn write(scene: &Scene, catalogue: &Catalogue) -> io::Result<Vec<u8>> {
-    let description = clean(scene.description.as_deref().unwrap_or_default());
+pub(super) fn write(subject: &Subject, catalogue: &Catalogue, said: &[Row]) -> io::Result<Vec<u8>> {
+    let page = if matches!(subject, Subject::Element(_)) { ELEMENT_PAGE } else { PAGE };
+    let rows: Vec<_> = said.iter().map(|(name, text)| [(*name).into(), clean(text)]).collect();
     let fields = [
-        ("name", escape(clean(&scene.name)).into_owned()),
-        ("description", escape(description).into_owned()),
+        ("name", escape(clean(&subject.name())).into_owned()),
+        ("description", escape(clean(&subject.description())).into_owned()),
         ("version", env!("CARGO_PKG_VERSION").to_owned()),
-        ("scene", table(["", "What is there"], &scene_rows(scene))?),
+        ("scene", table(["", "What is there"], &rows)?),
         ("variables", table(["Name", "Causality", "Unit", "Description"], &variable_rows(catalogue))?),
-        ("parameters", table(["Name", "Start", "Unit", "Description"], &parameter_rows(scene, catalogue))?),
+        ("parameters", table(["Name", "Start", "Unit", "Description"], &parameter_rows(subject, catalogue))?),
     ];
-    Ok(html::fill(PAGE, &fields).into_bytes())
-}
-
-fn scene_rows(scene: &Scene) -> Vec<[String; 2]> {
-    describe::rows(scene).into_iter().map(|(name, text)| [name.into(), clean(&text)]).collect()
+    Ok(html::fill(page, &fields).into_bytes())
 }
 
 fn variable_rows(catalogue: &Catalogue) -> Vec<[String; 4]> {
@@ -35,9 +31,9 @@ fn variable_rows(catalogue: &Catalogue) -> Vec<[String; 4]> {
     entries.map(|entry| row(&entry, variables::causality(&entry).into())).collect()
 }
 
-fn parameter_rows(scene: &Scene, catalogue: &Catalogue) -> Vec<[String; 4]> {
+fn parameter_rows(subject: &Subject, catalogue: &Catalogue) -> Vec<[String; 4]> {
     let entries = catalogue.entries().map(|(_, entry)| entry).filter(is_parameter);
-    entries.map(|entry| row(&entry, variables::start(scene, &entry).unwrap_or_default())).collect()
+    entries.map(|entry| row(&entry, variables::start(subject, &entry).unwrap_or_default())).collect()
 }
 
 fn is_parameter(entry: &Entry<'_>) -> bool {

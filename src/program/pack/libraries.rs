@@ -3,8 +3,6 @@
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-use asperity::scene::Scene;
-
 use super::archive::Entry;
 use super::read;
 use crate::program::error::ProgramError;
@@ -32,13 +30,13 @@ const HOST: Platform = if cfg!(target_os = "windows") {
 };
 
 /// The libraries that `--library` names, as they stand in the archive; by default the one beside this program.
-pub(super) fn binaries(scene: &Scene, arguments: &[OsString]) -> Result<Vec<Entry>, ProgramError> {
+pub(super) fn binaries(identifier: &str, arguments: &[OsString]) -> Result<Vec<Entry>, ProgramError> {
     let mut libraries: Vec<_> = arguments.iter().map(library).collect();
     if libraries.is_empty() {
         libraries.push((HOST, beside_this_program()));
     }
     refuse_two_of_a_platform(&libraries)?;
-    libraries.iter().map(|(platform, path)| binary(scene, platform, path)).collect()
+    libraries.iter().map(|(platform, path)| binary(identifier, platform, path)).collect()
 }
 
 /// `PLATFORM=PATH`, or a path alone for this program's platform.
@@ -66,11 +64,11 @@ fn refuse_two_of_a_platform(libraries: &[(Platform, PathBuf)]) -> Result<(), Pro
     Ok(())
 }
 
-fn binary(scene: &Scene, platform: &Platform, path: &Path) -> Result<Entry, ProgramError> {
+fn binary(identifier: &str, platform: &Platform, path: &Path) -> Result<Entry, ProgramError> {
     if !path.is_file() {
         return Err(ProgramError::NoLibrary { path: path.to_owned() });
     }
-    let name = format!("binaries/{}/{}.{}", platform.folder, scene.model_identifier(), platform.extension);
+    let name = format!("binaries/{}/{identifier}.{}", platform.folder, platform.extension);
     Ok(Entry { name, bytes: read(path)?, executable: true })
 }
 

@@ -1,7 +1,9 @@
-//! `asperity pack`: a scene and the shared library as one FMU.
+//! `asperity pack`: a scene, or a table, and the shared library as one FMU.
 
 mod archive;
+mod check;
 mod documentation;
+mod element;
 mod libraries;
 mod model_description;
 mod parts;
@@ -10,32 +12,59 @@ mod units;
 mod variables;
 
 use std::fs;
-use std::path::{Component, Path};
+use std::path::{Component, Path, PathBuf};
 
-use asperity::fmi::{Catalogue, SCENE_FILE, Sources, guid};
-use asperity::scene::Scene;
+use asperity::element::{PointContact, Table};
+use asperity::fmi::{Catalogue, Sources, Subject, guid};
 
 use super::arguments::Pack;
+use super::describe::{self, Row};
 use super::error::ProgramError;
 use archive::Entry;
 use parts::PARTS;
 
 /// Writes the FMU.
 pub(crate) fn pack(command: &Pack) -> Result<(), ProgramError> {
-    let scene = super::load(&command.scene)?;
-    super::check_output(&command.output, &super::sources(&command.scene, &scene))?;
-    let mut entries = libraries::binaries(&scene, &command.library)?;
-    entries.extend(resources(&scene, &command.scene)?);
-    entries.extend(documents(&scene, &command.scene)?);
+    let (subject, path) = load(command)?;
+    super::check_output(&command.output, &subject.sources(&path))?;
+    let mut entries = libraries::binaries(&subject.model_identifier(), &command.library)?;
+    entries.extend(resources(&subject, &path)?);
+    let said = said(command, &subject)?;
+    entries.extend(documents(&subject, &path, &said)?);
     let bytes = archive::zip(entries)?;
-    fs::write(&command.output, bytes).map_err(ProgramError::file("write", &command.output))
+    fs::write(&command.output, bytes).map_err(ProgramError::file("write", &command.output))?;
+    if matches!(subject, Subject::Element(_)) { element::tell(&said) } else { Ok(()) }
 }
 
-/// The scene, under a fixed name, and what it reads.
-fn resources(scene: &Scene, path: &Path) -> Result<Vec<Entry>, ProgramError> {
+/// What the page says of the scene or of the table, and of how well that is interpolated.
+fn said(command: &Pack, subject: &Subject) -> Result<Vec<Row>, ProgramError> {
+    let contact = match subject {
+        Subject::Layer(scene) => return Ok(describe::rows(scene)),
+        Subject::Element(contact) => contact,
+    };
+    let mut rows = element::rows(contact.table());
+    if let Some(scene) = &command.check {
+        rows.extend(check::check(command, contact, scene)?);
+    }
+    Ok(rows)
+}
+
+/// What is packed, and the file that it is read from.
+fn load(command: &Pack) -> Result<(Subject, PathBuf), ProgramError> {
+    match (&command.table, &command.scene) {
+        (Some(table), _) => Ok((PointContact::new(Table::load(table)?).into(), table.clone())),
+        (None, scene) => {
+            let path = scene.clone().unwrap_or_default();
+            Ok((super::load(&path)?.into(), path))
+        }
+    }
+}
+
+/// The scene or the table, under a fixed name, and what a scene reads.
+fn resources(subject: &Subject, path: &Path) -> Result<Vec<Entry>, ProgramError> {
     let folder = path.parent().unwrap_or(Path::new(""));
-    let mut entries = vec![Entry::new(format!("resources/{SCENE_FILE}"), read(path)?)];
-    for file in &scene.files {
+    let mut entries = vec![Entry::new(format!("resources/{}", subject.file_name()), read(path)?)];
+    for file in subject.files() {
         entries.push(Entry::new(format!("resources/{}", archive_path(file)?), read(&folder.join(file))?));
     }
     Ok(entries)
@@ -50,15 +79,19 @@ fn archive_path(file: &Path) -> Result<String, ProgramError> {
     Ok(parts.collect::<Result<Vec<_>, _>>()?.join("/"))
 }
 
-fn documents(scene: &Scene, path: &Path) -> Result<Vec<Entry>, ProgramError> {
+fn documents(subject: &Subject, path: &Path, said: &[Row]) -> Result<Vec<Entry>, ProgramError> {
     let document = |document, source| ProgramError::Document { document, source };
-    let catalogue = Catalogue::new(scene);
-    let guid = guid(&Sources::read(path, scene).map_err(ProgramError::file("read", path))?, &catalogue);
-    let description = model_description::write(scene, &catalogue, &guid);
+    let catalogue = Catalogue::of(subject);
+    let guid = guid(&Sources::of(path, subject).map_err(ProgramError::file("read", path))?, &catalogue);
+    let description = model_description::write(subject, &catalogue, &guid);
     let description = description.map_err(|error| document("modelDescription.xml", error))?;
-    let index = documentation::write(scene, &catalogue);
+    let index = documentation::write(subject, &catalogue, said);
     let index = index.map_err(|error| document("documentation/index.html", error))?;
-    let picture = picture::png(scene).map_err(|error| document("model.png", error.into()))?;
+    let picture = match subject {
+        Subject::Layer(scene) => picture::png(scene),
+        Subject::Element(contact) => picture::element_png(contact.table()),
+    };
+    let picture = picture.map_err(|error| document("model.png", error.into()))?;
     let parts = PARTS.iter().map(|(name, text)| Entry::new((*name).into(), text.as_bytes().to_vec()));
     let written = [("modelDescription.xml", description), ("documentation/index.html", index), ("model.png", picture)];
     Ok(written.into_iter().map(|(name, bytes)| Entry::new(name.into(), bytes)).chain(parts).collect())

@@ -2,9 +2,8 @@
 
 use std::io;
 
-use asperity::fmi::{CAPABILITIES, Catalogue, Category, Entry};
-use asperity::outputs::{Dependencies, dependencies};
-use asperity::scene::Scene;
+use asperity::fmi::{CAPABILITIES, Catalogue, Category, Entry, Subject};
+use asperity::outputs::Dependencies;
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 
@@ -16,21 +15,21 @@ pub(super) type Xml = Writer<Vec<u8>>;
 /// Communication steps that the default experiment takes, roughly.
 const DEFAULT_STEPS: f64 = 500.0;
 
-/// Writes the description of `scene`, whose variables are in `catalogue`.
-pub(super) fn write(scene: &Scene, catalogue: &Catalogue, guid: &str) -> io::Result<Vec<u8>> {
+/// Writes the description of `subject`, whose variables are in `catalogue`.
+pub(super) fn write(subject: &Subject, catalogue: &Catalogue, guid: &str) -> io::Result<Vec<u8>> {
     let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
     xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
-    let description = clean(scene.description.as_deref().unwrap_or_default());
+    let description = clean(&subject.description());
     let root = xml
         .create_element("fmiModelDescription")
         .with_attribute(("fmiVersion", "2.0"))
-        .with_attribute(("modelName", clean(&scene.name).as_str()))
+        .with_attribute(("modelName", clean(&subject.name()).as_str()))
         .with_attribute(("guid", guid))
         .with_attributes(Some(("description", description.as_str())).filter(|_| !description.is_empty()))
         .with_attribute(("generationTool", concat!("asperity ", env!("CARGO_PKG_VERSION"))))
         .with_attribute(("variableNamingConvention", "structured"))
         .with_attribute(("numberOfEventIndicators", "0"));
-    root.write_inner_content(|xml| content(xml, scene, catalogue))?;
+    root.write_inner_content(|xml| content(xml, subject, catalogue))?;
     let mut bytes = xml.into_inner();
     bytes.push(b'\n');
     Ok(bytes)
@@ -41,18 +40,18 @@ pub(super) fn clean(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
-fn content(xml: &mut Xml, scene: &Scene, catalogue: &Catalogue) -> io::Result<()> {
-    co_simulation(xml, scene)?;
+fn content(xml: &mut Xml, subject: &Subject, catalogue: &Catalogue) -> io::Result<()> {
+    co_simulation(xml, subject)?;
     units::write(xml, catalogue)?;
     log_categories(xml)?;
-    default_experiment(xml, scene)?;
-    scalar_variables::write(xml, scene, catalogue)?;
-    model_structure(xml, scene, catalogue)
+    default_experiment(xml, subject)?;
+    scalar_variables::write(xml, subject, catalogue)?;
+    model_structure(xml, subject, catalogue)
 }
 
-fn co_simulation(xml: &mut Xml, scene: &Scene) -> io::Result<()> {
+fn co_simulation(xml: &mut Xml, subject: &Subject) -> io::Result<()> {
     xml.create_element("CoSimulation")
-        .with_attribute(("modelIdentifier", scene.model_identifier().as_str()))
+        .with_attribute(("modelIdentifier", subject.model_identifier().as_str()))
         .with_attributes(CAPABILITIES)
         .write_empty()?;
     Ok(())
@@ -68,8 +67,9 @@ fn log_categories(xml: &mut Xml) -> io::Result<()> {
     Ok(())
 }
 
-/// The excitation's duration as the time to simulate; a scene without one leaves that to the master.
-fn default_experiment(xml: &mut Xml, scene: &Scene) -> io::Result<()> {
+/// The excitation's duration as the time to simulate; a scene without one, and an element, leave that to the master.
+fn default_experiment(xml: &mut Xml, subject: &Subject) -> io::Result<()> {
+    let Subject::Layer(scene) = subject else { return Ok(()) };
     let stop: f64 = scene.excitation.iter().map(|phase| phase.duration).sum();
     if stop <= 0.0 {
         return Ok(());
@@ -98,7 +98,7 @@ pub(super) fn real(value: f64) -> String {
     if near { format!("{value}") } else { format!("{value:e}") }
 }
 
-fn model_structure(xml: &mut Xml, scene: &Scene, catalogue: &Catalogue) -> io::Result<()> {
+fn model_structure(xml: &mut Xml, subject: &Subject, catalogue: &Catalogue) -> io::Result<()> {
     let outputs = |(reference, entry)| match entry {
         Entry::Output(_, variable) if variable.is_output() => Some((reference, variable)),
         _ => None,
@@ -111,7 +111,7 @@ fn model_structure(xml: &mut Xml, scene: &Scene, catalogue: &Catalogue) -> io::R
     structure.write_inner_content(|xml| {
         xml.create_element("Outputs").write_inner_content(|xml| {
             unknowns()
-                .try_for_each(|(reference, variable)| output(xml, reference, dependencies(scene, variable.output)))
+                .try_for_each(|(reference, variable)| output(xml, reference, subject.dependencies(variable.output)))
         })?;
         // Without dependencies named: at the start everything may depend on inputs and parameters alike.
         xml.create_element("InitialUnknowns")
@@ -139,6 +139,7 @@ mod tests {
     use std::path::Path;
 
     use asperity::fmi::{Sources, guid};
+    use asperity::scene::Scene;
 
     use super::*;
 
@@ -151,7 +152,7 @@ mod tests {
         let scene = Scene::load(&path).unwrap();
         let catalogue = Catalogue::new(&scene);
         let guid = guid(&Sources::read(&path, &scene).unwrap(), &catalogue);
-        let written = String::from_utf8(write(&scene, &catalogue, &guid).unwrap()).unwrap();
+        let written = String::from_utf8(write(&scene.into(), &catalogue, &guid).unwrap()).unwrap();
         let golden = root.join("modelDescription/modelDescription.xml");
         if std::env::var_os("BLESS").is_some() {
             std::fs::write(&golden, &written).unwrap();

@@ -3,6 +3,9 @@
 /// The page that [`super::documentation`] fills in.
 pub(super) const PAGE: &str = include_str!("../../../modelDescription/documentation/index.html");
 
+/// The page of an element.
+pub(super) const ELEMENT_PAGE: &str = include_str!("../../../modelDescription/documentation/element.html");
+
 /// Path in the archive, content.
 pub(super) const PARTS: [(&str, &str); 4] = [
     ("documentation/style.css", include_str!("../../../modelDescription/documentation/style.css")),

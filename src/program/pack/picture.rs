@@ -1,10 +1,12 @@
 //! model.png: the first masses of the layer at rest between the carrier and the profile, drawn from the scene.
 
 mod canvas;
+mod curves;
 
 use asperity::math::Spline;
 use asperity::scene::{LinkKind, Scene};
 use canvas::{Canvas, Colour, Point};
+pub(super) use curves::element_png;
 
 /// Pixels: width, height.
 const SIZE: (usize, usize) = (240, 160);

@@ -2,8 +2,8 @@
 
 use std::io;
 
-use asperity::fmi::{Catalogue, Entry, Input, Kind};
-use asperity::scene::{Scene, Unit, Value};
+use asperity::fmi::{Catalogue, Entry, Input, Kind, Subject};
+use asperity::scene::{Unit, Value};
 
 use super::model_description::{Xml, clean, real};
 use super::units;
@@ -29,11 +29,11 @@ pub(super) fn causality(entry: &Entry<'_>) -> &'static str {
 }
 
 /// Where a variable starts; what is calculated has no start.
-pub(super) fn start(scene: &Scene, entry: &Entry<'_>) -> Option<String> {
+pub(super) fn start(subject: &Subject, entry: &Entry<'_>) -> Option<String> {
     match entry {
         Entry::Input(_) => Some(real(0.0)),
         Entry::Output(..) => None,
-        Entry::Parameter(parameter, _) => Some(match scene.parameter(*parameter) {
+        Entry::Parameter(parameter, _) => Some(match subject.parameter(*parameter) {
             Value::Real(value) => real(value),
             Value::Integer(value) => value.to_string(),
             Value::Text(value) => value,
@@ -42,14 +42,14 @@ pub(super) fn start(scene: &Scene, entry: &Entry<'_>) -> Option<String> {
 }
 
 /// Writes `ModelVariables`.
-pub(super) fn write(xml: &mut Xml, scene: &Scene, catalogue: &Catalogue) -> io::Result<()> {
+pub(super) fn write(xml: &mut Xml, subject: &Subject, catalogue: &Catalogue) -> io::Result<()> {
     xml.create_element("ModelVariables").write_inner_content(|xml| {
-        catalogue.entries().try_for_each(|(reference, entry)| scalar_variable(xml, scene, reference, &entry))
+        catalogue.entries().try_for_each(|(reference, entry)| scalar_variable(xml, subject, reference, &entry))
     })?;
     Ok(())
 }
 
-fn scalar_variable(xml: &mut Xml, scene: &Scene, reference: u32, entry: &Entry<'_>) -> io::Result<()> {
+fn scalar_variable(xml: &mut Xml, subject: &Subject, reference: u32, entry: &Entry<'_>) -> io::Result<()> {
     xml.create_element("ScalarVariable")
         .with_attribute(("name", entry.name().as_str()))
         .with_attribute(("valueReference", reference.to_string().as_str()))
@@ -57,7 +57,7 @@ fn scalar_variable(xml: &mut Xml, scene: &Scene, reference: u32, entry: &Entry<'
         .with_attribute(("causality", causality(entry)))
         .with_attribute(("variability", variability(entry)))
         .with_attributes(initial(entry).map(|initial| ("initial", initial)))
-        .write_inner_content(|xml| kind(xml, entry, start(scene, entry)))?;
+        .write_inner_content(|xml| kind(xml, entry, start(subject, entry)))?;
     Ok(())
 }
 

@@ -182,3 +182,33 @@ fn fingerprint(scene: &Scene, command: &Sweep, load: LoadKind) -> Result<String,
     let settings = format!("{} {:?} {:?}", load.name(), command.error, command.distance);
     table::fingerprint(&scene, &settings).map_err(ProgramError::Json)
 }
+
+/// What a layer does in steady sliding.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Sliding {
+    /// Where the carrier is, m.
+    pub(crate) w: f64,
+    /// Mean F_z, N.
+    pub(crate) force_z: f64,
+    /// Mean force against the motion, N.
+    pub(crate) drag: f64,
+    /// Power lost, N.
+    pub(crate) power: f64,
+}
+
+/// One point of a sweep of `scene`, a `load` being the force on the layer (N); what is wrong in words where it is not steady.
+pub(crate) fn sliding(
+    scene: &Scene,
+    speed: f64,
+    load: f64,
+    temperature: Option<f64>,
+    error: f64,
+) -> Result<Sliding, String> {
+    let scene = at(&bare(scene.clone()), &Point { speed, load, temperature });
+    let row = point::find(&scene, speed, load, Bounds { error, distance: None });
+    let found = (row.status == table::STEADY).then_some(()).and_then(|()| {
+        let (w, force_z, [friction, ..]) = (row.w?, row.force?, row.friction?);
+        Some(Sliding { w, force_z, drag: friction * force_z, power: row.power.iter().flatten().sum() })
+    });
+    found.ok_or(row.status)
+}

@@ -20,6 +20,8 @@ impl Parameter {
             Self::RelativeTolerance => Some(allowed::RELATIVE_TOLERANCE),
             Self::AbsoluteTolerance => Some(allowed::ABSOLUTE_TOLERANCE),
             Self::Initial | Self::Method | Self::MaxSteps | Self::Extrapolation => None,
+            // Of no scene.
+            Self::TableExtrapolation => None,
         }
     }
 
@@ -70,6 +72,7 @@ impl Scene {
             Parameter::RelativeTolerance => Some(self.solver.relative_tolerance),
             Parameter::AbsoluteTolerance => Some(self.absolute_tolerance()),
             Parameter::Initial | Parameter::Method | Parameter::MaxSteps | Parameter::Extrapolation => None,
+            Parameter::TableExtrapolation => None,
         }
     }
 
@@ -91,6 +94,7 @@ impl Scene {
             Parameter::RelativeTolerance => Some(&mut self.solver.relative_tolerance),
             Parameter::AbsoluteTolerance => Some(self.solver.absolute_tolerance.get_or_insert(0.0)),
             Parameter::Initial | Parameter::Method | Parameter::MaxSteps | Parameter::Extrapolation => None,
+            Parameter::TableExtrapolation => None,
         }
     }
 

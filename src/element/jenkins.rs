@@ -1,0 +1,269 @@
+//! One Jenkins element: a spring and a slider in series.
+//!
+//! G = -F_x is the force in the spring, K the tangential stiffness, L = μ F_z the limit, σ the direction of slip.
+//!
+//! - *Stick*, |G| ≤ L: Ġ = K u̇ while K grows, as what comes newly into contact bears nothing yet; where K falls, what leaves
+//!   the contact takes its share along: the elongation G/K grows by u̇.
+//! - *Slip*: G = σL, for as long as a sticking spring would go beyond it.
+//!
+//! So a growing and a falling stiffness both cost energy and give none: what the spring holds is V = G²/(2K), and
+//! ∫ G du = V + E_diss with E_diss never falling. All is followed exactly along straight motions of the carrier: the switches
+//! are roots, the integrals Gauss's formula of six points over pieces in which the integrand is a polynomial of degree 11 at
+//! most (stick) or next to one (slip).
+
+use super::law::{Contact, Curve};
+use crate::math::bracketed_root;
+use crate::model::Mode;
+
+/// Turns between stick and slip in one piece, at most: more are roundings where both are the same.
+const MOST_TURNS: usize = 6;
+/// Share of the limit that counts as the limit.
+const AT_LIMIT: f64 = 1.0 - 1e-12;
+/// Share of a piece to which a switch is located.
+const ROOT: f64 = 1e-14;
+
+/// The rates of a straight motion, m/s.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Rates {
+    /// u̇
+    pub(super) u: f64,
+    /// ȧ = -ẇ
+    pub(super) approach: f64,
+}
+
+/// What hears of losses and of changes between stick and slip: with the approach (m) and the energy (J) or the time since
+/// the start of the motion (s) and the mode.
+pub(super) trait Listener {
+    /// Energy lost about an approach.
+    fn lost(&mut self, approach: f64, energy: f64);
+    /// The mode from here on.
+    fn changed(&mut self, elapsed: f64, mode: Mode);
+}
+
+/// The spring and the slider.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Jenkins {
+    /// G = -F_x, N.
+    pub(super) force: f64,
+    /// K, N/m.
+    pub(super) stiffness: f64,
+    /// Sticking, slipping, or free where there is no contact.
+    pub(super) mode: Mode,
+}
+
+/// A phase of stick or slip while the approach changes, from where it begins.
+struct Phase<'a> {
+    curve: &'a Curve,
+    rates: Rates,
+    from: f64,
+    here: Contact,
+    start: Jenkins,
+    /// Whether the stiffness grows.
+    rising: bool,
+}
+
+impl Jenkins {
+    /// A relaxed spring.
+    pub(super) fn new(contact: &Contact) -> Self {
+        let stiffness = contact.stiffness.value;
+        Self { force: 0.0, stiffness, mode: if stiffness > 0.0 { Mode::Stick } else { Mode::Free } }
+    }
+
+    /// V, J.
+    fn energy(&self) -> f64 {
+        if self.stiffness > 0.0 { self.force * self.force / (2.0 * self.stiffness) } else { 0.0 }
+    }
+
+    /// The speed has changed, and with it the law, at the same place.
+    pub(super) fn take_over(&mut self, contact: &Contact, approach: f64, listener: &mut impl Listener) {
+        let before = self.energy();
+        let (stiffness, limit) = (contact.stiffness.value, contact.limit.value);
+        if stiffness < self.stiffness {
+            self.force *= stiffness / self.stiffness;
+        }
+        self.stiffness = stiffness;
+        self.force = self.force.clamp(-limit, limit);
+        listener.lost(approach, (before - self.energy()).max(0.0));
+    }
+
+    /// The carrier moves along x alone, over `time` (s).
+    pub(super) fn slide(
+        &mut self,
+        contact: &Contact,
+        (approach, u_rate): (f64, f64),
+        time: f64,
+        listener: &mut impl Listener,
+    ) {
+        if self.stiffness <= 0.0 {
+            return;
+        }
+        let (limit, start) = (contact.limit.value, self.force);
+        let trial = start + self.stiffness * u_rate * time;
+        self.force = trial.clamp(-limit, limit);
+        let slid = trial - self.force;
+        listener.lost(approach, slid.abs() * limit / self.stiffness);
+        if slid == 0.0 {
+            self.turn(Mode::Stick, 0.0, listener);
+        } else {
+            let elapsed = (self.force - start) / (self.stiffness * u_rate);
+            self.turn(Mode::along(slid), elapsed, listener);
+        }
+    }
+
+    fn turn(&mut self, mode: Mode, elapsed: f64, listener: &mut impl Listener) {
+        if mode != self.mode {
+            self.mode = mode;
+            listener.changed(elapsed, mode);
+        }
+    }
+
+    /// The carrier goes straight through a piece of the approach, `from` to `to` (m), in which the stiffness only grows or only
+    /// falls; `elapsed` (s) is counted where it begins.
+    pub(super) fn cross(
+        &mut self,
+        curve: &Curve,
+        (from, to): (f64, f64),
+        (rates, elapsed): (Rates, f64),
+        listener: &mut impl Listener,
+    ) {
+        let end = curve.at(to);
+        if self.stiffness <= 0.0 && end.stiffness.value <= 0.0 {
+            return self.turn(Mode::Free, elapsed, listener);
+        }
+        let (mut at, mut slip) = (from, None);
+        for turn in 1..=MOST_TURNS {
+            let here = curve.at(at);
+            let rising = end.stiffness.value >= here.stiffness.value;
+            let phase = Phase { curve, rates, from: at, here, start: *self, rising };
+            let slips = slip.unwrap_or_else(|| phase.is_slip());
+            let last = turn == MOST_TURNS;
+            let stop = if last {
+                to
+            } else if slips {
+                phase.end_of_slip(to)
+            } else {
+                phase.end_of_stick(to)
+            };
+            let mode = if slips { phase.direction() } else { Mode::Stick };
+            self.turn(mode, elapsed + (at - from) / rates.approach, listener);
+            phase.advance(self, stop, slips, listener);
+            if stop == to {
+                break;
+            }
+            (at, slip) = (stop, Some(!slips));
+        }
+        if self.stiffness <= 0.0 {
+            self.turn(Mode::Free, elapsed + (to - from) / rates.approach, listener);
+        }
+    }
+}
+
+impl Phase<'_> {
+    fn direction(&self) -> Mode {
+        Mode::along(self.start.force)
+    }
+
+    fn sign(&self) -> f64 {
+        self.start.force.signum()
+    }
+
+    /// How far u moves until the approach is `at`, m.
+    fn moved(&self, at: f64) -> f64 {
+        self.rates.u * (at - self.from) / self.rates.approach
+    }
+
+    fn is_slip(&self) -> bool {
+        let limit = self.here.limit.value;
+        limit > 0.0 && self.start.force.abs() >= AT_LIMIT * limit && self.push(&self.here) >= 0.0
+    }
+
+    /// By how much the force of a sticking spring at its limit would grow faster than the limit, N/s.
+    fn push(&self, contact: &Contact) -> f64 {
+        let (k, l) = (contact.stiffness, contact.limit);
+        let lost = if self.rising || k.value <= 0.0 { 0.0 } else { k.slope * self.rates.approach * l.value / k.value };
+        self.sign() * k.value * self.rates.u + lost - l.slope * self.rates.approach
+    }
+
+    /// Where a slip ends that would go on to `to`.
+    fn end_of_slip(&self, to: f64) -> f64 {
+        if self.push(&self.curve.at(to)) >= 0.0 {
+            return to;
+        }
+        if self.push(&self.here) <= 0.0 {
+            return self.from;
+        }
+        bracketed_root(|at| self.push(&self.curve.at(at)), (self.from, to), ROOT * (to - self.from).abs())
+    }
+
+    /// Where a stick ends that would go on to `to`.
+    fn end_of_stick(&self, to: f64) -> f64 {
+        let excess = |at: f64| {
+            let contact = self.curve.at(at);
+            self.stick_force(at, &contact).abs() - contact.limit.value
+        };
+        // Roundings of a force that stays at its limit are no slip.
+        let end = excess(to);
+        if end <= (1.0 - AT_LIMIT) * self.curve.at(to).limit.value {
+            return to;
+        }
+        let inside = |at: f64| if at == self.from { -end } else { excess(at) };
+        bracketed_root(inside, (self.from, to), ROOT * (to - self.from).abs())
+    }
+
+    /// G of a sticking spring.
+    fn stick_force(&self, at: f64, contact: &Contact) -> f64 {
+        if self.rising {
+            self.start.force + self.rates.u / self.rates.approach * self.integral(at, |_, here| here.stiffness.value)
+        } else {
+            contact.stiffness.value * (self.elongation() + self.moved(at))
+        }
+    }
+
+    /// G/K at the start.
+    fn elongation(&self) -> f64 {
+        self.start.force / self.start.stiffness
+    }
+
+    /// From the start to `at`, over the approach.
+    fn integral(&self, at: f64, f: impl Fn(f64, &Contact) -> f64) -> f64 {
+        if self.rates.u == 0.0 {
+            return 0.0;
+        }
+        let (middle, half) = ((self.from + at) / 2.0, (at - self.from) / 2.0);
+        let pair = |(x, weight): (f64, f64)| {
+            let (left, right) = (middle - x * half, middle + x * half);
+            weight * (f(left, &self.curve.at(left)) + f(right, &self.curve.at(right)))
+        };
+        half * GAUSS.into_iter().map(pair).sum::<f64>()
+    }
+
+    /// Goes on to the approach `to`.
+    fn advance(&self, spring: &mut Jenkins, to: f64, slips: bool, listener: &mut impl Listener) {
+        let end = self.curve.at(to);
+        let per = self.rates.u / self.rates.approach;
+        let work = if slips {
+            spring.force = self.sign() * end.limit.value;
+            self.sign() * per * self.integral(to, |_, here| here.limit.value)
+        } else {
+            // A rounding above the limit at a switch.
+            let (force, limit) = (self.stick_force(to, &end), end.limit.value);
+            spring.force = force.clamp(-limit, limit);
+            if self.rising {
+                force * self.moved(to) - per * self.integral(to, |at, here| self.moved(at) * here.stiffness.value)
+            } else {
+                per * self.integral(to, |at, here| here.stiffness.value * (self.elongation() + self.moved(at)))
+            }
+        };
+        spring.stiffness = end.stiffness.value;
+        let loss = work - (spring.energy() - self.start.energy());
+        // Of what cancels, a rounding may be left.
+        listener.lost((self.from + to) / 2.0, loss.max(0.0));
+    }
+}
+
+/// Nodes and weights of Gauss's formula of six points on [-1, 1], in pairs.
+const GAUSS: [(f64, f64); 3] = [
+    (0.238_619_186_083_196_9, 0.467_913_934_572_691_04),
+    (0.661_209_386_466_264_5, 0.360_761_573_048_138_6),
+    (0.932_469_514_203_152, 0.171_324_492_379_170_36),
+];
