@@ -175,8 +175,22 @@ fn split(line: &str, separator: char) -> Vec<String> {
     fields.into_iter().map(|field| field.trim().to_owned()).collect()
 }
 
+/// Refuses a name to ignore that no column has.
+fn check_ignored(header: &Line, ignored: &[String]) -> Result<(), Refusal> {
+    match ignored.iter().find(|name| !header.fields.iter().any(|field| field == name.trim())) {
+        Some(name) => Err(Refusal {
+            line: header.number,
+            column: None,
+            given: format!("--ignore {name}"),
+            expected: format!("one of the headers: {}", header.fields.join(", ")),
+        }),
+        None => Ok(()),
+    }
+}
+
 /// What the columns hold, with the unit that their header names, if it does.
 fn columns(header: &Line, ignored: &[String]) -> Result<Vec<Column>, Refusal> {
+    check_ignored(header, ignored)?;
     let mut columns: Vec<Column> = Vec::new();
     for (index, field) in header.fields.iter().enumerate() {
         let last = header.fields[index..].iter().all(String::is_empty);
@@ -197,15 +211,7 @@ fn columns(header: &Line, ignored: &[String]) -> Result<Vec<Column>, Refusal> {
         let scale = meaning.scale.unwrap_or(Scale::ONE);
         columns.push(Column { index, header: field.clone(), quantity: meaning.quantity, meaning, scale });
     }
-    match ignored.iter().find(|name| !header.fields.iter().any(|field| field == name.trim())) {
-        Some(name) => Err(Refusal {
-            line: header.number,
-            column: None,
-            given: format!("--ignore {name}"),
-            expected: format!("one of the headers: {}", header.fields.join(", ")),
-        }),
-        None => Ok(columns),
-    }
+    Ok(columns)
 }
 
 /// The columns with the units of the line below the headers; `None` if that is no line of units.
