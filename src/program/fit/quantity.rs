@@ -35,9 +35,9 @@ pub(super) struct Meaning {
 }
 
 /// The headers and units that are understood, for messages.
-pub(super) const ALLOWED: &str = "a quantity and its unit, such as frequency [Hz], f (Hz), omega [rad/s], E' [MPa], E'' (Pa), storage \
-     modulus [MPa], loss modulus [MPa], tan delta, tan(d), temperature [°C], T [K]; units Hz, kHz, MHz, mHz, rad/s, Pa, kPa, MPa, \
-     GPa, °C, K; a column that is not needed is left out by --ignore NAME";
+pub(super) const ALLOWED: &str = "a quantity and its unit, such as frequency [Hz], f (Hz), omega [rad/s], E' [MPa], \
+     E'' (Pa), storage modulus [MPa], loss modulus [MPa], tan delta, tan(d), temperature [°C], T [K]; units Hz, kHz, MHz, \
+     mHz, rad/s, Pa, kPa, MPa, GPa, °C, K; a column that is not needed is left out by --ignore NAME";
 
 /// Words of a quantity's names: a header is the quantity if it has one of the first and none that is in neither list.
 struct Words {

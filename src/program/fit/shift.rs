@@ -35,7 +35,7 @@ fn shifted(row: &Row, column: &(usize, String), wlf: WlfConstants) -> Result<Sam
         column: Some(column.clone()),
         given: format!("{temperature} K"),
         expected: format!(
-            "more than TREF - C2 = {} K, and not close to it: there the shift has its pole",
+            "more than TREF - C2 = {:.2} K, and not close to it: there the shift has its pole",
             wlf.lowest_temperature()
         ),
     })
