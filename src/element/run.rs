@@ -10,6 +10,7 @@ use super::jenkins::{Jenkins, Listener, Rates};
 use super::law::{Contact, Curve, Law};
 use super::table::Quantity;
 use crate::model::Mode;
+use crate::scene::is_possible;
 use crate::simulation::{ModeChange, Start};
 
 /// Share of the speeds and separations of the table by which the carrier may be beyond: the rounding of a master that goes to
@@ -216,8 +217,9 @@ impl Element {
 impl Saved {
     fn check(&self) -> Result<(), RestoreError> {
         let Self { time, u, w, u_rate, w_rate, force, mode: _, lost, lost_by_channel } = *self;
-        let numbers = [time, u, w, u_rate, w_rate, force, lost].into_iter().chain(lost_by_channel);
-        match numbers.into_iter().find(|&number| !crate::scene::is_possible(number)) {
+        let places = [time, u, w].into_iter().find(|place| !is_possible(*place));
+        let others = [u_rate, w_rate, force, lost].into_iter().chain(lost_by_channel).find(|other| !other.is_finite());
+        match places.or(others) {
             Some(value) => Err(RestoreError::Number { what: "a number", value }),
             None => Ok(()),
         }

@@ -333,6 +333,26 @@ fn a_saved_run_goes_on_bit_for_bit() {
     assert!(changes.windows(2).all(|pair| pair[0].to == pair[1].from && pair[0].to != pair[0].from), "{changes:?}");
 }
 
+/// Eight bytes a number in the order of the fields, one for the mode.
+#[test]
+fn what_no_run_gets_to_is_refused() {
+    let mut element = pressed(2e5);
+    element.advance(1e-2, (0.1, 0.0)).unwrap();
+    let bytes = postcard::to_stdvec(&element.save()).unwrap();
+    let refused = |at: usize, new: &[u8]| {
+        let mut bytes = bytes.clone();
+        bytes[at..at + new.len()].copy_from_slice(new);
+        Element::restore(&contact(), &postcard::from_bytes(&bytes).unwrap()).unwrap_err().to_string()
+    };
+    let [w, u_rate, force, mode] = [16, 24, 40, 48];
+    assert!(refused(w, &(-1.0_f64).to_le_bytes()).contains("table.extrapolation"));
+    assert!(refused(u_rate, &20.0_f64.to_le_bytes()).contains("the speed is 20 m/s"));
+    assert!(refused(w, &f64::NAN.to_le_bytes()).contains("a number = NaN, which no run gets to"));
+    assert!(refused(force, &1e3_f64.to_le_bytes()).contains("the force in the spring = 1000"));
+    assert!(refused(mode, &[7]).contains("the mode = 7"));
+    assert!(refused(mode, &[0]).contains("the mode = 0"));
+}
+
 #[test]
 fn leaving_points_out_tells_how_well_the_table_is_interpolated() {
     let [speed, pressure, temperature] = left_out(&table(&Grid::plain()));

@@ -192,7 +192,7 @@ pub(crate) struct Sliding {
     pub(crate) force_z: f64,
     /// Mean force against the motion, N.
     pub(crate) drag: f64,
-    /// Power lost, N.
+    /// Power lost, W.
     pub(crate) power: f64,
 }
 

@@ -140,7 +140,9 @@ pub(super) fn rows(checks: &[Check]) -> Vec<Row> {
         ));
     }
     let failed = checks.iter().filter(|check| check.errors().is_none());
-    texts.extend(failed.map(|check| format!("{} m/s, {}: {}", check.cell.speed, check.cell.load, check.status())));
+    texts.extend(
+        failed.map(|check| format!("{:.3e} m/s, {:.3e}: {}", check.cell.speed, check.cell.load, check.status())),
+    );
     texts.into_iter().enumerate().map(|(i, text)| (if i == 0 { "Checked" } else { "" }, text)).collect()
 }
 

@@ -30,7 +30,8 @@ pub(super) fn check(command: &Pack, contact: &PointContact, scene: &Path) -> Res
     cells::write(&folder.file("points.csv"), contact.table().load, &checks)?;
     folder.write("errors.svg", &cells::picture(&checks, contact.table().load))?;
     let mut rows = cells::rows(&checks);
-    if let Some(middle) = checks.iter().rev().find(|check| check.errors().is_some()) {
+    let compared: Vec<_> = checks.iter().filter(|check| check.errors().is_some()).collect();
+    if let Some(middle) = compared.get(compared.len() / 2) {
         rows.extend(to_and_fro(contact, &scene, middle, &folder)?);
     }
     rows.push(("", format!("in {}", folder.path.display())));

@@ -16,7 +16,7 @@ use crate::program::result_file::ResultWriter;
 /// Rows of each leg.
 const ROWS: u32 = 200;
 /// The ways of the legs, in the ways over which the spring sticks.
-const LEGS: [f64; 3] = [4.0, -8.0, 8.0];
+const LEGS: [f64; 3] = [10.0, -20.0, 20.0];
 
 /// What both do, row by row.
 struct Rows {
@@ -41,7 +41,7 @@ pub(super) fn run(
             write(&files[1], &variables, &rows.carriers, &rows.element)?;
             Ok(texts(&rows, &variables, check))
         }
-        Err(status) => Ok(vec![("", format!("to and fro at {} m/s: {status}", check.cell.speed))]),
+        Err(status) => Ok(vec![("", format!("to and fro at {:.3e} m/s: {status}", check.cell.speed))]),
     }
 }
 
@@ -108,7 +108,7 @@ fn write(
 fn texts(rows: &Rows, variables: &[Variable], check: &Check) -> Vec<Row> {
     let way = rows.carriers.iter().fold(0.0_f64, |way, carrier| way.max(carrier.u.abs()));
     let head =
-        format!("to and fro by {way:.3e} m at {} m/s, from rest, over the layer's largest value", check.cell.speed);
+        format!("to and fro by {way:.3e} m at {:.3e} m/s, from rest, over the layer's largest value", check.cell.speed);
     let of = |(i, variable): (usize, &Variable)| {
         let largest = rows.layer.iter().fold(f64::MIN_POSITIVE, |largest, row| largest.max(row[i].abs()));
         let errors = rows.layer.iter().zip(&rows.element).map(|(a, b)| (a[i] - b[i]).abs() / largest);
