@@ -72,8 +72,10 @@
 //! | q | `ContactForces::q` | 1 | √(1 + s²) |
 //! | g | gap | m | z - z_r(x) |
 //! | F_N, F_T | `ContactForces::normal`, `friction()` | N | contact forces along n and against v_t (6), (7) |
-//! | T | `ContactForces::limit` | N | largest friction force, μ F_N + A τ_0 |
-//! | μ, A τ_0 | `Model::friction_coefficient`, `shear_force` | 1, N | friction law |
+//! | T(v_t) | `ContactForces::friction()` | N | friction force in slip, μ F_N + A τ_0 + A τ_f(v_t) |
+//! | T(0) | `ContactForces::limit` | N | largest friction force at rest, μ F_N + A τ_0 + A τ_f(v_c) |
+//! | μ, A τ_0 + A τ_f(v_c) | `Model::friction_coefficient`, `shear_force` | 1, N | friction law at rest |
+//! | A τ_f(v) - A τ_f(v_c) | `RateShear::beyond()` | N | shear strength of rubber, what of it depends on the speed |
 //! | σ | `Mode::direction()` | 1 | direction of slip along t |
 //! | h, γ, β | `h`, `Tableau::gamma()`, `beta` | s, 1, s | step, coefficient of a stage, γh |
 //! | G, K | `Jenkins::force`, `stiffness` | N, N/m | spring of a point-contact element, G = -F_x |

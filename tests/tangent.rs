@@ -100,6 +100,10 @@ impl Run {
 
 const COULOMB: &str = "[friction]\ncoulomb = 0.3";
 const BOTH: &str = "[friction]\ncoulomb = 0.2\nshear_force = 1e-3";
+/// Masses that slip at 0.3 m/s do so where the shear strength falls with the speed, or where it rises.
+const FALLING: &str =
+    "[friction]\ncoulomb = 0.2\nrate_shear = { force = 4e-3, reference_speed = 6e-2, sharpness = 1.0 }";
+const RISING: &str = "[friction]\nrate_shear = { force = 4e-3, reference_speed = 10.0, sharpness = 0.4 }";
 
 #[test]
 fn without_contact() {
@@ -119,7 +123,7 @@ fn sticking() {
 
 #[test]
 fn slipping() {
-    for friction in ["", COULOMB, BOTH] {
+    for friction in ["", COULOMB, BOTH, FALLING, RISING] {
         let run = Run::new(&scene(friction), &[straight(4e-4, 0.0, -0.05), straight(1.01e-3, 0.3, 0.0)]);
         for duration in [1e-8, 1e-6, 1e-5] {
             run.check(&straight(duration, 0.3, 0.0));

@@ -186,13 +186,17 @@ impl<'a> Settling<'a> {
         let q = (1.0 + s * s).sqrt();
         self.set_speed(i, v_t / q);
         let contact = self.end.forces.contact(model, i, v_t / q, &ground);
-        let friction = if contact.normal < 0.0 { 0.0 } else { contact.friction(mode) };
+        let held = if contact.normal < 0.0 { 0.0 } else { mode.direction() * contact.limit };
         let damping = |along, lateral| self.damping(along) + 2.0 * self.passing(lateral, time);
         let damping =
             damping(LinkKind::Horizontal, LinkKind::LateralX) + damping(LinkKind::Vertical, LinkKind::LateralZ) * s * s;
         let slowing = time * (damping / (q * q) + time * model.glassy_stiffness()) / model.mass;
         // No term in κ: how the profile bends from the touch to here is in v_t already.
-        let acceleration = (contact.tangential + self.not_passed(i, rest) - friction) / model.mass;
+        let driving = contact.tangential + self.not_passed(i, rest);
+        let beyond =
+            if contact.normal < 0.0 { 0.0 } else { beyond_rest(model, mode, v_t, (driving - held, time, slowing)) };
+        let friction = held + beyond;
+        let acceleration = (driving - friction) / model.mass;
         let after = v_t + time * acceleration / (1.0 + slowing);
         if model.has_friction && contact.normal >= 0.0 && mode.direction() * after < 0.0 {
             let way = -0.5 * v_t * v_t / acceleration;
@@ -295,6 +299,16 @@ impl<'a> Settling<'a> {
         }
         self.end.rates.refresh(self.step.model, self.end.state, self.end.forces, j, &self.here);
     }
+}
+
+/// The friction beyond that at rest, N, with which a mass in `mode` goes on for a `time` (s) from v_t (m/s), driven by a force (N)
+/// and slowed: at the end of that time, since it is steep at creep speeds.
+fn beyond_rest(model: &Model, mode: Mode, v_t: f64, (driving, time, slowing): (f64, f64, f64)) -> f64 {
+    let Some(law) = model.rate_shear.filter(|_| time > 0.0) else { return 0.0 };
+    let sigma = mode.direction();
+    let weight = model.mass * (1.0 + slowing) / time;
+    let (from, driving) = (sigma * v_t, sigma * driving);
+    sigma * (driving - weight * (law.balance(from, driving, weight) - from))
 }
 
 /// The masses beside mass `i`, if there are such.

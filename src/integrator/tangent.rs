@@ -3,7 +3,7 @@
 //! Over a motion of the carrier of duration h, let one of its displacements end at û + ε: it is moved by ε s/h on the
 //! way, and its rate by ε/h. Everything here is the derivative with respect to ε at ε = 0, the modes held.
 
-use crate::model::{Forces, LinkKind, LinkMotion, Mode, Model, State, SurfacePoint};
+use crate::model::{Forces, LinkKind, LinkMotion, Mode, Model, RateShear, State, SurfacePoint};
 
 /// Which displacement's target is varied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -284,7 +284,9 @@ impl<'a> Slip<'a> {
 
     /// m q² δẍ by the variations of place and velocity (δx, δẋ) and of the links' forces on the mass (δf_x, δf_z): from
     ///
-    ///   m q² ẍ = (1 - σμs) f_x + (s + σμ) f_z - m κ ẋ² (s + σμ) - σ A τ_0 q.
+    ///   m q² ẍ = (1 - σμs) f_x + (s + σμ) f_z - m κ ẋ² (s + σμ) - σ A τ_0 q,
+    ///
+    /// A τ_0 all of the shear force.
     pub(super) fn variation(&self, (x, v_x): (f64, f64), (f_x, f_z): (f64, f64)) -> f64 {
         let m = self.model.mass;
         let (s, kappa) = (self.ground.slope, self.ground.curvature);
@@ -296,5 +298,13 @@ impl<'a> Slip<'a> {
         share_x * f_x + share_z * f_z + ds * (self.on_mass.1 - sigma_mu * self.on_mass.0)
             - m * (centripetal + 2.0 * s * ds * self.acceleration)
             - self.sigma * self.model.shear_force * s * ds / self.q2().sqrt()
+            - self.model.rate_shear.map_or(0.0, |law| self.rate_variation(&law, v_x, s * ds))
+    }
+
+    /// δ[σ q B(σ q ẋ)] by δẋ and s δs, where B is what the friction has beyond that at rest.
+    fn rate_variation(&self, law: &RateShear, v_x: f64, s_ds: f64) -> f64 {
+        let q = self.q2().sqrt();
+        let (force, slope) = law.with_slope(self.sigma * q * self.velocity);
+        self.sigma * force * s_ds / q + slope * (self.q2() * v_x + self.velocity * s_ds)
     }
 }

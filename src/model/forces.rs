@@ -232,7 +232,7 @@ pub struct ContactForces {
     pub normal: f64,
     /// f·t = (f_x + s f_z)/q of the links, N.
     pub tangential: f64,
-    /// T = μ F_N + A τ_0: the largest friction force, N.
+    /// T(0) = μ F_N + A τ_0 + A τ_f(v_c): the largest friction force at rest, N.
     pub limit: f64,
     /// q = √(1 + s²).
     pub q: f64,
@@ -250,12 +250,18 @@ impl ContactForces {
         Self { normal, tangential: (f_x + s * f_z) / q, limit, q }
     }
 
-    /// F_T on a mass in `mode`, N, counted against v_t: what holds a sticking mass, T sign(v_t) of a slipping one.
-    pub fn friction(&self, mode: Mode) -> f64 {
+    /// F_T on a mass in `mode` at the velocity ẋ, N, counted against v_t: what holds a sticking mass, T(v_t) sign(v_t) of a slipping
+    /// one.
+    #[inline]
+    pub fn friction(&self, model: &Model, mode: Mode, velocity_x: f64) -> f64 {
         match mode {
             Mode::Free => 0.0,
             Mode::Stick => self.tangential,
-            Mode::Forward | Mode::Backward => mode.direction() * self.limit,
+            Mode::Forward | Mode::Backward => {
+                let sigma = mode.direction();
+                let beyond = model.rate_shear.map_or(0.0, |shear| shear.beyond(sigma * velocity_x * self.q));
+                sigma * (self.limit + beyond)
+            }
         }
     }
 
@@ -265,6 +271,6 @@ impl ContactForces {
             return 0.0;
         }
         let centripetal = ground.slope * ground.curvature * velocity_x * velocity_x;
-        ((self.tangential - self.friction(mode)) / model.mass - centripetal / self.q) / self.q
+        ((self.tangential - self.friction(model, mode, velocity_x)) / model.mass - centripetal / self.q) / self.q
     }
 }

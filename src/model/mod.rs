@@ -5,6 +5,7 @@ mod carrier;
 mod forces;
 mod link;
 mod power;
+mod rate_shear;
 mod reduction;
 mod state;
 
@@ -12,6 +13,7 @@ pub use carrier::{Carrier, CarrierPoint};
 pub use forces::{ContactForces, Forces, LinkMotion};
 pub use link::{LinkLaw, MaxwellRow};
 pub use power::{Exchange, Power, elastic_energy, kinetic_energy};
+pub use rate_shear::RateShear;
 pub use reduction::{Reduction, Replaced, Replacement};
 pub use state::{Mode, State};
 
@@ -62,8 +64,10 @@ pub struct Model {
     pub profile: Spline,
     /// Coulomb's coefficient μ.
     pub friction_coefficient: f64,
-    /// Adhesive shear force A τ_0 of a mass in contact, N.
+    /// Shear force A τ_0 + A τ_f(v_c) of a mass in contact, at rest or slower than it can creep, N.
     pub shear_force: f64,
+    /// What a mass that slips has beyond that; `None` where the shear force does not depend on the speed.
+    pub rate_shear: Option<RateShear>,
     /// Whether contacts can stick: a part of the friction law is not zero.
     pub has_friction: bool,
     /// How the dashpots start.
@@ -80,6 +84,9 @@ impl Model {
         let k = layer.masses;
         let friction = scene.friction.as_ref();
         let roughness = |i| layer.roughness.get(i).copied().unwrap_or(0.0);
+        let rate_shear = scene.rate_shear().and_then(|law| RateShear::new(&law));
+        let shear_force = scene.shear_force().unwrap_or(0.0);
+        let coulomb = friction.and_then(|f| f.coulomb).unwrap_or(0.0);
         let reduction = Reduction::new(scene);
         let links = LinkKind::ALL.map(|kind| LinkLaw::new(scene, kind, reduction.as_ref()));
         let (rows, relaxation_times) = link::maxwell_rows(scene, reduction.as_ref());
@@ -94,12 +101,10 @@ impl Model {
             relaxation_times,
             glassy: LinkKind::ALL.map(|kind| scene.link(kind).as_ref().map_or(0.0, link::glassy_stiffness)),
             profile: scene.surface.spline(),
-            friction_coefficient: friction.and_then(|f| f.coulomb).unwrap_or(0.0),
-            shear_force: scene.shear_force().unwrap_or(0.0),
-            has_friction: [friction.and_then(|f| f.coulomb), scene.shear_force()]
-                .iter()
-                .flatten()
-                .any(|&part| part > 0.0),
+            friction_coefficient: coulomb,
+            shear_force: shear_force + rate_shear.map_or(0.0, |rate_shear| rate_shear.held()),
+            rate_shear,
+            has_friction: coulomb > 0.0 || shear_force > 0.0 || rate_shear.is_some(),
             initial: layer.initial,
         }
     }

@@ -98,7 +98,7 @@ fn friction(model: &Model, state: &State, forces: &Forces) -> f64 {
         .map(|i| {
             let v = state.velocity_x[i];
             let contact = forces.contact(model, i, v, &state.ground[i]);
-            contact.friction(state.mode[i]) * v * contact.q
+            contact.friction(model, state.mode[i], v) * v * contact.q
         })
         .sum()
 }

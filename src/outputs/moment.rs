@@ -217,7 +217,8 @@ impl Moment<'_> {
     }
 
     fn friction(&self, i: usize, contact: &ContactForces) -> f64 {
-        if self.model.has_friction { contact.friction(self.state.mode[i]) } else { 0.0 }
+        let (mode, v) = (self.state.mode[i], self.state.velocity_x[i]);
+        if self.model.has_friction { contact.friction(self.model, mode, v) } else { 0.0 }
     }
 
     /// The mode of mass `i`; without friction a contact slips the way it moves.

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::points::peak_to_valley;
-use super::{Path, Scene, allowed};
+use super::{Path, RateShear, Scene, allowed};
 
 /// A name as a C identifier: letters, digits and underscores, no digit first.
 pub fn identifier(name: &str) -> String {
@@ -32,6 +32,16 @@ impl Scene {
         self.solver.absolute_tolerance.unwrap_or_else(default)
     }
 }
+
+impl RateShear {
+    /// The creep speed, m/s: as it was set, or a millionth of the reference speed, as far as that may be set.
+    pub fn creep_speed(&self) -> f64 {
+        self.creep_speed.unwrap_or_else(|| (CREEP * self.reference_speed).max(allowed::SMALLEST))
+    }
+}
+
+/// The creep speed over the reference speed where the scene does not say.
+const CREEP: f64 = 1e-6;
 
 impl Path {
     /// The displacement since the start at `time` (s) after it, m.

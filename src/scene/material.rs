@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::allowed::{self, Range};
-use super::{Layer, Link, LinkKind, MaxwellElement, ParameterError, Phase, Problem, Scene};
+use super::{Layer, Link, LinkKind, MaxwellElement, ParameterError, Phase, Problem, RateShear, Scene};
 
 /// A linear viscoelastic solid: a spring, a dashpot and Maxwell elements in parallel, as moduli.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -143,6 +143,21 @@ impl Scene {
         friction.shear_force.or_else(|| Some(friction.shear_strength? * self.layer.element_area()?))
     }
 
+    /// The shear strength that depends on the speed as the contacts have it, if the scene has it: by its force A τ_f0, and at the
+    /// layer's temperature, where v_0(T) = v_0/a_T and v_c(T) = v_c/a_T.
+    pub fn rate_shear(&self) -> Option<RateShear> {
+        let law = self.friction.as_ref()?.rate_shear?;
+        let force = law.force.or_else(|| Some(law.strength? * self.layer.element_area()?));
+        let shift = self.material.as_ref().map_or(1.0, Material::shift_factor);
+        Some(RateShear {
+            force,
+            strength: None,
+            reference_speed: law.reference_speed / shift,
+            sharpness: law.sharpness,
+            creep_speed: law.creep_speed.map(|creep| creep / shift),
+        })
+    }
+
     /// The same scene by the constants of its links; itself where it is given so.
     pub fn direct_form(&self) -> Self {
         let mut scene = self.clone();
@@ -154,6 +169,7 @@ impl Scene {
                 Layer { mass, vertical, horizontal, lateral_x, lateral_z, thickness: None, width: None, ..layer };
             if let Some(friction) = &mut scene.friction {
                 (friction.shear_force, friction.shear_strength) = (self.shear_force(), None);
+                friction.rate_shear = self.rate_shear();
             }
             for phase in &mut scene.excitation {
                 (phase.until_force, phase.until_pressure) = (phase.end_force(self.layer.area()), None);
@@ -171,9 +187,19 @@ impl Scene {
         let Some(material) = &self.material else { return Ok(()) };
         material.wlf.map_or(Ok(()), |wlf| wlf.check())?;
         in_range("mass of a point mass, from the material", self.mass(), &allowed::MASS)?;
+        self.rate_shear().map_or(Ok(()), |law| law.check())?;
         LinkKind::ALL
             .into_iter()
             .try_for_each(|kind| self.link(kind).map_or(Ok(()), |link| check_link(&link, kind.description())))
+    }
+}
+
+impl RateShear {
+    /// Checks the law at the layer's temperature.
+    fn check(&self) -> Result<(), ParameterError> {
+        let speed = |what: &str, speed: f64| in_range(&format!("{what}, at the temperature"), speed, &allowed::SPEED);
+        speed("reference speed of the shear strength", self.reference_speed)?;
+        speed("creep speed of the shear strength", self.creep_speed())
     }
 }
 

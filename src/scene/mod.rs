@@ -152,6 +152,25 @@ pub struct Friction {
     pub shear_force: Option<f64>,
     /// Adhesive shear strength τ_0, Pa; in the material form alone.
     pub shear_strength: Option<f64>,
+    /// Rate-dependent shear strength.
+    pub rate_shear: Option<RateShear>,
+}
+
+/// Shear strength that depends on the speed: A τ_f(v) = A τ_f0 exp(-c [log10(v/v_0)]²) of one mass in contact, held at
+/// A τ_f(v_c) below the creep speed v_c.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RateShear {
+    /// The largest force A τ_f0, of one mass in contact at the reference speed, N; in the direct form alone, see
+    /// [`Scene::rate_shear`].
+    pub force: Option<f64>,
+    /// The largest shear strength τ_f0, Pa; in the material form alone.
+    pub strength: Option<f64>,
+    /// Reference speed v_0, m/s.
+    pub reference_speed: f64,
+    /// Sharpness c, 1.
+    pub sharpness: f64,
+    /// Creep speed v_c, m/s; `None` follows the reference speed.
+    pub creep_speed: Option<f64>,
 }
 
 /// The integrator's settings.

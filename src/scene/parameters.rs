@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 pub use material::MaterialParameter;
 
-use super::{Layer, Link, LinkKind, Problem, Scene, Unit};
+use super::{Layer, Link, LinkKind, Problem, RateShear, Scene, Unit};
 
 /// One settable number or word of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -39,6 +39,16 @@ pub enum Parameter {
     ShearForce,
     /// `friction.shear_strength`
     ShearStrength,
+    /// `friction.rate_shear.force`
+    RateShearForce,
+    /// `friction.rate_shear.strength`
+    RateShearStrength,
+    /// `friction.rate_shear.reference_speed`
+    ReferenceSpeed,
+    /// `friction.rate_shear.sharpness`
+    Sharpness,
+    /// `friction.rate_shear.creep_speed`; follows the reference speed until it is set itself
+    CreepSpeed,
     /// `solver.method`
     Method,
     /// `solver.relative_tolerance`
@@ -127,6 +137,11 @@ impl Parameter {
             Self::Coulomb => "friction.coulomb".into(),
             Self::ShearForce => "friction.shear_force".into(),
             Self::ShearStrength => "friction.shear_strength".into(),
+            Self::RateShearForce => "friction.rate_shear.force".into(),
+            Self::RateShearStrength => "friction.rate_shear.strength".into(),
+            Self::ReferenceSpeed => "friction.rate_shear.reference_speed".into(),
+            Self::Sharpness => "friction.rate_shear.sharpness".into(),
+            Self::CreepSpeed => "friction.rate_shear.creep_speed".into(),
             Self::Method => "solver.method".into(),
             Self::RelativeTolerance => "solver.relative_tolerance".into(),
             Self::AbsoluteTolerance => "solver.absolute_tolerance".into(),
@@ -145,9 +160,10 @@ impl Parameter {
             Self::Damping(_) => Unit::NewtonSecondPerMeter,
             Self::RelaxationTime(..) => Unit::Second,
             Self::Material(parameter) => parameter.unit(),
-            Self::ShearForce => Unit::Newton,
-            Self::ShearStrength => Unit::Pascal,
-            Self::Coulomb | Self::RelativeTolerance => Unit::One,
+            Self::ShearForce | Self::RateShearForce => Unit::Newton,
+            Self::ShearStrength | Self::RateShearStrength => Unit::Pascal,
+            Self::ReferenceSpeed | Self::CreepSpeed => Unit::MeterPerSecond,
+            Self::Coulomb | Self::Sharpness | Self::RelativeTolerance => Unit::One,
             Self::Initial | Self::Method | Self::MaxSteps | Self::Extrapolation => Unit::One,
             Self::TableExtrapolation => Unit::One,
         }
@@ -171,6 +187,15 @@ impl Parameter {
             Self::Coulomb => "Coulomb's friction coefficient".into(),
             Self::ShearForce => "Adhesive shear force of one mass in contact".into(),
             Self::ShearStrength => "Adhesive shear strength of the contact".into(),
+            Self::RateShearForce => "Largest rate-dependent shear force of one mass in contact".into(),
+            Self::RateShearStrength => "Largest rate-dependent shear strength of the contact".into(),
+            Self::ReferenceSpeed => "Speed at which the rate-dependent shear force is largest".into(),
+            Self::Sharpness => "How sharply the rate-dependent shear force falls about its largest, with the squared decades of \
+                 the speed"
+                .into(),
+            Self::CreepSpeed => "Speed below which the rate-dependent shear force is held; follows the reference speed until it \
+                 is set itself"
+                .into(),
             Self::Method => "How mode changes are treated: event locates every one, step puts them at the ends of its steps, auto takes step \
                  where they crowd"
                 .into(),
@@ -213,9 +238,17 @@ impl Scene {
         parameters.extend(friction.coulomb.map(|_| Parameter::Coulomb));
         parameters.extend(friction.shear_force.map(|_| Parameter::ShearForce));
         parameters.extend(friction.shear_strength.map(|_| Parameter::ShearStrength));
+        parameters.extend(friction.rate_shear.iter().flat_map(rate_shear_parameters));
         parameters.extend([Method, RelativeTolerance, AbsoluteTolerance, MaxSteps, Extrapolation]);
         parameters
     }
+}
+
+fn rate_shear_parameters(law: &RateShear) -> Vec<Parameter> {
+    let force = law.force.map(|_| Parameter::RateShearForce);
+    let strength = law.strength.map(|_| Parameter::RateShearStrength);
+    let others = [Parameter::ReferenceSpeed, Parameter::Sharpness, Parameter::CreepSpeed];
+    force.into_iter().chain(strength).chain(others).collect()
 }
 
 fn link_parameters(kind: LinkKind, link: &Link) -> Vec<Parameter> {

@@ -3,7 +3,7 @@
 use super::allowed;
 use super::form::{Form, FormKeys};
 use super::table::{Entry, TableReader};
-use super::{Extrapolation, Friction, Method, OutputGroup, SceneError, Solver};
+use super::{Extrapolation, Friction, Method, OutputGroup, RateShear, SceneError, Solver};
 
 impl Default for Solver {
     /// The settings of a scene without `[solver]`.
@@ -23,13 +23,26 @@ pub(super) fn default_outputs() -> Vec<OutputGroup> {
 }
 
 const FRICTION_OF_FORM: FormKeys = FormKeys { direct: &["shear_force"], material: &["shear_strength"] };
+const RATE_SHEAR_OF_FORM: FormKeys = FormKeys { direct: &["force"], material: &["strength"] };
 
 pub(super) fn read_friction(table: &mut TableReader<'_>, form: Form) -> Result<Friction, SceneError> {
-    form.allow(table, &["coulomb"], &FRICTION_OF_FORM, &["rate_shear"])?;
+    form.allow(table, &["coulomb", "rate_shear"], &FRICTION_OF_FORM, &[])?;
     Ok(Friction {
         coulomb: table.optional_number("coulomb", &allowed::FRICTION_COEFFICIENT)?,
         shear_force: table.optional_number("shear_force", &allowed::SHEAR_FORCE)?,
         shear_strength: table.optional_number("shear_strength", &allowed::SHEAR_STRENGTH)?,
+        rate_shear: table.optional_table("rate_shear", |table| read_rate_shear(table, form))?,
+    })
+}
+
+fn read_rate_shear(table: &mut TableReader<'_>, form: Form) -> Result<RateShear, SceneError> {
+    form.allow(table, &["reference_speed", "sharpness", "creep_speed"], &RATE_SHEAR_OF_FORM, &[])?;
+    Ok(RateShear {
+        force: form.number(Form::Direct, table, "force", &allowed::SHEAR_FORCE)?,
+        strength: form.number(Form::Material, table, "strength", &allowed::SHEAR_STRENGTH)?,
+        reference_speed: table.number("reference_speed", &allowed::SPEED)?,
+        sharpness: table.number("sharpness", &allowed::SHARPNESS)?,
+        creep_speed: table.optional_number("creep_speed", &allowed::SPEED)?,
     })
 }
 

@@ -9,6 +9,8 @@ pub enum Unit {
     Meter,
     /// s.
     Second,
+    /// m/s.
+    MeterPerSecond,
     /// kg.
     Kilogram,
     /// N.
@@ -40,6 +42,7 @@ impl Unit {
             Self::One => "1",
             Self::Meter => "m",
             Self::Second => "s",
+            Self::MeterPerSecond => "m/s",
             Self::Kilogram => "kg",
             Self::Newton => "N",
             Self::NewtonPerMeter => "N/m",
@@ -60,6 +63,7 @@ impl Unit {
             Self::One => [0, 0, 0, 0],
             Self::Meter => [0, 1, 0, 0],
             Self::Second => [0, 0, 1, 0],
+            Self::MeterPerSecond => [0, 1, -1, 0],
             Self::Kilogram => [1, 0, 0, 0],
             Self::Newton => [1, 1, -2, 0],
             Self::NewtonPerMeter => [1, 0, -2, 0],

@@ -25,7 +25,7 @@ impl Simulation {
 mod tests {
     use std::collections::BTreeSet;
 
-    use super::super::tests::{WAVE, scene};
+    use super::super::tests::{WAVE, scene, scene_with_rate_shear};
     use super::*;
     use crate::model::Mode;
     use crate::outputs::{Output, dependencies, variables};
@@ -73,14 +73,17 @@ mod tests {
     /// Central: exact for all but the friction coefficient, being squares at most. That one has a kink at F_x = 0.
     #[test]
     fn directional_derivatives_are_those_of_a_difference_quotient() {
-        let scene = scene();
-        let variables = variables(&scene);
+        [scene(), scene_with_rate_shear()].iter().for_each(directional_derivatives_are_quotients);
+    }
+
+    fn directional_derivatives_are_quotients(scene: &Scene) {
+        let variables = variables(scene);
         let values = |mut simulation: Simulation| {
             let mut values = vec![0.0; variables.len()];
             simulation.evaluate(&variables, &mut values);
             values
         };
-        for mut simulation in runs(&scene) {
+        for mut simulation in runs(scene) {
             for direction in [(1.0, 0.0), (0.0, 1.0), (-0.6, 0.8)] {
                 let mut found = vec![f64::NAN; variables.len()];
                 simulation.directional_derivative(&variables, direction, &mut found);

@@ -208,7 +208,7 @@ fn near(a: f64, b: f64, distance: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{WAVE, scene, variables_of};
+    use super::super::tests::{WAVE, scene, scene_with_rate_shear, variables_of};
     use super::*;
     use crate::scene::Path;
     use crate::simulation::Motion;
@@ -226,18 +226,19 @@ mod tests {
 
     #[test]
     fn a_saved_run_goes_on_bit_for_bit() {
-        let scene = scene();
-        let mut first = run(&scene);
-        let bytes = postcard::to_stdvec(&first.save()).unwrap();
-        let mut second = Simulation::restore(&scene, &postcard::from_bytes(&bytes).unwrap()).unwrap();
-        assert_eq!(bits(&scene, &mut second), bits(&scene, &mut first));
-        assert_eq!(second.force_rates(), first.force_rates());
-        for _ in 0..20 {
-            let motion = Motion { duration: 3.7e-6, ..WAVE };
-            assert_eq!((first.advance(&motion), second.advance(&motion)), (Ok(()), Ok(())));
+        for scene in [scene(), scene_with_rate_shear()] {
+            let mut first = run(&scene);
+            let bytes = postcard::to_stdvec(&first.save()).unwrap();
+            let mut second = Simulation::restore(&scene, &postcard::from_bytes(&bytes).unwrap()).unwrap();
             assert_eq!(bits(&scene, &mut second), bits(&scene, &mut first));
+            assert_eq!(second.force_rates(), first.force_rates());
+            for _ in 0..20 {
+                let motion = Motion { duration: 3.7e-6, ..WAVE };
+                assert_eq!((first.advance(&motion), second.advance(&motion)), (Ok(()), Ok(())));
+                assert_eq!(bits(&scene, &mut second), bits(&scene, &mut first));
+            }
+            assert_eq!(first.save(), second.save());
         }
-        assert_eq!(first.save(), second.save());
     }
 
     #[test]

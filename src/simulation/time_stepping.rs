@@ -3,7 +3,7 @@
 use super::run::Run;
 use super::stepping::{AFTER_FAILURE, OF_PERIOD, Stride, fitted};
 use super::{Simulation, SimulationError};
-use crate::contact::{End, HeldStep};
+use crate::contact::{End, HeldStep, longest_weakening};
 use crate::integrator::{Attempt, Integrator, TWO_STAGES, Within};
 use crate::model::{Model, Power};
 
@@ -33,7 +33,8 @@ impl Simulation {
             self.count_work(work)?;
             if let Some(attempt) = self.try_time_step(h, h <= shortest) {
                 let grown = h * growth(attempt.error);
-                self.run.step_size = if h < remaining { grown } else { grown.max(self.run.step_size) };
+                let next = if h < remaining { grown } else { grown.max(self.run.step_size) };
+                self.run.step_size = next.min(self.longest_weakening());
                 return Ok(Stride { h, share: 1.0 });
             }
             if h <= shortest {
@@ -41,6 +42,12 @@ impl Simulation {
             }
             h = self.run.step_size.max(shortest);
         }
+    }
+
+    /// The longest step, s, that lets contacts swing up whose friction falls with the speed they have at the end of the step tried
+    /// last.
+    fn longest_weakening(&self) -> f64 {
+        longest_weakening(&self.model, self.integrator.end())
     }
 
     /// Tries a step of length `h`; `None` where it is no good, and the run's step size is then a better one.

@@ -16,6 +16,7 @@ mod material;
 mod modulus;
 mod one_mass;
 mod partial;
+mod rate_shear;
 mod rules;
 mod run;
 mod sliding;

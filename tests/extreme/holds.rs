@@ -2,7 +2,7 @@
 
 use asperity::model::Model;
 use asperity::outputs::{Output, Variable};
-use asperity::scene::Scene;
+use asperity::scene::{RateShear, Scene};
 use asperity::simulation::Saved;
 
 use crate::run::{MOST_STEPS, Outcome};
@@ -30,6 +30,7 @@ pub struct Limits {
     farthest: f64,
     masses: f64,
     friction: (f64, f64),
+    rate_shear: Option<RateShear>,
     /// Whether nothing forgets an error, so that every step may make its own.
     adds_up: bool,
 }
@@ -52,6 +53,7 @@ impl Limits {
             farthest: model.rest_x.iter().fold(0.0, |farthest: f64, x| farthest.max(x.abs())),
             masses: model.masses() as f64,
             friction: (part(|friction| friction.coulomb), part(|friction| friction.shear_force)),
+            rate_shear: scene.rate_shear(),
             adds_up,
             model,
         }
@@ -82,7 +84,7 @@ impl Limits {
             if let Some(text) = self.gap(u, x, z) {
                 note("gap", format!("{name}: {text}"));
             }
-            if let Some(text) = self.friction(normal, friction) {
+            if let Some(text) = self.friction(normal, friction, mode) {
                 note("friction", format!("{name}: {text}, mode {mode}"));
             }
         }
@@ -103,10 +105,18 @@ impl Limits {
     }
 
     /// |F_T| ≤ T, but for the tolerance within which a break is located and the rounding of T.
-    fn friction(&self, normal: f64, friction: f64) -> Option<String> {
-        let limit = self.friction.0 * normal.max(0.0) + self.friction.1;
+    fn friction(&self, normal: f64, friction: f64, mode: f64) -> Option<String> {
+        let limit = self.friction.0 * normal.max(0.0) + self.friction.1 + self.rate_limit(mode);
         let slack = self.force * (1.0 + self.friction.0) + 1e-12 * limit;
         (friction.abs() > limit + slack).then(|| format!("|F_T| = {:.2e} above {limit:.2e}", friction.abs()))
+    }
+
+    /// A τ_f(v_c) of a mass that sticks, the largest A τ_f(v) of another, N.
+    fn rate_limit(&self, mode: f64) -> f64 {
+        self.rate_shear.map_or(0.0, |law| {
+            let decades = (law.creep_speed() / law.reference_speed).log10();
+            law.force.unwrap_or(0.0) * if mode == 2.0 { (-law.sharpness * decades * decades).exp() } else { 1.0 }
+        })
     }
 
     /// The rules for a whole run.

@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::Path as FilePath;
 
 use asperity::outputs::{Output, Variable, variables};
-use asperity::scene::{Friction, LinkKind, OutputGroup, Path, Scene};
+use asperity::scene::{Friction, LinkKind, OutputGroup, Path, RateShear, Scene};
 use asperity::simulation::{Motion, Simulation, SimulationError, Start};
 
 /// What runs: a scene, how the carrier starts, and its motions one after another.
@@ -152,7 +152,18 @@ fn roughness(heights: &[f64]) -> String {
 }
 
 fn friction(friction: &Friction) -> String {
-    format!("[friction]\n{}{}", number("coulomb", friction.coulomb), number("shear_force", friction.shear_force))
+    let Friction { coulomb, shear_force, shear_strength: _, rate_shear } = friction;
+    let rate_shear = rate_shear.map_or(String::new(), |law| {
+        let RateShear { force, strength: _, reference_speed, sharpness, creep_speed } = law;
+        let numbers = [
+            number("force", force),
+            number("reference_speed", Some(reference_speed)),
+            number("sharpness", Some(sharpness)),
+            number("creep_speed", creep_speed),
+        ];
+        format!("[friction.rate_shear]\n{}", numbers.concat())
+    });
+    format!("[friction]\n{}{}{rate_shear}", number("coulomb", *coulomb), number("shear_force", *shear_force))
 }
 
 fn phase(motion: &Motion) -> String {

@@ -22,10 +22,14 @@ impl Row<'_> {
         self.record.rows[self.row][index]
     }
 
-    /// T(0) = μ F_N + A τ_0, N.
-    fn limit(&self, normal: f64) -> f64 {
+    /// T(0) = μ F_N + A τ_0 + A τ_f(v_c) of a mass that sticks; the largest T(v) of another, N.
+    fn limit(&self, normal: f64, mode: f64) -> f64 {
         let friction = self.case.scene.friction.clone().unwrap_or_default();
-        friction.coulomb.unwrap_or(0.0) * normal + friction.shear_force.unwrap_or(0.0)
+        let rate_shear = self.case.scene.rate_shear().map_or(0.0, |law| {
+            let decades = (law.creep_speed() / law.reference_speed).log10();
+            law.force.unwrap_or(0.0) * if mode == 2.0 { (-law.sharpness * decades * decades).exp() } else { 1.0 }
+        });
+        friction.coulomb.unwrap_or(0.0) * normal + friction.shear_force.unwrap_or(0.0) + rate_shear
     }
 }
 
@@ -62,7 +66,7 @@ fn obeys(row: &Row<'_>) -> Result<(), TestCaseError> {
         let mode = row.get(Output::ElementMode(i));
         let state = format!("row {}, mass {i}, mode {mode}: g {gap:e}, F_N {normal:e}, F_T {friction:e}", row.row);
         prop_assert!(gap >= -gap_allowed - rounding, "under the profile: {}", state);
-        let limit = row.limit(normal);
+        let limit = row.limit(normal, mode);
         prop_assert!(mode == 0.0 || gap <= gap_allowed + rounding, "above the profile: {}", state);
         prop_assert!(mode != 0.0 || (normal == 0.0 && friction == 0.0), "{}", state);
         prop_assert!(normal >= -force_allowed, "pulled: {}", state);

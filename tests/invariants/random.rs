@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 use asperity::scene::{
-    Extrapolation, Friction, Initial, Layer, Link, MaxwellElement, Method, Path, Scene, Solver, Surface,
+    Extrapolation, Friction, Initial, Layer, Link, MaxwellElement, Method, Path, RateShear, Scene, Solver, Surface,
 };
 use asperity::simulation::{Motion, Start};
 use proptest::collection::vec;
@@ -169,13 +169,33 @@ fn surface(scales: Scales) -> impl Strategy<Value = Surface> {
     prop_oneof![1 => flat, 2 => sine, 5 => points]
 }
 
-/// Coulomb's friction, adhesive shear, or both.
+/// Coulomb's friction, adhesive shear, or both; and with one or the other a shear strength that depends on the speed.
 fn friction(scales: Scales) -> impl Strategy<Value = Friction> {
     let coulomb = decades(-2.0..0.3);
     let shear = decades(-2.5..0.5).prop_map(move |part| part * scales.stiffness * scales.height);
     let both = (coulomb.clone(), shear.clone()).prop_map(|(mu, force)| (Some(mu), Some(force)));
-    prop_oneof![coulomb.prop_map(|mu| (Some(mu), None)), shear.prop_map(|force| (None, Some(force))), both]
-        .prop_map(|(coulomb, shear_force)| Friction { coulomb, shear_force, shear_strength: None })
+    let constant =
+        prop_oneof![coulomb.prop_map(|mu| (Some(mu), None)), shear.prop_map(|force| (None, Some(force))), both];
+    (constant, option::weighted(0.4, rate_shear(scales))).prop_map(|((coulomb, shear_force), rate_shear)| Friction {
+        coulomb,
+        shear_force,
+        shear_strength: None,
+        rate_shear,
+    })
+}
+
+/// Largest at speeds far below to far above those of the layer's own swings.
+fn rate_shear(scales: Scales) -> impl Strategy<Value = RateShear> {
+    let speed = scales.height / scales.period();
+    (decades(-2.5..0.5), decades(-5.0..1.0), 0.0..0.5_f64, option::of(decades(-7.0..-1.0))).prop_map(
+        move |(part, reference, sharpness, creep)| RateShear {
+            force: Some(part * scales.stiffness * scales.height),
+            strength: None,
+            reference_speed: reference * speed,
+            sharpness,
+            creep_speed: creep.map(|creep| creep * reference * speed),
+        },
+    )
 }
 
 /// Tolerances as they are used with a method: time-stepping is for coarse ones.

@@ -74,6 +74,11 @@ impl Powers {
         scene.surface.x.iter_mut().chain(&mut scene.surface.z).for_each(|value| *value *= length);
         let shear = scene.friction.iter_mut().flat_map(|friction| &mut friction.shear_force);
         shear.for_each(|force| *force *= self.of(1, 1, -2));
+        for law in scene.friction.iter_mut().flat_map(|friction| &mut friction.rate_shear) {
+            law.force.iter_mut().for_each(|force| *force *= self.of(1, 1, -2));
+            law.reference_speed *= speed;
+            law.creep_speed.iter_mut().for_each(|creep| *creep *= speed);
+        }
         scene.solver.absolute_tolerance.iter_mut().for_each(|tolerance| *tolerance *= length);
         let Start { time: t, u, w, u_rate, w_rate } = case.start;
         scaled.start =

@@ -2,7 +2,7 @@
 
 use asperity::integrator::{NO_LIMIT, Rates, STAGES};
 use asperity::model::{CarrierPoint, Forces, LinkKind, Mode, Model, State};
-use asperity::scene::Path;
+use asperity::scene::{Path, RateShear};
 use nalgebra::{DVector, Vector2};
 
 use crate::layer::{Layer, Link, Random, Stepper, largest, points};
@@ -21,7 +21,14 @@ pub fn random_layer(random: &mut Random, masses: usize) -> Layer {
     let x: Vec<f64> = (0..12).map(|i| f64::from(i) * 0.5 - 1.0).collect();
     let friction = (random.below(4) > 0).then(|| (random.between(0.0, 1.0), random.between(0.0, 5.0)));
     let surface = points(&x, &heights, false);
-    Layer { masses, mass: 0.3, spacing: 0.37, clearance: 0.2, links, surface, friction, ..Layer::default() }
+    let rate_shear = (random.below(2) > 0).then(|| RateShear {
+        force: Some(random.between(0.0, 5.0)),
+        strength: None,
+        reference_speed: 10.0_f64.powf(random.between(-4.0, 1.0)),
+        sharpness: random.between(0.0, 1.0),
+        creep_speed: None,
+    });
+    Layer { masses, mass: 0.3, spacing: 0.37, clearance: 0.2, links, surface, friction, rate_shear, ..Layer::default() }
 }
 
 /// Where the carrier stands and how it moves: (u, w), (u̇, ẇ).
@@ -81,10 +88,10 @@ fn difference(matrices: &Matrices, model: &Model, state: &State, rates: &Rates, 
     if !found.is_empty() {
         worst = worst.max((found - &elongation_rates).amax() / elongation_rates.amax());
     }
-    let (mu, shear) = matrices.friction.unwrap_or_default();
+    let (mu, _) = matrices.friction.unwrap_or_default();
     for (i, (normal, tangential)) in contacts.into_iter().enumerate().filter(|&(i, _)| state.mode[i].in_contact()) {
         let margin = match state.mode[i] {
-            Mode::Stick => mu * normal + shear - tangential.abs(),
+            Mode::Stick => mu * normal + matrices.shear(0.0) - tangential.abs(),
             mode if model.has_friction => mode.direction() * state.velocity_x[i],
             _ => NO_LIMIT,
         };

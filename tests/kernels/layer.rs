@@ -4,7 +4,7 @@ use std::path::Path as FilePath;
 
 use asperity::integrator::{Attempt, Dense, DenseRoom, Followed, Integrator, Steps, TWO_STAGES, Tolerance, Within};
 use asperity::model::{Carrier, Forces, LinkKind, Model, State};
-use asperity::scene::{Path, Scene};
+use asperity::scene::{Path, RateShear, Scene};
 use asperity::simulation::Simulation;
 
 /// A spring, a damper and Maxwell elements (c_j, τ_j).
@@ -34,6 +34,7 @@ pub struct Layer {
     pub surface: String,
     /// μ and A τ_0.
     pub friction: Option<(f64, f64)>,
+    pub rate_shear: Option<RateShear>,
     /// The lines of `[solver]`.
     pub solver: String,
 }
@@ -51,6 +52,7 @@ impl Default for Layer {
             links: [None, None, None, None],
             surface: FLAT.into(),
             friction: None,
+            rate_shear: None,
             solver: String::new(),
         }
     }
@@ -72,8 +74,20 @@ impl Layer {
             }
         }
         text += &format!("[surface]\n{}\n", self.surface);
+        if self.friction.is_some() || self.rate_shear.is_some() {
+            text += "[friction]\n";
+        }
         if let Some((coulomb, shear)) = self.friction {
-            text += &format!("[friction]\ncoulomb = {coulomb:e}\nshear_force = {shear:e}\n");
+            text += &format!("coulomb = {coulomb:e}\nshear_force = {shear:e}\n");
+        }
+        if let Some(law) = &self.rate_shear {
+            let RateShear { force, reference_speed, sharpness, .. } = law;
+            let force = force.unwrap_or_default();
+            text += &format!(
+                "rate_shear = {{ force = {force:e}, reference_speed = {reference_speed:e}, sharpness = {sharpness:e}, \
+                 creep_speed = {:e} }}\n",
+                law.creep_speed()
+            );
         }
         text += &format!("[solver]\n{}\n[fmu]\noutputs = {OUTPUTS}\n", self.solver);
         Scene::parse(&text, FilePath::new("test.toml")).unwrap_or_else(|error| panic!("{error}\n{text}"))
@@ -170,6 +184,12 @@ impl Stepper {
         Within::new(&self.model, &self.carrier, (self.s, h), start, end).state_at(theta, &mut state);
         state
     }
+}
+
+/// A τ_f(v), N, of the speed in the direction of slip, by its formula.
+pub fn strength(law: &RateShear, speed: f64) -> f64 {
+    let decades = (speed.max(law.creep_speed()) / law.reference_speed).log10();
+    law.force.unwrap_or_default() * (-law.sharpness * decades.powi(2)).exp()
 }
 
 /// A carrier that moves at a constant rate.

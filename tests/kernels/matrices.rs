@@ -9,9 +9,10 @@
 //! F = c e + d ė + Σ c_j (e - y_j) adds -g F to the right side, so (c + Σ c_j) g gᵀ to C, d g gᵀ to D, c_j g to B.
 
 use asperity::model::{Mode, SurfacePoint};
+use asperity::scene::RateShear;
 use nalgebra::{DMatrix, DVector, Vector2};
 
-use crate::layer::{Layer, Link};
+use crate::layer::{Layer, Link, strength};
 
 /// M = m 1 and the other matrices.
 #[derive(Clone, Debug)]
@@ -19,6 +20,7 @@ pub struct Matrices {
     pub mass: f64,
     pub masses: usize,
     pub friction: Option<(f64, f64)>,
+    pub rate_shear: Option<RateShear>,
     pub stiffness: DMatrix<f64>,
     pub damping: DMatrix<f64>,
     /// B: what a y_j does to the coordinates.
@@ -60,6 +62,7 @@ impl Matrices {
             mass: layer.mass,
             masses: k,
             friction: layer.friction,
+            rate_shear: layer.rate_shear,
             stiffness: zeros(2 * k, 2 * k),
             damping: zeros(2 * k, 2 * k),
             internal: zeros(2 * k, internals),
@@ -137,11 +140,16 @@ impl Matrices {
         (self.elongations(q, carrier) - y).component_div(&tau)
     }
 
+    /// A (τ_0 + τ_f(v)) at the speed in the direction of slip, N.
+    pub fn shear(&self, speed: f64) -> f64 {
+        self.friction.map_or(0.0, |(_, shear)| shear) + self.rate_shear.map_or(0.0, |law| strength(&law, speed))
+    }
+
     /// q̈ and the contact forces (F_N, F_T) of each mass under the forces `f`, from one dense system in all of them:
     ///
     /// ```text
     /// m q̈_i - F_N n + F_T t = f_i,   n = (-s, 1)/q,  t = (1, s)/q                       (6), (7)
-    /// free: F_N = F_T = 0;   stick: q̈_i = 0;   slip: z̈ - s ẍ = κ ẋ²,  F_T - σ μ F_N = σ A τ_0
+    /// free: F_N = F_T = 0;   stick: q̈_i = 0;   slip: z̈ - s ẍ = κ ẋ²,  F_T - σ μ F_N = σ A (τ_0 + τ_f)
     /// ```
     pub fn accelerations(
         &self,
@@ -151,7 +159,7 @@ impl Matrices {
         grounds: &[SurfacePoint],
     ) -> (DVector<f64>, Vec<(f64, f64)>) {
         let k = self.masses;
-        let (mu, shear) = self.friction.unwrap_or_default();
+        let (mu, _) = self.friction.unwrap_or_default();
         let mut matrix = DMatrix::zeros(4 * k, 4 * k);
         let mut right = DVector::zeros(4 * k);
         for (i, (mode, ground)) in modes.iter().zip(grounds).enumerate() {
@@ -176,7 +184,7 @@ impl Matrices {
             (matrix[(normal, z)], matrix[(normal, x)]) = (1.0, -s);
             right[normal] = ground.curvature * v[x] * v[x];
             (matrix[(tangential, tangential)], matrix[(tangential, normal)]) = (1.0, -sigma * mu);
-            right[tangential] = sigma * shear;
+            right[tangential] = sigma * self.shear(sigma * v[x] * q);
         }
         let solution = matrix.lu().solve(&right).expect("friction makes the problem never insoluble");
         let contacts = (0..k).map(|i| (solution[2 * k + i], solution[3 * k + i])).collect();

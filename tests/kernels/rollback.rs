@@ -21,6 +21,7 @@ fn rattling(max_steps: u32) -> Scene {
         links,
         surface: "kind = \"sinusoid\"\namplitude = 1e-5\nwavelength = 5e-4".into(),
         friction: Some((0.2, 1e-4)),
+        rate_shear: None,
         solver: format!("max_steps = {max_steps}"),
     };
     layer.scene()

@@ -4,7 +4,7 @@ use asperity::integrator::SDIRK2;
 use asperity::model::State;
 use nalgebra::DVector;
 
-use crate::convergence::{Exact, PATHS, chain, differences, displaced, reference, slider, sliding};
+use crate::convergence::{Exact, PATHS, chain, differences, displaced, rate_slider, reference, slider, sliding};
 use crate::layer::{Layer, Link, Stepper, at_rate, last_order};
 use crate::stiff::{energy, on_slow_manifold, oscillator};
 
@@ -51,8 +51,9 @@ fn a_free_chain_converges_with_order_two() {
 /// A slipping mass with friction over a curved profile, against an explicit method on the dense equations.
 #[test]
 fn a_slipping_mass_converges_with_order_two() {
-    let layer = slider();
-    for velocity in [2.0, -1.2] {
+    for (velocity, layer) in
+        [2.0, -1.2].into_iter().flat_map(|v| [slider(), rate_slider(4.0), rate_slider(0.7)].map(|l| (v, l)))
+    {
         let start = sliding(&layer.model(), velocity, 0.0);
         let (place, speed, maxwell) = reference(&layer, &start, 1.5 * velocity, 0.4, 4000);
         let errors = [20, 40, 80].map(|steps| {

@@ -90,14 +90,16 @@ fn parts_of_links(whole: &Parts) -> [Pair; 2] {
     ]
 }
 
-fn friction(whole: &Parts) -> [Pair; 3] {
+fn friction(whole: &Parts) -> [Pair; 4] {
     let of = |friction| Parts { friction, ..whole.clone() };
     let coulomb: &[_] = &["friction.coulomb"];
     let shear: &[_] = &["friction.shear_force"];
+    let rate_shear = "coulomb = 0.3, rate_shear = { force = 0.0, reference_speed = 1e-2, sharpness = 0.1 }";
     [
         pair("friction", &of(None), &of(Some("coulomb = 0.0, shear_force = 0.0")), &["friction."]),
         pair("Coulomb", &of(Some("shear_force = 1e-4")), &of(Some("coulomb = 0.0, shear_force = 1e-4")), coulomb),
         pair("shear", &of(Some("coulomb = 0.3")), &of(Some("coulomb = 0.3, shear_force = 0.0")), shear),
+        pair("rate shear", &of(Some("coulomb = 0.3")), &of(Some(rate_shear)), &["friction.rate_shear."]),
     ]
 }
 

@@ -32,7 +32,13 @@ fn unknown_keys() {
             ),
             (15, "kind = 'file'\nx = []", 16, "surface.x: unknown; allowed: kind, path, periodic"),
             (15, "kind = 'points'\npath = 'a'", 16, "surface.path: unknown; allowed: kind, x, z, periodic"),
-            (18, "mu = 0.3", 18, "friction.mu: unknown; allowed: coulomb, shear_force"),
+            (18, "mu = 0.3", 18, "friction.mu: unknown; allowed: coulomb, rate_shear, shear_force"),
+            (
+                18,
+                "rate_shear = { force = 1, reference_speed = 1, sharpness = 1, speed = 1 }",
+                18,
+                "friction.rate_shear.speed: unknown; allowed: reference_speed, sharpness, creep_speed, force",
+            ),
             (
                 21,
                 "tolerance = 1",
@@ -90,6 +96,24 @@ fn missing_keys() {
             (15, "kind = 'points'\nz = [1, 2]", 14, "surface.x: missing; expected an array of places"),
             (15, "kind = 'points'\nx = [1, 2]", 14, "surface.z: missing; expected an array of heights"),
             (15, "kind = 'file'", 14, &format!("surface.path: missing; expected {PATH}")),
+            (
+                18,
+                "rate_shear = { reference_speed = 1, sharpness = 1 }",
+                18,
+                "friction.rate_shear.force: missing; expected 0 or a number from 1e-30 to 1e30",
+            ),
+            (
+                18,
+                "rate_shear = { force = 1, sharpness = 1 }",
+                18,
+                "friction.rate_shear.reference_speed: missing; expected a number from 1e-30 to 1e30",
+            ),
+            (
+                18,
+                "rate_shear = { force = 1, reference_speed = 1 }",
+                18,
+                "friction.rate_shear.sharpness: missing; expected 0 or a number from 1e-30 to 1e30",
+            ),
             (30, "", 29, "excitation[1].duration: missing; expected a number from 1e-30 to 1e30"),
             (
                 31,
@@ -115,7 +139,6 @@ fn missing_keys() {
 #[test]
 fn what_is_not_yet_supported() {
     let kinds = r#""flat", "sinusoid", "points", "file""#;
-    let friction = "not yet supported; allowed: coulomb, shear_force";
     assert_refusals(
         "later",
         &[
@@ -131,7 +154,6 @@ fn what_is_not_yet_supported() {
                 7,
                 &format!("layer.roughness.kind = 'self_affine': not yet supported; allowed: {kinds}"),
             ),
-            (18, "rate_shear = { force = 1 }", 18, &format!("friction.rate_shear: {friction}")),
         ],
     );
 }

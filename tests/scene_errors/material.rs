@@ -68,6 +68,12 @@ fn keys_of_the_direct_form_beside_a_material() {
                 "friction.shear_force = 1.0: expected no such key beside [material]; instead: shear_strength",
             ),
             (
+                17,
+                "rate_shear = { force = 1.0, reference_speed = 1.0, sharpness = 1.0 }",
+                17,
+                "friction.rate_shear.force = 1.0: expected no such key beside [material]; instead: strength",
+            ),
+            (
                 21,
                 "until_force = 1.0",
                 21,
@@ -90,6 +96,12 @@ fn keys_of_the_material_form_without_a_material() {
                 "shear_strength = 1e5",
                 18,
                 "friction.shear_strength = 1e5: expected no such key without [material]; instead: shear_force",
+            ),
+            (
+                18,
+                "rate_shear = { strength = 1e6, reference_speed = 1, sharpness = 1 }",
+                18,
+                "friction.rate_shear.strength = 1e6: expected no such key without [material]; instead: force",
             ),
             (
                 31,

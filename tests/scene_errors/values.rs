@@ -138,6 +138,31 @@ fn values_out_of_range() {
             ),
             (18, "coulomb = -0.3", 18, "friction.coulomb = -0.3: expected 0 or a number from 1e-30 to 1e30"),
             (18, "shear_force = -1", 18, "friction.shear_force = -1: expected 0 or a number from 1e-30 to 1e30"),
+            (18, "rate_shear = 1", 18, "friction.rate_shear = 1: expected a table"),
+            (
+                18,
+                "rate_shear = { force = -1, reference_speed = 1, sharpness = 1 }",
+                18,
+                "friction.rate_shear.force = -1: expected 0 or a number from 1e-30 to 1e30",
+            ),
+            (
+                18,
+                "rate_shear = { force = 1, reference_speed = 0, sharpness = 1 }",
+                18,
+                "friction.rate_shear.reference_speed = 0: expected a number from 1e-30 to 1e30",
+            ),
+            (
+                18,
+                "rate_shear = { force = 1, reference_speed = 1, sharpness = -0.1 }",
+                18,
+                "friction.rate_shear.sharpness = -0.1: expected 0 or a number from 1e-30 to 1e30",
+            ),
+            (
+                18,
+                "rate_shear = { force = 1, reference_speed = 1, sharpness = 1, creep_speed = 'slow' }",
+                18,
+                "friction.rate_shear.creep_speed = 'slow': expected a number from 1e-30 to 1e30",
+            ),
             (21, "relative_tolerance = 0", 21, "solver.relative_tolerance = 0: expected a number from 1e-30 to 0.1"),
             (
                 21,

@@ -9,6 +9,7 @@
 //! block seen through (1, s)ᵀ: its second row is the identity; for a sticking mass both are.
 
 mod newton;
+mod rate;
 mod variation;
 
 use super::rates::Rates;
@@ -16,6 +17,7 @@ use super::tolerance::{NEWTON_SHARE, Tolerance};
 use crate::math::BlockTridiagonal;
 use crate::model::{CarrierPoint, Forces, LinkKind, LinkMotion, Mode, Model, State};
 use newton::{Column, Row, Slip, largest};
+use rate::RateSlip;
 
 /// Newton's iterations did not converge: a smaller step will.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -94,6 +96,8 @@ pub(super) struct StageSolver {
     /// Those of them that slip, and how; without any the equations are linear.
     slips: Vec<usize>,
     slip: Vec<Slip>,
+    /// What of their friction depends on the speed; empty where nothing does.
+    rate: Vec<RateSlip>,
     rows: Vec<Row>,
     columns: Vec<Column>,
     system: BlockTridiagonal,
@@ -126,6 +130,7 @@ impl StageSolver {
             contacts: Vec::with_capacity(k),
             slips: Vec::with_capacity(k),
             slip: Vec::with_capacity(k),
+            rate: Vec::with_capacity(if model.rate_shear.is_some() { k } else { 0 }),
             rows: vec![Row::default(); k],
             columns: vec![Column::default(); k],
             system: BlockTridiagonal::new(k),
@@ -144,6 +149,9 @@ impl StageSolver {
         self.slips.clear();
         self.slips.extend(self.contacts.iter().filter(|&&i| state.mode[i].slips()));
         self.slip.resize(self.slips.len(), Slip::default());
+        if model.rate_shear.is_some() {
+            self.rate.resize(self.slips.len(), RateSlip::default());
+        }
         self.set_laws(model, beta);
         self.assemble_held(model, beta);
         if self.slips.is_empty() {
@@ -211,7 +219,8 @@ impl StageSolver {
             self.assemble_slips(model, point.beta);
             self.system.factor();
             self.system.solve();
-            let change = self.correct();
+            let steep = model.rate_shear.as_ref().map_or(0.0, |law| self.bend_corrections(law));
+            let change = self.correct().max(steep);
             self.place(model, point);
             self.forces(model, point);
             let left = self.residuals(model, point.beta);

@@ -26,6 +26,9 @@ impl StageSolver {
             *slip = Slip::new(model, self.state.mode[i], &self.state.ground[i], (v, acceleration));
             self.system.right[i].x = -slip.residual(model, (self.forces.on_mass_x[i], self.forces.on_mass_z[i]));
         }
+        if let Some(law) = &model.rate_shear {
+            self.add_rate_shear(law);
+        }
         largest(&self.system.right) / inertia
     }
 
@@ -69,6 +72,9 @@ impl StageSolver {
             self.system.diagonal[i] = Matrix2::new(slip.derivative(model, beta, forces, weights), 0.0, 0.0, 1.0);
             self.rows[i] = Row { x_by_x: slip.share_x, x_by_z: slip.share_z, z_by_z: 0.0 };
             self.columns[i] = Column { x: lateral_x.weight, z_by_x: weight(&lateral_z), z: 0.0 };
+        }
+        if model.rate_shear.is_some() {
+            self.assemble_rate_shear(beta);
         }
         for slip in 0..self.slips.len() {
             let i = self.slips[slip];
@@ -122,6 +128,7 @@ pub(super) struct Slip {
     velocity: f64,
     acceleration: f64,
     sigma_mu: f64,
+    /// σ (A τ_0 + A τ_f(v_c)).
     sigma_shear: f64,
     /// 1 - σμs, which f_x counts with.
     share_x: f64,
@@ -152,7 +159,8 @@ impl Slip {
         }
     }
 
-    /// m q² ẍ + m s κ ẋ² - f_x - s f_z + F_T q with F_T = σ (μ F_N + A τ_0) put in, from (6)-(9):
+    /// m q² ẍ + m s κ ẋ² - f_x - s f_z + F_T q with F_T = σ (μ F_N + A τ_0) put in, from (6)-(9), where A τ_0 stands for the shear
+    /// force at rest (for what depends on the speed see `rate`):
     ///
     ///   m q² ẍ + m κ ẋ² (s + σμ) - (1 - σμs) f_x - (s + σμ) f_z + σ A τ_0 q = 0
     fn residual(&self, model: &Model, (f_x, f_z): (f64, f64)) -> f64 {
@@ -174,6 +182,21 @@ impl Slip {
             + share_z * weight_z
             + ds * (self.sigma_mu * f_x - f_z)
             + self.sigma_shear * s * ds / self.q
+    }
+
+    /// v_t = q ẋ, m/s.
+    pub(super) fn speed(&self) -> f64 {
+        self.q * self.velocity
+    }
+
+    pub(super) fn q(&self) -> f64 {
+        self.q
+    }
+
+    /// The derivative by ẋ of σ q B(σ q ẋ), where B and its derivative are `beyond`.
+    pub(super) fn rate_derivative(&self, beta: f64, sigma: f64, beyond: (f64, f64)) -> f64 {
+        let s_ds = self.s * beta * self.kappa;
+        sigma * beyond.0 * s_ds / self.q + beyond.1 * (self.q2 + self.velocity * s_ds)
     }
 
     fn climb(&self, beta: f64) -> Climb {

@@ -8,7 +8,7 @@ use std::io::Write as _;
 use std::path::Path as FilePath;
 
 use asperity::outputs::variables;
-use asperity::scene::{Extrapolation, OutputGroup, Parameter, Path, Phase, Scene, Value};
+use asperity::scene::{Extrapolation, OutputGroup, Parameter, Path, Phase, RateShear, Scene, Value};
 use asperity::simulation::{Simulation, Start};
 
 use super::arguments::Describe;
@@ -83,7 +83,18 @@ fn friction(scene: &Scene) -> Vec<Row> {
         ),
         None => format!("shear_force  {}", or_left_out(friction.shear_force, " N a mass in contact")),
     };
-    under("Friction", [coulomb, shear])
+    let rate_shear = scene.rate_shear().map_or_else(|| LEFT_OUT.into(), |law| rate_shear_text(&law));
+    under("Friction", [coulomb, shear, format!("rate_shear   {rate_shear}")])
+}
+
+fn rate_shear_text(rate_shear: &RateShear) -> String {
+    format!(
+        "{} N a mass in contact at {} m/s, sharpness {}, held below {} m/s",
+        number(rate_shear.force),
+        number(rate_shear.reference_speed),
+        number(rate_shear.sharpness),
+        number(rate_shear.creep_speed())
+    )
 }
 
 fn outputs(scene: &Scene) -> Vec<Row> {

@@ -2,7 +2,7 @@
 
 use super::{Parameter, ParameterError, Value};
 use crate::scene::allowed::{self, Range};
-use crate::scene::{Problem, Scene};
+use crate::scene::{Problem, RateShear, Scene};
 
 impl Parameter {
     /// The range of a Real parameter; `None` for the others.
@@ -15,8 +15,10 @@ impl Parameter {
             Self::RelaxationTime(..) => Some(allowed::RELAXATION_TIME),
             Self::Material(parameter) => Some(parameter.range()),
             Self::Coulomb => Some(allowed::FRICTION_COEFFICIENT),
-            Self::ShearForce => Some(allowed::SHEAR_FORCE),
-            Self::ShearStrength => Some(allowed::SHEAR_STRENGTH),
+            Self::ShearForce | Self::RateShearForce => Some(allowed::SHEAR_FORCE),
+            Self::ShearStrength | Self::RateShearStrength => Some(allowed::SHEAR_STRENGTH),
+            Self::ReferenceSpeed | Self::CreepSpeed => Some(allowed::SPEED),
+            Self::Sharpness => Some(allowed::SHARPNESS),
             Self::RelativeTolerance => Some(allowed::RELATIVE_TOLERANCE),
             Self::AbsoluteTolerance => Some(allowed::ABSOLUTE_TOLERANCE),
             Self::Initial | Self::Method | Self::MaxSteps | Self::Extrapolation => None,
@@ -69,6 +71,11 @@ impl Scene {
             Parameter::Coulomb => self.friction.as_ref()?.coulomb,
             Parameter::ShearForce => self.friction.as_ref()?.shear_force,
             Parameter::ShearStrength => self.friction.as_ref()?.shear_strength,
+            Parameter::RateShearForce => self.rate_shear_as_given()?.force,
+            Parameter::RateShearStrength => self.rate_shear_as_given()?.strength,
+            Parameter::ReferenceSpeed => Some(self.rate_shear_as_given()?.reference_speed),
+            Parameter::Sharpness => Some(self.rate_shear_as_given()?.sharpness),
+            Parameter::CreepSpeed => Some(self.rate_shear_as_given()?.creep_speed()),
             Parameter::RelativeTolerance => Some(self.solver.relative_tolerance),
             Parameter::AbsoluteTolerance => Some(self.absolute_tolerance()),
             Parameter::Initial | Parameter::Method | Parameter::MaxSteps | Parameter::Extrapolation => None,
@@ -91,11 +98,24 @@ impl Scene {
             Parameter::Coulomb => self.friction.as_mut()?.coulomb.as_mut(),
             Parameter::ShearForce => self.friction.as_mut()?.shear_force.as_mut(),
             Parameter::ShearStrength => self.friction.as_mut()?.shear_strength.as_mut(),
+            Parameter::RateShearForce => self.rate_shear_mut()?.force.as_mut(),
+            Parameter::RateShearStrength => self.rate_shear_mut()?.strength.as_mut(),
+            Parameter::ReferenceSpeed => Some(&mut self.rate_shear_mut()?.reference_speed),
+            Parameter::Sharpness => Some(&mut self.rate_shear_mut()?.sharpness),
+            Parameter::CreepSpeed => Some(self.rate_shear_mut()?.creep_speed.get_or_insert(0.0)),
             Parameter::RelativeTolerance => Some(&mut self.solver.relative_tolerance),
             Parameter::AbsoluteTolerance => Some(self.solver.absolute_tolerance.get_or_insert(0.0)),
             Parameter::Initial | Parameter::Method | Parameter::MaxSteps | Parameter::Extrapolation => None,
             Parameter::TableExtrapolation => None,
         }
+    }
+
+    fn rate_shear_as_given(&self) -> Option<&RateShear> {
+        self.friction.as_ref()?.rate_shear.as_ref()
+    }
+
+    fn rate_shear_mut(&mut self) -> Option<&mut RateShear> {
+        self.friction.as_mut()?.rate_shear.as_mut()
     }
 
     /// Gives `parameter` a value. Whether several go together, [`check`](Self::check) says once all are set.

@@ -24,6 +24,7 @@ amplitude = 1e-5
 wavelength = 1e-3
 [friction]
 shear_force = 0
+rate_shear = { force = 1e-4, reference_speed = 6e-3, sharpness = 0.1 }
 "#;
 
 fn scene() -> Scene {
@@ -56,6 +57,10 @@ fn has_what_the_scene_names_in_its_order() {
         "layer.vertical.maxwell[2].relaxation_time",
         "layer.lateral_x.damping",
         "friction.shear_force",
+        "friction.rate_shear.force",
+        "friction.rate_shear.reference_speed",
+        "friction.rate_shear.sharpness",
+        "friction.rate_shear.creep_speed",
         "solver.method",
         "solver.relative_tolerance",
         "solver.absolute_tolerance",
@@ -119,6 +124,27 @@ fn the_absolute_tolerance_follows_until_it_is_set() {
     assert_eq!(bare().absolute_tolerance(), 1e-6 * 0.5);
 }
 
+/// A millionth of the reference speed, whatever that becomes, until it is set itself.
+#[test]
+fn the_creep_speed_follows_the_reference_speed() {
+    let mut scene = scene();
+    let creep = |scene: &Scene| scene.parameter(scene.parameter_named("friction.rate_shear.creep_speed").unwrap());
+    assert_eq!(creep(&scene), Value::Real(1e-6 * 6e-3));
+    scene.set_by_name("friction.rate_shear.reference_speed", "2.0").unwrap();
+    assert_eq!(creep(&scene), Value::Real(1e-6 * 2.0));
+    // No smaller than it could be set.
+    scene.set_by_name("friction.rate_shear.reference_speed", "1e-28").unwrap();
+    assert_eq!(creep(&scene), Value::Real(1e-30));
+    scene.set_by_name("friction.rate_shear.creep_speed", "1e-5").unwrap();
+    scene.set_by_name("friction.rate_shear.reference_speed", "1e-3").unwrap();
+    assert_eq!(creep(&scene), Value::Real(1e-5));
+    let unit = |name: &str| scene.parameter_named(name).unwrap().unit();
+    assert_eq!(unit("friction.rate_shear.creep_speed"), Unit::MeterPerSecond);
+    assert_eq!(unit("friction.rate_shear.reference_speed"), Unit::MeterPerSecond);
+    assert_eq!(unit("friction.rate_shear.force"), Unit::Newton);
+    assert_eq!(unit("friction.rate_shear.sharpness"), Unit::One);
+}
+
 #[test]
 fn refuses_what_the_reader_refuses() {
     let cases = [
@@ -142,6 +168,26 @@ fn refuses_what_the_reader_refuses() {
         ("solver.max_steps", "0", "solver.max_steps = 0: expected a whole number from 1 to 2147483647"),
         ("solver.max_steps", "3e9", "solver.max_steps = 3e9: expected a whole number from 1 to 2147483647"),
         ("solver.method", "fast", "solver.method = \"fast\": expected one of \"event\", \"step\", \"auto\""),
+        (
+            "friction.rate_shear.force",
+            "-1",
+            "friction.rate_shear.force = -1.0: expected 0 or a number from 1e-30 to 1e30",
+        ),
+        (
+            "friction.rate_shear.reference_speed",
+            "0",
+            "friction.rate_shear.reference_speed = 0.0: expected a number from 1e-30 to 1e30",
+        ),
+        (
+            "friction.rate_shear.sharpness",
+            "-0.1",
+            "friction.rate_shear.sharpness = -0.1: expected 0 or a number from 1e-30 to 1e30",
+        ),
+        (
+            "friction.rate_shear.creep_speed",
+            "0",
+            "friction.rate_shear.creep_speed = 0.0: expected a number from 1e-30 to 1e30",
+        ),
         ("layer.initial", "cold", "layer.initial = \"cold\": expected one of \"relaxed\", \"undeformed\""),
         ("input.extrapolation", "no", "input.extrapolation = \"no\": expected one of \"linear\", \"hold\""),
     ];
