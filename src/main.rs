@@ -1,4 +1,5 @@
-//! The command line program: `asperity simulate`, `sweep`, `plot`, `describe`, `pack`, `fit`, `material` and `report`.
+//! The command line program: `asperity simulate`, `sweep`, `plot`, `describe`, `pack`, `fit`, `material`, `surface` and
+//! `report`.
 
 mod program;
 

@@ -11,7 +11,7 @@ use super::catalogue::Catalogue;
 use super::fault::Fault;
 use super::subject::Subject;
 
-/// The bytes that a scene or a table was read from.
+/// The bytes that a scene or a table is read from, as an FMU carries them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sources {
     /// Its own file, then every file that it reads, in the scene's order.
@@ -32,7 +32,11 @@ impl Sources {
     /// # Errors
     /// Where a file cannot be read.
     pub fn of(path: &Path, subject: &Subject) -> std::io::Result<Self> {
-        let files = subject.sources(path).iter().map(fs::read).collect::<Result<_, _>>()?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let mut files = vec![fs::read(path)?];
+        for file in subject.files() {
+            files.push(subject.carried(folder, file)?);
+        }
         Ok(Self { files })
     }
 

@@ -1,6 +1,7 @@
 //! What an FMU simulates, as its resources give it: a scene's layer, or an element that looks the forces up in a table.
 
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 use super::fault::Fault;
 use super::plant::{Plant, Saved};
@@ -65,11 +66,22 @@ impl Subject {
         scene::identifier(&self.name())
     }
 
-    /// The files that it is read from beside its own, relative to that.
+    /// The files that an FMU carries beside its own, relative to that.
     pub fn files(&self) -> &[PathBuf] {
         match self {
             Self::Layer(scene) => &scene.files,
             Self::Element(_) => &[],
+        }
+    }
+
+    /// The bytes of one of its [`files`](Self::files) as an FMU carries them; `folder` is that of its own.
+    ///
+    /// # Errors
+    /// Where the file cannot be read.
+    pub fn carried(&self, folder: &Path, file: &Path) -> io::Result<Vec<u8>> {
+        match self {
+            Self::Layer(scene) => scene.carried(folder, file),
+            Self::Element(_) => fs::read(folder.join(file)),
         }
     }
 
@@ -84,7 +96,12 @@ impl Subject {
     /// The files that it was read from, its own being `path`.
     pub fn sources(&self, path: &Path) -> Vec<PathBuf> {
         let folder = path.parent().unwrap_or(Path::new(""));
-        std::iter::once(path.to_owned()).chain(self.files().iter().map(|file| folder.join(file))).collect()
+        let extracts = match self {
+            Self::Layer(scene) => scene.extracts.iter(),
+            Self::Element(_) => [].iter(),
+        };
+        let files = self.files().iter().chain(extracts.map(|extract| &extract.source));
+        std::iter::once(path.to_owned()).chain(files.map(|file| folder.join(file))).collect()
     }
 
     /// What is worth telling though nothing is wrong.

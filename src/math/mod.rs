@@ -1,17 +1,21 @@
 //! Numerical tools that know nothing of the model.
 
+mod fourier;
 mod monotone;
 mod numbers;
 mod polynomial;
+mod random;
 mod relaxation;
 mod root;
 mod spline;
 mod sums;
 mod tridiagonal;
 
+pub use fourier::{Direction, fourier};
 pub use monotone::{Expansion, cubic, interval_of, monotone_slopes};
 pub use numbers::{Numbers, visit_all};
 pub use polynomial::{Jet, Quintic};
+pub use random::SplitMix64;
 pub use relaxation::Relaxation;
 pub use root::bracketed_root;
 pub use spline::{Bounds, Spline};

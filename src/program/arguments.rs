@@ -1,11 +1,14 @@
 //! The command line.
 
+mod surface;
+
 use std::f64::consts::TAU;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
 use asperity::scene::Wlf;
 use clap::{Args, Parser, Subcommand};
+pub(crate) use surface::{Reading, Surface};
 
 use super::sweep::{Shard, Values};
 
@@ -33,6 +36,8 @@ pub(crate) enum Command {
     Material(Material),
     /// Measures how right and how quick a scene's runs are: tables, pictures and a page.
     Report(Report),
+    /// Prints heights, slopes and Hurst exponent of a measured profile or a scene's surface, and draws its spectrum.
+    Surface(Surface),
     /// Finds the friction coefficient over speed, pressure and temperature: a table and a picture.
     Sweep(Sweep),
 }

@@ -24,9 +24,12 @@ pub(crate) enum ProgramError {
     /// The run cannot begin.
     #[error("the run cannot start: {0}")]
     Start(SimulationError),
-    /// The scene cannot be written as JSON.
-    #[error("the scene cannot be written as JSON: {0}")]
+    /// What is to be told cannot be written as JSON.
+    #[error("cannot be written as JSON: {0}")]
     Json(serde_json::Error),
+    /// Options for a file with a profile, but the file is a scene.
+    #[error("{}: a scene says itself how its surface is read; the options are for profiles", .path.display())]
+    SceneHasOptions { path: PathBuf },
     /// The run could not go on.
     #[error("{source}; the rows so far, up to t = {time} s, are in {}", .output.display())]
     Run { source: SimulationError, time: f64, output: PathBuf },

@@ -13,6 +13,7 @@ mod progress;
 mod report;
 mod result_file;
 mod simulate;
+mod surface;
 mod sweep;
 
 use std::path::{Path, PathBuf};
@@ -33,6 +34,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<(), ProgramError> {
         Command::Fit(command) => fit::fit(&command),
         Command::Material(command) => material::material(&command),
         Command::Report(command) => report::report(&command),
+        Command::Surface(command) => surface::surface(&command),
         Command::Sweep(command) => sweep::sweep(&command),
     }
 }
@@ -53,7 +55,8 @@ fn set_parameters(scene: &mut Scene, set: &[(String, String)]) -> Result<(), Pro
 /// The files that a scene is read from.
 fn sources(path: &Path, scene: &Scene) -> Vec<PathBuf> {
     let folder = path.parent().unwrap_or(Path::new(""));
-    std::iter::once(path.to_owned()).chain(scene.files.iter().map(|file| folder.join(file))).collect()
+    let files = scene.files.iter().chain(scene.extracts.iter().map(|extract| &extract.source));
+    std::iter::once(path.to_owned()).chain(files.map(|file| folder.join(file))).collect()
 }
 
 /// Refuses an output that would take the place of one of `others`; a file that is not there yet takes no one's.

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::profile::{LengthUnit, Missing, ThirdColumn, Tilt};
 use super::{Extrapolation, Initial, Method, OutputGroup, Problem};
 
 /// The largest size of a number in SI units that a scene, a carrier or a master may give: m, s, N/m, whatever it is.
@@ -65,6 +66,12 @@ pub(super) const DAMPING: Range = NOT_NEGATIVE;
 pub(super) const RELAXATION_TIME: Range = POSITIVE;
 pub(super) const WAVELENGTH: Range = POSITIVE;
 pub(super) const POINTS_PER_WAVELENGTH: WholeRange = WholeRange { low: 4, high: 10_000_000 };
+pub(super) const LENGTH: Range = POSITIVE;
+pub(super) const PROFILE_POINTS: WholeRange = WholeRange { low: 4, high: 4_000_000 };
+pub(super) const HURST: Range = Range { largest: 1.0, ..POSITIVE };
+pub(super) const RMS: Range = POSITIVE;
+pub(super) const SEED: WholeRange = WholeRange { low: 0, high: i64::MAX };
+pub(super) const LINE: WholeRange = WholeRange { low: 1, high: 1_000_000_000 };
 pub(super) const FRICTION_COEFFICIENT: Range = NOT_NEGATIVE;
 pub(super) const SHEAR_FORCE: Range = NOT_NEGATIVE;
 pub(super) const SHEAR_STRENGTH: Range = NOT_NEGATIVE;
@@ -92,10 +99,27 @@ pub(super) const SURFACE: Choices<SurfaceKind> = Choices {
     words: &[
         ("flat", SurfaceKind::Flat),
         ("sinusoid", SurfaceKind::Sinusoid),
+        ("self_affine", SurfaceKind::SelfAffine),
         ("points", SurfaceKind::Points),
         ("file", SurfaceKind::File),
     ],
-    later: &["self_affine"],
+    later: &[],
+};
+pub(super) const LENGTH_UNIT: Choices<LengthUnit> = Choices {
+    words: &[
+        ("m", LengthUnit::Metre),
+        ("mm", LengthUnit::Millimetre),
+        ("um", LengthUnit::Micrometre),
+        ("nm", LengthUnit::Nanometre),
+    ],
+    later: &[],
+};
+pub(super) const MISSING: Choices<Missing> =
+    Choices { words: &[("refuse", Missing::Refuse), ("fill", Missing::Fill)], later: &[] };
+pub(super) const TILT: Choices<Tilt> = Choices { words: &[("keep", Tilt::Keep), ("remove", Tilt::Remove)], later: &[] };
+pub(super) const THIRD_COLUMN: Choices<ThirdColumn> = Choices {
+    words: &[("invalid", ThirdColumn::Invalid), ("valid", ThirdColumn::Valid), ("ignore", ThirdColumn::Ignore)],
+    later: &[],
 };
 pub(super) const OUTPUTS: Choices<OutputGroup> = Choices {
     words: &[
@@ -116,6 +140,7 @@ pub(super) const OUTPUTS: Choices<OutputGroup> = Choices {
 pub(super) enum SurfaceKind {
     Flat,
     Sinusoid,
+    SelfAffine,
     Points,
     File,
 }

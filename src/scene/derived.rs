@@ -1,6 +1,8 @@
 //! What follows from a scene without a run.
 
 use std::f64::consts::TAU;
+use std::path::Path as FilePath;
+use std::{fs, io};
 
 use super::points::peak_to_valley;
 use super::{Path, RateShear, Scene, allowed};
@@ -16,6 +18,17 @@ impl Scene {
     /// The scene's name as a C identifier: letters, digits and underscores, no digit first.
     pub fn model_identifier(&self) -> String {
         identifier(&self.name)
+    }
+
+    /// The bytes of one of the scene's [`files`](Self::files) as an FMU carries them; `folder` is the scene's.
+    ///
+    /// # Errors
+    /// Where the file cannot be read.
+    pub fn carried(&self, folder: &FilePath, file: &FilePath) -> io::Result<Vec<u8>> {
+        match self.extracts.iter().find(|extract| extract.name == file) {
+            Some(extract) => Ok(extract.text.clone().into_bytes()),
+            None => fs::read(folder.join(file)),
+        }
     }
 
     /// The scene's height, m: the peak-to-valley heights of the profile's data points and of the layer's roughness

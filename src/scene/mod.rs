@@ -14,9 +14,10 @@ mod material;
 mod material_reader;
 mod parameters;
 mod points;
-mod profile_file;
+mod profile;
 mod prony_file;
 mod reader;
+mod self_affine;
 mod settings;
 mod surface;
 mod table;
@@ -38,6 +39,7 @@ pub use error::{Problem, SceneError};
 pub use link_kind::LinkKind;
 pub use material::{Material, PronyTerm, Wlf};
 pub use parameters::{MaterialParameter, Parameter, ParameterError, Value};
+pub use profile::{Extract, LengthUnit, Line, Missing, ProfileOptions, ThirdColumn, Tilt, UnknownWord};
 pub use unit::Unit;
 
 /// A whole scene, checked. Serialised, it is every number of it: what the scene does not name is null or empty.
@@ -63,9 +65,13 @@ pub struct Scene {
     pub outputs: Vec<OutputGroup>,
     /// The motion of the carrier in runs without a master.
     pub excitation: Vec<Phase>,
-    /// The files that the scene reads, as the scene names them: relative to its folder.
+    /// The files that the scene reads and an FMU carries: relative to its folder, as the scene names them; a line of an
+    /// areal measurement by the name of its extract.
     #[serde(skip)]
     pub files: Vec<PathBuf>,
+    /// The lines of areal measurements among them.
+    #[serde(skip)]
+    pub extracts: Vec<Extract>,
     /// What is worth telling though the scene is valid.
     #[serde(skip)]
     pub warnings: Vec<String>,

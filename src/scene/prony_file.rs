@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::allowed::{self, Range};
 use super::error::Place;
-use super::profile_file::{data_lines, text_of};
+use super::profile::{Row, split, text_of};
 use super::table::Entry;
 use super::{Problem, PronyTerm, SceneError};
 
@@ -18,7 +18,7 @@ type Refusal = (usize, &'static str, Problem);
 
 /// Reads the series at `path`, which `entry` names.
 pub(super) fn read(entry: &Entry<'_>, path: &Path) -> Result<Vec<PronyTerm>, SceneError> {
-    let file = entry.source().beside(path);
+    let file = entry.source().folder().join(path);
     let bytes = fs::read(&file)
         .map_err(|error| entry.problem(Problem::Unreadable { given: entry.given(), reason: error.to_string() }))?;
     parse(&bytes).map_err(|(line, column, problem)| {
@@ -32,8 +32,7 @@ fn parse(bytes: &[u8]) -> Result<Vec<PronyTerm>, Refusal> {
     if let Some((line, header)) = swapped_header(&text) {
         return Err((line, "columns", refused(&format!("`{header}`"), "relaxation_time before modulus")));
     }
-    let terms: Vec<PronyTerm> =
-        data_lines(&text).map(|(line, _, fields)| term(line, &fields)).collect::<Result<_, _>>()?;
+    let terms: Vec<PronyTerm> = rows(&text).map(|(line, row)| term(line, &row)).collect::<Result<_, _>>()?;
     if terms.is_empty() {
         return Err((text.lines().count().max(1), "terms", refused("0", "at least one term")));
     }
@@ -48,20 +47,28 @@ fn swapped_header(text: &str) -> Option<(usize, &str)> {
     (names.find("modulus")? < names.find("relaxation")?).then_some(header)
 }
 
-fn term(line: usize, fields: &[String]) -> Result<PronyTerm, Refusal> {
-    let [time, modulus] = fields else {
-        return Err((line, "columns", refused(&fields.len().to_string(), EXPECTED_COLUMNS)));
-    };
+/// The columns of the lines that hold data, without comments and a header, and the lines' numbers from 1.
+fn rows(text: &str) -> impl Iterator<Item = (usize, Row<'_>)> {
+    let numbered = text.lines().zip(1..).map(|(line, number)| (line.trim(), number));
+    let filled = numbered.filter(|(line, _)| !line.is_empty() && !line.starts_with('#'));
+    let rows = filled.map(|(line, number)| (number, split(line, false))).enumerate();
+    rows.filter(|(count, (_, row))| *count > 0 || !row.is_header()).map(|(_, row)| row)
+}
+
+fn term(line: usize, row: &Row<'_>) -> Result<PronyTerm, Refusal> {
+    if row.count != COLUMNS.len() {
+        return Err((line, "columns", refused(&row.count.to_string(), EXPECTED_COLUMNS)));
+    }
     Ok(PronyTerm {
-        relaxation_time: number(time, line, COLUMNS[0], &allowed::RELAXATION_TIME)?,
-        modulus: number(modulus, line, COLUMNS[1], &allowed::MODULUS)?,
+        relaxation_time: number(row, 0, line, &allowed::RELAXATION_TIME)?,
+        modulus: number(row, 1, line, &allowed::MODULUS)?,
     })
 }
 
-fn number(field: &str, line: usize, column: &'static str, range: &Range) -> Result<f64, Refusal> {
-    let number = field.parse().ok().filter(|&number| range.holds(number));
-    let given = || format!("\"{}\"", field.chars().take(60).collect::<String>());
-    number.ok_or_else(|| (line, column, refused(&given(), &range.to_string())))
+fn number(row: &Row<'_>, column: usize, line: usize, range: &Range) -> Result<f64, Refusal> {
+    let number = row.number(column).filter(|&number| range.holds(number));
+    let given = || format!("\"{}\"", row.fields[column].chars().take(60).collect::<String>());
+    number.ok_or_else(|| (line, COLUMNS[column], refused(&given(), &range.to_string())))
 }
 
 fn refused(given: &str, expected: &str) -> Problem {
@@ -105,7 +112,7 @@ mod tests {
                 2,
                 "columns = `Modulus (Pa); Relaxation time (s)`: expected relaxation_time before modulus",
             ),
-            ("1\0,2\n", 1, "bytes that are zero: expected text in UTF-8, not UTF-16 or binary data"),
+            ("1\0,2\n", 1, "bytes that are zero: expected text in UTF-8, UTF-16 or Latin-1"),
         ];
         for (text, line, message) in cases {
             let (at, column, problem) = parse(text.as_bytes()).unwrap_err();

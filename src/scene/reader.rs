@@ -61,7 +61,7 @@ fn read_scene(source: Source<'_>, document: &DeTable<'_>) -> Result<Scene, Scene
     let outputs = root.optional_table("fmu", settings::read_fmu)?.unwrap_or_else(settings::default_outputs);
     let excitation = root.tables("excitation", |table| excitation::read_phase(table, form))?;
     root.finish()?;
-    let Found { files, mut warnings } = found;
+    let Found { files, extracts, mut warnings } = found;
     warnings.extend(warnings::short_profile(&layer, &surface, &excitation));
     let scene = Scene {
         name,
@@ -75,6 +75,7 @@ fn read_scene(source: Source<'_>, document: &DeTable<'_>) -> Result<Scene, Scene
         outputs,
         excitation,
         files,
+        extracts,
         warnings,
     };
     match (scene.check(), of_material) {

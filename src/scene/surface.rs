@@ -5,8 +5,9 @@ use std::path::{Component, Path, PathBuf};
 
 use super::allowed::{self, SurfaceKind};
 use super::points::{self, Axis};
+use super::profile::{self, Extract, Failure, ProfileOptions, Tilt};
 use super::table::{Entry, TableReader, read_table};
-use super::{Problem, SceneError, Surface, profile_file};
+use super::{Problem, SceneError, Surface, self_affine};
 use crate::math::Spline;
 
 /// The key that says where the heights come from.
@@ -23,6 +24,7 @@ impl Surface {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Found {
     pub(super) files: Vec<PathBuf>,
+    pub(super) extracts: Vec<Extract>,
     pub(super) warnings: Vec<String>,
 }
 
@@ -41,6 +43,7 @@ pub(super) fn read_surface(entry: &Entry<'_>, found: &mut Found) -> Result<Surfa
         read_table(entry, |table| match table.required(KIND, allowed::SURFACE)?.choice(&allowed::SURFACE)? {
             SurfaceKind::Flat => read_flat(table),
             SurfaceKind::Sinusoid => read_sinusoid(table),
+            SurfaceKind::SelfAffine => self_affine::read(table),
             SurfaceKind::Points => read_points(table),
             SurfaceKind::File => read_file(table, found),
         })?;
@@ -101,13 +104,42 @@ fn read_points(table: &mut TableReader<'_>) -> Result<Surface, SceneError> {
 }
 
 fn read_file(table: &mut TableReader<'_>, found: &mut Found) -> Result<Surface, SceneError> {
-    table.allow(&[KIND, "path", "periodic"], &[])?;
-    let periodic = table.optional_flag("periodic")?.unwrap_or(false);
+    let keys = ["path", "periodic", "unit", "x_unit", "z_unit", "missing", "tilt", "third_column", "line"];
+    table.allow(&[&[KIND][..], &keys].concat(), &[])?;
+    let options = read_options(table)?;
     let entry = table.required("path", PATH_EXPECTED)?;
     let path = read_path(&entry)?;
-    let profile = profile_file::read(&entry, &path, periodic)?;
-    found.add_file(path);
-    Ok(profile)
+    let profile = profile::read(entry.source().folder(), &path, &options).map_err(|failure| match failure {
+        Failure::Unreadable(error) => {
+            entry.problem(Problem::Unreadable { given: entry.given(), reason: error.to_string() })
+        }
+        Failure::Refused(error) => error.named_by(entry.place(), entry.key()),
+    })?;
+    let told = profile.warnings.iter().map(|warning| format!("{}: {warning}", path.display()));
+    found.warnings.extend(told);
+    if !found.files.contains(&profile.file) {
+        let name = profile.file.clone();
+        found.extracts.extend(profile.extract.map(|text| Extract { source: path, name, text }));
+    }
+    found.add_file(profile.file);
+    Ok(profile.surface)
+}
+
+fn read_options(table: &mut TableReader<'_>) -> Result<ProfileOptions, SceneError> {
+    let unit = table.optional_choice("unit", &allowed::LENGTH_UNIT)?;
+    let options = ProfileOptions {
+        x_unit: table.optional_choice("x_unit", &allowed::LENGTH_UNIT)?.or(unit),
+        z_unit: table.optional_choice("z_unit", &allowed::LENGTH_UNIT)?.or(unit),
+        missing: table.optional_choice("missing", &allowed::MISSING)?.unwrap_or_default(),
+        tilt: table.optional_choice("tilt", &allowed::TILT)?.unwrap_or_default(),
+        third_column: table.optional_choice("third_column", &allowed::THIRD_COLUMN)?,
+        line: table.optional_whole("line", &allowed::LINE)?.and_then(|line| usize::try_from(line).ok()),
+        periodic: table.optional_flag("periodic")?.unwrap_or(false),
+    };
+    match table.entry("tilt").filter(|_| options.periodic && options.tilt == Tilt::Remove) {
+        Some(entry) => Err(entry.refuse("\"keep\" for a periodic profile, whose ends meet as they are")),
+        None => Ok(options),
+    }
 }
 
 const PATH_EXPECTED: &str = "a relative path of a file beside or below the scene file, without `..` and backslashes";

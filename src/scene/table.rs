@@ -1,7 +1,7 @@
 //! Typed reading of TOML tables that know their place in the file, so that every refusal can name it.
 
 use std::ops;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -58,9 +58,9 @@ impl<'a> Source<'a> {
         })
     }
 
-    /// The name of `path`, which is relative to the folder of the scene file.
-    pub(super) fn beside(&self, path: &Path) -> PathBuf {
-        self.file.parent().unwrap_or(Path::new("")).join(path)
+    /// The folder of the scene file.
+    pub(super) fn folder(&self) -> &'a Path {
+        self.file.parent().unwrap_or(Path::new(""))
     }
 }
 

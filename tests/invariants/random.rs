@@ -82,6 +82,7 @@ pub(crate) fn cases_by(method: Method) -> impl Strategy<Value = Case> {
                     outputs: GROUPS.to_vec(),
                     excitation: Vec::new(),
                     files: Vec::new(),
+                    extracts: Vec::new(),
                     warnings: Vec::new(),
                 };
                 Case { scene, start, motions }

@@ -4,6 +4,9 @@ use asperity::scene::Scene;
 
 use crate::{PATH, assert_refusals};
 
+const FILE_KEYS: &str = "surface.x: unknown; allowed: kind, path, periodic, unit, x_unit, z_unit, missing, tilt, \
+                         third_column, line";
+
 #[test]
 fn unknown_keys() {
     let layer =
@@ -30,7 +33,7 @@ fn unknown_keys() {
                 16,
                 "surface.periodic: unknown; allowed: kind, amplitude, wavelength, points_per_wavelength",
             ),
-            (15, "kind = 'file'\nx = []", 16, "surface.x: unknown; allowed: kind, path, periodic"),
+            (15, "kind = 'file'\nx = []", 16, FILE_KEYS),
             (15, "kind = 'points'\npath = 'a'", 16, "surface.path: unknown; allowed: kind, x, z, periodic"),
             (18, "mu = 0.3", 18, "friction.mu: unknown; allowed: coulomb, rate_shear, shear_force"),
             (
@@ -60,7 +63,7 @@ fn unknown_keys() {
 
 #[test]
 fn missing_keys() {
-    let kinds = r#"one of "flat", "sinusoid", "points", "file""#;
+    let kinds = r#"one of "flat", "sinusoid", "self_affine", "points", "file""#;
     assert_refusals(
         "missing",
         &[
@@ -134,26 +137,4 @@ fn missing_keys() {
     let no_surface = "name = 'a'\nlayer = { masses = 1, spacing = 1, mass = 1 }";
     let no_surface = Scene::parse(no_surface, "a.toml".as_ref()).unwrap_err();
     assert_eq!(no_surface.to_string(), "a.toml:1: surface: missing; expected a table");
-}
-
-#[test]
-fn what_is_not_yet_supported() {
-    let kinds = r#""flat", "sinusoid", "points", "file""#;
-    assert_refusals(
-        "later",
-        &[
-            (
-                15,
-                "kind = 'self_affine'\nhurst = 0.8",
-                15,
-                &format!("surface.kind = 'self_affine': not yet supported; allowed: {kinds}"),
-            ),
-            (
-                7,
-                "roughness = { kind = 'self_affine' }",
-                7,
-                &format!("layer.roughness.kind = 'self_affine': not yet supported; allowed: {kinds}"),
-            ),
-        ],
-    );
 }

@@ -119,12 +119,21 @@ fn profiles_that_are_none() {
     let cases = [
         ("", false, "1: points = 0: expected at least 2 points for a profile"),
         ("x,z\n0,1\n", false, "2: points = 1: expected at least 2 points for a profile"),
-        ("x,z\n0,1\n1,high\n", false, "3: z = \"high\": expected a number from -1e30 to 1e30"),
-        ("x,z\n0,1\n1,nan\n", false, "3: z = \"nan\": expected a number from -1e30 to 1e30"),
+        (
+            "x,z\n0,1\n1,high\n",
+            false,
+            "3: z = \"high\": expected a number from -1e30 to 1e30, or missing = \"fill\" where heights are missing",
+        ),
+        (
+            "x,z\n0,1\n1,nan\n",
+            false,
+            "3: z = \"nan\": expected a number from -1e30 to 1e30, or missing = \"fill\" where heights are missing",
+        ),
         (
             "x,z\n0,1\n1,2,3\n",
             false,
-            "3: columns = 3 in `1,2,3`: expected two, x and z, separated by comma, semicolon, tab or blanks",
+            "3: columns = 3 in `1,2,3`: expected two, x and z, separated by comma, semicolon, tab or blanks; \
+             third_column tells what a third one says",
         ),
         (
             "0;1\r\n2;2\r\n1;3\r\n",
@@ -144,4 +153,77 @@ fn profiles_that_are_none() {
         let expected = format!("profile.csv:{message} (file named by surface.path, scene.toml:16)");
         assert_eq!(folder.refusal(&with_profile("profile.csv", periodic)), expected);
     }
+}
+
+/// A self-affine surface without fault, one of its keys changed.
+fn self_affine(key: &str, value: &str) -> String {
+    let keys = [
+        ("length", "0.1"),
+        ("points", "2000"),
+        ("hurst", "0.8"),
+        ("rms", "2e-5"),
+        ("roll_off_wavelength", "5e-3"),
+        ("cut_off_wavelength", "1e-4"),
+        ("seed", "7"),
+    ];
+    let lines = keys.map(|(name, usual)| format!("{name} = {}", if name == key { value } else { usual }));
+    with_line(15, &format!("kind = 'self_affine'\n{}", lines.join("\n")))
+}
+
+#[test]
+fn self_affine_surfaces_that_cannot_be() {
+    let folder = Folder::new("self-affine");
+    folder.write("scene.toml", &self_affine("seed", "8"));
+    asperity::scene::Scene::load(&folder.0.join("scene.toml")).unwrap();
+    let cases = [
+        ("length", "0", "16: surface.length = 0: expected a number from 1e-30 to 1e30"),
+        ("points", "3", "17: surface.points = 3: expected a whole number from 4 to 4000000"),
+        ("points", "1999", "17: surface.points = 1999: expected at least 2000: two points a cut_off_wavelength"),
+        ("hurst", "0", "18: surface.hurst = 0: expected a number from 1e-30 to 1.0"),
+        ("hurst", "1.1", "18: surface.hurst = 1.1: expected a number from 1e-30 to 1.0"),
+        ("rms", "-1e-6", "19: surface.rms = -1e-6: expected a number from 1e-30 to 1e30"),
+        (
+            "roll_off_wavelength",
+            "0.2",
+            "20: surface.roll_off_wavelength = 0.2: expected a number up to 0.1, the length",
+        ),
+        (
+            "cut_off_wavelength",
+            "5e-3",
+            "21: surface.cut_off_wavelength = 5e-3: expected a number < 0.005, the roll_off_wavelength",
+        ),
+        ("seed", "-1", "22: surface.seed = -1: expected a whole number from 0 to 9223372036854775807"),
+        ("seed", "0.5", "22: surface.seed = 0.5: expected a whole number from 0 to 9223372036854775807"),
+    ];
+    for (key, value, message) in cases {
+        assert_eq!(folder.refusal(&self_affine(key, value)), format!("scene.toml:{message}"));
+    }
+    let missing = folder.refusal(&with_line(15, "kind = 'self_affine'\nlength = 1"));
+    assert_eq!(missing, "scene.toml:14: surface.points: missing; expected a whole number from 4 to 4000000");
+}
+
+#[test]
+fn options_of_files_that_cannot_be() {
+    let folder = Folder::new("file-options");
+    folder.write("profile.csv", "0 1\n1 2\n2 1\n");
+    let units = r#"expected one of "m", "mm", "um", "nm""#;
+    let cases = [
+        ("unit = 'km'", format!("surface.unit = 'km': {units}")),
+        ("x_unit = 1", format!("surface.x_unit = 1: {units}")),
+        ("missing = true", r#"surface.missing = true: expected one of "refuse", "fill""#.into()),
+        ("tilt = 'level'", r#"surface.tilt = 'level': expected one of "keep", "remove""#.into()),
+        ("third_column = 'z'", r#"surface.third_column = 'z': expected one of "invalid", "valid", "ignore""#.into()),
+        ("line = 0", "surface.line = 0: expected a whole number from 1 to 1000000000".into()),
+        (
+            "tilt = 'remove'\nperiodic = true",
+            r#"surface.tilt = 'remove': expected "keep" for a periodic profile, whose ends meet as they are"#.into(),
+        ),
+    ];
+    for (option, message) in cases {
+        let refusal = folder.refusal(&with_line(15, &format!("kind = 'file'\npath = 'profile.csv'\n{option}")));
+        assert_eq!(refusal, format!("scene.toml:17: {message}"));
+    }
+    let refusal = folder.refusal(&with_line(15, "kind = 'file'\npath = 'profile.csv'\nline = 1"));
+    let expected = "line = 1: expected no such number for a profile: it chooses the line of an areal measurement (X3P)";
+    assert_eq!(refusal, format!("profile.csv: {expected} (file named by surface.path, scene.toml:16)"));
 }

@@ -63,7 +63,7 @@ fn wrong_types() {
 #[test]
 fn values_out_of_range() {
     let outputs = r#""forces", "dissipation", "friction", "contact", "energy", "tangent", "solver", "elements""#;
-    let kinds = r#"one of "flat", "sinusoid", "points", "file""#;
+    let kinds = r#"one of "flat", "sinusoid", "self_affine", "points", "file""#;
     let steps = "a whole number from 1 to 2147483647";
     // Too long for the name of a file in the archive.
     let long = format!("name = '{}'", "a".repeat(201));

@@ -65,7 +65,8 @@ fn resources(subject: &Subject, path: &Path) -> Result<Vec<Entry>, ProgramError>
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut entries = vec![Entry::new(format!("resources/{}", subject.file_name()), read(path)?)];
     for file in subject.files() {
-        entries.push(Entry::new(format!("resources/{}", archive_path(file)?), read(&folder.join(file))?));
+        let bytes = subject.carried(folder, file).map_err(ProgramError::file("read", &folder.join(file)))?;
+        entries.push(Entry::new(format!("resources/{}", archive_path(file)?), bytes));
     }
     Ok(entries)
 }

@@ -1,31 +1,41 @@
 //! A file with a profile or with a Prony series, read as a scene reads it: refused with a place and a reason, or a spline,
 //! or a material.
 
-use std::path::PathBuf;
+use std::io::{Cursor, Write as _};
+use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::{env, fs, process};
 
-use asperity::scene::{Friction, Link, Method, Scene};
+use asperity::scene::{Extract, Friction, Link, Method, Scene};
+use zip::ZipWriter;
+use zip::write::SimpleFileOptions;
 
 use super::scene::run_scene;
 
 /// Longer ones are no other profiles.
 const MOST_BYTES: usize = 4096;
 
-/// Writes the bytes behind the first into a file, and reads a scene that names it: a profile, periodic where the first is
-/// odd; a Prony series where the first has the bit 4.
+/// Writes the bytes behind the first two into a file, and reads a scene that names it: as the bits of these two say, or a Prony
+/// series where the highest is set.
 pub fn run(bytes: &[u8]) {
-    let Some((flags, text)) = bytes.split_first().filter(|(_, text)| text.len() <= MOST_BYTES) else { return };
+    let Some(([first, second], text)) = bytes.split_first_chunk().filter(|(_, text)| text.len() <= MOST_BYTES) else {
+        return;
+    };
+    let bit = |byte: u8, i: u32| byte >> i & 1 == 1;
     let scene_file = folder().join("scene.toml");
-    fs::write(folder().join("profile.csv"), text).unwrap();
-    let periodic = flags & 1 == 1;
-    let is_series = flags & 4 == 4;
-    let read = if is_series { rubber() } else { scene(periodic) };
+    let file = if bit(*first, 2) { archive(text) } else { text.to_vec() };
+    fs::write(folder().join("profile.csv"), file).unwrap();
+    let periodic = bit(*first, 0);
+    let is_series = bit(*first, 7);
+    let read = if is_series { rubber() } else { scene(periodic, &keys(*first, *second)) };
     match Scene::parse(&read, &scene_file) {
         Ok(scene) if is_series => run_scene(scene),
         Ok(scene) => {
             check(&scene, periodic);
-            run_scene(with_links(scene, if flags & 2 == 2 { Method::Step } else { Method::Event }));
+            if let Some(extract) = scene.extracts.first() {
+                check_extract(&scene, extract, &scene_file, &keys(*first, *second));
+            }
+            run_scene(with_links(scene, if bit(*first, 1) { Method::Step } else { Method::Event }));
         }
         Err(error) => {
             let message = error.to_string();
@@ -33,6 +43,42 @@ pub fn run(bytes: &[u8]) {
             assert!(!message.contains('\n'), "{message}");
         }
     }
+}
+
+/// The keys of the scene's surface that the bits stand for.
+fn keys(first: u8, second: u8) -> String {
+    let choice = |byte: u8, shift: u32, words: &[&'static str]| words.get(usize::from(byte >> shift) % 4).copied();
+    let missing = choice(first, 3, &["missing='fill'", "missing='refuse'"]);
+    let tilt = choice(first, 5, &["tilt='remove'"]);
+    let line = choice(second, 0, &["line=1", "line=2", "line=3"]);
+    let third = choice(second, 2, &["third_column='invalid'", "third_column='valid'", "third_column='ignore'"]);
+    let unit = choice(second, 4, &["unit='um'", "x_unit='mm'", "z_unit='nm'"]);
+    let keys = [missing, tilt, line, third, unit].into_iter().flatten();
+    keys.map(|key| format!(",{key}")).collect()
+}
+
+/// An X3P file: its document, and behind a zero the points, of which the first bits are the mask too.
+fn archive(bytes: &[u8]) -> Vec<u8> {
+    let zero = bytes.iter().position(|&byte| byte == 0).unwrap_or(bytes.len());
+    let (document, points) = bytes.split_at(zero);
+    let points = points.get(1..).unwrap_or_default();
+    let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, bytes) in
+        [("a/main.xml", document), ("a/data.bin", points), ("a/valid.bin", &points[..points.len().min(1)])]
+    {
+        writer.start_file(name, SimpleFileOptions::default()).unwrap();
+        writer.write_all(bytes).unwrap();
+    }
+    writer.finish().unwrap().into_inner()
+}
+
+/// What an FMU carries in place of the file is the same profile to the last bit.
+fn check_extract(scene: &Scene, extract: &Extract, scene_file: &Path, keys: &str) {
+    fs::remove_file(folder().join("profile.csv")).unwrap();
+    fs::write(folder().join(&extract.name), &extract.text).unwrap();
+    let carried = Scene::parse(&self::scene(scene.surface.periodic, keys), scene_file).unwrap();
+    fs::remove_file(folder().join(&extract.name)).unwrap();
+    assert_eq!((&carried.surface, &carried.files), (&scene.surface, &scene.files));
 }
 
 fn folder() -> &'static PathBuf {
@@ -45,10 +91,10 @@ fn folder() -> &'static PathBuf {
 }
 
 /// As short as can be: the rest is added later.
-fn scene(periodic: bool) -> String {
+fn scene(periodic: bool, keys: &str) -> String {
     format!(
         "name='p'\nlayer={{masses=2,spacing=1e-4,mass=1e-7}}\n\
-         surface={{kind='file',path='profile.csv',periodic={periodic}}}"
+         surface={{kind='file',path='profile.csv',periodic={periodic}{keys}}}"
     )
 }
 

@@ -1,0 +1,232 @@
+use super::*;
+
+fn options() -> ProfileOptions {
+    ProfileOptions::default()
+}
+
+fn filled() -> ProfileOptions {
+    ProfileOptions { missing: Missing::Fill, ..options() }
+}
+
+fn points_of(bytes: &[u8], options: &ProfileOptions) -> Vec<(f64, f64)> {
+    let (surface, ..) = parse(bytes, options, false).unwrap_or_else(|error| unreachable!("{error:?}"));
+    surface.x.into_iter().zip(surface.z).collect()
+}
+
+fn points(text: &str) -> Vec<(f64, f64)> {
+    points_of(text.as_bytes(), &options())
+}
+
+fn refused(bytes: &[u8], options: &ProfileOptions) -> (usize, String) {
+    match parse(bytes, options, false) {
+        Err(error) => (error.line.unwrap_or(0), error.problem.about(&error.key)),
+        Ok((surface, ..)) => unreachable!("accepted as {surface:?}"),
+    }
+}
+
+fn refusal(bytes: &[u8], periodic: bool) -> (usize, String) {
+    refused(bytes, &ProfileOptions { periodic, ..options() })
+}
+
+#[test]
+fn reads_every_separator() {
+    let texts = [
+        "0,1.5\n0.5,-2e-1\n",
+        "0 , 1.5\n0.5 , -2e-1",
+        "0;1.5\n0.5;-2e-1",
+        "0\t1.5\n0.5\t-2e-1\n",
+        "  0   1.5 \n  0.5   -2e-1  \n",
+        "0 \t 1.5\n0.5 \t -2e-1",
+        "0,0;1,5\n0,5;-2,0e-1",
+        "0,0\t1,5\n0,5\t-0,2",
+    ];
+    for text in texts {
+        assert_eq!(points(text), [(0.0, 1.5), (0.5, -0.2)], "{text:?}");
+    }
+}
+
+#[test]
+fn skips_one_header_comments_blank_lines_and_marks() {
+    let texts = [
+        "x,z\n0,1\n1,2\n",
+        "\u{feff}x [m]; z [m]\r\n0;1\r\n1;2\r\n",
+        "\u{feff}0,1\n1,2",
+        "# measured\n\nplace height\n0 1\n\n# end of the scratch\n1 2\n\n",
+        "X_(pixels),y1\n0,1\n1,2",
+        "a header of five words\n0 1\n1 2",
+    ];
+    for text in texts {
+        assert_eq!(points(text), [(0.0, 1.0), (1.0, 2.0)], "{text:?}");
+    }
+}
+
+const MISSING_REFUSED: [&str; 3] = [
+    "z = \"high\": expected a number from -1e30 to 1e30, or missing = \"fill\" where heights are missing",
+    "z = \"\": expected a number from -1e30 to 1e30, or missing = \"fill\" where heights are missing",
+    "z = \"nan\": expected a number from -1e30 to 1e30, or missing = \"fill\" where heights are missing",
+];
+
+#[test]
+fn refuses_what_is_no_profile() {
+    let cases: [(&str, usize, &str); 13] = [
+        ("", 1, "points = 0: expected at least 2 points for a profile"),
+        ("x,z\n\n", 2, "points = 0: expected at least 2 points for a profile"),
+        ("0,1\n", 1, "points = 1: expected at least 2 points for a profile"),
+        ("0,1\n1,high\n", 2, MISSING_REFUSED[0]),
+        ("0,1\n1,\n", 2, MISSING_REFUSED[1]),
+        ("zero,1\n1,2", 1, "x = \"zero\": expected a number from -1e30 to 1e30"),
+        ("x,z\nx,z\n1,2", 3, "points = 1: expected at least 2 points for a profile"),
+        ("0,1\n1,nan", 2, MISSING_REFUSED[2]),
+        ("0,1\n1e999,2", 2, "x = \"1e999\": expected a number from -1e30 to 1e30"),
+        (
+            "0,1\n1,2,3",
+            2,
+            "columns = 3 in `1,2,3`: expected two, x and z, separated by comma, semicolon, tab or blanks; third_column \
+             tells what a third one says",
+        ),
+        ("0\n1", 1, "columns = 1 in `0`: expected two, x and z, separated by comma, semicolon, tab or blanks"),
+        ("# x falls\n0 1\n2 1\n1 1", 4, "x = 1.0: expected a number > 2.0, the x of the point before, for x must rise"),
+        ("0 1\n2 1\n\n2 3", 4, "x = 2.0: expected each x once, but the point before has x = 2.0 too"),
+    ];
+    for (text, line, message) in cases {
+        assert_eq!(refusal(text.as_bytes(), false), (line, message.to_owned()), "{text:?}");
+    }
+}
+
+#[test]
+fn reads_the_encodings_of_instruments() {
+    let text = "Länge;Höhe\r\nx [µm];z [nm]\r\n0;1,5\r\n10;-2\r\n";
+    let [little, big] =
+        [u16::to_le_bytes, u16::to_be_bytes].map(|bytes| text.encode_utf16().flat_map(bytes).collect::<Vec<u8>>());
+    let latin: Vec<u8> = text.chars().map(|letter| u8::try_from(u32::from(letter)).unwrap_or(b'?')).collect();
+    let marked = |mark: &[u8], bytes: &[u8]| [mark, bytes].concat();
+    let encoded = [
+        text.as_bytes().to_vec(),
+        marked(b"\xef\xbb\xbf", text.as_bytes()),
+        marked(b"\xff\xfe", &little),
+        marked(b"\xfe\xff", &big),
+        little,
+        big,
+        latin,
+        text.replace("\r\n", "\r").into_bytes(),
+    ];
+    for (i, bytes) in encoded.iter().enumerate() {
+        assert_eq!(points_of(bytes, &options()), [(0.0, 1.5e-9), (1e-5, -2e-9)], "encoding {i}");
+    }
+    let (line, message) = refusal(b"0 1\0\n1 2", false);
+    assert_eq!((line, message.as_str()), (1, "bytes that are zero: expected text in UTF-8, UTF-16 or Latin-1"));
+}
+
+/// The unit is taken from where instruments write it, and given in the options it counts more.
+#[test]
+fn units_are_read_from_the_header() {
+    let cases = [
+        ("X_(microns),y1\n", 1e6, 1e6),
+        ("x [mm]\tz [µm]\n", 1e3, 1e6),
+        ("x / mm; z / \u{3bc}m\n", 1e3, 1e6),
+        ("x [mm] z [nm]\n", 1e3, 1e9),
+        ("x / mm z / nm\n", 1e3, 1e9),
+        ("Lateral;Height\nmm;µm\n", 1e3, 1e6),
+        ("Lateral;Height\n(Millimeters);(Micrometers)\n", 1e3, 1e6),
+        ("# x_mm z_um\n", 1e3, 1e6),
+        ("x [m],z [m]\n", 1.0, 1.0),
+        ("Name;test\nX-Unit: mm\nZ-Unit: µm\nPoints: 2\n[DATA]\n", 1e3, 1e6),
+        ("Instrument A\nUnits = Microns\nspeed 0.5 mm/s\n\n", 1e6, 1e6),
+        ("Instrument A\nstylus tip 2 µm\nx,z\n", 1.0, 1.0),
+        ("x [inch]; z [1]\n", 1.0, 1.0),
+    ];
+    for (header, x_per_metre, z_per_metre) in cases {
+        let found = points(&format!("{header}0 2.5\n8.5 -1\n"));
+        assert_eq!(found, [(0.0, 2.5 / z_per_metre), (8.5 / x_per_metre, -1.0 / z_per_metre)], "{header:?}");
+    }
+    let given = ProfileOptions { z_unit: Some(LengthUnit::Nanometre), ..options() };
+    assert_eq!(points_of(b"x [mm];z [mm]\n0;1\n1;2\n", &given), [(0.0, 1e-9), (1e-3, 2e-9)]);
+    let warnings = |text: &str| parse(text.as_bytes(), &options(), false).map_or(9, |(_, warnings, _)| warnings.len());
+    assert_eq!((warnings("X_(microns),y1\n0,1\n1,2"), warnings("x [mm],z [mm]\n0,1\n1,2")), (1, 0));
+}
+
+#[test]
+fn long_headers_of_words_and_numbers_are_passed_over() {
+    let header = "Serial 4711\n1000\nDate;2026-01-02;12:30\nSpeed\t0.5\nPoints\n2;\nx0=0.5 dx=0.1\n---\n";
+    for data in ["0 1\n1 2", "0;1\n1;2\n", "0,1\n1,2", "0\t1\n1\t2"] {
+        assert_eq!(points(&format!("{header}{data}")), [(0.0, 1.0), (1.0, 2.0)], "{data:?}");
+    }
+    let (line, message) = refusal(format!("{header}0 1\n1 2\nend 3\n").as_bytes(), false);
+    assert_eq!((line, message.as_str()), (11, "x = \"end\": expected a number from -1e30 to 1e30"));
+}
+
+#[test]
+fn decimal_commas_and_quotation_marks() {
+    for text in ["0,5 1,5\n1 -2,5e-1", "0,5;1,5\n1,0;-0,25", "0,5\t1,5\n1\t-,25", "\"0.5\",\"1.5\"\n1,\"-0.25\""] {
+        assert_eq!(points(text), [(0.5, 1.5), (1.0, -0.25)], "{text:?}");
+    }
+}
+
+#[test]
+fn heights_that_are_missing_are_refused_or_filled() {
+    for gap in ["NaN", "***", "", "---", "n/a", "BAD"] {
+        let text = format!("0;***\n1;1\n2;{gap}\n4;{gap}\n5;3\n6;2\n7;NaN\n");
+        let between = [(1.0, 1.0), (2.0, 1.5), (4.0, 2.5), (5.0, 3.0), (6.0, 2.0)];
+        assert_eq!(points_of(text.as_bytes(), &filled()), between, "{gap:?}");
+        assert_eq!(refusal(text.as_bytes(), false).0, 1, "{gap:?}");
+    }
+    assert_eq!(points_of(b"0\t1\n1\t\n2\t2\n", &filled()), [(0.0, 1.0), (1.0, 1.5), (2.0, 2.0)]);
+    for wrong in ["0;1\n1;high\n2;1", "0;1\n1;1e99\n2;1"] {
+        assert_eq!(refused(wrong.as_bytes(), &filled()).0, 2, "{wrong:?}");
+    }
+    let (_, message) = refused(b"0;***\n1;\n", &filled());
+    assert_eq!(message, "points = 0: expected at least 2 points for a profile");
+}
+
+#[test]
+fn a_third_column_marks_points() {
+    let third = |third_column| ProfileOptions { third_column: Some(third_column), ..filled() };
+    let cases = [
+        ("0;1;0\n1;9;1\n2;2;0", third(ThirdColumn::Invalid)),
+        ("0;1\n1;9;x\n2;2;", third(ThirdColumn::Invalid)),
+        ("0 1 1\n1 9 0\n2 2 1.0", third(ThirdColumn::Valid)),
+        ("x,z,invalid\n0,1,false\n1,9,true\n2,2,no", filled()),
+        ("x\tz\tvalid\n0\t1\t1\n1\t\t0\n2\t2\t1", filled()),
+    ];
+    for (text, options) in cases {
+        assert_eq!(points_of(text.as_bytes(), &options), [(0.0, 1.0), (1.0, 1.5), (2.0, 2.0)], "{text:?}");
+    }
+    assert_eq!(points_of(b"0 1 7 7\n1 9 7 7\n", &third(ThirdColumn::Ignore)), [(0.0, 1.0), (1.0, 9.0)]);
+    let (line, message) = refusal(b"x,z,invalid\n0,1,0\n1,2,1\n", false);
+    let expected = "third column = \"1\": expected valid points alone, or missing = \"fill\"";
+    assert_eq!((line, message.as_str()), (3, expected));
+}
+
+#[test]
+fn tilt_is_removed() {
+    let level = ProfileOptions { tilt: Tilt::Remove, ..options() };
+    let heights = |text: &str| points_of(text.as_bytes(), &level).into_iter().map(|point| point.1).collect::<Vec<_>>();
+    assert_eq!(heights("0 1\n1 3\n3 7\n"), [0.0; 3]);
+    // The point in the middle has two steps beside it and weighs twice: the line is z = x - 0.25.
+    assert_eq!(heights("-1 -0.5\n0 -1\n1 1.5\n"), [0.75, -0.75, 0.75]);
+}
+
+#[test]
+fn a_line_is_of_areal_measurements_alone() {
+    let (_, message) = refused(b"0 1\n1 2\n", &ProfileOptions { line: Some(2), ..options() });
+    assert!(message.starts_with("line = 2: expected no such number"), "{message}");
+}
+
+#[test]
+fn what_is_written_is_read_again() {
+    let x: Vec<f64> = (0..500).map(|i| f64::from(i) * 1.0e-7 / 3.0).collect();
+    let z: Vec<f64> = x.iter().map(|x| (x * 1e6).sin() * 1e-6).collect();
+    assert_eq!(points(&table::write(&x, &z)), x.into_iter().zip(z).collect::<Vec<_>>());
+}
+
+#[test]
+fn periodic_ends_meet() {
+    let (line, message) = refusal(b"0 1\n1 2\n2 1.5", true);
+    let expected = "z = 1.5: expected 1.0, the first height, for a periodic profile ends at the height it starts from";
+    assert_eq!((line, message.as_str()), (3, expected));
+    let (_, message) = refusal(b"0 1\n1 1", true);
+    assert_eq!(message, "points = 2: expected at least 3 points for a periodic profile");
+    let periodic = ProfileOptions { periodic: true, ..options() };
+    let closed = points_of(b"0 1\n1 2\n2 1.0000000000000002", &periodic);
+    assert_eq!(closed, [(0.0, 1.0), (1.0, 2.0), (2.0, 1.0)]);
+}
