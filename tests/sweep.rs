@@ -262,7 +262,8 @@ fn two_maxima_move_with_the_temperature() {
         let shift = 10_f64.powf(-7.52 * (temperature - reference) / (119.75 + temperature - reference));
         let speeds: Vec<String> = speeds.iter().map(|speed| format!("{:e}", speed / shift)).collect();
         let (kelvin, table) = (temperature.to_string(), folder.join(format!("{temperature}.csv")));
-        let options = ["--speeds", &speeds.join(","), "--pressures", "4e5", "--temperatures", &kelvin, "--error", "2e-3"];
+        let options =
+            ["--speeds", &speeds.join(","), "--pressures", "4e5", "--temperatures", &kelvin, "--error", "2e-3"];
         sweep(&scene, &table, &options);
         let rows = Rows::read(&table);
         (0..speeds.len())

@@ -35,11 +35,10 @@ pub(super) struct WholeRange {
     high: i64,
 }
 
-/// Words to choose from, and words of features that are still to come.
+/// Words to choose from.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Choices<T: 'static> {
     words: &'static [(&'static str, T)],
-    later: &'static [&'static str],
 }
 
 const POSITIVE: Range = Range { smallest: SMALLEST, largest: LARGEST, zero: false, negative: false };
@@ -90,11 +89,11 @@ pub(super) const FORCE: Range = ANY;
 pub(super) const PRESSURE: Range = ANY;
 
 pub(super) const INITIAL: Choices<Initial> =
-    Choices { words: &[("relaxed", Initial::Relaxed), ("undeformed", Initial::Undeformed)], later: &[] };
+    Choices { words: &[("relaxed", Initial::Relaxed), ("undeformed", Initial::Undeformed)] };
 pub(super) const METHOD: Choices<Method> =
-    Choices { words: &[("event", Method::Event), ("step", Method::Step), ("auto", Method::Auto)], later: &[] };
+    Choices { words: &[("event", Method::Event), ("step", Method::Step), ("auto", Method::Auto)] };
 pub(super) const EXTRAPOLATION: Choices<Extrapolation> =
-    Choices { words: &[("linear", Extrapolation::Linear), ("hold", Extrapolation::Hold)], later: &[] };
+    Choices { words: &[("linear", Extrapolation::Linear), ("hold", Extrapolation::Hold)] };
 pub(super) const SURFACE: Choices<SurfaceKind> = Choices {
     words: &[
         ("flat", SurfaceKind::Flat),
@@ -103,7 +102,6 @@ pub(super) const SURFACE: Choices<SurfaceKind> = Choices {
         ("points", SurfaceKind::Points),
         ("file", SurfaceKind::File),
     ],
-    later: &[],
 };
 pub(super) const LENGTH_UNIT: Choices<LengthUnit> = Choices {
     words: &[
@@ -112,14 +110,11 @@ pub(super) const LENGTH_UNIT: Choices<LengthUnit> = Choices {
         ("um", LengthUnit::Micrometre),
         ("nm", LengthUnit::Nanometre),
     ],
-    later: &[],
 };
-pub(super) const MISSING: Choices<Missing> =
-    Choices { words: &[("refuse", Missing::Refuse), ("fill", Missing::Fill)], later: &[] };
-pub(super) const TILT: Choices<Tilt> = Choices { words: &[("keep", Tilt::Keep), ("remove", Tilt::Remove)], later: &[] };
+pub(super) const MISSING: Choices<Missing> = Choices { words: &[("refuse", Missing::Refuse), ("fill", Missing::Fill)] };
+pub(super) const TILT: Choices<Tilt> = Choices { words: &[("keep", Tilt::Keep), ("remove", Tilt::Remove)] };
 pub(super) const THIRD_COLUMN: Choices<ThirdColumn> = Choices {
     words: &[("invalid", ThirdColumn::Invalid), ("valid", ThirdColumn::Valid), ("ignore", ThirdColumn::Ignore)],
-    later: &[],
 };
 pub(super) const OUTPUTS: Choices<OutputGroup> = Choices {
     words: &[
@@ -132,7 +127,6 @@ pub(super) const OUTPUTS: Choices<OutputGroup> = Choices {
         ("solver", OutputGroup::Solver),
         ("elements", OutputGroup::Elements),
     ],
-    later: &[],
 };
 
 /// Where the heights of a surface come from.
@@ -164,9 +158,6 @@ impl<T: Copy + PartialEq> Choices<T> {
     pub(super) fn find(&self, word: &str, given: &str) -> Result<T, Problem> {
         match self.words.iter().find(|(name, _)| *name == word) {
             Some(&(_, choice)) => Ok(choice),
-            None if self.later.contains(&word) => {
-                Err(Problem::NotYetSupported { given: given.to_owned(), allowed: self.quoted() })
-            }
             None => Err(Problem::Value { given: given.to_owned(), expected: self.to_string() }),
         }
     }

@@ -43,13 +43,6 @@ pub enum Problem {
         /// What is allowed.
         expected: String,
     },
-    /// A feature that is known, but not there yet.
-    NotYetSupported {
-        /// The value as it was written; empty where the key alone asks for the feature.
-        given: String,
-        /// What there is instead.
-        allowed: Vec<String>,
-    },
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -125,9 +118,6 @@ impl Problem {
             Self::Unknown { allowed } => format!("{key}: unknown; allowed: {}", allowed.join(", ")),
             Self::Missing { expected } => format!("{key}: missing; expected {expected}"),
             Self::Value { given, expected } => format!("{}expected {expected}", assignment(key, given)),
-            Self::NotYetSupported { given, allowed } => {
-                format!("{}not yet supported; allowed: {}", assignment(key, given), allowed.join(", "))
-            }
         }
     }
 }

@@ -9,7 +9,7 @@ const KEYS: [&str; 5] = ["duration", "u_rate", "w_rate", "u_sine", "w_sine"];
 const OF_FORM: FormKeys = FormKeys { direct: &["until_force"], material: &["until_pressure"] };
 
 pub(super) fn read_phase(table: &mut TableReader<'_>, form: Form) -> Result<Phase, SceneError> {
-    form.allow(table, &KEYS, &OF_FORM, &[])?;
+    form.allow(table, &KEYS, &OF_FORM)?;
     Ok(Phase {
         duration: table.number("duration", &allowed::DURATION)?,
         u: read_path(table, "u_rate", "u_sine")?,
@@ -26,6 +26,6 @@ fn read_path(table: &mut TableReader<'_>, rate: &'static str, sine: &'static str
 }
 
 fn read_sine(table: &mut TableReader<'_>) -> Result<(f64, f64), SceneError> {
-    table.allow(&["amplitude", "frequency"], &[])?;
+    table.allow(&["amplitude", "frequency"])?;
     Ok((table.number("amplitude", &allowed::AMPLITUDE)?, table.number("frequency", &allowed::FREQUENCY)?))
 }

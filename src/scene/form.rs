@@ -27,7 +27,6 @@ impl Form {
         table: &mut TableReader<'_>,
         common: &[&'static str],
         keys: &FormKeys,
-        later: &[&'static str],
     ) -> Result<(), SceneError> {
         let (own, other, why) = match self {
             Self::Direct => (keys.direct, keys.material, "no such key without [material]"),
@@ -37,7 +36,7 @@ impl Form {
             let instead = if own.is_empty() { String::new() } else { format!("; instead: {}", own.join(", ")) };
             return Err(entry.refuse(format_args!("{why}{instead}")));
         }
-        table.allow(&[common, own].concat(), later)
+        table.allow(&[common, own].concat())
     }
 
     /// The number of a key that a scene of the form `of` must have, and no other has.

@@ -14,7 +14,7 @@ const OF_FORM: FormKeys = FormKeys {
 
 pub(super) fn read_layer(entry: &Entry<'_>, form: Form, found: &mut Found) -> Result<Layer, SceneError> {
     read_table(entry, |table| {
-        form.allow(table, &KEYS, &OF_FORM, &[])?;
+        form.allow(table, &KEYS, &OF_FORM)?;
         let mut layer = read_masses(table, form)?;
         layer.vertical = table.optional_table("vertical", read_link)?;
         layer.horizontal = table.optional_table("horizontal", read_link)?;
@@ -48,7 +48,7 @@ fn read_masses(table: &mut TableReader<'_>, form: Form) -> Result<Layer, SceneEr
 }
 
 fn read_link(table: &mut TableReader<'_>) -> Result<Link, SceneError> {
-    table.allow(&["stiffness", "damping", "maxwell"], &[])?;
+    table.allow(&["stiffness", "damping", "maxwell"])?;
     Ok(Link {
         stiffness: table.optional_number("stiffness", &allowed::STIFFNESS)?,
         damping: table.optional_number("damping", &allowed::DAMPING)?,
@@ -57,7 +57,7 @@ fn read_link(table: &mut TableReader<'_>) -> Result<Link, SceneError> {
 }
 
 fn read_maxwell(table: &mut TableReader<'_>) -> Result<MaxwellElement, SceneError> {
-    table.allow(&["stiffness", "relaxation_time"], &[])?;
+    table.allow(&["stiffness", "relaxation_time"])?;
     Ok(MaxwellElement {
         stiffness: table.number("stiffness", &allowed::STIFFNESS)?,
         relaxation_time: table.number("relaxation_time", &allowed::RELAXATION_TIME)?,
@@ -77,7 +77,7 @@ fn read_roughness(entry: &Entry<'_>, layer: &Layer, found: &mut Found) -> Result
 
 /// `z` without `x`: one height a mass.
 fn read_heights(table: &mut TableReader<'_>, masses: usize) -> Result<Vec<f64>, SceneError> {
-    table.allow(&[KIND, "z", "x", "periodic"], &[])?;
+    table.allow(&[KIND, "z", "x", "periodic"])?;
     if let Some(entry) = table.entry("periodic") {
         return Err(entry.refuse("no such key for heights at the masses, which have no x"));
     }

@@ -10,7 +10,7 @@ const PRONY: &str =
 
 pub(super) fn read_material(entry: &Entry<'_>, found: &mut Found) -> Result<Material, SceneError> {
     read_table(entry, |table| {
-        table.allow(&KEYS, &[])?;
+        table.allow(&KEYS)?;
         Ok(Material {
             density: table.number("density", &allowed::DENSITY)?,
             poisson_ratio: table.number("poisson_ratio", &allowed::POISSON_RATIO)?,
@@ -33,7 +33,7 @@ fn read_prony(entry: &Entry<'_>, found: &mut Found) -> Result<Vec<PronyTerm>, Sc
 }
 
 fn read_term(table: &mut TableReader<'_>) -> Result<PronyTerm, SceneError> {
-    table.allow(&["modulus", "relaxation_time"], &[])?;
+    table.allow(&["modulus", "relaxation_time"])?;
     Ok(PronyTerm {
         modulus: table.number("modulus", &allowed::MODULUS)?,
         relaxation_time: table.number("relaxation_time", &allowed::RELAXATION_TIME)?,
@@ -41,7 +41,7 @@ fn read_term(table: &mut TableReader<'_>) -> Result<PronyTerm, SceneError> {
 }
 
 fn read_wlf(table: &mut TableReader<'_>) -> Result<Wlf, SceneError> {
-    table.allow(&["c1", "c2", "reference_temperature", "temperature"], &[])?;
+    table.allow(&["c1", "c2", "reference_temperature", "temperature"])?;
     let temperature = table.required("temperature", allowed::TEMPERATURE)?;
     let wlf = Wlf {
         c1: table.number("c1", &allowed::WLF_C1)?,

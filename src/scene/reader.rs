@@ -46,7 +46,7 @@ fn read_text(path: &Path) -> Result<String, SceneError> {
 
 fn read_scene(source: Source<'_>, document: &DeTable<'_>) -> Result<Scene, SceneError> {
     let mut root = TableReader::root(source, document);
-    root.allow(&KEYS, &[])?;
+    root.allow(&KEYS)?;
     let name = read_name(&root.required("name", "a text")?)?;
     let description = root.entry("description").map(|entry| read_description(&entry)).transpose()?;
     let mut found = Found::default();

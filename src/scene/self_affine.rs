@@ -44,7 +44,7 @@ struct SelfAffine {
 pub(super) fn read(table: &mut TableReader<'_>) -> Result<Surface, SceneError> {
     const KEYS: [&str; 8] =
         [KIND, "length", "points", "hurst", "rms", "roll_off_wavelength", "cut_off_wavelength", "seed"];
-    table.allow(&KEYS, &[])?;
+    table.allow(&KEYS)?;
     let length = table.number("length", &allowed::LENGTH)?;
     let points = table.required("points", allowed::PROFILE_POINTS)?;
     let count = points.whole(&allowed::PROFILE_POINTS)?;

@@ -26,7 +26,7 @@ const FRICTION_OF_FORM: FormKeys = FormKeys { direct: &["shear_force"], material
 const RATE_SHEAR_OF_FORM: FormKeys = FormKeys { direct: &["force"], material: &["strength"] };
 
 pub(super) fn read_friction(table: &mut TableReader<'_>, form: Form) -> Result<Friction, SceneError> {
-    form.allow(table, &["coulomb", "rate_shear"], &FRICTION_OF_FORM, &[])?;
+    form.allow(table, &["coulomb", "rate_shear"], &FRICTION_OF_FORM)?;
     Ok(Friction {
         coulomb: table.optional_number("coulomb", &allowed::FRICTION_COEFFICIENT)?,
         shear_force: table.optional_number("shear_force", &allowed::SHEAR_FORCE)?,
@@ -36,7 +36,7 @@ pub(super) fn read_friction(table: &mut TableReader<'_>, form: Form) -> Result<F
 }
 
 fn read_rate_shear(table: &mut TableReader<'_>, form: Form) -> Result<RateShear, SceneError> {
-    form.allow(table, &["reference_speed", "sharpness", "creep_speed"], &RATE_SHEAR_OF_FORM, &[])?;
+    form.allow(table, &["reference_speed", "sharpness", "creep_speed"], &RATE_SHEAR_OF_FORM)?;
     Ok(RateShear {
         force: form.number(Form::Direct, table, "force", &allowed::SHEAR_FORCE)?,
         strength: form.number(Form::Material, table, "strength", &allowed::SHEAR_STRENGTH)?,
@@ -47,7 +47,7 @@ fn read_rate_shear(table: &mut TableReader<'_>, form: Form) -> Result<RateShear,
 }
 
 pub(super) fn read_solver(table: &mut TableReader<'_>) -> Result<Solver, SceneError> {
-    table.allow(&["method", "relative_tolerance", "absolute_tolerance", "max_steps", "reduce"], &[])?;
+    table.allow(&["method", "relative_tolerance", "absolute_tolerance", "max_steps", "reduce"])?;
     let defaults = Solver::default();
     let relative_tolerance = table.optional_number("relative_tolerance", &allowed::RELATIVE_TOLERANCE)?;
     let max_steps = table.optional_whole("max_steps", &allowed::MAX_STEPS)?;
@@ -61,12 +61,12 @@ pub(super) fn read_solver(table: &mut TableReader<'_>) -> Result<Solver, SceneEr
 }
 
 pub(super) fn read_input(table: &mut TableReader<'_>) -> Result<Extrapolation, SceneError> {
-    table.allow(&["extrapolation"], &[])?;
+    table.allow(&["extrapolation"])?;
     Ok(table.optional_choice("extrapolation", &allowed::EXTRAPOLATION)?.unwrap_or_default())
 }
 
 pub(super) fn read_fmu(table: &mut TableReader<'_>) -> Result<Vec<OutputGroup>, SceneError> {
-    table.allow(&["outputs"], &[])?;
+    table.allow(&["outputs"])?;
     table.entry("outputs").map_or_else(|| Ok(default_outputs()), |entry| read_outputs(&entry))
 }
 

@@ -63,12 +63,12 @@ pub(super) fn read_surface(entry: &Entry<'_>, found: &mut Found) -> Result<Surfa
 const STEEPEST: f64 = 1e12;
 
 fn read_flat(table: &TableReader<'_>) -> Result<Surface, SceneError> {
-    table.allow(&[KIND], &[])?;
+    table.allow(&[KIND])?;
     Ok(Surface { x: vec![0.0, 1.0], z: vec![0.0, 0.0], periodic: false })
 }
 
 fn read_sinusoid(table: &mut TableReader<'_>) -> Result<Surface, SceneError> {
-    table.allow(&[KIND, "amplitude", "wavelength", "points_per_wavelength"], &[])?;
+    table.allow(&[KIND, "amplitude", "wavelength", "points_per_wavelength"])?;
     let amplitude = table.number("amplitude", &allowed::AMPLITUDE)?;
     let wavelength = table.number("wavelength", &allowed::WAVELENGTH)?;
     let points = table.optional_whole("points_per_wavelength", &allowed::POINTS_PER_WAVELENGTH)?.unwrap_or(64);
@@ -84,7 +84,7 @@ fn sinusoid(amplitude: f64, wavelength: f64, points: i64) -> Surface {
 }
 
 fn read_points(table: &mut TableReader<'_>) -> Result<Surface, SceneError> {
-    table.allow(&[KIND, "x", "z", "periodic"], &[])?;
+    table.allow(&[KIND, "x", "z", "periodic"])?;
     let periodic = table.optional_flag("periodic")?.unwrap_or(false);
     let x_entry = table.required("x", "an array of places")?;
     let z_entry = table.required("z", "an array of heights")?;
@@ -105,7 +105,7 @@ fn read_points(table: &mut TableReader<'_>) -> Result<Surface, SceneError> {
 
 fn read_file(table: &mut TableReader<'_>, found: &mut Found) -> Result<Surface, SceneError> {
     let keys = ["path", "periodic", "unit", "x_unit", "z_unit", "missing", "tilt", "third_column", "line"];
-    table.allow(&[&[KIND][..], &keys].concat(), &[])?;
+    table.allow(&[&[KIND][..], &keys].concat())?;
     let options = read_options(table)?;
     let entry = table.required("path", PATH_EXPECTED)?;
     let path = read_path(&entry)?;

@@ -163,30 +163,25 @@ impl<'a> TableReader<'a> {
         Self { source, path: String::new(), offset: 0, table, asked: Vec::new() }
     }
 
-    /// Refuses any key that is neither `allowed` nor of a feature still to come, naming the first one in the file.
+    /// Refuses any key that is not `allowed`, naming the first one in the file.
     ///
     /// Done before the values are read: a misspelt key is a clearer message than the missing one that it causes.
-    pub(super) fn allow(&self, allowed: &[&'static str], later: &[&'static str]) -> Result<()> {
+    pub(super) fn allow(&self, allowed: &[&'static str]) -> Result<()> {
         let strange = |key: &&Spanned<_>| !allowed.contains(&name(key));
         match self.table.keys().filter(strange).min_by_key(|key| key.span().start) {
-            Some(key) => Err(self.strange_key(key, allowed, later)),
+            Some(key) => Err(self.strange_key(key, allowed)),
             None => Ok(()),
         }
     }
 
-    fn strange_key(&self, key: &DeKey<'_>, allowed: &[&'static str], later: &[&'static str]) -> SceneError {
-        let allowed = allowed.iter().copied().map(String::from).collect();
-        let problem = if later.contains(&name(key)) {
-            Problem::NotYetSupported { given: String::new(), allowed }
-        } else {
-            Problem::Unknown { allowed }
-        };
+    fn strange_key(&self, key: &DeKey<'_>, allowed: &[&'static str]) -> SceneError {
+        let problem = Problem::Unknown { allowed: allowed.iter().copied().map(String::from).collect() };
         SceneError::new(self.source.place(key.span().start), self.full(name(key)), problem)
     }
 
     /// Refuses the keys that nobody asked for: what is not read must not stand in a scene.
     pub(super) fn finish(self) -> Result<()> {
-        self.allow(&self.asked, &[])
+        self.allow(&self.asked)
     }
 
     /// The full path of one of the table's keys.

@@ -90,7 +90,7 @@ fn friction(scene: &Scene) -> Vec<Row> {
 fn rate_shear_text(rate_shear: &RateShear) -> String {
     format!(
         "{} N a mass in contact at {} m/s, sharpness {}, held below {} m/s",
-        number(rate_shear.force),
+        number(rate_shear.force.unwrap_or(0.0)),
         number(rate_shear.reference_speed),
         number(rate_shear.sharpness),
         number(rate_shear.creep_speed())
