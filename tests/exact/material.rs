@@ -219,16 +219,16 @@ fn hysteresis_is_largest_at_the_shifted_relaxation_time() {
     assert!(vertex.abs() < 0.01, "the maximum lies at ωτ = {}", vertex.exp());
 }
 
-/// A sinusoid under twenty masses that touch it in part, slid at `v`: mean |F_x|/F_z over the fourth wavelength. Inertia
-/// is negligible: the stiffest frequency is far above that of the passage, and damped.
-fn friction(temperature: f64, v: f64) -> f64 {
+/// A sinusoid under twenty masses that touch it in part, slid at `v`: mean |F_x|/F_z over the fourth wavelength, with these
+/// parts of the friction law. Inertia is negligible: the stiffest frequency is far above that of the passage, and damped.
+fn friction(law: &str, temperature: f64, v: f64) -> f64 {
     let scene = parse(&format!(
         "[layer]\nmasses = 20\nspacing = 5e-5\nthickness = 2e-4\nwidth = 1e-2\n\
          [material]\ndensity = 1\npoisson_ratio = 0.49\nequilibrium_modulus = 2e6\nviscosity = 10\n\
          prony = [{{ modulus = 3e6, relaxation_time = 1e-3 }}, {{ modulus = 2e6, relaxation_time = 1e-4 }}]\n\
          wlf = {{ c1 = 2, c2 = 100, reference_temperature = 300, temperature = {temperature:?} }}\n\
          [surface]\nkind = 'sinusoid'\namplitude = 2e-5\nwavelength = 1e-3\n\
-         [friction]\ncoulomb = 0.2\nshear_strength = 2e4"
+         [friction]\n{law}"
     ));
     let mut run = Run::of(&scene, Start { w: -2e-5, u_rate: v, ..Start::default() });
     let times = steps((3.0 * WAVELENGTH / v, 4.0 * WAVELENGTH / v), 64);
@@ -239,18 +239,35 @@ fn friction(temperature: f64, v: f64) -> f64 {
     -mean(&columns[0]) / mean(&columns[1])
 }
 
-/// Heat does what slowness does: all times shrink by a_T, so the layer at T and v is the one at T_ref and a_T v.
+/// a_T of the materials here.
+fn shift(temperature: f64) -> f64 {
+    10.0_f64.powf(-2.0 * (temperature - 300.0) / (temperature - 200.0))
+}
+
+/// Heat does what slowness does: all times shrink by a_T, so the layer at T and v is the one at T_ref and a_T v. Returns μ.
+fn assert_shifted(law: &str, temperature: f64, v: f64) -> f64 {
+    let reference = friction(law, 300.0, shift(temperature) * v);
+    let what = format!("μ at {temperature} K, {v} m/s");
+    assert_near(&what, friction(law, temperature, v), reference, 0.01 * reference);
+    reference
+}
+
 #[test]
 fn friction_at_a_temperature_is_that_at_the_shifted_speed() {
-    let shift = |temperature: f64| 10.0_f64.powf(-2.0 * (temperature - 300.0) / (temperature - 200.0));
-    let mut seen = Vec::new();
-    for (temperature, v) in [(400.0, 0.3), (400.0, 3.0), (350.0, 0.5), (280.0, 0.05)] {
-        let [at_temperature, at_reference] = [friction(temperature, v), friction(300.0, shift(temperature) * v)];
-        assert_near(&format!("μ at {temperature} K, {v} m/s"), at_temperature, at_reference, 0.01 * at_reference);
-        seen.push(at_reference);
-    }
+    let cases = [(400.0, 0.3), (400.0, 3.0), (350.0, 0.5), (280.0, 0.05)];
+    let seen = cases.map(|(temperature, v)| assert_shifted("coulomb = 0.2\nshear_strength = 2e4", temperature, v));
     // The shift is seen at all: μ is not the same at all speeds.
     assert!(largest(&seen) > 1.02 * seen.iter().copied().fold(f64::INFINITY, f64::min), "{seen:?}");
+}
+
+/// v_0 and v_c move with the material's times, so what depends on the speed itself does as well: below v_0, where it rises
+/// and no contact creeps and leaps.
+#[test]
+fn friction_that_depends_on_the_speed_shifts_too() {
+    let law = "coulomb = 0.1\nrate_shear = { strength = 1e5, reference_speed = 10.0, sharpness = 0.3 }";
+    let hot = assert_shifted(law, 350.0, 0.5);
+    let unshifted = friction(law, 300.0, 0.5);
+    assert!(unshifted > 1.1 * hot, "{unshifted}, {hot}");
 }
 
 /// The compound of the scene beside its file: 16 terms, from the glassy range to the rubbery one.
