@@ -73,6 +73,7 @@ wavelength = 5e-4
 [friction]
 coulomb = 0.2
 shear_force = 1e-4
+rate_shear = { force = 2e-4, reference_speed = 6e-3, sharpness = 0.1 }
 
 [fmu]
 outputs = ["forces", "dissipation", "friction", "contact", "energy", "solver", "elements"]

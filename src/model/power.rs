@@ -93,14 +93,21 @@ fn friction(model: &Model, state: &State, forces: &Forces) -> f64 {
     if !model.has_friction {
         return 0.0;
     }
-    (0..model.masses())
-        .filter(|&i| state.mode[i].slips())
+    let slipping = || (0..model.masses()).filter(|&i| state.mode[i].slips());
+    let at_rest: f64 = slipping()
         .map(|i| {
             let v = state.velocity_x[i];
             let contact = forces.contact(model, i, v, &state.ground[i]);
-            contact.friction(model, state.mode[i], v) * v * contact.q
+            state.mode[i].direction() * contact.limit * v * contact.q
         })
-        .sum()
+        .sum();
+    let Some(law) = &model.rate_shear else { return at_rest };
+    let beyond = slipping().map(|i| {
+        let s = state.ground[i].slope;
+        let speed = state.mode[i].direction() * state.velocity_x[i] * (1.0 + s * s).sqrt();
+        law.beyond(speed) * speed
+    });
+    at_rest + beyond.sum::<f64>()
 }
 
 /// A carrier at rest does no work, whatever the forces.

@@ -87,6 +87,7 @@ fn friction(scene: &Scene) -> Vec<Row> {
     under("Friction", [coulomb, shear, format!("rate_shear   {rate_shear}")])
 }
 
+/// The law as the contacts have it: of a material at its temperature.
 fn rate_shear_text(rate_shear: &RateShear) -> String {
     format!(
         "{} N a mass in contact at {} m/s, sharpness {}, held below {} m/s",
