@@ -23,11 +23,12 @@ pub(in crate::scene) fn split(line: &str, tabs_count: bool) -> Row<'_> {
         if tabs_count || blanks.count < 2 { Row::of(line.split('\t'), true) } else { blanks }
     } else if line.contains(',') {
         let commas = Row::of(line.split(','), false);
-        let blanks = || Row::of(line.split_whitespace(), true);
         // `0,5 1,5` are two numbers with decimal commas, for `5 1` is none.
-        let is_blank = |field: &str| field.contains(char::is_whitespace);
-        let inside = commas.fields.iter().any(|field| is_blank(field));
-        Some(blanks()).filter(|row| inside && row.starts_with_numbers()).unwrap_or(commas)
+        let is_blank = |field: &&str| field.contains(' ');
+        if !line.contains(' ') || !commas.fields.iter().any(is_blank) {
+            return commas;
+        }
+        Some(Row::of(line.split_whitespace(), true)).filter(Row::starts_with_numbers).unwrap_or(commas)
     } else {
         Row::of(line.split_whitespace(), false)
     }

@@ -4,10 +4,12 @@ use super::columns::{Row, split};
 use super::{LengthUnit, ThirdColumn};
 
 /// What the header says.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Header {
     /// The units of x and z.
     pub(super) units: [Option<LengthUnit>; 2],
+    /// Whether a unit stands beside one of the two columns alone: it is taken for both, which may be wrong.
+    pub(super) is_one_sided: bool,
     pub(super) third_column: Option<ThirdColumn>,
 }
 
@@ -18,40 +20,34 @@ const NEAR: usize = 2;
 /// columns, as in `x [mm]; z (µm)`, `X_(microns),y1`, `z / µm`; and in lines of their own, as in `X-Unit: mm`.
 pub(super) fn read(lines: &[&str]) -> Header {
     let lines: Vec<&str> = lines.iter().map(|line| line.trim_start_matches(['#', '%', '!', ' '])).collect();
-    let mut header = Header::default();
-    lines.iter().for_each(|line| header.read_setting(line));
-    let near = || lines.iter().rev().take(NEAR);
-    if let Some(units) = near().map(|line| column_units(line)).find(|units| *units != [None, None]) {
-        let [x, z] = units;
-        header.units = [x.or(z), z.or(x)];
+    let mut set = [None; 2];
+    let settings = lines.iter().filter_map(|line| setting(line));
+    settings.for_each(|(axes, unit)| axes.iter().for_each(|&axis| set[axis] = Some(unit)));
+    let near = || lines.iter().rev().filter(|line| setting(line).is_none()).take(NEAR);
+    let beside = near().map(|line| column_units(line)).find(|units| *units != [None, None]).unwrap_or_default();
+    let (x, z) = (beside[0].or(set[0]), beside[1].or(set[1]));
+    Header {
+        units: [x.or(z), z.or(x)],
+        is_one_sided: x.is_none() != z.is_none(),
+        third_column: near().find_map(|line| third_column(&split(line, true))),
     }
-    header.third_column = near().find_map(|line| third_column(&split(line, true)));
-    header
 }
 
-/// Whether one unit only is named, beside one of two columns: it is taken for both, which may be wrong.
-pub(super) fn is_one_sided(lines: &[&str]) -> bool {
-    let units = lines.iter().rev().take(NEAR).map(|line| column_units(line)).find(|units| *units != [None, None]);
-    units.is_some_and(|[x, z]| x.is_none() != z.is_none())
-}
-
-impl Header {
-    /// A line such as `X-Unit: mm`, `unit;um`.
-    fn read_setting(&mut self, line: &str) {
-        let words: Vec<String> = words(line).map(str::to_lowercase).collect();
-        let Some(unit) = words.last().and_then(|word| unit_of(word)) else { return };
-        let is_named = |word: &String| ["unit", "units"].iter().any(|name| word.ends_with(name));
-        let Some(name) = words.iter().position(is_named) else { return };
-        let names = |axis: &[&str]| {
-            let of_axis = |word: &String| axis.iter().any(|name| word == name || *word == format!("{name}unit"));
-            words[..=name].iter().any(of_axis)
-        };
-        match (names(&["x"]), names(&["z", "y", "height"])) {
-            (true, false) => self.units[0] = Some(unit),
-            (false, true) => self.units[1] = Some(unit),
-            _ => self.units = [Some(unit); 2],
-        }
-    }
+/// Of a line such as `X-Unit: mm` or `unit;um`: the axes, 0 for x and 1 for z, and their unit.
+fn setting(line: &str) -> Option<(&'static [usize], LengthUnit)> {
+    let words: Vec<String> = words(line).map(str::to_lowercase).collect();
+    let mut units = words.iter().filter_map(|word| unit_of(word));
+    let (unit, None) = (units.next()?, units.next()) else { return None };
+    let name = words.iter().position(|word| word.ends_with("unit") || word.ends_with("units"))?;
+    let names = |axis: &[&str]| {
+        let of_axis = |word: &String| axis.iter().any(|name| word == name || *word == format!("{name}unit"));
+        words[..=name].iter().any(of_axis)
+    };
+    Some(match (names(&["x"]), names(&["z", "y", "height"])) {
+        (true, false) => (&[0], unit),
+        (false, true) => (&[1], unit),
+        _ => (&[0, 1], unit),
+    })
 }
 
 /// The units beside the names of two columns, or below them.

@@ -21,7 +21,7 @@ pub(super) fn read(text: &str, options: &ProfileOptions) -> Result<Raw, ProfileE
     let header = header::read(&lines);
     let mut reader = Reader::new(header.third_column, options);
     reader.raw.units = header.units;
-    if header::is_one_sided(&lines) && (options.x_unit.is_none() || options.z_unit.is_none()) {
+    if header.is_one_sided && (options.x_unit.is_none() || options.z_unit.is_none()) {
         reader.raw.warnings.push(ONE_UNIT.into());
     }
     for (number, line) in numbered().skip(above.len()).filter(|(_, line)| !is_comment(line)) {

@@ -131,6 +131,8 @@ fn units_are_read_from_the_header() {
         ("# x_mm z_um\n", 1e3, 1e6),
         ("x [m],z [m]\n", 1.0, 1.0),
         ("Name;test\nX-Unit: mm\nZ-Unit: µm\nPoints: 2\n[DATA]\n", 1e3, 1e6),
+        ("Instrument A\nX-Unit;mm\nZ-Unit;µm\n", 1e3, 1e6),
+        ("Instrument A\nUnits: x [mm] z [µm]\n", 1e3, 1e6),
         ("Instrument A\nUnits = Microns\nspeed 0.5 mm/s\n\n", 1e6, 1e6),
         ("Instrument A\nstylus tip 2 µm\nx,z\n", 1.0, 1.0),
         ("x [inch]; z [1]\n", 1.0, 1.0),
