@@ -248,8 +248,8 @@ fn points_that_fail_are_rows() {
 }
 
 /// The scene of the README: adhesion's maximum at low speed, hysteresis' at high speed, and both move with the temperature as the
-/// shift says, μ(v, T) = μ(a_T v, T_ref), the rate-dependent shear strength included. Inertia does not shift with it: masses that leave
-/// a crest swing back at its pace, which leaves up to 1.2 % here.
+/// shift says, μ(v, T) = μ(a_T v, T_ref), the rate-dependent shear strength included. Up to 1.2 % is left here, also at a third of
+/// the tolerance; inertia, which does not shift, is likely but not shown to be the cause.
 #[test]
 fn two_maxima_move_with_the_temperature() {
     let folder = scratch("sweep-two-maxima");
