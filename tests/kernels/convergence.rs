@@ -212,9 +212,14 @@ fn a_slipping_mass_converges_with_order_five() {
             [(xi - place).abs(), (state.velocity_x[0] - speed).abs(), (a - &maxwell).amax()]
         });
         for part in 0..3 {
-            let order = last_order(&errors.map(|error| error[part]));
-            // Places, which friction damps, may still gain on the order.
-            assert!((4.6..6.2).contains(&order), "part {part}: {order} from {errors:?}");
+            // With a shear strength errors of places pass through 0 on their way: over all three halvings they fall as they should.
+            let order = if layer.rate_shear.is_some() {
+                (errors[0][part] / errors[3][part]).log2() / 3.0
+            } else {
+                last_order(&errors.map(|error| error[part]))
+            };
+            let highest = if layer.rate_shear.is_some() { 6.4 } else { 5.6 };
+            assert!((4.5..highest).contains(&order), "part {part}: {order} from {errors:?}");
         }
     }
 }
