@@ -65,7 +65,8 @@ impl SidePanels {
     pub(crate) fn write(&self, path: &Path) -> Drawn {
         let text = self.svg()?;
         let is_png = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
-        Ok(if is_png { std::fs::write(path, png(&text)?)? } else { std::fs::write(path, text)? })
+        std::fs::write(path, if is_png { png(&text)? } else { text.into_bytes() })?;
+        Ok(())
     }
 
     fn svg(&self) -> Result<String, Box<dyn Error>> {

@@ -171,7 +171,7 @@ impl<'a> Search<'a> {
             blocks.push(self.slide.block()?);
             if blocks.len() >= FEWEST {
                 let average = self.judge(&blocks);
-                if average.steady || (blocks.len() % GIVEN_UP == 0 && average.drifts) {
+                if average.steady || (blocks.len().is_multiple_of(GIVEN_UP) && average.drifts) {
                     return Ok(Some(average));
                 }
             }
