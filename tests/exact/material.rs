@@ -267,7 +267,8 @@ fn friction_that_depends_on_the_speed_shifts_too() {
     let law = "coulomb = 0.1\nrate_shear = { strength = 1e5, reference_speed = 10.0, sharpness = 0.3 }";
     let hot = assert_shifted(law, 350.0, 0.5);
     let unshifted = friction(law, 300.0, 0.5);
-    assert!(unshifted > 1.1 * hot, "{unshifted}, {hot}");
+    // Five times what is allowed above: the shift is seen.
+    assert!(unshifted > 1.05 * hot, "{unshifted}, {hot}");
 }
 
 /// The compound of the scene beside its file: 16 terms, from the glassy range to the rubbery one.
