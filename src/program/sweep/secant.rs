@@ -93,7 +93,8 @@ mod tests {
         assert!(runs(law, (-2e-4, 4e5)) <= 8);
     }
 
-    /// Dashpots that bear twice as much as the springs and come to rest by nine tenths from one run to the next.
+    /// Dashpots that bear twice as much as the springs and come to rest by nine tenths from one run to the next: by themselves
+    /// they would be at rest to 1e-3 in four runs, and every change of w stirs them anew.
     #[test]
     fn dashpots_that_come_to_rest_do_not_hide_the_load() {
         let (mut rest, mut before) = (0.0, 0.0);
@@ -103,6 +104,6 @@ mod tests {
             before = w;
             (-5e5 * w + 0.85 * rest, rest)
         };
-        assert!(runs(law, (-1.5e-5, 4e5)) <= 8);
+        assert!(runs(law, (-1.5e-5, 4e5)) <= 10);
     }
 }
