@@ -2,10 +2,11 @@
 //!
 //! In time: the same steps of 1e-5 s by fmi2DoStep, called as a master calls it, and by the library.
 //!
-//! In instructions, where valgrind is there: the tread block takes the same steps twice under its callgrind: in the FMU,
-//! driven by the C host of the tests, where what runs within fmi2DoStep is counted; and in this program, where everything
-//! is. Two lengths of run are subtracted from one another, and with that loading, reading and initialisation fall out. The
-//! compiler inlines other functions in the one than in the other, which moves the result by a percent or two.
+//! In instructions, where valgrind is there: the tread block takes the same steps twice under its callgrind: in the
+//! FMU, driven by the C host of the tests, where what runs within fmi2DoStep is counted; and in this program, where
+//! everything is. Two lengths of run are subtracted from one another, and with that loading, reading and initialisation
+//! fall out. The compiler inlines other functions in the one than in the other, which moves the result by a percent or
+//! two.
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "like a test")]
 

@@ -1,4 +1,5 @@
-//! A communication step of a point-contact element against one of the layer that it stands for: `cargo bench --bench element`.
+//! A communication step of a point-contact element against one of the layer that it stands for: `cargo bench --bench
+//! element`.
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "like a test")]
 

@@ -1,5 +1,5 @@
-//! What a feature costs that a scene does not need: pairs of scenes, one without a feature, one with it at zero, side by
-//! side: `cargo bench --bench leaving_out`. That their results are alike is tested in `tests/leaving_out`.
+//! What a feature costs that a scene does not need: pairs of scenes, one without a feature, one with it at zero, side
+//! by side: `cargo bench --bench leaving_out`. That their results are alike is tested in `tests/leaving_out`.
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "like a test")]
 

@@ -1,7 +1,7 @@
 //! A run against the number of masses k: `cargo bench --bench run`.
 //!
-//! The free layer takes the same steps whatever k, so its time grows as k. In contact the mode changes are located one by
-//! one, and their number grows with k, too.
+//! The free layer takes the same steps whatever k, so its time grows as k. In contact the mode changes are located one
+//! by one, and their number grows with k, too.
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "like a test")]
 

@@ -63,8 +63,8 @@ fn a_sweep_over_fmus_is_the_programs() {
         for name in ["speed", "pressure", "temperature"] {
             assert_eq!(value(found, name), value(wanted, name));
         }
-        // The pressure is met within 1e-3 by both, means are known to 1 % at the worst, here to 1e-3; hysteresis, a tenth of the
-        // whole, and contacts are sampled at 161 places; the stiffness is one of a layer at rest.
+        // The pressure is met within 1e-3 by both, means are known to 1 % at the worst, here to 1e-3; hysteresis, a
+        // tenth of the whole, and contacts are sampled at 161 places; the stiffness is one of a layer at rest.
         let bounds = [
             ("friction", 3e-3),
             ("friction_hysteresis", 5e-2),

@@ -1,4 +1,5 @@
-//! A point-contact element from a sweep's table: packed, validated and driven in fmpy, held against the layer that was swept.
+//! A point-contact element from a sweep's table: packed, validated and driven in fmpy, held against the layer that was
+//! swept.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests may fail")]
 
 #[allow(dead_code, unreachable_pub, reason = "shared by several tests")]
@@ -129,7 +130,8 @@ coulomb = 0.4
 relative_tolerance = 1.0e-4
 "#;
 
-/// The whole way: sweep, pack, check. In the middle of the cells of so coarse a table the element is within some per cent.
+/// The whole way: sweep, pack, check. In the middle of the cells of so coarse a table the element is within some per
+/// cent.
 #[test]
 fn swept_packed_and_checked_it_is_near_the_layer() {
     let folder = scratch("element-check");

@@ -47,7 +47,8 @@ fn write_moduli(path: &Path, compound: &Material, frequencies: &[f64], mut facto
     fs::write(path, text).unwrap();
 }
 
-/// 1 + sigma times a normal deviate, the same each time: G. Marsaglia's xorshift, G. Box's and M. Muller's transformation.
+/// 1 + sigma times a normal deviate, the same each time: G. Marsaglia's xorshift, G. Box's and M. Muller's
+/// transformation.
 fn noise(sigma: f64) -> impl FnMut() -> f64 {
     let mut state: u64 = 88_172_645_463_325_252;
     let mut uniform = move || {
@@ -130,7 +131,8 @@ fn noise_is_told_and_its_mean_is_met() {
     assert!(output.exists() && output.with_extension("svg").exists(), "what was found is there all the same");
     let scene = scene_of(&folder, &String::from_utf8(result.stdout).unwrap());
     let best = Scene::load(&scene).unwrap().material.unwrap();
-    // Some 33 unknowns for 202 figures: their own share of the noise is 5 % √(33/202) = 2 %, at the worst some times as much.
+    // Some 33 unknowns for 202 figures: their own share of the noise is 5 % √(33/202) = 2 %, at the worst some times as
+    // much.
     assert!(largest(&best, &sixteen(), &frequencies) < 0.1, "{}", largest(&best, &sixteen(), &frequencies));
     let enough = found(&data, &["--error", "0.06"]);
     assert!(enough.prony.len() <= 16, "{}", enough.prony.len());

@@ -172,8 +172,8 @@ fn the_frequency_is_the_largest_of_three() {
     close(frequency("1e-2", "[[excitation]]\nduration = 1.0\nu_rate = -0.5"), TAU * 0.5 / 1e-3, 2e-3);
 }
 
-/// Every mass sticks on a flat profile from the start on, so that the links' motion is the carrier's: the bound is then one of
-/// the force itself. Pressed from the start, so that relaxed dashpots stand off their zero.
+/// Every mass sticks on a flat profile from the start on, so that the links' motion is the carrier's: the bound is then
+/// one of the force itself. Pressed from the start, so that relaxed dashpots stand off their zero.
 #[test]
 fn the_force_of_a_known_motion_is_within_the_bound() {
     const DURATION: f64 = 4e-3;

@@ -112,7 +112,8 @@ fn errors_fall_with_the_tolerance_down_to_what_the_reference_knows() {
     let step = of_method(&rows, "step");
     assert_eq!(step.len(), 9);
     for (looser, tighter) in step.iter().zip(&step[1..]).filter(|(_, tighter)| tighter["failure"].is_empty()) {
-        // Of second order, with an error estimate that fits: it falls with the tolerance, on each rung by a half at least.
+        // Of second order, with an error estimate that fits: it falls with the tolerance, on each rung by a half at
+        // least.
         assert!(number(tighter, "error_F_z") < 0.5 * number(looser, "error_F_z"), "{looser:?}, {tighter:?}");
     }
     // The tightest would take a hundred times the reference's work.

@@ -1,5 +1,5 @@
-//! The methods `step` and `auto`: accuracy on the reference cases, what holds at the ends of steps, extremes, and that a run goes
-//! on bit for bit wherever it is taken up.
+//! The methods `step` and `auto`: accuracy on the reference cases, what holds at the ends of steps, extremes, and that
+//! a run goes on bit for bit wherever it is taken up.
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic, reason = "tests may fail")]
 
@@ -69,8 +69,8 @@ impl Run {
         *self.column(name).last().unwrap()
     }
 
-    /// The largest difference to the reference over its largest value, of F_x, F_z and E_diss, and the residual of the energy
-    /// balance over the largest energy.
+    /// The largest difference to the reference over its largest value, of F_x, F_z and E_diss, and the residual of the
+    /// energy balance over the largest energy.
     fn errors(&self, wanted: &Table) -> [f64; 4] {
         let error = |name: &str| {
             let (found, wanted) = (self.column(name), wanted.column(name));
@@ -343,8 +343,8 @@ fn tangents_are_those_of_a_difference_quotient() {
     }
 }
 
-/// A mass that comes down fast on a bend goes on along it with the speed that its impact left: from the touch to the end of the
-/// step the bend is counted once.
+/// A mass that comes down fast on a bend goes on along it with the speed that its impact left: from the touch to the
+/// end of the step the bend is counted once.
 #[test]
 fn a_mass_that_touches_on_a_bend_keeps_its_speed() {
     let text = "name = 'bend'

@@ -77,8 +77,8 @@ impl Rows {
     }
 }
 
-/// On a plane at full slip |F_x| = μ F_z + k A τ_0, all of it adhesion, lost as friction; and at rest, all masses stuck, a motion of
-/// the carrier stretches the horizontal springs and dampers alone.
+/// On a plane at full slip |F_x| = μ F_z + k A τ_0, all of it adhesion, lost as friction; and at rest, all masses
+/// stuck, a motion of the carrier stretches the horizontal springs and dampers alone.
 #[test]
 fn full_slip_on_a_plane() {
     let folder = scratch("sweep-plane");
@@ -89,7 +89,8 @@ fn full_slip_on_a_plane() {
         assert_eq!(rows.text(row, "status"), "steady");
         let [speed, force, friction] = ["speed", "mean_force", "friction"].map(|name| rows.number(row, name));
         assert!((force / rows.number(row, "force") - 1.0).abs() <= 1e-3, "{force} N");
-        // Masses that have come to rest in the carrier's frame: what rings is gone, so rounding and F_z's samples are left.
+        // Masses that have come to rest in the carrier's frame: what rings is gone, so rounding and F_z's samples are
+        // left.
         let expected = 0.3 + 4e-3 / force;
         assert!((friction - expected).abs() <= 1e-6 * expected, "{friction}, expected {expected}");
         assert_eq!((rows.number(row, "friction_hysteresis"), rows.number(row, "friction_adhesion")), (0.0, friction));
@@ -99,8 +100,8 @@ fn full_slip_on_a_plane() {
         // In steady motion the Maxwell elements bear nothing, though they would take minutes.
         assert!((rows.number(row, "w") + force / (4.0 * 2e3)).abs() <= 1e-9);
         assert_eq!(rows.number(row, "separation"), rows.number(row, "w"));
-        // F_x = k (c u + d v): the damper's constant share at once, then the spring; least squares through the origin of
-        // c u + d v over even u up to u_1 give k (c + d v Σu/Σu²), Σu/Σu² = 3/(2 n + 1) n/u_1, n = 16.
+        // F_x = k (c u + d v): the damper's constant share at once, then the spring; least squares through the origin
+        // of c u + d v over even u up to u_1 give k (c + d v Σu/Σu²), Σu/Σu² = 3/(2 n + 1) n/u_1, n = 16.
         let way = 4e-7;
         let expected = 4.0 * (5e3 + 3e-2 * speed * 3.0 * 16.0 / 33.0 / way);
         let found = rows.number(row, "tangential_stiffness");
@@ -108,8 +109,8 @@ fn full_slip_on_a_plane() {
     }
 }
 
-/// One mass held down on a sinusoid: mean F_x = -½ q â² Im K*(qv), model.md section 8 case 2, at the speed of the largest loss and a
-/// decade on either side; F_z is the spring's alone.
+/// One mass held down on a sinusoid: mean F_x = -½ q â² Im K*(qv), model.md section 8 case 2, at the speed of the
+/// largest loss and a decade on either side; F_z is the spring's alone.
 #[test]
 fn hysteresis_on_a_sinusoid() {
     let (c, c_1, tau_1) = (2e3, 1.5e3, 1e-4);
@@ -247,9 +248,9 @@ fn points_that_fail_are_rows() {
     assert!(status.contains("no room for 3 blocks"), "{status}");
 }
 
-/// The scene of the README: adhesion's maximum at low speed, hysteresis' at high speed, and both move with the temperature as the
-/// shift says, μ(v, T) = μ(a_T v, T_ref), the rate-dependent shear strength included. Up to 1.2 % is left here, also at a third of
-/// the tolerance; inertia, which does not shift, is likely but not shown to be the cause.
+/// The scene of the README: adhesion's maximum at low speed, hysteresis' at high speed, and both move with the
+/// temperature as the shift says, μ(v, T) = μ(a_T v, T_ref), the rate-dependent shear strength included. Up to 1.2 % is
+/// left here, also at a third of the tolerance; inertia, which does not shift, is likely but not shown to be the cause.
 #[test]
 fn two_maxima_move_with_the_temperature() {
     let folder = scratch("sweep-two-maxima");

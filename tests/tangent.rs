@@ -1,5 +1,5 @@
-//! The group `tangent`: the change of the forces at the end of a motion with the carrier's target in that motion, against
-//! a difference quotient by rollback.
+//! The group `tangent`: the change of the forces at the end of a motion with the carrier's target in that motion,
+//! against a difference quotient by rollback.
 
 #![allow(clippy::unwrap_used)]
 

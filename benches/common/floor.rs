@@ -1,9 +1,9 @@
 //! The floor: what a stage of the free layer can't leave out, in bare loops.
 //!
-//! The Maxwell elements' history a* = a + Σ_j h a_ij ȧ_j and its force H = Σ c_j g_j a* on each link; the elimination of
-//! one 2×2 block a mass from both ends towards the middle, and back; ȧ = g (ė - a*/τ), and a at the last stage. Nothing of
-//! a stage's other work: no history of places and velocities, no assembly, no contact, no error estimate. Stage i sums i
-//! earlier ones, as the method's does.
+//! The Maxwell elements' history a* = a + Σ_j h a_ij ȧ_j and its force H = Σ c_j g_j a* on each link; the elimination
+//! of one 2×2 block a mass from both ends towards the middle, and back; ȧ = g (ė - a*/τ), and a at the last stage.
+//! Nothing of a stage's other work: no history of places and velocities, no assembly, no contact, no error estimate.
+//! Stage i sums i earlier ones, as the method's does.
 
 use asperity::integrator::{METHOD, STAGES};
 use asperity::model::{LinkKind, Model};

@@ -91,8 +91,8 @@ pub fn parse(text: &str) -> Scene {
     Scene::parse(text, FilePath::new("bench.toml")).unwrap()
 }
 
-/// `masses` masses with `elements` Maxwell elements on each of the four links, `clearance` (m) above a wave. The relaxation
-/// times are spread evenly over the decades from 1 µs to 10 ms.
+/// `masses` masses with `elements` Maxwell elements on each of the four links, `clearance` (m) above a wave. The
+/// relaxation times are spread evenly over the decades from 1 µs to 10 ms.
 pub fn layer(masses: usize, elements: usize, clearance: f64) -> String {
     let link = |name: &str, stiffness: f64| {
         let element = |j: usize| {

@@ -2,13 +2,14 @@
 
 use crate::math::{Bounds, Quintic, Spline};
 
-/// A part over which the gap bends by less than this share of the tolerance is judged by its ends: what it may dip further
-/// does not count. So the search ends even where a mass glides along the very limit.
+/// A part over which the gap bends by less than this share of the tolerance is judged by its ends: what it may dip
+/// further does not count. So the search ends even where a mass glides along the very limit.
 const NEGLIGIBLE_BEND: f64 = 0.01;
 /// Halvings of a step after which a part is judged by its ends; a step over 2⁴⁰ is beyond the clock's digits.
 const MOST_HALVINGS: u32 = 40;
 
-/// Parts of a step that are looked at. A few are the rule; where numbers are so large that no bounds hold, all would be.
+/// Parts of a step that are looked at. A few are the rule; where numbers are so large that no bounds hold, all would
+/// be.
 const MOST_PARTS: u32 = 10_000;
 
 /// The first fraction of a step at which the gap between a mass and the profile falls below -`tolerance` (m), located

@@ -4,8 +4,9 @@ use crate::model::{Forces, LinkKind, Model, RateShear, State};
 
 /// The most that a step's length times the rate may be at which an unstable contact leaves its place.
 ///
-/// The methods damp what is faster than their steps: what grows, too, so a mass would stay on a crest where it cannot. Up to 2 they
-/// let it grow as it does (R(2) is 7.4 and 10.7, e² is 7.4), beyond 5 and 3.4, their poles 1/γ, they no longer do.
+/// The methods damp what is faster than their steps: what grows, too, so a mass would stay on a crest where it cannot.
+/// Up to 2 they let it grow as it does (R(2) is 7.4 and 10.7, e² is 7.4), beyond 5 and 3.4, their poles 1/γ, they no
+/// longer do.
 const MOST_GROWTH: f64 = 2.0;
 
 /// The longest step that lets unstable contacts leave their places, s: the largest number where there are none.
@@ -19,7 +20,8 @@ pub fn longest_unstable(model: &Model, state: &State, forces: &Forces) -> f64 {
     weakening.min(longest(fastest))
 }
 
-/// The longest step that lets contacts swing up whose friction falls with their speed, s: the largest number where there are none.
+/// The longest step that lets contacts swing up whose friction falls with their speed, s: the largest number where
+/// there are none.
 pub fn longest_weakening(model: &Model, state: &State) -> f64 {
     let Some(law) = &model.rate_shear else { return f64::MAX };
     let slipping = (0..model.masses()).filter(|&i| state.mode[i].slips());
@@ -37,11 +39,11 @@ fn slope(law: &RateShear, state: &State, i: usize) -> f64 {
     square * law.with_slope(state.mode[i].direction() * state.velocity_x[i] * square.sqrt()).1
 }
 
-/// The rate, 1/s, of a mass on its horizontal link that friction drives as a damper `slope` < 0 (N s/m); 0 where the link's own
-/// losses are larger.
+/// The rate, 1/s, of a mass on its horizontal link that friction drives as a damper `slope` < 0 (N s/m); 0 where the
+/// link's own losses are larger.
 ///
-/// It swings with m ω² = c + Σ c_j ω²τ_j²/(1 + ω²τ_j²) and loses with d + Σ c_j τ_j/(1 + ω²τ_j²). Slopes, the vertical link and the
-/// other masses only make it slower.
+/// It swings with m ω² = c + Σ c_j ω²τ_j²/(1 + ω²τ_j²) and loses with d + Σ c_j τ_j/(1 + ω²τ_j²). Slopes, the vertical
+/// link and the other masses only make it slower.
 fn swinging_up(model: &Model, slope: f64) -> f64 {
     let kind = LinkKind::Horizontal;
     let link = &model.links[kind as usize];
@@ -71,8 +73,8 @@ const MOST_ROUNDS: usize = 30;
 /// The rate λ, 1/s, at which slipping mass `i` leaves the place where it is, moved a little; 0 where it comes back.
 ///
 /// (6)-(9) linear in the way along x, of friction only what depends on the speed: m q² λ² + D λ = K, with
-/// D = d_x + s² d_z + q² A τ_f' and K = κ f_z - c_x - s² c_z of the links to the carrier. The other links and the Maxwell elements
-/// only make it slower.
+/// D = d_x + s² d_z + q² A τ_f' and K = κ f_z - c_x - s² c_z of the links to the carrier. The other links and the
+/// Maxwell elements only make it slower.
 fn growth(model: &Model, state: &State, f_z: f64, i: usize) -> f64 {
     let ground = &state.ground[i];
     let driving = ground.curvature * f_z;

@@ -1,5 +1,5 @@
-//! Contact: when modes change (`events`, `gap`), what follows (`rules`), both at once at the end of a step (`step_end`, `settling`),
-//! and how long a step may be where a contact is unstable (`growth`).
+//! Contact: when modes change (`events`, `gap`), what follows (`rules`), both at once at the end of a step (`step_end`,
+//! `settling`), and how long a step may be where a contact is unstable (`growth`).
 
 mod events;
 mod gap;

@@ -67,8 +67,9 @@ pub fn free_unloaded(model: &Model, state: &mut State, at: CarrierPlace, forces:
     }
 }
 
-/// Applies the impacts due: every free mass within `reach` (m) of the profile that moves into it is stopped along n, with
-/// Coulomb's friction along t. Each uses its own velocity, so their order does not matter. Returns the energy lost, J.
+/// Applies the impacts due: every free mass within `reach` (m) of the profile that moves into it is stopped along n,
+/// with Coulomb's friction along t. Each uses its own velocity, so their order does not matter. Returns the energy
+/// lost, J.
 pub fn impacts_due(model: &Model, state: &mut State, at: CarrierPlace, reach: f64) -> f64 {
     let mut lost = 0.0;
     for i in 0..model.masses() {
@@ -100,8 +101,8 @@ pub(super) fn collision(model: &Model, (v_x, v_z): (f64, f64), s: f64) -> (f64, 
     (after, 0.5 * model.mass * (v_n * v_n + v_t * v_t - after * after))
 }
 
-/// Brings slipping masses whose velocity has passed 0 to rest, so that the rule for *stop* decides on them. Returns the work, J,
-/// of the friction that does so: it takes back what it gave them past the stop.
+/// Brings slipping masses whose velocity has passed 0 to rest, so that the rule for *stop* decides on them. Returns the
+/// work, J, of the friction that does so: it takes back what it gave them past the stop.
 pub fn stop_reversed(model: &Model, state: &mut State) -> f64 {
     let mut work = 0.0;
     for i in 0..if model.has_friction { model.masses() } else { 0 } {

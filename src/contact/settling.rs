@@ -1,8 +1,8 @@
 //! What settles one step's end: each touch, each stop, and what they change in the energies.
 //!
-//! A mass that is put right has had impulses that the held step does not know, and so have its neighbours. The energies count
-//! each as the impulse times the mean of the velocities before and after it: that closes the account however stiff a damper is and
-//! however large a friction.
+//! A mass that is put right has had impulses that the held step does not know, and so have its neighbours. The energies
+//! count each as the impulse times the mean of the velocities before and after it: that closes the account however
+//! stiff a damper is and however large a friction.
 
 use super::rules::{collision, decided, energy_at, has_reversed};
 use crate::integrator::{Rates, Within};
@@ -43,7 +43,8 @@ pub struct End<'a> {
 pub struct Settled {
     /// Lost in impacts.
     pub impact: f64,
-    /// Through the channels, from the instants of the impacts on: what the masses in contact do beyond what free ones would.
+    /// Through the channels, from the instants of the impacts on: what the masses in contact do beyond what free ones
+    /// would.
     pub channels: Power,
 }
 
@@ -126,8 +127,8 @@ impl<'a> Settling<'a> {
         self.put(i, from, (from.0, ground), self.step.span.1);
     }
 
-    /// Moves mass `i` to the place `x` on `ground`. What it has moved in the last `time` (s) its dashpots have not, and the
-    /// lateral dampers have passed on to the neighbours as an impulse.
+    /// Moves mass `i` to the place `x` on `ground`. What it has moved in the last `time` (s) its dashpots have not, and
+    /// the lateral dampers have passed on to the neighbours as an impulse.
     fn put(&mut self, i: usize, from: (f64, f64), (x, ground): (f64, SurfacePoint), time: f64) {
         let moved = (x - from.0, ground.height - from.1);
         let state = &mut *self.end.state;
@@ -215,8 +216,8 @@ impl<'a> Settling<'a> {
         self.step.model.links[kind as usize].damping
     }
 
-    /// What of a damper d between two masses passes on what one of them moves otherwise than it was tried, N s/m: all of d, unless it
-    /// brings them together within the `time` (s).
+    /// What of a damper d between two masses passes on what one of them moves otherwise than it was tried, N s/m: all
+    /// of d, unless it brings them together within the `time` (s).
     fn passing(&self, kind: LinkKind, time: f64) -> f64 {
         let (damping, mass) = (self.damping(kind), self.step.model.mass);
         damping * mass / (mass + 2.0 * time * damping)
@@ -301,8 +302,8 @@ impl<'a> Settling<'a> {
     }
 }
 
-/// The friction beyond that at rest, N, with which a mass in `mode` goes on for a `time` (s) from v_t (m/s), driven by a force (N)
-/// and slowed: at the end of that time, since it is steep at creep speeds.
+/// The friction beyond that at rest, N, with which a mass in `mode` goes on for a `time` (s) from v_t (m/s), driven by
+/// a force (N) and slowed: at the end of that time, since it is steep at creep speeds.
 fn beyond_rest(model: &Model, mode: Mode, v_t: f64, (driving, time, slowing): (f64, f64, f64)) -> f64 {
     let Some(law) = model.rate_shear.filter(|_| time > 0.0) else { return 0.0 };
     let sigma = mode.direction();

@@ -1,15 +1,16 @@
 //! Mode changes of the time-stepping driver: what comes about within a step is settled at its end.
 //!
-//! A step holds its modes, and the state at its end shows which could not last: a free mass is below the profile, a contact has
-//! F_N < 0, a slip has reversed, a stick is past T. The step is not repeated with other modes; only the masses concerned
-//! are put right. One that fell below the profile goes back to the instant of its touch, has its impact there, and goes on
-//! along the profile for what is left of the step; its dashpots follow it, and the dampers pass its way on to the
-//! neighbours. A slip that reversed stops. Lifts and breaks begin at the end, as the forces alone went too far. Then the rules of
-//! model.md decide on all of them and their neighbours by the forces as they are.
+//! A step holds its modes, and the state at its end shows which could not last: a free mass is below the profile, a
+//! contact has F_N < 0, a slip has reversed, a stick is past T. The step is not repeated with other modes; only the
+//! masses concerned are put right. One that fell below the profile goes back to the instant of its touch, has its
+//! impact there, and goes on along the profile for what is left of the step; its dashpots follow it, and the dampers
+//! pass its way on to the neighbours. A slip that reversed stops. Lifts and breaks begin at the end, as the forces
+//! alone went too far. Then the rules of model.md decide on all of them and their neighbours by the forces as they are.
 //!
-//! So a step takes any number of mode changes, at its own cost. What their lateness leaves falls with the square of the step's
-//! length, as the method's error does; it is measured with it, and where it is too large the step is shortened.
-//! Repeating the step with the modes of its end would cost the stages again, and put changes too early in place of too late.
+//! So a step takes any number of mode changes, at its own cost. What their lateness leaves falls with the square of the
+//! step's length, as the method's error does; it is measured with it, and where it is too large the step is shortened.
+//! Repeating the step with the modes of its end would cost the stages again, and put changes too early in place of too
+//! late.
 
 use super::settling::{End, HeldStep, Settled, Settling};
 use crate::integrator::{Tolerance, Within};
@@ -18,8 +19,8 @@ use crate::model::{LinkKind, Mode, Model};
 
 /// How much the lateness of mode changes weighs in the error of a step.
 ///
-/// Recommended 3 to 10. With 5, masses that touch and lift at a relative tolerance of 1e-2 add errors of some 1e-2 to the forces of
-/// a layer; larger costs rejected steps where many do.
+/// Recommended 3 to 10. With 5, masses that touch and lift at a relative tolerance of 1e-2 add errors of some 1e-2 to
+/// the forces of a layer; larger costs rejected steps where many do.
 const LATENESS: f64 = 5.0;
 
 /// How many masses to each side feel that one is put right: the neighbours get impulses, and theirs feel these.
@@ -78,8 +79,8 @@ impl StepEnd {
         self.touches.is_empty() && self.contacts.is_empty()
     }
 
-    /// By how much settling what [`find`](Self::find) found may change the forces on the carrier, N: by the springs' and the
-    /// dampers' forces of what goes below the profile, and by what goes past the limits.
+    /// By how much settling what [`find`](Self::find) found may change the forces on the carrier, N: by the springs'
+    /// and the dampers' forces of what goes below the profile, and by what goes past the limits.
     pub fn unsettled_force(&self) -> f64 {
         self.force
     }
@@ -103,8 +104,8 @@ impl StepEnd {
         Some(Late { length: -gap, time })
     }
 
-    /// A mass above the profile at the end, by `gap`, that is below at the first stage has gone through an asperity: all of
-    /// that is an error.
+    /// A mass above the profile at the end, by `gap`, that is below at the first stage has gone through an asperity:
+    /// all of that is an error.
     fn find_dip(&self, step: &Within<'_>, i: usize, gap: f64) -> Option<Late> {
         let rise = step.height(i, 1.0) - step.height(i, Within::FIRST);
         let way = (step.place(i, 1.0) - step.place(i, Within::FIRST)).abs();
@@ -115,7 +116,8 @@ impl StepEnd {
         (dip < 0.0).then_some(Late { length: -dip, time: f64::INFINITY })
     }
 
-    /// How far contact `i` is past a limit: by the elongation that makes such a force, or by the way that it slipped back.
+    /// How far contact `i` is past a limit: by the elongation that makes such a force, or by the way that it slipped
+    /// back.
     fn find_limit(&mut self, step: &Within<'_>, i: usize, stiffness: f64) -> Option<Late> {
         let (first, last) = (step.first, step.last);
         let late = if last.normal[i] < 0.0 {
@@ -167,8 +169,8 @@ struct Late {
 }
 
 impl Late {
-    /// The error, m, that is left after it has been put right: in a time that is short against 1/ω of the stiffest frequency ω
-    /// the forces that went too far move little.
+    /// The error, m, that is left after it has been put right: in a time that is short against 1/ω of the stiffest
+    /// frequency ω the forces that went too far move little.
     fn error(self, frequency: f64) -> f64 {
         self.length * (frequency * self.time).min(1.0)
     }
@@ -180,8 +182,8 @@ impl Within<'_> {
         self.height(i, theta) - self.model.ground(self.place(i, theta)).height
     }
 
-    /// For how long a quantity that is `first` at the first stage and `last` < 0 at the end has been negative, s, by the line
-    /// through them.
+    /// For how long a quantity that is `first` at the first stage and `last` < 0 at the end has been negative, s, by
+    /// the line through them.
     fn time_below(&self, first: f64, last: f64) -> f64 {
         let fall = (first - last) / (1.0 - Self::FIRST);
         self.span.1 * if fall > -last { -last / fall } else { 1.0 }

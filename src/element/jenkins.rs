@@ -2,14 +2,15 @@
 //!
 //! G = -F_x is the force in the spring, K the tangential stiffness, L = μ F_z the limit, σ the direction of slip.
 //!
-//! - *Stick*, |G| ≤ L: Ġ = K u̇ while K grows, as what comes newly into contact bears nothing yet; where K falls, what leaves
+//! - *Stick*, |G| ≤ L: Ġ = K u̇ while K grows, as what comes newly into contact bears nothing yet; where K falls, what
+//! leaves
 //!   the contact takes its share along: the elongation G/K grows by u̇.
 //! - *Slip*: G = σL, for as long as a sticking spring would go beyond it.
 //!
 //! So a growing and a falling stiffness both cost energy and give none: what the spring holds is V = G²/(2K), and
-//! ∫ G du = V + E_diss with E_diss never falling. All is followed exactly along straight motions of the carrier: the switches
-//! are roots, the integrals Gauss's formula of six points over pieces in which the integrand is a polynomial of degree 11 at
-//! most (stick) or next to one (slip).
+//! ∫ G du = V + E_diss with E_diss never falling. All is followed exactly along straight motions of the carrier: the
+//! switches are roots, the integrals Gauss's formula of six points over pieces in which the integrand is a polynomial
+//! of degree 11 at most (stick) or next to one (slip).
 
 use super::law::{Contact, Curve};
 use crate::math::bracketed_root;
@@ -31,8 +32,8 @@ pub(super) struct Rates {
     pub(super) approach: f64,
 }
 
-/// What hears of losses and of changes between stick and slip: with the approach (m) and the energy (J) or the time since
-/// the start of the motion (s) and the mode.
+/// What hears of losses and of changes between stick and slip: with the approach (m) and the energy (J) or the time
+/// since the start of the motion (s) and the mode.
 pub(super) trait Listener {
     /// Energy lost about an approach.
     fn lost(&mut self, approach: f64, energy: f64);
@@ -117,8 +118,8 @@ impl Jenkins {
         }
     }
 
-    /// The carrier goes straight through a piece of the approach, `from` to `to` (m), in which the stiffness only grows or only
-    /// falls; `elapsed` (s) is counted where it begins.
+    /// The carrier goes straight through a piece of the approach, `from` to `to` (m), in which the stiffness only grows
+    /// or only falls; `elapsed` (s) is counted where it begins.
     pub(super) fn cross(
         &mut self,
         curve: &Curve,

@@ -1,13 +1,15 @@
 //! The table at one temperature, and at one speed: what the contact does as the carrier comes closer.
 //!
 //! Along temperature and the logarithm of speed the quantities are interpolated as they are, but the separation by its
-//! differences from one pressure to the next: these are positive and stay so, so that at every speed and temperature the
-//! carrier is closer where it presses harder. Along the pressure everything follows its logarithm y = ln p, and y follows
-//! the approach a = -separation. Beyond the pressures of the table, with A the nominal area and p_1 and p_n the least and
-//! the largest pressure:
+//! differences from one pressure to the next: these are positive and stay so, so that at every speed and temperature
+//! the carrier is closer where it presses harder. Along the pressure everything follows its logarithm y = ln p, and y
+//! follows the approach a = -separation. Beyond the pressures of the table, with A the nominal area and p_1 and p_n the
+//! least and the largest pressure:
 //!
-//! - Below p_1 the pressure falls as a parabola, p = p_1 ((a - a_0)/(a_1 - a_0))², with the slope that it has at p_1, so to
-//!   0 at a_0 = a_1 - 2 p_1/p_1'; there the contact ends. Tangential stiffness and contact ratio fall with the pressure, the
+//! - Below p_1 the pressure falls as a parabola, p = p_1 ((a - a_0)/(a_1 - a_0))², with the slope that it has at p_1,
+//! so to
+//!   0 at a_0 = a_1 - 2 p_1/p_1'; there the contact ends. Tangential stiffness and contact ratio fall with the
+//! pressure, the
 //!   friction coefficient stays.
 //! - Above p_n it goes on along its tangent; the coefficients, the tangential stiffness and the contact ratio stay.
 //!
@@ -202,8 +204,8 @@ impl Curve {
         self.ends.push(self.approaches[self.approaches.len() - 1]);
     }
 
-    /// The end of the piece that the carrier goes through as it leaves `approach` to come closer, or to go; infinite where there is
-    /// none.
+    /// The end of the piece that the carrier goes through as it leaves `approach` to come closer, or to go; infinite
+    /// where there is none.
     pub(super) fn end_of_piece(&self, approach: f64, closer: bool) -> f64 {
         if closer {
             let next = self.ends.partition_point(|&end| end <= approach);

@@ -17,8 +17,8 @@ pub struct LeftOut {
 
 /// Leaves out the speeds, the pressures and the temperatures between the first and the last, one by one.
 ///
-/// The steps that are interpolated over are then twice as long as the table's: of a method of third order, the table's own errors are
-/// some eight times smaller.
+/// The steps that are interpolated over are then twice as long as the table's: of a method of third order, the table's
+/// own errors are some eight times smaller.
 pub fn left_out(table: &Table) -> [LeftOut; 3] {
     let axes: [(&'static str, usize); 3] = [
         ("speed", table.speeds.len()),

@@ -27,8 +27,8 @@ pub fn variables(table: &Table) -> Vec<Variable> {
     known.filter_map(|(output, _)| variable(output)).collect()
 }
 
-/// What an output depends on directly, the slider's place held while the contact sticks: F_x on u through the spring, all that follows
-/// the pressure on w.
+/// What an output depends on directly, the slider's place held while the contact sticks: F_x on u through the spring,
+/// all that follows the pressure on w.
 pub fn dependencies(output: Output) -> Dependencies {
     match output {
         Output::ForceZ | Output::ContactRatio => Dependencies { on_u: false, on_w: true },
@@ -88,9 +88,11 @@ impl Element {
         }
     }
 
-    /// Writes into `values` how `variables` change as the carrier moves along x and z by `direction` (m per unit), the modes held.
+    /// Writes into `values` how `variables` change as the carrier moves along x and z by `direction` (m per unit), the
+    /// modes held.
     ///
-    /// A sticking spring follows u with its stiffness; where w lets the stiffness fall, its force falls alike, else it stays.
+    /// A sticking spring follows u with its stiffness; where w lets the stiffness fall, its force falls alike, else it
+    /// stays.
     pub fn directional_derivative(&self, variables: &[Variable], direction: (f64, f64), values: &mut [f64]) {
         let contact = self.contact();
         let (now, change) = (self.moment(&contact), self.change(&contact, direction));

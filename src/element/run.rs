@@ -13,8 +13,8 @@ use crate::model::Mode;
 use crate::scene::is_possible;
 use crate::simulation::{ModeChange, Start};
 
-/// Share of the speeds and separations of the table by which the carrier may be beyond: the rounding of a master that goes to
-/// the very end.
+/// Share of the speeds and separations of the table by which the carrier may be beyond: the rounding of a master that
+/// goes to the very end.
 const ROUNDING: f64 = 1e-9;
 
 /// What changes in a run, SI units.

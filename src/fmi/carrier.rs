@@ -33,7 +33,8 @@ struct Past {
     step: f64,
 }
 
-/// The master gave an input that is no number or larger than [`LARGEST`](crate::scene::LARGEST), or a rate that leads to such a one.
+/// The master gave an input that is no number or larger than [`LARGEST`](crate::scene::LARGEST), or a rate that leads
+/// to such a one.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("the input {name} is {value:?} at t = {time} s: no step can be done")]
 pub struct InputOutOfRange {
@@ -91,7 +92,8 @@ impl Carrier {
         Ok(Motion { duration: h, u: path(Input::U, u)?, w: path(Input::W, w)? })
     }
 
-    /// Whether a run can have come to it: what was followed was finite. Values and rates not yet followed may be anything.
+    /// Whether a run can have come to it: what was followed was finite. Values and rates not yet followed may be
+    /// anything.
     pub(super) fn is_sound(&self) -> bool {
         let pasts = self.axes.iter().filter_map(|axis| axis.past.as_ref());
         pasts.into_iter().all(|past| is_possible(past.value) && is_possible(past.step) && past.step > 0.0)
@@ -110,8 +112,8 @@ impl Carrier {
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 impl Axis {
-    /// The rate that the master gave, if û stands at its value but for rounding. It is then followed as it is: found from
-    /// the difference to the target it would bear that rounding over h, a kink of a steady motion at every point.
+    /// The rate that the master gave, if û stands at its value but for rounding. It is then followed as it is: found
+    /// from the difference to the target it would bear that rounding over h, a kink of a steady motion at every point.
     fn given_rate(&self, stands: f64) -> Option<f64> {
         let same = (stands - self.value).abs() <= ROUNDING * stands.abs().max(self.value.abs());
         self.rate.filter(|_| same)
@@ -206,7 +208,8 @@ mod tests {
         assert_eq!((motion.duration, motion.u.rate, motion.w.rate), (0.25, 8.0, -2.0));
     }
 
-    /// A carrier at 1e6 m, where the last digit is 1e-10 m: what its rounding would be over 1e-6 s is far from the rate.
+    /// A carrier at 1e6 m, where the last digit is 1e-10 m: what its rounding would be over 1e-6 s is far from the
+    /// rate.
     #[test]
     fn a_rate_given_where_the_carrier_stands_is_followed_as_it_is() {
         let rate = |stands: f64| {

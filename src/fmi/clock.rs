@@ -22,7 +22,8 @@ impl Clock {
     /// A clock that stands at `start`.
     ///
     /// # Errors
-    /// [`Fault`] where a time is no number or larger than [`LARGEST`](crate::scene::LARGEST), or the stop time lies before the start.
+    /// [`Fault`] where a time is no number or larger than [`LARGEST`](crate::scene::LARGEST), or the stop time lies
+    /// before the start.
     pub(super) fn new(start: f64, stop: Option<f64>) -> Result<Self, Fault> {
         let check = |what, value| if is_possible(value) { Ok(()) } else { Err(Fault::OutOfRange { what, value }) };
         check("the start time", start)?;
@@ -43,8 +44,8 @@ impl Clock {
     /// The clock after a step of `h` from `point`; `None` where the step is too short to change the time.
     ///
     /// # Errors
-    /// [`Fault`] where the step size is no step size, the point is another one than the clock's, or the step goes beyond
-    /// the stop time. Differences by rounding are none.
+    /// [`Fault`] where the step size is no step size, the point is another one than the clock's, or the step goes
+    /// beyond the stop time. Differences by rounding are none.
     pub(super) fn step(&self, point: f64, h: f64) -> Result<Option<Self>, Fault> {
         if !(is_possible(h) && h >= 0.0) {
             return Err(Fault::StepSize(h));

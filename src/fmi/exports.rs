@@ -2,9 +2,10 @@
 //!
 //! # Safety
 //!
-//! All of them rest on the standard's contract: a component is NULL or came from [`fmi2Instantiate`] and is not freed, and
-//! one thread at a time uses it; a pointer to data is NULL or valid for as many elements as the call says; a string is NULL
-//! or ends with a zero. NULL is answered everywhere; nothing else that breaks the contract can be seen from here.
+//! All of them rest on the standard's contract: a component is NULL or came from [`fmi2Instantiate`] and is not freed,
+//! and one thread at a time uses it; a pointer to data is NULL or valid for as many elements as the call says; a string
+//! is NULL or ends with a zero. NULL is answered everywhere; nothing else that breaks the contract can be seen from
+//! here.
 #![allow(unsafe_code, non_snake_case, non_upper_case_globals, clippy::missing_safety_doc)]
 
 use std::ffi::{CStr, c_char};

@@ -45,8 +45,8 @@ impl Sources {
     }
 }
 
-/// The GUID of the FMU made from `sources`: a UUID of version 5 over the program's version, the bytes of every source and
-/// the list of variables.
+/// The GUID of the FMU made from `sources`: a UUID of version 5 over the program's version, the bytes of every source
+/// and the list of variables.
 pub fn guid(sources: &Sources, catalogue: &Catalogue) -> String {
     let mut content = Vec::new();
     append(&mut content, env!("CARGO_PKG_VERSION").as_bytes());

@@ -96,8 +96,8 @@ impl Instance {
         Ok(())
     }
 
-    /// fmi2SetupExperiment: the tolerance is the parameter `solver.relative_tolerance`, as if set now. An element has none, and
-    /// no error in time to keep to it.
+    /// fmi2SetupExperiment: the tolerance is the parameter `solver.relative_tolerance`, as if set now. An element has
+    /// none, and no error in time to keep to it.
     pub(super) fn setup_experiment(
         &mut self,
         tolerance: Option<f64>,

@@ -112,7 +112,8 @@ impl fmt::Display for Function {
 /// A function, its name and the states in which it may be called.
 type Row = (Function, &'static str, &'static [State]);
 
-/// Every state, fatal as an addition to the standard's table: a poisoned instance can be freed, as no memory is corrupt.
+/// Every state, fatal as an addition to the standard's table: a poisoned instance can be freed, as no memory is
+/// corrupt.
 const EVERY: &[State] = {
     use State::{Error, Fatal, InitializationMode, Instantiated, StepComplete, StepFailed, Terminated};
     &[Instantiated, InitializationMode, StepComplete, StepFailed, Terminated, Error, Fatal]

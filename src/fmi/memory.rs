@@ -13,7 +13,8 @@ pub(super) struct Memory {
 }
 
 impl Memory {
-    /// Keeps a copy of `run`: in the place of the state `handle`, or in a new one where `handle` is 0. Gives its handle.
+    /// Keeps a copy of `run`: in the place of the state `handle`, or in a new one where `handle` is 0. Gives its
+    /// handle.
     pub(super) fn keep(&mut self, handle: usize, run: &Run) -> Result<usize, Fault> {
         if handle == 0 {
             return Ok(self.keep_new(run.clone()));

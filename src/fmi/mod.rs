@@ -1,9 +1,9 @@
-//! The FMU: the C interface of FMI 2.0 for co-simulation around a [`Simulation`](crate::simulation::Simulation) of a layer, or
-//! an [`Element`](crate::element::Element) that looks the forces up.
+//! The FMU: the C interface of FMI 2.0 for co-simulation around a [`Simulation`](crate::simulation::Simulation) of a
+//! layer, or an [`Element`](crate::element::Element) that looks the forces up.
 //!
-//! The exports check what a C caller can get wrong and then call a method of an instance in safe Rust. What may be called
-//! when is one table, what a value reference means is one [`Catalogue`], which the writer of the model description uses
-//! too. Two files hold unsafe code: `exports` (raw pointers in) and `callbacks` (the master's logger).
+//! The exports check what a C caller can get wrong and then call a method of an instance in safe Rust. What may be
+//! called when is one table, what a value reference means is one [`Catalogue`], which the writer of the model
+//! description uses too. Two files hold unsafe code: `exports` (raw pointers in) and `callbacks` (the master's logger).
 
 mod callbacks;
 mod carrier;

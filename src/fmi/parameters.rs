@@ -9,8 +9,8 @@ use crate::scene::{Parameter, ParameterError, Value};
 #[derive(Clone, Debug)]
 pub(super) struct Parameters {
     subject: Subject,
-    /// What was set, by the parameters' names: with the subject as it came, it gives the subject as it is. A parameter that
-    /// follows another until it is set itself is not known by its value alone.
+    /// What was set, by the parameters' names: with the subject as it came, it gives the subject as it is. A parameter
+    /// that follows another until it is set itself is not known by its value alone.
     set: BTreeMap<String, Value>,
 }
 

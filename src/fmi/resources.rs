@@ -25,8 +25,8 @@ pub(super) fn find(location: &str, files: &'static [&'static str]) -> Result<Pat
     }
 }
 
-/// The folders that `location` may mean, the likeliest first: a URI is meant decoded, a plain path as it stands, but each
-/// may be the other way round.
+/// The folders that `location` may mean, the likeliest first: a URI is meant decoded, a plain path as it stands, but
+/// each may be the other way round.
 fn folders(location: &str) -> Vec<String> {
     let mut folders = Vec::new();
     let mut add = |folder: &str| {

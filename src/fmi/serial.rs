@@ -1,9 +1,9 @@
 //! FMU states as byte strings.
 //!
-//! A mark, the version of the format, the FMU's GUID, the run, and a checksum of all that goes before it. The GUID stands
-//! for the program's version, the scene and every file that it reads, so a state is taken up only where it can go on
-//! bit for bit. The checksum finds what was cut short or changed by accident; whoever makes one up on purpose can at most
-//! make up a run: lengths, modes, numbers and the profile are checked against the scene.
+//! A mark, the version of the format, the FMU's GUID, the run, and a checksum of all that goes before it. The GUID
+//! stands for the program's version, the scene and every file that it reads, so a state is taken up only where it can
+//! go on bit for bit. The checksum finds what was cut short or changed by accident; whoever makes one up on purpose can
+//! at most make up a run: lengths, modes, numbers and the profile are checked against the scene.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

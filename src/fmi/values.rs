@@ -98,8 +98,8 @@ impl Instance {
 
     /// fmi2SetReal, fmi2SetInteger and fmi2SetString: all of the values or none.
     ///
-    /// An input that is no number, or none that a carrier can be at, is taken here and refused by the step: a master may write it for as long as
-    /// it does not ask the model to follow it.
+    /// An input that is no number, or none that a carrier can be at, is taken here and refused by the step: a master
+    /// may write it for as long as it does not ask the model to follow it.
     pub(super) fn set(&mut self, references: &[u32], values: impl Iterator<Item = Value>) -> Result<(), Fault> {
         let mut parameters = Arc::clone(&self.run.parameters);
         let mut carrier = self.run.carrier;

@@ -1,8 +1,8 @@
 //! What lies within a step: dense output.
 //!
-//! Places are the quintics through place, velocity and acceleration at both ends (order 5), velocities their derivatives.
-//! The Maxwell elements follow these velocities by the exact solution of ȧ = ė - a/τ, which holds for every τ; what it
-//! misses of the step's own end is laid on linearly.
+//! Places are the quintics through place, velocity and acceleration at both ends (order 5), velocities their
+//! derivatives. The Maxwell elements follow these velocities by the exact solution of ȧ = ė - a/τ, which holds for
+//! every τ; what it misses of the step's own end is laid on linearly.
 
 use super::{Rates, Tolerance};
 use crate::math::{Jet, Quintic, Relaxation, weighted_sum};
@@ -80,9 +80,10 @@ impl Dense<'_> {
         }
     }
 
-    /// What the dense output misses of the equations of motion at the fraction `theta`, whose state stands in `state` and
-    /// `room`: how far the accelerations that the forces there give are from its own, as a velocity gained over the step,
-    /// in the tolerance's norm.
+    /// What the dense output misses of the equations of motion at the fraction `theta`, whose state stands in `state`
+    /// and
+    /// `room`: how far the accelerations that the forces there give are from its own, as a velocity gained over the
+    /// step, in the tolerance's norm.
     pub fn defect(
         &self,
         theta: f64,
@@ -147,8 +148,8 @@ impl Dense<'_> {
         self.elongation(Axis::X, i).evaluate(theta).speed / self.h + self.carrier.at(self.s + theta * self.h).u_rate
     }
 
-    /// What the surface and the links do to mass `i`, in contact, at the fraction `theta`: the same as in the state there,
-    /// for this mass alone.
+    /// What the surface and the links do to mass `i`, in contact, at the fraction `theta`: the same as in the state
+    /// there, for this mass alone.
     pub fn contact(&self, i: usize, theta: f64, room: &mut DenseRoom) -> ContactForces {
         room.relax(self, theta);
         let carrier = self.carrier.at(self.s + theta * self.h);
@@ -249,8 +250,8 @@ pub struct DenseRoom {
     rate: [[Vec<f64>; 5]; 4],
     /// Along x and z: the second derivative of each mass's elongation with respect to the fraction, m.
     bend: [Vec<f64>; 2],
-    /// By relaxation time: what a at one fraction of the step takes from that at the start and from the rates. The elements
-    /// follow the rates exactly; what they miss of the step's own end is laid on linearly.
+    /// By relaxation time: what a at one fraction of the step takes from that at the start and from the rates. The
+    /// elements follow the rates exactly; what they miss of the step's own end is laid on linearly.
     relaxation: Vec<Relaxation>,
     /// The fraction, and the length of the step.
     relaxed: (f64, f64),

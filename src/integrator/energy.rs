@@ -12,8 +12,8 @@ use crate::model::{Exchange, LinkKind, MaxwellRow, Model, Power};
 /// Σ ė_i ė_j over the links of one kind, m²/s², for j ≤ i.
 type Products<const STAGES: usize> = [[f64; STAGES]; STAGES];
 
-/// Energies through all channels over a step of length `h` whose stages count with `weights`, as in [`lost`]; `exchange` are
-/// the powers through the surface and the carrier at the stages.
+/// Energies through all channels over a step of length `h` whose stages count with `weights`, as in [`lost`];
+/// `exchange` are the powers through the surface and the carrier at the stages.
 pub(super) fn through<const STAGES: usize>(
     model: &Model,
     maxwell: &Maxwell<STAGES>,
@@ -78,8 +78,8 @@ fn products_of<const STAGES: usize>(stages: &[Rates], kind: LinkKind, all: bool)
     products
 }
 
-/// The largest Σ (ė_i - ė_0)² of a stage over the links of one kind, m²/s². Not by the products, whose rounding is more than
-/// the change of a steady motion.
+/// The largest Σ (ė_i - ė_0)² of a stage over the links of one kind, m²/s². Not by the products, whose rounding is more
+/// than the change of a steady motion.
 fn largest_change(stages: &[Rates], kind: LinkKind) -> f64 {
     let [start, later @ ..] = stages else { return 0.0 };
     let start = &start.elongation_rate[kind as usize];
@@ -92,9 +92,9 @@ fn largest_change(stages: &[Rates], kind: LinkKind) -> f64 {
 
 /// Σ_i weight_i a_i² of an element: a_i = p_i a_0 + h Σ_j q_ij ė_j multiplied out.
 ///
-/// An element that does not yet follow its link, a_0 ≠ τė_0, after a start undeformed or a jump of ė, may relax in a time far
-/// shorter than a step that is good at its end, and no stage sees it. So what belongs to a_0 - τė_0 is put in as what the sum
-/// stands for.
+/// An element that does not yet follow its link, a_0 ≠ τė_0, after a start undeformed or a jump of ė, may relax in a
+/// time far shorter than a step that is good at its end, and no stage sees it. So what belongs to a_0 - τė_0 is put in
+/// as what the sum stands for.
 struct Squares<const STAGES: usize> {
     /// Of a_0².
     start: f64,
@@ -106,9 +106,9 @@ struct Squares<const STAGES: usize> {
     late: Option<Late>,
 }
 
-/// The ratio of step and relaxation time up to which the stages see all of an element; from twice of it on, all that they
-/// miss is put in. In between it grows evenly: a step as long as the relaxation time is usual where a master's is, and what
-/// was lost must not hang on the rounding of its length.
+/// The ratio of step and relaxation time up to which the stages see all of an element; from twice of it on, all that
+/// they miss is put in. In between it grows evenly: a step as long as the relaxation time is usual where a master's is,
+/// and what was lost must not hang on the rounding of its length.
 const SEEN: f64 = 1.0;
 
 /// What the stages miss of l = a_0 - τė_0, which falls as e^(-zθ) beside τė_0.
@@ -161,11 +161,11 @@ impl Late {
         }
     }
 
-    /// The sum over elements of relaxation time `tau` with the elongations `a`, whose links start with `rate` and change it by
-    /// [`largest_change`] in the step.
+    /// The sum over elements of relaxation time `tau` with the elongations `a`, whose links start with `rate` and
+    /// change it by [`largest_change`] in the step.
     ///
-    /// Where they follow their links as nearly as ė changes, l is what ë leaves, which the stages see: then it is 0, and it
-    /// goes there without a jump.
+    /// Where they follow their links as nearly as ė changes, l is what ë leaves, which the stages see: then it is 0,
+    /// and it goes there without a jump.
     fn sum(&self, tau: f64, a: &[f64], rate: &[f64], change: f64) -> f64 {
         let late = |i: usize| a[i] - tau * rate[i];
         let square = sum_of(a.len(), |i| late(i) * late(i));

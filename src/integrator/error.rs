@@ -45,9 +45,9 @@ pub(super) struct Tried<'a, const STAGES: usize> {
 impl<const STAGES: usize> Tried<'_, STAGES> {
     /// The embedded estimate of the step, of length `h`, in the tolerance's norm.
     ///
-    /// The carrier's displacement is known, not integrated; yet where masses are in contact a step must be able to see it:
-    /// the dense output, the events between the stages and the energies do. So what the method would miss of it counts as
-    /// an error too: where every mass sticks, there is no other.
+    /// The carrier's displacement is known, not integrated; yet where masses are in contact a step must be able to see
+    /// it: the dense output, the events between the stages and the energies do. So what the method would miss of it
+    /// counts as an error too: where every mass sticks, there is no other.
     pub(super) fn error(&self, model: &Model, h: f64, tolerance: &Tolerance, room: &mut ErrorRoom) -> Attempt {
         let carrier_error = self.carrier_error(h);
         self.collect(h, &carrier_error, room);
@@ -77,7 +77,8 @@ impl<const STAGES: usize> Tried<'_, STAGES> {
         Attempt { error: mean(sum), unseen: mean(unseen) }
     }
 
-    /// The squares of what the method misses of the carrier's displacement, over the masses in contact and over the free ones.
+    /// The squares of what the method misses of the carrier's displacement, over the masses in contact and over the
+    /// free ones.
     fn unseen(&self, (position, _): &CarrierErrors, tolerance: &Tolerance) -> (f64, f64) {
         let (mut in_contact, mut free) = (0.0, 0.0);
         if position.0 == 0.0 && position.1 == 0.0 {
@@ -92,8 +93,8 @@ impl<const STAGES: usize> Tried<'_, STAGES> {
         (in_contact, free)
     }
 
-    /// The errors of places and velocities against the carrier. A sticking mass has none, and along z those of a contact
-    /// follow its slope.
+    /// The errors of places and velocities against the carrier. A sticking mass has none, and along z those of a
+    /// contact follow its slope.
     fn collect(&self, h: f64, (position, velocity): &CarrierErrors, room: &mut ErrorRoom) {
         let weights = &self.tableau.error;
         let sum = |errors: &mut [f64], rate: fn(&Rates) -> &[f64], of_carrier: f64| {

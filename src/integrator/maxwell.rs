@@ -136,9 +136,9 @@ impl<const STAGES: usize> Course<STAGES> {
         Self { start: zero, rate: [zero; STAGES], error_start: 0.0, error_rate: zero }
     }
 
-    /// The numbers for a step of length `h` and its ratio `z` to the relaxation time. A stage gives a_i = g (a*_i + γhė_i), g = 1/(1 + γz), from
-    /// a*_i = a_0 + h Σ_{j<i} a_ij ȧ_j, and hȧ_i = hė_i - z a_i, which is g (hė_i - z a*_i): nothing cancels, however
-    /// large z is.
+    /// The numbers for a step of length `h` and its ratio `z` to the relaxation time. A stage gives a_i = g (a*_i +
+    /// γhė_i), g = 1/(1 + γz), from a*_i = a_0 + h Σ_{j<i} a_ij ȧ_j, and hȧ_i = hė_i - z a_i, which is g (hė_i - z
+    /// a*_i): nothing cancels, however large z is.
     fn follow(&mut self, tableau: &Tableau<STAGES>, z: f64, h: f64) {
         let gamma = tableau.gamma();
         let g = 1.0 / (1.0 + gamma * z);

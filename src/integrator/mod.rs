@@ -95,8 +95,8 @@ impl Steps {
 pub struct Attempt {
     /// The error estimate over the tolerance: at most 1 for a good step.
     pub error: f64,
-    /// What the step did not see of the carrier's motion over the free masses, against the tolerance: of account only where
-    /// one of them may touch.
+    /// What the step did not see of the carrier's motion over the free masses, against the tolerance: of account only
+    /// where one of them may touch.
     pub unseen: f64,
 }
 
@@ -140,8 +140,8 @@ impl Integrator {
         self.solver.iterations
     }
 
-    /// Computes the rates at the start of a step afresh, from the forces in `state`: needed at the start, after an event
-    /// and at a kink.
+    /// Computes the rates at the start of a step afresh, from the forces in `state`: needed at the start, after an
+    /// event and at a kink.
     pub fn begin(&mut self, model: &Model, state: &State, carrier: &CarrierPoint, forces: &Forces) {
         self.stages[0].evaluate(model, state, forces);
         if self.accounts_energy {
@@ -184,8 +184,8 @@ impl Integrator {
         Ok(tried.error(model, h, tolerance, &mut self.error_room))
     }
 
-    /// The motion that the earlier stages of a step of length `h` from `state`, `s` seconds after the start of the carrier's
-    /// piece, give to stage `i`, with its place `c` and its weights; and where it stands.
+    /// The motion that the earlier stages of a step of length `h` from `state`, `s` seconds after the start of the
+    /// carrier's piece, give to stage `i`, with its place `c` and its weights; and where it stands.
     fn prepare_stage(
         &mut self,
         state: &State,
@@ -220,7 +220,8 @@ impl Integrator {
         Ok(())
     }
 
-    /// The tangents at the stage just solved, the `i`-th, at `s` in a step of length `h`; the earlier ones have `weights`.
+    /// The tangents at the stage just solved, the `i`-th, at `s` in a step of length `h`; the earlier ones have
+    /// `weights`.
     fn vary(&mut self, model: &Model, point: &StagePoint, (s, h): (f64, f64), (i, weights): (usize, &[f64])) {
         if self.tangents.is_empty() {
             return;
@@ -287,8 +288,8 @@ impl Integrator {
         &self.stages
     }
 
-    /// The step of length `h` from `start`, `s` seconds after the start of the carrier's piece, that was tried last, seen
-    /// from within.
+    /// The step of length `h` from `start`, `s` seconds after the start of the carrier's piece, that was tried last,
+    /// seen from within.
     pub fn dense<'a>(
         &'a self,
         model: &'a Model,
@@ -341,8 +342,8 @@ impl Integrator {
     /// How far stage `i` takes the carrier to have moved, along x and z, m: by the method's own quadrature of its rate.
     ///
     /// So the elongations are integrated as the differences that they are, ė = ẋ - u̇, and the velocities against the
-    /// carrier's, with -ü as a load: a carrier that swings far leaves no error in a layer that swings with it. The starred
-    /// velocities take over what the quadrature of ü misses of u̇.
+    /// carrier's, with -ü as a load: a carrier that swings far leaves no error in a layer that swings with it. The
+    /// starred velocities take over what the quadrature of ü misses of u̇.
     fn drive(&mut self, (h, weights): (f64, &[f64]), i: usize) -> (f64, f64) {
         let (mut moved, mut missed) = ((0.0, 0.0), (0.0, 0.0));
         for (at, weight) in self.carrier[..=i].iter().zip(weights) {
@@ -363,8 +364,9 @@ impl Integrator {
         moved
     }
 
-    /// The velocities from which Newton's iterations start. For slipping masses the accelerations of the earlier stages are
-    /// extrapolated; free ones, whose equations are linear, start where they were, since a guess far off costs digits.
+    /// The velocities from which Newton's iterations start. For slipping masses the accelerations of the earlier stages
+    /// are extrapolated; free ones, whose equations are linear, start where they were, since a guess far off costs
+    /// digits.
     fn predict(&mut self, start: &State, beta: f64, i: usize) {
         let solver = &mut self.solver;
         solver.state.velocity_x.copy_from_slice(&start.velocity_x);
@@ -380,7 +382,8 @@ impl Integrator {
     }
 }
 
-/// Weights that extrapolate from the earlier stages to each stage: Lagrange's through the latest three of distinct place.
+/// Weights that extrapolate from the earlier stages to each stage: Lagrange's through the latest three of distinct
+/// place.
 fn predictor(c: &[f64; STAGES]) -> [[f64; STAGES]; STAGES] {
     let mut weights = [[0.0; STAGES]; STAGES];
     for i in 1..STAGES {

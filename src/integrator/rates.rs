@@ -77,7 +77,8 @@ impl Rates {
         }
     }
 
-    /// Velocity, acceleration and what a contact leaves of mass `i`, whose contact was cleared, by the forces in `state`.
+    /// Velocity, acceleration and what a contact leaves of mass `i`, whose contact was cleared, by the forces in
+    /// `state`.
     #[inline]
     fn evaluate_mass(&mut self, model: &Model, state: &State, forces: &Forces, i: usize) {
         let v = state.velocity_x[i];
@@ -116,8 +117,8 @@ impl Rates {
         }
     }
 
-    /// What a contact at mass `i` in `mode` at the velocity ẋ leaves: its z̈ along the surface, F_N and the margin of its
-    /// mode.
+    /// What a contact at mass `i` in `mode` at the velocity ẋ leaves: its z̈ along the surface, F_N and the margin of
+    /// its mode.
     #[inline]
     pub fn contact(
         &mut self,

@@ -13,11 +13,11 @@ pub const TWO_STAGES: usize = 3;
 /// γ: the place of the first stage and the weight of each stage in itself.
 pub(super) const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
 
-/// The error of a step counts as this share of h (k_2 - k_1), k the rates at the stages: γ is what the method differs by from
-/// implicit Euler, of order 1.
+/// The error of a step counts as this share of h (k_2 - k_1), k the rates at the stages: γ is what the method differs
+/// by from implicit Euler, of order 1.
 ///
-/// Ten times γ makes the forces of a rough layer err by about the relative tolerance, as the step's length follows the root
-/// of this. Smaller makes longer steps.
+/// Ten times γ makes the forces of a rough layer err by about the relative tolerance, as the step's length follows the
+/// root of this. Smaller makes longer steps.
 const ESTIMATE: f64 = 10.0 * GAMMA;
 
 /// The method, the start of the step counted as a stage without weight.
@@ -100,8 +100,9 @@ impl Integrator {
         Ok(Attempt { error: attempt.error.hypot(attempt.unseen), ..attempt })
     }
 
-    /// The velocities from which Newton's iterations start: where the accelerations known last lead to. Just after a jump
-    /// those of a stiff layer are no guide: no mass is guessed to change its velocity by more than what moves anyway.
+    /// The velocities from which Newton's iterations start: where the accelerations known last lead to. Just after a
+    /// jump those of a stiff layer are no guide: no mass is guessed to change its velocity by more than what moves
+    /// anyway.
     fn guess(&mut self, mode: &[Mode], beta: f64, i: usize) {
         let (known, guess, history) = (&self.stages[i - 1], &mut self.solver.state, &self.solver.history);
         let carried = self.carrier[i].u_rate.abs() + self.carrier[i].w_rate.abs();
@@ -114,8 +115,8 @@ impl Integrator {
         }
     }
 
-    /// How long a step of two stages with an error of the tolerance would be, as a share of the step of length `h` of the
-    /// other method that was tried last: by the change of velocities and accelerations through it.
+    /// How long a step of two stages with an error of the tolerance would be, as a share of the step of length `h` of
+    /// the other method that was tried last: by the change of velocities and accelerations through it.
     pub fn two_stage_share(&self, h: f64, tolerance: &Tolerance) -> f64 {
         let (first, last, end) = (&self.stages[0], &self.stages[STAGES - 1], &self.solver.state);
         let carrier: &CarrierPoint = &self.carrier[STAGES - 1];
@@ -128,11 +129,13 @@ impl Integrator {
                 + change(|rates| &rates.acceleration_z) / tolerance.of_velocity(end.velocity_z[i] - carrier.w_rate);
         }
         let error = (sum / end.mode.len() as f64).sqrt();
-        // The two stages are nearer to each other than the ends of a step, and the error grows with the square of the step.
+        // The two stages are nearer to each other than the ends of a step, and the error grows with the square of the
+        // step.
         1.0 / (error * (1.0 - GAMMA)).sqrt()
     }
 
-    /// Energies through the channels over the step of two stages of length `h` from `start` tried last, up to its fraction
+    /// Energies through the channels over the step of two stages of length `h` from `start` tried last, up to its
+    /// fraction
     /// `theta`.
     pub fn two_stage_energies(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> Power {
         let room = &self.two_stages;
@@ -141,19 +144,21 @@ impl Integrator {
         energy::through(model, &room.maxwell, &start.maxwell, stages, (h, weights), self.error_room.any())
     }
 
-    /// The Maxwell elements' elongations at the first stage of the step of two stages from `start` tried last, into `a`.
+    /// The Maxwell elements' elongations at the first stage of the step of two stages from `start` tried last, into
+    /// `a`.
     pub fn first_stage_maxwell(&self, model: &Model, start: &State, a: &mut [f64]) {
         self.two_stages.maxwell.at_stage(model, 1, (&start.maxwell, &self.stages), a);
     }
 
-    /// The end of the step of two stages tried last, open to changes: state, forces and rates; and the rates at its first
-    /// stage.
+    /// The end of the step of two stages tried last, open to changes: state, forces and rates; and the rates at its
+    /// first stage.
     pub fn open_end(&mut self) -> (&mut State, &mut Forces, &mut Rates, &Rates) {
         let (earlier, last) = self.stages.split_at_mut(TWO_STAGES - 1);
         (&mut self.solver.state, &mut self.solver.forces, &mut last[0], &earlier[1])
     }
 
-    /// Takes the step of two stages tried last: `state` becomes its end, and the rates there those at the start of the next.
+    /// Takes the step of two stages tried last: `state` becomes its end, and the rates there those at the start of the
+    /// next.
     pub fn accept_two_stages(&mut self, state: &mut State) {
         self.accept_stage(state, TWO_STAGES - 1);
     }

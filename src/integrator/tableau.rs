@@ -59,8 +59,8 @@ impl<const STAGES: usize> Tableau<STAGES> {
 /// Weights b_i(θ) of the quadrature h Σ_i b_i(θ) P_i over the stages from the start of a step to its fraction θ.
 ///
 /// Of all that are exact to the order p of the embedded method, Σ b_i (1, c, c², …)_i = (θ, θ²/2, θ³/3, …), with
-/// Σ b_i (A c²)_i = θ⁴/12 at order 4, these are the smallest for θ → 0; a term in θ^{p+1} brings them to the method's own
-/// weights at θ = 1.
+/// Σ b_i (A c²)_i = θ⁴/12 at order 4, these are the smallest for θ → 0; a term in θ^{p+1} brings them to the method's
+/// own weights at θ = 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WeightsWithin<const STAGES: usize> {
     /// The coefficients of θ, θ², … θ⁵.
@@ -77,8 +77,8 @@ impl<const STAGES: usize> WeightsWithin<STAGES> {
         let conditions = [SVector::repeat(1.0), c, square, c.component_mul(&square), a * square];
         let count = if order == 4 { 5 } else { order };
         let rows = DMatrix::from_fn(count, STAGES, |row, stage| conditions[row][stage]);
-        // The least squares solution is the transpose times the inverse of the normal matrix, which is not singular: the
-        // conditions of a method that obeys them do not depend on each other.
+        // The least squares solution is the transpose times the inverse of the normal matrix, which is not singular:
+        // the conditions of a method that obeys them do not depend on each other.
         let normal = (&rows * rows.transpose()).try_inverse().unwrap_or_else(|| DMatrix::zeros(count, count));
         let smallest = rows.transpose() * normal;
         let of = |row: usize, factor: f64| SVector::from_fn(|stage, _| factor * smallest[(stage, row)]);

@@ -11,8 +11,8 @@ pub struct Tolerance {
     pub position: f64,
     /// Absolute tolerance of velocities, m/s: that of positions times the stiffest frequency but for rods.
     pub velocity: f64,
-    /// What the force of each kind of link is divided by, N/m: a Maxwell element's error counts by the force that it makes.
-    /// c + Σ c_j, but what the other links hold a mass with for a rod.
+    /// What the force of each kind of link is divided by, N/m: a Maxwell element's error counts by the force that it
+    /// makes. c + Σ c_j, but what the other links hold a mass with for a rod.
     per_elongation: [f64; 4],
     /// The kinds of link that are rods: their errors count by the forces that they make.
     rods: [Option<Rod>; 4],
@@ -35,8 +35,8 @@ impl Rod {
         Self { stiffness, damping, rate: (stiffness / model.mass).sqrt().max(damping / model.mass) }
     }
 
-    /// Share of its force by which a step of length `h` (s) may err: where the steps follow its own motion after a jump, what
-    /// counts is the masses' velocities; a step that is long against it forgets the error of the one before.
+    /// Share of its force by which a step of length `h` (s) may err: where the steps follow its own motion after a
+    /// jump, what counts is the masses' velocities; a step that is long against it forgets the error of the one before.
     pub(super) fn transient(&self, h: f64) -> f64 {
         TRANSIENT / (1.0 + (h * self.rate).powi(2))
     }

@@ -1,8 +1,8 @@
 //! What lies within a step of two stages.
 //!
-//! Places run along the parabola through the start and the end that has the velocity of the first stage there; velocities and
-//! Maxwell elements, which may have followed a jump in no time, along the two lines through the start, the first stage and the end,
-//! which do not swing. Both are of the method's own order.
+//! Places run along the parabola through the start and the end that has the velocity of the first stage there;
+//! velocities and Maxwell elements, which may have followed a jump in no time, along the two lines through the start,
+//! the first stage and the end, which do not swing. Both are of the method's own order.
 
 use super::Rates;
 use super::sdirk::{GAMMA, integrated};
@@ -75,8 +75,8 @@ impl<'a> Within<'a> {
         )
     }
 
-    /// Writes the state at the fraction `theta` of the step into `state`, which holds the Maxwell elongations of the first
-    /// stage.
+    /// Writes the state at the fraction `theta` of the step into `state`, which holds the Maxwell elongations of the
+    /// first stage.
     pub fn state_at(&self, theta: f64, state: &mut State) {
         let (s, h) = self.span;
         let here = self.carrier.at(s + theta * h);
@@ -118,8 +118,8 @@ impl<'a> Within<'a> {
     }
 }
 
-/// The parabola from 0 at the start to `end` with the velocity at the first stage that makes `middle` in the fraction γ: the
-/// stages' velocities on a line, integrated.
+/// The parabola from 0 at the start to `end` with the velocity at the first stage that makes `middle` in the fraction
+/// γ: the stages' velocities on a line, integrated.
 #[inline]
 fn through(theta: f64, middle: f64, end: f64) -> f64 {
     let (first, last) = integrated(theta);

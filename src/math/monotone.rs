@@ -1,9 +1,9 @@
 //! Interpolation that rises where its data rise and falls where they fall.
 //!
 //! Between two neighbouring points lies the cubic with given slopes at both. The slopes are those of F. N. Fritsch and
-//! J. Butland (SIAM J. Sci. Stat. Comput. 5, 1984): a harmonic mean of the two secants, 0 where these differ in sign, so that
-//! the cubics are monotone wherever the data are and never leave the range of their two points (F. N. Fritsch and
-//! R. E. Carlson, SIAM J. Numer. Anal. 17, 1980). On smooth monotone data with even steps h the error is O(h³).
+//! J. Butland (SIAM J. Sci. Stat. Comput. 5, 1984): a harmonic mean of the two secants, 0 where these differ in sign,
+//! so that the cubics are monotone wherever the data are and never leave the range of their two points (F. N. Fritsch
+//! and R. E. Carlson, SIAM J. Numer. Anal. 17, 1980). On smooth monotone data with even steps h the error is O(h³).
 
 /// The slopes at the points (`x`, `y`), `x` strictly rising; one point alone has none.
 pub fn monotone_slopes(x: &[f64], y: &[f64], slopes: &mut [f64]) {

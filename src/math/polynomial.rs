@@ -91,7 +91,8 @@ impl Quintic {
     /// The derivative with respect to the fraction as coefficients of powers of the fraction, constant first.
     pub fn derivative_monomials(&self) -> [f64; 5] {
         let c = &self.coefficients;
-        // Monomial m of a polynomial of degree 4 is binomial(4, m) times the m-th difference of its Bernstein coefficients.
+        // Monomial m of a polynomial of degree 4 is binomial(4, m) times the m-th difference of its Bernstein
+        // coefficients.
         let first: [f64; 5] = std::array::from_fn(|i| c[i + 1] - c[i]);
         let second: [f64; 4] = std::array::from_fn(|i| first[i + 1] - first[i]);
         let third: [f64; 3] = std::array::from_fn(|i| second[i + 1] - second[i]);

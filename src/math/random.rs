@@ -1,7 +1,7 @@
 //! Random numbers that are the same everywhere and for ever: their generator has a published definition.
 
-/// SplitMix64: G. L. Steele, D. Lea, C. H. Flood, *Fast splittable pseudorandom number generators*, OOPSLA 2014, with the
-/// constants of `java.util.SplittableRandom`. Every seed is as good as another.
+/// SplitMix64: G. L. Steele, D. Lea, C. H. Flood, *Fast splittable pseudorandom number generators*, OOPSLA 2014, with
+/// the constants of `java.util.SplittableRandom`. Every seed is as good as another.
 ///
 /// ```
 /// use asperity::math::SplitMix64;

@@ -110,7 +110,8 @@ impl Spline {
         let first = self.first();
         let place = x - period * floor((x - first) / period);
         let place = if place >= self.last() { place - period } else { place };
-        // Below the first by a rounding; or so far away that the rounding is more than a period, and any place as right.
+        // Below the first by a rounding; or so far away that the rounding is more than a period, and any place as
+        // right.
         if (first..self.last()).contains(&place) { place } else { first }
     }
 

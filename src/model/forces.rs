@@ -79,7 +79,8 @@ impl Forces {
         }
     }
 
-    /// Follows a change of the velocity of mass `i` by (`dx`, `dz`), m/s: the dampers' forces on it and on its neighbours.
+    /// Follows a change of the velocity of mass `i` by (`dx`, `dz`), m/s: the dampers' forces on it and on its
+    /// neighbours.
     pub fn add_velocity(&mut self, model: &Model, i: usize, (dx, dz): (f64, f64)) {
         for kind in LinkKind::ALL.into_iter().filter(|&kind| model.links[kind as usize].present) {
             let change = if kind.is_along_x() { dx } else { dz };
@@ -250,8 +251,8 @@ impl ContactForces {
         Self { normal, tangential: (f_x + s * f_z) / q, limit, q }
     }
 
-    /// F_T on a mass in `mode` at the velocity ẋ, N, counted against v_t: what holds a sticking mass, T(v_t) sign(v_t) of a slipping
-    /// one.
+    /// F_T on a mass in `mode` at the velocity ẋ, N, counted against v_t: what holds a sticking mass, T(v_t) sign(v_t)
+    /// of a slipping one.
     #[inline]
     pub fn friction(&self, model: &Model, mode: Mode, velocity_x: f64) -> f64 {
         match mode {

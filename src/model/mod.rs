@@ -72,8 +72,8 @@ pub struct Model {
     pub has_friction: bool,
     /// How the dashpots start.
     pub initial: Initial,
-    /// Elongations of the vertical links at the start, m: where the dashpots of [`LinkLaw::still`] stand. Empty where there
-    /// are none.
+    /// Elongations of the vertical links at the start, m: where the dashpots of [`LinkLaw::still`] stand. Empty where
+    /// there are none.
     pub still: Vec<f64>,
 }
 
@@ -115,8 +115,8 @@ impl Model {
         Self::new(&Scene::parse(text, "test.toml".as_ref()).unwrap_or_else(|error| panic!("{error}")))
     }
 
-    /// Puts the dashpots that stand still where the masses' places at the start have them: `place` is u there as a place on
-    /// the profile, `w` is w, m. A mass that would lie under the profile is lifted onto it.
+    /// Puts the dashpots that stand still where the masses' places at the start have them: `place` is u there as a
+    /// place on the profile, `w` is w, m. A mass that would lie under the profile is lifted onto it.
     pub fn stand_still(&mut self, place: f64, w: f64) {
         for i in 0..self.still.len() {
             let ground = self.ground(self.rest_x[i] + place);
@@ -218,6 +218,6 @@ fn holding([vertical, horizontal, lateral_x, lateral_z]: [f64; 4]) -> f64 {
 
 /// A rod's own motion is this many times as fast as the masses swing on the other springs.
 ///
-/// Recommended 30 to 1000. A layer of a material has (H/Δx)², some thousands at most, between the stiffness of its lateral
-/// links and that of those to the carrier; its dampers are critical or weaker.
+/// Recommended 30 to 1000. A layer of a material has (H/Δx)², some thousands at most, between the stiffness of its
+/// lateral links and that of those to the carrier; its dampers are critical or weaker.
 const BEYOND: f64 = 100.0;

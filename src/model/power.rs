@@ -1,5 +1,5 @@
-//! Power and energy of the layer. E_in = [T + V] + E_damper + E_maxwell + E_friction + E_impact holds exactly in the model,
-//! so what it misses in a run is the run's numerical error.
+//! Power and energy of the layer. E_in = [T + V] + E_damper + E_maxwell + E_friction + E_impact holds exactly in the
+//! model, so what it misses in a run is the run's numerical error.
 
 use crate::math::{Numbers, dot, visit_all};
 

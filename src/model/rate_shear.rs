@@ -1,8 +1,8 @@
-//! The rate-dependent shear strength of rubber: τ_f(v) = τ_f0 exp(-c [log10(v/v_0)]²) above a creep speed v_c, below which it is
-//! held (B. Lorenz et al., J. Phys.: Condens. Matter 25, 2013).
+//! The rate-dependent shear strength of rubber: τ_f(v) = τ_f0 exp(-c [log10(v/v_0)]²) above a creep speed v_c, below
+//! which it is held (B. Lorenz et al., J. Phys.: Condens. Matter 25, 2013).
 //!
-//! What is held, A τ_f(v_c), acts on a contact at rest as well: it is a part of [`Model::shear_force`](super::Model). The rest is
-//! what a contact that slips has beyond that.
+//! What is held, A τ_f(v_c), acts on a contact at rest as well: it is a part of [`Model::shear_force`](super::Model).
+//! The rest is what a contact that slips has beyond that.
 
 use std::f64::consts::LN_10;
 
@@ -65,11 +65,11 @@ impl RateShear {
         (force - self.held, slope * force / speed)
     }
 
-    /// The speed at which `weight` (v - `speed`) + A τ_f(v) - A τ_f(`speed`) is the same as on the curve's tangent at `speed` the
-    /// change `by` makes it, m/s: a correction of Newton's, taken along the curve.
+    /// The speed at which `weight` (v - `speed`) + A τ_f(v) - A τ_f(`speed`) is the same as on the curve's tangent at
+    /// `speed` the change `by` makes it, m/s: a correction of Newton's, taken along the curve.
     ///
-    /// The curve is all but a logarithm: at creep its tangent is as steep as it is short, and corrections along it go from one end
-    /// of the decades to the other and back.
+    /// The curve is all but a logarithm: at creep its tangent is as steep as it is short, and corrections along it go
+    /// from one end of the decades to the other and back.
     pub fn along_curve(&self, speed: f64, by: f64, weight: f64) -> f64 {
         let linear = speed + by;
         let stays = linear <= self.creep_speed && speed <= self.creep_speed;

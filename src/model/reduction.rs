@@ -1,38 +1,39 @@
 //! Maxwell elements that a scene's time scales can't tell from a spring or from a damper (`solver.reduce`).
 //!
 //! **Long.** For an element that starts with its dashpot at y(0), let b = e - y(0) and z = y - y(0): ż = (b - z)/τ and
-//! z(0) = 0, so |z(t)| ≤ (1 - e^{-t/τ}) max|b|. Its force c_j (b - z) is that of a spring at rest at y(0), and through a
-//! run of length T the two differ by at most
+//! z(0) = 0, so |z(t)| ≤ (1 - e^{-t/τ}) max|b|. Its force c_j (b - z) is that of a spring at rest at y(0), and through
+//! a run of length T the two differ by at most
 //!
 //!   c_j (1 - e^{-T/τ}) max|b|     (≈ T/τ of the spring's own force where τ ≫ T)
 //!
 //! whatever the motion, impacts included. A run that goes on beyond T leaves the bound in proportion.
 //!
-//! **Short.** Let δ = a - τ ė: δ̇ = -δ/τ - τ ë, so |δ(t)| ≤ |δ(0)| e^{-t/τ} + τ² max|ë|. The element's force c_j a and that
-//! of a damper c_j τ_j differ by c_j δ: in motion up to the frequency ω, where |ë| ≤ ω² |e|, by at most
+//! **Short.** Let δ = a - τ ė: δ̇ = -δ/τ - τ ë, so |δ(t)| ≤ |δ(0)| e^{-t/τ} + τ² max|ë|. The element's force c_j a and
+//! that of a damper c_j τ_j differ by c_j δ: in motion up to the frequency ω, where |ë| ≤ ω² |e|, by at most
 //!
 //!   c_j (ωτ)² max|e|
 //!
 //! A jump of ė, by an impact or a kink of the carrier, excites all frequencies, and no bound of this kind holds right
-//! after it: it adds c_j τ_j |Δė|, which dies away as e^{-t/τ} and is an impulse of c_j τ_j² |Δė|. An element that starts
-//! undeformed under a mass lifted onto the profile holds c_j e, an impulse of c_j τ_j e that no damper has; so where the
-//! layer starts undeformed no element becomes a damper. The frequency ω is the largest of: the carrier's sines, 2πf; the way along the profile, v q, with the
-//! carrier's largest speed v and the profile's shortest waves, q = max|z_r'''|/max|z_r''| (exact for a sine; never more than
-//! half a wave from one data point to the next); and the layer's own.
+//! after it: it adds c_j τ_j |Δė|, which dies away as e^{-t/τ} and is an impulse of c_j τ_j² |Δė|. An element that
+//! starts undeformed under a mass lifted onto the profile holds c_j e, an impulse of c_j τ_j e that no damper has; so
+//! where the layer starts undeformed no element becomes a damper. The frequency ω is the largest of: the carrier's
+//! sines, 2πf; the way along the profile, v q, with the carrier's largest speed v and the profile's shortest waves, q =
+//! max|z_r'''|/max|z_r''| (exact for a sine; never more than half a wave from one data point to the next); and the
+//! layer's own.
 //!
 //! **The layer's own frequency** is the largest ω at which the links bear a mass's inertia, m ω² = |K*(ω)|, with
-//! K* = K*_carrier + 4 K*_lateral: neighbours that swing against each other, the chain's highest mode. Not glassy: elements
-//! much shorter than it have relaxed. The curvature of the profile under load is not counted.
+//! K* = K*_carrier + 4 K*_lateral: neighbours that swing against each other, the chain's highest mode. Not glassy:
+//! elements much shorter than it have relaxed. The curvature of the profile under load is not counted.
 //!
 //! **What is replaced.** Link by link, smallest bounds first, as long as their sum is at most `reduce` times the link's
-//! storage stiffness at the run's slowest frequency, K' = c + Σ_j c_j (τ_j/T)²/(1 + (τ_j/T)²). Below |K*(ω)| for every ω
-//! from 1/T on, it is the smallest force that the link answers a unit of motion with. So `reduce` bounds the error of each
-//! link's force, for the same motion, as a share of that force; what the layer makes of it is not bounded, as it is not for
-//! any other parameter. The glassy stiffness would be a poor measure: that of rubber is a thousand times what the link
-//! shows in the run.
+//! storage stiffness at the run's slowest frequency, K' = c + Σ_j c_j (τ_j/T)²/(1 + (τ_j/T)²). Below |K*(ω)| for every
+//! ω from 1/T on, it is the smallest force that the link answers a unit of motion with. So `reduce` bounds the error of
+//! each link's force, for the same motion, as a share of that force; what the layer makes of it is not bounded, as it
+//! is not for any other parameter. The glassy stiffness would be a poor measure: that of rubber is a thousand times
+//! what the link shows in the run.
 //!
-//! Without an `[[excitation]]` nothing is known of the run's length nor of the carrier's motion: then no element is long
-//! (T is infinite), and ω is the layer's own.
+//! Without an `[[excitation]]` nothing is known of the run's length nor of the carrier's motion: then no element is
+//! long (T is infinite), and ω is the layer's own.
 
 use std::f64::consts::{PI, TAU};
 
@@ -112,8 +113,8 @@ impl Reduction {
     }
 }
 
-/// The replacement with the smaller bound, and the bound, N/m: a spring where the length of the run is known, a damper where
-/// the highest frequency counts.
+/// The replacement with the smaller bound, and the bound, N/m: a spring where the length of the run is known, a damper
+/// where the highest frequency counts.
 fn better(element: &MaxwellElement, run: f64, frequency: Option<f64>) -> Option<(Replacement, f64)> {
     let tau = element.relaxation_time;
     let spring = run.is_finite().then(|| (Replacement::Spring, element.stiffness * -(-run / tau).exp_m1()));

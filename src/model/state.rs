@@ -71,8 +71,8 @@ pub struct State {
     pub velocity_x: Vec<f64>,
     /// ż_i, m/s.
     pub velocity_z: Vec<f64>,
-    /// a_j = e - y_j of all Maxwell elements, m, as [`MaxwellRow::range`](super::MaxwellRow::range) says. The force of an
-    /// element is c_j a_j; da_j/dt = ė - a_j/τ_j keeps all its digits when τ_j is short, where e - y_j would cancel.
+    /// a_j = e - y_j of all Maxwell elements, m, as [`MaxwellRow::range`](super::MaxwellRow::range) says. The force of
+    /// an element is c_j a_j; da_j/dt = ė - a_j/τ_j keeps all its digits when τ_j is short, where e - y_j would cancel.
     pub maxwell: Vec<f64>,
     /// The modes.
     pub mode: Vec<Mode>,

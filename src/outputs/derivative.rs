@@ -1,8 +1,8 @@
 //! How the outputs follow the carrier's displacement with the states held (the table in `dependencies`).
 //!
-//! Moving the carrier by δu takes δu from the elongation e of every horizontal link and from a_j = e - y_j of its Maxwell
-//! elements, so its force changes by -(c + Σ c_j) δu; a vertical link likewise with δw. A link's force counts negative on
-//! its mass: f_x,i grows by (c + Σ c_j) δu, and with it what the contact bears.
+//! Moving the carrier by δu takes δu from the elongation e of every horizontal link and from a_j = e - y_j of its
+//! Maxwell elements, so its force changes by -(c + Σ c_j) δu; a vertical link likewise with δw. A link's force counts
+//! negative on its mass: f_x,i grows by (c + Σ c_j) δu, and with it what the contact bears.
 
 use super::{Moment, Output, Variable};
 use crate::model::{LinkKind, MaxwellRow, Mode, Model};

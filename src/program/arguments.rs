@@ -108,8 +108,8 @@ pub(crate) struct Pack {
     /// A sweep's table: packs a point-contact element, which looks the forces up instead of simulating the layer.
     #[arg(long, value_name = "TABLE.csv")]
     pub(crate) table: Option<PathBuf>,
-    /// The scene that was swept: compares the element with its layer between the table's points and along a motion to and
-    /// fro, and writes tables and pictures of it to a folder beside the FMU.
+    /// The scene that was swept: compares the element with its layer between the table's points and along a motion to
+    /// and fro, and writes tables and pictures of it to a folder beside the FMU.
     #[arg(long, value_name = "SCENE.toml", requires = "table")]
     pub(crate) check: Option<PathBuf>,
     /// Points that --check compares at most.
@@ -126,8 +126,8 @@ pub(crate) struct Pack {
 
 #[derive(Debug, Args)]
 pub(crate) struct Fit {
-    /// The measured moduli: columns of frequency, E', E'' or tan delta, and temperature if it changes, with their units in
-    /// a header line; parted by comma, semicolon or tab.
+    /// The measured moduli: columns of frequency, E', E'' or tan delta, and temperature if it changes, with their units
+    /// in a header line; parted by comma, semicolon or tab.
     #[arg(value_name = "DMA.csv")]
     pub(crate) data: PathBuf,
     /// The Prony terms to write, as a scene reads them.
@@ -136,7 +136,8 @@ pub(crate) struct Fit {
     /// The error that the terms may have: the root mean square of the relative errors of E' and E'' at all points.
     #[arg(long, value_name = "E", default_value_t = 0.02, value_parser = fit_error)]
     pub(crate) error: f64,
-    /// The constants by Williams, Landel and Ferry that shift rows of other temperatures to TREF: C1 (1), C2 (K), TREF (K).
+    /// The constants by Williams, Landel and Ferry that shift rows of other temperatures to TREF: C1 (1), C2 (K), TREF
+    /// (K).
     #[arg(long, value_name = "C1,C2,TREF", value_parser = WlfConstants::parse)]
     pub(crate) wlf: Option<WlfConstants>,
     /// Allows a Kelvin-Voigt viscosity beside the terms.
@@ -155,11 +156,12 @@ pub(crate) struct Material {
     /// The scene file.
     #[arg(value_name = "SCENE.toml")]
     pub(crate) scene: PathBuf,
-    /// A file to write: a table as CSV, a picture as SVG or PNG, by its name; may be given several times. Default: a picture
-    /// SCENE-material.svg.
+    /// A file to write: a table as CSV, a picture as SVG or PNG, by its name; may be given several times. Default: a
+    /// picture SCENE-material.svg.
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: Vec<PathBuf>,
-    /// The range of the angular frequency, rad/s, or of the frequency with Hz behind it; default: by the relaxation times.
+    /// The range of the angular frequency, rad/s, or of the frequency with Hz behind it; default: by the relaxation
+    /// times.
     #[arg(long, value_name = "A..B[Hz]", value_parser = Frequencies::parse)]
     pub(crate) frequencies: Option<Frequencies>,
     /// The compound's temperature, K, instead of the scene's.
@@ -281,8 +283,8 @@ pub(crate) struct Sweep {
     /// The standard error that the friction coefficient may have, as a share of it.
     #[arg(long, value_name = "SHARE", default_value_t = 5e-3, value_parser = share)]
     pub(crate) error: f64,
-    /// How far a point may be slid until its means are steady, m; default: 100 blocks, periods of the profile or lengths of the
-    /// layer.
+    /// How far a point may be slid until its means are steady, m; default: 100 blocks, periods of the profile or
+    /// lengths of the layer.
     #[arg(long, value_name = "METRES", value_parser = positive)]
     pub(crate) distance: Option<f64>,
     /// Does one share of the points alone, I from 1 to N.

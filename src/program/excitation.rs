@@ -42,8 +42,8 @@ impl Rows {
         }
     }
 
-    /// The ends of the intervals of a phase of `duration` (s). The last is the duration itself: a rounding above it would
-    /// be a row that the run never comes to.
+    /// The ends of the intervals of a phase of `duration` (s). The last is the duration itself: a rounding above it
+    /// would be a row that the run never comes to.
     pub(crate) fn times(self, duration: f64) -> impl Iterator<Item = f64> {
         let count = self.of(duration);
         (1..=count).map(move |i| if i == count { duration } else { duration * f64::from(i) / f64::from(count) })

@@ -7,8 +7,8 @@ use super::{Extrapolation, Initial, Method, OutputGroup, Problem};
 
 /// The largest size of a number in SI units that a scene, a carrier or a master may give: m, s, N/m, whatever it is.
 ///
-/// Beyond all physics, and still so small that no product of the model overflows: c e², m κ ẋ² and the like have a handful
-/// of factors, and 1e30 to the tenth power is a number.
+/// Beyond all physics, and still so small that no product of the model overflows: c e², m κ ẋ² and the like have a
+/// handful of factors, and 1e30 to the tenth power is a number.
 pub const LARGEST: f64 = 1e30;
 
 /// Whether a carrier or a master may give `number`: it is one, and of a size up to [`LARGEST`].

@@ -38,8 +38,8 @@ impl Scene {
         if height > 0.0 { height } else { self.layer.spacing }
     }
 
-    /// The absolute tolerance, m: as it was set, or the relative one times the [`height`](Self::height), as far as that may
-    /// be set.
+    /// The absolute tolerance, m: as it was set, or the relative one times the [`height`](Self::height), as far as that
+    /// may be set.
     pub fn absolute_tolerance(&self) -> f64 {
         let default = || (self.solver.relative_tolerance * self.height()).max(allowed::SMALLEST);
         self.solver.absolute_tolerance.unwrap_or_else(default)
@@ -67,8 +67,8 @@ impl Path {
         self.motion(time)[1]
     }
 
-    /// The displacement from `time` to `span` after it, s, m: where the rate is large and the time long, with more digits
-    /// than the difference of two displacements.
+    /// The displacement from `time` to `span` after it, s, m: where the rate is large and the time long, with more
+    /// digits than the difference of two displacements.
     pub fn change(&self, time: f64, span: f64) -> f64 {
         let omega = TAU * self.frequency;
         let swing = if self.amplitude == 0.0 { 0.0 } else { (omega * (time + span)).sin() - (omega * time).sin() };

@@ -45,7 +45,8 @@ pub struct Wlf {
 }
 
 impl Wlf {
-    /// a_T: log10 a_T = -C_1 (T - T_ref)/(C_2 + T - T_ref), for T above [`lowest_temperature`](Self::lowest_temperature).
+    /// a_T: log10 a_T = -C_1 (T - T_ref)/(C_2 + T - T_ref), for T above
+    /// [`lowest_temperature`](Self::lowest_temperature).
     pub fn shift_factor(&self) -> f64 {
         let above = self.temperature - self.reference_temperature;
         10.0_f64.powf(-self.c1 * above / (self.c2 + above))
@@ -143,8 +144,8 @@ impl Scene {
         friction.shear_force.or_else(|| Some(friction.shear_strength? * self.layer.element_area()?))
     }
 
-    /// The shear strength that depends on the speed as the contacts have it, if the scene has it: by its force A τ_f0, and at the
-    /// layer's temperature, where v_0(T) = v_0/a_T and v_c(T) = v_c/a_T.
+    /// The shear strength that depends on the speed as the contacts have it, if the scene has it: by its force A τ_f0,
+    /// and at the layer's temperature, where v_0(T) = v_0/a_T and v_c(T) = v_c/a_T.
     pub fn rate_shear(&self) -> Option<RateShear> {
         let law = self.friction.as_ref()?.rate_shear?;
         let force = law.force.or_else(|| Some(law.strength? * self.layer.element_area()?));

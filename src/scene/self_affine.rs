@@ -18,11 +18,12 @@ const ROUNDING: f64 = 1.0e-9;
 ///
 /// It is a sum over the modes m = 1, 2, … of the wave numbers q = 2πm/length,
 ///
-/// z(x) = Σ a_m cos(q x + φ_m),   a_m² ∝ the spectrum at q,   φ_m = 2π · the m-th number of [`SplitMix64`] from the seed,
+/// z(x) = Σ a_m cos(q x + φ_m),   a_m² ∝ the spectrum at q,   φ_m = 2π · the m-th number of [`SplitMix64`] from the
+/// seed,
 ///
-/// at even points, scaled to the root mean square height. So every mode has exactly its share of the power, the same seed
-/// gives the same bits everywhere, and more points the same profile with more points; a shorter cut-off adds modes and
-/// leaves the phases of the others.
+/// at even points, scaled to the root mean square height. So every mode has exactly its share of the power, the same
+/// seed gives the same bits everywhere, and more points the same profile with more points; a shorter cut-off adds modes
+/// and leaves the phases of the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct SelfAffine {
     /// Period, m.

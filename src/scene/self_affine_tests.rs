@@ -16,7 +16,8 @@ fn rms(heights: &[f64]) -> f64 {
     (heights.iter().map(|z| z * z).sum::<f64>() / heights.len() as f64).sqrt()
 }
 
-/// Every mode has the power that the spectrum says: 20 modes on the plateau, then as q^(-2.6) to mode 1000, none beyond.
+/// Every mode has the power that the spectrum says: 20 modes on the plateau, then as q^(-2.6) to mode 1000, none
+/// beyond.
 #[test]
 fn the_spectrum_is_what_was_asked() {
     let powers = powers(&ROUGH);
@@ -100,8 +101,8 @@ fn the_cut_off_may_lie_where_two_points_see_it() {
 
 /// The bits of a few heights and of their sum, as they come out on every platform.
 ///
-/// The values are those of a program of its own in Python, which sums the cosines one by one with 40 digits: this one is
-/// right to its last digits, and the bits say that the next platform, compiler or change gives the same.
+/// The values are those of a program of its own in Python, which sums the cosines one by one with 40 digits: this one
+/// is right to its last digits, and the bits say that the next platform, compiler or change gives the same.
 #[test]
 fn a_seed_gives_the_same_bits_everywhere() {
     let profile = SelfAffine { points: 300, length: 0.03, roll_off: 1e-2, cut_off: 3e-4, ..ROUGH };

@@ -58,8 +58,8 @@ pub(super) fn read_surface(entry: &Entry<'_>, found: &mut Found) -> Result<Surfa
     }
 }
 
-/// The largest slope of a profile: a step of a metre from one atom to the next has less, and its square times that of the
-/// largest speed is a number.
+/// The largest slope of a profile: a step of a metre from one atom to the next has less, and its square times that of
+/// the largest speed is a number.
 const STEEPEST: f64 = 1e12;
 
 fn read_flat(table: &TableReader<'_>) -> Result<Surface, SceneError> {

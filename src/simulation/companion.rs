@@ -1,8 +1,8 @@
 //! The error of a run, judged by a second run of the same layer at a tighter tolerance.
 //!
-//! Errors of single steps say little about the error of a run: damped motion forgets them, impacts and stick-slip multiply
-//! them, and where a run missed a touch there is none to add up. A finer run beside it sees all of that. Where errors fall
-//! with the tolerance, the two are apart by 1 - [`FINER`] of the coarser one's error.
+//! Errors of single steps say little about the error of a run: damped motion forgets them, impacts and stick-slip
+//! multiply them, and where a run missed a touch there is none to add up. A finer run beside it sees all of that. Where
+//! errors fall with the tolerance, the two are apart by 1 - [`FINER`] of the coarser one's error.
 
 use super::stepping::Stride;
 use super::{Motion, Settings, Simulation, SimulationError};
@@ -13,7 +13,8 @@ use crate::outputs::Accounts;
 
 /// The finer run's tolerance, as a share of the run's.
 ///
-/// Recommended 0.1 to 0.5. Smaller tells more where errors do not fall evenly, but costs more: with 0.2 the finer run takes
+/// Recommended 0.1 to 0.5. Smaller tells more where errors do not fall evenly, but costs more: with 0.2 the finer run
+/// takes
 /// 1.4 times the run's steps where events are located, 2.2 times where it is stepped.
 const FINER: f64 = 0.2;
 /// The share of the error that shows in the difference of the two runs, where errors fall with the tolerance.
@@ -72,8 +73,8 @@ impl Companion {
         run.step_size = run.step_size.min(SHORTER * h);
     }
 
-    /// F_z at the time `s` since the start of the motion, which does not fall from call to call, N; `None` where the finer
-    /// run did not get there.
+    /// F_z at the time `s` since the start of the motion, which does not fall from call to call, N; `None` where the
+    /// finer run did not get there.
     pub(super) fn force_z_at(&mut self, s: f64) -> Option<f64> {
         if self.lost {
             return None;

@@ -4,8 +4,8 @@ use super::Simulation;
 use crate::outputs::Variable;
 
 impl Simulation {
-    /// Writes into `values` how `variables` follow the carrier when it is moved along x and z by `direction` (m per unit)
-    /// and every state is held: places, velocities, dashpots, modes.
+    /// Writes into `values` how `variables` follow the carrier when it is moved along x and z by `direction` (m per
+    /// unit) and every state is held: places, velocities, dashpots, modes.
     pub fn directional_derivative(&mut self, variables: &[Variable], direction: (f64, f64), values: &mut [f64]) {
         self.with_moment(|moment| moment.differentiate(variables, direction, values));
     }

@@ -1,8 +1,8 @@
 //! Method *auto*: from events to time-stepping where mode changes crowd, and back where they are few again.
 //!
 //! What decides is how many mode changes fall on one step of the time-stepping driver, in the mean of the last
-//! [`MEMORY`] such steps. An event costs the event-driven one a step of six stages, which is cut there; a time step costs two and
-//! takes any number of changes. So time-stepping is cheaper from a third of a change a step on.
+//! [`MEMORY`] such steps. An event costs the event-driven one a step of six stages, which is cut there; a time step
+//! costs two and takes any number of changes. So time-stepping is cheaper from a third of a change a step on.
 
 use std::fmt;
 
@@ -10,8 +10,8 @@ use super::Simulation;
 use super::stepping::Stride;
 use crate::scene::Method;
 
-/// Mode changes on one time step, in the mean, from which on the run is stepped: half as much again as would pay, so that
-/// a few changes are still located.
+/// Mode changes on one time step, in the mean, from which on the run is stepped: half as much again as would pay, so
+/// that a few changes are still located.
 const CROWDED: f64 = 0.5;
 /// Below this many it is event-driven again: a third of what would pay, so that a run does not swing between the two.
 const QUIET: f64 = 0.1;

@@ -148,8 +148,8 @@ impl Simulation {
     /// Puts the layer under the carrier at rest or in motion; what lies under the profile is lifted onto it.
     ///
     /// # Errors
-    /// [`SimulationError::OutOfRange`] where `start` is not finite, [`SimulationError::Scene`] where parameters set one by
-    /// one do not go together.
+    /// [`SimulationError::OutOfRange`] where `start` is not finite, [`SimulationError::Scene`] where parameters set one
+    /// by one do not go together.
     pub fn new(scene: &Scene, start: &Start) -> Result<Self, SimulationError> {
         start.check()?;
         scene.check()?;
@@ -248,8 +248,8 @@ impl Simulation {
         self.follow_or_go_back(motion, None, times, observe).map(|_| ())
     }
 
-    /// As [`advance_observed`](Self::advance_observed), but only until F_z rises to `force` (N). Returns when that was, s
-    /// after the start of the motion: 0 if it was there already, `None` if it is not reached within the motion.
+    /// As [`advance_observed`](Self::advance_observed), but only until F_z rises to `force` (N). Returns when that was,
+    /// s after the start of the motion: 0 if it was there already, `None` if it is not reached within the motion.
     ///
     /// # Errors
     /// [`SimulationError`]; the simulation is then as it was before the call.

@@ -112,8 +112,8 @@ const FIRST_STEP: f64 = 0.1;
 /// The weight of the latest in the mean time between events.
 const SPACING_GAIN: f64 = 0.3;
 
-/// The least that this mean falls to, as a share of the step that the error allows: many events at one instant say nothing
-/// of what comes.
+/// The least that this mean falls to, as a share of the step that the error allows: many events at one instant say
+/// nothing of what comes.
 const LEAST_SPACING: f64 = 0.01;
 
 /// The run as it was before the motion under way.

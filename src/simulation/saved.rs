@@ -250,7 +250,8 @@ mod tests {
         assert_eq!(bits(&scene, &mut second), bits(&scene, &mut first));
     }
 
-    /// What is saved is of the run alone, not of the room that it had: the profile under masses that have lifted is not.
+    /// What is saved is of the run alone, not of the room that it had: the profile under masses that have lifted is
+    /// not.
     #[test]
     fn runs_alike_are_saved_alike() {
         let scene = scene();

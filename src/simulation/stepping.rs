@@ -13,20 +13,21 @@ use crate::model::{Carrier, CarrierPoint, elastic_energy, kinetic_energy};
 const SAFETY: f64 = 0.9;
 /// The most by which one step differs from the one before.
 const GROWTH: (f64, f64) = (0.2, 5.0);
-/// The longest step, as a share of the period of the carrier's sine: a longer one could leap from swing to swing, where all
-/// stages see the same and the error estimate nothing.
+/// The longest step, as a share of the period of the carrier's sine: a longer one could leap from swing to swing, where
+/// all stages see the same and the error estimate nothing.
 pub(super) const OF_PERIOD: f64 = 0.25;
 /// The least share of a step at which it is cut at an event; where there is less, the step is done again.
 ///
-/// A mass that a large friction stops in so small a share is thrown back that many times as fast by the rest of the step, and the
-/// energies up to the event would be what is left of powers as many times squared: with 1e-6 they keep some digits.
+/// A mass that a large friction stops in so small a share is thrown back that many times as fast by the rest of the
+/// step, and the energies up to the event would be what is left of powers as many times squared: with 1e-6 they keep
+/// some digits.
 const LEAST_SHARE: f64 = 1e-6;
 /// The longest step, as a multiple of the mean time between the events of late: a longer one would be cut.
 ///
 /// Recommended 1.5 to 3: shorter ones end before there is an event, longer ones are less accurate where they are cut.
 const OF_SPACING: f64 = 2.0;
-/// Share of a sine's amplitude by which the quintic of the dense output may be off it: (ωh)⁶/46080 with h a quarter of the
-/// period at most, [`OF_PERIOD`].
+/// Share of a sine's amplitude by which the quintic of the dense output may be off it: (ωh)⁶/46080 with h a quarter of
+/// the period at most, [`OF_PERIOD`].
 const UNSEEN: f64 = 5e-4;
 /// What is left of a step whose stages could not be solved.
 pub(super) const AFTER_FAILURE: f64 = 0.25;
@@ -50,8 +51,8 @@ impl Simulation {
         self.run.energies.initial = kinetic_energy(model, state) + elastic_energy(model, state);
     }
 
-    /// Follows `motion` to its end, or until F_z rises to the force `until`; the time of that. On an error the run stands
-    /// anywhere within the motion.
+    /// Follows `motion` to its end, or until F_z rises to the force `until`; the time of that. On an error the run
+    /// stands anywhere within the motion.
     pub(super) fn follow(
         &mut self,
         motion: &Motion,
@@ -174,7 +175,8 @@ impl Simulation {
         self.integrator.refresh_tangents(&self.model, &self.run.state, &self.forces, self.run.s);
     }
 
-    /// Impacts due, stops, then every contact decided anew from the forces, which have jumped; and the rates after it. Masses within
+    /// Impacts due, stops, then every contact decided anew from the forces, which have jumped; and the rates after it.
+    /// Masses within
     /// `reach` (m) of the profile count as touching.
     pub(super) fn change_modes(&mut self, reach: f64) {
         let carrier = self.run.carrier.at(self.run.s);
@@ -220,7 +222,8 @@ impl Simulation {
         }
         let limit = longest.min(OF_SPACING * self.run.event_spacing);
         let mut h = fitted(self.run.step_size.min(limit), remaining);
-        // The step that an event cuts short says how long the next may be; the shorter ones need no test of their error.
+        // The step that an event cuts short says how long the next may be; the shorter ones need no test of their
+        // error.
         let mut proposal = None;
         loop {
             self.count_work(work)?;
@@ -273,13 +276,14 @@ impl Simulation {
         None
     }
 
-    /// The longest step, s, that lets unstable contacts leave their places as they are at the end of the step tried last.
+    /// The longest step, s, that lets unstable contacts leave their places as they are at the end of the step tried
+    /// last.
     pub(super) fn longest_unstable(&self) -> f64 {
         longest_unstable(&self.model, self.integrator.end(), self.integrator.end_forces())
     }
 
-    /// Whether a free mass may have come to the profile in the step of length `h` tried last, which did not see all of the
-    /// carrier's motion.
+    /// Whether a free mass may have come to the profile in the step of length `h` tried last, which did not see all of
+    /// the carrier's motion.
     fn may_touch(&self, h: f64) -> bool {
         let dense = self.integrator.dense(&self.model, &self.run.carrier, &self.run.state, (self.run.s, h));
         let reach = self.model.profile.bounds().z_max + UNSEEN * self.run.carrier.swing();
@@ -295,8 +299,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// The length of the next step after a good one of length `h`. One that was cut short to `limit` by the end of a piece
-    /// or by the events says nothing.
+    /// The length of the next step after a good one of length `h`. One that was cut short to `limit` by the end of a
+    /// piece or by the events says nothing.
     fn proposal(&self, h: f64, limit: f64, error: f64) -> f64 {
         let grown = h * growth(error);
         if h < limit { grown } else { grown.max(self.run.step_size) }

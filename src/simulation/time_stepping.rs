@@ -7,10 +7,11 @@ use crate::contact::{End, HeldStep, longest_weakening};
 use crate::integrator::{Attempt, Integrator, TWO_STAGES, Within};
 use crate::model::{Model, Power};
 
-/// A new step is this share of what the error allows. Mode changes come unforeseen, so it is less than in smooth motion.
+/// A new step is this share of what the error allows. Mode changes come unforeseen, so it is less than in smooth
+/// motion.
 const SAFETY: f64 = 0.8;
-/// The least and the most by which one step differs from the one before. A step that grows slowly runs into fewer changes
-/// that are too late.
+/// The least and the most by which one step differs from the one before. A step that grows slowly runs into fewer
+/// changes that are too late.
 const GROWTH: (f64, f64) = (0.2, 2.0);
 
 impl Simulation {
@@ -44,8 +45,8 @@ impl Simulation {
         }
     }
 
-    /// The longest step, s, that lets contacts swing up whose friction falls with the speed they have at the end of the step tried
-    /// last.
+    /// The longest step, s, that lets contacts swing up whose friction falls with the speed they have at the end of the
+    /// step tried last.
     fn longest_weakening(&self) -> f64 {
         longest_weakening(&self.model, self.integrator.end())
     }

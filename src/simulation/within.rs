@@ -8,14 +8,15 @@ use crate::model::Power;
 /// The most that the dense output may miss of the equations of motion where a step is cut at an event, as a velocity
 /// gained over the step, against the tolerance.
 ///
-/// Recommended 1 to 5: what is missed swings about 0 through the step, so less of it is left in the velocity; with 5 the
-/// errors of whole runs are those of 1, and fewer steps are done again.
+/// Recommended 1 to 5: what is missed swings about 0 through the step, so less of it is left in the velocity; with 5
+/// the errors of whole runs are those of 1, and fewer steps are done again.
 const MOST_DEFECT: f64 = 5.0;
-/// The most that it may miss where a row is shown within a step, from which nothing goes on. In smooth motion it misses up to some
-/// tens; where a step leaps over what follows an event in no time, thousands and more.
+/// The most that it may miss where a row is shown within a step, from which nothing goes on. In smooth motion it misses
+/// up to some tens; where a step leaps over what follows an event in no time, thousands and more.
 const MOST_SHOWN: f64 = 100.0;
-/// The most that mode changes not yet settled may make of F_z where a row is shown within a time step, as a multiple of the
-/// relative tolerance. That is a bound for all of them together at the step's end; what a row misses is a third of it, and less.
+/// The most that mode changes not yet settled may make of F_z where a row is shown within a time step, as a multiple of
+/// the relative tolerance. That is a bound for all of them together at the step's end; what a row misses is a third of
+/// it, and less.
 const MOST_UNSETTLED: f64 = 3.0;
 
 impl Simulation {
@@ -32,8 +33,8 @@ impl Simulation {
         self.forces.on_carrier_z()
     }
 
-    /// Whether what is known of the step of length `h` tried last is good at its fraction `theta`. A time step's mode changes are
-    /// settled at its end, and what lies before is not: it is shown where that makes little of F_z.
+    /// Whether what is known of the step of length `h` tried last is good at its fraction `theta`. A time step's mode
+    /// changes are settled at its end, and what lies before is not: it is shown where that makes little of F_z.
     pub(super) fn can_show_within(&mut self, h: f64, theta: f64) -> bool {
         if self.run.stepping {
             let force = self.integrator.end_forces().on_carrier_z().abs();
@@ -48,7 +49,8 @@ impl Simulation {
         !self.integrator.has_tangents() && self.defect_within(h, share) <= MOST_DEFECT
     }
 
-    /// What the dense output of the step of length `h` tried last misses of the equations of motion at its fraction `share`.
+    /// What the dense output of the step of length `h` tried last misses of the equations of motion at its fraction
+    /// `share`.
     fn defect_within(&mut self, h: f64, share: f64) -> f64 {
         self.evaluate_within(h, share);
         let dense = self.integrator.dense(&self.model, &self.run.carrier, &self.run.state, (self.run.s, h));

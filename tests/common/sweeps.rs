@@ -74,7 +74,8 @@ fn row(v: f64, p: f64, temperature: Option<f64>) -> String {
 /// K
 pub const WARM: f64 = 300.0;
 
-/// Friction coefficient at a speed (m/s), a pressure (Pa) and a temperature (K): a hump that goes to higher speeds with it.
+/// Friction coefficient at a speed (m/s), a pressure (Pa) and a temperature (K): a hump that goes to higher speeds with
+/// it.
 pub fn friction(v: f64, p: f64, t: f64) -> f64 {
     let place = v.log10() + 1.0 - (t - WARM) / 20.0;
     0.5 + 0.4 * (-place * place / 3.0).exp() - 0.03 * (p / 1e5).ln()

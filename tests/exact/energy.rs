@@ -81,7 +81,8 @@ fn with_both() {
     balances("[friction]\ncoulomb = 0.2\nshear_force = 1e-3");
 }
 
-/// An element that starts undeformed holds ½ c_j e² and loses it in some τ_j, of which a step sees nothing where τ_j is far shorter.
+/// An element that starts undeformed holds ½ c_j e² and loses it in some τ_j, of which a step sees nothing where τ_j is
+/// far shorter.
 #[test]
 fn what_a_fast_element_loses_within_a_step_is_counted() {
     let (c, e, relative) = (1.0e3, 1.0e-5, 1.0e-4);
@@ -100,8 +101,8 @@ fn what_a_fast_element_loses_within_a_step_is_counted() {
     }
 }
 
-/// Eight masses pressed fast onto waves and slid at `speed` (m/s), and what is extreme about them: the balance misses ten times the
-/// relative tolerance of the largest energy at most, and nothing that was lost comes back.
+/// Eight masses pressed fast onto waves and slid at `speed` (m/s), and what is extreme about them: the balance misses
+/// ten times the relative tolerance of the largest energy at most, and nothing that was lost comes back.
 fn stands(method: &str, (friction, horizontal, lateral_z): (&str, f64, f64), (surface, speed): (&str, f64)) {
     let links = link("vertical", &Law::with_maxwell(2.0e3, 8.0e-3, &[(1.0e3, 1.0e-4)]))
         + &link("horizontal", &Law::new(1.0e3, horizontal))

@@ -98,7 +98,8 @@ fn what_a_material_does_not_name_is_not_there() {
     assert_eq!((link.damping, link.maxwell[0].relaxation_time), (None, 1e-3));
 }
 
-/// A run of the material is bit for bit one of the constants that follow from it, and one by hand but for their roundings.
+/// A run of the material is bit for bit one of the constants that follow from it, and one by hand but for their
+/// roundings.
 #[test]
 fn a_run_of_the_material_is_that_of_its_links() {
     let columns = |scene: &Scene| {
@@ -219,8 +220,9 @@ fn hysteresis_is_largest_at_the_shifted_relaxation_time() {
     assert!(vertex.abs() < 0.01, "the maximum lies at ωτ = {}", vertex.exp());
 }
 
-/// A sinusoid under twenty masses that touch it in part, slid at `v`: mean |F_x|/F_z over the fourth wavelength, with these
-/// parts of the friction law. Inertia is negligible: the stiffest frequency is far above that of the passage, and damped.
+/// A sinusoid under twenty masses that touch it in part, slid at `v`: mean |F_x|/F_z over the fourth wavelength, with
+/// these parts of the friction law. Inertia is negligible: the stiffest frequency is far above that of the passage, and
+/// damped.
 fn friction(law: &str, temperature: f64, v: f64) -> f64 {
     let scene = parse(&format!(
         "[layer]\nmasses = 20\nspacing = 5e-5\nthickness = 2e-4\nwidth = 1e-2\n\
@@ -244,7 +246,8 @@ fn shift(temperature: f64) -> f64 {
     10.0_f64.powf(-2.0 * (temperature - 300.0) / (temperature - 200.0))
 }
 
-/// Heat does what slowness does: all times shrink by a_T, so the layer at T and v is the one at T_ref and a_T v. Returns μ.
+/// Heat does what slowness does: all times shrink by a_T, so the layer at T and v is the one at T_ref and a_T v.
+/// Returns μ.
 fn assert_shifted(law: &str, temperature: f64, v: f64) -> f64 {
     let reference = friction(law, 300.0, shift(temperature) * v);
     let what = format!("μ at {temperature} K, {v} m/s");
@@ -260,8 +263,8 @@ fn friction_at_a_temperature_is_that_at_the_shifted_speed() {
     assert!(largest(&seen) > 1.02 * seen.iter().copied().fold(f64::INFINITY, f64::min), "{seen:?}");
 }
 
-/// v_0 and v_c move with the material's times, so what depends on the speed itself does as well: below v_0, where it rises
-/// and no contact creeps and leaps.
+/// v_0 and v_c move with the material's times, so what depends on the speed itself does as well: below v_0, where it
+/// rises and no contact creeps and leaps.
 #[test]
 fn friction_that_depends_on_the_speed_shifts_too() {
     let law = "coulomb = 0.1\nrate_shear = { strength = 1e5, reference_speed = 10.0, sharpness = 0.3 }";

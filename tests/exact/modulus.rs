@@ -106,8 +106,8 @@ fn at_10_khz() {
     follows_the_complex_stiffness(1.0e4);
 }
 
-/// Without Maxwell elements nothing is left to integrate but the energies: the steps must see the carrier's sine all the
-/// same. F_z = k (c (w_0 - â sin ωt) - d â ω cos ωt) at any time, and a period loses π k â² ωd.
+/// Without Maxwell elements nothing is left to integrate but the energies: the steps must see the carrier's sine all
+/// the same. F_z = k (c (w_0 - â sin ωt) - d â ω cos ωt) at any time, and a period loses π k â² ωd.
 #[test]
 fn a_spring_and_a_damper_alone() {
     const FREQUENCY: f64 = 1.0e3;

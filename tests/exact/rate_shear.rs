@@ -81,10 +81,12 @@ fn slides(method: &str) {
                 &chain("kind = \"flat\"", &strength, &settings),
                 Start { w: -2.0e-5, u_rate: v, ..Start::default() },
             );
-            // Ten times the longest relaxation time, and three times the way on which springs of 1000 N/m come to the friction.
+            // Ten times the longest relaxation time, and three times the way on which springs of 1000 N/m come to the
+            // friction.
             run.drive(1e-3_f64.max(2e-4 / v.abs()), rate(v), REST);
             let drag = COULOMB * run.get("F_z") + 5.0 * (SHEAR + strength.at(v.abs()));
-            // What is left of the swings at the tolerance of 1e-6 where friction hardly damps them, roundings elsewhere.
+            // What is left of the swings at the tolerance of 1e-6 where friction hardly damps them, roundings
+            // elsewhere.
             assert_near("F_x", run.get("F_x"), -drag.copysign(v), 1e-7 * drag);
             assert_near("F_adhesion", run.get("friction.F_adhesion"), -drag.copysign(v), 1e-7 * drag);
             assert_near("P_friction", run.get("P_diss"), drag * v.abs(), 1e-6 * drag * v.abs());
@@ -102,8 +104,8 @@ fn slides_over_twelve_decades_in_time_steps() {
     slides("step");
 }
 
-/// A mass thrown with U that nothing pulls slides to rest: ∫ m dv/T long and ∫ m v dv/T far, from 0 to U, and all of ½ m U² is
-/// lost to friction.
+/// A mass thrown with U that nothing pulls slides to rest: ∫ m dv/T long and ∫ m v dv/T far, from 0 to U, and all of ½
+/// m U² is lost to friction.
 #[test]
 fn a_thrown_mass_slides_to_rest() {
     for strength in [RUBBER, BLUNT] {
@@ -115,8 +117,8 @@ fn a_thrown_mass_slides_to_rest() {
             assert_eq!(events.len(), 1, "{events:?}");
             assert_eq!((events[0].from, events[0].to), (speed.signum() as i8, 2));
             let (time, way) = slide(&strength, speed.abs());
-            // Some hundred times the tolerance: near rest the friction changes with every decade of the speed, or has a kink, and
-            // the steps follow it as far as the speeds' tolerance lets them see it.
+            // Some hundred times the tolerance: near rest the friction changes with every decade of the speed, or has a
+            // kink, and the steps follow it as far as the speeds' tolerance lets them see it.
             assert_near("stop", events[0].time, time, 3e-7 * time);
             assert_near("way", run.get("element[1].x"), way.copysign(speed), 1e-8 * way);
             let energy = 0.5 * MASS * speed * speed;
@@ -141,8 +143,8 @@ fn slide(strength: &Strength, speed: f64) -> (f64, f64) {
     (time + held, way + 0.5 * held * strength.creep)
 }
 
-/// At rest T(0) = μ F_N + A τ_0 + A τ_f(v_c) holds: a mass that is pulled by less sticks, and breaks loose where c_x U t + d_x U
-/// passes it. It then creeps, and what pulls it is no more than its friction at the speed of the carrier.
+/// At rest T(0) = μ F_N + A τ_0 + A τ_f(v_c) holds: a mass that is pulled by less sticks, and breaks loose where c_x U
+/// t + d_x U passes it. It then creeps, and what pulls it is no more than its friction at the speed of the carrier.
 #[test]
 fn a_pulled_mass_breaks_loose_at_the_limit_at_rest() {
     let horizontal = Law::new(1.0e3, 2.0e-2);
@@ -166,8 +168,8 @@ fn a_pulled_mass_breaks_loose_at_the_limit_at_rest() {
     }
 }
 
-/// A mass on a spring that its carrier draws where friction falls with the speed: sticks and slips. Against Runge and Kutta's
-/// explicit method with small steps, each mode change found by halving.
+/// A mass on a spring that its carrier draws where friction falls with the speed: sticks and slips. Against Runge and
+/// Kutta's explicit method with small steps, each mode change found by halving.
 #[test]
 fn sticks_and_slips_as_an_explicit_method_has_it() {
     let (horizontal, speed, duration) = (Law::new(1.0e3, 2.0e-3), 0.05, 2.0e-3);
@@ -262,7 +264,8 @@ impl Explicit {
     }
 }
 
-/// On a wave, with masses that lift, touch, stick and slip: the energies close, and events and time steps give the same.
+/// On a wave, with masses that lift, touch, stick and slip: the energies close, and events and time steps give the
+/// same.
 #[test]
 fn energies_close_on_a_wave_and_both_drivers_agree() {
     let surface = "kind = \"sinusoid\"\namplitude = 3e-6\nwavelength = 2.3e-4";
@@ -315,7 +318,8 @@ fn drag_of_rubber(temperature: f64, speed: f64) -> f64 {
 const STRENGTH: f64 = 6.5e5;
 const AREA: f64 = 1e-2 * 1e-4;
 
-/// In the material form the strength works on the area of an element, and moves with temperature: τ_f(v, T) = τ_f(a_T v, T_ref).
+/// In the material form the strength works on the area of an element, and moves with temperature: τ_f(v, T) = τ_f(a_T
+/// v, T_ref).
 #[test]
 fn strength_of_rubber_moves_with_temperature() {
     let strength = Strength { force: STRENGTH * AREA, reference: 6e-3, sharpness: 0.1, creep: 6e-9 };

@@ -29,8 +29,8 @@ fn on_a_crest(method: &str) -> Run {
 }
 
 /// Near the crest, z = a (1 - ½ q² y²): m ÿ = (a q² F - c_x) y + c_x y_0 with F = c (a + DEPTH), so
-/// y = y_0 [(1 + r) cosh λt - r] with K = a q² F - c_x, r = c_x/K and λ² = K/m. A method that damps what its steps do not
-/// resolve would keep the mass on the crest for ever.
+/// y = y_0 [(1 + r) cosh λt - r] with K = a q² F - c_x, r = c_x/K and λ² = K/m. A method that damps what its steps do
+/// not resolve would keep the mass on the crest for ever.
 fn leaves(method: &str) {
     let q = TAU / WAVELENGTH;
     let excess = AMPLITUDE * q * q * STIFFNESS * (AMPLITUDE + DEPTH) - ACROSS;
@@ -50,8 +50,8 @@ fn a_mass_leaves_a_crest_where_events_are_located() {
     leaves("event");
 }
 
-/// Masses that break loose in a slow slide: what follows a break passes in microseconds, the steps take a second. The rows
-/// within them are as good as those at their ends.
+/// Masses that break loose in a slow slide: what follows a break passes in microseconds, the steps take a second. The
+/// rows within them are as good as those at their ends.
 #[test]
 fn rows_are_good_in_a_slow_slide() {
     let rows = |method: &str, tolerance: f64| {

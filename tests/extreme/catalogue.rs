@@ -1,7 +1,7 @@
 //! The catalogue: families of scenes from the tables in `data`.
 //!
-//! A family has a base scene, what is set in all of its scenes, and a list of what is varied, each entry one scene: tables
-//! laid over each other. The key `run` is not the scene's: how it is driven and judged.
+//! A family has a base scene, what is set in all of its scenes, and a list of what is varied, each entry one scene:
+//! tables laid over each other. The key `run` is not the scene's: how it is driven and judged.
 
 use std::fs;
 use std::path::Path;
@@ -63,7 +63,8 @@ pub struct Case {
     pub ends: Ends,
     /// Whether nothing forgets an error, so that every step may make its own.
     pub undamped: bool,
-    /// Whether, beside that, nothing is lost or gained once the first phase is over: T + V never grows, and what each step loses adds up.
+    /// Whether, beside that, nothing is lost or gained once the first phase is over: T + V never grows, and what each
+    /// step loses adds up.
     pub free_of_work: bool,
 }
 
@@ -118,7 +119,8 @@ fn scenes(family: &Table, bases: &Table) -> Vec<Case> {
         .collect()
 }
 
-/// Lays `over` upon `table`: tables are joined, anything else is replaced. A table that changes its kind is replaced whole.
+/// Lays `over` upon `table`: tables are joined, anything else is replaced. A table that changes its kind is replaced
+/// whole.
 fn lay_over(table: &mut Table, over: &Table) {
     for (key, value) in over {
         let replaced = value.get("kind").is_some() || value.get("make").is_some();

@@ -4,8 +4,8 @@ use toml::{Table, Value};
 
 use crate::catalogue::number;
 
-/// Relaxation time, s, and modulus, MPa, of a tread-like compound: a generalised Maxwell model of 16 terms, non-negative least squares
-/// on measured storage and loss moduli over some 20 decades of frequency.
+/// Relaxation time, s, and modulus, MPa, of a tread-like compound: a generalised Maxwell model of 16 terms,
+/// non-negative least squares on measured storage and loss moduli over some 20 decades of frequency.
 const COMPOUND: [(f64, f64); 16] = [
     (1e-13, 1538.0),
     (1e-12, 888.0),

@@ -22,9 +22,9 @@ pub struct Limits {
     relative: f64,
     /// m.
     absolute: f64,
-    /// What the absolute tolerance of places is as a force of the softest link between carrier and mass, N: as far may a limit
-    /// of a force be passed. An event is located within a tenth of it, on places that are themselves known within it. Of
-    /// a stiff link the elongation is known far better than within that tolerance.
+    /// What the absolute tolerance of places is as a force of the softest link between carrier and mass, N: as far may
+    /// a limit of a force be passed. An event is located within a tenth of it, on places that are themselves known
+    /// within it. Of a stiff link the elongation is known far better than within that tolerance.
     pub force: f64,
     /// The largest |X_i|, m.
     farthest: f64,
@@ -95,7 +95,8 @@ impl Limits {
         (normal < -self.force).then(|| format!("F_N = {normal:.1e} below -{:.1e}, mode {mode}", self.force))
     }
 
-    /// g ≥ -tolerance, and no worse than the roundings of the place, of u and X_i that it is the sum of, and of the height.
+    /// g ≥ -tolerance, and no worse than the roundings of the place, of u and X_i that it is the sum of, and of the
+    /// height.
     fn gap(&self, u: f64, x: f64, z: f64) -> Option<String> {
         let point = self.model.ground(x);
         let along = x.abs() + u.abs() + self.farthest;
@@ -127,8 +128,8 @@ impl Limits {
         outcome.findings.extend(found);
     }
 
-    /// The residual within ten times the tolerance: the relative one of the largest energy that went through, the absolute one as a
-    /// force on every mass along the carrier's path.
+    /// The residual within ten times the tolerance: the relative one of the largest energy that went through, the
+    /// absolute one as a force on every mass along the carrier's path.
     fn energy(&self, outcome: &Outcome) -> Option<String> {
         let (residual, scale) = (outcome.largest("energy.residual"), energy_scale(outcome));
         let path = outcome.path;
@@ -150,8 +151,8 @@ impl Limits {
     }
 }
 
-/// c + Σ c_j of the softest link to the carrier that has springs; of the others where none has, and of the dampers where nothing has,
-/// N/m.
+/// c + Σ c_j of the softest link to the carrier that has springs; of the others where none has, and of the dampers
+/// where nothing has, N/m.
 fn softest(model: &Model) -> f64 {
     let softest = |kinds: &[f64]| kinds.iter().copied().filter(|&c| c > 0.0).reduce(f64::min);
     let [carrier, between] = [&model.glassy[..2], &model.glassy[2..]].map(softest);

@@ -57,15 +57,16 @@ pub struct Verdict {
     pub true_error: f64,
     /// `solver.error` at the end.
     pub estimate: f64,
-    /// The error below which nothing is known of it: roundings, and the absolute tolerance as a force over the largest |F_z|.
+    /// The error below which nothing is known of it: roundings, and the absolute tolerance as a force over the largest
+    /// |F_z|.
     pub floor: f64,
     /// Processor time, s.
     pub time: f64,
 }
 
 impl Verdict {
-    /// Estimated over true error. Below the floor nothing is known of either: forces are sums with roundings, and the tight run's
-    /// places too are right within an absolute tolerance, which is a force.
+    /// Estimated over true error. Below the floor nothing is known of either: forces are sums with roundings, and the
+    /// tight run's places too are right within an absolute tolerance, which is a force.
     pub fn ratio(&self) -> f64 {
         let [estimate, right] = [self.estimate, self.true_error].map(|error| error.max(self.floor));
         if estimate == right { 1.0 } else { estimate / right }
@@ -191,8 +192,8 @@ fn floor(known: f64, largest: f64) -> f64 {
     if known > 0.0 { FLOOR + known / largest } else { FLOOR }
 }
 
-/// Where event-driven and time-stepping runs differ by more than their estimates allow. These are of F_z; of F_x, which is
-/// held against the larger of the two, nothing is estimated, and errors within the tolerance of each step add up.
+/// Where event-driven and time-stepping runs differ by more than their estimates allow. These are of F_z; of F_x, which
+/// is held against the larger of the two, nothing is estimated, and errors within the tolerance of each step add up.
 fn disagreement(case: &Case, event: &Outcome, step: &Outcome) -> Option<String> {
     if event.error.is_some() || step.error.is_some() {
         return None;

@@ -72,7 +72,8 @@ fn mode_changes_are_heard_only_when_asked_for() {
     assert!(messages.iter().any(|message| message.text.ends_with(" to free")), "{messages:?}");
 }
 
-/// The carrier drags the rough layer fast: mode changes crowd, and the method auto says that it goes over to time steps.
+/// The carrier drags the rough layer fast: mode changes crowd, and the method auto says that it goes over to time
+/// steps.
 #[test]
 fn a_handover_of_auto_is_heard_with_the_solver() {
     let drag = |method: &str| {

@@ -128,16 +128,17 @@ fn clamped(terms: &[(f64, f64)]) -> String {
     )
 }
 
-/// Steps a period. A straight line between them instead of the sine leaves at the points 2 Σ_m (1/(N m))² [K*(mNω) - K*]
-/// ≈ 3.3 (|K*(Nω)| - |K*|)/N², 1e-5 of |K*| for a modulus that trebles on the way.
+/// Steps a period. A straight line between them instead of the sine leaves at the points 2 Σ_m (1/(N m))² [K*(mNω) -
+/// K*] ≈ 3.3 (|K*(Nω)| - |K*|)/N², 1e-5 of |K*| for a modulus that trebles on the way.
 const STEPS: u32 = 1000;
 /// Periods before the fit, by which every element with τ up to a period has settled, ...
 const SETTLING: u32 = 16;
 /// ... and for the fit.
 const FITTED: u32 = 4;
 
-/// E' and E'' as F_z over w shows them at a frequency: w = -w_0 + â sin ωt, so F_z = F_0 - k A/H â |E*| sin(ωt + arg E*)
-/// (model.md, section 8 case 1). What elements slower than the run leave of the transient is a cubic within the fit.
+/// E' and E'' as F_z over w shows them at a frequency: w = -w_0 + â sin ωt, so F_z = F_0 - k A/H â |E*| sin(ωt + arg
+/// E*) (model.md, section 8 case 1). What elements slower than the run leave of the transient is a cubic within the
+/// fit.
 fn measured(terms: &[(f64, f64)], frequency: f64) -> (f64, f64) {
     const PRESSED: f64 = 2e-5;
     /// Small enough for the masses to stay down: â |E*| < w_0 E_∞.

@@ -176,8 +176,8 @@ fn points_equal_but_for_rounding_are_taken_and_others_refused() {
     }
 }
 
-/// By every method a step gives what the library gives for the same motion, and a state that was written down is taken up
-/// with the same bits.
+/// By every method a step gives what the library gives for the same motion, and a state that was written down is taken
+/// up with the same bits.
 #[test]
 fn every_method_is_that_of_the_library() {
     for method in ["event", "step", "auto"] {

@@ -181,7 +181,8 @@ impl fmt::Debug for Case {
     }
 }
 
-/// The output groups of every case: those with an account of energy, and every mass. The group `solver` costs a second run.
+/// The output groups of every case: those with an account of energy, and every mass. The group `solver` costs a second
+/// run.
 pub(crate) const GROUPS: [OutputGroup; 6] = [
     OutputGroup::Forces,
     OutputGroup::Dissipation,

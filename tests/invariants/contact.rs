@@ -50,13 +50,13 @@ fn every_mass_obeys_the_laws_of_contact() {
 fn obeys(row: &Row<'_>) -> Result<(), TestCaseError> {
     let (case, units) = (row.case, Units::of(row.case));
     let spline = case.scene.surface.spline();
-    // An event is located where its limit is passed by a tenth of the tolerance at most; the dense output within a step is as good as
-    // the tolerance.
+    // An event is located where its limit is passed by a tenth of the tolerance at most; the dense output within a step
+    // is as good as the tolerance.
     let (gap_allowed, force_allowed) = (units.length(0.0), units.force(row.record.largest(Output::ForceZ)));
     let (mut sum_x, mut sum_z, mut allowed) = (0.0, 0.0, 0.0);
-    // A mass that was located where it came to stick stays where its elongation has it, off the profile that it is held to by about
-    // the absolute tolerance: a tenth of that was seen as a rule, 1.7 times where a mass stops from 15 m/s with a shear strength that
-    // depends on the speed. So its slope is known no better.
+    // A mass that was located where it came to stick stays where its elongation has it, off the profile that it is held
+    // to by about the absolute tolerance: a tenth of that was seen as a rule, 1.7 times where a mass stops from 15 m/s
+    // with a shear strength that depends on the speed. So its slope is known no better.
     let stuck_allowed = 3.0 * gap_allowed;
     for i in 0..case.scene.layer.masses {
         let [x, z, normal, friction] =

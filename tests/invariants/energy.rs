@@ -16,9 +16,9 @@ const ALLOWED: f64 = 10.0;
 /// Of what a unit is for each step, that adds up where nothing damps it.
 const OF_EACH_STEP: f64 = 0.1;
 
-/// The relative tolerance above which a step of the event-driven method may pass over what dampers do just after a kink: they
-/// bring the layer to the carrier's new velocity in a time far shorter than the step, which is good at its end, and the
-/// quadrature of what they lose knows the power at the kink and after it alone.
+/// The relative tolerance above which a step of the event-driven method may pass over what dampers do just after a
+/// kink: they bring the layer to the carrier's new velocity in a time far shorter than the step, which is good at its
+/// end, and the quadrature of what they lose knows the power at the kink and after it alone.
 const COARSE: f64 = 1e-6;
 
 /// What that may amount to, in kinetic energies of the layer at the carrier's jumps.

@@ -6,8 +6,8 @@ use asperity::simulation::{Simulation, Start};
 use crate::case::Case;
 use crate::trust::{Units, largest_energy};
 
-/// One heavy mass off the end of a fine profile, flung into it: it touches at 6 m/s on bends of some 10 µm, and what the rest of
-/// the step did to its speed was counted twice, a tenth of all energy.
+/// One heavy mass off the end of a fine profile, flung into it: it touches at 6 m/s on bends of some 10 µm, and what
+/// the rest of the step did to its speed was counted twice, a tenth of all energy.
 #[test]
 fn a_mass_flung_into_a_fine_profile() {
     let text = r#"

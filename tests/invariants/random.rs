@@ -1,7 +1,7 @@
 //! Random cases: one generator for all properties.
 //!
-//! A case's numbers are multiples of its own spacing, mass and stiffness, so that scenes of all sizes are alike; what makes
-//! them differ, stiffness ratios, damping, relaxation times, slopes, speeds, is spread over decades.
+//! A case's numbers are multiples of its own spacing, mass and stiffness, so that scenes of all sizes are alike; what
+//! makes them differ, stiffness ratios, damping, relaxation times, slopes, speeds, is spread over decades.
 
 use std::f64::consts::TAU;
 use std::ops::Range;

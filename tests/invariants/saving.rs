@@ -88,8 +88,8 @@ fn watched(case: &Case, rows: usize) -> Result<Record, SimulationError> {
     Ok(record)
 }
 
-/// Rows within a motion are read from its steps. A step may be cut at a row that it is no good for, so the steps are others:
-/// the same within the tolerance.
+/// Rows within a motion are read from its steps. A step may be cut at a row that it is no good for, so the steps are
+/// others: the same within the tolerance.
 #[test]
 fn a_run_that_is_watched_is_the_same_within_the_tolerance() {
     let compared = Compared::default();

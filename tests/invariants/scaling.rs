@@ -95,9 +95,10 @@ fn powers() -> impl Strategy<Value = Powers> {
     (-20..=20, -20..=20, -20..=20).prop_map(|(length, mass, time)| Powers { length, mass, time })
 }
 
-/// The tolerances are a share of lengths and of what the scene's own stiffest frequency makes of them, so nothing is left
-/// that has a unit; and a product with a power of two has no rounding. So every number is scaled to its last bit. But for a
-/// scene without any spring or damper: it has no time of its own, and its speeds' tolerance counts in seconds.
+/// The tolerances are a share of lengths and of what the scene's own stiffest frequency makes of them, so nothing is
+/// left that has a unit; and a product with a power of two has no rounding. So every number is scaled to its last bit.
+/// But for a scene without any spring or damper: it has no time of its own, and its speeds' tolerance counts in
+/// seconds.
 #[test]
 fn a_scene_in_other_units_is_the_same_to_the_last_bit() {
     check("other units", 150, (cases(), powers()), |(case, powers)| {

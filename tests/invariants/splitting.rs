@@ -35,8 +35,8 @@ fn in_pieces(case: &Case, shares: &[f64]) -> Result<Record, SimulationError> {
     Ok(record)
 }
 
-/// One advance into several: the steps end elsewhere, so the errors are others, of the same size. A piece without a kink before
-/// it decides no mode anew.
+/// One advance into several: the steps end elsewhere, so the errors are others, of the same size. A piece without a
+/// kink before it decides no mode anew.
 #[test]
 fn a_motion_in_pieces_is_the_same_within_the_tolerance() {
     let compared = Compared::default();

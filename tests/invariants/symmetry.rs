@@ -36,8 +36,8 @@ fn seen_in_the_mirror(series: &Series) -> Series {
     }
 }
 
-/// Forces along x have the other sign, all else is the same: the sums are the same in another order, so the runs differ by
-/// roundings and by what these make of the steps' lengths.
+/// Forces along x have the other sign, all else is the same: the sums are the same in another order, so the runs differ
+/// by roundings and by what these make of the steps' lengths.
 #[test]
 fn a_mirrored_scene_gives_mirrored_forces() {
     let compared = Compared::default();
@@ -83,7 +83,8 @@ fn one_mass_over_a_plane_is_mirrored_to_the_last_bit() {
 }
 
 /// The case with all of u exact: the data points of the profile, and where the carrier starts and stops, are whole
-/// multiples of a power of two, few enough of them for sums to have digits to spare. Over a wave where the profile is not periodic.
+/// multiples of a power of two, few enough of them for sums to have digits to spare. Over a wave where the profile is
+/// not periodic.
 fn with_exact_u(case: &Case) -> Case {
     let mut case = case.clone();
     if !case.scene.surface.periodic {
@@ -106,8 +107,8 @@ fn with_exact_u(case: &Case) -> Case {
     case
 }
 
-/// A carrier that starts any number of periods further on sees the same profile. Where its places are exact, nothing is lost,
-/// as all is computed from the place within the period: bit for bit, but for the places of the masses as outputs.
+/// A carrier that starts any number of periods further on sees the same profile. Where its places are exact, nothing is
+/// lost, as all is computed from the place within the period: bit for bit, but for the places of the masses as outputs.
 #[test]
 fn a_shift_by_periods_of_the_profile_changes_no_bit() {
     check("a shift by periods", 150, (cases(), -1000_i32..1000), |(case, periods)| {
@@ -129,8 +130,8 @@ fn a_shift_by_periods_of_the_profile_changes_no_bit() {
     });
 }
 
-/// The same profile given from another of its data points on: the spline's curvatures are solved for in another order, so
-/// within the tolerance.
+/// The same profile given from another of its data points on: the spline's curvatures are solved for in another order,
+/// so within the tolerance.
 #[test]
 fn a_periodic_profile_may_be_cut_anywhere() {
     let compared = Compared::default();

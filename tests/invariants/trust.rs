@@ -1,8 +1,8 @@
 //! Comparing two runs of what should be the same, where that has a meaning.
 //!
-//! Masses that strike and slip may be sensitive: of two runs whose errors are within the tolerance one strikes an asperity
-//! that the other one passes, and from there on they are different motions, both right. So a run is compared only
-//! as far as it agrees with itself when it is computed a little otherwise.
+//! Masses that strike and slip may be sensitive: of two runs whose errors are within the tolerance one strikes an
+//! asperity that the other one passes, and from there on they are different motions, both right. So a run is compared
+//! only as far as it agrees with itself when it is computed a little otherwise.
 
 use std::cell::Cell;
 use std::f64::consts::TAU;
@@ -18,8 +18,8 @@ use crate::case::{Case, Record, largest};
 /// By how many units two runs of the same motion may differ: errors of single steps, of the tolerance each, add up.
 const AGREE: f64 = 30.0;
 
-/// By how many units a run and its transformed twin may differ: both have errors, and what is sure of either is sure only
-/// within [`AGREE`].
+/// By how many units a run and its transformed twin may differ: both have errors, and what is sure of either is sure
+/// only within [`AGREE`].
 const SAME: f64 = 4.0 * AGREE;
 
 /// What of a run is compared: columns by row, and the unit of each, the error that one step may make of it.
@@ -77,8 +77,8 @@ impl Units {
     }
 }
 
-/// The largest energy of a run, J: also what the layer would have if it moved as the carrier does, for speeds are as good as the
-/// relative tolerance against the carrier, which need not carry the layer along.
+/// The largest energy of a run, J: also what the layer would have if it moved as the carrier does, for speeds are as
+/// good as the relative tolerance against the carrier, which need not carry the layer along.
 pub(crate) fn largest_energy(case: &Case, record: &Record) -> f64 {
     let energies = [Output::InputEnergy, Output::DissipatedEnergy, Output::KineticEnergy, Output::ElasticEnergy];
     let speed = |path: &Path| path.rate.abs() + (TAU * path.frequency * path.amplitude).abs();
@@ -153,8 +153,8 @@ pub(crate) struct Trusted {
 const PERTURBED: [f64; 3] = [0.7, 0.4, 0.15];
 
 impl Trusted {
-    /// Runs `case` by `run`, and again perturbed: what comes after the first row in which a slightly perturbed run does not
-    /// agree with the unperturbed one is another motion, and a force is sure only where it does not jump
+    /// Runs `case` by `run`, and again perturbed: what comes after the first row in which a slightly perturbed run does
+    /// not agree with the unperturbed one is another motion, and a force is sure only where it does not jump
     /// in one run before a row and in the other after it.
     pub(crate) fn where_a_perturbed_run_agrees(
         case: &Case,

@@ -33,7 +33,8 @@ pub fn displaced(model: &Model) -> State {
     state
 }
 
-/// The free layer under a carrier on `PATHS` as one linear system ż = A z in z = (q, q̇, y, 1, t, sin and cos of u, and of w).
+/// The free layer under a carrier on `PATHS` as one linear system ż = A z in z = (q, q̇, y, 1, t, sin and cos of u, and
+/// of w).
 pub struct Exact {
     matrices: Matrices,
     generator: DMatrix<f64>,
@@ -213,7 +214,8 @@ fn a_slipping_mass_converges_with_order_five() {
         });
         for part in 0..3 {
             let last = last_order(&errors.map(|error| error[part]));
-            // With a shear strength errors of places pass through 0 on their way: over all three halvings they fall as they should.
+            // With a shear strength errors of places pass through 0 on their way: over all three halvings they fall as
+            // they should.
             let (order, highest) = if layer.rate_shear.is_some() {
                 (last.max((errors[0][part] / errors[3][part]).log2() / 3.0), 6.4)
             } else {

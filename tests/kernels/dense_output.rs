@@ -72,9 +72,9 @@ fn the_ends_of_a_step_are_the_states_there() {
     }
 }
 
-/// Right after a jump of the velocity a short-lived Maxwell element is not yet where ė drives it: a = τ ė (1 - e^{-t/τ}).
-/// Inside the step the dense output follows it, from relaxation times as long as the step to a hundred millionth of it,
-/// and adds nothing to what the step itself misses at its end.
+/// Right after a jump of the velocity a short-lived Maxwell element is not yet where ė drives it: a = τ ė (1 -
+/// e^{-t/τ}). Inside the step the dense output follows it, from relaxation times as long as the step to a hundred
+/// millionth of it, and adds nothing to what the step itself misses at its end.
 #[test]
 fn a_stiff_element_is_followed_after_a_jump_of_the_velocity() {
     let h = 1e-3;

@@ -72,8 +72,8 @@ fn dense_state(matrices: &Matrices, state: &State, place: Vector2<f64>) -> (DVec
     (q, v, y)
 }
 
-/// Compares `rates` in `state` with the dense equations: accelerations, ė of all links with Maxwell elements, F_N and the
-/// margins of the modes.
+/// Compares `rates` in `state` with the dense equations: accelerations, ė of all links with Maxwell elements, F_N and
+/// the margins of the modes.
 /// Differences count over the largest number that takes part; the largest of them.
 fn difference(matrices: &Matrices, model: &Model, state: &State, rates: &Rates, (place, rate): CarrierMotion) -> f64 {
     let k = matrices.masses;
@@ -108,8 +108,8 @@ fn random_motion(random: &mut Random) -> CarrierMotion {
     )
 }
 
-/// For random layers of 1 to 5 masses in random modes, `Forces` and `Rates` give the accelerations, ė, normal forces and
-/// margins of the dense equations (10)-(15).
+/// For random layers of 1 to 5 masses in random modes, `Forces` and `Rates` give the accelerations, ė, normal forces
+/// and margins of the dense equations (10)-(15).
 #[test]
 fn rates_agree_with_the_dense_matrices() {
     let mut random = Random(1);
@@ -144,8 +144,8 @@ fn the_layout_is_the_paper_s_count() {
     assert_eq!(Matrices::new(&layer).relaxation_times.len(), model.maxwell_variables());
 }
 
-/// The end of a step is its last stage: there the accelerations (v - v*)/β that Newton's iterations found are those that
-/// the explicit rates, and the dense equations, give in the stage's state.
+/// The end of a step is its last stage: there the accelerations (v - v*)/β that Newton's iterations found are those
+/// that the explicit rates, and the dense equations, give in the stage's state.
 #[test]
 fn a_solved_stage_satisfies_the_equations_of_motion() {
     let mut random = Random(2);

@@ -118,7 +118,8 @@ pub struct Stepper {
 }
 
 impl Stepper {
-    /// From `state` along the carrier's paths, counted from its place 0. Newton's iterations are led to `tolerance` (m).
+    /// From `state` along the carrier's paths, counted from its place 0. Newton's iterations are led to `tolerance`
+    /// (m).
     pub fn new(model: Model, (u, w): (Path, Path), state: State, tolerance: f64) -> Self {
         let carrier = Carrier::new(0.0, (0.0, 0.0), (u, w), &model.profile);
         let tolerance = Tolerance::new(&model, tolerance, tolerance);

@@ -89,8 +89,8 @@ fn contacts_between_stiff_springs_slip_as_one() {
     assert!(shown.residual.abs() < 1e-10, "{shown:?}");
 }
 
-/// A contact is never held beyond its limit by a force within the tolerance of places times a rod's stiffness: such a run
-/// ends right or says that it can't.
+/// A contact is never held beyond its limit by a force within the tolerance of places times a rod's stiffness: such a
+/// run ends right or says that it can't.
 #[test]
 fn contacts_between_the_stiffest_springs_slip_or_the_run_stops() {
     let rods = scene(&[("layer.lateral_x.stiffness", "5e14"), ("solver.max_steps", "5000")]);

@@ -153,8 +153,8 @@ fn the_methods_are_l_stable() {
     check_axis(&ESDIRK5);
 }
 
-/// The quadrature up to a fraction of the step: exact to order 4 at every fraction, the method's own at the end, nothing
-/// at the start.
+/// The quadrature up to a fraction of the step: exact to order 4 at every fraction, the method's own at the end,
+/// nothing at the start.
 #[test]
 fn the_weights_within_a_step_have_order_four() {
     let within = WeightsWithin::new(&ESDIRK5);

@@ -43,8 +43,8 @@ fn rows(scene: &Scene, variables: &[Variable]) -> Vec<Vec<f64>> {
     (0..=PIECES).map(&mut next).collect()
 }
 
-/// The sums of a stage hold zeros more, which changes no digit or the last one; a run multiplies that by its events, but
-/// not to more than this.
+/// The sums of a stage hold zeros more, which changes no digit or the last one; a run multiplies that by its events,
+/// but not to more than this.
 const ROUNDING: f64 = 1e-9;
 /// Steps that are followed by tangents end at their events, the others may go on from within: alike within the
 /// tolerance of a step, 1e-6, times the steps' number.

@@ -1,7 +1,8 @@
 //! One implicit stage: the kernel of every integrator.
 //!
-//! A stage at t_i with β = γh looks for v_i and so for e_i = e* + β ė_i, v_i = v* + β v̇_i, where the starred values hold
-//! what the earlier stages give. The Maxwell elements add H + h Q_ii ė_i to a link's force (see `maxwell`), so a link weighs
+//! A stage at t_i with β = γh looks for v_i and so for e_i = e* + β ė_i, v_i = v* + β v̇_i, where the starred values
+//! hold what the earlier stages give. The Maxwell elements add H + h Q_ii ė_i to a link's force (see `maxwell`), so a
+//! link weighs
 //!
 //!   F = H + c e + D ė,   D = d + h Q_ii.
 //!

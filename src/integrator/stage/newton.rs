@@ -6,8 +6,8 @@ use super::{StageLaw, StageSolver};
 use crate::model::{Mode, Model, SurfacePoint};
 
 impl StageSolver {
-    /// What the equations of motion miss at the velocities as they are, into the right sides. Returns how large it is as
-    /// a velocity, m/s, if the inertia alone stood against it.
+    /// What the equations of motion miss at the velocities as they are, into the right sides. Returns how large it is
+    /// as a velocity, m/s, if the inertia alone stood against it.
     pub(super) fn residuals(&mut self, model: &Model, beta: f64) -> f64 {
         let inertia = model.mass / beta;
         let velocities = self.state.velocity_x.iter().zip(&self.state.velocity_z);
@@ -159,8 +159,8 @@ impl Slip {
         }
     }
 
-    /// m q² ẍ + m s κ ẋ² - f_x - s f_z + F_T q with F_T = σ (μ F_N + A τ_0) put in, from (6)-(9), where A τ_0 stands for the shear
-    /// force at rest (for what depends on the speed see `rate`):
+    /// m q² ẍ + m s κ ẋ² - f_x - s f_z + F_T q with F_T = σ (μ F_N + A τ_0) put in, from (6)-(9), where A τ_0 stands
+    /// for the shear force at rest (for what depends on the speed see `rate`):
     ///
     ///   m q² ẍ + m κ ẋ² (s + σμ) - (1 - σμs) f_x - (s + σμ) f_z + σ A τ_0 q = 0
     fn residual(&self, model: &Model, (f_x, f_z): (f64, f64)) -> f64 {

@@ -1,5 +1,5 @@
-//! Friction that depends on the speed, in Newton's equations of a stage: σ q A τ_f(v) of a slipping mass at v = σ q ẋ. What is held
-//! below the creep speed is in the equations already.
+//! Friction that depends on the speed, in Newton's equations of a stage: σ q A τ_f(v) of a slipping mass at v = σ q ẋ.
+//! What is held below the creep speed is in the equations already.
 
 use super::StageSolver;
 use crate::model::RateShear;
@@ -33,9 +33,9 @@ impl StageSolver {
         }
     }
 
-    /// Takes the corrections of slipping masses along the curve of their friction in place of its tangent. Returns the largest of
-    /// them as the velocity, m/s, that the same force would change if friction were the same at every speed: where it is steep
-    /// the velocity says little of what is left of the forces.
+    /// Takes the corrections of slipping masses along the curve of their friction in place of its tangent. Returns the
+    /// largest of them as the velocity, m/s, that the same force would change if friction were the same at every speed:
+    /// where it is steep the velocity says little of what is left of the forces.
     pub(super) fn bend_corrections(&mut self, law: &RateShear) -> f64 {
         let mut largest: f64 = 0.0;
         for ((rate, slip), &i) in self.rate.iter().zip(&self.slip).zip(&self.slips) {

@@ -48,8 +48,8 @@ fn temperature(material: &Material) -> String {
     material.wlf.map_or_else(|| "temperature left out: times as given".into(), shift)
 }
 
-/// A scene for other programs: as it was read and, in the material form, with the constants that follow from it where the
-/// direct form has them.
+/// A scene for other programs: as it was read and, in the material form, with the constants that follow from it where
+/// the direct form has them.
 #[derive(Debug, Serialize)]
 pub(super) struct Described {
     #[serde(flatten)]

@@ -21,8 +21,8 @@ use super::arguments::Fit;
 use super::error::ProgramError;
 use tell::Told;
 
-/// Reads, shifts, searches; writes the terms and the picture, prints the figures. Where the error asked for cannot be had, the
-/// best fit is written all the same, and then the program fails: a script must not take it for what was asked.
+/// Reads, shifts, searches; writes the terms and the picture, prints the figures. Where the error asked for cannot be
+/// had, the best fit is written all the same, and then the program fails: a script must not take it for what was asked.
 pub(crate) fn fit(command: &Fit) -> Result<(), ProgramError> {
     let picture = command.plot.clone().unwrap_or_else(|| command.output.with_extension("svg"));
     super::check_output(&command.output, std::slice::from_ref(&command.data))?;

@@ -91,8 +91,8 @@ impl<'a> ActiveSet<'a> {
         r.solve_upper_triangular(&right.rows(0, self.free.len()))
     }
 
-    /// Goes from x towards `wanted` as far as no unknown becomes negative; those that reach 0 are no longer free. Whether
-    /// it arrived.
+    /// Goes from x towards `wanted` as far as no unknown becomes negative; those that reach 0 are no longer free.
+    /// Whether it arrived.
     fn go_towards(&mut self, wanted: &DVector<f64>) -> bool {
         let blocking = |(&j, &to): (&usize, &f64)| (to <= 0.0).then(|| self.x[j] / (self.x[j] - to));
         let share = self.free.iter().zip(wanted.iter()).filter_map(blocking).fold(1.0, f64::min);
@@ -140,7 +140,8 @@ mod tests {
         assert_eq!((x[0] * x[1], x[2]), (0.0, 0.0));
     }
 
-    /// Karush, Kuhn and Tucker: x ≥ 0, Aᵀ(A x - b) ≥ 0, and one of the two 0 for each unknown; on problems as they come.
+    /// Karush, Kuhn and Tucker: x ≥ 0, Aᵀ(A x - b) ≥ 0, and one of the two 0 for each unknown; on problems as they
+    /// come.
     #[test]
     fn random_problems_fulfil_the_conditions_of_a_minimum() {
         let mut random = Random(1);

@@ -6,8 +6,8 @@
 //!
 //! For given relaxation times, the moduli follow by non-negative least squares, which is convex: on a grid of times so
 //! fine that a finer one gains nothing, they tell the least error that any series with E_j ≥ 0 has. Of that series,
-//! neighbours on the grid are one term that lies between them. Then terms are taken out one by one, those first that are
-//! missed least, and each time the others move to where the error is least: Gauss-Newton steps in ln τ.
+//! neighbours on the grid are one term that lies between them. Then terms are taken out one by one, those first that
+//! are missed least, and each time the others move to where the error is least: Gauss-Newton steps in ln τ.
 
 use std::f64::consts::LN_10;
 
@@ -17,8 +17,8 @@ use nalgebra::{DMatrix, DVector};
 use super::compound::{Compound, Sample, relaxation};
 use super::nnls::non_negative_least_squares;
 
-/// How far beyond 1/ω of the data relaxation times may lie, in decades: there a term is a spring or a damper, but for 1e-3
-/// of its modulus.
+/// How far beyond 1/ω of the data relaxation times may lie, in decades: there a term is a spring or a damper, but for
+/// 1e-3 of its modulus.
 const BEYOND: f64 = 1.5;
 /// Times of the fine grid in a decade. A term half way between two of them is both together, but for some 2e-3.
 const PER_DECADE: f64 = 8.0;
@@ -141,8 +141,8 @@ impl<'a> Problem<'a> {
         Solution { constants: [x[0], x[1]], times, moduli, error }
     }
 
-    /// Moves the relaxation times to where the error is least: K. Levenberg's and D. Marquardt's steps, of the error as a
-    /// function of ln τ alone.
+    /// Moves the relaxation times to where the error is least: K. Levenberg's and D. Marquardt's steps, of the error as
+    /// a function of ln τ alone.
     fn refine(&self, mut solution: Solution) -> Solution {
         /// A step that gains less, as a share of the error, is the last.
         const GAIN: f64 = 1e-4;
@@ -166,8 +166,8 @@ impl<'a> Problem<'a> {
         solution
     }
 
-    /// The damped step of ln τ, none of it longer than 1. The moduli go along: their share of the slopes is projected out
-    /// (variable projection as L. Kaufman has it, 1975).
+    /// The damped step of ln τ, none of it longer than 1. The moduli go along: their share of the slopes is projected
+    /// out (variable projection as L. Kaufman has it, 1975).
     fn step(&self, solution: &Solution, damping: f64) -> Option<DVector<f64>> {
         let terms = solution.times.iter().zip(&solution.moduli);
         let slopes: Vec<_> = terms.map(|(time, modulus)| self.slope(time.exp(), *modulus)).collect();
@@ -288,7 +288,8 @@ mod tests {
         }
     }
 
-    /// Data that end within the spectrum: terms beyond act as springs and dampers, which stand-ins near the ends are too.
+    /// Data that end within the spectrum: terms beyond act as springs and dampers, which stand-ins near the ends are
+    /// too.
     #[test]
     fn a_part_of_a_spectrum_is_fitted_within_what_is_asked() {
         let samples = samples(&sixteen(), -2, 6);

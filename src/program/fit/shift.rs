@@ -4,8 +4,8 @@ use super::compound::Sample;
 use super::measured::{Measured, Refusal, Row};
 use crate::program::arguments::WlfConstants;
 
-/// The rows as measured at the reference temperature: at a_T ω, with the moduli that they have. Without temperatures, all
-/// are taken to be of it.
+/// The rows as measured at the reference temperature: at a_T ω, with the moduli that they have. Without temperatures,
+/// all are taken to be of it.
 pub(super) fn to_reference(measured: &Measured, wlf: Option<WlfConstants>) -> Result<Vec<Sample>, Refusal> {
     match (&measured.temperature, wlf) {
         (Some(column), None) => Err(Refusal {

@@ -132,7 +132,8 @@ mod tests {
     #[test]
     fn the_maximum_of_tan_delta_is_where_theory_has_it() {
         let (omega, tangent) = zener().most_lossy((1e-2, 1e4)).unwrap();
-        // A parabola over a step of 0.5 % errs by the cube of that, times the curve's asymmetry; the value by its square.
+        // A parabola over a step of 0.5 % errs by the cube of that, times the curve's asymmetry; the value by its
+        // square.
         assert!((omega / 5.0 - 1.0).abs() < 1e-6 && (tangent / 0.75 - 1.0).abs() < 1e-12, "{omega} {tangent}");
     }
 

@@ -199,8 +199,8 @@ fn pixel(canvas: &Canvas<'_>, context: &Context<'_, '_>, place: (f64, f64)) -> (
     (x - left, y - top)
 }
 
-/// A disc, a square, a triangle or a diamond, which tell lines apart without their colours; hollow where the error says no
-/// more.
+/// A disc, a square, a triangle or a diamond, which tell lines apart without their colours; hollow where the error says
+/// no more.
 fn draw_marker(canvas: &Canvas<'_>, (x, y): (i32, i32), look: usize, hollow: bool) -> Drawn {
     let (r, edge) = (RADIUS, colour(look).stroke_width(LINE_WIDTH));
     let inside = if hollow { WHITE } else { colour(look) };

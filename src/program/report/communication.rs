@@ -1,5 +1,5 @@
-//! What a user of the FMU meets: a carrier that follows the excitation through a master's values, with rates and without,
-//! at ever shorter communication steps. The rules are the FMU's own.
+//! What a user of the FMU meets: a carrier that follows the excitation through a master's values, with rates and
+//! without, at ever shorter communication steps. The rules are the FMU's own.
 
 use asperity::fmi::{Carrier as Inputs, Input, InputOutOfRange};
 use asperity::scene::{Phase, Scene};

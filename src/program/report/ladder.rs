@@ -67,8 +67,8 @@ impl Ladder<'_> {
         f64::from(self.repeat) * rungs.map(|(method, rung)| self.rung_weight(method, rung)).sum::<f64>()
     }
 
-    /// What a rung is likely to take, as [`weight`]. The method "step" is of order 2: as quick as the other at a thousandth,
-    /// its steps follow the square root, until it is given up.
+    /// What a rung is likely to take, as [`weight`]. The method "step" is of order 2: as quick as the other at a
+    /// thousandth, its steps follow the square root, until it is given up.
     fn rung_weight(&self, method: Method, tolerance: f64) -> f64 {
         const EVEN: f64 = 1e-3;
         let most = 3.0 * PATIENCE as f64 * self.tolerances.last().map_or(1.0, |&tightest| weight(tightest));
@@ -83,7 +83,8 @@ impl Ladder<'_> {
         METHODS.iter().flat_map(|&(method, name)| self.climb(method, name, reference, progress)).collect()
     }
 
-    /// The rungs of one method, until they take far more work than the reference: a tighter one would tell nobody anything.
+    /// The rungs of one method, until they take far more work than the reference: a tighter one would tell nobody
+    /// anything.
     fn climb(&self, method: Method, name: &str, reference: &Reference, progress: &Progress) -> Vec<Row> {
         let mut scene = reference.scene.clone();
         scene.solver.method = method;

@@ -30,7 +30,8 @@ pub(super) struct Peers {
     pub(super) scenes: Vec<String>,
 }
 
-/// Reads the rows of the scene that goes by one of `names`. Those of this program are left out: its own are measured here.
+/// Reads the rows of the scene that goes by one of `names`. Those of this program are left out: its own are measured
+/// here.
 pub(super) fn read(path: &Path, names: &[&str]) -> Result<Peers, ProgramError> {
     let wrong = |message: String| ProgramError::ResultFile { path: path.to_owned(), message };
     let file = std::fs::File::open(path).map_err(ProgramError::file("read", path))?;

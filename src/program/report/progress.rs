@@ -40,7 +40,8 @@ impl Progress {
     }
 }
 
-/// What a run at this tolerance is likely to take, over one at 1: the step of a method of order 5 follows the fifth root.
+/// What a run at this tolerance is likely to take, over one at 1: the step of a method of order 5 follows the fifth
+/// root.
 pub(super) fn weight(tolerance: f64) -> f64 {
     tolerance.powf(-0.2)
 }

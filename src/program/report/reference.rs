@@ -11,8 +11,8 @@ use crate::program::excitation::Rows;
 
 /// How far the start is moved to see whether the motion is sensitive, m: far below what any scene resolves.
 pub(super) const DISPLACEMENT: f64 = 1e-12;
-/// Runs have parted where the moved start changes a force by more than this share of its largest value: where it does not
-/// spread, it changes some 1e-8, and up to 1e-4 where the layer is stiff against the force.
+/// Runs have parted where the moved start changes a force by more than this share of its largest value: where it does
+/// not spread, it changes some 1e-8, and up to 1e-4 where the layer is stiff against the force.
 const PARTED: f64 = 1e-3;
 /// On a profile so fine that the displacement is no small part of its height, so many times that part.
 const OF_HEIGHT: f64 = 100.0;
@@ -178,8 +178,8 @@ impl Search<'_> {
         rungs.iter().rev().find_map(|&rung| self.run(rung, self.rows, 0.0, None).ok().map(|run| (rung, run)))
     }
 
-    /// The reference with means in place of rows. What a moved start changes in them counts as its error, too: no run can
-    /// know better.
+    /// The reference with means in place of rows. What a moved start changes in them counts as its error, too: no run
+    /// can know better.
     fn by_means(&self, pointwise: Reference) -> Result<Reference, SimulationError> {
         let comparison = Comparison::Means(Rows::PerPhase(SAMPLES));
         let run = |tolerance: f64, u: f64| self.run(tolerance, comparison.rows(), u, None);

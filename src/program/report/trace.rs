@@ -57,8 +57,8 @@ impl Trace {
         })
     }
 
-    /// The largest difference of the forces' means over windows of a phase, over the largest mean; of the energy lost, whose
-    /// rows are sums already, as it is. `reference` may have other rows.
+    /// The largest difference of the forces' means over windows of a phase, over the largest mean; of the energy lost,
+    /// whose rows are sums already, as it is. `reference` may have other rows.
     pub(super) fn means(&self, reference: &Self) -> Errors {
         let (own, wanted) = (self.window_means(), reference.window_means());
         let scales = reference.scales();

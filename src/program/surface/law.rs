@@ -58,8 +58,8 @@ struct Fit {
 }
 
 impl Law {
-    /// The law that fits the bands best, over as many of them as it can; where `wavelengths` (m) are given, over all of these
-    /// and without a roll-off. None where nothing falls by a power law.
+    /// The law that fits the bands best, over as many of them as it can; where `wavelengths` (m) are given, over all of
+    /// these and without a roll-off. None where nothing falls by a power law.
     pub(super) fn of(bands: &[Band], wavelengths: Option<&RangeInclusive<f64>>) -> Option<Self> {
         let inside = |band: &&Band| wavelengths.is_none_or(|range| range.contains(&(TAU / band.wave_number)));
         let seen = bands.iter().filter(inside).filter(|band| band.density > 0.0);
@@ -139,7 +139,8 @@ mod tests {
 
     use super::*;
 
-    /// 12 bands a decade from 10 rad/m, with so many modes, constant to `q_r`, falling with H to `q_c`, hardly there beyond.
+    /// 12 bands a decade from 10 rad/m, with so many modes, constant to `q_r`, falling with H to `q_c`, hardly there
+    /// beyond.
     fn bands(hurst: f64, q_r: f64, q_c: f64, noise: f64) -> Vec<Band> {
         let mut random = SplitMix64::new(1);
         let band = |i: u32| {

@@ -36,8 +36,8 @@ const BANDS: f64 = 12.0;
 
 impl Spectrum {
     /// The spectrum of a profile at as many even points as it has intervals. A periodic profile is taken as it is. Of
-    /// another one the tilt is removed, and its ends fade out under a Hann window, whose loss of power (3/8) is made up for;
-    /// the longest wavelength is then lost.
+    /// another one the tilt is removed, and its ends fade out under a Hann window, whose loss of power (3/8) is made up
+    /// for; the longest wavelength is then lost.
     pub(super) fn of(surface: &Surface) -> Self {
         let x = &surface.x;
         let (start, length) = (x[0], x[x.len() - 1] - x[0]);

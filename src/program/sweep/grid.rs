@@ -19,8 +19,8 @@ const MOST: usize = 10_000;
 const DIGITS: usize = 6;
 
 impl Values {
-    /// Speeds, pressures or forces: `1e-4..10/20` is 20 values evenly in the logarithm, ends included; also a list, or both
-    /// joined by commas.
+    /// Speeds, pressures or forces: `1e-4..10/20` is 20 values evenly in the logarithm, ends included; also a list, or
+    /// both joined by commas.
     pub(crate) fn in_logarithm(text: &str) -> Result<Self, String> {
         Self::parse(text, Even::InLogarithm)
     }

@@ -158,8 +158,8 @@ fn bare(scene: Scene) -> Scene {
     scene
 }
 
-/// The scene of one point. Its excitation is there for `solver.reduce`, which goes by the speed and by how long a run is: steady
-/// motion has no end, so that no element is a spring.
+/// The scene of one point. Its excitation is there for `solver.reduce`, which goes by the speed and by how long a run
+/// is: steady motion has no end, so that no element is a spring.
 fn at(scene: &Scene, point: &Point) -> Scene {
     let mut scene = match point.temperature {
         Some(temperature) => with_temperature(scene, temperature),
@@ -196,7 +196,8 @@ pub(crate) struct Sliding {
     pub(crate) power: f64,
 }
 
-/// One point of a sweep of `scene`, a `load` being the force on the layer (N); what is wrong in words where it is not steady.
+/// One point of a sweep of `scene`, a `load` being the force on the layer (N); what is wrong in words where it is not
+/// steady.
 pub(crate) fn sliding(
     scene: &Scene,
     speed: f64,

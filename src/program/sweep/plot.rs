@@ -7,8 +7,8 @@ use super::table::{Line, Table};
 use crate::program::error::ProgramError;
 use crate::program::plot::{Dash, FrictionCurve, SidePanel, SidePanels};
 
-/// Draws friction over speed at `path`: a panel for each temperature, a colour for each load; with one load, one panel and a
-/// colour for each temperature.
+/// Draws friction over speed at `path`: a panel for each temperature, a colour for each load; with one load, one panel
+/// and a colour for each temperature.
 pub(super) fn draw(path: &Path, table: &Table) -> Result<(), ProgramError> {
     curves(table).write(path).map_err(|error| ProgramError::picture(path, &*error))
 }

@@ -1,13 +1,14 @@
 //! One point of a sweep: pressed to its load, slid until its means are steady, averaged.
 //!
-//! A point starts at full speed and at the w at which the layer's vertical springs alone would bear the load, pressed long ago, so
-//! that nothing rings for long. It is then searched block by block: after each, w moves by the secant, and the dashpots along
-//! z go where the block's means say that they will be ([`Simulation::relax_dashpots`]), for a compound has elements that would take
-//! minutes. Once a block bears the load and its dashpots nothing, w is held and nothing is touched any more: these blocks are the
-//! window, judged as in [`steady`](super::steady). Where its mean is off the load, w moves by what is missing, and a new
-//! window begins.
+//! A point starts at full speed and at the w at which the layer's vertical springs alone would bear the load, pressed
+//! long ago, so that nothing rings for long. It is then searched block by block: after each, w moves by the secant, and
+//! the dashpots along z go where the block's means say that they will be ([`Simulation::relax_dashpots`]), for a
+//! compound has elements that would take minutes. Once a block bears the load and its dashpots nothing, w is held and
+//! nothing is touched any more: these blocks are the window, judged as in [`steady`](super::steady). Where its mean is
+//! off the load, w moves by what is missing, and a new window begins.
 //!
-//! A point knows nothing of the others, so a table is the same in whatever order and on however many machines it is made.
+//! A point knows nothing of the others, so a table is the same in whatever order and on however many machines it is
+//! made.
 //!
 //! [`Simulation::relax_dashpots`]: asperity::simulation::Simulation::relax_dashpots
 
@@ -119,7 +120,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Slides on until F_z is near the load and the slow dashpots are where they will be. Returns the last block, if that is so.
+    /// Slides on until F_z is near the load and the slow dashpots are where they will be. Returns the last block, if
+    /// that is so.
     fn press(&mut self) -> Result<Option<Means>, SimulationError> {
         for _ in 0..SEARCHES {
             if !self.has_room(1.0) || !self.slide.has_room(1.0) {
@@ -136,8 +138,8 @@ impl<'a> Search<'a> {
         Ok(None)
     }
 
-    /// Changes w where F_z was `force`, of which the Maxwell elements bore `borne` (N). On a profile that ends, a new run begins
-    /// where no room is left.
+    /// Changes w where F_z was `force`, of which the Maxwell elements bore `borne` (N). On a profile that ends, a new
+    /// run begins where no room is left.
     fn correct(&mut self, force: f64, borne: f64) -> Result<(), SimulationError> {
         let change = self.secant.change(force, borne);
         self.runs += 1;
@@ -159,8 +161,8 @@ impl<'a> Search<'a> {
         self.gone + self.slide.distance() + blocks * self.way.block <= self.distance
     }
 
-    /// Blocks with w held, after a `first` one, until their means are steady or there is no room for more; `None` where there
-    /// is not even room for a window.
+    /// Blocks with w held, after a `first` one, until their means are steady or there is no room for more; `None` where
+    /// there is not even room for a window.
     fn average(&mut self, first: Option<Means>) -> Result<Option<Average>, SimulationError> {
         let mut blocks: Vec<Means> = first.into_iter().collect();
         if !self.slide.has_room(FEWEST as f64) {
@@ -223,8 +225,8 @@ impl<'a> Search<'a> {
     }
 }
 
-/// The friction coefficient, its standard error, its hysteresis and its adhesion part. The whole is the carrier's work, which is
-/// exact; the parts are sampled and miss the impulses of impacts, so what they lack is shared out as they are.
+/// The friction coefficient, its standard error, its hysteresis and its adhesion part. The whole is the carrier's work,
+/// which is exact; the parts are sampled and miss the impulses of impacts, so what they lack is shared out as they are.
 fn parts(means: &Means, error: f64) -> [f64; 4] {
     let [whole, hysteresis, adhesion] = [means.drag, means.hysteresis, means.adhesion].map(|force| force / means.load);
     let size = hysteresis.abs() + adhesion.abs();

@@ -1,20 +1,22 @@
 //! The displacement for a load, by secants over runs.
 //!
-//! A run at w bears F_z, of which the Maxwell elements' share is B; in steady motion B is 0. Near the load the two go together:
+//! A run at w bears F_z, of which the Maxwell elements' share is B; in steady motion B is 0. Near the load the two go
+//! together:
 //!
 //!   F_z = a - s w + κ B
 //!
-//! with s the layer's stiffness in steady motion. κ is what is gone of F_z when the dashpots have come to rest: 1 where all masses stay in
-//! contact, less where they come and go. Three runs would give the three numbers; so that two do, and scatter does not upset them, they are
-//! those of least squares over all runs and what is known beforehand. The load is met at B = 0.
+//! with s the layer's stiffness in steady motion. κ is what is gone of F_z when the dashpots have come to rest: 1 where
+//! all masses stay in contact, less where they come and go. Three runs would give the three numbers; so that two do,
+//! and scatter does not upset them, they are those of least squares over all runs and what is known beforehand. The
+//! load is met at B = 0.
 
 use nalgebra::{Matrix3, Vector3};
 
 /// What is known of s, over the stiffness of the vertical springs alone, and of κ: a value and how far it may be off.
 const STIFFNESS: (f64, f64) = (1.0, 0.7);
 const BORNE: (f64, f64) = (0.95, 0.1);
-/// How well a run tells F_z, as a share of the load: by its scatter, and by how far it is from the load and from rest, where the
-/// law is not straight.
+/// How well a run tells F_z, as a share of the load: by its scatter, and by how far it is from the load and from rest,
+/// where the law is not straight.
 const SCATTER: f64 = 2e-4;
 const BENT: f64 = 0.1;
 /// s is at least this share of what it is known to be.
@@ -93,8 +95,8 @@ mod tests {
         assert!(runs(law, (-2e-4, 4e5)) <= 8);
     }
 
-    /// Dashpots that bear twice as much as the springs and come to rest by nine tenths from one run to the next: by themselves
-    /// they would be at rest to 1e-3 in four runs, and every change of w stirs them anew.
+    /// Dashpots that bear twice as much as the springs and come to rest by nine tenths from one run to the next: by
+    /// themselves they would be at rest to 1e-3 in four runs, and every change of w stirs them anew.
     #[test]
     fn dashpots_that_come_to_rest_do_not_hide_the_load() {
         let (mut rest, mut before) = (0.0, 0.0);

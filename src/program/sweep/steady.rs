@@ -1,17 +1,22 @@
 //! When the means of a run are steady: judged by its blocks.
 //!
-//! The run is cut into blocks of equal length, and the mean of a quantity over each is all that is looked at. The latter half of the
-//! blocks, at least [`FEWEST`], is the window; what comes before is left to the transient. The window is steady where
+//! The run is cut into blocks of equal length, and the mean of a quantity over each is all that is looked at. The
+//! latter half of the blocks, at least [`FEWEST`], is the window; what comes before is left to the transient. The
+//! window is steady where
 //!
-//! - its mean is known: the standard error is at most the tolerance. Blocks that follow each other may be alike, which would make a
-//!   mean seem better known than it is. So s/√n is enlarged by what the blocks' correlation r with the next makes of it,
-//!   √((1+r)/(1-r)); and neighbours are joined in pairs, and pairs again, as long as [`FEWEST_JOINED`] are left: the largest standard
+//! - its mean is known: the standard error is at most the tolerance. Blocks that follow each other may be alike, which
+//! would make a
+//!   mean seem better known than it is. So s/√n is enlarged by what the blocks' correlation r with the next makes of
+//! it,
+//!   √((1+r)/(1-r)); and neighbours are joined in pairs, and pairs again, as long as [`FEWEST_JOINED`] are left: the
+//! largest standard
 //!   error of all these is taken (Flyvbjerg and Petersen, J. Chem. Phys. 91, 1989);
-//! - it has no trend: the change along the straight line of least squares from the first block to the last is at most the
+//! - it has no trend: the change along the straight line of least squares from the first block to the last is at most
+//! the
 //!   tolerance, or no more than twice what scatter alone would make of it.
 //!
-//! On a periodic profile a block is a whole number of periods: the means of a layer in steady motion are then the same in all of
-//! them, and [`FEWEST`] blocks do.
+//! On a periodic profile a block is a whole number of periods: the means of a layer in steady motion are then the same
+//! in all of them, and [`FEWEST`] blocks do.
 
 /// The fewest blocks of a window.
 pub(super) const FEWEST: usize = 3;
@@ -81,8 +86,8 @@ fn error_of_mean(blocks: &[f64]) -> f64 {
     (squares / (n * (n - 1.0).max(1.0))).sqrt()
 }
 
-/// Correlation of a block with the next, 0 where it is not told from scatter; few blocks make it seem smaller than it is, by
-/// (1 + 3r)/n.
+/// Correlation of a block with the next, 0 where it is not told from scatter; few blocks make it seem smaller than it
+/// is, by (1 + 3r)/n.
 fn correlation(blocks: &[f64]) -> f64 {
     let n = blocks.len() as f64;
     let mean = mean(blocks);
@@ -133,8 +138,8 @@ mod tests {
         (blocks, (variance / n * (1.0 + 2.0 * lags)).sqrt())
     }
 
-    /// The standard error of correlated noise is right within a quarter on average, and the true mean lies within two of it
-    /// nearly as often as it should (95 % where the error itself is known well).
+    /// The standard error of correlated noise is right within a quarter on average, and the true mean lies within two
+    /// of it nearly as often as it should (95 % where the error itself is known well).
     #[test]
     fn the_error_of_correlated_noise_is_right() {
         const SERIES: usize = 400;
@@ -161,7 +166,8 @@ mod tests {
         let window = Window::new(&line);
         // The line rises by 0.09, and nothing scatters about it.
         assert!((window.trend - 0.09).abs() < 1e-12 && !window.is_steady(0.05) && window.is_steady(0.1));
-        // A transient that dies away: steady once the window, the latter half, begins at the fifth block, e^(-8) < 1e-3.
+        // A transient that dies away: steady once the window, the latter half, begins at the fifth block, e^(-8) <
+        // 1e-3.
         let decay: Vec<f64> = (0..12).map(|i| 1.0 + (-2.0 * f64::from(i)).exp()).collect();
         let steady = |count: usize| Window::new(&decay[super::window(count)..count]).is_steady(1e-3);
         assert_eq!((3..=12).find(|&count| steady(count)), Some(8));

@@ -16,8 +16,8 @@ pub(super) struct Header {
 /// Lines above the data that may hold the names of the columns and their units.
 const NEAR: usize = 2;
 
-/// Reads the header's `lines`, comments included. Units are looked for in the last two lines, beside or below the names of
-/// columns, as in `x [mm]; z (µm)`, `X_(microns),y1`, `z / µm`; and in lines of their own, as in `X-Unit: mm`.
+/// Reads the header's `lines`, comments included. Units are looked for in the last two lines, beside or below the names
+/// of columns, as in `x [mm]; z (µm)`, `X_(microns),y1`, `z / µm`; and in lines of their own, as in `X-Unit: mm`.
 pub(super) fn read(lines: &[&str]) -> Header {
     let lines: Vec<&str> = lines.iter().map(|line| line.trim_start_matches(['#', '%', '!', ' '])).collect();
     let mut set = [None; 2];

@@ -1,6 +1,7 @@
 //! Measured profiles: files as they come from instruments, and what is done to them before they are a surface.
 //!
-//! Text holds two columns x, z, see [`columns`], [`header`] and [`text`]; an X3P file holds them in its own way, see [`x3p`].
+//! Text holds two columns x, z, see [`columns`], [`header`] and [`text`]; an X3P file holds them in its own way, see
+//! [`x3p`].
 
 mod columns;
 mod header;
@@ -99,7 +100,8 @@ pub struct Extract {
     pub text: String,
 }
 
-/// The least squares line of a profile as a curve: a point weighs as much as the steps beside it, however uneven they are.
+/// The least squares line of a profile as a curve: a point weighs as much as the steps beside it, however uneven they
+/// are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line {
     /// The middle of the profile, m.

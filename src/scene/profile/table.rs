@@ -67,7 +67,8 @@ fn first_point<'a>(lines: impl Iterator<Item = (usize, &'a str)>) -> Option<usiz
     None
 }
 
-/// A single line above the data holds names; a word among numbers there is a mistake. Longer headers hold what they like.
+/// A single line above the data holds names; a word among numbers there is a mistake. Longer headers hold what they
+/// like.
 fn check_header(above: &[(usize, &str)]) -> Result<(), ProfileError> {
     let mut lines = above.iter().filter(|(_, line)| !is_comment(line));
     let (Some((number, line)), None) = (lines.next(), lines.next()) else { return Ok(()) };

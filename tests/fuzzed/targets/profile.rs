@@ -1,5 +1,5 @@
-//! A file with a profile or with a Prony series, read as a scene reads it: refused with a place and a reason, or a spline,
-//! or a material.
+//! A file with a profile or with a Prony series, read as a scene reads it: refused with a place and a reason, or a
+//! spline, or a material.
 
 use std::io::{Cursor, Write as _};
 use std::path::{Path, PathBuf};
@@ -15,8 +15,8 @@ use super::scene::run_scene;
 /// Longer ones are no other profiles.
 const MOST_BYTES: usize = 4096;
 
-/// Writes the bytes behind the first two into a file, and reads a scene that names it: as the bits of these two say, or a Prony
-/// series where the highest is set.
+/// Writes the bytes behind the first two into a file, and reads a scene that names it: as the bits of these two say, or
+/// a Prony series where the highest is set.
 pub fn run(bytes: &[u8]) {
     let Some(([first, second], text)) = bytes.split_first_chunk().filter(|(_, text)| text.len() <= MOST_BYTES) else {
         return;

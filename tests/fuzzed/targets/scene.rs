@@ -6,7 +6,8 @@ use asperity::outputs::{Variable, variables};
 use asperity::scene::{OutputGroup, Phase, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
 
-/// What a scene may ask for here: a fuzzer finds the large numbers that are allowed, and memory and time are no mistakes.
+/// What a scene may ask for here: a fuzzer finds the large numbers that are allowed, and memory and time are no
+/// mistakes.
 const MOST_MASSES: usize = 4;
 const MOST_STEPS: u64 = 30;
 const MOST_DIGITS: usize = 4;

@@ -1,5 +1,5 @@
-//! `asperity pack --table TABLE.csv --check SCENE.toml`: the element against the layer that was swept, where the table has no points,
-//! and along a motion to and fro.
+//! `asperity pack --table TABLE.csv --check SCENE.toml`: the element against the layer that was swept, where the table
+//! has no points, and along a motion to and fro.
 
 mod cells;
 mod trajectory;

@@ -202,7 +202,8 @@ fn ranges(stress: &Stress) -> io::Result<String> {
     table(&names, &rows.collect::<Vec<_>>())
 }
 
-/// The powers of ten, from the least to the greatest without a gap, for which something holds: those around the one next to
+/// The powers of ten, from the least to the greatest without a gap, for which something holds: those around the one
+/// next to
 /// 0.
 fn reach(most: i32, holds: &dyn Fn(i32) -> bool) -> Option<(i32, i32)> {
     let nearest = (0..=most).flat_map(|power| [power, -power]).find(|&power| holds(power))?;

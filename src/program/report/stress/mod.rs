@@ -1,5 +1,5 @@
-//! The scene under stress: stiffness, mass, relaxation times, speed and communication step scaled by powers of ten, one by
-//! one and in pairs, and what becomes of each run.
+//! The scene under stress: stiffness, mass, relaxation times, speed and communication step scaled by powers of ten, one
+//! by one and in pairs, and what becomes of each run.
 
 mod cell;
 mod drive;
@@ -100,8 +100,8 @@ impl Stress {
         cell.status(self.tolerance)
     }
 
-    /// The steps of a cell's run, rejected ones included, over those of the scene as it is and one for each communication
-    /// step.
+    /// The steps of a cell's run, rejected ones included, over those of the scene as it is and one for each
+    /// communication step.
     pub(super) fn times_the_steps(&self, cell: &Cell) -> Option<f64> {
         let Fate::Ended { counts, communication_steps, .. } = &cell.fate else { return None };
         let due = self.unstressed().counts()?.work() + communication_steps;

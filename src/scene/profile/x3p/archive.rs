@@ -1,5 +1,5 @@
-//! The zip archive: its document and what the document names. What is read has its bound: a few bytes may unpack into all
-//! memory.
+//! The zip archive: its document and what the document names. What is read has its bound: a few bytes may unpack into
+//! all memory.
 
 use std::io::{Cursor, Read};
 

@@ -9,8 +9,8 @@ use super::missing;
 use crate::scene::allowed;
 use crate::scene::profile::{ProfileError, refuse};
 
-/// The texts of a document's elements, by the names of parent and element: `CX.Increment`. Prefixes of name spaces are left
-/// out.
+/// The texts of a document's elements, by the names of parent and element: `CX.Increment`. Prefixes of name spaces are
+/// left out.
 #[derive(Debug, Default)]
 pub(super) struct Document {
     texts: BTreeMap<String, String>,

@@ -1,9 +1,9 @@
 //! ISO 5436-2 (ISO 25178-72) files: a zip archive with `main.xml` and, beside it, the heights as binary data.
 //!
-//! A profile or one line of an areal measurement along x is taken. The standard's unit is the metre. Read as the reference
-//! implementation openGPS does: x = offset + increment · index on an incremental axis, of which nothing is stored, and
-//! value · increment + offset on an absolute one; of a point's coordinates x, y, z the absolute ones stand one after the
-//! other, little endian, x runs fastest. Sizes are bounded before anything is kept.
+//! A profile or one line of an areal measurement along x is taken. The standard's unit is the metre. Read as the
+//! reference implementation openGPS does: x = offset + increment · index on an incremental axis, of which nothing is
+//! stored, and value · increment + offset on an absolute one; of a point's coordinates x, y, z the absolute ones stand
+//! one after the other, little endian, x runs fastest. Sizes are bounded before anything is kept.
 
 mod archive;
 mod document;
