@@ -62,8 +62,8 @@
 //! | c, d | `LinkLaw::stiffness`, `damping` | N/m, N s/m | spring and damper of a link |
 //! | c_j, τ_j | `MaxwellRow::stiffness`, `relaxation_time` | N/m, s | Maxwell element, d_j = c_j τ_j |
 //! | a_j = e - y_j | `State::maxwell` | m | elongation of a Maxwell element's spring; rows 21, 22 of (13)-(15) |
-//! | E_∞, E_j, η, ν, ρ | `Material::equilibrium_modulus`, `PronyTerm::modulus`, … | Pa, Pa s, 1, kg/m³ | material form
-//! |
+//! | E_∞, E_j, η | `Material::equilibrium_modulus`, `prony`, `viscosity` | Pa, Pa, Pa s | material form |
+//! | ν, ρ | `Material::poisson_ratio`, `density` | 1, kg/m³ | material form |
 //! | H, B, A = B Δx | `Layer::thickness`, `width`, `element_area()` | m, m² | material form |
 //! | a_T | `Material::shift_factor()` | 1 | shift of all times with temperature (Williams, Landel and Ferry) |
 //! | E', E'' | `Material::complex_modulus()` | Pa | storage and loss modulus (2) |
@@ -80,8 +80,7 @@
 //! | σ | `Mode::direction()` | 1 | direction of slip along t |
 //! | h, γ, β | `h`, `Tableau::gamma()`, `beta` | s, 1, s | step, coefficient of a stage, γh |
 //! | G, K | `Jenkins::force`, `stiffness` | N, N/m | spring of a point-contact element, G = -F_x |
-//! | a, y | `Contact` over the approach | m, 1 | approach of an element's carrier, minus the separation; ln of its
-//! pressure |
+//! | a, y | `Contact` over the approach | m, 1 | minus the separation of an element's carrier; ln of its pressure |
 //! | E_in, T, V | `Power::input`, `kinetic_energy`, `elastic_energy` | J | energy balance |
 
 pub mod contact;
