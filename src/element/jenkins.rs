@@ -3,8 +3,7 @@
 //! G = -F_x is the force in the spring, K the tangential stiffness, L = μ F_z the limit, σ the direction of slip.
 //!
 //! - *Stick*, |G| ≤ L: Ġ = K u̇ while K grows, as what comes newly into contact bears nothing yet; where K falls, what
-//! leaves
-//!   the contact takes its share along: the elongation G/K grows by u̇.
+//!   leaves the contact takes its share along: the elongation G/K grows by u̇.
 //! - *Slip*: G = σL, for as long as a sticking spring would go beyond it.
 //!
 //! So a growing and a falling stiffness both cost energy and give none: what the spring holds is V = G²/(2K), and

@@ -7,10 +7,8 @@
 //! least and the largest pressure:
 //!
 //! - Below p_1 the pressure falls as a parabola, p = p_1 ((a - a_0)/(a_1 - a_0))², with the slope that it has at p_1,
-//! so to
-//!   0 at a_0 = a_1 - 2 p_1/p_1'; there the contact ends. Tangential stiffness and contact ratio fall with the
-//! pressure, the
-//!   friction coefficient stays.
+//!   so to 0 at a_0 = a_1 - 2 p_1/p_1'; there the contact ends. Tangential stiffness and contact ratio fall with the
+//!   pressure, the friction coefficient stays.
 //! - Above p_n it goes on along its tangent; the coefficients, the tangential stiffness and the contact ratio stay.
 //!
 //! Below the least speed of the table everything is as at the least, above the largest as at the largest.

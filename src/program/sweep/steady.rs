@@ -5,15 +5,12 @@
 //! window is steady where
 //!
 //! - its mean is known: the standard error is at most the tolerance. Blocks that follow each other may be alike, which
-//! would make a
-//!   mean seem better known than it is. So s/√n is enlarged by what the blocks' correlation r with the next makes of
-//! it,
-//!   √((1+r)/(1-r)); and neighbours are joined in pairs, and pairs again, as long as [`FEWEST_JOINED`] are left: the
-//! largest standard
-//!   error of all these is taken (Flyvbjerg and Petersen, J. Chem. Phys. 91, 1989);
+//!   would make a mean seem better known than it is. So s/√n is enlarged by what the blocks' correlation r with the
+//!   next makes of it, √((1+r)/(1-r)); and neighbours are joined in pairs, and pairs again, as long as
+//!   [`FEWEST_JOINED`] are left: the largest standard error of all these is taken (Flyvbjerg and Petersen, J. Chem.
+//!   Phys. 91, 1989);
 //! - it has no trend: the change along the straight line of least squares from the first block to the last is at most
-//! the
-//!   tolerance, or no more than twice what scatter alone would make of it.
+//!   the tolerance, or no more than twice what scatter alone would make of it.
 //!
 //! On a periodic profile a block is a whole number of periods: the means of a layer in steady motion are then the same
 //! in all of them, and [`FEWEST`] blocks do.
