@@ -136,11 +136,15 @@ impl Dense<'_> {
                 ground,
             };
         }
-        if self.start.0.mode[i].slips() {
+        let place = if self.start.0.mode[i].slips() {
             ground = self.model.ground(self.model.rest_x[i] + (self.carrier.place + (carrier.du + x.place)));
-        }
+            x.place
+        } else {
+            // What the polynomial misses of the carrier's swing would move a mass that stands still.
+            self.start.0.elongation_x[i] - self.carrier.moved(self.s, theta * self.h).0
+        };
         let z = ground.height - self.model.rest_z[i] - (self.carrier.w + carrier.dw);
-        MassPoint { elongation: (x.place, z), velocity: (v_x, ground.slope * v_x), bend: (x.acceleration, 0.0), ground }
+        MassPoint { elongation: (place, z), velocity: (v_x, ground.slope * v_x), bend: (x.acceleration, 0.0), ground }
     }
 
     /// ẋ of mass `i` at the fraction `theta`, m/s.
