@@ -81,8 +81,7 @@ impl Dense<'_> {
     }
 
     /// What the dense output misses of the equations of motion at the fraction `theta`, whose state stands in `state`
-    /// and
-    /// `room`: how far the accelerations that the forces there give are from its own, as a velocity gained over the
+    /// and `room`: how far the accelerations that the forces there give are from its own, as a velocity gained over the
     /// step, in the tolerance's norm.
     pub fn defect(
         &self,

@@ -135,8 +135,7 @@ impl Integrator {
     }
 
     /// Energies through the channels over the step of two stages of length `h` from `start` tried last, up to its
-    /// fraction
-    /// `theta`.
+    /// fraction `theta`.
     pub fn two_stage_energies(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> Power {
         let room = &self.two_stages;
         let weights = if theta < 1.0 { &room.weights_within.at(theta) } else { SDIRK2.weights() };

@@ -14,8 +14,7 @@ use crate::outputs::Accounts;
 /// The finer run's tolerance, as a share of the run's.
 ///
 /// Recommended 0.1 to 0.5. Smaller tells more where errors do not fall evenly, but costs more: with 0.2 the finer run
-/// takes
-/// 1.4 times the run's steps where events are located, 2.2 times where it is stepped.
+/// takes 1.4 times the run's steps where events are located, 2.2 times where it is stepped.
 const FINER: f64 = 0.2;
 /// The share of the error that shows in the difference of the two runs, where errors fall with the tolerance.
 const SHOWN: f64 = 1.0 - FINER;

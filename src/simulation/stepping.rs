@@ -176,8 +176,7 @@ impl Simulation {
     }
 
     /// Impacts due, stops, then every contact decided anew from the forces, which have jumped; and the rates after it.
-    /// Masses within
-    /// `reach` (m) of the profile count as touching.
+    /// Masses within `reach` (m) of the profile count as touching.
     pub(super) fn change_modes(&mut self, reach: f64) {
         let carrier = self.run.carrier.at(self.run.s);
         let at = self.run.place();

@@ -203,8 +203,7 @@ fn ranges(stress: &Stress) -> io::Result<String> {
 }
 
 /// The powers of ten, from the least to the greatest without a gap, for which something holds: those around the one
-/// next to
-/// 0.
+/// next to 0.
 fn reach(most: i32, holds: &dyn Fn(i32) -> bool) -> Option<(i32, i32)> {
     let nearest = (0..=most).flat_map(|power| [power, -power]).find(|&power| holds(power))?;
     let low = (-most..=nearest).rev().take_while(|&power| holds(power)).last()?;
