@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::table::{Load, Place};
+use crate::simulation::OutOfRange;
 
 /// Why a table is refused: what was expected, what was found, and where.
 ///
@@ -114,6 +115,9 @@ fn list(texts: impl ExactSizeIterator<Item = String>) -> String {
 /// Why an element cannot be where its carrier would be; it is then as it was.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ElementError {
+    /// The carrier's motion is out of range, whatever the table.
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
     /// The carrier comes closer than the table goes.
     #[error(
         "w = {w} m at t = {time} s is a separation of {separation} m, a {} above {largest} {}, where the table ends: at {speed} m/s its \

@@ -56,6 +56,7 @@ impl Element {
     /// # Errors
     /// [`ElementError`] where the table does not go.
     pub fn new(contact: &PointContact, start: &Start) -> Result<Self, ElementError> {
+        start.check()?;
         let state = Saved {
             time: start.time,
             u: start.u,
@@ -97,19 +98,21 @@ impl Element {
     /// # Errors
     /// [`ElementError`] where the table does not go; the element is then as it was.
     pub fn advance(&mut self, duration: f64, (u_rate, w_rate): (f64, f64)) -> Result<(), ElementError> {
+        let Saved { time, u, w, .. } = self.state;
+        let end = Start { time: time + duration, u: u + u_rate * duration, w: w + w_rate * duration, u_rate, w_rate };
+        end.check()?;
         self.check_speed(u_rate)?;
-        let end = self.state.w + w_rate * duration;
         let before = self.curve.speed();
         self.curve.set_speed(&self.law, u_rate);
-        let room = self.check_separation((self.state.w, u_rate), false);
-        if let Err(error) = room.and_then(|()| self.check_separation((end, u_rate), true)) {
+        let room = self.check_separation((w, u_rate), false);
+        if let Err(error) = room.and_then(|()| self.check_separation((end.w, u_rate), true)) {
             self.curve.set_speed(&self.law, before);
             return Err(error);
         }
-        self.follow(duration, (u_rate, w_rate), end);
+        self.follow(duration, (u_rate, w_rate), end.w);
         let state = &mut self.state;
         (state.u_rate, state.w_rate) = (u_rate, w_rate);
-        (state.time, state.u, state.w) = (state.time + duration, state.u + u_rate * duration, end);
+        (state.time, state.u, state.w) = (end.time, end.u, end.w);
         (state.force, state.mode) = (self.spring.force, self.spring.mode.number());
         Ok(())
     }

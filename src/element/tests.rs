@@ -282,6 +282,11 @@ fn the_ends_of_the_table_refuse_or_hold() {
     assert!(matches!(low.advance(1e-3, (10.0, 0.0)), Err(ElementError::Pressure { within: false, .. })));
 
     contact.set_parameter(Parameter::TableExtrapolation, Value::Text("hold".into())).unwrap();
+    let far = Element::new(&contact, &Start { w: 1e31, ..Start::default() }).unwrap_err();
+    assert_eq!(far.to_string(), "the carrier's motion is out of range: w = 1e31, expected a number up to ±1e30");
+    for (duration, rates) in [(1e30, (2.0, 0.0)), (1e-3, (0.0, f64::NAN)), (f64::INFINITY, (0.0, 0.0))] {
+        assert!(matches!(element.advance(duration, rates), Err(ElementError::OutOfRange(_))));
+    }
     let w = separation(10.0, 8e5, WARM) - REST;
     let mut held = Element::new(&contact, &Start { w, u_rate: 10.0, ..Start::default() }).unwrap();
     let slope = held.contact().normal.slope;

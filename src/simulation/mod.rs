@@ -50,6 +50,16 @@ pub struct Motion {
     pub w: Path,
 }
 
+/// The carrier's motion is not a number, or larger than [`LARGEST`].
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("the carrier's motion is out of range: {what} = {value:?}, expected a number up to ±{LARGEST:?}")]
+pub struct OutOfRange {
+    /// Which quantity.
+    pub what: &'static str,
+    /// Its value.
+    pub value: f64,
+}
+
 /// Why a run could not go on; the simulation is as it was before the call.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SimulationError {
@@ -69,14 +79,9 @@ pub enum SimulationError {
         /// The step size, s.
         step: f64,
     },
-    /// The carrier's motion is not a number, or larger than [`LARGEST`].
-    #[error("the carrier's motion is out of range: {what} = {value:?}, expected a number up to ±{LARGEST:?}")]
-    OutOfRange {
-        /// Which quantity.
-        what: &'static str,
-        /// Its value.
-        value: f64,
-    },
+    /// The carrier's motion is out of range.
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
     /// Parameters that do not go together, as [`Scene::check`] finds.
     #[error(transparent)]
     Scene(#[from] ParameterError),

@@ -1,6 +1,6 @@
 //! Everything of a run that changes.
 
-use super::{Motion, SimulationError, Start};
+use super::{Motion, OutOfRange, Start};
 use crate::contact::CarrierPlace;
 use crate::integrator::Rates;
 use crate::math::{Numbers, visit_all};
@@ -155,20 +155,16 @@ impl Numbers for Checkpoint {
 }
 
 impl Start {
-    pub(super) fn check(&self) -> Result<(), SimulationError> {
-        let quantities = [
-            ("start time", self.time),
-            ("u", self.u),
-            ("w", self.w),
-            ("rate of u", self.u_rate),
-            ("rate of w", self.w_rate),
-        ];
+    /// Refuses where no run can be.
+    pub(crate) fn check(&self) -> Result<(), OutOfRange> {
+        let quantities =
+            [("time", self.time), ("u", self.u), ("w", self.w), ("rate of u", self.u_rate), ("rate of w", self.w_rate)];
         check_size(&quantities)
     }
 }
 
 impl Motion {
-    pub(super) fn check(&self) -> Result<(), SimulationError> {
+    pub(super) fn check(&self) -> Result<(), OutOfRange> {
         let quantities = [
             ("duration", self.duration),
             ("rate of u", self.u.rate),
@@ -182,9 +178,9 @@ impl Motion {
     }
 }
 
-fn check_size(quantities: &[(&'static str, f64)]) -> Result<(), SimulationError> {
+fn check_size(quantities: &[(&'static str, f64)]) -> Result<(), OutOfRange> {
     match quantities.iter().find(|(_, value)| !is_possible(*value)) {
-        Some(&(what, value)) => Err(SimulationError::OutOfRange { what, value }),
+        Some(&(what, value)) => Err(OutOfRange { what, value }),
         None => Ok(()),
     }
 }

@@ -70,6 +70,11 @@ fn profiles() {
 }
 
 #[test]
+fn tables() {
+    run("table", targets::table::run, 300);
+}
+
+#[test]
 fn states() {
     run("state", targets::state::run, 100);
     let mut random = Random(7);

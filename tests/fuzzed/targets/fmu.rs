@@ -1,11 +1,12 @@
-//! Small FMUs to fuzz, and what every call of theirs must keep to.
+//! Small FMUs to fuzz, layers and an element, and what every call of theirs must keep to.
 
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::sync::{Mutex, OnceLock};
 use std::{env, fmt, fs, mem, process, ptr};
 
+use asperity::element::{PointContact, Table};
 use asperity::fmi::bindings::*;
-use asperity::fmi::{self, Catalogue, Entry, Kind, SCENE_FILE, Sources};
+use asperity::fmi::{self, Catalogue, Entry, Kind, SCENE_FILE, Sources, Subject, TABLE_FILE};
 use asperity::scene::{OutputGroup, Scene};
 
 pub const OK: fmi2Status = fmi2Status_fmi2OK;
@@ -14,33 +15,38 @@ pub const DISCARD: fmi2Status = fmi2Status_fmi2Discard;
 /// The largest number of steps that a call may ask for here.
 pub const MOST_STEPS: i32 = 40;
 
-/// A folder with a scene, and what its model description would say.
+/// A folder with a scene or a table, and what its model description would say.
 pub struct Site {
     pub guid: CString,
     pub location: CString,
     pub reals: Vec<u32>,
     pub integers: Vec<u32>,
-    /// Fixed parameters: reals, the number of steps, texts.
+    /// Parameters: reals, and texts.
     pub parameters: Vec<u32>,
-    pub max_steps: u32,
     pub texts: Vec<u32>,
-    pub time: u32,
+    /// The number of steps and the processor time, which an element has not.
+    pub max_steps: Option<u32>,
+    time: Option<u32>,
     /// A new instance as a byte string.
     pub fresh: Vec<u8>,
     /// Instances that can be used again: a new one reads its scene, which takes longer than most cases do.
     pool: Mutex<Vec<(usize, usize)>>,
 }
 
-/// The scenes: without friction on a flat floor, with a bit of all on a wave and on points.
+/// Layers without friction on a flat floor, with a bit of all on a wave and on points, of rubber; and an element.
 pub fn sites() -> &'static [Site] {
     static SITES: OnceLock<Vec<Site>> = OnceLock::new();
-    SITES.get_or_init(|| SCENES.iter().enumerate().map(|(i, text)| Site::new(i, text)).collect())
+    SITES.get_or_init(|| {
+        let scenes = SCENES.iter().map(|text| (SCENE_FILE, with_all_outputs(text)));
+        let resources = scenes.chain([(TABLE_FILE, table())]);
+        resources.enumerate().map(|(number, (file, text))| Site::new(number, file, &text)).collect()
+    })
 }
 
 /// An instance is freed after so many cases.
 const MOST_USES: usize = 200;
 
-const SCENES: [&str; 6] = [
+const SCENES: [&str; 7] = [
     "name = 'bare'\nlayer = { masses = 1, spacing = 1e-4, mass = 1e-7, vertical = { stiffness = 2e3 } }\n\
      surface = { kind = 'flat' }\nsolver = { max_steps = 30 }\n",
     "name = 'loose'\nlayer = { masses = 1, spacing = 1e-4, mass = 1e-7 }\nsurface = { kind = 'flat' }\n\
@@ -49,6 +55,7 @@ const SCENES: [&str; 6] = [
     "solver = { method = 'step', relative_tolerance = 1e-4, max_steps = 30 }\n",
     "solver = { method = 'auto', relative_tolerance = 1e-4, max_steps = 30 }\n",
     "solver = { method = 'auto', relative_tolerance = 1e-4, max_steps = 30, reduce = 0.05 }\ninput = { extrapolation = 'hold' }\n",
+    RUBBER,
 ];
 
 /// Two masses with everything that a scene can have.
@@ -73,31 +80,70 @@ coulomb = 0.3
 shear_force = 1e-5
 ";
 
+/// Two masses of a material, with the adhesion that depends on speed and temperature.
+const RUBBER: &str = "name = 'rubber'
+layer = { masses = 2, spacing = 0.7e-4, thickness = 1e-3, width = 1e-2, roughness = { kind = 'points', z = [0.0, 1e-7] } }
+material = { density = 1.1e3, poisson_ratio = 0.49, equilibrium_modulus = 2e6, viscosity = 10.0, \
+    prony = [{ modulus = 5e6, relaxation_time = 1e-5 }], \
+    wlf = { c1 = 7.52, c2 = 119.75, reference_temperature = 293.15, temperature = 313.15 } }
+surface = { kind = 'sinusoid', amplitude = 1e-6, wavelength = 1e-4, points_per_wavelength = 8 }
+friction = { coulomb = 0.3, shear_strength = 1e4, \
+    rate_shear = { strength = 1e5, reference_speed = 6e-3, sharpness = 0.1 } }
+solver = { method = 'auto', relative_tolerance = 1e-3, max_steps = 30 }
+";
+
+/// The text of a scene with all outputs; one without a name gets all the rest too.
+fn with_all_outputs(text: &str) -> String {
+    let groups: Vec<String> = OutputGroup::ALL.iter().map(|group| format!("'{}'", group.name())).collect();
+    let base = if text.starts_with("name") { "" } else { EVERYTHING };
+    format!("{text}fmu = {{ outputs = [{}] }}\n{base}", groups.join(", "))
+}
+
+/// A table of three speeds, three pressures and two temperatures, around w = 0.
+pub fn table() -> String {
+    let head = "# asperity sweep = 1\n# scene = swept\n# nominal_area = 4e-5 m2\n# rest_separation = 2e-6 m\n\
+        speed [m/s],pressure [Pa],temperature [K],status,friction [1],friction_hysteresis [1],contact_ratio [1],\
+        P_damper [W],P_friction [W],separation [m],tangential_stiffness [N/m]\n";
+    let mut table = head.to_owned();
+    for (speed, place) in [(1e-3, -1.0), (1e-2, 0.0), (1.0, 2.0)] {
+        for (pressure, height) in [(1e5, 3e-6), (2e5, 1e-6), (5e5, -2e-6)] {
+            for (kelvin, shift) in [(290, 0.2), (300, 0.0)] {
+                let (at, above) = (place + shift, height + 1e-7 * place);
+                let friction = 0.8 - 0.1 * at * at;
+                let rest = format!("{friction},{},0.2,1e-3,2e-3,{above:e},2e4", 0.4 * friction);
+                table += &format!("{speed:e},{pressure:e},{kelvin},steady,{rest}\n");
+            }
+        }
+    }
+    table
+}
+
 impl Site {
-    fn new(number: usize, text: &str) -> Self {
-        let groups: Vec<String> = OutputGroup::ALL.iter().map(|group| format!("'{}'", group.name())).collect();
-        let base = if text.starts_with("name") { "" } else { EVERYTHING };
-        let scene = format!("{text}fmu = {{ outputs = [{}] }}\n{base}", groups.join(", "));
+    fn new(number: usize, file: &str, text: &str) -> Self {
         let folder = env::temp_dir().join(format!("asperity-fmu-{}-{number}", process::id()));
         fs::create_dir_all(&folder).unwrap();
-        let file = folder.join(SCENE_FILE);
-        fs::write(&file, scene).unwrap();
-        let scene = Scene::load(&file).unwrap();
-        let catalogue = Catalogue::new(&scene);
-        let guid = fmi::guid(&Sources::read(&file, &scene).unwrap(), &catalogue);
+        let file = folder.join(file);
+        fs::write(&file, text).unwrap();
+        let subject: Subject = if file.ends_with(TABLE_FILE) {
+            PointContact::new(Table::load(&file).unwrap()).into()
+        } else {
+            Scene::load(&file).unwrap().into()
+        };
+        let catalogue = Catalogue::of(&subject);
+        let guid = fmi::guid(&Sources::of(&file, &subject).unwrap(), &catalogue);
         let of = |take: &dyn Fn(&Entry<'_>) -> bool| {
             catalogue.entries().filter(|(_, entry)| take(entry)).map(|(reference, _)| reference).collect::<Vec<_>>()
         };
         let is_output = |entry: &Entry<'_>| matches!(entry, Entry::Output(..)) && entry.name() != "solver.run_time";
-        let named = |name: &str| of(&|entry| entry.name() == name)[0];
+        let named = |name: &str| of(&|entry| entry.name() == name).first().copied();
         let mut site = Self {
             guid: CString::new(guid).unwrap(),
             location: CString::new(folder.to_str().unwrap()).unwrap(),
             reals: of(&|entry| is_output(entry) && entry.kind() == Kind::Real),
             integers: of(&|entry| is_output(entry) && entry.kind() == Kind::Integer),
             parameters: of(&|entry| matches!(entry, Entry::Parameter(_, Kind::Real))),
-            max_steps: named("solver.max_steps"),
             texts: of(&|entry| entry.kind() == Kind::Text),
+            max_steps: named("solver.max_steps"),
             time: named("solver.run_time"),
             fresh: Vec::new(),
             pool: Mutex::default(),
@@ -229,10 +275,12 @@ impl Fmu {
 
     /// The outputs after a step that is said to be done: all are there.
     pub fn outputs_of_step(&self) -> Outputs {
-        let mut time = f64::NAN;
-        // SAFETY: as above.
-        assert_eq!(unsafe { fmi::fmi2GetReal(self.c, &self.site.time, 1, &mut time) }, OK);
-        assert!(time >= 0.0);
+        if let Some(reference) = &self.site.time {
+            let mut time = f64::NAN;
+            // SAFETY: as above.
+            assert_eq!(unsafe { fmi::fmi2GetReal(self.c, reference, 1, &mut time) }, OK);
+            assert!(time >= 0.0);
+        }
         self.outputs().expect("outputs after a step")
     }
 
@@ -263,11 +311,12 @@ impl Fmu {
         frozen(self.c)
     }
 
-    /// The work that a step may do.
+    /// The work that a step may do, which of an element is none.
     pub fn max_steps(&self) -> i32 {
+        let Some(reference) = &self.site.max_steps else { return 0 };
         let mut steps = 0;
         // SAFETY: as above.
-        let status = unsafe { fmi::fmi2GetInteger(self.c, &self.site.max_steps, 1, &mut steps) };
+        let status = unsafe { fmi::fmi2GetInteger(self.c, reference, 1, &mut steps) };
         if checked(status) == OK { steps } else { 0 }
     }
 

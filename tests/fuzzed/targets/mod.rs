@@ -1,9 +1,10 @@
-//! What is fuzzed: four functions of arbitrary bytes that panic where the library breaks a promise.
+//! What is fuzzed: five functions of arbitrary bytes that panic where the library breaks a promise.
 
 pub mod fmi_calls;
 pub mod profile;
 pub mod scene;
 pub mod state;
+pub mod table;
 
 mod fmu;
 mod number;

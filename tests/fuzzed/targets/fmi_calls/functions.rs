@@ -122,7 +122,7 @@ fn set(fmu: Fmu, call: &Call) {
             }
             Call::SetInteger(array, null) => {
                 let capped = |reference: u32, value: i32| {
-                    if reference == fmu.site.max_steps { value.min(MOST_STEPS) } else { value }
+                    if Some(reference) == fmu.site.max_steps { value.min(MOST_STEPS) } else { value }
                 };
                 let (vr, mut values): (Vec<_>, Vec<_>) = array
                     .taken()

@@ -1,0 +1,8 @@
+//! The table of a sweep.
+#![no_main]
+#![allow(dead_code, reason = "each target is one of those")]
+
+#[path = "../../fuzzed/targets/mod.rs"]
+mod targets;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| targets::table::run(bytes));
