@@ -57,7 +57,7 @@ pub fn first_event(
     let mut first = Contacts { step, stages, tolerance, room }.first_change();
     for i in 0..step.model.masses() {
         if step.start.0.mode[i] == Mode::Free {
-            first = earlier(first, first_touch(&step.model.profile, &step.place(i), &step.height(i), tolerance.gap));
+            first = earlier(first, first_touch(&step.model.profile, || step.place(i), step.height(i), tolerance.gap));
         }
     }
     first

@@ -6,7 +6,7 @@
 
 use super::maxwell::{Course, Maxwell};
 use super::rates::Rates;
-use crate::math::{dot, sum_of, weighted_sum};
+use crate::math::{dot, sum_of_pairs, weighted_sum};
 use crate::model::{Exchange, LinkKind, MaxwellRow, Model, Power};
 
 /// Σ ė_i ė_j over the links of one kind, m²/s², for j ≤ i.
@@ -84,8 +84,7 @@ fn largest_change(stages: &[Rates], kind: LinkKind) -> f64 {
     let [start, later @ ..] = stages else { return 0.0 };
     let start = &start.elongation_rate[kind as usize];
     let change = |stage: &Rates| {
-        let rate = &stage.elongation_rate[kind as usize];
-        sum_of(start.len(), |i| (rate[i] - start[i]) * (rate[i] - start[i]))
+        sum_of_pairs(&stage.elongation_rate[kind as usize], start, |rate, start| (rate - start) * (rate - start))
     };
     later.iter().map(change).fold(0.0, f64::max)
 }
@@ -141,7 +140,7 @@ impl<const STAGES: usize> Squares<STAGES> {
 
     /// The sum over the elements of one row, which start with the elongations `a`.
     fn sum(&self, row: &MaxwellRow, a: &[f64], stages: &[Rates], products: &Products<STAGES>, room: &mut [f64]) -> f64 {
-        let rates = self.mixed.iter().zip(stages);
+        let rates = self.mixed.iter().zip(stages).filter(|(factor, _)| **factor != 0.0);
         let mixed = rates.map(|(&factor, stage)| (factor, &stage.elongation_rate[row.kind as usize][..]));
         let room = &mut room[..a.len()];
         weighted_sum(room, std::iter::once((self.start, a)).chain(mixed));
@@ -167,13 +166,13 @@ impl Late {
     /// Where they follow their links as nearly as ė changes, l is what ë leaves, which the stages see: then it is 0,
     /// and it goes there without a jump.
     fn sum(&self, tau: f64, a: &[f64], rate: &[f64], change: f64) -> f64 {
-        let late = |i: usize| a[i] - tau * rate[i];
-        let square = sum_of(a.len(), |i| late(i) * late(i));
+        let late = |a: f64, rate: f64| a - tau * rate;
+        let square = sum_of_pairs(a, rate, |a, rate| late(a, rate) * late(a, rate));
         let left = tau * tau * change;
         if square <= left {
             return 0.0;
         }
-        let mixed = tau * sum_of(a.len(), |i| late(i) * rate[i]);
+        let mixed = tau * sum_of_pairs(a, rate, |a, rate| late(a, rate) * rate);
         (1.0 - left / square) * (self.square * square + 2.0 * self.mixed * mixed)
     }
 }

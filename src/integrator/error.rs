@@ -3,7 +3,7 @@
 use super::maxwell::Maxwell;
 use super::tolerance::Rod;
 use super::{Attempt, Rates, Tableau, Tolerance};
-use crate::math::{sum_of, weighted_sum};
+use crate::math::{sum_of, sum_of_pairs, weighted_sum};
 use crate::model::{CarrierPoint, LinkKind, Mode, Model, State};
 
 /// The estimated errors of one step, and room for them.
@@ -52,12 +52,11 @@ impl<const STAGES: usize> Tried<'_, STAGES> {
         let carrier_error = self.carrier_error(h);
         self.collect(h, &carrier_error, room);
         let (end, rates) = (self.end, &self.carrier[STAGES - 1]);
-        let masses = model.masses();
         let place = |error: &[f64], elongation: &[f64]| {
-            sum_of(masses, |i| error[i] * error[i] / tolerance.of_position(elongation[i]))
+            sum_of_pairs(error, elongation, |error, e| error * error / tolerance.of_position(e))
         };
         let speed = |error: &[f64], velocity: &[f64], carrier_rate: f64| {
-            sum_of(masses, |i| error[i] * error[i] / tolerance.of_velocity(velocity[i] - carrier_rate))
+            sum_of_pairs(error, velocity, |error, v| error * error / tolerance.of_velocity(v - carrier_rate))
         };
         let (in_contact, unseen) = self.unseen(&carrier_error, tolerance);
         let mut sum = place(&room.x, &end.elongation_x)
@@ -73,7 +72,7 @@ impl<const STAGES: usize> Tried<'_, STAGES> {
                 sum += self.maxwell_error(kind, tolerance, room);
             }
         }
-        let mean = |sum: f64| (sum / masses as f64).sqrt();
+        let mean = |sum: f64| (sum / model.masses() as f64).sqrt();
         Attempt { error: mean(sum), unseen: mean(unseen) }
     }
 

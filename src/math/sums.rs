@@ -63,15 +63,21 @@ fn pass<const ADD: bool, const N: usize>(out: &mut [f64], terms: [(f64, &[f64]);
 
 /// Σ_i a_i b_i over the shorter of both.
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    sum_of_pairs(a, b, |a, b| a * b)
+}
+
+/// Σ_i term(a_i, b_i) over the shorter of both, some at a time.
+#[inline]
+pub fn sum_of_pairs(a: &[f64], b: &[f64], term: impl Fn(f64, f64) -> f64) -> f64 {
     let n = a.len().min(b.len());
     let ((a, a_rest), (b, b_rest)) = (a[..n].as_chunks::<LANES>(), b[..n].as_chunks::<LANES>());
     let mut sums = [0.0; LANES];
     for (a, b) in a.iter().zip(b) {
         for lane in 0..LANES {
-            sums[lane] += a[lane] * b[lane];
+            sums[lane] += term(a[lane], b[lane]);
         }
     }
-    let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
+    let rest: f64 = a_rest.iter().zip(b_rest).map(|(&a, &b)| term(a, b)).sum();
     sums.iter().sum::<f64>() + rest
 }
 
@@ -116,6 +122,7 @@ mod tests {
             let b: Vec<f64> = (0..n + 1).map(|i| (3 * i) as f64).collect();
             let expected: f64 = (0..n).map(|i| ((i + 1) * 3 * i) as f64).sum();
             assert_eq!(dot(&a, &b), expected);
+            assert_eq!(sum_of_pairs(&a, &b, |a, b| a * b), expected);
             assert_eq!(sum_of(n, |i| a[i] * b[i]), expected);
         }
     }
