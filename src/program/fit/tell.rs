@@ -6,7 +6,7 @@ use std::path::Path;
 use super::compound::{Compound, Error, Errors, Sample};
 use super::measured::Measured;
 use crate::program::arguments::Fit;
-use crate::program::plot::{Curve, CurvePanel, Curves, Stroke};
+use crate::program::plot::{Curve, Panel, Stacked, Stroke};
 
 /// Points of a drawn line in a decade.
 const POINTS_PER_DECADE: f64 = 20.0;
@@ -161,7 +161,7 @@ impl Told<'_> {
     }
 
     /// Data as rings, the fit as lines.
-    pub(super) fn picture(&self) -> Curves {
+    pub(super) fn picture(&self) -> Stacked {
         let unit = if self.measured.in_hertz { TAU } else { 1.0 };
         let omegas = between(&self.samples);
         let curves = |name: &str, look: usize, measured: fn(&Sample) -> f64, fitted: fn((f64, f64)) -> f64| {
@@ -176,7 +176,7 @@ impl Told<'_> {
         let storage = curves("E'", 0, |sample| sample.storage, |(storage, _)| storage);
         let loss = curves("E''", 1, |sample| sample.loss, |(_, loss)| loss);
         let tangent = curves("tan δ", 2, |sample| sample.loss / sample.storage, |(storage, loss)| loss / storage);
-        Curves {
+        Stacked {
             title: format!(
                 "{}: {} terms, {} rms",
                 name_of(&self.command.data),
@@ -185,8 +185,8 @@ impl Told<'_> {
             ),
             x_title: self.x_title(),
             panels: vec![
-                CurvePanel { title: "modulus in Pa".into(), curves: [storage, loss].concat() },
-                CurvePanel { title: "tan δ".into(), curves: tangent.to_vec() },
+                Panel { title: "modulus in Pa".into(), curves: [storage, loss].concat() },
+                Panel { title: "tan δ".into(), curves: tangent.to_vec() },
             ],
         }
     }

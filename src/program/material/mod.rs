@@ -12,7 +12,7 @@ use asperity::scene::Scene;
 
 use super::arguments::Material;
 use super::error::ProgramError;
-use super::plot::{Curve, CurvePanel, Curves, Stroke};
+use super::plot::{Curve, Panel, Stacked, Stroke};
 use response::{Band, Response, band, evenly, responses};
 
 /// Points of a decade in files and pictures.
@@ -199,7 +199,7 @@ impl<'a> Shown<'a> {
         if self.is_material() { "moduli" } else { "stiffnesses of the links" }
     }
 
-    fn picture(&self) -> Curves {
+    fn picture(&self) -> Stacked {
         let omegas = evenly(self.band, POINTS);
         let curve = |look: usize, name: String, value: &dyn Fn(f64) -> f64| Curve {
             name,
@@ -211,7 +211,7 @@ impl<'a> Shown<'a> {
             let all = self.responses.iter().enumerate();
             all.map(|(i, response)| curve(i, response.name.into(), &|omega| value(response, omega))).collect()
         };
-        let panel = |title: &str, curves: Vec<Curve>| CurvePanel { title: title.into(), curves };
+        let panel = |title: &str, curves: Vec<Curve>| Panel { title: title.into(), curves };
         let panels = if self.is_material() {
             let response = &self.responses[0];
             let moduli = vec![
@@ -230,7 +230,7 @@ impl<'a> Shown<'a> {
         let temperature = self.scene.material.as_ref().and_then(|material| material.wlf);
         let temperature = temperature.map_or_else(String::new, |wlf| format!(" at {} K", short(wlf.temperature)));
         let title = format!("{}: {}{temperature}", self.scene.name, self.quantity());
-        Curves { title, x_title: "angular frequency in rad/s".into(), panels }
+        Stacked { title, x_title: "angular frequency in rad/s".into(), panels }
     }
 }
 

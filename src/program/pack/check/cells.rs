@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use crate::program::describe::Row;
 use crate::program::error::ProgramError;
-use crate::program::plot::{Ladder, Ladders, Panel, Rung};
+use crate::program::plot::{Ladder, LadderPanel, Ladders, Rung};
 use crate::program::progress;
 use crate::program::result_file::real;
 use crate::program::sweep::{Sliding, sliding};
@@ -186,7 +186,7 @@ pub(super) fn picture(checks: &[Check], load: Load) -> Ladders {
         let name = format!("{:.3e} {}", of, load.unit());
         Ladder { name, dashed: false, look, rungs: own.filter_map(rung).collect() }
     };
-    let panel = |(i, name): (usize, &&str)| Panel {
+    let panel = |(i, name): (usize, &&str)| LadderPanel {
         title: format!("error of {name}, as a share of it"),
         floor: None,
         ladders: loads.iter().enumerate().map(|of| ladder(of, i)).collect(),
