@@ -10,7 +10,12 @@ mod simulate;
 mod surface;
 mod sweep;
 
+use std::path::PathBuf;
+
+use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Parser, Subcommand};
+
+use super::ends_in;
 
 pub(crate) use describe::Describe;
 pub(crate) use fit::{Fit, WlfConstants};
@@ -52,11 +57,49 @@ pub(crate) enum Command {
     Sweep(Sweep),
 }
 
+/// What `--set` gives.
 fn key_and_value(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().into(), value.trim().into())),
         _ => Err("expected KEY=VALUE, such as solver.relative_tolerance=1e-9".into()),
     }
+}
+
+/// A whole number of things, at least one.
+fn count(text: &str) -> Result<u32, String> {
+    let number = text.trim().parse().ok().filter(|&number: &u32| number > 0);
+    number.ok_or_else(|| "expected a whole number, 1 or more".into())
+}
+
+/// A number that is `possible`; `expected` says which are.
+fn number(text: &str, possible: impl Fn(&f64) -> bool, expected: &str) -> Result<f64, String> {
+    text.trim().parse().ok().filter(possible).ok_or_else(|| format!("expected {expected}"))
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    number(text, |number| *number > 0.0 && number.is_finite(), "a number above 0")
+}
+
+/// The two ends of `A..B`.
+fn ends(text: &str) -> Option<(f64, f64)> {
+    let number = |text: &str| text.trim().parse().ok();
+    text.split_once("..").and_then(|(first, last)| Some((number(first)?, number(last)?)))
+}
+
+/// A file for a picture, which its name says the kind of.
+fn picture() -> impl TypedValueParser<Value = PathBuf> {
+    ending_in(&["svg", "png"], "a name that ends in .svg or .png")
+}
+
+/// A file for a picture or a table.
+fn picture_or_table() -> impl TypedValueParser<Value = PathBuf> {
+    ending_in(&["svg", "png", "csv"], "a name that ends in .svg, .png or .csv")
+}
+
+fn ending_in(endings: &'static [&str], expected: &'static str) -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(move |path| {
+        if endings.iter().any(|ending| ends_in(&path, ending)) { Ok(path) } else { Err(format!("expected {expected}")) }
+    })
 }
 
 #[cfg(test)]

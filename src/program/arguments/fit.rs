@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use asperity::scene::Wlf;
 use clap::Args;
 
+use super::{number, picture};
+
 #[derive(Debug, Args)]
 pub(crate) struct Fit {
     /// The measured moduli: columns of frequency, E', E'' or tan delta, and temperature if it changes, with their units
@@ -28,7 +30,7 @@ pub(crate) struct Fit {
     #[arg(long, value_name = "COLUMN")]
     pub(crate) ignore: Vec<String>,
     /// The picture of data and fit, as SVG or PNG by its name; default: beside the output, as SVG.
-    #[arg(long, value_name = "OUT.svg")]
+    #[arg(long, value_name = "OUT.svg", value_parser = picture())]
     pub(crate) plot: Option<PathBuf>,
 }
 
@@ -66,8 +68,7 @@ impl WlfConstants {
 }
 
 fn fit_error(text: &str) -> Result<f64, String> {
-    let number = text.trim().parse().ok().filter(|error| (1e-12..=0.5).contains(error));
-    number.ok_or_else(|| "expected a number from 1e-12 to 0.5, such as 0.02 for 2 %".into())
+    number(text, |error| (1e-12..=0.5).contains(error), "a number from 1e-12 to 0.5, such as 0.02 for 2 %")
 }
 
 #[cfg(test)]

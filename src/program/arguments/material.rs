@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::key_and_value;
+use super::{ends, key_and_value, number, picture_or_table};
 
 #[derive(Debug, Args)]
 pub(crate) struct Material {
@@ -14,14 +14,14 @@ pub(crate) struct Material {
     pub(crate) scene: PathBuf,
     /// A file to write: a table as CSV, a picture as SVG or PNG, by its name; may be given several times. Default: a
     /// picture SCENE-material.svg.
-    #[arg(short, long, value_name = "OUT")]
+    #[arg(short, long, value_name = "OUT", value_parser = picture_or_table())]
     pub(crate) output: Vec<PathBuf>,
     /// The range of the angular frequency, rad/s, or of the frequency with Hz behind it; default: by the relaxation
     /// times.
     #[arg(long, value_name = "A..B[Hz]", value_parser = Frequencies::parse)]
     pub(crate) frequencies: Option<Frequencies>,
     /// The compound's temperature, K, instead of the scene's.
-    #[arg(long, value_name = "T")]
+    #[arg(long, value_name = "T", value_parser = temperature, allow_negative_numbers = true)]
     pub(crate) temperature: Option<f64>,
     /// Overrides a parameter by its name, such as material.poisson_ratio=0.48.
     #[arg(long, value_name = "KEY=VALUE", value_parser = key_and_value)]
@@ -35,13 +35,17 @@ pub(crate) struct Frequencies(pub(crate) (f64, f64));
 impl Frequencies {
     fn parse(text: &str) -> Result<Self, String> {
         let (numbers, unit) = text.trim().strip_suffix("Hz").map_or((text, 1.0), |numbers| (numbers, TAU));
-        let number = |text: &str| text.trim().trim_end_matches("Hz").trim_end().parse::<f64>().ok();
-        let ends = numbers.split_once("..").and_then(|(low, high)| Some((number(low)?, number(high)?)));
+        // Hz may stand behind both.
+        let numbers = numbers.replace("Hz", "");
         let possible = |(low, high): &(f64, f64)| *low >= 1e-30 && high > low && *high <= 1e30;
         let message =
             || "expected A..B, such as 1..1e5 in rad/s or 0.1..1e4Hz, from 1e-30 to 1e30, A below B".to_owned();
-        ends.filter(possible).map(|(low, high)| Self((low * unit, high * unit))).ok_or_else(message)
+        ends(&numbers).filter(possible).map(|(low, high)| Self((low * unit, high * unit))).ok_or_else(message)
     }
+}
+
+fn temperature(text: &str) -> Result<f64, String> {
+    number(text, |kelvin| *kelvin > 0.0 && kelvin.is_finite(), "a temperature above 0 K, such as 293.15")
 }
 
 #[cfg(test)]

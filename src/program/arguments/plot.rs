@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::picture;
+
 #[derive(Debug, Args)]
 pub(crate) struct Plot {
     /// The result files, one line each for every y.
@@ -15,8 +17,8 @@ pub(crate) struct Plot {
     /// A column to draw; may be given several times.
     #[arg(long, value_name = "COLUMN", required = true)]
     pub(crate) y: Vec<String>,
-    /// The picture to write.
-    #[arg(short, long, value_name = "OUT.svg")]
+    /// The picture to write, SVG or PNG by its name.
+    #[arg(short, long, value_name = "OUT.svg", value_parser = picture())]
     pub(crate) output: PathBuf,
     /// Names of the lines, one for each file; default: the files' names.
     #[arg(long, value_name = "A,B,...", value_delimiter = ',')]

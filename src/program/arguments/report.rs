@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::key_and_value;
+use super::{count, ends, key_and_value, number};
 
 #[derive(Debug, Args)]
 pub(crate) struct Report {
@@ -18,16 +18,16 @@ pub(crate) struct Report {
     #[arg(long, value_name = "LOOSEST..TIGHTEST", default_value = "1e-2..1e-10", value_parser = Tolerances::parse)]
     pub(crate) tolerances: Tolerances,
     /// Rows per phase of the excitation at which runs are compared.
-    #[arg(long, value_name = "N", default_value_t = 50, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 50, value_parser = count)]
     pub(crate) points: u32,
     /// How often each run is timed: the median counts.
-    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = count)]
     pub(crate) repeat: u32,
     /// Powers of ten by which the scene is stressed each way, one quantity by one and in pairs; 0: not at all.
-    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(..=12))]
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = powers)]
     pub(crate) stress: u32,
     /// About how long the stressed pairs may take, s: the cheap ones come first.
-    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) stress_time: f64,
     /// Lines of other programs, as benches/peers/run writes them.
     #[arg(long, value_name = "FILE.csv")]
@@ -48,12 +48,10 @@ impl Tolerances {
     const TIGHTEST: f64 = 1e-14;
 
     fn parse(text: &str) -> Result<Self, String> {
-        let number = |text: &str| text.trim().parse::<f64>().ok();
-        let ends = text.split_once("..").and_then(|(loosest, tightest)| Some((number(loosest)?, number(tightest)?)));
         let inside = |(loosest, tightest): &(f64, f64)| {
             *loosest <= Self::LOOSEST && tightest <= loosest && *tightest >= Self::TIGHTEST
         };
-        let Some((loosest, tightest)) = ends.filter(inside) else {
+        let Some((loosest, tightest)) = ends(text).filter(inside) else {
             return Err("expected LOOSEST..TIGHTEST, such as 1e-2..1e-10, from at most 0.1 to at least 1e-14".into());
         };
         let ladder = std::iter::successors(Some(loosest), |&tolerance| Some(tenth(tolerance)));
@@ -71,8 +69,11 @@ pub(crate) fn tenth(number: f64) -> f64 {
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
-    let number = text.trim().parse().ok().filter(|seconds| (0.0..).contains(seconds));
-    number.ok_or_else(|| "expected a number of seconds, 0 or more".into())
+    number(text, |seconds| (0.0..).contains(seconds), "a number of seconds, 0 or more")
+}
+
+fn powers(text: &str) -> Result<u32, String> {
+    text.trim().parse().ok().filter(|&powers| powers <= 12).ok_or_else(|| "expected a whole number from 0 to 12".into())
 }
 
 #[cfg(test)]

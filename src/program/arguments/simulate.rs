@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::key_and_value;
+use super::{count, key_and_value, picture};
 
 #[derive(Debug, Args)]
 pub(crate) struct Simulate {
@@ -15,12 +15,12 @@ pub(crate) struct Simulate {
     #[arg(short, long, value_name = "OUT.csv")]
     pub(crate) output: PathBuf,
     /// Rows per phase of the excitation.
-    #[arg(long, value_name = "N", default_value_t = 50, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 50, value_parser = count)]
     pub(crate) points: u32,
     /// Overrides a parameter by its name, such as solver.relative_tolerance=1e-9.
     #[arg(long, value_name = "KEY=VALUE", value_parser = key_and_value)]
     pub(crate) set: Vec<(String, String)>,
-    /// Draws forces, contacts and dissipation over time.
-    #[arg(long, value_name = "OUT.svg")]
+    /// Draws forces, contacts and dissipation over time, as SVG or PNG by the name.
+    #[arg(long, value_name = "OUT.svg", value_parser = picture())]
     pub(crate) plot: Option<PathBuf>,
 }

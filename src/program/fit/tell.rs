@@ -7,6 +7,7 @@ use super::compound::{Compound, Error, Errors, Sample};
 use super::measured::Measured;
 use crate::program::arguments::Fit;
 use crate::program::plot::{Curve, Panel, Stacked, Stroke};
+use crate::program::text::{decimal, lines, rounded};
 
 /// Points of a drawn line in a decade.
 const POINTS_PER_DECADE: f64 = 20.0;
@@ -122,16 +123,16 @@ impl Told<'_> {
         };
         rows.extend([row("E'", &errors.storage), row("E''", &errors.loss), row("tan delta", &errors.loss_tangent)]);
         rows.push(("Written", format!("{}, {}", self.command.output.display(), picture.display())));
-        let figures: String = rows.into_iter().map(|(name, text)| format!("{name:<12}{text}\n")).collect();
+        let figures = lines(&rows);
         format!("{figures}\nFor the scene, beside which {} lies:\n\n{}", name_of(&self.command.output), self.scene())
     }
 
     fn terms(&self) -> String {
         match &self.compound.terms[..] {
             [] => "none".into(),
-            [only] => format!("1, at {} s", written(only.relaxation_time)),
+            [only] => format!("1, at {} s", short(only.relaxation_time)),
             [first, .., last] => {
-                let [first, last] = [first, last].map(|term| written(term.relaxation_time));
+                let [first, last] = [first, last].map(|term| short(term.relaxation_time));
                 format!("{}, from {first} s to {last} s", self.compound.terms.len())
             }
         }
@@ -221,15 +222,15 @@ fn name_of(path: &Path) -> String {
 
 /// The shortest decimal that reads back as the same number; far from 1 with an exponent.
 fn written(value: f64) -> String {
-    if value == 0.0 || (1e-3..1e5).contains(&value.abs()) { format!("{value}") } else { format!("{value:e}") }
+    decimal(value, 1e-3..1e5)
 }
 
 /// Four digits.
 fn short(value: f64) -> String {
-    written(format!("{value:.3e}").parse().unwrap_or(value))
+    written(rounded(value, 4))
 }
 
 /// A share in per cent, with three digits.
 pub(super) fn share(value: f64) -> String {
-    format!("{} %", written(format!("{:.2e}", 100.0 * value).parse().unwrap_or(100.0 * value)))
+    format!("{} %", written(rounded(100.0 * value, 3)))
 }

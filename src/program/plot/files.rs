@@ -10,9 +10,9 @@ use super::curve::{Curve, Stroke};
 use super::linear::Fit;
 use super::picture::write;
 use crate::program::arguments::Plot;
-use crate::program::check_output;
 use crate::program::error::ProgramError;
 use crate::program::result_file::ResultFile;
+use crate::program::{check_output, warn};
 
 const SIZE: (u32, u32) = (1000, 620);
 
@@ -38,8 +38,11 @@ fn add_curves(curves: &mut Vec<Curve>, command: &Plot, index: usize, path: &Path
     let sign = if command.negate { -1.0 } else { 1.0 };
     for column in &command.y {
         let y = file.column(column)?;
-        let points = x.iter().zip(&y).skip(first).map(|(&x, &y)| (x, sign * y)).collect();
+        let points: Vec<_> = x.iter().zip(&y).skip(first).map(|(&x, &y)| (x, sign * y)).collect();
         let name = curve_name(command, index, path, column);
+        if !points.iter().any(|(x, y)| x.is_finite() && y.is_finite()) {
+            warn(&format!("{}: nothing to draw of {column}: no finite numbers", path.display()));
+        }
         curves.push(Curve { name, look: curves.len(), stroke: Stroke::Line, points });
     }
     Ok(())

@@ -21,5 +21,6 @@ pub(crate) use files::plot_files;
 pub(crate) use history::History;
 pub(crate) use ladders::{Ladder, LadderPanel, Ladders, Rung};
 pub(crate) use panels::{Panel, SideBySide, Stacked};
+pub(crate) use picture::{Canvas, Drawn, FINE, svg};
 pub(crate) use profile::ProfilePicture;
 pub(crate) use raster::{SHARP, png};

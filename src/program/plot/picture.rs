@@ -8,6 +8,7 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 
 use super::raster::{self, png};
+use crate::program::ends_in;
 use crate::program::error::ProgramError;
 
 /// A part of a picture to draw on.
@@ -47,7 +48,7 @@ pub(super) fn write(
     title: Option<&str>,
     draw: impl FnOnce(&Canvas<'_>) -> Drawn,
 ) -> Result<(), ProgramError> {
-    let is_png = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
+    let is_png = ends_in(path, "png");
     let bytes = svg(size, title, draw)
         .and_then(|text| if is_png { png(&text, raster::SHARP) } else { Ok(text.into_bytes()) })
         .map_err(|error| ProgramError::picture(path, &*error))?;

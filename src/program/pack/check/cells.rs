@@ -8,12 +8,12 @@ use asperity::scene::{MaterialParameter, Parameter, Scene, Value};
 use asperity::simulation::Start;
 use rayon::prelude::*;
 
-use crate::program::describe::Row;
 use crate::program::error::ProgramError;
 use crate::program::plot::{Ladder, LadderPanel, Ladders, Rung};
 use crate::program::progress;
 use crate::program::result_file::real;
 use crate::program::sweep::{Sliding, sliding};
+use crate::program::text::Row;
 
 /// Standard error of the layer's friction coefficient, over it.
 const ERROR: f64 = 0.01;
