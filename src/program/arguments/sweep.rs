@@ -45,7 +45,8 @@ pub(crate) struct Sweep {
     #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
     pub(crate) shard: Option<Shard>,
     /// Joins tables, of shards, into one.
-    #[arg(long, value_name = "TABLE.csv", num_args = 1.., group = "subject", requires = "output", conflicts_with_all = OF_A_SCENE)]
+    #[arg(long, value_name = "TABLE.csv", num_args = 1.., group = "subject", requires = "output")]
+    #[arg(conflicts_with_all = OF_A_SCENE)]
     pub(crate) merge: Vec<PathBuf>,
     /// Replaces the table that is there.
     #[arg(long)]
