@@ -217,8 +217,9 @@ fn what_is_read_is_not_written_over_and_what_is_wrong_is_refused() {
         String::from_utf8(result.stderr).unwrap()
     };
     assert!(refused(&data, &[]).contains("will not write"));
+    let picture = folder.join("out.svg");
+    assert!(refused(&picture, &["--plot", picture.to_str().unwrap()]).contains("will not write"));
     let output = folder.join("out.csv");
-    assert!(refused(&output, &["--plot", output.to_str().unwrap()]).contains("will not write"));
     assert!(refused(&output, &["--error", "0"]).contains("a number from 1e-12 to 0.5"));
     assert!(refused(&output, &["--wlf", "1,2"]).contains("expected C1,C2,TREF"));
     fs::write(&data, "f [Hz],E' [MPa],E'' [MPa]\n1,2,-3\n").unwrap();

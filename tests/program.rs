@@ -51,11 +51,11 @@ fn a_result_file_has_the_variables_in_their_order_and_even_rows() {
 fn no_output_takes_the_place_of_what_is_read_or_written() {
     let folder = scratch("program-overwrites");
     let scene = changed(&folder, "", "");
-    let [scene, out] = [scene.to_str().unwrap(), folder.join("out.csv").to_str().unwrap()].map(str::to_owned);
+    // A result file may be called as a picture is.
+    let [scene, out] = [scene.to_str().unwrap(), folder.join("out.svg").to_str().unwrap()].map(str::to_owned);
     let before = fs::read(&scene).unwrap();
     for arguments in [
         &["simulate", &scene, "-o", &scene][..],
-        &["simulate", &scene, "-o", &out, "--plot", &scene],
         &["simulate", &scene, "-o", &out, "--plot", &out],
         &["pack", &scene, "-o", &scene],
     ] {
@@ -64,6 +64,56 @@ fn no_output_takes_the_place_of_what_is_read_or_written() {
     }
     run(asperity().args(["simulate", &scene, "-o", &out]));
     assert!(failure(&["plot", &out, "--y", "F_z", "-o", &out]).contains("will not write"));
+}
+
+/// What was expected, what was found, where.
+#[test]
+fn what_is_wrong_on_the_command_line_is_told() {
+    let folder = scratch("program-wrong");
+    let scene = changed(&folder, "", "").to_str().unwrap().to_owned();
+    let result = folder.join("ok.csv").to_str().unwrap().to_owned();
+    fs::write(&result, "time,u\n0,1\n1,2\n").unwrap();
+    let ragged = folder.join("ragged.csv").to_str().unwrap().to_owned();
+    fs::write(&ragged, "time,u\n0,1\n1,2,3\n").unwrap();
+    let nowhere = folder.join("nowhere/out.csv").to_str().unwrap().to_owned();
+    let refused = |arguments: &[&str]| {
+        let output = asperity().args(arguments).output().unwrap();
+        assert!(!output.status.success() && output.stdout.is_empty(), "{arguments:?}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let expected: [(&[&str], &str); 11] = [
+        (&["plot", &result, "--y", "u", "-o", "out.pdf"], "expected a name that ends in .svg or .png"),
+        (
+            &["plot", &result, "--y", "u", "-o", "out.svg", "--labels", "a,b"],
+            "expected 1, one name for each file, found 2",
+        ),
+        (
+            &["plot", &ragged, "--y", "u", "-o", "out.svg"],
+            "line 3: expected as many fields as in the first line, 2, found 3",
+        ),
+        (&["simulate", &scene, "-o", &nowhere], "nowhere/out.csv: there is no folder "),
+        (&["simulate", &scene, "-o", "x.csv", "--points", "0"], "expected a whole number, 1 or more"),
+        (&["material", &scene, "-o", "out.pdf"], "expected a name that ends in .svg, .png or .csv"),
+        (&["material", &scene, "--temperature", "-5"], "expected a temperature above 0 K"),
+        (&["pack", "-o", "x.fmu"], "<SCENE.toml|--table <TABLE.csv>>"),
+        (&["pack", &scene, "-o", "x.fmu", "--check", &scene], "cannot be used with '--check"),
+        (&["sweep", "--merge", &result, "-o", "x.csv", "--shard", "1/2"], "cannot be used with '--shard"),
+        (&["report", &scene, "-o", "x", "--stress", "13"], "expected a whole number from 0 to 12"),
+    ];
+    for (arguments, text) in expected {
+        let message = refused(arguments);
+        assert!(message.contains(text), "{arguments:?}: {message}");
+    }
+}
+
+/// The kind of a picture is that of its name.
+#[test]
+fn a_picture_is_png_where_its_name_says_so() {
+    let folder = scratch("program-png");
+    let (result, picture) = (folder.join("ok.csv"), folder.join("out.PNG"));
+    fs::write(&result, "time,u\n0,1\n1,2\n").unwrap();
+    run(asperity().arg("plot").arg(&result).args(["--y", "u", "-o"]).arg(&picture));
+    assert!(fs::read(&picture).unwrap().starts_with(b"\x89PNG"));
 }
 
 #[test]

@@ -222,8 +222,11 @@ def draw(path: Path, table: Table):
         ax.semilogx(speeds, [row["friction"] for row in rows], marker="o", markersize=4, color=colour, label=name)
         ax.semilogx(speeds, [row["friction_hysteresis"] for row in rows], "--", color=colour)
         ax.semilogx(speeds, [row["friction_adhesion"] for row in rows], ":", color=colour)
+    for line, part in (("--", "hysteresis"), (":", "adhesion")):
+        ax.plot([], [], line, color="0.2", label=part)
+    ax.set_ylim(bottom=0)
     ax.set_xlabel("speed in m/s")
-    ax.set_ylabel("friction coefficient (dashed: hysteresis, dotted: adhesion)")
+    ax.set_ylabel("friction coefficient")
     ax.legend(frameon=False)
     ax.grid(color="0.9")
     ax.spines[["top", "right"]].set_visible(False)

@@ -43,7 +43,7 @@ pub(crate) enum ProgramError {
     #[error(transparent)]
     Sweep(#[from] SweepError),
     /// A file cannot be read or written.
-    #[error("cannot {action} {}: {source}", .path.display())]
+    #[error("cannot {action} {}: {}", .path.display(), reason(.path, .source))]
     File { action: &'static str, path: PathBuf, source: std::io::Error },
     /// An output would take the place of what the command reads or writes already.
     #[error("will not write {}: it is read or written here already", .path.display())]
@@ -61,6 +61,9 @@ pub(crate) enum ProgramError {
         .output.display()
     )]
     FitError { wanted: String, reached: String, output: PathBuf },
+    /// A temperature that the scene cannot have.
+    #[error("{option}: {refusal}")]
+    Temperature { option: &'static str, refusal: ParameterError },
     /// A temperature for a scene without any.
     #[error("--temperature: the scene has no material.wlf, so nothing in it depends on temperature")]
     NoTemperature,
@@ -68,7 +71,7 @@ pub(crate) enum ProgramError {
     #[error("the scene has neither a material nor a link, so there is nothing that a modulus could be of")]
     NoLinks,
     /// What the command line asks of `plot` cannot be.
-    #[error("--labels gives {labels} names for {files} files")]
+    #[error("--labels: expected {files}, one name for each file, found {labels}")]
     Labels { labels: usize, files: usize },
     /// A picture cannot be drawn.
     #[error("cannot draw {}: {message}", .path.display())]
@@ -92,6 +95,12 @@ pub(crate) enum ProgramError {
     /// A document of the archive cannot be written.
     #[error("cannot write {document}: {source}")]
     Document { document: &'static str, source: std::io::Error },
+}
+
+/// Why a file cannot be read or written.
+fn reason(path: &Path, source: &std::io::Error) -> String {
+    let folder = path.parent().filter(|folder| *folder != Path::new("") && !folder.exists());
+    folder.map_or_else(|| source.to_string(), |folder| format!("there is no folder {}", folder.display()))
 }
 
 impl ProgramError {

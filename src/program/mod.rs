@@ -15,6 +15,7 @@ mod result_file;
 mod simulate;
 mod surface;
 mod sweep;
+mod text;
 
 use std::path::{Path, PathBuf};
 
@@ -64,6 +65,11 @@ fn check_output(output: &Path, others: &[PathBuf]) -> Result<(), ProgramError> {
     let place = |path: &Path| path.canonicalize().ok();
     let same = |other: &PathBuf| other == output || (place(output).is_some() && place(other) == place(output));
     if others.iter().any(same) { Err(ProgramError::Overwrites { path: output.to_owned() }) } else { Ok(()) }
+}
+
+/// Whether a file's name ends in `ending`.
+fn ends_in(path: &Path, ending: &str) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(ending))
 }
 
 /// Tells the user what is worth knowing though the program goes on.

@@ -7,6 +7,7 @@ use asperity::outputs::{Kind, Variable};
 
 use super::error::ProgramError;
 use super::excitation::Carrier;
+use super::text::decimal;
 
 /// Writes a result file row by row.
 #[derive(Debug)]
@@ -51,7 +52,7 @@ fn field(kind: Kind, value: f64) -> String {
 
 /// The shortest decimal that reads back as the same number; far from 1 with an exponent.
 pub(crate) fn real(value: f64) -> String {
-    if value == 0.0 || (1e-4..1e16).contains(&value.abs()) { format!("{value}") } else { format!("{value:e}") }
+    decimal(value, 1e-4..1e16)
 }
 
 fn write_error(path: &Path, error: csv::Error) -> ProgramError {
@@ -72,24 +73,41 @@ impl ResultFile {
         let file = File::open(path).map_err(ProgramError::file("read", path))?;
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
         let wrong = |message: String| ProgramError::ResultFile { path: path.to_owned(), message };
-        let names = reader.headers().map_err(|error| wrong(error.to_string()))?.iter().map(str::to_owned).collect();
-        let rows = reader.records().map(|record| numbers(&record.map_err(|error| error.to_string())?));
+        let names = reader.headers().map_err(|error| wrong(refusal(&error)))?.iter().map(str::to_owned).collect();
+        let rows = reader.records().map(|record| numbers(&record.map_err(|error| refusal(&error))?));
         let rows: Vec<_> = rows.collect::<Result<_, String>>().map_err(wrong)?;
         if rows.is_empty() {
-            return Err(wrong("no rows".into()));
+            return Err(wrong(
+                "expected a line with the columns' names and rows of numbers below it, found no rows".into(),
+            ));
         }
         Ok(Self { path: path.to_owned(), names, rows })
     }
 
     /// The values of the column `name`, row by row.
     pub(crate) fn column(&self, name: &str) -> Result<Vec<f64>, ProgramError> {
-        let index = self.names.iter().position(|other| other == name).ok_or_else(|| self.no_column(name))?;
+        let index = self.names.iter().position(|other| other == name).ok_or_else(|| {
+            let message = no_column(name, self.names.iter().map(String::as_str));
+            ProgramError::ResultFile { path: self.path.clone(), message }
+        })?;
         Ok(self.rows.iter().map(|row| row[index]).collect())
     }
+}
 
-    fn no_column(&self, name: &str) -> ProgramError {
-        let message = format!("no column {name}; there are {}", self.names.join(", "));
-        ProgramError::ResultFile { path: self.path.clone(), message }
+/// That a table has no column of this name, and which it has.
+pub(crate) fn no_column<'a>(name: &str, there: impl Iterator<Item = &'a str>) -> String {
+    format!("no column {name}; there are {}", there.collect::<Vec<_>>().join(", "))
+}
+
+/// What is wrong with the text of a table.
+pub(crate) fn refusal(error: &csv::Error) -> String {
+    let line = error.position().map_or(1, csv::Position::line);
+    match error.kind() {
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+            format!("line {line}: expected as many fields as in the first line, {expected_len}, found {len}")
+        }
+        csv::ErrorKind::Utf8 { .. } => format!("line {line}: expected text in UTF-8"),
+        _ => error.to_string(),
     }
 }
 

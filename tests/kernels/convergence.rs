@@ -4,7 +4,7 @@ use asperity::model::{Mode, Model, State};
 use asperity::scene::{Path, RateShear};
 use nalgebra::{DMatrix, DVector, Vector2};
 
-use crate::layer::{Layer, Link, Stepper, at_rate, last_order, points};
+use crate::layer::{FIVE_STAGES, Layer, Link, Method, Stepper, at_rate, last_order, points};
 use crate::matrices::Matrices;
 
 /// Three masses far above the surface, a different number of Maxwell elements on every kind of link.
@@ -194,24 +194,35 @@ pub fn reference(layer: &Layer, start: &State, u_rate: f64, time: f64, steps: u3
     (z[0], z[1], a)
 }
 
-/// A mass slipping over a curved profile with friction, centripetal terms and Maxwell elements, either way, against
-/// an explicit method on the dense equations: order 5, though the problem is one of constrained motion.
-#[test]
-fn a_slipping_mass_converges_with_order_five() {
-    for (velocity, layer) in
-        [2.0, -1.2].into_iter().flat_map(|v| [slider(), rate_slider(4.0), rate_slider(0.7)].map(|l| (v, l)))
-    {
+/// A mass slipping over a curved profile with friction, centripetal terms and Maxwell elements, either way: the layers
+/// and the errors of place, velocity and Maxwell elongations after so many steps, against an explicit method on the
+/// dense equations.
+pub fn slipping_errors<const N: usize>(
+    steps: [u32; N],
+    tolerance: f64,
+    method: Method,
+) -> impl Iterator<Item = (Layer, [[f64; 3]; N])> {
+    let layers = |velocity: f64| [slider(), rate_slider(4.0), rate_slider(0.7)].map(|layer| (velocity, layer));
+    [2.0, -1.2].into_iter().flat_map(layers).map(move |(velocity, layer)| {
         let start = sliding(&layer.model(), velocity, 0.0);
         let (place, speed, maxwell) = reference(&layer, &start, 1.5 * velocity, 0.4, 4000);
-        let errors = [4, 8, 16, 32].map(|steps| {
-            let mut stepper =
-                Stepper::new(layer.model(), (at_rate(1.5 * velocity), at_rate(0.0)), start.clone(), 1e-14);
+        let errors = steps.map(|steps| {
+            let paths = (at_rate(1.5 * velocity), at_rate(0.0));
+            let mut stepper = method(Stepper::new(layer.model(), paths, start.clone(), tolerance));
             stepper.run(0.4, steps);
             let state = &stepper.state;
             let xi = 1.5 * velocity * 0.4 + state.elongation_x[0];
             let a = DVector::from_column_slice(&state.maxwell);
             [(xi - place).abs(), (state.velocity_x[0] - speed).abs(), (a - &maxwell).amax()]
         });
+        (layer, errors)
+    })
+}
+
+/// Order 5, though the problem is one of constrained motion.
+#[test]
+fn a_slipping_mass_converges_with_order_five() {
+    for (layer, errors) in slipping_errors([4, 8, 16, 32], 1e-14, FIVE_STAGES) {
         for part in 0..3 {
             let last = last_order(&errors.map(|error| error[part]));
             // With a shear strength errors of places pass through 0 on their way: over all three halvings they fall as

@@ -117,6 +117,12 @@ pub struct Stepper {
     two_stages: bool,
 }
 
+/// Gives a stepper its method.
+pub type Method = fn(Stepper) -> Stepper;
+
+/// The one that a stepper has.
+pub const FIVE_STAGES: Method = |stepper| stepper;
+
 impl Stepper {
     /// From `state` along the carrier's paths, counted from its place 0. Newton's iterations are led to `tolerance`
     /// (m).

@@ -3,7 +3,7 @@
 use asperity::model::{State, elastic_energy, kinetic_energy};
 
 use crate::convergence::{Exact, PATHS, differences, slider, sliding};
-use crate::layer::{Layer, Link, Stepper, at_rate};
+use crate::layer::{FIVE_STAGES, Layer, Link, Method, Stepper, at_rate};
 
 /// One mass with a spring and one Maxwell element along either axis.
 pub fn oscillator(relaxation_time: f64) -> Layer {
@@ -60,19 +60,24 @@ fn the_error_of_a_step_does_not_depend_on_short_relaxation_times() {
 /// A Maxwell element far from its slow manifold, a = τ ė, is there after one step but for some τ/h of the way.
 #[test]
 fn a_maxwell_element_falls_onto_its_slow_manifold() {
+    // The factor that the stability function falls with, some tens.
+    falls_onto_its_slow_manifold(FIVE_STAGES, 100.0);
+}
+
+/// `most` is the share of τ/h that may be left.
+pub fn falls_onto_its_slow_manifold(method: Method, most: f64) {
     let h = 0.05;
     for exponent in 4..=13 {
         let tau = 10.0_f64.powi(-exponent);
         let mut state = on_slow_manifold(tau);
         state.maxwell.fill(0.3);
-        let mut stepper = Stepper::new(oscillator(tau).model(), PATHS, state, 1e-12);
+        let mut stepper = method(Stepper::new(oscillator(tau).model(), PATHS, state, 1e-12));
         stepper.step(h);
         let carrier = stepper.carrier.at(h);
         let rates = [stepper.state.velocity_z[0] - carrier.w_rate, stepper.state.velocity_x[0] - carrier.u_rate];
         for (a, rate) in stepper.state.maxwell.iter().zip(rates) {
             let off = (a - tau * rate).abs();
-            // Times the factor that the stability function falls with, some tens.
-            assert!(off < 100.0 * tau / h, "{tau:e}: {off:e}");
+            assert!(off < most * tau / h, "{tau:e}: {off:e}");
         }
     }
 }
@@ -81,6 +86,13 @@ fn a_maxwell_element_falls_onto_its_slow_manifold() {
 /// has gone no further than m v/d. Free, and slipping over a curved profile.
 #[test]
 fn a_strong_damper_stops_the_mass_within_a_step() {
+    // A rounding of h ẍ, some h d/m of v, on which Newton's single iteration starts.
+    stops_within_a_step(FIVE_STAGES, 100.0, |h_squared, damping| 1e-16 * h_squared * damping);
+}
+
+/// `most` is the share of m/(h d) that may be left of the speed, as for the Maxwell element; `rounding` the way beyond
+/// m v/d.
+pub fn stops_within_a_step(method: Method, most: f64, rounding: impl Fn(f64, f64) -> f64) {
     let h = 0.01;
     for exponent in 5..=15 {
         let damping = 10.0_f64.powi(exponent);
@@ -91,14 +103,14 @@ fn a_strong_damper_stops_the_mass_within_a_step() {
         let mut state = State::new(1, 2);
         (state.velocity_x[0], state.velocity_z[0]) = (1.0, 1.0);
         for (layer, start) in [(&free, state), (&slipping, sliding(&slipping.model(), 1.0, 0.0))] {
-            let mut stepper = Stepper::new(layer.model(), (at_rate(0.0), at_rate(0.0)), start.clone(), 1e-12);
+            let paths = (at_rate(0.0), at_rate(0.0));
+            let mut stepper = method(Stepper::new(layer.model(), paths, start.clone(), 1e-12));
             stepper.step(h);
             let moved = differences(&stepper.state, &start)[0];
             let speed = stepper.state.velocity_x[0].abs().max(stepper.state.velocity_z[0].abs());
-            // As for the Maxwell element; m = 1 kg at most.
-            assert!(speed < 100.0 / (h * damping), "{damping:e}: {speed:e}");
-            // The way m v/d and a rounding of h ẍ, some h d/m of v, on which Newton's single iteration starts.
-            assert!(moved < 1.1 / damping + 1e-16 * h * h * damping, "{damping:e}: {moved:e}");
+            // m = 1 kg at most.
+            assert!(speed < most / (h * damping), "{damping:e}: {speed:e}");
+            assert!(moved < 1.1 / damping + rounding(h * h, damping), "{damping:e}: {moved:e}");
         }
     }
 }
@@ -106,12 +118,16 @@ fn a_strong_damper_stops_the_mass_within_a_step() {
 /// The energy of an undamped oscillator never grows through 10 000 steps, however long they are against its period.
 #[test]
 fn an_undamped_oscillator_never_gains_energy() {
+    never_gains_energy(FIVE_STAGES);
+}
+
+pub fn never_gains_energy(method: Method) {
     for phase in [1e-3, 0.03, 0.3, 1.0, 3.0, 30.0, 1e4] {
         let link = || Link::new(100.0, 0.0, &[]);
         let layer = Layer { links: [link(), link(), None, None], ..Layer::default() };
         let mut state = State::new(1, 0);
         (state.elongation_x[0], state.velocity_z[0]) = (0.1, 1.0);
-        let mut stepper = Stepper::new(layer.model(), (at_rate(0.0), at_rate(0.0)), state, 1e-12);
+        let mut stepper = method(Stepper::new(layer.model(), (at_rate(0.0), at_rate(0.0)), state, 1e-12));
         let first = energy(&stepper);
         let mut highest = 0.0_f64;
         for _ in 0..10_000 {
@@ -123,6 +139,6 @@ fn an_undamped_oscillator_never_gains_energy() {
     }
 }
 
-pub fn energy(stepper: &Stepper) -> f64 {
+fn energy(stepper: &Stepper) -> f64 {
     kinetic_energy(&stepper.model, &stepper.state) + elastic_energy(&stepper.model, &stepper.state)
 }

@@ -2,11 +2,10 @@
 
 use asperity::integrator::SDIRK2;
 use asperity::model::State;
-use nalgebra::DVector;
 
-use crate::convergence::{Exact, PATHS, chain, differences, displaced, rate_slider, reference, slider, sliding};
-use crate::layer::{Layer, Link, Stepper, at_rate, last_order};
-use crate::stiff::{energy, on_slow_manifold, oscillator};
+use crate::convergence::{Exact, PATHS, chain, differences, displaced, slipping_errors};
+use crate::layer::{Layer, Stepper, last_order};
+use crate::stiff::{falls_onto_its_slow_manifold, never_gains_energy, stops_within_a_step};
 
 fn stepper(layer: &Layer, start: &State) -> Stepper {
     Stepper::new(layer.model(), PATHS, start.clone(), 1e-12).by_two_stages()
@@ -51,20 +50,7 @@ fn a_free_chain_converges_with_order_two() {
 /// A slipping mass with friction over a curved profile, against an explicit method on the dense equations.
 #[test]
 fn a_slipping_mass_converges_with_order_two() {
-    for (velocity, layer) in
-        [2.0, -1.2].into_iter().flat_map(|v| [slider(), rate_slider(4.0), rate_slider(0.7)].map(|l| (v, l)))
-    {
-        let start = sliding(&layer.model(), velocity, 0.0);
-        let (place, speed, maxwell) = reference(&layer, &start, 1.5 * velocity, 0.4, 4000);
-        let errors = [20, 40, 80].map(|steps| {
-            let paths = (at_rate(1.5 * velocity), at_rate(0.0));
-            let mut stepper = Stepper::new(layer.model(), paths, start.clone(), 1e-13).by_two_stages();
-            stepper.run(0.4, steps);
-            let state = &stepper.state;
-            let xi = 1.5 * velocity * 0.4 + state.elongation_x[0];
-            let a = DVector::from_column_slice(&state.maxwell);
-            [(xi - place).abs(), (state.velocity_x[0] - speed).abs(), (a - &maxwell).amax()]
-        });
+    for (_, errors) in slipping_errors([20, 40, 80], 1e-13, Stepper::by_two_stages) {
         for part in 0..3 {
             let order = last_order(&errors.map(|error| error[part]));
             assert!((1.85..2.15).contains(&order), "part {part}: {order} from {errors:?}");
@@ -115,64 +101,19 @@ fn the_inside_of_a_step_has_its_order() {
 /// A Maxwell element far from its slow manifold, a = τ ė, is there after one step but for some τ/h of the way.
 #[test]
 fn a_maxwell_element_falls_onto_its_slow_manifold() {
-    let h = 0.05;
-    for exponent in 4..=13 {
-        let tau = 10.0_f64.powi(-exponent);
-        let mut state = on_slow_manifold(tau);
-        state.maxwell.fill(0.3);
-        let mut stepper = stepper(&oscillator(tau), &state);
-        stepper.step(h);
-        let carrier = stepper.carrier.at(h);
-        let rates = [stepper.state.velocity_z[0] - carrier.w_rate, stepper.state.velocity_x[0] - carrier.u_rate];
-        for (a, rate) in stepper.state.maxwell.iter().zip(rates) {
-            let off = (a - tau * rate).abs();
-            // Times the factor that the stability function falls with, (1 - 2γ)/γ².
-            assert!(off < 10.0 * tau / h, "{tau:e}: {off:e}");
-        }
-    }
+    // The factor that the stability function falls with, (1 - 2γ)/γ².
+    falls_onto_its_slow_manifold(Stepper::by_two_stages, 10.0);
 }
 
 /// A damper so strong that h d/m is 1e3 to 1e13 holds a mass within a step.
 #[test]
 fn a_strong_damper_stops_the_mass_within_a_step() {
-    let h = 0.01;
-    for exponent in 5..=15 {
-        let damping = 10.0_f64.powi(exponent);
-        let link = || Link::new(100.0, damping, &[(100.0, 0.1)]);
-        let links = [link(), link(), None, None];
-        let free = Layer { links: links.clone(), ..oscillator(1.0) };
-        let slipping = Layer { links, ..slider() };
-        let mut state = State::new(1, 2);
-        (state.velocity_x[0], state.velocity_z[0]) = (1.0, 1.0);
-        for (layer, start) in [(&free, state), (&slipping, sliding(&slipping.model(), 1.0, 0.0))] {
-            let paths = (at_rate(0.0), at_rate(0.0));
-            let mut stepper = Stepper::new(layer.model(), paths, start.clone(), 1e-12).by_two_stages();
-            stepper.step(h);
-            let moved = differences(&stepper.state, &start)[0];
-            let speed = stepper.state.velocity_x[0].abs().max(stepper.state.velocity_z[0].abs());
-            assert!(speed < 10.0 / (h * damping), "{damping:e}: {speed:e}");
-            // The way m v/d, m = 1 kg at most, and roundings of numbers of size 1.
-            assert!(moved < 1.1 / damping + 1e-15, "{damping:e}: {moved:e}");
-        }
-    }
+    // Roundings of numbers of size 1.
+    stops_within_a_step(Stepper::by_two_stages, 10.0, |_, _| 1e-15);
 }
 
 /// The energy of an undamped oscillator never grows, however long the steps are against its period.
 #[test]
 fn an_undamped_oscillator_never_gains_energy() {
-    for phase in [1e-3, 0.03, 0.3, 1.0, 3.0, 30.0, 1e4] {
-        let link = || Link::new(100.0, 0.0, &[]);
-        let layer = Layer { links: [link(), link(), None, None], ..Layer::default() };
-        let mut state = State::new(1, 0);
-        (state.elongation_x[0], state.velocity_z[0]) = (0.1, 1.0);
-        let mut stepper = Stepper::new(layer.model(), (at_rate(0.0), at_rate(0.0)), state, 1e-12).by_two_stages();
-        let first = energy(&stepper);
-        let mut highest = 0.0_f64;
-        for _ in 0..10_000 {
-            stepper.step(0.1 * phase);
-            highest = highest.max(energy(&stepper) / first);
-        }
-        // The roundings of 10 000 steps, which add up like a random walk at most.
-        assert!(highest < 1.0 + 1e-13, "hω = {phase}: {highest}");
-    }
+    never_gains_energy(Stepper::by_two_stages);
 }

@@ -6,13 +6,15 @@ use std::path::PathBuf;
 use asperity::scene::{LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt};
 use clap::Args;
 
+use super::{count, ends, picture};
+
 #[derive(Debug, Args)]
 pub(crate) struct Surface {
     /// The profile: text with columns x and z, or X3P (ISO 5436-2); or a scene, whose surface is meant.
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
-    /// Draws profile and spectrum: PNG where the name ends so, else SVG.
-    #[arg(short, long, value_name = "OUT.svg")]
+    /// Draws profile and spectrum, as SVG or PNG by the name.
+    #[arg(short, long, value_name = "OUT.svg", value_parser = picture())]
     pub(crate) output: Option<PathBuf>,
     /// Writes the profile as it was read, two columns in m, for a scene.
     #[arg(long, value_name = "OUT.csv")]
@@ -31,25 +33,25 @@ pub(crate) struct Surface {
 #[derive(Debug, PartialEq, Default, Args)]
 pub(crate) struct Reading {
     /// Unit of x and z: m, mm, um or nm; default: the file's, or else m.
-    #[arg(long)]
+    #[arg(long, value_name = "UNIT")]
     pub(crate) unit: Option<LengthUnit>,
     /// Unit of x alone.
-    #[arg(long)]
+    #[arg(long, value_name = "UNIT")]
     pub(crate) x_unit: Option<LengthUnit>,
     /// Unit of z alone.
-    #[arg(long)]
+    #[arg(long, value_name = "UNIT")]
     pub(crate) z_unit: Option<LengthUnit>,
-    /// Missing heights: refuse or fill, with straight lines.
-    #[arg(long)]
+    /// Missing heights: refused, or filled with straight lines; default: refuse.
+    #[arg(long, value_name = "refuse|fill")]
     pub(crate) missing: Option<Missing>,
-    /// Tilt: keep or remove, the least squares line.
-    #[arg(long)]
+    /// Tilt: kept, or removed with the least squares line; default: keep.
+    #[arg(long, value_name = "keep|remove")]
     pub(crate) tilt: Option<Tilt>,
-    /// What a third column says: invalid or valid points, or nothing: ignore.
-    #[arg(long)]
+    /// What a third column marks: points whose height does not count, or those whose height does; or nothing: ignore.
+    #[arg(long, value_name = "invalid|valid|ignore")]
     pub(crate) third_column: Option<ThirdColumn>,
     /// The line of an areal measurement, from 1.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", value_parser = count)]
     pub(crate) line: Option<u32>,
     /// The profile is repeated for ever: its spectrum needs no window.
     #[arg(long)]
@@ -72,9 +74,7 @@ impl Reading {
 }
 
 fn wavelengths(text: &str) -> Result<RangeInclusive<f64>, String> {
-    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|length| *length > 0.0 && length.is_finite());
-    let ends = text.split_once("..").and_then(|(shortest, longest)| Some((number(shortest)?, number(longest)?)));
-    let ends = ends.filter(|(shortest, longest)| shortest < longest);
-    ends.map(|(shortest, longest)| shortest..=longest)
-        .ok_or_else(|| "expected SHORTEST..LONGEST in m, such as 1e-5..1e-3".into())
+    let possible = |(shortest, longest): &(f64, f64)| *shortest > 0.0 && shortest < longest && longest.is_finite();
+    let message = || "expected SHORTEST..LONGEST in m, such as 1e-5..1e-3".to_owned();
+    ends(text).filter(possible).map(|(shortest, longest)| shortest..=longest).ok_or_else(message)
 }

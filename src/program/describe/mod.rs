@@ -4,15 +4,13 @@ mod layer;
 mod material;
 mod reduction;
 
-use std::io::Write as _;
-use std::path::Path as FilePath;
-
 use asperity::outputs::variables;
 use asperity::scene::{Extrapolation, OutputGroup, Parameter, Path, Phase, RateShear, Scene, Value};
 use asperity::simulation::{Simulation, Start};
 
 use super::arguments::Describe;
 use super::error::ProgramError;
+use super::text::{Row, decimal, lines, print, rounded};
 
 /// Stands where the scene names nothing.
 const LEFT_OUT: &str = "left out";
@@ -21,7 +19,7 @@ const LEFT_OUT: &str = "left out";
 pub(crate) fn describe(command: &Describe) -> Result<(), ProgramError> {
     let scene = super::load(&command.scene)?;
     let text = if command.json { json(&scene)? } else { text(&scene)? };
-    std::io::stdout().write_all(text.as_bytes()).map_err(ProgramError::file("write", FilePath::new("standard output")))
+    print(&text)
 }
 
 /// The scene as it was read, for other programs.
@@ -33,12 +31,8 @@ fn text(scene: &Scene) -> Result<String, ProgramError> {
     let simulation = Simulation::new(scene, &Start::default()).map_err(ProgramError::Start)?;
     let title = ("Scene", title(scene));
     let memory = ("Memory", format!("{} bytes a run", simulation.bytes()));
-    let rows = [title].into_iter().chain(rows(scene)).chain([memory]);
-    Ok(rows.map(|(name, text)| format!("{name:<12}{text}\n")).collect())
+    Ok(lines(&[vec![title], rows(scene), vec![memory]].concat()))
 }
-
-/// A row: its name, empty where the row goes on with the one above, and its text.
-pub(crate) type Row = (&'static str, String);
 
 /// What is in the scene and what is left out.
 pub(super) fn rows(scene: &Scene) -> Vec<Row> {
@@ -67,9 +61,7 @@ fn or_left_out(value: Option<f64>, unit: &str) -> String {
 
 /// A number for reading: short, with an exponent where it is far from 1, without the roundings of what it follows from.
 fn number(value: f64) -> String {
-    let value: f64 = format!("{value:.11e}").parse().unwrap_or(value);
-    let near = value == 0.0 || (1e-3..1e6).contains(&value.abs());
-    if near { format!("{value}") } else { format!("{value:e}") }
+    decimal(rounded(value, 12), 1e-3..1e6)
 }
 
 fn friction(scene: &Scene) -> Vec<Row> {

@@ -9,8 +9,6 @@ mod shift;
 mod tell;
 
 use std::fs;
-use std::io::Write as _;
-use std::path::Path;
 
 use compound::{Errors, Sample};
 use measured::Measured;
@@ -19,6 +17,7 @@ use search::{Wanted, search};
 
 use super::arguments::Fit;
 use super::error::ProgramError;
+use super::text::print;
 use tell::Told;
 
 /// Reads, shifts, searches; writes the terms and the picture, prints the figures. Where the error asked for cannot be
@@ -48,8 +47,4 @@ fn told<'a>(command: &'a Fit, measured: &'a Measured, samples: Vec<Sample>) -> T
     let compound = exact.rounded(Errors::of(&exact, &samples).both.rms);
     let errors = Errors::of(&compound, &samples);
     Told { command, measured, samples, compound, errors }
-}
-
-fn print(text: &str) -> Result<(), ProgramError> {
-    std::io::stdout().write_all(text.as_bytes()).map_err(ProgramError::file("write", Path::new("standard output")))
 }

@@ -6,7 +6,8 @@ use std::path::Path;
 use super::compound::{Compound, Error, Errors, Sample};
 use super::measured::Measured;
 use crate::program::arguments::Fit;
-use crate::program::plot::{Curve, CurvePanel, Curves, Stroke};
+use crate::program::plot::{Curve, Panel, Stacked, Stroke};
+use crate::program::text::{decimal, lines, rounded};
 
 /// Points of a drawn line in a decade.
 const POINTS_PER_DECADE: f64 = 20.0;
@@ -122,16 +123,16 @@ impl Told<'_> {
         };
         rows.extend([row("E'", &errors.storage), row("E''", &errors.loss), row("tan delta", &errors.loss_tangent)]);
         rows.push(("Written", format!("{}, {}", self.command.output.display(), picture.display())));
-        let figures: String = rows.into_iter().map(|(name, text)| format!("{name:<12}{text}\n")).collect();
+        let figures = lines(&rows);
         format!("{figures}\nFor the scene, beside which {} lies:\n\n{}", name_of(&self.command.output), self.scene())
     }
 
     fn terms(&self) -> String {
         match &self.compound.terms[..] {
             [] => "none".into(),
-            [only] => format!("1, at {} s", written(only.relaxation_time)),
+            [only] => format!("1, at {} s", short(only.relaxation_time)),
             [first, .., last] => {
-                let [first, last] = [first, last].map(|term| written(term.relaxation_time));
+                let [first, last] = [first, last].map(|term| short(term.relaxation_time));
                 format!("{}, from {first} s to {last} s", self.compound.terms.len())
             }
         }
@@ -161,7 +162,7 @@ impl Told<'_> {
     }
 
     /// Data as rings, the fit as lines.
-    pub(super) fn picture(&self) -> Curves {
+    pub(super) fn picture(&self) -> Stacked {
         let unit = if self.measured.in_hertz { TAU } else { 1.0 };
         let omegas = between(&self.samples);
         let curves = |name: &str, look: usize, measured: fn(&Sample) -> f64, fitted: fn((f64, f64)) -> f64| {
@@ -176,7 +177,7 @@ impl Told<'_> {
         let storage = curves("E'", 0, |sample| sample.storage, |(storage, _)| storage);
         let loss = curves("E''", 1, |sample| sample.loss, |(_, loss)| loss);
         let tangent = curves("tan δ", 2, |sample| sample.loss / sample.storage, |(storage, loss)| loss / storage);
-        Curves {
+        Stacked {
             title: format!(
                 "{}: {} terms, {} rms",
                 name_of(&self.command.data),
@@ -185,8 +186,8 @@ impl Told<'_> {
             ),
             x_title: self.x_title(),
             panels: vec![
-                CurvePanel { title: "modulus in Pa".into(), curves: [storage, loss].concat() },
-                CurvePanel { title: "tan δ".into(), curves: tangent.to_vec() },
+                Panel { title: "modulus in Pa".into(), curves: [storage, loss].concat() },
+                Panel { title: "tan δ".into(), curves: tangent.to_vec() },
             ],
         }
     }
@@ -221,15 +222,15 @@ fn name_of(path: &Path) -> String {
 
 /// The shortest decimal that reads back as the same number; far from 1 with an exponent.
 fn written(value: f64) -> String {
-    if value == 0.0 || (1e-3..1e5).contains(&value.abs()) { format!("{value}") } else { format!("{value:e}") }
+    decimal(value, 1e-3..1e5)
 }
 
 /// Four digits.
 fn short(value: f64) -> String {
-    written(format!("{value:.3e}").parse().unwrap_or(value))
+    written(rounded(value, 4))
 }
 
 /// A share in per cent, with three digits.
 pub(super) fn share(value: f64) -> String {
-    format!("{} %", written(format!("{:.2e}", 100.0 * value).parse().unwrap_or(100.0 * value)))
+    format!("{} %", written(rounded(100.0 * value, 3)))
 }

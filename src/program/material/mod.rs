@@ -5,14 +5,14 @@ mod response;
 
 use std::f64::consts::TAU;
 use std::fs;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use asperity::scene::Scene;
 
 use super::arguments::Material;
 use super::error::ProgramError;
-use super::plot::{Curve, CurvePanel, Curves, Stroke};
+use super::plot::{Curve, Panel, Stacked, Stroke};
+use super::text;
 use response::{Band, Response, band, evenly, responses};
 
 /// Points of a decade in files and pictures.
@@ -25,13 +25,11 @@ pub(crate) fn material(command: &Material) -> Result<(), ProgramError> {
     if let Some(temperature) = command.temperature {
         set_temperature(&mut scene, temperature)?;
     }
-    scene.check()?;
     let outputs = if command.output.is_empty() { vec![default_output(&command.scene)] } else { command.output.clone() };
     check_outputs(command, &scene, &outputs)?;
     let shown = Shown::new(&scene, command.frequencies.map(|range| range.0))?;
     for output in &outputs {
-        let table = output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"));
-        if table {
+        if super::ends_in(output, "csv") {
             fs::write(output, shown.file()).map_err(ProgramError::file("write", output))?;
         } else {
             shown.picture().write(output)?;
@@ -39,7 +37,7 @@ pub(crate) fn material(command: &Material) -> Result<(), ProgramError> {
     }
     let names: Vec<String> = outputs.iter().map(|output| output.display().to_string()).collect();
     let text = format!("{}Written     {}\n", shown.text(), names.join(", "));
-    std::io::stdout().write_all(text.as_bytes()).map_err(ProgramError::file("write", Path::new("standard output")))
+    text::print(&text)
 }
 
 /// Beside where the program runs, by the scene's file name.
@@ -60,7 +58,7 @@ fn check_outputs(command: &Material, scene: &Scene, outputs: &[PathBuf]) -> Resu
 fn set_temperature(scene: &mut Scene, temperature: f64) -> Result<(), ProgramError> {
     let wlf = scene.material.as_mut().and_then(|material| material.wlf.as_mut());
     wlf.ok_or(ProgramError::NoTemperature)?.temperature = temperature;
-    Ok(())
+    scene.check().map_err(|refusal| ProgramError::Temperature { option: "--temperature", refusal })
 }
 
 /// What is shown of a scene.
@@ -94,8 +92,7 @@ impl<'a> Shown<'a> {
         let mut rows = vec![("Scene", self.scene.name.clone())];
         rows.extend(self.temperature().into_iter().map(|text| ("Temperature", text)));
         rows.extend(self.responses.iter().map(|response| (self.kind(), self.figures(response))));
-        let rows: String = rows.into_iter().map(|(name, text)| format!("{name:<12}{text}\n")).collect();
-        format!("{rows}\n{}\n", self.table())
+        format!("{}\n{}\n", text::lines(&rows), self.table())
     }
 
     fn kind(&self) -> &'static str {
@@ -199,7 +196,7 @@ impl<'a> Shown<'a> {
         if self.is_material() { "moduli" } else { "stiffnesses of the links" }
     }
 
-    fn picture(&self) -> Curves {
+    fn picture(&self) -> Stacked {
         let omegas = evenly(self.band, POINTS);
         let curve = |look: usize, name: String, value: &dyn Fn(f64) -> f64| Curve {
             name,
@@ -211,7 +208,7 @@ impl<'a> Shown<'a> {
             let all = self.responses.iter().enumerate();
             all.map(|(i, response)| curve(i, response.name.into(), &|omega| value(response, omega))).collect()
         };
-        let panel = |title: &str, curves: Vec<Curve>| CurvePanel { title: title.into(), curves };
+        let panel = |title: &str, curves: Vec<Curve>| Panel { title: title.into(), curves };
         let panels = if self.is_material() {
             let response = &self.responses[0];
             let moduli = vec![
@@ -230,12 +227,11 @@ impl<'a> Shown<'a> {
         let temperature = self.scene.material.as_ref().and_then(|material| material.wlf);
         let temperature = temperature.map_or_else(String::new, |wlf| format!(" at {} K", short(wlf.temperature)));
         let title = format!("{}: {}{temperature}", self.scene.name, self.quantity());
-        Curves { title, x_title: "angular frequency in rad/s".into(), panels }
+        Stacked { title, x_title: "angular frequency in rad/s".into(), panels }
     }
 }
 
 /// Five digits.
 fn short(value: f64) -> String {
-    let value: f64 = format!("{value:.4e}").parse().unwrap_or(value);
-    if value == 0.0 || (1e-3..1e5).contains(&value.abs()) { format!("{value}") } else { format!("{value:e}") }
+    text::decimal(text::rounded(value, 5), 1e-3..1e5)
 }

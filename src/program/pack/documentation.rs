@@ -8,8 +8,8 @@ use quick_xml::escape::escape;
 use super::model_description::clean;
 use super::parts::{ELEMENT_PAGE, PAGE};
 use super::{units, variables};
-use crate::program::describe::Row;
 use crate::program::html::{self, Cell};
+use crate::program::text::Row;
 
 /// The page, filled in.
 pub(super) fn write(subject: &Subject, catalogue: &Catalogue, said: &[Row]) -> io::Result<Vec<u8>> {

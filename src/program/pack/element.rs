@@ -1,12 +1,9 @@
 //! What there is to say of an element: its table, and how well that is interpolated.
 
-use std::io::Write as _;
-use std::path::Path;
-
 use asperity::element::{LeftOut, Load, Place, Table, left_out};
 
-use crate::program::describe::Row;
 use crate::program::error::ProgramError;
+use crate::program::text::{Row, lines, print};
 
 /// What the table holds and what leaving its points out tells.
 pub(super) fn rows(table: &Table) -> Vec<Row> {
@@ -32,8 +29,7 @@ pub(super) fn rows(table: &Table) -> Vec<Row> {
 
 /// Prints rows.
 pub(super) fn tell(rows: &[Row]) -> Result<(), ProgramError> {
-    let text: String = rows.iter().map(|(name, text)| format!("{name:<12}{text}\n")).collect();
-    std::io::stdout().write_all(text.as_bytes()).map_err(ProgramError::file("write", Path::new("standard output")))
+    print(&lines(rows))
 }
 
 fn axis(values: &[f64], unit: &str) -> String {

@@ -18,8 +18,9 @@ use asperity::element::{PointContact, Table};
 use asperity::fmi::{Catalogue, Sources, Subject, guid};
 
 use super::arguments::Pack;
-use super::describe::{self, Row};
+use super::describe;
 use super::error::ProgramError;
+use super::text::Row;
 use archive::Entry;
 use parts::PARTS;
 
@@ -92,7 +93,7 @@ fn documents(subject: &Subject, path: &Path, said: &[Row]) -> Result<Vec<Entry>,
         Subject::Layer(scene) => picture::png(scene),
         Subject::Element(contact) => picture::element_png(contact.table()),
     };
-    let picture = picture.map_err(|error| document("model.png", error.into()))?;
+    let picture = picture.map_err(|error| ProgramError::picture(Path::new("model.png"), &*error))?;
     let parts = PARTS.iter().map(|(name, text)| Entry::new((*name).into(), text.as_bytes().to_vec()));
     let written = [("modelDescription.xml", description), ("documentation/index.html", index), ("model.png", picture)];
     Ok(written.into_iter().map(|(name, bytes)| Entry::new(name.into(), bytes)).chain(parts).collect())

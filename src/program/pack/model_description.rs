@@ -8,6 +8,7 @@ use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 
 use super::{units, variables as scalar_variables};
+use crate::program::text::decimal;
 
 /// A document in the making.
 pub(super) type Xml = Writer<Vec<u8>>;
@@ -94,8 +95,7 @@ fn round_down(step: f64) -> f64 {
 
 /// A Real for the description: the shortest decimal that reads back as the same.
 pub(super) fn real(value: f64) -> String {
-    let near = value == 0.0 || (1e-3..1e9).contains(&value.abs());
-    if near { format!("{value}") } else { format!("{value:e}") }
+    decimal(value, 1e-3..1e9)
 }
 
 fn model_structure(xml: &mut Xml, subject: &Subject, catalogue: &Catalogue) -> io::Result<()> {

@@ -1,15 +1,21 @@
 //! model.png: the first masses of the layer at rest between the carrier and the profile, drawn from the scene.
 
-mod canvas;
 mod curves;
+mod sketch;
+
+use std::error::Error;
 
 use asperity::math::Spline;
 use asperity::scene::{LinkKind, Scene};
-use canvas::{Canvas, Colour, Point};
+use plotters::style::RGBColor;
+
+use crate::program::plot::Drawn;
 pub(super) use curves::element_png;
+use sketch::{Point, SIZE, Sketch};
 
 /// Pixels: width, height.
-const SIZE: (usize, usize) = (240, 160);
+const WIDTH: f64 = SIZE.0 as f64;
+const HEIGHT: f64 = SIZE.1 as f64;
 /// Masses drawn at most: so few that each is seen.
 const MASSES: usize = 10;
 /// The carrier's lower edge, pixels from the top.
@@ -22,30 +28,28 @@ const MASS: f64 = 4.0;
 const WINDING: f64 = 3.5;
 /// Corners of a spring.
 const CORNERS: usize = 9;
-/// Half the width of a line, pixels.
-const LINE: f64 = 0.7;
 
-const STEEL: Colour = [70, 70, 70];
-const GROUND: Colour = [196, 188, 176];
-const EDGE: Colour = [110, 100, 88];
-const RUBBER: Colour = [0, 114, 178];
-const LINK: Colour = [86, 160, 210];
+const STEEL: RGBColor = RGBColor(70, 70, 70);
+const GROUND: RGBColor = RGBColor(196, 188, 176);
+const EDGE: RGBColor = RGBColor(110, 100, 88);
+const RUBBER: RGBColor = RGBColor(0, 114, 178);
+const LINK: RGBColor = RGBColor(86, 160, 210);
 
 /// The picture as a PNG file.
-pub(super) fn png(scene: &Scene) -> Result<Vec<u8>, png::EncodingError> {
-    let mut canvas = Canvas::new(SIZE);
+pub(super) fn png(scene: &Scene) -> Result<Vec<u8>, Box<dyn Error>> {
     let view = View::new(scene);
-    view.draw_ground(&mut canvas);
-    canvas.fill((0.0, 0.0), (SIZE.0 as f64, CARRIER), STEEL, |_| true);
-    view.draw_links(&mut canvas);
-    view.masses.iter().for_each(|&centre| canvas.disc(centre, MASS, RUBBER));
-    canvas.png()
+    Sketch::png(|sketch| {
+        view.draw_ground(sketch)?;
+        sketch.fill([(0.0, 0.0), (WIDTH, 0.0), (WIDTH, CARRIER), (0.0, CARRIER)].into_iter(), STEEL)?;
+        view.draw_links(sketch)?;
+        view.masses.iter().try_for_each(|&centre| sketch.disc(centre, MASS, RUBBER))
+    })
 }
 
 /// What is drawn, in pixels.
 struct View<'a> {
     scene: &'a Scene,
-    /// The profile's height at the middle of each column of pixels, and one more.
+    /// The profile's height at each column of pixels, and at the picture's right edge.
     ground: Vec<f64>,
     /// The masses' centres: a mass touches with its lowest point.
     masses: Vec<Point>,
@@ -55,32 +59,32 @@ impl<'a> View<'a> {
     fn new(scene: &'a Scene) -> Self {
         let layer = &scene.layer;
         let masses = layer.masses.min(MASSES);
-        let pitch = layer.spacing * masses as f64 / SIZE.0 as f64;
+        let pitch = layer.spacing * masses as f64 / WIDTH;
         let left = layer.origin - layer.spacing / 2.0;
         let rest: Vec<f64> = (0..masses).map(|i| layer.clearance + layer.roughness.get(i).unwrap_or(&0.0)).collect();
         let ground = heights(&scene.surface.spline(), left, pitch);
         let row = rows(rest.iter().chain(&ground));
-        let column = |i: usize| (i as f64 + 0.5) * SIZE.0 as f64 / masses as f64;
+        let column = |i: usize| (i as f64 + 0.5) * WIDTH / masses as f64;
         let centre = |(i, z): (usize, &f64)| (column(i), row(*z) - MASS);
         let masses = rest.iter().enumerate().map(centre).collect();
         Self { scene, masses, ground: ground.iter().map(|z| row(*z)).collect() }
     }
 
-    fn draw_ground(&self, canvas: &mut Canvas) {
-        let (width, height) = (SIZE.0 as f64, SIZE.1 as f64);
-        canvas.fill((0.0, 0.0), (width, height), GROUND, |(x, y)| y > interpolate(&self.ground, x));
-        let corners = self.ground.iter().enumerate().map(|(i, &y)| (i as f64, y));
-        canvas.polyline(corners, LINE, EDGE);
+    fn draw_ground(&self, sketch: &Sketch<'_, '_>) -> Drawn {
+        let edge = || self.ground.iter().enumerate().map(|(i, &y)| (i as f64, y));
+        sketch.fill(edge().chain([(WIDTH, HEIGHT), (0.0, HEIGHT)]), GROUND)?;
+        sketch.line(edge(), EDGE)
     }
 
-    fn draw_links(&self, canvas: &mut Canvas) {
+    fn draw_links(&self, sketch: &Sketch<'_, '_>) -> Drawn {
         let has = |kinds: [LinkKind; 2]| kinds.into_iter().any(|kind| self.scene.link(kind).is_some());
         if has([LinkKind::LateralX, LinkKind::LateralZ]) {
-            canvas.polyline(self.masses.iter().copied(), LINE, LINK);
+            sketch.line(self.masses.iter().copied(), LINK)?;
         }
         if has([LinkKind::Vertical, LinkKind::Horizontal]) {
-            self.masses.iter().for_each(|&mass| canvas.polyline(spring(mass), LINE, LINK));
+            self.masses.iter().try_for_each(|&mass| sketch.line(spring(mass), LINK))?;
         }
+        Ok(())
     }
 }
 
@@ -97,11 +101,6 @@ fn rows<'a>(heights: impl Iterator<Item = &'a f64> + Clone) -> impl Fn(f64) -> f
     move |z| {
         if highest > lowest { top + (highest - z) / (highest - lowest) * (bottom - top) } else { (top + bottom) / 2.0 }
     }
-}
-
-fn interpolate(values: &[f64], x: f64) -> f64 {
-    let i = (x as usize).min(values.len() - 2);
-    values[i] + (x - i as f64) * (values[i + 1] - values[i])
 }
 
 /// A spring from the carrier down to a mass.
@@ -128,7 +127,7 @@ mod tests {
         let scene = scene("masses = 3\nspacing = 1e-4\nmass = 1e-6", "kind = 'flat'");
         let view = View::new(&scene);
         assert_eq!(view.masses, [(40.0, 112.0), (120.0, 112.0), (200.0, 112.0)]);
-        assert_eq!(view.ground, [116.0; SIZE.0 + 1]);
+        assert_eq!(view.ground, [116.0; SIZE.0 as usize + 1]);
     }
 
     #[test]

@@ -1,164 +1,89 @@
-//! One chart: lines over an axis, a legend above them. The look of every picture is decided here.
+//! One chart: curves over axes, with or without a legend above them.
 
 use std::error::Error;
-use std::fs;
-use std::path::Path;
 
-use plotters::coord::Shift;
-use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
 use super::axis::Axis;
+use super::curve::Curve;
+use super::legend::{Legend, Swatch};
+use super::picture::{Canvas, Drawn, FINE, GRID, INK, TEXT_SIZE, TICK_SIZE, style};
 
-/// A part of a picture to draw on.
-pub(crate) type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+/// Between the edges of a chart and what is drawn; more at the right, where half of a tick's label is.
+const MARGIN: u32 = 6 * FINE;
+const RIGHT_MARGIN: u32 = 28 * FINE;
+/// Room for ticks and title of the vertical axis, and of the horizontal one.
+const BESIDE: u32 = 72 * FINE;
+const BELOW: u32 = 46 * FINE;
+/// Where the vertical axis stands, and a legend begins.
+pub(super) const LEFT: u32 = MARGIN + BESIDE;
+const TICK: u32 = 5 * FINE;
+/// Room for a label of a tick, so that they do not touch: along a horizontal axis, along a vertical one.
+const LABEL: (u32, u32) = (42 * FINE, 28 * FINE);
 
-/// Drawing fails only where the file cannot be written.
-pub(crate) type Drawn = Result<(), Box<dyn Error>>;
-
-/// Okabe and Ito's colours, told apart by colour-blind readers too.
-const COLOURS: [RGBColor; 7] = [
-    RGBColor(0, 114, 178),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(230, 159, 0),
-    RGBColor(86, 180, 233),
-    RGBColor(70, 70, 70),
-];
-const FONT: &str = "sans-serif";
-pub(super) const INK: RGBColor = RGBColor(40, 40, 40);
-pub(super) const GRID: RGBColor = RGBColor(225, 225, 225);
-/// plotters places every point on a whole pixel; a picture drawn so many times as large and shown smaller has finer
-/// ones.
-pub(super) const FINE: u32 = 8;
-const TITLE_SIZE: u32 = 22 * FINE;
-pub(super) const TEXT_SIZE: u32 = 17 * FINE;
-pub(super) const TICK_SIZE: u32 = 15 * FINE;
-pub(super) const LINE_WIDTH: u32 = 2 * FINE;
-pub(super) const SWATCH_LENGTH: u32 = 26 * FINE;
-pub(super) const GAP: u32 = 7 * FINE;
-pub(super) const LEGEND_HEIGHT: u32 = 30 * FINE;
-const LEFT_MARGIN: u32 = 84 * FINE;
-/// Width of a letter over its height, roughly: an SVG's font is only known where it is shown.
-const LETTER_WIDTH: f64 = 0.58;
-
-/// One line of a chart.
-#[derive(Clone, Debug)]
-pub(crate) struct Line {
-    /// Its name in the legend.
-    pub(crate) name: String,
-    /// Its points, as they were computed.
-    pub(crate) points: Vec<(f64, f64)>,
-}
-
-/// Lines over axes.
-#[derive(Clone, Debug)]
-pub(crate) struct Chart {
+/// Curves over axes.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Chart {
+    /// What is written above it; empty for nothing.
+    pub(super) title: String,
     /// The horizontal axis.
-    pub(crate) x: Axis,
+    pub(super) x: Axis,
     /// The vertical axis.
-    pub(crate) y: Axis,
-    /// The lines, in the order of the legend.
-    pub(crate) lines: Vec<Line>,
+    pub(super) y: Axis,
+    /// The curves, in the order of the legend.
+    pub(super) curves: Vec<Curve>,
 }
 
-/// Writes a picture of `size` pixels to `path`: a title, if there is one, and what `draw` adds below it.
-pub(crate) fn write(
-    path: &Path,
-    size: (u32, u32),
-    title: Option<&str>,
-    draw: impl FnOnce(&Canvas<'_>) -> Drawn,
-) -> Drawn {
-    Ok(fs::write(path, svg(size, title, draw)?)?)
-}
-
-/// The picture as the text of an SVG file.
-pub(super) fn svg(
-    size: (u32, u32),
-    title: Option<&str>,
-    draw: impl FnOnce(&Canvas<'_>) -> Drawn,
-) -> Result<String, Box<dyn Error>> {
-    let mut text = String::new();
-    let fine = (size.0 * FINE, size.1 * FINE);
-    let canvas = SVGBackend::with_string(&mut text, fine).into_drawing_area();
-    canvas.fill(&WHITE)?;
-    match title {
-        Some(title) => draw(&canvas.margin(6 * FINE, 0, 0, 0).titled(title, style(TITLE_SIZE))?)?,
-        None => draw(&canvas)?,
-    }
-    canvas.present()?;
-    drop(canvas);
-    let (drawn, shown) =
-        [fine, size].map(|(width, height)| format!("<svg width=\"{width}\" height=\"{height}\"")).into();
-    Ok(text.replacen(&drawn, &shown, 1))
-}
-
-pub(super) fn style(size: u32) -> TextStyle<'static> {
-    (FONT, size).into_font().color(&INK)
-}
+pub(super) type Context<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Axis, Axis>>;
 
 impl Chart {
-    /// Draws legend, axes and lines.
-    pub(crate) fn draw(&self, canvas: &Canvas<'_>) -> Drawn {
-        let (legend, plot) = canvas.split_vertically(LEGEND_HEIGHT);
-        self.draw_legend(&legend)?;
-        let mut context = ChartBuilder::on(&plot)
-            .margin(6 * FINE)
-            .margin_right(24 * FINE)
-            .x_label_area_size(44 * FINE)
-            .y_label_area_size(LEFT_MARGIN)
-            .build_cartesian_2d(self.x.low..self.x.high, self.y.low..self.y.high)?;
-        self.draw_axes(&mut context)?;
-        for (i, line) in self.lines.iter().enumerate() {
-            context.draw_series(LineSeries::new(self.drawn(line), colour(i).stroke_width(LINE_WIDTH)))?;
-        }
-        Ok(())
+    /// Draws the names of the curves above, axes and curves below.
+    pub(super) fn draw_with_legend(&self, canvas: &Canvas<'_>) -> Drawn {
+        let names = self.curves.iter().map(|curve| (curve.name.as_str(), Swatch::of(curve)));
+        let legend = Legend::new(names, canvas.dim_in_pixel().0);
+        let (above, below) = canvas.split_vertically(legend.height());
+        legend.draw(&above)?;
+        self.draw(&below)
     }
 
-    fn draw_axes(&self, context: &mut Context<'_, '_>) -> Drawn {
-        context
-            .configure_mesh()
-            .bold_line_style(GRID.stroke_width(FINE))
-            .light_line_style(TRANSPARENT)
-            .axis_style(INK.stroke_width(FINE))
-            .set_all_tick_mark_size(5 * FINE)
-            .x_labels(self.x.ticks.max(6))
-            .y_labels(self.y.ticks)
-            .x_label_formatter(&|x| self.x.label(*x))
-            .y_label_formatter(&|y| self.y.label(*y))
-            .label_style(style(TICK_SIZE))
-            .axis_desc_style(style(TEXT_SIZE))
-            .x_desc(&self.x.title)
-            .y_desc(&self.y.title)
-            .draw()?;
-        Ok(())
-    }
-
-    fn drawn(&self, line: &Line) -> impl Iterator<Item = (f64, f64)> {
-        line.points.iter().map(|&(x, y)| (x * self.x.scale, y * self.y.scale)).filter(|(x, y)| (x + y).is_finite())
-    }
-
-    fn draw_legend(&self, canvas: &Canvas<'_>) -> Drawn {
-        let mut left = LEFT_MARGIN + GAP;
-        for (i, line) in self.lines.iter().enumerate() {
-            let text_left = left + SWATCH_LENGTH + GAP;
-            let swatch = [left, left + SWATCH_LENGTH].map(|x| (x as i32, (LEGEND_HEIGHT / 2 + FINE) as i32));
-            canvas.draw(&PathElement::new(swatch, colour(i).stroke_width(LINE_WIDTH + FINE)))?;
-            let place = (text_left as i32, ((LEGEND_HEIGHT - TEXT_SIZE) / 2 + 2 * FINE) as i32);
-            canvas.draw(&Text::new(line.name.clone(), place, style(TEXT_SIZE)))?;
-            left = text_left + text_width(&line.name) + 3 * GAP;
-        }
-        Ok(())
+    /// Draws axes and curves.
+    pub(super) fn draw(&self, canvas: &Canvas<'_>) -> Drawn {
+        let mut context = context(canvas, &self.title, &self.x, &self.y)?;
+        draw_axes(&mut context, &self.x, &self.y)?;
+        self.curves.iter().try_for_each(|curve| curve.draw(&mut context, &self.x, &self.y))
     }
 }
 
-type Context<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
-
-pub(super) fn colour(i: usize) -> RGBColor {
-    COLOURS[i % COLOURS.len()]
+/// The room for a chart's curves, with nothing drawn but the title.
+pub(super) fn context<'a, 'b>(
+    canvas: &'a Canvas<'b>,
+    title: &str,
+    x: &Axis,
+    y: &Axis,
+) -> Result<Context<'a, 'b>, Box<dyn Error>> {
+    let mut builder = ChartBuilder::on(canvas);
+    builder.margin(MARGIN).margin_right(RIGHT_MARGIN).x_label_area_size(BELOW).y_label_area_size(BESIDE);
+    if !title.is_empty() {
+        builder.caption(title, style(TEXT_SIZE));
+    }
+    Ok(builder.build_cartesian_2d(x.clone(), y.clone())?)
 }
 
-fn text_width(text: &str) -> u32 {
-    (text.chars().count() as f64 * f64::from(TEXT_SIZE) * LETTER_WIDTH) as u32
+/// Draws grid, ticks and titles.
+pub(super) fn draw_axes(context: &mut Context<'_, '_>, x: &Axis, y: &Axis) -> Drawn {
+    let (width, height) = context.plotting_area().dim_in_pixel();
+    context
+        .configure_mesh()
+        .bold_line_style(GRID.stroke_width(FINE))
+        .light_line_style(GRID.mix(0.45).stroke_width(FINE / 2))
+        .axis_style(INK.stroke_width(FINE))
+        .set_all_tick_mark_size(TICK)
+        .x_labels(x.ticks(width, LABEL.0))
+        .y_labels(y.ticks(height, LABEL.1))
+        .label_style(style(TICK_SIZE))
+        .axis_desc_style(style(TEXT_SIZE))
+        .x_desc(&x.title)
+        .y_desc(&y.title)
+        .draw()?;
+    Ok(())
 }

@@ -4,12 +4,15 @@ use std::path::Path;
 
 use asperity::outputs::unit_of;
 
-use super::axis::{Axis, Fit};
-use super::chart::{Chart, Line, write};
+use super::axis::Axis;
+use super::chart::Chart;
+use super::curve::{Curve, Stroke};
+use super::linear::Fit;
+use super::picture::write;
 use crate::program::arguments::Plot;
-use crate::program::check_output;
 use crate::program::error::ProgramError;
 use crate::program::result_file::ResultFile;
+use crate::program::{check_output, warn};
 
 const SIZE: (u32, u32) = (1000, 620);
 
@@ -19,24 +22,30 @@ pub(crate) fn plot_files(command: &Plot) -> Result<(), ProgramError> {
         return Err(ProgramError::Labels { labels: command.labels.len(), files: command.files.len() });
     }
     check_output(&command.output, &command.files)?;
-    let lines = command.files.iter().enumerate().map(|(i, path)| file_lines(command, i, path));
-    let lines: Vec<Vec<Line>> = lines.collect::<Result<_, _>>()?;
-    let chart = chart(command, lines.concat());
-    write(&command.output, SIZE, command.title.as_deref(), |canvas| chart.draw(canvas))
-        .map_err(|error| ProgramError::picture(&command.output, &*error))
+    let mut curves = Vec::new();
+    for (i, path) in command.files.iter().enumerate() {
+        add_curves(&mut curves, command, i, path)?;
+    }
+    let chart = chart(command, curves);
+    write(&command.output, SIZE, command.title.as_deref(), |canvas| chart.draw_with_legend(canvas))
 }
 
-fn file_lines(command: &Plot, index: usize, path: &Path) -> Result<Vec<Line>, ProgramError> {
+/// Adds those of a file.
+fn add_curves(curves: &mut Vec<Curve>, command: &Plot, index: usize, path: &Path) -> Result<(), ProgramError> {
     let file = ResultFile::read(path)?;
     let x = file.column(&command.x)?;
     let first = if command.from_motion { last_before_motion(&x) } else { 0 };
     let sign = if command.negate { -1.0 } else { 1.0 };
-    let line = |column: &String| {
+    for column in &command.y {
         let y = file.column(column)?;
-        let points = x.iter().zip(&y).skip(first).map(|(&x, &y)| (x, sign * y)).collect();
-        Ok(Line { name: line_name(command, index, path, column), points })
-    };
-    command.y.iter().map(line).collect()
+        let points: Vec<_> = x.iter().zip(&y).skip(first).map(|(&x, &y)| (x, sign * y)).collect();
+        let name = curve_name(command, index, path, column);
+        if !points.iter().any(|(x, y)| x.is_finite() && y.is_finite()) {
+            warn(&format!("{}: nothing to draw of {column}: no finite numbers", path.display()));
+        }
+        curves.push(Curve { name, look: curves.len(), stroke: Stroke::Line, points });
+    }
+    Ok(())
 }
 
 /// The last row at which x is still what it was in the first.
@@ -44,7 +53,7 @@ fn last_before_motion(x: &[f64]) -> usize {
     x.iter().position(|value| *value != x[0]).map_or(0, |moved| moved - 1)
 }
 
-fn line_name(command: &Plot, index: usize, path: &Path, column: &str) -> String {
+fn curve_name(command: &Plot, index: usize, path: &Path, column: &str) -> String {
     let stem = || path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     let file = command.labels.get(index).cloned().unwrap_or_else(stem);
     match (command.y.len(), command.files.len()) {
@@ -54,13 +63,14 @@ fn line_name(command: &Plot, index: usize, path: &Path, column: &str) -> String 
     }
 }
 
-fn chart(command: &Plot, lines: Vec<Line>) -> Chart {
-    let points = || lines.iter().flat_map(|line| &line.points);
+fn chart(command: &Plot, curves: Vec<Curve>) -> Chart {
+    let points = || curves.iter().flat_map(|curve| &curve.points);
     let quantity = format!("{}{}", if command.negate { "-" } else { "" }, command.y.join(", "));
     Chart {
-        x: Axis::new(&command.x, unit(&command.x), points().map(|point| point.0), Fit::Tight),
-        y: Axis::new(&quantity, unit(&command.y[0]), points().map(|point| point.1), Fit::Round),
-        lines,
+        title: String::new(),
+        x: Axis::linear(&command.x, unit(&command.x), points().map(|point| point.0), Fit::Tight),
+        y: Axis::linear(&quantity, unit(&command.y[0]), points().map(|point| point.1), Fit::Round),
+        curves,
     }
 }
 

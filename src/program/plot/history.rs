@@ -6,8 +6,11 @@ use asperity::outputs::{Output, Variable, variables};
 use asperity::scene::{OutputGroup, Scene};
 use asperity::simulation::Simulation;
 
-use super::axis::{Axis, Fit};
-use super::chart::{Canvas, Chart, Drawn, Line, write};
+use super::axis::Axis;
+use super::chart::Chart;
+use super::curve::{Curve, Stroke};
+use super::linear::Fit;
+use super::picture::write;
 use crate::program::error::ProgramError;
 
 const SIZE: (u32, u32) = (1000, 1080);
@@ -57,32 +60,28 @@ impl History {
 
     /// Draws the picture.
     pub(crate) fn draw(&self, path: &Path, name: &str) -> Result<(), ProgramError> {
-        write(path, SIZE, Some(name), |canvas| self.draw_panels(canvas))
-            .map_err(|error| ProgramError::picture(path, &*error))
-    }
-
-    fn draw_panels(&self, canvas: &Canvas<'_>) -> Drawn {
-        let canvases = canvas.split_evenly((PANELS.len(), 1));
-        PANELS.iter().zip(&canvases).try_for_each(|(panel, canvas)| self.chart(panel).draw(canvas))
+        write(path, SIZE, Some(name), |canvas| {
+            let canvases = canvas.split_evenly((PANELS.len(), 1));
+            PANELS.iter().zip(&canvases).try_for_each(|(panel, canvas)| self.chart(panel).draw_with_legend(canvas))
+        })
     }
 
     fn chart(&self, &(quantity, unit, shows): &Panel) -> Chart {
-        let lines: Vec<Line> = self.lines(shows).collect();
-        let values = lines.iter().flat_map(|line| &line.points).map(|point| point.1);
+        let shown = self.variables.iter().enumerate().filter(|(_, variable)| shows(&variable.output));
+        let curve = |(look, (i, variable)): (usize, (usize, &Variable))| Curve {
+            name: short_name(&variable.name).to_owned(),
+            look,
+            stroke: Stroke::Line,
+            points: self.times.iter().zip(&self.rows).map(|(&time, row)| (time, row[i])).collect(),
+        };
+        let curves: Vec<Curve> = shown.enumerate().map(curve).collect();
+        let values = curves.iter().flat_map(|curve| &curve.points).map(|point| point.1);
         Chart {
-            x: Axis::new("time", "s", self.times.iter().copied(), Fit::Tight),
-            y: Axis::new(quantity, unit, values, Fit::Round),
-            lines,
+            title: String::new(),
+            x: Axis::linear("time", "s", self.times.iter().copied(), Fit::Tight),
+            y: Axis::linear(quantity, unit, values, Fit::Round),
+            curves,
         }
-    }
-
-    fn lines(&self, shows: fn(&Output) -> bool) -> impl Iterator<Item = Line> {
-        self.variables.iter().enumerate().filter(move |(_, variable)| shows(&variable.output)).map(|(i, variable)| {
-            Line {
-                name: short_name(&variable.name).to_owned(),
-                points: self.times.iter().zip(&self.rows).map(|(&time, row)| (time, row[i])).collect(),
-            }
-        })
     }
 }
 

@@ -1,16 +1,12 @@
 //! The picture of a profile: its heights above, its power spectrum below.
 
-use std::error::Error;
-use std::fs;
 use std::path::Path;
 
-use plotters::prelude::*;
-
-use super::axis::{Axis, Fit};
-use super::chart::{Canvas, Chart, Drawn, FINE, LINE_WIDTH, Line, colour, svg};
-use super::ladders::{LEFT, draw_axes};
-use super::logarithmic::{Logarithmic, is_drawn};
-use super::raster::png;
+use super::axis::Axis;
+use super::chart::Chart;
+use super::curve::{Curve, Stroke};
+use super::linear::Fit;
+use super::picture::{FINE, write};
 use crate::program::error::ProgramError;
 
 const SIZE: (u32, u32) = (1000, 860);
@@ -35,51 +31,37 @@ pub(crate) struct ProfilePicture {
 impl ProfilePicture {
     /// Draws the picture: as PNG where `path` ends so, else as SVG.
     pub(crate) fn write(&self, path: &Path) -> Result<(), ProgramError> {
-        let bytes = self.bytes(path).map_err(|error| ProgramError::picture(path, &*error))?;
-        fs::write(path, bytes).map_err(ProgramError::file("write", path))
-    }
-
-    fn bytes(&self, path: &Path) -> Result<Vec<u8>, Box<dyn Error>> {
-        let text = svg(SIZE, Some(&self.title), |canvas| self.draw(canvas))?;
-        let raster = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
-        if raster { png(&text) } else { Ok(text.into_bytes()) }
-    }
-
-    fn draw(&self, canvas: &Canvas<'_>) -> Drawn {
-        let (above, below) = canvas.split_vertically(SPLIT);
-        self.profile().draw(&above)?;
-        self.draw_spectrum(&below)
+        write(path, SIZE, Some(&self.title), |canvas| {
+            let (above, below) = canvas.split_vertically(SPLIT);
+            self.profile().draw_with_legend(&above)?;
+            self.power_spectrum().draw_with_legend(&below)
+        })
     }
 
     fn profile(&self) -> Chart {
         let points = outline(&self.heights);
         Chart {
-            x: Axis::new("x", "m", points.iter().map(|point| point.0), Fit::Tight),
-            y: Axis::new("z", "m", points.iter().map(|point| point.1), Fit::Round),
-            lines: vec![Line { name: "profile".into(), points }],
+            title: String::new(),
+            x: Axis::linear("x", "m", points.iter().map(|point| point.0), Fit::Tight),
+            y: Axis::linear("z", "m", points.iter().map(|point| point.1), Fit::Round),
+            curves: vec![Curve { name: "profile".into(), look: 0, stroke: Stroke::Line, points }],
         }
     }
 
-    fn draw_spectrum(&self, canvas: &Canvas<'_>) -> Drawn {
-        let drawn = |points: &[(f64, f64)]| -> Vec<(f64, f64)> {
-            points.iter().copied().filter(|&(q, density)| is_drawn(q) && is_drawn(density)).collect()
-        };
-        let (spectrum, law) = (drawn(&self.spectrum), drawn(&self.law));
+    fn power_spectrum(&self) -> Chart {
         // What rounding leaves beyond a cut-off is not drawn.
-        let largest = spectrum.iter().map(|point| point.1).fold(0.0, f64::max);
-        let spectrum: Vec<_> = spectrum.into_iter().filter(|point| point.1 > 1e-16 * largest).collect();
-        let all = || spectrum.iter().chain(&law);
-        let mut context = ChartBuilder::on(canvas)
-            .margin(6 * FINE)
-            .margin_right(28 * FINE)
-            .x_label_area_size(46 * FINE)
-            .y_label_area_size(LEFT)
-            .build_cartesian_2d(Logarithmic::around(all().map(|p| p.0)), Logarithmic::around(all().map(|p| p.1)))?;
-        draw_axes(&mut context, "wave number in rad/m", "power spectrum in m³")?;
-        context.draw_series(LineSeries::new(spectrum, colour(0).stroke_width(LINE_WIDTH)))?;
-        let line = colour(1).stroke_width(LINE_WIDTH);
-        context.draw_series(DashedLineSeries::new(law, 8 * FINE, 5 * FINE, line))?;
-        Ok(())
+        let largest = self.spectrum.iter().map(|point| point.1).fold(0.0, f64::max);
+        let spectrum = self.spectrum.iter().copied().filter(|point| point.1 > 1e-16 * largest).collect::<Vec<_>>();
+        let all = || spectrum.iter().chain(&self.law);
+        Chart {
+            title: String::new(),
+            x: Axis::logarithmic("wave number in rad/m", all().map(|point| point.0)),
+            y: Axis::logarithmic("power spectrum in m³", all().map(|point| point.1)),
+            curves: vec![
+                Curve { name: "spectrum".into(), look: 0, stroke: Stroke::Line, points: spectrum },
+                Curve { name: "power law".into(), look: 1, stroke: Stroke::Dashed, points: self.law.clone() },
+            ],
+        }
     }
 }
 

@@ -11,18 +11,18 @@ use resvg::usvg::{Options, Tree};
 const FONT: &[u8] = include_bytes!("font/DejaVuSans.ttf");
 const FAMILY: &str = "DejaVu Sans";
 /// Pixels for one of the SVG's: sharp on a fine screen and in print.
-const SCALE: f32 = 2.0;
+pub(crate) const SHARP: f32 = 2.0;
 
-/// The PNG file of the picture `svg`.
-pub(crate) fn png(svg: &str) -> Result<Vec<u8>, Box<dyn Error>> {
+/// The PNG file of the picture `svg`, with `scale` pixels for one of its.
+pub(crate) fn png(svg: &str, scale: f32) -> Result<Vec<u8>, Box<dyn Error>> {
     let mut fonts = Database::new();
     fonts.load_font_data(FONT.to_vec());
     fonts.set_sans_serif_family(FAMILY);
     let options = Options { fontdb: Arc::new(fonts), font_family: FAMILY.into(), ..Options::default() };
     let tree = Tree::from_str(svg, &options)?;
-    let [width, height] = [tree.size().width(), tree.size().height()].map(|length| (SCALE * length).ceil() as u32);
+    let [width, height] = [tree.size().width(), tree.size().height()].map(|length| (scale * length).ceil() as u32);
     let mut pixels = Pixmap::new(width, height).ok_or("a picture needs a size")?;
-    resvg::render(&tree, Transform::from_scale(SCALE, SCALE), &mut pixels.as_mut());
+    resvg::render(&tree, Transform::from_scale(scale, scale), &mut pixels.as_mut());
     Ok(pixels.encode_png()?)
 }
 
@@ -38,7 +38,7 @@ mod tests {
                 "<svg width=\"80\" height=\"20\" xmlns=\"http://www.w3.org/2000/svg\">\
                  <text x=\"2\" y=\"15\" font-family=\"sans-serif\" font-size=\"12\">{text}</text></svg>"
             );
-            Pixmap::decode_png(&png(&svg).unwrap()).unwrap()
+            Pixmap::decode_png(&png(&svg, SHARP).unwrap()).unwrap()
         };
         let ink = |text: &str| picture(text).pixels().iter().filter(|pixel| pixel.alpha() > 0).count();
         assert_eq!((picture("").width(), ink("")), (160, 0));

@@ -21,7 +21,7 @@ use asperity::scene::Scene;
 
 use super::arguments::Report;
 use super::error::ProgramError;
-use super::plot::{Ladders, png};
+use super::plot::{Ladders, SHARP, png};
 use ladder::Ladder;
 use peers::Peers;
 use progress::Progress;
@@ -157,7 +157,7 @@ impl Folder {
     fn draw(&self, name: &str, picture: &Ladders) -> Result<String, ProgramError> {
         let [svg_file, png_file] = ["svg", "png"].map(|ending| self.file(name, ending));
         let svg = picture.svg().map_err(|error| ProgramError::picture(&svg_file, &*error))?;
-        let png = png(&svg).map_err(|error| ProgramError::picture(&png_file, &*error))?;
+        let png = png(&svg, SHARP).map_err(|error| ProgramError::picture(&png_file, &*error))?;
         write(&svg_file, svg.as_bytes())?;
         write(&png_file, &png)?;
         Ok(svg)

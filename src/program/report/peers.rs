@@ -1,25 +1,13 @@
-//! Lines of other programs, measured elsewhere: a CSV file with the columns below, others ignored.
+//! Lines of other programs, measured elsewhere: a CSV file with the columns of [`MEASURED`], others ignored.
 
 use std::path::Path;
 
 use csv::StringRecord;
 
 use super::ladder::{Figures, PROGRAM, Row};
+use super::table::MEASURED;
 use crate::program::error::ProgramError;
-
-/// Errors over the largest value, processor time in s, steps and mode changes.
-const COLUMNS: [&str; 10] = [
-    "scene",
-    "program",
-    "method",
-    "tolerance",
-    "error_F_x",
-    "error_F_z",
-    "error_E_diss",
-    "run_time",
-    "steps",
-    "events",
-];
+use crate::program::result_file::{no_column, refusal};
 
 /// The peers' rows, and the scenes that the file has.
 #[derive(Debug, Default)]
@@ -36,11 +24,11 @@ pub(super) fn read(path: &Path, names: &[&str]) -> Result<Peers, ProgramError> {
     let wrong = |message: String| ProgramError::ResultFile { path: path.to_owned(), message };
     let file = std::fs::File::open(path).map_err(ProgramError::file("read", path))?;
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
-    let head = reader.headers().map_err(|error| wrong(error.to_string()))?.clone();
+    let head = reader.headers().map_err(|error| wrong(refusal(&error)))?.clone();
     let columns = find_columns(&head).map_err(wrong)?;
     let mut peers = Peers::default();
     for record in reader.records() {
-        let record = record.map_err(|error| wrong(error.to_string()))?;
+        let record = record.map_err(|error| wrong(refusal(&error)))?;
         let fields = columns.map(|column| record.get(column).unwrap_or_default());
         if !peers.scenes.iter().any(|scene| scene == fields[0]) {
             peers.scenes.push(fields[0].to_owned());
@@ -53,20 +41,19 @@ pub(super) fn read(path: &Path, names: &[&str]) -> Result<Peers, ProgramError> {
     Ok(peers)
 }
 
-fn find_columns(head: &StringRecord) -> Result<[usize; COLUMNS.len()], String> {
-    let mut columns = [0; COLUMNS.len()];
-    for (column, name) in columns.iter_mut().zip(COLUMNS) {
+fn find_columns(head: &StringRecord) -> Result<[usize; MEASURED.len()], String> {
+    let mut columns = [0; MEASURED.len()];
+    for (column, name) in columns.iter_mut().zip(MEASURED) {
         let found = head.iter().position(|other| other == name);
-        *column = found.ok_or_else(|| {
-            let there: Vec<&str> = head.iter().collect();
-            format!("no column {name}; there are {}", there.join(", "))
-        })?;
+        *column = found.ok_or_else(|| no_column(name, head.iter()))?;
     }
     Ok(columns)
 }
 
 /// A row without a time is one of a run that did not come to its end.
-fn row([_, program, method, tolerance, x, z, lost, time, steps, events]: [&str; COLUMNS.len()]) -> Result<Row, String> {
+fn row(
+    [_, program, method, tolerance, x, z, lost, time, steps, events]: [&str; MEASURED.len()],
+) -> Result<Row, String> {
     let tolerance = number(tolerance)?.ok_or("expected a tolerance, found none")?;
     let time = number(time)?;
     let figures = Figures {

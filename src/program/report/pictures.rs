@@ -4,7 +4,7 @@ use super::communication::{self, Given};
 use super::ladder::{PROGRAM, Row};
 use super::reference::Reference;
 use super::trace::{Errors, QUANTITIES};
-use crate::program::plot::{Ladder, Ladders, Panel, Rung};
+use crate::program::plot::{Ladder, LadderPanel, Ladders, Rung};
 
 /// Errors over run time, one line for each program and method.
 pub(super) fn errors(reference: &Reference, rows: &[Row]) -> Ladders {
@@ -66,13 +66,13 @@ pub(super) fn communication(reference: &Reference, rows: &[communication::Row]) 
 }
 
 /// One panel for each quantity that the scene has; if it has none, an empty one of F_z.
-fn panels(reference: &Reference, ladders: impl Fn(usize) -> Vec<Ladder>) -> Vec<Panel> {
+fn panels(reference: &Reference, ladders: impl Fn(usize) -> Vec<Ladder>) -> Vec<LadderPanel> {
     let there = (0..QUANTITIES.len()).filter(|&quantity| reference.own[quantity].is_some());
     let mut shown: Vec<usize> = there.collect();
     if shown.is_empty() {
         shown.push(1);
     }
-    let panel = |quantity: usize| Panel {
+    let panel = |quantity: usize| LadderPanel {
         title: title(quantity, reference.comparison.is_of_means()),
         floor: reference.own[quantity].filter(|own| own.is_finite()),
         ladders: ladders(quantity),

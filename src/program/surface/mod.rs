@@ -5,7 +5,6 @@ mod spectrum;
 mod statistics;
 
 use std::fs;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use asperity::scene;
@@ -14,7 +13,7 @@ use serde::Serialize;
 use super::arguments::{Reading, Surface};
 use super::error::ProgramError;
 use super::plot::ProfilePicture;
-use super::{check_output, load, note, result_file, sources, warn};
+use super::{check_output, ends_in, load, note, result_file, sources, text, warn};
 use law::Law;
 use spectrum::{Band, Spectrum};
 use statistics::Statistics;
@@ -40,8 +39,7 @@ pub(crate) fn surface(command: &Surface) -> Result<(), ProgramError> {
     }
     let findings = Findings::of(&surface, command);
     let text = if command.json { findings.json()? } else { findings.text() };
-    let out = Path::new("standard output");
-    std::io::stdout().write_all(text.as_bytes()).map_err(ProgramError::file("write", out))?;
+    text::print(&text)?;
     if let Some(path) = &command.output {
         picture(&surface, &findings, &command.file).write(path)?;
     }
@@ -55,7 +53,7 @@ pub(crate) fn surface(command: &Surface) -> Result<(), ProgramError> {
 /// The surface, and the files that it was read from.
 fn read(command: &Surface) -> Result<(scene::Surface, Vec<PathBuf>), ProgramError> {
     let path = &command.file;
-    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
+    if ends_in(path, "toml") {
         if command.reading != Reading::default() {
             return Err(ProgramError::SceneHasOptions { path: path.clone() });
         }
@@ -101,7 +99,7 @@ impl Findings {
         ];
         rows.push(("Spectrum", format!("taken {}", self.taken)));
         rows.extend(self.law_rows().into_iter().map(|row| ("", row)));
-        rows.iter().map(|(name, text)| format!("{name:<12}{text}\n")).collect()
+        text::lines(&rows)
     }
 
     fn law_rows(&self) -> Vec<String> {

@@ -12,14 +12,14 @@ pub(crate) enum SweepError {
     )]
     NoArea,
     /// No loads at all.
-    #[error("expected --pressures or --forces")]
+    #[error("expected --pressures or --forces, the loads to sweep over")]
     NoLoad,
     /// Temperatures need a shift.
     #[error("--temperatures: the scene has no material.wlf, so nothing in it depends on the temperature")]
     NoWlf,
     /// The file is something else.
-    #[error("{} is no sweep's table: line {line}: expected {expected}; name another -o, or give --force to replace it", .path.display())]
-    NoTable { path: PathBuf, line: usize, expected: String },
+    #[error("{} is no sweep's table: line {line}: expected {expected}{}", .path.display(), advice(*.is_output))]
+    NoTable { path: PathBuf, line: usize, expected: String, is_output: bool },
     /// The file is of another sweep.
     #[error(
         "{} is the table of another sweep: its fingerprint is {found}, that of this scene with these settings {expected}; name \
@@ -49,6 +49,11 @@ pub(crate) enum SweepError {
     /// Some points have no result to rely on.
     #[error("{failed} of {total} points are not steady or failed: their status in {} says why", .path.display())]
     Failed { failed: usize, total: usize, path: PathBuf },
+}
+
+/// What to do about a file in the table's place.
+fn advice(is_output: bool) -> &'static str {
+    if is_output { "; name another -o, or give --force to replace it" } else { "" }
 }
 
 /// The first of `points`, and how many more there are.

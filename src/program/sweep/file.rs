@@ -47,7 +47,7 @@ fn points_done(path: &Path, header: &Header) -> Result<Vec<Line>, ProgramError> 
     if header.text().starts_with(&text) {
         return Ok(Vec::new());
     }
-    let table = parse(path, &text)?;
+    let table = parse(path, &text, true)?;
     if table.header.fingerprint != header.fingerprint {
         let (found, expected) = (table.header.fingerprint, header.fingerprint.clone());
         return Err(SweepError::Foreign { path: path.to_owned(), found, expected }.into());
@@ -61,14 +61,15 @@ fn points_done(path: &Path, header: &Header) -> Result<Vec<Line>, ProgramError> 
 
 /// Reads the table at `path`.
 pub(super) fn read(path: &Path) -> Result<Table, ProgramError> {
-    parse(path, &fs::read_to_string(path).map_err(ProgramError::file("read", path))?)
+    parse(path, &fs::read_to_string(path).map_err(ProgramError::file("read", path))?, false)
 }
 
-fn parse(path: &Path, text: &str) -> Result<Table, ProgramError> {
+fn parse(path: &Path, text: &str, is_output: bool) -> Result<Table, ProgramError> {
     let no_table = |error: super::table::Unreadable| SweepError::NoTable {
         path: path.to_owned(),
         line: error.line,
         expected: error.expected,
+        is_output,
     };
     Ok(Table::read(text).map_err(no_table)?)
 }

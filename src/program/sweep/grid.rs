@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::program::text::rounded;
+
 /// Values of one quantity, rising, each once.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Values(pub(crate) Vec<f64>);
@@ -59,14 +61,10 @@ fn values(part: &str, even: Even) -> Result<Vec<f64>, String> {
     let at = |i: usize| match (i, even) {
         (0, _) => low,
         (i, _) if i == last => high,
-        (i, Even::InLogarithm) => rounded(low * (high / low).powf(i as f64 / last as f64)),
-        (i, Even::InValue) => rounded(low + (high - low) * (i as f64 / last as f64)),
+        (i, Even::InLogarithm) => rounded(low * (high / low).powf(i as f64 / last as f64), DIGITS),
+        (i, Even::InValue) => rounded(low + (high - low) * (i as f64 / last as f64), DIGITS),
     };
     Ok((0..count).map(at).collect())
-}
-
-fn rounded(value: f64) -> f64 {
-    format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value)
 }
 
 fn number(text: &str) -> Result<f64, String> {

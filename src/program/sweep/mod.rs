@@ -136,7 +136,8 @@ fn temperatures(command: &Sweep, scene: &Scene) -> Result<Option<Values>, Progra
     };
     let values = command.temperatures.clone().unwrap_or_else(|| Values(vec![own]));
     for &temperature in &values.0 {
-        with_temperature(scene, temperature).check()?;
+        let refused = |refusal| ProgramError::Temperature { option: "--temperatures", refusal };
+        with_temperature(scene, temperature).check().map_err(refused)?;
     }
     Ok(Some(values))
 }

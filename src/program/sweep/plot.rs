@@ -5,15 +5,15 @@ use std::path::Path;
 use super::grid::Values;
 use super::table::{Line, Table};
 use crate::program::error::ProgramError;
-use crate::program::plot::{Dash, FrictionCurve, SidePanel, SidePanels};
+use crate::program::plot::{Curve, Panel, SideBySide, Stroke};
 
 /// Draws friction over speed at `path`: a panel for each temperature, a colour for each load; with one load, one panel
 /// and a colour for each temperature.
 pub(super) fn draw(path: &Path, table: &Table) -> Result<(), ProgramError> {
-    curves(table).write(path).map_err(|error| ProgramError::picture(path, &*error))
+    curves(table).write(path)
 }
 
-fn curves(table: &Table) -> SidePanels {
+fn curves(table: &Table) -> SideBySide {
     let grid = &table.header.grid;
     let temperatures: Vec<Option<f64>> = match &grid.temperatures {
         Some(Values(values)) => values.iter().map(|&value| Some(value)).collect(),
@@ -32,9 +32,9 @@ fn curves(table: &Table) -> SidePanels {
         let lines =
             colours.flat_map(|(look, temperature)| lines(&name(temperature), look, &of(loads[0], *temperature)));
         let title = temperatures[0].map(|_| load_name(loads[0])).unwrap_or_default();
-        vec![SidePanel { title, curves: lines.collect() }]
+        vec![Panel { title, curves: lines.collect() }]
     } else {
-        let panel = |&temperature: &Option<f64>| SidePanel {
+        let panel = |&temperature: &Option<f64>| Panel {
             title: kelvin(temperature).unwrap_or_default(),
             curves: loads
                 .iter()
@@ -44,18 +44,18 @@ fn curves(table: &Table) -> SidePanels {
         };
         temperatures.iter().map(panel).collect()
     };
-    SidePanels { x_title: "speed in m/s".into(), y_title: "friction coefficient".into(), panels }
+    SideBySide { x_title: "speed in m/s".into(), y_title: "friction coefficient".into(), panels }
 }
 
 /// The whole friction and its parts; of these only one that is there.
-fn lines(name: &str, look: usize, points: &[&Line]) -> Vec<FrictionCurve> {
+fn lines(name: &str, look: usize, points: &[&Line]) -> Vec<Curve> {
     let part = |i: usize| {
         let at = |line: &&Line| line.friction.map(|parts| (line.point.speed, parts[i]));
         points.iter().filter_map(at).collect::<Vec<_>>()
     };
-    let curve = |name: String, stroke, points| FrictionCurve { name, look, stroke, points };
-    let mut curves = vec![curve(name.to_owned(), Dash::Whole, part(0))];
-    for (i, stroke, what) in [(1, Dash::Dashed, "hysteresis"), (2, Dash::Dotted, "adhesion")] {
+    let curve = |name: String, stroke, points| Curve { name, look, stroke, points };
+    let mut curves = vec![curve(name.to_owned(), Stroke::Line, part(0))];
+    for (i, stroke, what) in [(1, Stroke::Dashed, "hysteresis"), (2, Stroke::Dotted, "adhesion")] {
         let points = part(i);
         if points.iter().any(|point| point.1 != 0.0) {
             curves.push(curve(what.to_owned(), stroke, points));

@@ -8,12 +8,12 @@ use asperity::scene::{MaterialParameter, Parameter, Scene, Value};
 use asperity::simulation::Start;
 use rayon::prelude::*;
 
-use crate::program::describe::Row;
 use crate::program::error::ProgramError;
-use crate::program::plot::{Ladder, Ladders, Panel, Rung};
+use crate::program::plot::{Ladder, LadderPanel, Ladders, Rung};
 use crate::program::progress;
 use crate::program::result_file::real;
 use crate::program::sweep::{Sliding, sliding};
+use crate::program::text::Row;
 
 /// Standard error of the layer's friction coefficient, over it.
 const ERROR: f64 = 0.01;
@@ -186,7 +186,7 @@ pub(super) fn picture(checks: &[Check], load: Load) -> Ladders {
         let name = format!("{:.3e} {}", of, load.unit());
         Ladder { name, dashed: false, look, rungs: own.filter_map(rung).collect() }
     };
-    let panel = |(i, name): (usize, &&str)| Panel {
+    let panel = |(i, name): (usize, &&str)| LadderPanel {
         title: format!("error of {name}, as a share of it"),
         floor: None,
         ladders: loads.iter().enumerate().map(|of| ladder(of, i)).collect(),

@@ -11,9 +11,9 @@ use asperity::element::PointContact;
 use asperity::scene::Scene;
 
 use crate::program::arguments::Pack;
-use crate::program::describe::Row;
 use crate::program::error::ProgramError;
 use crate::program::plot::plot_files;
+use crate::program::text::Row;
 
 /// Runs the layer and the element, writes what they do and says how far they are apart.
 pub(super) fn check(command: &Pack, contact: &PointContact, scene: &Path) -> Result<Vec<Row>, ProgramError> {

@@ -8,10 +8,10 @@ use asperity::scene::{Initial, MaterialParameter, OutputGroup, Parameter, Path, 
 use asperity::simulation::{Motion, Simulation, Start};
 
 use super::cells::{Check, element};
-use crate::program::describe::Row;
 use crate::program::error::ProgramError;
 use crate::program::excitation::Carrier;
 use crate::program::result_file::ResultWriter;
+use crate::program::text::Row;
 
 /// Rows of each leg.
 const ROWS: u32 = 200;
