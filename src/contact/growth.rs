@@ -11,22 +11,40 @@ const MOST_GROWTH: f64 = 2.0;
 
 /// The longest step that lets unstable contacts leave their places, s: the largest number where there are none.
 pub fn longest_unstable(model: &Model, state: &State, forces: &Forces) -> f64 {
-    let weakening = longest_weakening(model, state);
+    let weakening = weakening(model, state);
     if model.profile.bounds().curvature_max_abs == 0.0 {
-        return weakening;
+        return longest(weakening);
     }
     let slipping = state.mode.iter().enumerate().filter(|(_, mode)| mode.slips());
     let fastest = slipping.map(|(i, _)| growth(model, state, forces.on_mass_z[i], i)).fold(0.0, f64::max);
-    weakening.min(longest(fastest))
+    longest(weakening + fastest)
 }
 
 /// The longest step that lets contacts swing up whose friction falls with their speed, s: the largest number where
 /// there are none.
 pub fn longest_weakening(model: &Model, state: &State) -> f64 {
-    let Some(law) = &model.rate_shear else { return f64::MAX };
+    longest(weakening(model, state))
+}
+
+/// The rate, 1/s, at which contacts swing up whose friction falls with their speed, or up to twice that; 0 where they
+/// do not.
+fn weakening(model: &Model, state: &State) -> f64 {
+    let Some(law) = &model.rate_shear else { return 0.0 };
     let slipping = (0..model.masses()).filter(|&i| state.mode[i].slips());
     let steepest = slipping.map(|i| slope(law, state, i)).fold(0.0, f64::min);
-    longest(if steepest < 0.0 { swinging_up(model, steepest) } else { 0.0 })
+    if steepest >= 0.0 {
+        return 0.0;
+    }
+    let (frequency, damping) = swing(model);
+    let chain = Chain { model, state, law, damping };
+    let mut rate = -(damping + steepest) / model.mass;
+    if rate <= 0.0 || chain.loses(0.0) {
+        return 0.0;
+    }
+    while rate > frequency && chain.loses(0.5 * rate) {
+        rate *= 0.5;
+    }
+    rate.max(frequency)
 }
 
 fn longest(fastest: f64) -> f64 {
@@ -39,12 +57,11 @@ fn slope(law: &RateShear, state: &State, i: usize) -> f64 {
     square * law.with_slope(state.mode[i].direction() * state.velocity_x[i] * square.sqrt()).1
 }
 
-/// The rate, 1/s, of a mass on its horizontal link that friction drives as a damper `slope` < 0 (N s/m); 0 where the
-/// link's own losses are larger.
+/// The frequency, 1/s, of a mass on its horizontal link, and the damper, N s/m, that the link is at that frequency.
 ///
 /// It swings with m ω² = c + Σ c_j ω²τ_j²/(1 + ω²τ_j²) and loses with d + Σ c_j τ_j/(1 + ω²τ_j²). Slopes, the vertical
 /// link and the other masses only make it slower.
-fn swinging_up(model: &Model, slope: f64) -> f64 {
+fn swing(model: &Model) -> (f64, f64) {
     let kind = LinkKind::Horizontal;
     let link = &model.links[kind as usize];
     // From above, as if no dashpot yielded, the frequency falls to the largest there is.
@@ -64,17 +81,63 @@ fn swinging_up(model: &Model, slope: f64) -> f64 {
             break;
         }
     }
-    if damping + slope < 0.0 { square.sqrt().max(-(damping + slope) / model.mass) } else { 0.0 }
+    (square.sqrt(), damping)
 }
 
 /// Rounds in which the frequency is found: each leaves out the elements that are too fast for it.
 const MOST_ROUNDS: usize = 30;
 
+/// The slipping masses between their dampers: what friction gives one of them others may take.
+struct Chain<'a> {
+    model: &'a Model,
+    state: &'a State,
+    law: &'a RateShear,
+    /// What a horizontal link is as a damper, N s/m.
+    damping: f64,
+}
+
+impl Chain<'_> {
+    /// Whether no motion of the masses grows at the `rate` λ (1/s): whether D + λM is positive definite, D the dampers
+    /// by the velocities ẋ of the slipping masses, friction's among them, and M their masses m q². Cholesky's pivots.
+    fn loses(&self, rate: f64) -> bool {
+        let mut pivot = None;
+        (0..self.model.masses()).all(|i| {
+            let before = pivot.take();
+            if !self.state.mode[i].slips() {
+                return true;
+            }
+            let coupled = before.map_or(0.0, |pivot| self.between(i - 1, i).powi(2) / pivot);
+            let own = self.own(i) + rate * self.model.mass * (1.0 + self.square(i, i)) - coupled;
+            pivot = Some(own);
+            own > 0.0
+        })
+    }
+
+    /// s_i s_j.
+    fn square(&self, i: usize, j: usize) -> f64 {
+        self.state.ground[i].slope * self.state.ground[j].slope
+    }
+
+    /// The lateral dampers between two masses by ẋ_i ẋ_j, N s/m.
+    fn between(&self, i: usize, j: usize) -> f64 {
+        let [x, z] = [LinkKind::LateralX, LinkKind::LateralZ].map(|kind| self.model.links[kind as usize].damping);
+        x + self.square(i, j) * z
+    }
+
+    /// The dampers by ẋ_i², N s/m. A free neighbour may go along, so what is between counts for nothing.
+    fn own(&self, i: usize) -> f64 {
+        let vertical = self.model.links[LinkKind::Vertical as usize].damping;
+        let neighbours = [i.wrapping_sub(1), i + 1].into_iter().filter_map(|j| self.state.mode.get(j));
+        let held = neighbours.filter(|mode| mode.in_contact()).count() as f64;
+        self.damping + self.square(i, i) * vertical + held * self.between(i, i) + slope(self.law, self.state, i)
+    }
+}
+
 /// The rate λ, 1/s, at which slipping mass `i` leaves the place where it is, moved a little; 0 where it comes back.
 ///
 /// (6)-(9) linear in the way along x, of friction only what depends on the speed: m q² λ² + D λ = K, with
 /// D = d_x + s² d_z + q² A τ_f' and K = κ f_z - c_x - s² c_z of the links to the carrier. The other links and the
-/// Maxwell elements only make it slower.
+/// Maxwell elements only make it slower. Where D < 0 it is what is left without D: that is [`weakening`]'s.
 fn growth(model: &Model, state: &State, f_z: f64, i: usize) -> f64 {
     let ground = &state.ground[i];
     let driving = ground.curvature * f_z;
@@ -88,7 +151,6 @@ fn growth(model: &Model, state: &State, f_z: f64, i: usize) -> f64 {
         return 0.0;
     }
     let (inertia, links) = (model.mass * (1.0 + square), x.damping + square * z.damping);
-    let damping = links + model.rate_shear.map_or(0.0, |law| slope(&law, state, i));
-    let root = (damping * damping + 4.0 * inertia * excess).sqrt();
-    if damping < 0.0 { (root - damping) / (2.0 * inertia) } else { 2.0 * excess / (damping + root) }
+    let damping = (links + model.rate_shear.map_or(0.0, |law| slope(&law, state, i))).max(0.0);
+    2.0 * excess / (damping + (damping * damping + 4.0 * inertia * excess).sqrt())
 }

@@ -39,6 +39,8 @@ pub struct StepEnd {
     concerned: Vec<bool>,
     /// The extremes of the profile.
     profile: Bounds,
+    /// [`Model::lasting_stiffness`], N/m: what a friction force that went too far counts by.
+    lasting: Option<f64>,
 }
 
 impl StepEnd {
@@ -51,6 +53,7 @@ impl StepEnd {
             force: 0.0,
             concerned: vec![false; k],
             profile: model.profile.bounds(),
+            lasting: model.lasting_stiffness(),
         }
     }
 
@@ -125,7 +128,8 @@ impl StepEnd {
             Late { length: -last.normal[i] / stiffness, time }
         } else if step.model.has_friction && last.margin[i] < 0.0 {
             let time = step.time_below(first.margin[i], last.margin[i]);
-            let unit = if step.end.mode[i] == Mode::Stick { 1.0 / stiffness } else { 0.5 * time };
+            let lasting = self.lasting.unwrap_or(stiffness);
+            let unit = if step.end.mode[i] == Mode::Stick { 1.0 / lasting } else { 0.5 * time };
             Late { length: -last.margin[i] * unit, time }
         } else {
             return None;

@@ -69,7 +69,7 @@ impl<const STAGES: usize> Tried<'_, STAGES> {
                 sum += self.rod_error(kind, (rod, h), tolerance, room);
             }
             if self.maxwell.has(kind) {
-                sum += self.maxwell_error(kind, tolerance, room);
+                sum += self.maxwell_error(model, kind, tolerance, room);
             }
         }
         let mean = |sum: f64| (sum / model.masses() as f64).sqrt();
@@ -115,10 +115,13 @@ impl<const STAGES: usize> Tried<'_, STAGES> {
     }
 
     /// The sum of squares of the errors of the Maxwell elements' forces of the links of `kind`.
-    fn maxwell_error(&self, kind: LinkKind, tolerance: &Tolerance, room: &mut ErrorRoom) -> f64 {
+    fn maxwell_error(&self, model: &Model, kind: LinkKind, tolerance: &Tolerance, room: &mut ErrorRoom) -> f64 {
         let e = if kind.is_along_x() { &self.end.elongation_x } else { &self.end.elongation_z };
         let force = &mut room.force[..kind.count(e.len())];
         self.maxwell.force_error(kind, self.stages, force);
+        if let Some(per_force) = tolerance.per_pressing_force(kind) {
+            return self.pressing_error(model, per_force, tolerance, force);
+        }
         let per_force = tolerance.per_force(kind);
         let error = |i: usize| per_force * force[i];
         if kind.is_lateral() {
@@ -126,6 +129,20 @@ impl<const STAGES: usize> Tried<'_, STAGES> {
         } else {
             sum_of(force.len(), |i| error(i) * error(i) / tolerance.of_position(e[i]))
         }
+    }
+
+    /// The sum of squares of the errors `error` (N) of the vertical Maxwell elements' forces where these are far stiffer
+    /// than what lasts: on a mass in contact, which they press on, against the force itself, and not against the place,
+    /// which is forced on them.
+    fn pressing_error(&self, model: &Model, per_force: f64, tolerance: &Tolerance, error: &[f64]) -> f64 {
+        let kind = LinkKind::Vertical;
+        let (a, e, per_place) = (&self.end.maxwell, &self.end.elongation_z, tolerance.per_force(kind));
+        sum_of(error.len(), |i| {
+            let force = || model.rows_of(kind).map(|row| row.stiffness * a[row.range.start + i]).sum::<f64>();
+            let (per_force, size) =
+                if self.end.mode[i].in_contact() { (per_force, per_force * force()) } else { (per_place, e[i]) };
+            (per_force * error[i]).powi(2) / tolerance.of_position(size)
+        })
     }
 
     /// The sum of squares of the errors c δe + d δė of the forces of the links of `kind`, which are rods.

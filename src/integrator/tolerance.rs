@@ -16,6 +16,8 @@ pub struct Tolerance {
     per_elongation: [f64; 4],
     /// The kinds of link that are rods: their errors count by the forces that they make.
     rods: [Option<Rod>; 4],
+    /// [`Model::lasting_stiffness`], N/m.
+    lasting: Option<f64>,
 }
 
 /// A kind of link that works as a rod.
@@ -64,6 +66,7 @@ impl Tolerance {
             velocity: absolute * model.felt_frequency(),
             per_elongation: LinkKind::ALL.map(per_elongation),
             rods: LinkKind::ALL.map(rod),
+            lasting: model.lasting_stiffness(),
         }
     }
 
@@ -83,6 +86,12 @@ impl Tolerance {
     pub fn per_force(&self, kind: LinkKind) -> f64 {
         let stiffness = self.per_elongation[kind as usize];
         if stiffness > 0.0 { 1.0 / stiffness } else { 0.0 }
+    }
+
+    /// The same for the vertical Maxwell elements of a mass in contact, where what presses it on once they have relaxed
+    /// says nothing of what they do: then their force counts by itself.
+    pub(super) fn per_pressing_force(&self, kind: LinkKind) -> Option<f64> {
+        self.lasting.filter(|_| kind == LinkKind::Vertical).map(|stiffness| 1.0 / stiffness)
     }
 
     /// The links of `kind` if they are rods.

@@ -185,6 +185,26 @@ impl Model {
         usual > 0.0 && (stiffness > BEYOND * BEYOND * usual || damping > BEYOND * (usual * self.mass).sqrt())
     }
 
+    /// What lasts of the links that press a mass on, N/m, where their Maxwell elements are far stiffer than that and
+    /// than the softest of the other links: once these have relaxed, no place within its tolerance says what a mass is
+    /// pressed with.
+    pub fn lasting_stiffness(&self) -> Option<f64> {
+        let elements: f64 = self.rows_of(LinkKind::Vertical).map(|row| row.stiffness).sum();
+        let [_, others @ ..] = self.glassy;
+        let softest = others.into_iter().filter(|&stiffness| stiffness > 0.0).reduce(f64::min);
+        let lasting = self.links[LinkKind::Vertical as usize].stiffness.max(softest.unwrap_or(0.0));
+        (lasting > 0.0 && elements > BEYOND * BEYOND * lasting).then_some(lasting)
+    }
+
+    /// The largest stiffness that makes a force of the rounding of a place, N/m. Maxwell elements that press by far more
+    /// than lasts do not: each keeps its own elongation.
+    pub fn rounded_stiffness(&self) -> f64 {
+        let [vertical, others @ ..] = self.glassy;
+        let link = &self.links[LinkKind::Vertical as usize];
+        let vertical = if self.lasting_stiffness().is_some() { link.stiffness } else { vertical };
+        holding([vertical, others[0], others[1], others[2]])
+    }
+
     /// What springs are judged by: the vertical ones, whose elongation is forced on them, or the softest of the others
     /// where those are stiffer, N/m.
     fn usual_stiffness(&self) -> f64 {

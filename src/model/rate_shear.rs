@@ -22,6 +22,8 @@ pub struct RateShear {
     sharpness: f64,
     /// v_c, m/s.
     creep_speed: f64,
+    /// v/v_0 where τ_f falls fastest.
+    fastest_fall: f64,
 }
 
 /// How near to the law's own curve a correction is taken, as a difference of ln v.
@@ -36,7 +38,8 @@ impl RateShear {
         let largest = law.force.unwrap_or(0.0);
         let per_reference = 1.0 / law.reference_speed;
         let (sharpness, creep_speed) = (law.sharpness / (LN_10 * LN_10), law.creep_speed());
-        let unheld = Self { largest, held: 0.0, per_reference, sharpness, creep_speed };
+        let fastest_fall = fastest_fall(sharpness);
+        let unheld = Self { largest, held: 0.0, per_reference, sharpness, creep_speed, fastest_fall };
         (largest > 0.0).then(|| Self { held: unheld.whole(creep_speed).0, ..unheld })
     }
 
@@ -80,7 +83,8 @@ impl RateShear {
         self.balance(speed, here + (weight + slope) * by, weight)
     }
 
-    /// The speed v, m/s, at which `weight` (v - `from`) + A τ_f(v) - A τ_f(v_c) is `force` (N).
+    /// The speed v, m/s, at which `weight` (v - `from`) + A τ_f(v) - A τ_f(v_c) is `force` (N). Where friction falls
+    /// faster than the weight there may be three: it is the one that comes first from `from`, as motion comes to it.
     pub fn balance(&self, from: f64, force: f64, weight: f64) -> f64 {
         let free = from + force / weight;
         if free <= self.creep_speed {
@@ -93,10 +97,35 @@ impl RateShear {
         if excess(low) >= 0.0 || !high.is_finite() {
             return low;
         }
+        let (low, high) = self.first(excess, from.clamp(low, high), (low, high));
         let speed = |y: f64| self.creep_speed * y.exp();
         let bracket = [low, high].map(|v| (v / self.creep_speed).ln());
         speed(bracketed_root(|y| excess(speed(y)), (bracket[0], bracket[1]), ON_THE_CURVE))
     }
+
+    /// The part of the bracket, m/s, of the first zero of `excess` from the speed `from`. Between the largest strength
+    /// and where it falls fastest, and on both sides of these, there is one zero at most where the ends differ in sign.
+    fn first(&self, excess: impl Fn(f64) -> f64, from: f64, (mut low, mut high): (f64, f64)) -> (f64, f64) {
+        let marks = [1.0, self.fastest_fall].map(|share| share / self.per_reference);
+        let faster = excess(from) < 0.0;
+        *(if faster { &mut low } else { &mut high }) = from;
+        for mark in if faster { marks } else { [marks[1], marks[0]] } {
+            if !(low < mark && mark < high) {
+                continue;
+            }
+            let above = excess(mark) >= 0.0;
+            *(if above { &mut high } else { &mut low }) = mark;
+            if above == faster {
+                break;
+            }
+        }
+        (low, high)
+    }
+}
+
+/// v/v_0 at which the strength falls fastest: τ_f'' = 0 beyond v_0 at 2by² + y = 1, y = ln(v/v_0).
+fn fastest_fall(sharpness: f64) -> f64 {
+    (2.0 / (1.0 + (1.0 + 8.0 * sharpness).sqrt())).exp()
 }
 
 #[cfg(test)]

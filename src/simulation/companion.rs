@@ -78,41 +78,34 @@ impl Companion {
         if self.lost {
             return None;
         }
-        let force = self.go_to(s);
+        let force = self.go_to(s, false);
         self.lost = force.is_err();
         force.ok()
     }
 
-    fn go_to(&mut self, s: f64) -> Result<f64, SimulationError> {
+    /// F_z at the time `s`; the finer run stands there if it `ends` there, or within a step that goes beyond it.
+    fn go_to(&mut self, s: f64, ends: bool) -> Result<f64, SimulationError> {
         while self.finer.run.s < s {
-            let stride = match self.stride {
+            let stride = match self.stride.take() {
                 Some(stride) => stride,
                 None => self.finer.next_step(self.duration, &mut self.work)?,
             };
             let end = self.finer.end_of(&stride, self.duration);
             let theta = (s - self.finer.run.s) / stride.h;
-            if s < end && self.finer.can_show_within(stride.h, theta) {
+            if !ends && s < end && self.finer.can_show_within(stride.h, theta) {
                 self.stride = Some(stride);
                 return Ok(self.finer.force_z_within(stride.h, theta));
             }
-            self.stride = None;
-            if s < end {
-                let cut = self.finer.cut_step(s - self.finer.run.s)?;
-                self.finer.take_step(&cut, s);
-            } else {
-                self.finer.take_step(&stride, end);
-            }
+            let (stride, end) =
+                if s < end { self.finer.cut_at(s, self.duration, &mut self.work)? } else { (stride, end) };
+            self.finer.take_step(&stride, end);
         }
         Ok(self.finer.force_z())
     }
 
     /// Ends the motion where `run` does. If the finer run got lost, it goes on from there.
     pub(super) fn stop_beside(&mut self, run: &Simulation) {
-        let s = run.run.s;
-        if !self.lost && self.stride.take().is_some() {
-            let cut = self.finer.cut_step(s - self.finer.run.s);
-            self.lost = cut.map(|stride| self.finer.take_step(&stride, s)).is_err();
-        }
+        self.lost = self.lost || self.go_to(run.run.s, true).is_err();
         if self.lost {
             self.stride = None;
             self.finer.take_over(run);

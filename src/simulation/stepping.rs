@@ -32,6 +32,9 @@ const UNSEEN: f64 = 5e-4;
 /// What is left of a step whose stages could not be solved.
 pub(super) const AFTER_FAILURE: f64 = 0.25;
 
+/// The least share of the length asked for at which a shorter step is given up.
+const SHORTEST_CUT: f64 = 1e-12;
+
 /// A step that was tried with the length `h` (s) and is taken up to its fraction `share`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stride {
@@ -80,25 +83,25 @@ impl Simulation {
         }
         let mut work = 0;
         let mut risen = self.has_risen(until);
-        // A row at the end of a step that was cut for it.
-        let mut due = None;
         while self.run.s < motion.duration && !risen {
             let mut stride = self.next_step(motion.duration, &mut work)?;
             if let Some(share) = self.rises_within(&stride, until) {
-                stride = self.cut_step(share * stride.h)?;
-                risen = true;
+                let h = share * stride.h;
+                stride = self.cut_step(h, &mut work)?;
+                risen = stride.h == h;
             }
             if let Some(companion) = &mut self.companion {
                 companion.note_step(stride.h);
             }
             let mut end = self.end_of(&stride, motion.duration);
-            while let Some(time) = rows.next_if(|&time| time < end) {
+            while let Some(time) = rows.peek().copied().filter(|&time| time < end) {
                 let (elapsed, h) = (time - self.run.s, stride.h);
                 if self.can_show_within(h, elapsed / h) {
                     self.show_within(h, elapsed / h, |simulation| observe(time, simulation));
+                    rows.next();
                 } else {
-                    (stride, end, risen) = (self.cut_step(elapsed)?, time, false);
-                    due = Some(time);
+                    (stride, end) = self.cut_at(time, motion.duration, &mut work)?;
+                    risen = false;
                 }
             }
             self.take_step(&stride, end);
@@ -106,7 +109,7 @@ impl Simulation {
             if risen || end >= motion.duration {
                 self.find_tangents();
             }
-            while let Some(time) = due.take().or_else(|| rows.next_if(|&time| time <= end)) {
+            while let Some(time) = rows.next_if(|&time| time <= end) {
                 observe(time, self);
             }
         }
@@ -127,11 +130,39 @@ impl Simulation {
         until.is_some_and(|force| self.force_z() >= force)
     }
 
-    /// A shorter step in place of a good one: no worse, and free of events, or with fewer.
-    pub(super) fn cut_step(&mut self, h: f64) -> Result<Stride, SimulationError> {
-        let attempt = if self.run.stepping { self.try_time_step(h, true) } else { self.try_step(h, true) };
-        let stride = attempt.map(|_| Stride { h, share: 1.0 });
-        stride.ok_or(SimulationError::StepTooSmall { time: self.run.time(), step: h })
+    /// A step up to the time `s` of the piece in place of a good one that goes beyond it, and its end: before that time
+    /// where a step so long is no good.
+    pub(super) fn cut_at(&mut self, s: f64, duration: f64, work: &mut u64) -> Result<(Stride, f64), SimulationError> {
+        let h = s - self.run.s;
+        let stride = self.cut_step(h, work)?;
+        Ok((stride, if stride.h == h { s } else { self.end_of(&stride, duration) }))
+    }
+
+    /// A step of the length `h` in place of a longer, good one: no worse, and free of events, or with fewer. A shorter
+    /// one where its stages cannot be solved, though those of the longer one could, or find another solution.
+    fn cut_step(&mut self, h: f64, work: &mut u64) -> Result<Stride, SimulationError> {
+        let (mut length, any_error) = (h, self.shorter_is_no_worse());
+        loop {
+            let good = if self.run.stepping {
+                self.try_time_step(length, any_error).is_some()
+            } else {
+                self.try_step(length, any_error).is_some()
+            };
+            if good {
+                return Ok(Stride { h: length, share: 1.0 });
+            }
+            self.count_work(work)?;
+            if length <= SHORTEST_CUT * h {
+                return Err(SimulationError::StepTooSmall { time: self.run.time(), step: length });
+            }
+            length = self.run.step_size;
+        }
+    }
+
+    /// Whether a step shorter than a good one needs no test of its error. Where friction falls with the speed the
+    /// stages may have several solutions, and the two need not find the same.
+    fn shorter_is_no_worse(&self) -> bool {
+        self.model.rate_shear.is_none()
     }
 
     /// F_z now, N.
@@ -226,7 +257,7 @@ impl Simulation {
         let mut proposal = None;
         loop {
             self.count_work(work)?;
-            let Some(attempt) = self.try_step(h, proposal.is_some()) else {
+            let Some(attempt) = self.try_step(h, proposal.is_some() && self.shorter_is_no_worse()) else {
                 if h <= shortest {
                     return Err(SimulationError::StepTooSmall { time: self.run.time(), step: h });
                 }
