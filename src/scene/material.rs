@@ -45,6 +45,9 @@ pub struct Wlf {
 }
 
 impl Wlf {
+    /// No rubber is soft below this, K (silicone's glass transition is at some 150 K): a lower temperature is meant in °C.
+    pub const COLDEST: f64 = 100.0;
+
     /// a_T: log10 a_T = -C_1 (T - T_ref)/(C_2 + T - T_ref), for T above
     /// [`lowest_temperature`](Self::lowest_temperature).
     pub fn shift_factor(&self) -> f64 {
@@ -210,7 +213,7 @@ impl Wlf {
             return Ok(());
         }
         let expected = format!(
-            "more than material.wlf.reference_temperature - c2 = {:?} K, where the shift has its pole",
+            "more than material.wlf.reference_temperature - c2 = {:.2} K, where the shift has its pole",
             self.lowest_temperature()
         );
         let problem = Problem::Value { given: format!("{:?}", self.temperature), expected };

@@ -63,6 +63,7 @@ fn read_scene(source: Source<'_>, document: &DeTable<'_>) -> Result<Scene, Scene
     root.finish()?;
     let Found { files, extracts, mut warnings } = found;
     warnings.extend(warnings::short_profile(&layer, &surface, &excitation));
+    warnings.extend(material.as_ref().and_then(warnings::cold_temperatures));
     let scene = Scene {
         name,
         description,

@@ -184,6 +184,24 @@ fn a_roughness_shorter_than_the_layer_is_a_warning() {
 }
 
 #[test]
+fn temperatures_in_degrees_celsius_are_a_warning() {
+    let told = |reference: f64, temperature: f64| {
+        parse(&format!(
+            "name = 't'\nlayer = {{ masses = 4, spacing = 1e-4, thickness = 1e-3, width = 1e-2 }}\nsurface = {{ kind = 'flat' }}
+            [material]\ndensity = 1100\npoisson_ratio = 0.49\nequilibrium_modulus = 1e6\nprony = []
+            wlf = {{ c1 = 7.52, c2 = 119.75, reference_temperature = {reference}, temperature = {temperature} }}"
+        ))
+        .warnings
+    };
+    let meant = |name: &str| {
+        [format!("material.wlf.{name} K is too cold for rubber: temperatures are in K, 20 °C being 293.15 K")]
+    };
+    assert!(told(293.15, 313.15).is_empty());
+    assert_eq!(told(20.0, 40.0), meant("reference_temperature = 20.0"));
+    assert_eq!(told(200.0, 99.0), meant("temperature = 99.0"));
+}
+
+#[test]
 fn a_periodic_or_a_level_profile_is_never_too_short() {
     let far = "excitation = [{ duration = 1, u_rate = 1e3 }]";
     let periodic = "surface = { kind = 'sinusoid', amplitude = 1, wavelength = 1 }";
@@ -191,6 +209,15 @@ fn a_periodic_or_a_level_profile_is_never_too_short() {
         let text = format!("name = 'n'\nlayer = {{ masses = 9, spacing = 1, mass = 1 }}\n{surface}\n{far}");
         assert!(parse(&text).warnings.is_empty());
     }
+}
+
+#[test]
+fn the_duration_is_the_sum_as_it_is_written() {
+    let flat = "layer = { masses = 9, spacing = 1, mass = 1 }\nsurface = { kind = 'flat' }";
+    let duration = |phases: &str| parse(&format!("name = 'd'\n{flat}\n{phases}")).duration();
+    assert_eq!(duration(""), 0.0);
+    assert_eq!(duration("excitation = [{ duration = 1e-2 }, { duration = 1e-3 }, { duration = 3e-3 }]"), 0.014);
+    assert_eq!(duration("excitation = [{ duration = 1e30 }, { duration = 1e-30 }]"), 1e30);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{Layer, Path, Phase, Surface};
+use super::{Layer, Material, Path, Phase, Scene, Surface, Wlf};
 
 /// A layer may reach over the end by rounding: by this part of the profile's length.
 const ROUNDING: f64 = 1.0e-9;
@@ -17,10 +17,25 @@ struct Reach {
 /// A natural profile that ends below the layer on its way.
 pub(super) fn short_profile(layer: &Layer, surface: &Surface, excitation: &[Phase]) -> Option<String> {
     let way = layer.reach().plus(carrier_reach(excitation));
-    surface.too_short_for(way).then(|| {
-        let (profile, end) = (surface.reach(), "beyond its ends the profile goes on straight, along its end tangents");
-        format!("the profile reaches {profile}, but the layer moves {way}: {end}")
-    })
+    surface
+        .too_short_for(way)
+        .then(|| format!("the profile reaches {}, but the layer moves {way}: {PROFILE_ENDS}", surface.reach()))
+}
+
+/// What a natural profile is beyond its ends.
+const PROFILE_ENDS: &str = "beyond its ends the profile goes on straight, along its end tangents";
+
+impl Scene {
+    /// What is worth telling where the carrier, moved by `u` (m), has brought the layer over the end of a natural
+    /// profile.
+    pub fn off_profile(&self, u: f64) -> Option<String> {
+        let Reach { low, high } = self.layer.reach().plus(Reach { low: u, high: u });
+        let surface = &self.surface;
+        surface.too_short_for(Reach { low, high }).then(|| {
+            let end = if surface.too_short_for(Reach { low, high: low }) { low } else { high };
+            format!("the profile reaches {}, but the layer has come to {end:?} m: {PROFILE_ENDS}", surface.reach())
+        })
+    }
 }
 
 /// A roughness, sampled from a natural profile that ends before the layer does.
@@ -32,6 +47,16 @@ pub(super) fn short_roughness(layer: &Layer, roughness: &Surface) -> Option<Stri
     })
 }
 
+/// Temperatures that are meant in °C, most likely.
+pub(super) fn cold_temperatures(material: &Material) -> Option<String> {
+    let wlf = material.wlf?;
+    let named = [("reference_temperature", wlf.reference_temperature), ("temperature", wlf.temperature)];
+    let (name, cold) = named.into_iter().find(|(_, temperature)| *temperature < Wlf::COLDEST)?;
+    Some(format!(
+        "material.wlf.{name} = {cold:?} K is too cold for rubber: temperatures are in K, 20 °C being 293.15 K"
+    ))
+}
+
 impl Surface {
     fn reach(&self) -> Reach {
         let end = |x: Option<&f64>| x.copied().unwrap_or(0.0);
@@ -40,10 +65,10 @@ impl Surface {
 
     /// A level profile goes on as it is, and ends nowhere.
     fn too_short_for(&self, way: Reach) -> bool {
-        let level = self.z.windows(2).all(|pair| pair[0] == pair[1]);
         let reach = self.reach();
         let rounding = ROUNDING * (reach.high - reach.low);
-        !self.periodic && !level && (way.low < reach.low - rounding || reach.high + rounding < way.high)
+        let level = || self.z.windows(2).all(|pair| pair[0] == pair[1]);
+        !self.periodic && (way.low < reach.low - rounding || reach.high + rounding < way.high) && !level()
     }
 }
 

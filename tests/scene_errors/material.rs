@@ -185,7 +185,7 @@ fn values_that_do_not_go_together() {
     let wlf = |temperature: f64| {
         format!("wlf = {{ c1 = 7.5, c2 = 100.0, reference_temperature = 300.0, temperature = {temperature:?} }}")
     };
-    let pole = "expected more than material.wlf.reference_temperature - c2 = 200.0 K, where the shift has its pole";
+    let pole = "expected more than material.wlf.reference_temperature - c2 = 200.00 K, where the shift has its pole";
     assert_refused(
         "material-together",
         &[

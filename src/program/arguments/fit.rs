@@ -55,6 +55,9 @@ impl WlfConstants {
     fn parse(text: &str) -> Result<Self, String> {
         let numbers: Vec<f64> = text.split(',').filter_map(|number| number.trim().parse().ok()).collect();
         match numbers[..] {
+            [.., cold] if numbers.len() == 3 && cold < Wlf::COLDEST && cold > 0.0 => {
+                Err(format!("TREF = {cold} is too cold for rubber: it is in K, 20 °C being 293.15 K"))
+            }
             [c1, c2, reference_temperature]
                 if text.split(',').count() == 3 && numbers.iter().all(|number| *number > 0.0 && number.is_finite()) =>
             {
@@ -82,5 +85,6 @@ mod tests {
         for wrong in ["7.52,119.75", "7.52,x,119.75,293.15", "-1,100,300", "1,2,3,4", ""] {
             assert!(WlfConstants::parse(wrong).unwrap_err().contains("C1,C2,TREF"), "{wrong}");
         }
+        assert!(WlfConstants::parse("7.52,119.75,20").unwrap_err().contains("20 °C being 293.15 K"));
     }
 }

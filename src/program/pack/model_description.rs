@@ -71,7 +71,7 @@ fn log_categories(xml: &mut Xml) -> io::Result<()> {
 /// The excitation's duration as the time to simulate; a scene without one, and an element, leave that to the master.
 fn default_experiment(xml: &mut Xml, subject: &Subject) -> io::Result<()> {
     let Subject::Layer(scene) = subject else { return Ok(()) };
-    let stop: f64 = scene.excitation.iter().map(|phase| phase.duration).sum();
+    let stop = scene.duration();
     if stop <= 0.0 {
         return Ok(());
     }
