@@ -7,6 +7,7 @@ use crate::outputs::{self, Output, Variable};
 use crate::scene::{OutputGroup, Parameter, Unit, Value};
 use crate::simulation::{Handover, ModeChange};
 
+use super::beyond::Beyond;
 use super::catalogue::Catalogue;
 use super::clock::Clock;
 use super::fault::{Fault, Status};
@@ -32,6 +33,7 @@ pub(super) struct Instance {
     pub(super) texts: Vec<CString>,
     memory: Memory,
     log: Log,
+    beyond: Beyond,
     guid: String,
     /// What fmi2Reset goes back to.
     original: Arc<Parameters>,
@@ -63,6 +65,7 @@ impl Instance {
             texts: Vec::new(),
             memory: Memory::default(),
             log,
+            beyond: Beyond::default(),
             guid,
             original,
             logging,
@@ -124,6 +127,7 @@ impl Instance {
     /// fmi2ExitInitializationMode: the layer, or the element, is put under the carrier.
     pub(super) fn exit_initialization_mode(&mut self) -> Result<(), Fault> {
         self.run.start()?;
+        self.beyond.start = Some(self.run.clock.time);
         self.record_events();
         Ok(())
     }
@@ -137,6 +141,7 @@ impl Instance {
         self.outputs.outdate();
         self.tell_events(&events);
         self.tell_work(&handovers);
+        self.tell_beyond();
         Ok(())
     }
 
@@ -152,6 +157,7 @@ impl Instance {
         self.outputs.outdate();
         self.texts.clear();
         self.log = Log::new(self.logging);
+        self.beyond = Beyond::default();
         Ok(())
     }
 
@@ -214,6 +220,13 @@ impl Instance {
         for change in events {
             let text = event(change, is_layer);
             self.log.add(Message { status: Status::Ok, category: Category::Events, text });
+        }
+    }
+
+    fn tell_beyond(&mut self) {
+        let Some(plant) = &self.run.plant else { return };
+        for text in self.beyond.news(self.run.parameters.subject(), plant, self.run.clock.time) {
+            self.log.add(Message::of_status(Status::Warning, text));
         }
     }
 

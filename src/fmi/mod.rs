@@ -5,6 +5,7 @@
 //! called when is one table, what a value reference means is one [`Catalogue`], which the writer of the model
 //! description uses too. Two files hold unsafe code: `exports` (raw pointers in) and `callbacks` (the master's logger).
 
+mod beyond;
 mod callbacks;
 mod carrier;
 mod catalogue;
