@@ -32,9 +32,11 @@ impl Beyond {
     fn reduction(&mut self, scene: &Scene, time: f64) -> Option<String> {
         /// Times differ by so much of themselves by rounding.
         const ROUNDING: f64 = 1e-9;
+        if self.outlasted_reduction || scene.solver.reduce == 0.0 {
+            return None;
+        }
         let foreseen = scene.duration();
-        let elapsed = time - self.start?;
-        if self.outlasted_reduction || scene.solver.reduce == 0.0 || elapsed <= foreseen * (1.0 + ROUNDING) {
+        if time - self.start? <= foreseen * (1.0 + ROUNDING) {
             return None;
         }
         self.outlasted_reduction = true;

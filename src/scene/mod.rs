@@ -271,11 +271,9 @@ impl OutputGroup {
 }
 
 impl Scene {
-    /// How long the excitation takes if no force ends a phase, s: 0.014 of 0.01, 0.001 and 0.003, not 0.013999999999999999.
+    /// How long the excitation takes if no force ends a phase, s.
     pub fn duration(&self) -> f64 {
-        let sum: f64 = self.excitation.iter().map(|phase| phase.duration).sum();
-        // By way of a decimal, whose last digit but one the sum has right.
-        format!("{sum:.14e}").parse().unwrap_or(sum)
+        self.excitation.iter().map(|phase| phase.duration).sum()
     }
 }
 

@@ -212,15 +212,6 @@ fn a_periodic_or_a_level_profile_is_never_too_short() {
 }
 
 #[test]
-fn the_duration_is_the_sum_as_it_is_written() {
-    let flat = "layer = { masses = 9, spacing = 1, mass = 1 }\nsurface = { kind = 'flat' }";
-    let duration = |phases: &str| parse(&format!("name = 'd'\n{flat}\n{phases}")).duration();
-    assert_eq!(duration(""), 0.0);
-    assert_eq!(duration("excitation = [{ duration = 1e-2 }, { duration = 1e-3 }, { duration = 3e-3 }]"), 0.014);
-    assert_eq!(duration("excitation = [{ duration = 1e30 }, { duration = 1e-30 }]"), 1e30);
-}
-
-#[test]
 fn a_path_has_the_rates_of_its_displacement() {
     let path = Path { rate: 0.3, amplitude: 1e-3, frequency: 40.0 };
     let (s, h) = (0.0123, 1e-6);

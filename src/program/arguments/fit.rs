@@ -55,7 +55,7 @@ impl WlfConstants {
     fn parse(text: &str) -> Result<Self, String> {
         let numbers: Vec<f64> = text.split(',').filter_map(|number| number.trim().parse().ok()).collect();
         match numbers[..] {
-            [.., cold] if numbers.len() == 3 && cold < Wlf::COLDEST && cold > 0.0 => {
+            [_, _, cold] if cold > 0.0 && cold < Wlf::COLDEST => {
                 Err(format!("TREF = {cold} is too cold for rubber: it is in K, 20 °C being 293.15 K"))
             }
             [c1, c2, reference_temperature]

@@ -71,7 +71,7 @@ fn log_categories(xml: &mut Xml) -> io::Result<()> {
 /// The excitation's duration as the time to simulate; a scene without one, and an element, leave that to the master.
 fn default_experiment(xml: &mut Xml, subject: &Subject) -> io::Result<()> {
     let Subject::Layer(scene) = subject else { return Ok(()) };
-    let stop = scene.duration();
+    let stop = as_written(scene.duration());
     if stop <= 0.0 {
         return Ok(());
     }
@@ -82,6 +82,11 @@ fn default_experiment(xml: &mut Xml, subject: &Subject) -> io::Result<()> {
         .with_attribute(("stepSize", real(round_down(stop / DEFAULT_STEPS)).as_str()))
         .write_empty()?;
     Ok(())
+}
+
+/// A sum of decimals without its roundings: 0.014 for 0.01 + 0.001 + 0.003, which is 0.013999999999999999.
+fn as_written(sum: f64) -> f64 {
+    format!("{sum:.14e}").parse().unwrap_or(sum)
 }
 
 /// The largest of 1, 2 and 5 times a power of ten that is at most `step`.
@@ -164,5 +169,11 @@ mod tests {
     fn the_default_step_is_a_round_number() {
         assert_eq!([round_down(5.2e-6), round_down(2.6e-6), round_down(1.0)], [5e-6, 2e-6, 1.0]);
         assert_eq!(real(round_down(5.2e-6)), "5e-6");
+    }
+
+    #[test]
+    fn a_sum_of_decimals_is_written_without_its_roundings() {
+        assert_eq!(real(as_written(1e-2 + 1e-3 + 3e-3)), "0.014");
+        assert_eq!([as_written(0.0), as_written(1e30 + 1e-30)], [0.0, 1e30]);
     }
 }
