@@ -249,9 +249,11 @@ fn points_that_fail_are_rows() {
 }
 
 /// The scene of the README: adhesion's maximum at low speed, hysteresis' at high speed, and both move with the
-/// temperature as the shift says, μ(v, T) = μ(a_T v, T_ref), the rate-dependent shear strength included. Up to 1.2 % is
-/// left here, nearly all of it in adhesion: above v_0 the strength falls as the speed rises, so the masses chatter, and
-/// how far they leap is a matter of inertia and of steps, which do not shift. Below v_0 `tests/exact` holds it to 1 %.
+/// temperature as the shift says, μ(v, T) = μ(a_T v, T_ref), the rate-dependent shear strength included. Below v_0
+/// `tests/exact` holds that to 1 %. Above v_0 the strength falls as the speed rises, and masses chatter where it falls
+/// faster than dampers hold them, which does not shift: warmer, it falls less steeply over the speed, and the inertia
+/// stays. At 0.1 m/s they chatter at 293 K and not at 303 K (friction 0.095 and 0.093 at tolerances of 1e-5 by both
+/// methods), so of that point hysteresis alone is compared.
 #[test]
 fn two_maxima_move_with_the_temperature() {
     let folder = scratch("sweep-two-maxima");
@@ -277,8 +279,9 @@ fn two_maxima_move_with_the_temperature() {
     // a_T at 10 K above; both maxima and a place between.
     let shift = 10_f64.powf(-7.52 * 10.0 / (119.75 + 10.0));
     let shifted = friction("303.15", &[1e-5, 1e-3, 1e-1].map(|speed| speed / shift));
-    for (here, i) in shifted.iter().zip([1, 3, 5]) {
+    for (here, (i, part)) in shifted.iter().zip([(1, 0), (3, 0), (5, 1)]) {
         let there = reference[i];
-        assert!((here[0] - there[0]).abs() <= 0.015 * there[0], "{} m/s: {here:?}, {there:?}", speeds[i]);
+        // The sweep's own error of 0.2 %, and what chatter leaves, 0.4 % at the last one.
+        assert!((here[part] - there[part]).abs() <= 0.01 * there[part], "{} m/s: {here:?}, {there:?}", speeds[i]);
     }
 }

@@ -28,6 +28,9 @@ pub(super) enum Fit {
     Round,
 }
 
+/// How far a curve may pass the last tick, as a share of the distance between two: a rounding below 0 takes no tick more.
+const PAST_END: f64 = 0.01;
+
 /// Ticks asked for of an axis that need not end on them: some fall outside.
 const LEAST_TICKS: usize = 6;
 
@@ -50,7 +53,7 @@ impl Linear {
         let step = round_step((high - low) / 5.0);
         let (low, high) = match fit {
             Fit::Tight => (low, high),
-            Fit::Round => ((low / step).floor() * step, (high / step).ceil() * step),
+            Fit::Round => ((low / step + PAST_END).floor() * step, (high / step - PAST_END).ceil() * step),
         };
         let ticks = ((high - low) / step).round() as usize + 1;
         let decimals = (-step.log10().floor()).max(0.0) as usize;
@@ -99,7 +102,7 @@ fn prefix(largest: f64, unit: &str) -> (&'static str, f64) {
     PREFIXES.into_iter().find(|(_, factor)| largest >= 0.999 * factor).unwrap_or(("f", 1e-15))
 }
 
-/// The smallest of 1, 2, 2.5 and 5 times a power of ten that is at least `step`.
+/// The smallest of 1, 2 and 5 times a power of ten that is at least `step`.
 fn round_step(step: f64) -> f64 {
     let decade = 10_f64.powf(step.log10().floor());
     let factor = [1.0, 2.0, 5.0, 10.0].into_iter().find(|factor| factor * decade >= 0.999 * step);
@@ -116,6 +119,8 @@ mod tests {
         assert_eq!(prefix, "m");
         assert!((axis.low, axis.high, axis.ticks) == (0.0, 15.0, 4), "{axis:?}");
         assert_eq!(axis.label(5.0), "5");
+        let (axis, _) = Linear::around([-3e-11, 1e-3].into_iter(), "J", Fit::Round);
+        assert!(axis.low == 0.0, "{axis:?}");
     }
 
     #[test]
