@@ -53,14 +53,15 @@ impl WlfConstants {
     }
 
     fn parse(text: &str) -> Result<Self, String> {
-        let numbers: Vec<f64> = text.split(',').filter_map(|number| number.trim().parse().ok()).collect();
-        match numbers[..] {
-            [_, _, cold] if cold > 0.0 && cold < Wlf::COLDEST => {
-                Err(format!("TREF = {cold} is too cold for rubber: it is in K, 20 °C being 293.15 K"))
-            }
+        let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
+        match numbers.unwrap_or_default()[..] {
             [c1, c2, reference_temperature]
-                if text.split(',').count() == 3 && numbers.iter().all(|number| *number > 0.0 && number.is_finite()) =>
+                if [c1, c2, reference_temperature].iter().all(|number| *number > 0.0 && number.is_finite()) =>
             {
+                if reference_temperature < Wlf::COLDEST {
+                    let cold = reference_temperature;
+                    return Err(format!("TREF = {cold} is too cold for rubber: it is in K, 20 °C being 293.15 K"));
+                }
                 Ok(Self { c1, c2, reference_temperature })
             }
             _ => {
@@ -82,7 +83,7 @@ mod tests {
     fn wlf_takes_three_positive_numbers() {
         let constants = WlfConstants::parse("7.52, 119.75,293.15").unwrap();
         assert_eq!((constants.c1, constants.c2, constants.reference_temperature), (7.52, 119.75, 293.15));
-        for wrong in ["7.52,119.75", "7.52,x,119.75,293.15", "-1,100,300", "1,2,3,4", ""] {
+        for wrong in ["7.52,119.75", "7.52,x,119.75,293.15", "-1,100,300", "1,2,3,4", "7.52,x,119.75,20", ""] {
             assert!(WlfConstants::parse(wrong).unwrap_err().contains("C1,C2,TREF"), "{wrong}");
         }
         assert!(WlfConstants::parse("7.52,119.75,20").unwrap_err().contains("20 °C being 293.15 K"));
