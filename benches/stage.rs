@@ -11,7 +11,7 @@ mod floor;
 
 use std::time::Duration;
 
-use asperity::integrator::{Followed, Integrator, STAGES, Steps, Tolerance};
+use asperity::integrator::{Integrator, STAGES, Steps, Tolerance, Tracked};
 use asperity::model::{Carrier, Forces, Mode, Model, State};
 use asperity::scene::Path;
 use common::{layer, parse, prints_tables, side_by_side};
@@ -52,17 +52,17 @@ impl Stages {
             (state.elongation_x[i], state.velocity_x[i]) = (1e-7 * noise(i), 1e-2 * (1.0 + noise(i + 1)));
             (state.elongation_z[i], state.velocity_z[i]) = (1e-7 * noise(i + 2), 1e-2 * noise(i + 3));
             if mode.slips() {
-                let ground = model.ground(model.rest_x[i] + state.elongation_x[i]);
+                let ground = model.surface_at(model.rest_x[i] + state.elongation_x[i]);
                 state.elongation_z[i] = ground.height - model.rest_z[i];
                 state.velocity_z[i] = ground.slope * state.velocity_x[i];
-                (state.mode[i], state.ground[i]) = (mode, ground);
+                (state.mode[i], state.surface[i]) = (mode, ground);
             }
         }
         let still = (Path::default(), Path::default());
         let carrier = Carrier::new(0.0, (0.0, 0.0), still, &model.profile);
         let mut forces = Forces::new(&model);
         forces.evaluate(&model, &state, &carrier.at(0.0));
-        let mut integrator = Integrator::new(&model, Followed::default(), Steps::Accurate);
+        let mut integrator = Integrator::new(&model, Tracked::default(), Steps::Accurate);
         integrator.begin(&model, &state, &carrier.at(0.0), &forces);
         let tolerance = Tolerance::new(&model, 1e-6, 1e-11);
         Self { model, state, carrier, integrator, tolerance }

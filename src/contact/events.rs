@@ -1,7 +1,7 @@
 //! Which mode change comes first within a step.
 
 use super::gap::first_touch;
-use crate::integrator::{Dense, DenseRoom, METHOD, Rates, STAGES, Tolerance};
+use crate::integrator::{DenseOutput, DenseWorkspace, METHOD, Rates, STAGES, Tolerance};
 use crate::math::bracketed_root;
 use crate::model::{Mode, Model, State};
 
@@ -30,7 +30,7 @@ impl EventTolerance {
     /// The tolerances that go with those of the steps.
     pub fn new(model: &Model, tolerance: &Tolerance) -> Self {
         let felt = || model.felt_stiffness().max(model.mass * model.felt_frequency().powi(2));
-        let stiffness = model.lasting_stiffness().unwrap_or_else(felt);
+        let stiffness = model.long_term_stiffness().unwrap_or_else(felt);
         // A rod makes a force of the rounding of its elongation: of the layer's height, the absolute tolerance over the
         // relative one, at most.
         let height = tolerance.position / tolerance.relative;
@@ -50,12 +50,12 @@ impl EventTolerance {
 
 /// The fraction of the step at which the first mode change is due; `None` where none is.
 pub fn first_event(
-    step: &Dense<'_>,
+    step: &DenseOutput<'_>,
     stages: &[Rates],
     tolerance: &EventTolerance,
-    room: &mut DenseRoom,
+    workspace: &mut DenseWorkspace,
 ) -> Option<f64> {
-    let mut first = Contacts { step, stages, tolerance, room }.first_change();
+    let mut first = Contacts { step, stages, tolerance, workspace }.first_change();
     for i in 0..step.model.masses() {
         if step.start.0.mode[i] == Mode::Free {
             first = earlier(first, first_touch(&step.model.profile, || step.place(i), step.height(i), tolerance.gap));
@@ -74,10 +74,10 @@ fn earlier(a: Option<f64>, b: Option<f64>) -> Option<f64> {
 /// The contacts through a step: where a stage shows a limit passed, the dense output is asked, which is more accurate
 /// than the stages are and from which the run goes on.
 struct Contacts<'a> {
-    step: &'a Dense<'a>,
+    step: &'a DenseOutput<'a>,
     stages: &'a [Rates],
     tolerance: &'a EventTolerance,
-    room: &'a mut DenseRoom,
+    workspace: &'a mut DenseWorkspace,
 }
 
 /// What of a contact may pass its limit.
@@ -139,7 +139,7 @@ impl Contacts<'_> {
         if limit == Limit::Margin && mode.slips() {
             return mode.direction() * self.step.velocity_x(i, theta);
         }
-        let contact = self.step.contact(i, theta, self.room);
+        let contact = self.step.contact(i, theta, self.workspace);
         if limit == Limit::Normal { contact.normal } else { contact.limit - contact.tangential.abs() }
     }
 }
@@ -176,9 +176,9 @@ const PASSED: f64 = 0.05;
 pub fn is_due(model: &Model, state: &State, rates: &Rates, (place, w): (f64, f64), tolerance: &EventTolerance) -> bool {
     (0..model.masses()).any(|i| match state.mode[i] {
         Mode::Free => {
-            let ground = model.ground(model.rest_x[i] + (place + state.elongation_x[i]));
-            let gap = model.rest_z[i] + (w + state.elongation_z[i]) - ground.height;
-            gap < -PASSED * tolerance.gap && state.velocity_z[i] < ground.slope * state.velocity_x[i]
+            let surface = model.surface_at(model.rest_x[i] + (place + state.elongation_x[i]));
+            let gap = model.rest_z[i] + (w + state.elongation_z[i]) - surface.height;
+            gap < -PASSED * tolerance.gap && state.velocity_z[i] < surface.slope * state.velocity_x[i]
         }
         mode => {
             rates.normal[i] < -PASSED * tolerance.force

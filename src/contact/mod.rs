@@ -3,14 +3,14 @@
 
 mod events;
 mod gap;
-mod growth;
-mod rules;
+mod laws;
 mod settling;
+mod stability;
 mod step_end;
 
 pub use events::{EventTolerance, first_event, is_due};
 pub use gap::first_touch;
-pub use growth::{longest_unstable, longest_weakening};
-pub use rules::{CarrierPlace, decide_modes, free_unloaded, impacts_due, place_layer, stop_reversed};
-pub use settling::{End, HeldStep, Settled};
-pub use step_end::StepEnd;
+pub use laws::{CarrierPosition, decide_modes, free_unloaded, impacts_due, place_layer, stop_reversed};
+pub use settling::{CorrectionEnergies, End, FixedModeStep};
+pub use stability::{longest_unstable, longest_weakening};
+pub use step_end::EndCorrection;

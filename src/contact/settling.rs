@@ -4,8 +4,8 @@
 //! count each as the impulse times the mean of the velocities before and after it: that closes the account however
 //! stiff a damper is and however large a friction.
 
-use super::rules::{collision, decided, energy_at, has_reversed};
-use crate::integrator::{Rates, Within};
+use super::laws::{collision, decided, energy_at, has_reversed};
+use crate::integrator::{Rates, TwoStageDense};
 use crate::math::bracketed_root;
 use crate::model::{Carrier, CarrierPoint, Forces, LinkKind, Mode, Model, Power, State, SurfacePoint};
 
@@ -14,7 +14,7 @@ const INSTANT: f64 = 1e-4;
 
 /// A step that was tried with its modes held: what settling does not change.
 #[derive(Clone, Copy, Debug)]
-pub struct HeldStep<'a> {
+pub struct FixedModeStep<'a> {
     /// The model.
     pub model: &'a Model,
     /// The carrier's motion.
@@ -40,7 +40,7 @@ pub struct End<'a> {
 
 /// Energies of the mode changes at the end of a step, J.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Settled {
+pub struct CorrectionEnergies {
     /// Lost in impacts.
     pub impact: f64,
     /// Through the channels, from the instants of the impacts on: what the masses in contact do beyond what free ones
@@ -49,12 +49,12 @@ pub struct Settled {
 }
 
 /// A step whose end is being settled.
-pub(super) struct Settling<'a> {
-    step: HeldStep<'a>,
+pub(super) struct Correction<'a> {
+    step: FixedModeStep<'a>,
     /// The carrier at the end.
     here: CarrierPoint,
     end: End<'a>,
-    settled: Settled,
+    settled: CorrectionEnergies,
 }
 
 /// What is left of the step for a mass after its impact.
@@ -77,21 +77,21 @@ struct Speed {
     felt: f64,
 }
 
-impl<'a> Settling<'a> {
+impl<'a> Correction<'a> {
     /// Begins to settle the end of `step`.
-    pub(super) fn new(step: HeldStep<'a>, end: End<'a>) -> Self {
+    pub(super) fn new(step: FixedModeStep<'a>, end: End<'a>) -> Self {
         let (s, h) = step.span;
-        Self { here: step.carrier.at(s + h), step, end, settled: Settled::default() }
+        Self { here: step.carrier.at(s + h), step, end, settled: CorrectionEnergies::default() }
     }
 
     /// The energies of all that was settled.
-    pub(super) fn settled(&self) -> Settled {
+    pub(super) fn settled(&self) -> CorrectionEnergies {
         self.settled
     }
 
-    fn within(&self) -> Within<'_> {
-        let HeldStep { model, carrier, span, start, first } = self.step;
-        Within::new(model, carrier, span, (start, first), (self.end.state, self.end.rates))
+    fn within(&self) -> TwoStageDense<'_> {
+        let FixedModeStep { model, carrier, span, start, first } = self.step;
+        TwoStageDense::new(model, carrier, span, (start, first), (self.end.state, self.end.rates))
     }
 
     /// Mass `i`, free and below the profile, goes back to its touch, has its impact, and goes on along the profile.
@@ -100,7 +100,7 @@ impl<'a> Settling<'a> {
         let theta = touch(&within, i);
         let (x, velocity, end) = (within.place(i, theta), within.velocity(i, theta), within.velocity(i, 1.0));
         let from = (within.place(i, 1.0), within.height(i, 1.0));
-        let slope = model.ground(x).slope;
+        let slope = model.surface_at(x).slope;
         if velocity.1 >= slope * velocity.0 {
             return self.raise(i, from);
         }
@@ -109,7 +109,7 @@ impl<'a> Settling<'a> {
         let neighbours = neighbours(i).map(|j| self.velocity(j));
         let rest = Rest { time: (1.0 - theta) * self.step.span.1, free: end, neighbours };
         let x = x + rest.time * v_t / (1.0 + slope * slope).sqrt();
-        self.put(i, from, (x, model.ground(x)), rest.time);
+        self.put(i, from, (x, model.surface_at(x)), rest.time);
         self.end.state.mode[i] = Mode::along(v_t);
         let speed = self.go_on(i, v_t, &rest);
         self.count_dampers(i, speed, &rest);
@@ -123,18 +123,18 @@ impl<'a> Settling<'a> {
 
     /// A mass that moves out of the profile already is put on it, and stays free.
     fn raise(&mut self, i: usize, from: (f64, f64)) {
-        let ground = self.step.model.ground(from.0);
-        self.put(i, from, (from.0, ground), self.step.span.1);
+        let surface = self.step.model.surface_at(from.0);
+        self.put(i, from, (from.0, surface), self.step.span.1);
     }
 
-    /// Moves mass `i` to the place `x` on `ground`. What it has moved in the last `time` (s) its dashpots have not, and
+    /// Moves mass `i` to the place `x` on `surface`. What it has moved in the last `time` (s) its dashpots have not, and
     /// the lateral dampers have passed on to the neighbours as an impulse.
-    fn put(&mut self, i: usize, from: (f64, f64), (x, ground): (f64, SurfacePoint), time: f64) {
-        let moved = (x - from.0, ground.height - from.1);
+    fn put(&mut self, i: usize, from: (f64, f64), (x, surface): (f64, SurfacePoint), time: f64) {
+        let moved = (x - from.0, surface.height - from.1);
         let state = &mut *self.end.state;
         state.elongation_x[i] += moved.0;
-        state.elongation_z[i] = ground.height - self.step.model.rest_z[i] - (self.step.carrier.w + self.here.dw);
-        state.ground[i] = ground;
+        state.elongation_z[i] = surface.height - self.step.model.rest_z[i] - (self.step.carrier.w + self.here.dw);
+        state.surface[i] = surface;
         for row in &self.step.model.rows {
             let along = if row.kind.is_along_x() { moved.0 } else { moved.1 };
             let by = along * row.relaxation_time / (row.relaxation_time + time);
@@ -168,7 +168,7 @@ impl<'a> Settling<'a> {
             return;
         }
         let state = &*self.end.state;
-        let (mode, slope, v) = (state.mode[j], state.ground[j].slope, (state.velocity_x[j], state.velocity_z[j]));
+        let (mode, slope, v) = (state.mode[j], state.surface[j].slope, (state.velocity_x[j], state.velocity_z[j]));
         if mode == Mode::Free {
             self.set_velocity(j, (v.0 + x, v.1 + z));
         } else if mode.slips() {
@@ -182,11 +182,11 @@ impl<'a> Settling<'a> {
 
     /// What the forces make of the speed v_t of mass `i` since its impact: an implicit step for it alone.
     fn go_on(&mut self, i: usize, v_t: f64, rest: &Rest) -> Speed {
-        let (model, mode, ground) = (self.step.model, self.end.state.mode[i], self.end.state.ground[i]);
-        let (s, time) = (ground.slope, rest.time);
+        let (model, mode, surface) = (self.step.model, self.end.state.mode[i], self.end.state.surface[i]);
+        let (s, time) = (surface.slope, rest.time);
         let q = (1.0 + s * s).sqrt();
         self.set_speed(i, v_t / q);
-        let contact = self.end.forces.contact(model, i, v_t / q, &ground);
+        let contact = self.end.forces.contact(model, i, v_t / q, &surface);
         let held = if contact.normal < 0.0 { 0.0 } else { mode.direction() * contact.limit };
         let damping = |along, lateral| self.damping(along) + 2.0 * self.passing(lateral, time);
         let damping =
@@ -233,13 +233,13 @@ impl<'a> Settling<'a> {
             let sum: f64 = by_neighbours.filter_map(|(j, before)| Some(own - otherwise(j, before?))).sum();
             (self.damping(kind) - self.passing(kind, rest.time)) * sum
         });
-        let s = self.end.state.ground[i].slope;
+        let s = self.end.state.surface[i].slope;
         (x + s * z) / (1.0 + s * s).sqrt()
     }
 
     /// What the dampers of mass `i` did otherwise in the rest of the step: their loss, and the power of the carrier.
     fn count_dampers(&mut self, i: usize, speed: Speed, rest: &Rest) {
-        let s = self.end.state.ground[i].slope;
+        let s = self.end.state.surface[i].slope;
         let q = (1.0 + s * s).sqrt();
         let [mean, felt] = [speed.mean, speed.felt].map(|v_t| (v_t / q, s * v_t / q));
         let carrier = (self.here.u_rate, self.here.w_rate);
@@ -255,9 +255,9 @@ impl<'a> Settling<'a> {
             for (j, before) in neighbours(i).into_iter().zip(rest.neighbours) {
                 let (Some(before), Some(after)) = (before, self.velocity(j)) else { continue };
                 let (before, after) = (along(kind, before), along(kind, after));
-                let tried = free - before;
-                let impulse = damping * tried + passing * (felt - after - tried);
-                self.settled.channels.damper += impulse * (mean - 0.5 * (before + after)) - damping * tried * tried;
+                let trial = free - before;
+                let impulse = damping * trial + passing * (felt - after - trial);
+                self.settled.channels.damper += impulse * (mean - 0.5 * (before + after)) - damping * trial * trial;
             }
         }
     }
@@ -266,9 +266,10 @@ impl<'a> Settling<'a> {
     fn stop_after(&mut self, i: usize, along: f64, time: f64) {
         self.set_speed(i, 0.0);
         let model = self.step.model;
-        let x = model.rest_x[i] + (self.step.carrier.place + (self.here.du + self.end.state.elongation_x[i]));
-        let here = (x, self.end.state.ground[i].height);
-        self.put(i, here, (x + along, model.ground(x + along)), time);
+        let x =
+            model.rest_x[i] + (self.step.carrier.profile_position + (self.here.du + self.end.state.elongation_x[i]));
+        let here = (x, self.end.state.surface[i].height);
+        self.put(i, here, (x + along, model.surface_at(x + along)), time);
     }
 
     /// Brings a slip that has reversed to rest, so that the rule for *stop* decides.
@@ -276,14 +277,14 @@ impl<'a> Settling<'a> {
         let (model, state) = (self.step.model, &*self.end.state);
         let v = state.velocity_x[i];
         if model.has_friction && has_reversed(state.mode[i], v) {
-            self.settled.channels.friction += energy_at(model, (v, state.ground[i].slope * v));
+            self.settled.channels.friction += energy_at(model, (v, state.surface[i].slope * v));
             self.set_speed(i, 0.0);
         }
     }
 
     /// The velocity of mass `i` along the profile, by its ẋ.
     fn set_speed(&mut self, i: usize, v_x: f64) {
-        self.set_velocity(i, (v_x, self.end.state.ground[i].slope * v_x));
+        self.set_velocity(i, (v_x, self.end.state.surface[i].slope * v_x));
     }
 
     fn set_velocity(&mut self, i: usize, (v_x, v_z): (f64, f64)) {
@@ -323,6 +324,6 @@ fn along(kind: LinkKind, (x, z): (f64, f64)) -> f64 {
 }
 
 /// The fraction of the step at which free mass `i`, below the profile at the end, came there.
-fn touch(within: &Within<'_>, i: usize) -> f64 {
+fn touch(within: &TwoStageDense<'_>, i: usize) -> f64 {
     if within.gap(i, 0.0) <= 0.0 { 0.0 } else { bracketed_root(|theta| within.gap(i, theta), (0.0, 1.0), INSTANT) }
 }

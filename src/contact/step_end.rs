@@ -12,8 +12,8 @@
 //! Repeating the step with the modes of its end would cost the stages again, and put changes too early in place of too
 //! late.
 
-use super::settling::{End, HeldStep, Settled, Settling};
-use crate::integrator::{Tolerance, Within};
+use super::settling::{Correction, CorrectionEnergies, End, FixedModeStep};
+use crate::integrator::{Tolerance, TwoStageDense};
 use crate::math::Bounds;
 use crate::model::{LinkKind, Mode, Model};
 
@@ -26,9 +26,9 @@ const LATENESS: f64 = 5.0;
 /// How many masses to each side feel that one is put right: the neighbours get impulses, and theirs feel these.
 const REACH: usize = 2;
 
-/// The masses whose modes could not last through a step, and room for them.
+/// The masses whose modes could not last through a step, and workspace for them.
 #[derive(Clone, Debug)]
-pub struct StepEnd {
+pub struct EndCorrection {
     /// Free masses below the profile at the end.
     touches: Vec<usize>,
     /// Contacts past a limit at the end.
@@ -39,11 +39,11 @@ pub struct StepEnd {
     concerned: Vec<bool>,
     /// The extremes of the profile.
     profile: Bounds,
-    /// [`Model::lasting_stiffness`], N/m: what a friction force that went too far counts by.
+    /// [`Model::long_term_stiffness`], N/m: what a friction force that went too far counts by.
     lasting: Option<f64>,
 }
 
-impl StepEnd {
+impl EndCorrection {
     /// Room for the mode changes of a step of `model`.
     pub fn new(model: &Model) -> Self {
         let k = model.masses();
@@ -53,12 +53,12 @@ impl StepEnd {
             force: 0.0,
             concerned: vec![false; k],
             profile: model.profile.bounds(),
-            lasting: model.lasting_stiffness(),
+            lasting: model.long_term_stiffness(),
         }
     }
 
     /// Finds the modes that could not last; their lateness over the tolerance, in the mean of all masses.
-    pub fn find(&mut self, step: &Within<'_>, tolerance: &Tolerance) -> f64 {
+    pub fn find(&mut self, step: &TwoStageDense<'_>, tolerance: &Tolerance) -> f64 {
         self.touches.clear();
         self.contacts.clear();
         self.force = 0.0;
@@ -89,18 +89,18 @@ impl StepEnd {
     }
 
     /// How late free mass `i` touches.
-    fn find_touch(&mut self, step: &Within<'_>, i: usize) -> Option<Late> {
+    fn find_touch(&mut self, step: &TwoStageDense<'_>, i: usize) -> Option<Late> {
         let height = step.height(i, 1.0);
-        if height.min(step.height(i, Within::FIRST)) > self.profile.z_max {
+        if height.min(step.height(i, TwoStageDense::FIRST)) > self.profile.z_max {
             return None;
         }
-        let ground = step.model.ground(step.place(i, 1.0));
-        let gap = height - ground.height;
+        let surface = step.model.surface_at(step.place(i, 1.0));
+        let gap = height - surface.height;
         if gap >= 0.0 {
             return self.find_dip(step, i, gap);
         }
         self.touches.push(i);
-        let closing = ground.slope * step.end.velocity_x[i] - step.end.velocity_z[i];
+        let closing = surface.slope * step.end.velocity_x[i] - step.end.velocity_z[i];
         let link = &step.model.links[LinkKind::Vertical as usize];
         self.force += link.stiffness * -gap + link.damping * closing.max(0.0);
         let time = if closing > 0.0 { (-gap / closing).min(step.span.1) } else { step.span.1 };
@@ -109,19 +109,19 @@ impl StepEnd {
 
     /// A mass above the profile at the end, by `gap`, that is below at the first stage has gone through an asperity:
     /// all of that is an error.
-    fn find_dip(&self, step: &Within<'_>, i: usize, gap: f64) -> Option<Late> {
-        let rise = step.height(i, 1.0) - step.height(i, Within::FIRST);
-        let way = (step.place(i, 1.0) - step.place(i, Within::FIRST)).abs();
+    fn find_dip(&self, step: &TwoStageDense<'_>, i: usize, gap: f64) -> Option<Late> {
+        let rise = step.height(i, 1.0) - step.height(i, TwoStageDense::FIRST);
+        let way = (step.place(i, 1.0) - step.place(i, TwoStageDense::FIRST)).abs();
         if gap > rise + way * self.profile.slope_max_abs {
             return None;
         }
-        let dip = step.gap(i, Within::FIRST);
+        let dip = step.gap(i, TwoStageDense::FIRST);
         (dip < 0.0).then_some(Late { length: -dip, time: f64::INFINITY })
     }
 
     /// How far contact `i` is past a limit: by the elongation that makes such a force, or by the way that it slipped
     /// back.
-    fn find_limit(&mut self, step: &Within<'_>, i: usize, stiffness: f64) -> Option<Late> {
+    fn find_limit(&mut self, step: &TwoStageDense<'_>, i: usize, stiffness: f64) -> Option<Late> {
         let (first, last) = (step.first, step.last);
         let late = if last.normal[i] < 0.0 {
             let time = step.time_below(first.normal[i], last.normal[i]);
@@ -140,11 +140,11 @@ impl StepEnd {
     }
 
     /// Settles what [`find`](Self::find) found; `None` where that is nothing.
-    pub fn settle(&mut self, step: HeldStep<'_>, end: End<'_>) -> Option<Settled> {
+    pub fn settle(&mut self, step: FixedModeStep<'_>, end: End<'_>) -> Option<CorrectionEnergies> {
         if self.is_settled() {
             return None;
         }
-        let mut settling = Settling::new(step, end);
+        let mut settling = Correction::new(step, end);
         for &i in &self.touches {
             settling.touch(i);
         }
@@ -180,10 +180,10 @@ impl Late {
     }
 }
 
-impl Within<'_> {
+impl TwoStageDense<'_> {
     /// The height of mass `i` above the profile at the fraction `theta` of the step, m.
     pub(super) fn gap(&self, i: usize, theta: f64) -> f64 {
-        self.height(i, theta) - self.model.ground(self.place(i, theta)).height
+        self.height(i, theta) - self.model.surface_at(self.place(i, theta)).height
     }
 
     /// For how long a quantity that is `first` at the first stage and `last` < 0 at the end has been negative, s, by

@@ -10,7 +10,7 @@ use crate::model::{Carrier, CarrierPoint, ContactForces, Forces, LinkKind, Mode,
 
 /// One step, seen from within.
 #[derive(Clone, Copy, Debug)]
-pub struct Dense<'a> {
+pub struct DenseOutput<'a> {
     /// The model.
     pub model: &'a Model,
     /// The carrier's motion.
@@ -34,11 +34,11 @@ enum Axis {
     Z,
 }
 
-impl Dense<'_> {
+impl DenseOutput<'_> {
     /// The place of mass `i` on the profile through the step, m.
     pub fn place(&self, i: usize) -> Quintic {
         let at = |(state, rates): (&State, &Rates), carrier: &CarrierPoint| Jet {
-            place: self.model.rest_x[i] + (self.carrier.place + (carrier.du + state.elongation_x[i])),
+            place: self.model.rest_x[i] + (self.carrier.profile_position + (carrier.du + state.elongation_x[i])),
             speed: rates.velocity_x[i],
             acceleration: rates.acceleration_x[i],
         };
@@ -56,38 +56,38 @@ impl Dense<'_> {
     }
 
     /// Writes the state at the fraction `theta` of the step.
-    pub fn state_at(&self, theta: f64, room: &mut DenseRoom, state: &mut State) {
+    pub fn state_at(&self, theta: f64, workspace: &mut DenseWorkspace, state: &mut State) {
         let carrier = self.carrier.at(self.s + theta * self.h);
         state.mode.copy_from_slice(&self.start.0.mode);
         for i in 0..self.model.masses() {
             let motion = [self.elongation(Axis::X, i), self.elongation(Axis::Z, i)];
-            room.follow(i, &motion);
+            workspace.follow(i, &motion);
             let mass = self.mass_at(theta, i, &motion, &carrier);
             (state.elongation_x[i], state.elongation_z[i]) = mass.elongation;
             (state.velocity_x[i], state.velocity_z[i]) = mass.velocity;
-            state.ground[i] = mass.ground;
-            (room.bend[0][i], room.bend[1][i]) = mass.bend;
+            state.surface[i] = mass.surface;
+            (workspace.bend[0][i], workspace.bend[1][i]) = mass.bend;
         }
-        room.follow_neighbours();
-        room.relax(self, theta);
+        workspace.follow_neighbours();
+        workspace.relax(self, theta);
         for row in &self.model.rows {
-            let weights = &room.relaxation[row.time_index];
+            let weights = &workspace.relaxation[row.time_index];
             let (start, end) = (&self.start.0.maxwell[row.range.clone()], &self.end.0.maxwell[row.range.clone()]);
             let driven =
-                room.rate[row.kind as usize].iter().zip(weights.driven).map(|(rate, weight)| (weight, &rate[..]));
+                workspace.rate[row.kind as usize].iter().zip(weights.driven).map(|(rate, weight)| (weight, &rate[..]));
             let ends = [(weights.decay, start), (theta, end)];
             weighted_sum(&mut state.maxwell[row.range.clone()], ends.into_iter().chain(driven));
         }
     }
 
     /// What the dense output misses of the equations of motion at the fraction `theta`, whose state stands in `state`
-    /// and `room`: how far the accelerations that the forces there give are from its own, as a velocity gained over the
+    /// and `workspace`: how far the accelerations that the forces there give are from its own, as a velocity gained over the
     /// step, in the tolerance's norm.
     pub fn defect(
         &self,
         theta: f64,
         (state, forces): (&State, &Forces),
-        room: &DenseRoom,
+        workspace: &DenseWorkspace,
         tolerance: &Tolerance,
     ) -> f64 {
         let carrier = self.carrier.at(self.s + theta * self.h);
@@ -99,8 +99,8 @@ impl Dense<'_> {
         let mut largest = 0.0_f64;
         for i in 0..self.model.masses() {
             let (v_x, v_z) = (state.velocity_x[i] - carrier.u_rate, state.velocity_z[i] - carrier.w_rate);
-            let along_x = |acceleration: f64| missed(room.bend[0][i], carrier.u_acceleration, acceleration, v_x);
-            let along_z = |acceleration: f64| missed(room.bend[1][i], carrier.w_acceleration, acceleration, v_z);
+            let along_x = |acceleration: f64| missed(workspace.bend[0][i], carrier.u_acceleration, acceleration, v_x);
+            let along_z = |acceleration: f64| missed(workspace.bend[1][i], carrier.w_acceleration, acceleration, v_z);
             let here = match state.mode[i] {
                 Mode::Stick => 0.0,
                 Mode::Free => {
@@ -108,9 +108,9 @@ impl Dense<'_> {
                     along_x(forces.on_mass_x[i] / m).max(along_z(forces.on_mass_z[i] / m))
                 }
                 mode => {
-                    let (v, ground) = (state.velocity_x[i], &state.ground[i]);
-                    let contact = forces.contact(self.model, i, v, ground);
-                    along_x(contact.acceleration(self.model, mode, v, ground))
+                    let (v, surface) = (state.velocity_x[i], &state.surface[i]);
+                    let contact = forces.contact(self.model, i, v, surface);
+                    along_x(contact.acceleration(self.model, mode, v, surface))
                 }
             };
             largest = largest.max(here);
@@ -121,7 +121,7 @@ impl Dense<'_> {
     /// Mass `i` at the fraction `theta`, where the carrier is at `carrier`.
     fn mass_at(&self, theta: f64, i: usize, motion: &[Quintic; 2], carrier: &CarrierPoint) -> MassPoint {
         let x = motion[0].evaluate(theta);
-        let mut ground = self.start.0.ground[i];
+        let mut surface = self.start.0.surface[i];
         let v_x = match self.start.0.mode[i] {
             Mode::Stick => 0.0,
             _ => x.speed / self.h + carrier.u_rate,
@@ -132,18 +132,19 @@ impl Dense<'_> {
                 elongation: (x.place, z.place),
                 velocity: (v_x, z.speed / self.h + carrier.w_rate),
                 bend: (x.acceleration, z.acceleration),
-                ground,
+                surface,
             };
         }
         let place = if self.start.0.mode[i].slips() {
-            ground = self.model.ground(self.model.rest_x[i] + (self.carrier.place + (carrier.du + x.place)));
+            surface =
+                self.model.surface_at(self.model.rest_x[i] + (self.carrier.profile_position + (carrier.du + x.place)));
             x.place
         } else {
             // What the polynomial misses of the carrier's swing would move a mass that stands still.
             self.start.0.elongation_x[i] - self.carrier.moved(self.s, theta * self.h).0
         };
-        let z = ground.height - self.model.rest_z[i] - (self.carrier.w + carrier.dw);
-        MassPoint { elongation: (place, z), velocity: (v_x, ground.slope * v_x), bend: (x.acceleration, 0.0), ground }
+        let z = surface.height - self.model.rest_z[i] - (self.carrier.w + carrier.dw);
+        MassPoint { elongation: (place, z), velocity: (v_x, surface.slope * v_x), bend: (x.acceleration, 0.0), surface }
     }
 
     /// ẋ of mass `i` at the fraction `theta`, m/s.
@@ -153,16 +154,16 @@ impl Dense<'_> {
 
     /// What the surface and the links do to mass `i`, in contact, at the fraction `theta`: the same as in the state
     /// there, for this mass alone.
-    pub fn contact(&self, i: usize, theta: f64, room: &mut DenseRoom) -> ContactForces {
-        room.relax(self, theta);
+    pub fn contact(&self, i: usize, theta: f64, workspace: &mut DenseWorkspace) -> ContactForces {
+        workspace.relax(self, theta);
         let carrier = self.carrier.at(self.s + theta * self.h);
         let motion = |j: usize| [self.elongation(Axis::X, j), self.elongation(Axis::Z, j)];
         let here_motion = motion(i);
         let here = self.mass_at(theta, i, &here_motion, &carrier);
         let relative = |velocity: (f64, f64)| (velocity.0 - carrier.u_rate, velocity.1 - carrier.w_rate);
         let to_carrier = LinkPoint { elongation: here.elongation, rate: relative(here.velocity), motion: here_motion };
-        let mut force_x = -self.link_force(LinkKind::Horizontal, i, theta, &to_carrier, room);
-        let mut force_z = -self.link_force(LinkKind::Vertical, i, theta, &to_carrier, room);
+        let mut force_x = -self.link_force(LinkKind::Horizontal, i, theta, &to_carrier, workspace);
+        let mut force_z = -self.link_force(LinkKind::Vertical, i, theta, &to_carrier, workspace);
         for (j, link, sign) in [(i.wrapping_sub(1), i.wrapping_sub(1), -1.0), (i + 1, i, 1.0)] {
             if j >= self.model.masses() {
                 continue;
@@ -170,20 +171,27 @@ impl Dense<'_> {
             let there_motion = motion(j);
             let there = self.mass_at(theta, j, &there_motion, &carrier);
             let between = LinkPoint::between((&here, &here_motion), (&there, &there_motion), sign);
-            force_x += sign * self.link_force(LinkKind::LateralX, link, theta, &between, room);
-            force_z += sign * self.link_force(LinkKind::LateralZ, link, theta, &between, room);
+            force_x += sign * self.link_force(LinkKind::LateralX, link, theta, &between, workspace);
+            force_z += sign * self.link_force(LinkKind::LateralZ, link, theta, &between, workspace);
         }
-        ContactForces::new(self.model, (force_x, force_z), here.velocity.0, &here.ground)
+        ContactForces::new(self.model, (force_x, force_z), here.velocity.0, &here.surface)
     }
 
     /// The force of one link at the fraction `theta`, N.
-    fn link_force(&self, kind: LinkKind, link: usize, theta: f64, point: &LinkPoint, room: &DenseRoom) -> f64 {
+    fn link_force(
+        &self,
+        kind: LinkKind,
+        link: usize,
+        theta: f64,
+        point: &LinkPoint,
+        workspace: &DenseWorkspace,
+    ) -> f64 {
         let law = &self.model.links[kind as usize];
         let along_x = kind.is_along_x();
         let of = |(x, z): (f64, f64)| if along_x { x } else { z };
         let mut force = law.stiffness * of(point.elongation) + law.damping * of(point.rate);
-        if law.still > 0.0 {
-            force -= law.still * self.model.still_dashpot(kind, link);
+        if law.frozen > 0.0 {
+            force -= law.frozen * self.model.frozen_dashpot(kind, link);
         }
         let mut rows = self.model.rows_of(kind).peekable();
         if rows.peek().is_none() {
@@ -191,7 +199,7 @@ impl Dense<'_> {
         }
         let rate = point.motion[usize::from(!along_x)].derivative_monomials();
         for row in rows {
-            let weights = &room.relaxation[row.time_index];
+            let weights = &workspace.relaxation[row.time_index];
             let (start, end) =
                 (self.start.0.maxwell[row.range.start + link], self.end.0.maxwell[row.range.start + link]);
             let driven: f64 = weights.driven.iter().zip(rate).map(|(weight, rate)| weight * rate).sum();
@@ -224,7 +232,7 @@ struct MassPoint {
     velocity: (f64, f64),
     /// The second derivative of the elongation with respect to the fraction, m; along z of a free mass alone.
     bend: (f64, f64),
-    ground: SurfacePoint,
+    surface: SurfacePoint,
 }
 
 /// The links at one place of the layer at one instant within a step, and their motion through it; along x and z.
@@ -248,7 +256,7 @@ impl LinkPoint {
 
 /// Room for the links' elongation rates through a step.
 #[derive(Clone, Debug)]
-pub struct DenseRoom {
+pub struct DenseWorkspace {
     /// By kind of link: the coefficients of 1, θ, … θ⁴ of h ė; empty where the links have no Maxwell elements.
     rate: [[Vec<f64>; 5]; 4],
     /// Along x and z: the second derivative of each mass's elongation with respect to the fraction, m.
@@ -260,7 +268,7 @@ pub struct DenseRoom {
     relaxed: (f64, f64),
 }
 
-impl DenseRoom {
+impl DenseWorkspace {
     /// Room for steps of `model`.
     pub fn new(model: &Model) -> Self {
         let has = |kind: LinkKind| model.rows.iter().any(|row| row.kind == kind);
@@ -284,7 +292,7 @@ impl DenseRoom {
     }
 
     /// Finds how the elements relax up to the fraction `theta` of `step`, if that is not known yet.
-    fn relax(&mut self, step: &Dense<'_>, theta: f64) {
+    fn relax(&mut self, step: &DenseOutput<'_>, theta: f64) {
         if self.relaxed == (theta, step.h) {
             return;
         }

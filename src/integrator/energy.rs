@@ -4,7 +4,7 @@
 //! elements are quadratic in the rates ė_j and in a_0, from which the elements' elongations at the stages follow
 //! (`maxwell`). So the sums over the layer are taken of their products, once, and not of every element at every stage.
 
-use super::maxwell::{Course, Maxwell};
+use super::maxwell::{Maxwell, StageCoefficients};
 use super::rates::Rates;
 use crate::math::{dot, sum_of_pairs, weighted_sum};
 use crate::model::{Exchange, LinkKind, MaxwellRow, Model, Power};
@@ -20,9 +20,9 @@ pub(super) fn through<const STAGES: usize>(
     a: &[f64],
     (stages, exchange): (&[Rates], &[Exchange]),
     (h, weights): (f64, &[f64; STAGES]),
-    room: &mut [f64],
+    workspace: &mut [f64],
 ) -> Power {
-    let mut energy = lost(model, maxwell, a, stages, (h, weights), room);
+    let mut energy = lost(model, maxwell, a, stages, (h, weights), workspace);
     for (weight, exchange) in weights.iter().zip(exchange) {
         energy.friction += h * weight * exchange.friction;
         energy.input += h * weight * exchange.input;
@@ -31,14 +31,14 @@ pub(super) fn through<const STAGES: usize>(
 }
 
 /// Energies lost in the dampers and Maxwell elements over a step of length `h` whose stages count with `weights`; the
-/// elongations at the start are `a`. `room` takes as many numbers as there are masses.
+/// elongations at the start are `a`. `workspace` takes as many numbers as there are masses.
 fn lost<const STAGES: usize>(
     model: &Model,
     maxwell: &Maxwell<STAGES>,
     a: &[f64],
     stages: &[Rates],
     (h, weights): (f64, &[f64; STAGES]),
-    room: &mut [f64],
+    workspace: &mut [f64],
 ) -> Power {
     let mut energy = Power::default();
     let mut products = [[[0.0; STAGES]; STAGES]; 4];
@@ -52,11 +52,11 @@ fn lost<const STAGES: usize>(
         *products = products_of(stages, kind, maxwell.has(kind));
         energy.damper += h * damping * (0..STAGES).map(|i| weights[i] * products[i][i]).sum::<f64>();
     }
-    for (index, course) in maxwell.courses().iter().enumerate() {
-        let squares = Squares::new(course, h / model.relaxation_times[index], weights);
+    for (index, coefficients) in maxwell.coefficients().iter().enumerate() {
+        let squares = Squares::new(coefficients, h / model.relaxation_times[index], weights);
         for row in model.rows.iter().filter(|row| row.time_index == index) {
             let (kind, a) = (row.kind as usize, &a[row.range.clone()]);
-            let mut sum = squares.sum(row, a, stages, &products[kind], room);
+            let mut sum = squares.sum(row, a, stages, &products[kind], workspace);
             if let Some(late) = &squares.late {
                 let change = *changes[kind].get_or_insert_with(|| largest_change(stages, row.kind));
                 sum += late.sum(row.relaxation_time, a, &stages[0].elongation_rate[kind], change);
@@ -120,10 +120,10 @@ struct Late {
 
 impl<const STAGES: usize> Squares<STAGES> {
     /// For the ratio `z` of step and relaxation time; the weights add up to the fraction of the step that they are for.
-    fn new(course: &Course<STAGES>, z: f64, weights: &[f64; STAGES]) -> Self {
+    fn new(coefficients: &StageCoefficients<STAGES>, z: f64, weights: &[f64; STAGES]) -> Self {
         let mut squares = Self { start: weights[0], mixed: [0.0; STAGES], rates: [[0.0; STAGES]; STAGES], late: None };
         for i in 1..STAGES {
-            let (p, q) = (course.start[i], &course.rate[i]);
+            let (p, q) = (coefficients.start[i], &coefficients.rate[i]);
             squares.start += weights[i] * p * p;
             for j in 0..=i {
                 let weighed = weights[i] * q[j];
@@ -134,29 +134,41 @@ impl<const STAGES: usize> Squares<STAGES> {
                 squares.rates[j][j] += weighed * q[j];
             }
         }
-        squares.late = (z > SEEN).then(|| Late::new(z, course, weights, squares.start));
+        squares.late = (z > SEEN).then(|| Late::new(z, coefficients, weights, squares.start));
         squares
     }
 
     /// The sum over the elements of one row, which start with the elongations `a`.
-    fn sum(&self, row: &MaxwellRow, a: &[f64], stages: &[Rates], products: &Products<STAGES>, room: &mut [f64]) -> f64 {
+    fn sum(
+        &self,
+        row: &MaxwellRow,
+        a: &[f64],
+        stages: &[Rates],
+        products: &Products<STAGES>,
+        workspace: &mut [f64],
+    ) -> f64 {
         let rates = self.mixed.iter().zip(stages).filter(|(factor, _)| **factor != 0.0);
         let mixed = rates.map(|(&factor, stage)| (factor, &stage.elongation_rate[row.kind as usize][..]));
-        let room = &mut room[..a.len()];
-        weighted_sum(room, std::iter::once((self.start, a)).chain(mixed));
+        let workspace = &mut workspace[..a.len()];
+        weighted_sum(workspace, std::iter::once((self.start, a)).chain(mixed));
         let of_rates = self.rates.iter().flatten().zip(products.iter().flatten());
-        dot(a, room) + of_rates.map(|(factor, product)| factor * product).sum::<f64>()
+        dot(a, workspace) + of_rates.map(|(factor, product)| factor * product).sum::<f64>()
     }
 }
 
 impl Late {
-    fn new<const STAGES: usize>(z: f64, course: &Course<STAGES>, weights: &[f64; STAGES], squares: f64) -> Self {
+    fn new<const STAGES: usize>(
+        z: f64,
+        coefficients: &StageCoefficients<STAGES>,
+        weights: &[f64; STAGES],
+        squares: f64,
+    ) -> Self {
         let fraction = weights.iter().sum::<f64>();
         let integral = |z: f64| -(-z * fraction).exp_m1() / z;
         let share = (z / SEEN - 1.0).min(1.0);
         Self {
             square: share * (integral(2.0 * z) - squares),
-            mixed: share * (integral(z) - dot(weights, &course.start)),
+            mixed: share * (integral(z) - dot(weights, &coefficients.start)),
         }
     }
 
@@ -217,10 +229,10 @@ mod tests {
                 let squares: f64 = stages[i].elongation_rate[kind as usize].iter().map(|rate| rate * rate).sum();
                 expected.damper += h * weight * model.links[kind as usize].damping * squares;
                 for row in model.rows_of(kind) {
-                    let course = &maxwell.courses()[row.time_index];
+                    let coefficients = &maxwell.coefficients()[row.time_index];
                     for (link, a) in start[row.range.clone()].iter().enumerate() {
-                        let rate = |j: usize| course.rate[i][j] * stages[j].elongation_rate[kind as usize][link];
-                        let a = course.start[i] * a + (0..=i).map(rate).sum::<f64>();
+                        let rate = |j: usize| coefficients.rate[i][j] * stages[j].elongation_rate[kind as usize][link];
+                        let a = coefficients.start[i] * a + (0..=i).map(rate).sum::<f64>();
                         expected.maxwell += h * weight * row.stiffness * a * a / row.relaxation_time;
                     }
                 }

@@ -6,9 +6,9 @@ use super::{Attempt, Rates, Tableau, Tolerance};
 use crate::math::{sum_of, sum_of_pairs, weighted_sum};
 use crate::model::{CarrierPoint, LinkKind, Mode, Model, State};
 
-/// The estimated errors of one step, and room for them.
+/// The estimated errors of one step, and workspace for them.
 #[derive(Clone, Debug)]
-pub(super) struct ErrorRoom {
+pub(super) struct ErrorWorkspace {
     x: Vec<f64>,
     z: Vec<f64>,
     v_x: Vec<f64>,
@@ -17,7 +17,7 @@ pub(super) struct ErrorRoom {
     force: Vec<f64>,
 }
 
-impl ErrorRoom {
+impl ErrorWorkspace {
     pub(super) fn new(model: &Model) -> Self {
         let zero = vec![0.0; model.masses()];
         Self { x: zero.clone(), z: zero.clone(), v_x: zero.clone(), v_z: zero.clone(), force: zero }
@@ -31,7 +31,7 @@ impl ErrorRoom {
 
 /// A step that was tried.
 #[derive(Clone, Copy)]
-pub(super) struct Tried<'a, const STAGES: usize> {
+pub(super) struct ErrorTest<'a, const STAGES: usize> {
     pub tableau: &'a Tableau<STAGES>,
     pub maxwell: &'a Maxwell<STAGES>,
     pub stages: &'a [Rates],
@@ -42,15 +42,21 @@ pub(super) struct Tried<'a, const STAGES: usize> {
     pub contacts: &'a [usize],
 }
 
-impl<const STAGES: usize> Tried<'_, STAGES> {
+impl<const STAGES: usize> ErrorTest<'_, STAGES> {
     /// The embedded estimate of the step, of length `h`, in the tolerance's norm.
     ///
     /// The carrier's displacement is known, not integrated; yet where masses are in contact a step must be able to see
     /// it: the dense output, the events between the stages and the energies do. So what the method would miss of it
     /// counts as an error too: where every mass sticks, there is no other.
-    pub(super) fn error(&self, model: &Model, h: f64, tolerance: &Tolerance, room: &mut ErrorRoom) -> Attempt {
+    pub(super) fn error(
+        &self,
+        model: &Model,
+        h: f64,
+        tolerance: &Tolerance,
+        workspace: &mut ErrorWorkspace,
+    ) -> Attempt {
         let carrier_error = self.carrier_error(h);
-        self.collect(h, &carrier_error, room);
+        self.collect(h, &carrier_error, workspace);
         let (end, rates) = (self.end, &self.carrier[STAGES - 1]);
         let place = |error: &[f64], elongation: &[f64]| {
             sum_of_pairs(error, elongation, |error, e| error * error / tolerance.of_position(e))
@@ -59,17 +65,17 @@ impl<const STAGES: usize> Tried<'_, STAGES> {
             sum_of_pairs(error, velocity, |error, v| error * error / tolerance.of_velocity(v - carrier_rate))
         };
         let (in_contact, unseen) = self.unseen(&carrier_error, tolerance);
-        let mut sum = place(&room.x, &end.elongation_x)
-            + place(&room.z, &end.elongation_z)
-            + speed(&room.v_x, &end.velocity_x, rates.u_rate)
-            + speed(&room.v_z, &end.velocity_z, rates.w_rate)
+        let mut sum = place(&workspace.x, &end.elongation_x)
+            + place(&workspace.z, &end.elongation_z)
+            + speed(&workspace.v_x, &end.velocity_x, rates.u_rate)
+            + speed(&workspace.v_z, &end.velocity_z, rates.w_rate)
             + in_contact;
         for kind in LinkKind::ALL {
             if let Some(rod) = tolerance.rod(kind) {
-                sum += self.rod_error(kind, (rod, h), tolerance, room);
+                sum += self.rod_error(kind, (rod, h), tolerance, workspace);
             }
             if self.maxwell.has(kind) {
-                sum += self.maxwell_error(model, kind, tolerance, room);
+                sum += self.maxwell_error(model, kind, tolerance, workspace);
             }
         }
         let mean = |sum: f64| (sum / model.masses() as f64).sqrt();
@@ -94,30 +100,36 @@ impl<const STAGES: usize> Tried<'_, STAGES> {
 
     /// The errors of places and velocities against the carrier. A sticking mass has none, and along z those of a
     /// contact follow its slope.
-    fn collect(&self, h: f64, (position, velocity): &CarrierErrors, room: &mut ErrorRoom) {
+    fn collect(&self, h: f64, (position, velocity): &CarrierErrors, workspace: &mut ErrorWorkspace) {
         let weights = &self.tableau.error;
         let sum = |errors: &mut [f64], rate: fn(&Rates) -> &[f64], of_carrier: f64| {
             let counting = self.stages.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
             weighted_sum(errors, counting.map(|(stage, weight)| (h * weight, rate(stage))));
             errors.iter_mut().for_each(|error| *error -= of_carrier);
         };
-        sum(&mut room.x, |stage| &stage.velocity_x, position.0);
-        sum(&mut room.z, |stage| &stage.velocity_z, position.1);
-        sum(&mut room.v_x, |stage| &stage.acceleration_x, velocity.0);
-        sum(&mut room.v_z, |stage| &stage.acceleration_z, velocity.1);
+        sum(&mut workspace.x, |stage| &stage.velocity_x, position.0);
+        sum(&mut workspace.z, |stage| &stage.velocity_z, position.1);
+        sum(&mut workspace.v_x, |stage| &stage.acceleration_x, velocity.0);
+        sum(&mut workspace.v_z, |stage| &stage.acceleration_z, velocity.1);
         for &i in self.contacts {
             if self.end.mode[i] == Mode::Stick {
-                (room.x[i], room.v_x[i]) = (0.0, 0.0);
+                (workspace.x[i], workspace.v_x[i]) = (0.0, 0.0);
             }
-            let slope = self.end.ground[i].slope;
-            (room.z[i], room.v_z[i]) = (slope * room.x[i], slope * room.v_x[i]);
+            let slope = self.end.surface[i].slope;
+            (workspace.z[i], workspace.v_z[i]) = (slope * workspace.x[i], slope * workspace.v_x[i]);
         }
     }
 
     /// The sum of squares of the errors of the Maxwell elements' forces of the links of `kind`.
-    fn maxwell_error(&self, model: &Model, kind: LinkKind, tolerance: &Tolerance, room: &mut ErrorRoom) -> f64 {
+    fn maxwell_error(
+        &self,
+        model: &Model,
+        kind: LinkKind,
+        tolerance: &Tolerance,
+        workspace: &mut ErrorWorkspace,
+    ) -> f64 {
         let e = if kind.is_along_x() { &self.end.elongation_x } else { &self.end.elongation_z };
-        let force = &mut room.force[..kind.count(e.len())];
+        let force = &mut workspace.force[..kind.count(e.len())];
         self.maxwell.force_error(kind, self.stages, force);
         if let Some(per_force) = tolerance.per_pressing_force(kind) {
             return self.pressing_error(model, per_force, tolerance, force);
@@ -146,12 +158,18 @@ impl<const STAGES: usize> Tried<'_, STAGES> {
     }
 
     /// The sum of squares of the errors c δe + d δė of the forces of the links of `kind`, which are rods.
-    fn rod_error(&self, kind: LinkKind, (rod, h): (Rod, f64), tolerance: &Tolerance, room: &ErrorRoom) -> f64 {
+    fn rod_error(
+        &self,
+        kind: LinkKind,
+        (rod, h): (Rod, f64),
+        tolerance: &Tolerance,
+        workspace: &ErrorWorkspace,
+    ) -> f64 {
         let (end, carrier) = (self.end, &self.carrier[STAGES - 1]);
         let (errors, e, v, carrier_rate) = if kind.is_along_x() {
-            ((&room.x, &room.v_x), &end.elongation_x, &end.velocity_x, carrier.u_rate)
+            ((&workspace.x, &workspace.v_x), &end.elongation_x, &end.velocity_x, carrier.u_rate)
         } else {
-            ((&room.z, &room.v_z), &end.elongation_z, &end.velocity_z, carrier.w_rate)
+            ((&workspace.z, &workspace.v_z), &end.elongation_z, &end.velocity_z, carrier.w_rate)
         };
         let force = |places: &[f64], speeds: &[f64], carrier_rate: f64, i: usize| {
             if kind.is_lateral() {

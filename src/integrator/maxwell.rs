@@ -16,17 +16,17 @@ use super::rates::Rates;
 use crate::math::weighted_sum;
 use crate::model::{LinkKind, MaxwellRow, Model};
 
-/// The Maxwell elements of a layer over a step, and room for them.
+/// The Maxwell elements of a layer over a step, and workspace for them.
 #[derive(Clone, Debug)]
 pub(super) struct Maxwell<const STAGES: usize> {
     /// One for each relaxation time of the model.
-    courses: Vec<Course<STAGES>>,
+    coefficients: Vec<StageCoefficients<STAGES>>,
     kinds: [KindSums<STAGES>; 4],
 }
 
 /// How the elements of one relaxation time follow through a step.
 #[derive(Clone, Debug)]
-pub(super) struct Course<const STAGES: usize> {
+pub(super) struct StageCoefficients<const STAGES: usize> {
     /// p_i.
     pub start: [f64; STAGES],
     /// h q_ij, s.
@@ -50,30 +50,30 @@ struct KindSums<const STAGES: usize> {
 
 impl<const STAGES: usize> Maxwell<STAGES> {
     pub(super) fn new(model: &Model) -> Self {
-        let courses = model.relaxation_times.iter().map(|_| Course::new()).collect();
+        let coefficients = model.relaxation_times.iter().map(|_| StageCoefficients::new()).collect();
         let kinds = LinkKind::ALL.map(|kind| {
             let present = model.rows.iter().any(|row| row.kind == kind);
             KindSums::new(if present { kind.count(model.masses()) } else { 0 })
         });
-        Self { courses, kinds }
+        Self { coefficients, kinds }
     }
 
     /// No elements, for a method that is not used.
     pub(super) fn none() -> Self {
-        Self { courses: Vec::new(), kinds: LinkKind::ALL.map(|_| KindSums::new(0)) }
+        Self { coefficients: Vec::new(), kinds: LinkKind::ALL.map(|_| KindSums::new(0)) }
     }
 
     /// Begins a step of length `h` from the elongations `a`.
     pub(super) fn begin(&mut self, model: &Model, tableau: &Tableau<STAGES>, a: &[f64], h: f64) {
-        for (course, relaxation_time) in self.courses.iter_mut().zip(&model.relaxation_times) {
-            course.follow(tableau, h / relaxation_time, h);
+        for (coefficients, relaxation_time) in self.coefficients.iter_mut().zip(&model.relaxation_times) {
+            coefficients.follow(tableau, h / relaxation_time, h);
         }
         for (kind, sums) in LinkKind::ALL.into_iter().zip(&mut self.kinds) {
             if sums.error_start.is_empty() {
                 continue;
             }
-            let courses = &self.courses;
-            sums.collect(a, || model.rows_of(kind).map(|row| (row, &courses[row.time_index])));
+            let coefficients = &self.coefficients;
+            sums.collect(a, || model.rows_of(kind).map(|row| (row, &coefficients[row.time_index])));
         }
     }
 
@@ -82,9 +82,9 @@ impl<const STAGES: usize> Maxwell<STAGES> {
         !self.kinds[kind as usize].error_start.is_empty()
     }
 
-    /// The courses, one for each relaxation time of the model.
-    pub(super) fn courses(&self) -> &[Course<STAGES>] {
-        &self.courses
+    /// The coefficients, one for each relaxation time of the model.
+    pub(super) fn coefficients(&self) -> &[StageCoefficients<STAGES>] {
+        &self.coefficients
     }
 
     /// P_i + h Σ_{j<i} Q_ij ė_j by kind of link: what is known of the elements' forces before stage `i`, N.
@@ -111,9 +111,9 @@ impl<const STAGES: usize> Maxwell<STAGES> {
     /// The elongations `a` at stage `i` of a step from `start`.
     pub(super) fn at_stage(&self, model: &Model, i: usize, (start, stages): (&[f64], &[Rates]), a: &mut [f64]) {
         for row in &model.rows {
-            let course = &self.courses[row.time_index];
-            let from = std::iter::once((course.start[i], &start[row.range.clone()]));
-            let driven = by_rate(row.kind, &course.rate[i][..=i], stages);
+            let coefficients = &self.coefficients[row.time_index];
+            let from = std::iter::once((coefficients.start[i], &start[row.range.clone()]));
+            let driven = by_rate(row.kind, &coefficients.rate[i][..=i], stages);
             weighted_sum(&mut a[row.range.clone()], from.chain(driven));
         }
     }
@@ -130,7 +130,7 @@ fn by_rate<'a>(kind: LinkKind, weights: &'a [f64], stages: &'a [Rates]) -> impl 
     stages.map(move |(&weight, stage)| (weight, &stage.elongation_rate[kind as usize][..]))
 }
 
-impl<const STAGES: usize> Course<STAGES> {
+impl<const STAGES: usize> StageCoefficients<STAGES> {
     fn new() -> Self {
         let zero = [0.0; STAGES];
         Self { start: zero, rate: [zero; STAGES], error_start: 0.0, error_rate: zero }
@@ -177,20 +177,21 @@ impl<const STAGES: usize> KindSums<STAGES> {
 
     fn collect<'a, Rows>(&mut self, a: &[f64], rows: impl Fn() -> Rows)
     where
-        Rows: Iterator<Item = (&'a MaxwellRow, &'a Course<STAGES>)>,
+        Rows: Iterator<Item = (&'a MaxwellRow, &'a StageCoefficients<STAGES>)>,
     {
-        let start =
-            |i: usize| rows().map(move |(row, course)| (row.stiffness * course.start[i], &a[row.range.clone()]));
+        let start = |i: usize| {
+            rows().map(move |(row, coefficients)| (row.stiffness * coefficients.start[i], &a[row.range.clone()]))
+        };
         for i in 1..STAGES {
             weighted_sum(&mut self.start[i], start(i));
             for j in 0..=i {
-                self.rate[i][j] = rows().map(|(row, course)| row.stiffness * course.rate[i][j]).sum();
+                self.rate[i][j] = rows().map(|(row, coefficients)| row.stiffness * coefficients.rate[i][j]).sum();
             }
         }
-        let error = rows().map(|(row, course)| (row.stiffness * course.error_start, &a[row.range.clone()]));
+        let error = rows().map(|(row, coefficients)| (row.stiffness * coefficients.error_start, &a[row.range.clone()]));
         weighted_sum(&mut self.error_start, error);
         self.error_rate =
-            std::array::from_fn(|j| rows().map(|(row, course)| row.stiffness * course.error_rate[j]).sum());
+            std::array::from_fn(|j| rows().map(|(row, coefficients)| row.stiffness * coefficients.error_rate[j]).sum());
     }
 }
 
@@ -218,12 +219,12 @@ mod tests {
         let rates = [0.3, -0.7, 1.1, 0.2, -0.4, 0.9, 0.5];
         for z in [0.0, 1e-8, 0.1, 1.0, 30.0, 1e4] {
             let a = 0.8 / (1.0 + z);
-            let mut course = Course::<STAGES>::new();
-            course.follow(&METHOD, z, 1.0);
+            let mut coefficients = StageCoefficients::<STAGES>::new();
+            coefficients.follow(&METHOD, z, 1.0);
             let (expected, expected_error) = stage_by_stage(z, a, &rates);
             for i in 0..STAGES {
-                let driven: f64 = course.rate[i].iter().zip(&rates).map(|(q, rate)| q * rate).sum();
-                let found = course.start[i] * a + driven;
+                let driven: f64 = coefficients.rate[i].iter().zip(&rates).map(|(q, rate)| q * rate).sum();
+                let found = coefficients.start[i] * a + driven;
                 // In the plain recursion a change hȧ loses the digits that ė and z a share.
                 assert!(
                     (found - expected[i]).abs() < 1e-14 / (1.0 + z) * 100.0,
@@ -231,8 +232,8 @@ mod tests {
                     expected[i]
                 );
             }
-            let driven: f64 = course.error_rate.iter().zip(&rates).map(|(e, rate)| e * rate).sum();
-            let found = course.error_start * a + driven;
+            let driven: f64 = coefficients.error_rate.iter().zip(&rates).map(|(e, rate)| e * rate).sum();
+            let found = coefficients.error_start * a + driven;
             assert!((found - expected_error).abs() < 1e-13, "z {z:e}: {found} {expected_error}");
         }
     }
@@ -241,10 +242,10 @@ mod tests {
     #[test]
     fn a_short_element_is_a_damper() {
         for z in [1e9, 1e13, 1e100] {
-            let mut course = Course::<STAGES>::new();
-            course.follow(&METHOD, z, 1.0);
+            let mut coefficients = StageCoefficients::<STAGES>::new();
+            coefficients.follow(&METHOD, z, 1.0);
             let a = 1.0 / z;
-            let end = course.start[STAGES - 1] * a + course.rate[STAGES - 1].iter().sum::<f64>();
+            let end = coefficients.start[STAGES - 1] * a + coefficients.rate[STAGES - 1].iter().sum::<f64>();
             // R(∞) = 0 within the digits of the printed coefficients; of 1/z a few roundings.
             assert!((end * z - 1.0).abs() < 1e-8, "z {z:e}: {}", end * z);
         }

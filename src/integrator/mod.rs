@@ -12,17 +12,17 @@ mod tangent;
 mod tolerance;
 mod within;
 
-pub use dense::{Dense, DenseRoom};
+pub use dense::{DenseOutput, DenseWorkspace};
 pub use rates::{NO_LIMIT, Rates};
 pub use sdirk::{SDIRK2, TWO_STAGES};
 pub use stage::NoConvergence;
 pub use tableau::{ESDIRK5, Tableau, WeightsWithin};
 pub use tolerance::Tolerance;
-pub use within::Within;
+pub use within::TwoStageDense;
 
 use crate::math::weighted_sum;
 use crate::model::{Carrier, CarrierPoint, Exchange, Forces, Model, Power, State};
-use error::{ErrorRoom, Tried};
+use error::{ErrorTest, ErrorWorkspace};
 use maxwell::Maxwell;
 use sdirk::TwoStages;
 use stage::{Accuracy, StagePoint, StageSolver};
@@ -34,7 +34,7 @@ pub const METHOD: Tableau<7> = ESDIRK5;
 /// Number of stages, the explicit one included.
 pub const STAGES: usize = METHOD.c.len();
 
-/// The stages of one step, and room for them.
+/// The stages of one step, and workspace for them.
 #[derive(Clone, Debug)]
 pub struct Integrator {
     /// The rates of the stages; those of the first are the rates at the start of the step.
@@ -45,7 +45,7 @@ pub struct Integrator {
     exchange: [Exchange; STAGES],
     maxwell: Maxwell<STAGES>,
     solver: StageSolver,
-    error_room: ErrorRoom,
+    error_workspace: ErrorWorkspace,
     predictor: [[f64; STAGES]; STAGES],
     weights_within: WeightsWithin<STAGES>,
     /// The other method, for steps of two stages.
@@ -57,14 +57,14 @@ pub struct Integrator {
 
 /// What the steps follow beside the state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Followed {
+pub struct Tracked {
     /// The powers of the channels.
     pub energy: bool,
     /// The forces' sensitivities to the carrier's targets.
     pub tangents: bool,
 }
 
-/// Which steps an integrator has room for.
+/// Which steps an integrator has workspace for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Steps {
     /// Steps of [`METHOD`] alone.
@@ -102,7 +102,7 @@ pub struct Attempt {
 
 impl Integrator {
     /// Room for steps of `model`.
-    pub fn new(model: &Model, followed: Followed, steps: Steps) -> Self {
+    pub fn new(model: &Model, followed: Tracked, steps: Steps) -> Self {
         let targets: &[Target] = if followed.tangents { &[Target::U, Target::W] } else { &[] };
         Self {
             stages: vec![Rates::new(model); steps.stages()],
@@ -110,7 +110,7 @@ impl Integrator {
             exchange: [Exchange::default(); STAGES],
             maxwell: if steps.accurate() { Maxwell::new(model) } else { Maxwell::none() },
             solver: StageSolver::new(model),
-            error_room: ErrorRoom::new(model),
+            error_workspace: ErrorWorkspace::new(model),
             predictor: predictor(&METHOD.c),
             weights_within: WeightsWithin::new(&METHOD),
             two_stages: TwoStages::new(model, steps.two_stages()),
@@ -173,7 +173,7 @@ impl Integrator {
             self.solve_stage(model, &point, (s, h), stage, Accuracy::new(tolerance, beta, 1.0))?;
         }
         self.maxwell.finish(model, &state.maxwell, &self.stages, &mut self.solver.state.maxwell);
-        let tried = Tried {
+        let test = ErrorTest {
             tableau: &METHOD,
             maxwell: &self.maxwell,
             stages: &self.stages,
@@ -181,7 +181,7 @@ impl Integrator {
             end: &self.solver.state,
             contacts: self.solver.contacts(),
         };
-        Ok(tried.error(model, h, tolerance, &mut self.error_room))
+        Ok(test.error(model, h, tolerance, &mut self.error_workspace))
     }
 
     /// The motion that the earlier stages of a step of length `h` from `state`, `s` seconds after the start of the
@@ -199,7 +199,14 @@ impl Integrator {
         self.collect_motion(state, (h, &weights[..i]));
         let driven = self.drive((h, weights), i);
         let moved = carrier.moved(s, c * h).0;
-        StagePoint { beta, carrier: at, driven, moved, place: carrier.place + at.du, w: carrier.w + at.dw }
+        StagePoint {
+            beta,
+            carrier: at,
+            driven,
+            moved,
+            profile_position: carrier.profile_position + at.du,
+            w: carrier.w + at.dw,
+        }
     }
 
     /// Solves a stage that is prepared, to `accuracy`, and what follows from it.
@@ -296,17 +303,17 @@ impl Integrator {
         carrier: &'a Carrier,
         start: &'a State,
         (s, h): (f64, f64),
-    ) -> Dense<'a> {
+    ) -> DenseOutput<'a> {
         let carriers = [self.carrier[0], self.carrier[STAGES - 1]];
         let end = (self.end(), &self.stages[STAGES - 1]);
-        Dense { model, carrier, s, h, carriers, start: (start, &self.stages[0]), end }
+        DenseOutput { model, carrier, s, h, carriers, start: (start, &self.stages[0]), end }
     }
 
     /// Energies through the channels over the step of length `h` from `start` tried last, up to its fraction `theta`.
     pub fn energies(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> Power {
         let weights = if theta < 1.0 { &self.weights_within.at(theta) } else { METHOD.weights() };
         let stages = (&self.stages[..], &self.exchange[..]);
-        energy::through(model, &self.maxwell, &start.maxwell, stages, (h, weights), self.error_room.any())
+        energy::through(model, &self.maxwell, &start.maxwell, stages, (h, weights), self.error_workspace.any())
     }
 
     /// Takes the step tried last: `state` becomes its end, and the rates there those at the start of the next step.

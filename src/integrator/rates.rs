@@ -90,10 +90,10 @@ impl Rates {
             self.acceleration_x[i] = f_x / model.mass;
             self.acceleration_z[i] = f_z / model.mass;
         } else {
-            let ground = &state.ground[i];
-            let contact = ContactForces::new(model, (f_x, f_z), v, ground);
-            self.acceleration_x[i] = contact.acceleration(model, mode, v, ground);
-            self.contact(model, i, (mode, v), ground, &contact);
+            let surface = &state.surface[i];
+            let contact = ContactForces::new(model, (f_x, f_z), v, surface);
+            self.acceleration_x[i] = contact.acceleration(model, mode, v, surface);
+            self.contact(model, i, (mode, v), surface, &contact);
         }
     }
 
@@ -125,10 +125,10 @@ impl Rates {
         model: &Model,
         i: usize,
         (mode, velocity_x): (Mode, f64),
-        ground: &SurfacePoint,
+        surface: &SurfacePoint,
         contact: &ContactForces,
     ) {
-        self.acceleration_z[i] = ground.slope * self.acceleration_x[i] + ground.curvature * velocity_x * velocity_x;
+        self.acceleration_z[i] = surface.slope * self.acceleration_x[i] + surface.curvature * velocity_x * velocity_x;
         self.normal[i] = contact.normal;
         self.margin[i] = match mode {
             Mode::Stick => contact.limit - contact.tangential.abs(),

@@ -1,7 +1,7 @@
 //! The two-stage method of the time-stepping driver: SDIRK2 of R. Alexander (SIAM J. Numer. Anal. 14, 1977), with
 //! γ = 1 - 1/√2 of order 2, L-stable and stiffly accurate. Every step takes two stages, whatever happens within it.
 
-use super::error::Tried;
+use super::error::ErrorTest;
 use super::maxwell::Maxwell;
 use super::stage::{Accuracy, NoConvergence};
 use super::{Attempt, Integrator, Rates, STAGES, Tableau, Tolerance, WeightsWithin, energy};
@@ -98,8 +98,8 @@ impl Integrator {
         maxwell.finish(model, &state.maxwell, &self.stages, &mut end.maxwell);
         let (stages, carrier) = (&self.stages[..], &self.carrier[..TWO_STAGES]);
         let (end, contacts) = (&self.solver.state, self.solver.contacts());
-        let tried = Tried { tableau: &SDIRK2, maxwell, stages, carrier, end, contacts };
-        let attempt = tried.error(model, h, tolerance, &mut self.error_room);
+        let test = ErrorTest { tableau: &SDIRK2, maxwell, stages, carrier, end, contacts };
+        let attempt = test.error(model, h, tolerance, &mut self.error_workspace);
         // Touches are looked for where the step ends, so the carrier has to be seen whether masses are near or not.
         Ok(Attempt { error: attempt.error.hypot(attempt.unseen), ..attempt })
     }
@@ -141,10 +141,10 @@ impl Integrator {
     /// Energies through the channels over the step of two stages of length `h` from `start` tried last, up to its
     /// fraction `theta`.
     pub fn two_stage_energies(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> Power {
-        let room = &self.two_stages;
-        let weights = if theta < 1.0 { &room.weights_within.at(theta) } else { SDIRK2.weights() };
+        let workspace = &self.two_stages;
+        let weights = if theta < 1.0 { &workspace.weights_within.at(theta) } else { SDIRK2.weights() };
         let stages = (&self.stages[..], &self.exchange[..]);
-        energy::through(model, &room.maxwell, &start.maxwell, stages, (h, weights), self.error_room.any())
+        energy::through(model, &workspace.maxwell, &start.maxwell, stages, (h, weights), self.error_workspace.any())
     }
 
     /// The Maxwell elements' elongations at the first stage of the step of two stages from `start` tried last, into

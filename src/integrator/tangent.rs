@@ -247,18 +247,20 @@ pub(super) fn add(sum: &mut [f64], factor: f64, term: &[f64]) {
 
 /// The variations of ζ, ẋ and ż that a contact's constraint leaves, given those of ξ and ẋ; `None` for a free mass.
 pub(super) fn constrained(state: &State, i: usize, x: f64, v_x: f64) -> Option<(f64, f64, f64)> {
-    let (ground, v) = (&state.ground[i], state.velocity_x[i]);
+    let (surface, v) = (&state.surface[i], state.velocity_x[i]);
     match state.mode[i] {
         Mode::Free => None,
-        Mode::Stick => Some((ground.slope * x, 0.0, 0.0)),
-        Mode::Forward | Mode::Backward => Some((ground.slope * x, v_x, ground.slope * v_x + ground.curvature * v * x)),
+        Mode::Stick => Some((surface.slope * x, 0.0, 0.0)),
+        Mode::Forward | Mode::Backward => {
+            Some((surface.slope * x, v_x, surface.slope * v_x + surface.curvature * v * x))
+        }
     }
 }
 
 /// A slipping mass and what its equation of motion is varied about.
 pub(super) struct Slip<'a> {
     model: &'a Model,
-    ground: &'a SurfacePoint,
+    surface: &'a SurfacePoint,
     sigma: f64,
     velocity: f64,
     acceleration: f64,
@@ -269,7 +271,7 @@ impl<'a> Slip<'a> {
     pub(super) fn at(model: &'a Model, state: &'a State, forces: &Forces, i: usize, acceleration: f64) -> Self {
         Self {
             model,
-            ground: &state.ground[i],
+            surface: &state.surface[i],
             sigma: state.mode[i].direction(),
             velocity: state.velocity_x[i],
             acceleration,
@@ -279,7 +281,7 @@ impl<'a> Slip<'a> {
 
     /// q² = 1 + s².
     pub(super) fn q2(&self) -> f64 {
-        1.0 + self.ground.slope * self.ground.slope
+        1.0 + self.surface.slope * self.surface.slope
     }
 
     /// m q² δẍ by the variations of place and velocity (δx, δẋ) and of the links' forces on the mass (δf_x, δf_z): from
@@ -289,10 +291,10 @@ impl<'a> Slip<'a> {
     /// A τ_0 all of the shear force.
     pub(super) fn variation(&self, (x, v_x): (f64, f64), (f_x, f_z): (f64, f64)) -> f64 {
         let m = self.model.mass;
-        let (s, kappa) = (self.ground.slope, self.ground.curvature);
+        let (s, kappa) = (self.surface.slope, self.surface.curvature);
         let sigma_mu = self.sigma * self.model.friction_coefficient;
         let (share_x, share_z) = (1.0 - sigma_mu * s, s + sigma_mu);
-        let (ds, dkappa) = (kappa * x, self.ground.third * x);
+        let (ds, dkappa) = (kappa * x, self.surface.third * x);
         let v = self.velocity;
         let centripetal = dkappa * v * v * share_z + 2.0 * kappa * v * v_x * share_z + kappa * v * v * ds;
         share_x * f_x + share_z * f_z + ds * (self.on_mass.1 - sigma_mu * self.on_mass.0)

@@ -16,7 +16,7 @@ pub struct Tolerance {
     per_elongation: [f64; 4],
     /// The kinds of link that are rods: their errors count by the forces that they make.
     rods: [Option<Rod>; 4],
-    /// [`Model::lasting_stiffness`], N/m.
+    /// [`Model::long_term_stiffness`], N/m.
     lasting: Option<f64>,
 }
 
@@ -66,7 +66,7 @@ impl Tolerance {
             velocity: absolute * model.felt_frequency(),
             per_elongation: LinkKind::ALL.map(per_elongation),
             rods: LinkKind::ALL.map(rod),
-            lasting: model.lasting_stiffness(),
+            lasting: model.long_term_stiffness(),
         }
     }
 

@@ -10,7 +10,7 @@ use crate::model::{Carrier, CarrierPoint, Mode, Model, State};
 
 /// One step of two stages, seen from within.
 #[derive(Clone, Copy, Debug)]
-pub struct Within<'a> {
+pub struct TwoStageDense<'a> {
     /// The model.
     pub model: &'a Model,
     /// The carrier's motion.
@@ -31,7 +31,7 @@ pub struct Within<'a> {
     carried: (f64, f64),
 }
 
-impl<'a> Within<'a> {
+impl<'a> TwoStageDense<'a> {
     /// The step of length h from `span.0` on, `span` = (s, h).
     pub fn new(
         model: &'a Model,
@@ -41,7 +41,7 @@ impl<'a> Within<'a> {
         (end, last): (&'a State, &'a Rates),
     ) -> Self {
         let at = carrier.at(span.0);
-        let at_start = (carrier.place + at.du, carrier.w + at.dw);
+        let at_start = (carrier.profile_position + at.du, carrier.w + at.dw);
         let carried = carrier.moved(span.0, span.1);
         Self { model, carrier, span, start, first, end, last, at_start, carried }
     }
@@ -83,7 +83,7 @@ impl<'a> Within<'a> {
         let (beta, (u, w), (end_u, end_w)) = (GAMMA * h, self.carrier.moved(s, theta * h), self.carried);
         let (from, to) = (self.start, self.end);
         state.mode.copy_from_slice(&from.mode);
-        state.ground.copy_from_slice(&from.ground);
+        state.surface.copy_from_slice(&from.surface);
         for i in 0..self.model.masses() {
             let x =
                 through(theta, beta * self.first.velocity_x[i], end_u + (to.elongation_x[i] - from.elongation_x[i]));
@@ -108,13 +108,13 @@ impl<'a> Within<'a> {
             return;
         }
         if mode.slips() {
-            let place = self.model.rest_x[i] + (self.carrier.place + (here.du + state.elongation_x[i]));
-            state.ground[i] = self.model.ground(place);
+            let place = self.model.rest_x[i] + (self.carrier.profile_position + (here.du + state.elongation_x[i]));
+            state.surface[i] = self.model.surface_at(place);
         } else {
             state.velocity_x[i] = 0.0;
         }
-        state.velocity_z[i] = state.ground[i].slope * state.velocity_x[i];
-        state.elongation_z[i] = state.ground[i].height - self.model.rest_z[i] - (self.carrier.w + here.dw);
+        state.velocity_z[i] = state.surface[i].slope * state.velocity_x[i];
+        state.elongation_z[i] = state.surface[i].height - self.model.rest_z[i] - (self.carrier.w + here.dw);
     }
 }
 

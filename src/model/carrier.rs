@@ -3,7 +3,7 @@
 use crate::math::{Numbers, Spline, visit_all};
 use crate::scene::Path;
 
-/// The carrier on a smooth piece of its motion. Within the piece all is counted from its start, so that a carrier that
+/// The carrier on a smooth piece of its motion. TwoStageDense the piece all is counted from its start, so that a carrier that
 /// has gone far loses no digits but those of u itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Carrier {
@@ -13,8 +13,8 @@ pub struct Carrier {
     pub u: f64,
     /// w at the start of the piece, m.
     pub w: f64,
-    /// u at the start of the piece as a place on the profile, m: reduced to one period where there is one.
-    pub place: f64,
+    /// u at the start of the piece as a position on the profile, m: reduced to one period where there is one.
+    pub profile_position: f64,
     u_path: Path,
     w_path: Path,
 }
@@ -39,7 +39,7 @@ pub struct CarrierPoint {
 impl Carrier {
     /// A piece that starts at time `time` from `u`, `w` over `profile`.
     pub fn new(time: f64, (u, w): (f64, f64), (u_path, w_path): (Path, Path), profile: &Spline) -> Self {
-        Self { time, u, w, place: profile.reduce(u), u_path, w_path }
+        Self { time, u, w, profile_position: profile.reduce(u), u_path, w_path }
     }
 
     /// The carrier `s` seconds after the start of the piece.
@@ -49,9 +49,9 @@ impl Carrier {
         CarrierPoint { du, dw, u_rate, w_rate, u_acceleration, w_acceleration }
     }
 
-    /// Computes the place on `profile` afresh from u.
-    pub fn find_place(&mut self, profile: &Spline) {
-        self.place = profile.reduce(self.u);
+    /// Computes the position on the profile afresh from u.
+    pub fn find_profile_position(&mut self, profile: &Spline) {
+        self.profile_position = profile.reduce(self.u);
     }
 
     /// How far u and w move from `s` to `span` after it, s, m.
@@ -76,10 +76,10 @@ impl Carrier {
     }
 }
 
-/// All but the place on the profile, which follows from u.
+/// All but the position on the profile, which follows from u.
 impl Numbers for Carrier {
     fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        let Self { time, u, w, place: _, u_path, w_path } = self;
+        let Self { time, u, w, profile_position: _, u_path, w_path } = self;
         visit_all([time, u, w, u_path, w_path], visit);
     }
 }

@@ -3,7 +3,7 @@
 use super::{CarrierPoint, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint};
 use crate::math::sum_of;
 
-/// Forces at one instant, and room for them.
+/// Forces at one instant, and workspace for them.
 #[derive(Clone, Debug, Default)]
 pub struct Forces {
     /// Forces of the links by kind, N; empty where the scene has no such link.
@@ -20,8 +20,8 @@ impl Forces {
     /// Room for the forces of `model`.
     pub fn new(model: &Model) -> Self {
         let k = model.masses();
-        let room = |kind: LinkKind| if model.links[kind as usize].present { kind.count(k) } else { 0 };
-        let by_kind = || LinkKind::ALL.map(|kind| vec![0.0; room(kind)]);
+        let workspace = |kind: LinkKind| if model.links[kind as usize].present { kind.count(k) } else { 0 };
+        let by_kind = || LinkKind::ALL.map(|kind| vec![0.0; workspace(kind)]);
         Self { link: by_kind(), rate: by_kind(), on_mass_x: vec![0.0; k], on_mass_z: vec![0.0; k] }
     }
 
@@ -31,7 +31,7 @@ impl Forces {
         for kind in LinkKind::ALL {
             let law = &model.links[kind as usize];
             self.spring_and_damper(kind, (law.stiffness, law.damping), &motion, &[]);
-            model.subtract_still(kind, &mut self.link[kind as usize]);
+            model.subtract_frozen(kind, &mut self.link[kind as usize]);
         }
         for row in &model.rows {
             let elongations = &state.maxwell[row.range.clone()];
@@ -134,9 +134,9 @@ impl Forces {
         (by_link + self.on_mass_x.len() + self.on_mass_z.len()) * size_of::<f64>()
     }
 
-    /// What the surface and the links do to mass `i`, which is in contact over `ground`.
-    pub fn contact(&self, model: &Model, i: usize, velocity_x: f64, ground: &SurfacePoint) -> ContactForces {
-        ContactForces::new(model, (self.on_mass_x[i], self.on_mass_z[i]), velocity_x, ground)
+    /// What the surface and the links do to mass `i`, which is in contact over `surface`.
+    pub fn contact(&self, model: &Model, i: usize, velocity_x: f64, surface: &SurfacePoint) -> ContactForces {
+        ContactForces::new(model, (self.on_mass_x[i], self.on_mass_z[i]), velocity_x, surface)
     }
 }
 
@@ -240,13 +240,13 @@ pub struct ContactForces {
 }
 
 impl ContactForces {
-    /// Forces from those of the links on the mass, (f_x, f_z), its velocity ẋ and the ground under it.
+    /// Forces from those of the links on the mass, (f_x, f_z), its velocity ẋ and the surface under it.
     #[inline]
-    pub fn new(model: &Model, (f_x, f_z): (f64, f64), velocity_x: f64, ground: &SurfacePoint) -> Self {
-        let s = ground.slope;
+    pub fn new(model: &Model, (f_x, f_z): (f64, f64), velocity_x: f64, surface: &SurfacePoint) -> Self {
+        let s = surface.slope;
         let q = (1.0 + s * s).sqrt();
         // From (6)-(9): the normal force needs no acceleration.
-        let normal = (model.mass * ground.curvature * velocity_x * velocity_x - f_z + s * f_x) / q;
+        let normal = (model.mass * surface.curvature * velocity_x * velocity_x - f_z + s * f_x) / q;
         let limit = model.friction_coefficient * normal + model.shear_force;
         Self { normal, tangential: (f_x + s * f_z) / q, limit, q }
     }
@@ -260,18 +260,18 @@ impl ContactForces {
             Mode::Stick => self.tangential,
             Mode::Forward | Mode::Backward => {
                 let sigma = mode.direction();
-                let beyond = model.rate_shear.map_or(0.0, |shear| shear.beyond(sigma * velocity_x * self.q));
+                let beyond = model.rate_shear.map_or(0.0, |shear| shear.excess(sigma * velocity_x * self.q));
                 sigma * (self.limit + beyond)
             }
         }
     }
 
     /// ẍ of a mass in contact in `mode`: m q² ẍ + m s κ ẋ² = f_x + s f_z - F_T q.
-    pub fn acceleration(&self, model: &Model, mode: Mode, velocity_x: f64, ground: &SurfacePoint) -> f64 {
+    pub fn acceleration(&self, model: &Model, mode: Mode, velocity_x: f64, surface: &SurfacePoint) -> f64 {
         if mode == Mode::Stick {
             return 0.0;
         }
-        let centripetal = ground.slope * ground.curvature * velocity_x * velocity_x;
+        let centripetal = surface.slope * surface.curvature * velocity_x * velocity_x;
         ((self.tangential - self.friction(model, mode, velocity_x)) / model.mass - centripetal / self.q) / self.q
     }
 }

@@ -15,7 +15,7 @@ pub struct LinkLaw {
     /// Damping d, N s/m, with that of the Maxwell elements replaced by dampers.
     pub damping: f64,
     /// Of the stiffness the part whose springs hang on dashpots that stand still where they stood at the start, N/m.
-    pub still: f64,
+    pub frozen: f64,
 }
 
 impl LinkLaw {
@@ -25,7 +25,7 @@ impl LinkLaw {
             present: true,
             stiffness: link.stiffness.unwrap_or(0.0),
             damping: link.damping.unwrap_or(0.0),
-            still: 0.0,
+            frozen: 0.0,
         };
         // Along x every link is at rest at the start; undeformed, every dashpot.
         let stands = scene.layer.initial == Initial::Relaxed && !kind.is_along_x();
@@ -36,7 +36,7 @@ impl LinkLaw {
                 Replacement::Damper => law.damping += one.element.stiffness * one.element.relaxation_time,
             }
             if one.by == Replacement::Spring && stands {
-                law.still += one.element.stiffness;
+                law.frozen += one.element.stiffness;
             }
         }
         law

@@ -2,18 +2,18 @@
 //! (`State`), the carrier's motion (`Carrier`) and the forces that follow from them (`Forces`).
 
 mod carrier;
+mod energy;
 mod forces;
+mod friction;
 mod link;
-mod power;
-mod rate_shear;
 mod reduction;
 mod state;
 
 pub use carrier::{Carrier, CarrierPoint};
+pub use energy::{Exchange, Power, elastic_energy, kinetic_energy};
 pub use forces::{ContactForces, Forces, LinkMotion};
+pub use friction::RateShear;
 pub use link::{LinkLaw, MaxwellRow};
-pub use power::{Exchange, Power, elastic_energy, kinetic_energy};
-pub use rate_shear::RateShear;
 pub use reduction::{Reduction, Replaced, Replacement};
 pub use state::{Mode, State};
 
@@ -74,7 +74,7 @@ pub struct Model {
     pub initial: Initial,
     /// Elongations of the vertical links at the start, m: where the dashpots of [`LinkLaw::still`] stand. Empty where
     /// there are none.
-    pub still: Vec<f64>,
+    pub frozen: Vec<f64>,
 }
 
 impl Model {
@@ -95,14 +95,14 @@ impl Model {
             element_area: layer.element_area().unwrap_or(0.0),
             rest_x: (0..k).map(|i| layer.place(i)).collect(),
             rest_z: (0..k).map(|i| layer.clearance + roughness(i)).collect(),
-            still: if links.iter().any(|link| link.still > 0.0) { vec![0.0; k] } else { Vec::new() },
+            frozen: if links.iter().any(|link| link.frozen > 0.0) { vec![0.0; k] } else { Vec::new() },
             links,
             rows,
             relaxation_times,
             glassy: LinkKind::ALL.map(|kind| scene.link(kind).as_ref().map_or(0.0, link::glassy_stiffness)),
             profile: scene.surface.spline(),
             friction_coefficient: coulomb,
-            shear_force: shear_force + rate_shear.map_or(0.0, |rate_shear| rate_shear.held()),
+            shear_force: shear_force + rate_shear.map_or(0.0, |rate_shear| rate_shear.plateau()),
             rate_shear,
             has_friction: coulomb > 0.0 || shear_force > 0.0 || rate_shear.is_some(),
             initial: layer.initial,
@@ -117,30 +117,30 @@ impl Model {
 
     /// Puts the dashpots that stand still where the masses' places at the start have them: `place` is u there as a
     /// place on the profile, `w` is w, m. A mass that would lie under the profile is lifted onto it.
-    pub fn stand_still(&mut self, place: f64, w: f64) {
-        for i in 0..self.still.len() {
-            let ground = self.ground(self.rest_x[i] + place);
-            let gap = self.rest_z[i] + w - ground.height;
-            self.still[i] = if gap < 0.0 { ground.height - self.rest_z[i] - w } else { 0.0 };
+    pub fn freeze_dashpots(&mut self, place: f64, w: f64) {
+        for i in 0..self.frozen.len() {
+            let surface = self.surface_at(self.rest_x[i] + place);
+            let gap = self.rest_z[i] + w - surface.height;
+            self.frozen[i] = if gap < 0.0 { surface.height - self.rest_z[i] - w } else { 0.0 };
         }
     }
 
-    /// Takes from the forces of a kind of link what its springs lack whose dashpots stand still: F = … - c_j y_j.
-    pub fn subtract_still(&self, kind: LinkKind, forces: &mut [f64]) {
-        let stiffness = self.links[kind as usize].still;
+    /// Takes from the forces of a kind of link what its springs lack whose dashpots stand frozen: F = … - c_j y_j.
+    pub fn subtract_frozen(&self, kind: LinkKind, forces: &mut [f64]) {
+        let stiffness = self.links[kind as usize].frozen;
         if stiffness > 0.0 {
-            forces.iter_mut().zip(self.still_dashpots(kind)).for_each(|(force, y)| *force -= stiffness * y);
+            forces.iter_mut().zip(self.frozen_dashpots(kind)).for_each(|(force, y)| *force -= stiffness * y);
         }
     }
 
     /// y of the dashpots that stand still, link by link of a kind that has some, m.
-    pub fn still_dashpots(&self, kind: LinkKind) -> impl Iterator<Item = f64> {
-        (0..kind.count(self.still.len())).map(move |link| self.still_dashpot(kind, link))
+    pub fn frozen_dashpots(&self, kind: LinkKind) -> impl Iterator<Item = f64> {
+        (0..kind.count(self.frozen.len())).map(move |link| self.frozen_dashpot(kind, link))
     }
 
     /// y of the dashpots that stand still in one link of a kind that has some, m.
-    pub fn still_dashpot(&self, kind: LinkKind, link: usize) -> f64 {
-        if kind.is_lateral() { self.still[link + 1] - self.still[link] } else { self.still[link] }
+    pub fn frozen_dashpot(&self, kind: LinkKind, link: usize) -> f64 {
+        if kind.is_lateral() { self.frozen[link + 1] - self.frozen[link] } else { self.frozen[link] }
     }
 
     /// Number of masses k.
@@ -150,7 +150,7 @@ impl Model {
 
     /// The profile at the place `x`, m.
     #[inline]
-    pub fn ground(&self, x: f64) -> SurfacePoint {
+    pub fn surface_at(&self, x: f64) -> SurfacePoint {
         let (height, slope, curvature, third) = self.profile.evaluate(x);
         SurfacePoint { height, slope, curvature, third }
     }
@@ -188,7 +188,7 @@ impl Model {
     /// What lasts of the links that press a mass on, N/m, where their Maxwell elements are far stiffer than that and
     /// than the softest of the other links: once these have relaxed, no place within its tolerance says what a mass is
     /// pressed with.
-    pub fn lasting_stiffness(&self) -> Option<f64> {
+    pub fn long_term_stiffness(&self) -> Option<f64> {
         let elements: f64 = self.rows_of(LinkKind::Vertical).map(|row| row.stiffness).sum();
         let [_, others @ ..] = self.glassy;
         let softest = others.into_iter().filter(|&stiffness| stiffness > 0.0).reduce(f64::min);
@@ -201,7 +201,7 @@ impl Model {
     pub fn rounded_stiffness(&self) -> f64 {
         let [vertical, others @ ..] = self.glassy;
         let link = &self.links[LinkKind::Vertical as usize];
-        let vertical = if self.lasting_stiffness().is_some() { link.stiffness } else { vertical };
+        let vertical = if self.long_term_stiffness().is_some() { link.stiffness } else { vertical };
         holding([vertical, others[0], others[1], others[2]])
     }
 

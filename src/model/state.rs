@@ -77,7 +77,7 @@ pub struct State {
     /// The modes.
     pub mode: Vec<Mode>,
     /// The profile under each mass in contact.
-    pub ground: Vec<SurfacePoint>,
+    pub surface: Vec<SurfacePoint>,
 }
 
 impl State {
@@ -91,7 +91,7 @@ impl State {
             velocity_z: zero,
             maxwell: vec![0.0; maxwell_variables],
             mode: vec![Mode::Free; masses],
-            ground: vec![SurfacePoint::default(); masses],
+            surface: vec![SurfacePoint::default(); masses],
         }
     }
 
@@ -103,14 +103,14 @@ impl State {
         self.velocity_z.copy_from_slice(&other.velocity_z);
         self.maxwell.copy_from_slice(&other.maxwell);
         self.mode.copy_from_slice(&other.mode);
-        self.ground.copy_from_slice(&other.ground);
+        self.surface.copy_from_slice(&other.surface);
     }
 }
 
 /// All but the modes, which are no numbers.
 impl Numbers for State {
     fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        let Self { elongation_x, elongation_z, velocity_x, velocity_z, maxwell, mode: _, ground } = self;
-        visit_all([elongation_x, elongation_z, velocity_x, velocity_z, maxwell, ground], visit);
+        let Self { elongation_x, elongation_z, velocity_x, velocity_z, maxwell, mode: _, surface } = self;
+        visit_all([elongation_x, elongation_z, velocity_x, velocity_z, maxwell, surface], visit);
     }
 }

@@ -4,7 +4,7 @@
 //! Maxwell elements, so its force changes by -(c + Σ c_j) δu; a vertical link likewise with δw. A link's force counts
 //! negative on its mass: f_x,i grows by (c + Σ c_j) δu, and with it what the contact bears.
 
-use super::{Moment, Output, Variable};
+use super::{Output, Snapshot, Variable};
 use crate::model::{LinkKind, MaxwellRow, Mode, Model};
 
 /// What moving the carrier does to each link to it and to each mass.
@@ -54,7 +54,7 @@ impl ContactChange {
     }
 }
 
-impl Moment<'_> {
+impl Snapshot<'_> {
     /// Writes the changes of `variables`, in their order, with the carrier moved along x and z by `direction`.
     pub fn differentiate(&self, variables: &[Variable], direction: (f64, f64), values: &mut [f64]) {
         let change = Change::new(self.model, direction);
@@ -125,7 +125,7 @@ impl Moment<'_> {
         if !mode.in_contact() {
             return ContactChange { q: 1.0, ..ContactChange::default() };
         }
-        let slope = self.state.ground[i].slope;
+        let slope = self.state.surface[i].slope;
         let q = (1.0 + slope * slope).sqrt();
         let (f_x, f_z) = change.on_mass;
         let normal = (slope * f_x - f_z) / q;
@@ -158,7 +158,7 @@ impl Moment<'_> {
     fn elastic_energy_change(&self, change: &Change) -> f64 {
         let spring = |kind: LinkKind, elongations: &[f64], moved: f64| {
             let law = &self.model.links[kind as usize];
-            let still = if law.still > 0.0 { law.still * self.model.still_dashpots(kind).sum::<f64>() } else { 0.0 };
+            let still = if law.frozen > 0.0 { law.frozen * self.model.frozen_dashpots(kind).sum::<f64>() } else { 0.0 };
             moved * (law.stiffness * elongations.iter().sum::<f64>() - still)
         };
         spring(LinkKind::Horizontal, &self.state.elongation_x, change.elongation.0)

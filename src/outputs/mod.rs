@@ -2,9 +2,9 @@
 
 mod dependencies;
 mod derivative;
-mod moment;
+mod snapshot;
 mod variables;
 
 pub use dependencies::{Dependencies, dependencies};
-pub use moment::{Accounts, Counters, Energies, Moment};
+pub use snapshot::{Accounts, Counters, Energies, Snapshot};
 pub use variables::{Kind, Output, Variable, unit_of, variable, variables};

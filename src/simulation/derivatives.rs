@@ -7,7 +7,7 @@ impl Simulation {
     /// Writes into `values` how `variables` follow the carrier when it is moved along x and z by `direction` (m per
     /// unit) and every state is held: places, velocities, dashpots, modes.
     pub fn directional_derivative(&mut self, variables: &[Variable], direction: (f64, f64), values: &mut [f64]) {
-        self.with_moment(|moment| moment.differentiate(variables, direction, values));
+        self.with_snapshot(|snapshot| snapshot.differentiate(variables, direction, values));
     }
 
     /// Ḟ_x and Ḟ_z where the run stands, N/s, as the carrier came there; at the start, as it leaves.

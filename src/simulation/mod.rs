@@ -14,8 +14,8 @@ mod within;
 
 use std::sync::Arc;
 
-use crate::contact::{EventTolerance, StepEnd};
-use crate::integrator::{DenseRoom, Followed, Integrator, Steps, Tolerance};
+use crate::contact::{EndCorrection, EventTolerance};
+use crate::integrator::{DenseWorkspace, Integrator, Steps, Tolerance, Tracked};
 use crate::model::{Forces, Model, State};
 use crate::outputs::{self, Accounts, Variable};
 use crate::scene::{LARGEST, Method, ParameterError, Path, Scene};
@@ -116,9 +116,9 @@ pub struct Simulation {
     within: State,
     /// Of which step and fraction that is, where it is known.
     within_at: Option<(f64, f64)>,
-    dense_room: DenseRoom,
+    dense_workspace: DenseWorkspace,
     /// Mode changes at the end of a time step.
-    step_end: StepEnd,
+    step_end: EndCorrection,
     mode_changes: Option<Vec<ModeChange>>,
     handovers: Option<Vec<Handover>>,
     /// A finer run beside this one, where its error is asked for.
@@ -163,7 +163,7 @@ impl Simulation {
 
     fn started(scene: &Scene, start: &Start) -> Self {
         let mut model = Model::new(scene);
-        model.stand_still(model.profile.reduce(start.u), start.w);
+        model.freeze_dashpots(model.profile.reduce(start.u), start.w);
         let model = Arc::new(model);
         let settings = Settings::new(scene, &model);
         let finer = settings.accounts.solver.then(|| settings.finer(&model));
@@ -172,7 +172,7 @@ impl Simulation {
     }
 
     fn with(model: Arc<Model>, settings: Settings, start: &Start) -> Self {
-        let followed = Followed { energy: settings.accounts.energy, tangents: settings.accounts.tangents };
+        let followed = Tracked { energy: settings.accounts.energy, tangents: settings.accounts.tangents };
         let steps = match settings.method {
             Method::Event => Steps::Accurate,
             Method::Step => Steps::TwoStages,
@@ -182,8 +182,8 @@ impl Simulation {
         let state = State::new(model.masses(), model.maxwell_variables());
         let run = Run::new(&model, state.clone(), start, settings.method == Method::Step);
         let forces = Forces::new(&model);
-        let dense_room = DenseRoom::new(&model);
-        let step_end = StepEnd::new(&model);
+        let dense_workspace = DenseWorkspace::new(&model);
+        let step_end = EndCorrection::new(&model);
         let mut simulation = Self {
             model,
             settings,
@@ -197,7 +197,7 @@ impl Simulation {
             forces,
             within: state,
             within_at: None,
-            dense_room,
+            dense_workspace,
             step_end,
             mode_changes: None,
             handovers: None,
@@ -222,12 +222,12 @@ impl Simulation {
         let masses = self.run.state.mode.len();
         let maxwell = self.run.state.maxwell.len();
         // The run, the one to go back to, the one within a step and the stage's.
-        let states = 4 * (masses * (4 * size_of::<f64>() + size_of_val(&self.run.state.ground[0]) + 1));
+        let states = 4 * (masses * (4 * size_of::<f64>() + size_of_val(&self.run.state.surface[0]) + 1));
         states
             + 4 * maxwell * size_of::<f64>()
             + self.integrator.bytes()
             + 2 * self.forces.bytes()
-            + self.dense_room.bytes()
+            + self.dense_workspace.bytes()
             + self.companion.as_ref().map_or(0, |companion| companion.finer().bytes())
     }
 
@@ -316,12 +316,12 @@ impl Simulation {
 
     /// Writes the values of `variables`, in their order, into `values`; Integers as whole numbers.
     pub fn evaluate(&mut self, variables: &[Variable], values: &mut [f64]) {
-        self.with_moment(|moment| moment.evaluate(variables, values));
+        self.with_snapshot(|snapshot| snapshot.evaluate(variables, values));
     }
 
-    fn with_moment(&mut self, body: impl FnOnce(&outputs::Moment<'_>)) {
+    fn with_snapshot(&mut self, body: impl FnOnce(&outputs::Snapshot<'_>)) {
         let carrier = self.evaluate_forces();
-        body(&outputs::Moment {
+        body(&outputs::Snapshot {
             model: &self.model,
             state: &self.run.state,
             forces: &self.forces,

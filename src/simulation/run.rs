@@ -1,7 +1,7 @@
 //! Everything of a run that changes.
 
 use super::{Motion, OutOfRange, Start};
-use crate::contact::CarrierPlace;
+use crate::contact::CarrierPosition;
 use crate::integrator::Rates;
 use crate::math::{Numbers, visit_all};
 use crate::model::{Carrier, Exchange, Model, State};
@@ -100,9 +100,9 @@ impl Run {
         (self.carrier.u + point.du, self.carrier.w + point.dw)
     }
 
-    pub(super) fn place(&self) -> CarrierPlace {
+    pub(super) fn carrier_position(&self) -> CarrierPosition {
         let point = self.carrier.at(self.s);
-        CarrierPlace { place: self.carrier.place + point.du, w: self.carrier.w + point.dw }
+        CarrierPosition { profile_position: self.carrier.profile_position + point.du, w: self.carrier.w + point.dw }
     }
 }
 

@@ -86,8 +86,8 @@ impl Simulation {
         };
         let state = &mut now.run.state;
         // What is left of the profile under masses that are free by now says nothing.
-        for (ground, _) in state.ground.iter_mut().zip(&state.mode).filter(|(_, mode)| !mode.in_contact()) {
-            *ground = SurfacePoint::default();
+        for (surface, _) in state.surface.iter_mut().zip(&state.mode).filter(|(_, mode)| !mode.in_contact()) {
+            *surface = SurfacePoint::default();
         }
         let mut numbers = Vec::new();
         now.visit(&mut |number| numbers.push(*number));
@@ -118,7 +118,7 @@ impl Simulation {
         simulation.go_back();
         let [u, w] = simulation.run.start;
         let model = Arc::make_mut(&mut simulation.model);
-        model.stand_still(model.profile.reduce(u), w);
+        model.freeze_dashpots(model.profile.reduce(u), w);
         if let Some(companion) = &mut simulation.companion {
             companion.finer_mut().model = Arc::clone(&simulation.model);
         }
@@ -131,7 +131,7 @@ impl Simulation {
         if self.settings.method == Method::Auto {
             self.before.run.stepping = saved.stepping;
         }
-        check_ground(&self.before, &self.model, self.settings.tolerance.position)
+        check_surface(&self.before, &self.model, self.settings.tolerance.position)
     }
 }
 
@@ -142,7 +142,7 @@ impl SavedRun {
         let counters = &mut to.run.counters;
         [counters.steps, counters.rejected, counters.events] = self.counts;
         to.run.rates_hold = self.rates_hold;
-        to.run.carrier.find_place(&model.profile);
+        to.run.carrier.find_profile_position(&model.profile);
         let number = |what, value| Err(RestoreError::Number { what, value });
         match (to.run.s, to.run.step_size) {
             (s, _) if s < 0.0 => number("the time since the carrier's last kink", s),
@@ -183,13 +183,13 @@ const PLACE_ROUNDING: f64 = 1e-6;
 /// Checks that the profile under each mass in contact is the scene's, within `slack` (m) and roundings.
 ///
 /// It cannot be computed afresh to the last bit: its place was summed in another order.
-fn check_ground(at: &Checkpoint, model: &Model, slack: f64) -> Result<(), RestoreError> {
-    let (state, carrier, place) = (&at.run.state, &at.run.carrier, at.run.place().place);
+fn check_surface(at: &Checkpoint, model: &Model, slack: f64) -> Result<(), RestoreError> {
+    let (state, carrier, place) = (&at.run.state, &at.run.carrier, at.run.carrier_position().profile_position);
     let fits = |i: usize| {
         let x = model.rest_x[i] + (place + state.elongation_x[i]);
         let summed = x.abs() + state.elongation_x[i].abs() + carrier.u.abs();
         let reach = slack + PLACE_ROUNDING * summed;
-        let (found, here) = (&state.ground[i], model.ground(x));
+        let (found, here) = (&state.surface[i], model.surface_at(x));
         let bounds = model.profile.local_bounds(x - reach, x + reach);
         near(found.height, here.height, bounds.slope_max_abs * reach)
             && near(found.slope, here.slope, bounds.curvature_max_abs * reach)
@@ -250,7 +250,7 @@ mod tests {
         assert_eq!(bits(&scene, &mut second), bits(&scene, &mut first));
     }
 
-    /// What is saved is of the run alone, not of the room that it had: the profile under masses that have lifted is
+    /// What is saved is of the run alone, not of the workspace that it had: the profile under masses that have lifted is
     /// not.
     #[test]
     fn runs_alike_are_saved_alike() {
@@ -290,8 +290,8 @@ mod tests {
         let simulation = run(&scene);
         let mass = (0..6).find(|&i| simulation.run.state.mode[i].in_contact()).unwrap();
         let part: [fn(&mut Simulation, usize) -> &mut f64; 3] = [
-            |simulation, i| &mut simulation.run.state.ground[i].height,
-            |simulation, i| &mut simulation.run.state.ground[i].slope,
+            |simulation, i| &mut simulation.run.state.surface[i].height,
+            |simulation, i| &mut simulation.run.state.surface[i].slope,
             |simulation, i| &mut simulation.run.state.elongation_x[i],
         ];
         for part in part {

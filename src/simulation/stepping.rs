@@ -44,7 +44,7 @@ pub(super) struct Stride {
 
 impl Simulation {
     pub(super) fn place_layer(&mut self) {
-        let at = self.run.place();
+        let at = self.run.carrier_position();
         let carrier = self.run.carrier.at(0.0);
         let (model, state) = (&*self.model, &mut self.run.state);
         place_layer(model, state, at, &carrier);
@@ -210,7 +210,7 @@ impl Simulation {
     /// Masses within `reach` (m) of the profile count as touching.
     pub(super) fn change_modes(&mut self, reach: f64) {
         let carrier = self.run.carrier.at(self.run.s);
-        let at = self.run.place();
+        let at = self.run.carrier_position();
         let (model, state) = (&*self.model, &mut self.run.state);
         self.within.mode.copy_from_slice(&state.mode);
         self.run.energies.impact += impacts_due(model, state, at, reach);
@@ -235,9 +235,9 @@ impl Simulation {
     }
 
     fn change_modes_if_due(&mut self) {
-        let at = self.run.place();
+        let at = self.run.carrier_position();
         let rates = self.integrator.start_rates();
-        if is_due(&self.model, &self.run.state, rates, (at.place, at.w), &self.settings.events) {
+        if is_due(&self.model, &self.run.state, rates, (at.profile_position, at.w), &self.settings.events) {
             self.change_modes(self.settings.events.gap);
         }
     }
@@ -280,7 +280,7 @@ impl Simulation {
     /// The share of the step of length `h` tried last after which a mode change is due.
     fn first_event(&mut self, h: f64) -> Option<f64> {
         let dense = self.integrator.dense(&self.model, &self.run.carrier, &self.run.state, (self.run.s, h));
-        first_event(&dense, self.integrator.stages(), &self.settings.events, &mut self.dense_room)
+        first_event(&dense, self.integrator.stages(), &self.settings.events, &mut self.dense_workspace)
     }
 
     /// Tries a step of length `h`; `None` where it is no good, and the run's step size is then a better one.

@@ -3,8 +3,8 @@
 use super::run::Run;
 use super::stepping::{AFTER_FAILURE, OF_PERIOD, Stride, fitted};
 use super::{Simulation, SimulationError};
-use crate::contact::{End, HeldStep, longest_weakening};
-use crate::integrator::{Attempt, Integrator, TWO_STAGES, Within};
+use crate::contact::{End, FixedModeStep, longest_weakening};
+use crate::integrator::{Attempt, Integrator, TWO_STAGES, TwoStageDense};
 use crate::model::{Model, Power};
 
 /// A new step is this share of what the error allows. Mode changes come unforeseen, so it is less than in smooth
@@ -82,7 +82,7 @@ impl Simulation {
         self.within.mode.copy_from_slice(&run.state.mode);
         let (state, forces, rates, first) = self.integrator.open_end();
         let span = (run.s, h);
-        let step = HeldStep { model: &self.model, carrier: &run.carrier, span, start: &run.state, first };
+        let step = FixedModeStep { model: &self.model, carrier: &run.carrier, span, start: &run.state, first };
         let settled = self.step_end.settle(step, End { state, forces, rates });
         if let Some(gain) = gain {
             let energies = &mut run.energies;
@@ -106,10 +106,10 @@ impl Simulation {
     }
 }
 
-fn within<'a>(model: &'a Model, run: &'a Run, integrator: &'a Integrator, h: f64) -> Within<'a> {
+fn within<'a>(model: &'a Model, run: &'a Run, integrator: &'a Integrator, h: f64) -> TwoStageDense<'a> {
     let stages = integrator.stages();
     let (start, end) = ((&run.state, &stages[1]), (integrator.end(), &stages[TWO_STAGES - 1]));
-    Within::new(model, &run.carrier, (run.s, h), start, end)
+    TwoStageDense::new(model, &run.carrier, (run.s, h), start, end)
 }
 
 /// How much longer or shorter a step may be than one with this error over the tolerance.

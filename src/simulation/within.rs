@@ -54,7 +54,7 @@ impl Simulation {
     fn defect_within(&mut self, h: f64, share: f64) -> f64 {
         self.evaluate_within(h, share);
         let dense = self.integrator.dense(&self.model, &self.run.carrier, &self.run.state, (self.run.s, h));
-        dense.defect(share, (&self.within, &self.forces), &self.dense_room, &self.settings.tolerance)
+        dense.defect(share, (&self.within, &self.forces), &self.dense_workspace, &self.settings.tolerance)
     }
 
     /// Calls `show` with the simulation as it stood at the fraction `theta` of the step of length `h` tried last.
@@ -92,7 +92,7 @@ impl Simulation {
             return self.look_within_time_step(h, theta);
         }
         let dense = self.integrator.dense(&self.model, &self.run.carrier, &self.run.state, (self.run.s, h));
-        dense.state_at(theta, &mut self.dense_room, &mut self.within);
+        dense.state_at(theta, &mut self.dense_workspace, &mut self.within);
     }
 
     /// The state and the forces at the fraction `theta` of the step of length `h` tried last.

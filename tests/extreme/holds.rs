@@ -98,7 +98,7 @@ impl Limits {
     /// g ≥ -tolerance, and no worse than the roundings of the place, of u and X_i that it is the sum of, and of the
     /// height.
     fn gap(&self, u: f64, x: f64, z: f64) -> Option<String> {
-        let point = self.model.ground(x);
+        let point = self.model.surface_at(x);
         let along = x.abs() + u.abs() + self.farthest;
         let rounding = 8.0 * f64::EPSILON * (z.abs() + point.height.abs() + along * point.slope.abs());
         let gap = z - point.height;

@@ -155,9 +155,9 @@ pub fn rate_slider(reference_speed: f64) -> Layer {
 /// The slider at a place and a speed, its dashpots relaxed, the carrier at `w`.
 pub fn sliding(model: &Model, velocity: f64, w: f64) -> State {
     let mut state = State::new(1, model.maxwell_variables());
-    let ground = model.ground(0.0);
+    let ground = model.surface_at(0.0);
     state.mode[0] = Mode::along(velocity);
-    state.ground[0] = ground;
+    state.surface[0] = ground;
     state.elongation_z[0] = ground.height - model.rest_z[0] - w;
     (state.velocity_x[0], state.velocity_z[0]) = (velocity, ground.slope * velocity);
     state
@@ -168,7 +168,7 @@ pub fn reference(layer: &Layer, start: &State, u_rate: f64, time: f64, steps: u3
     let (model, matrices) = (layer.model(), Matrices::new(layer));
     let n = matrices.relaxation_times.len();
     let derivative = |t: f64, z: &DVector<f64>| {
-        let ground = model.ground(model.rest_x[0] + z[0]);
+        let ground = model.surface_at(model.rest_x[0] + z[0]);
         let q = DVector::from_vec(vec![z[0], ground.height - model.rest_z[0]]);
         let v = DVector::from_vec(vec![z[1], ground.slope * z[1]]);
         let y = z.rows(2, n).into_owned();
@@ -189,7 +189,7 @@ pub fn reference(layer: &Layer, start: &State, u_rate: f64, time: f64, steps: u3
         let k4 = derivative(t + h, &(&z + h * &k3));
         z += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
     }
-    let q = DVector::from_vec(vec![z[0], model.ground(model.rest_x[0] + z[0]).height - model.rest_z[0]]);
+    let q = DVector::from_vec(vec![z[0], model.surface_at(model.rest_x[0] + z[0]).height - model.rest_z[0]]);
     let a = matrices.elongations(&q, Vector2::new(u_rate * time, 0.0)) - z.rows(2, n);
     (z[0], z[1], a)
 }

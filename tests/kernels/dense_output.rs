@@ -1,6 +1,6 @@
 //! What lies within a step, against exact solutions.
 
-use asperity::integrator::DenseRoom;
+use asperity::integrator::DenseWorkspace;
 use asperity::model::{Forces, State};
 use nalgebra::Vector2;
 
@@ -21,7 +21,7 @@ fn worst(stepper: &mut Stepper, h: f64, exact: impl Fn(f64) -> State) -> [f64; 3
     worst
 }
 
-/// Within one step of a free chain: places and Maxwell elongations miss O(h⁶), velocities O(h⁵).
+/// TwoStageDense one step of a free chain: places and Maxwell elongations miss O(h⁶), velocities O(h⁵).
 #[test]
 fn the_inside_of_a_free_step_has_its_order() {
     let layer = chain();
@@ -112,9 +112,9 @@ fn one_contact_within_a_step_is_that_of_the_whole_state() {
         let within = stepper.within(1e-3, theta);
         let mut forces = Forces::new(&stepper.model);
         forces.evaluate(&stepper.model, &within, &stepper.carrier.at(theta * 1e-3));
-        let mut room = DenseRoom::new(&stepper.model);
+        let mut room = DenseWorkspace::new(&stepper.model);
         for i in (0..within.mode.len()).filter(|&i| within.mode[i].in_contact()) {
-            let expected = forces.contact(&stepper.model, i, within.velocity_x[i], &within.ground[i]);
+            let expected = forces.contact(&stepper.model, i, within.velocity_x[i], &within.surface[i]);
             let found = stepper.dense(1e-3).contact(i, theta, &mut room);
             // Sums of some twenty forces up to 1e3 N in another order.
             let error = (found.normal - expected.normal).abs().max((found.tangential - expected.tangential).abs());

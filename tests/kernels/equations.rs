@@ -52,10 +52,10 @@ pub fn random_state(random: &mut Random, model: &Model, place: &Vector2<f64>) ->
 }
 
 fn put_on_profile(model: &Model, state: &mut State, i: usize, mode: Mode, place: &Vector2<f64>) {
-    let ground = model.ground(model.rest_x[i] + (place.x + state.elongation_x[i]));
+    let ground = model.surface_at(model.rest_x[i] + (place.x + state.elongation_x[i]));
     let speed = state.velocity_x[i].abs();
     let v = if model.has_friction { mode.direction() * speed } else { state.velocity_x[i] };
-    (state.mode[i], state.ground[i]) = (mode, ground);
+    (state.mode[i], state.surface[i]) = (mode, ground);
     state.elongation_z[i] = ground.height - model.rest_z[i] - place.y;
     (state.velocity_x[i], state.velocity_z[i]) = (v, ground.slope * v);
 }
@@ -79,7 +79,7 @@ fn difference(matrices: &Matrices, model: &Model, state: &State, rates: &Rates, 
     let k = matrices.masses;
     let (q, v, y) = dense_state(matrices, state, place);
     let f = matrices.forces((&q, &v), &y, (place, rate));
-    let (accelerations, contacts) = matrices.accelerations(&f, &v, &state.mode, &state.ground);
+    let (accelerations, contacts) = matrices.accelerations(&f, &v, &state.mode, &state.surface);
     let found = DVector::from_iterator(2 * k, rates.acceleration_x.iter().chain(&rates.acceleration_z).copied());
     let mut worst = (found - &accelerations).amax() / accelerations.amax().max(1.0);
     let elongation_rates = matrices.elongations(&v, rate);

@@ -2,7 +2,9 @@
 
 use std::path::Path as FilePath;
 
-use asperity::integrator::{Attempt, Dense, DenseRoom, Followed, Integrator, Steps, TWO_STAGES, Tolerance, Within};
+use asperity::integrator::{
+    Attempt, DenseOutput, DenseWorkspace, Integrator, Steps, TWO_STAGES, Tolerance, Tracked, TwoStageDense,
+};
 use asperity::model::{Carrier, Forces, LinkKind, Model, State};
 use asperity::scene::{Path, RateShear, Scene};
 use asperity::simulation::Simulation;
@@ -130,7 +132,7 @@ impl Stepper {
         let carrier = Carrier::new(0.0, (0.0, 0.0), (u, w), &model.profile);
         let tolerance = Tolerance::new(&model, tolerance, tolerance);
         let mut forces = Forces::new(&model);
-        let mut integrator = Integrator::new(&model, Followed::default(), Steps::Both);
+        let mut integrator = Integrator::new(&model, Tracked::default(), Steps::Both);
         forces.evaluate(&model, &state, &carrier.at(0.0));
         integrator.begin(&model, &state, &carrier.at(0.0), &forces);
         Self { model, carrier, state, integrator, tolerance, s: 0.0, two_stages: false }
@@ -169,14 +171,14 @@ impl Stepper {
     }
 
     /// The step of length `h` tried last, seen from within.
-    pub fn dense(&self, h: f64) -> Dense<'_> {
+    pub fn dense(&self, h: f64) -> DenseOutput<'_> {
         self.integrator.dense(&self.model, &self.carrier, &self.state, (self.s, h))
     }
 
     /// The state at the fraction `theta` of the step of length `h` tried last.
     pub fn within(&self, h: f64, theta: f64) -> State {
         let mut state = self.state.clone();
-        self.dense(h).state_at(theta, &mut DenseRoom::new(&self.model), &mut state);
+        self.dense(h).state_at(theta, &mut DenseWorkspace::new(&self.model), &mut state);
         state
     }
 }
@@ -188,7 +190,7 @@ impl Stepper {
         let stages = self.integrator.stages();
         let (start, end) = ((&self.state, &stages[1]), (self.integrator.end(), &stages[TWO_STAGES - 1]));
         self.integrator.first_stage_maxwell(&self.model, &self.state, &mut state.maxwell);
-        Within::new(&self.model, &self.carrier, (self.s, h), start, end).state_at(theta, &mut state);
+        TwoStageDense::new(&self.model, &self.carrier, (self.s, h), start, end).state_at(theta, &mut state);
         state
     }
 }

@@ -70,7 +70,7 @@ fn the_error_estimate_falls_with_the_square() {
     assert!((1.9..2.1).contains(&order), "{order}");
 }
 
-/// Within a step places miss O(h³), velocities and Maxwell elongations O(h²); its ends come out as they are.
+/// TwoStageDense a step places miss O(h³), velocities and Maxwell elongations O(h²); its ends come out as they are.
 #[test]
 fn the_inside_of_a_step_has_its_order() {
     let layer = chain();

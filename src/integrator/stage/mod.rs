@@ -50,8 +50,8 @@ pub(super) struct StagePoint {
     pub driven: (f64, f64),
     /// How far it has moved along x, m: what a sticking mass stays behind.
     pub moved: f64,
-    /// u at the stage as a place on the profile, m.
-    pub place: f64,
+    /// u at the stage as a position on the profile, m.
+    pub profile_position: f64,
     /// w at the stage, m.
     pub w: f64,
 }
@@ -114,7 +114,7 @@ impl StageSolver {
     pub(super) fn new(model: &Model) -> Self {
         let k = model.masses();
         let zero = vec![0.0; k];
-        let room = |kind: LinkKind| {
+        let workspace = |kind: LinkKind| {
             if model.rows.iter().any(|row| row.kind == kind) { vec![0.0; kind.count(k)] } else { Vec::new() }
         };
         Self {
@@ -123,7 +123,7 @@ impl StageSolver {
                 elongation_z: zero.clone(),
                 velocity_x: zero.clone(),
                 velocity_z: zero,
-                force: LinkKind::ALL.map(room),
+                force: LinkKind::ALL.map(workspace),
             },
             state: State::new(k, model.maxwell_variables()),
             forces: Forces::new(model),
@@ -145,7 +145,7 @@ impl StageSolver {
         self.contacts.clear();
         self.contacts.extend((0..state.mode.len()).filter(|&i| state.mode[i].in_contact()));
         for &i in &self.contacts {
-            self.state.ground[i] = state.ground[i];
+            self.state.surface[i] = state.surface[i];
         }
         self.slips.clear();
         self.slips.extend(self.contacts.iter().filter(|&&i| state.mode[i].slips()));
@@ -190,7 +190,7 @@ impl StageSolver {
         accuracy: Accuracy,
         rates: &mut Rates,
     ) -> Result<(), NoConvergence> {
-        self.place(model, point);
+        self.set_positions(model, point);
         self.forces(model, point);
         if self.slips.is_empty() {
             self.solve_linear(model, point)?;
@@ -206,7 +206,7 @@ impl StageSolver {
         self.residuals(model, point.beta);
         self.system.solve();
         let change = self.correct();
-        self.place(model, point);
+        self.set_positions(model, point);
         self.forces(model, point);
         if change.is_finite() { Ok(()) } else { Err(NoConvergence) }
     }
@@ -222,7 +222,7 @@ impl StageSolver {
             self.system.solve();
             let steep = model.rate_shear.as_ref().map_or(0.0, |law| self.bend_corrections(law));
             let change = self.correct().max(steep);
-            self.place(model, point);
+            self.set_positions(model, point);
             self.forces(model, point);
             let left = self.residuals(model, point.beta);
             let next = change * (left / residual);
@@ -241,7 +241,7 @@ impl StageSolver {
     }
 
     /// Positions from the velocities; the constraint put in.
-    fn place(&mut self, model: &Model, point: &StagePoint) {
+    fn set_positions(&mut self, model: &Model, point: &StagePoint) {
         let beta = point.beta;
         let (state, history) = (&mut self.state, &self.history);
         carry(&mut state.elongation_x, &history.elongation_x, (beta, &state.velocity_x), point.driven.0);
@@ -250,11 +250,11 @@ impl StageSolver {
             if state.mode[i] == Mode::Stick {
                 state.elongation_x[i] = history.elongation_x[i] - point.moved;
             } else {
-                let ground = model.ground(model.rest_x[i] + (point.place + state.elongation_x[i]));
-                state.velocity_z[i] = ground.slope * state.velocity_x[i];
-                state.ground[i] = ground;
+                let surface = model.surface_at(model.rest_x[i] + (point.profile_position + state.elongation_x[i]));
+                state.velocity_z[i] = surface.slope * state.velocity_x[i];
+                state.surface[i] = surface;
             }
-            state.elongation_z[i] = state.ground[i].height - model.rest_z[i] - point.w;
+            state.elongation_z[i] = state.surface[i].height - model.rest_z[i] - point.w;
         }
     }
 
@@ -265,7 +265,7 @@ impl StageSolver {
             let law = &self.laws[kind as usize];
             let known = &self.history.force[kind as usize];
             self.forces.spring_and_damper(kind, (law.stiffness, law.damping), &motion, known);
-            model.subtract_still(kind, &mut self.forces.link[kind as usize]);
+            model.subtract_frozen(kind, &mut self.forces.link[kind as usize]);
         }
         self.forces.sum_on_masses();
     }
@@ -292,12 +292,12 @@ impl StageSolver {
         std::mem::swap(&mut rates.elongation_rate, &mut self.forces.rate);
         rates.clear_contacts();
         for &i in &self.contacts {
-            let (mode, v, ground) = (state.mode[i], state.velocity_x[i], &state.ground[i]);
+            let (mode, v, surface) = (state.mode[i], state.velocity_x[i], &state.surface[i]);
             if mode == Mode::Stick {
                 rates.acceleration_x[i] = 0.0;
             }
-            let contact = self.forces.contact(model, i, v, ground);
-            rates.contact(model, i, (mode, v), ground, &contact);
+            let contact = self.forces.contact(model, i, v, surface);
+            rates.contact(model, i, (mode, v), surface, &contact);
         }
     }
 }

@@ -23,7 +23,7 @@ impl StageSolver {
         for (slip, &i) in self.slip.iter_mut().zip(&self.slips) {
             let v = self.state.velocity_x[i];
             let acceleration = (v - self.history.velocity_x[i]) / beta;
-            *slip = Slip::new(model, self.state.mode[i], &self.state.ground[i], (v, acceleration));
+            *slip = Slip::new(model, self.state.mode[i], &self.state.surface[i], (v, acceleration));
             self.system.right[i].x = -slip.residual(model, (self.forces.on_mass_x[i], self.forces.on_mass_z[i]));
         }
         if let Some(law) = &model.rate_shear {
@@ -139,15 +139,15 @@ pub(super) struct Slip {
 }
 
 impl Slip {
-    fn new(model: &Model, mode: Mode, ground: &SurfacePoint, (velocity, acceleration): (f64, f64)) -> Self {
-        let s = ground.slope;
+    fn new(model: &Model, mode: Mode, surface: &SurfacePoint, (velocity, acceleration): (f64, f64)) -> Self {
+        let s = surface.slope;
         let sigma = mode.direction();
         let sigma_mu = sigma * model.friction_coefficient;
         let q2 = 1.0 + s * s;
         Self {
             s,
-            kappa: ground.curvature,
-            third: ground.third,
+            kappa: surface.curvature,
+            third: surface.third,
             velocity,
             acceleration,
             sigma_mu,
@@ -193,10 +193,10 @@ impl Slip {
         self.q
     }
 
-    /// The derivative by ẋ of σ q B(σ q ẋ), where B and its derivative are `beyond`.
-    pub(super) fn rate_derivative(&self, beta: f64, sigma: f64, beyond: (f64, f64)) -> f64 {
+    /// The derivative by ẋ of σ q B(σ q ẋ), where B and its derivative are `excess`.
+    pub(super) fn rate_derivative(&self, beta: f64, sigma: f64, excess: (f64, f64)) -> f64 {
         let s_ds = self.s * beta * self.kappa;
-        sigma * beyond.0 * s_ds / self.q + beyond.1 * (self.q2 + self.velocity * s_ds)
+        sigma * excess.0 * s_ds / self.q + excess.1 * (self.q2 + self.velocity * s_ds)
     }
 
     fn climb(&self, beta: f64) -> Climb {

@@ -8,7 +8,7 @@ use crate::model::RateShear;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct RateSlip {
     /// A τ_f(v) - A τ_f(v_c), N, and its derivative, N s/m.
-    beyond: (f64, f64),
+    excess: (f64, f64),
     /// The derivative of the equation by ẋ without this part, kg/s.
     held: f64,
 }
@@ -18,8 +18,8 @@ impl StageSolver {
     pub(super) fn add_rate_shear(&mut self, law: &RateShear) {
         for ((rate, slip), &i) in self.rate.iter_mut().zip(&self.slip).zip(&self.slips) {
             let sigma = self.state.mode[i].direction();
-            rate.beyond = law.with_slope(sigma * slip.speed());
-            self.system.right[i].x -= sigma * slip.q() * rate.beyond.0;
+            rate.excess = law.with_slope(sigma * slip.speed());
+            self.system.right[i].x -= sigma * slip.q() * rate.excess.0;
         }
     }
 
@@ -29,7 +29,7 @@ impl StageSolver {
             let sigma = self.state.mode[i].direction();
             let diagonal = &mut self.system.diagonal[i].m11;
             rate.held = *diagonal;
-            *diagonal += slip.rate_derivative(beta, sigma, rate.beyond);
+            *diagonal += slip.rate_derivative(beta, sigma, rate.excess);
         }
     }
 
@@ -43,7 +43,7 @@ impl StageSolver {
             let per_speed = self.state.mode[i].direction() * slip.q();
             let (speed, by) = (per_speed * self.state.velocity_x[i], per_speed * *right);
             let q2 = slip.q() * slip.q();
-            let steepness = 1.0 + (q2 * rate.beyond.1 / rate.held).max(0.0);
+            let steepness = 1.0 + (q2 * rate.excess.1 / rate.held).max(0.0);
             let bent = law.along_curve(speed, by, rate.held / q2);
             *right = (bent - speed) / per_speed;
             largest = largest.max(steepness * right.abs());

@@ -53,7 +53,7 @@ fn longest(fastest: f64) -> f64 {
 
 /// q² A τ_f'(v_t) of slipping mass `i`: what its friction is as a damper along x, N s/m.
 fn slope(law: &RateShear, state: &State, i: usize) -> f64 {
-    let square = 1.0 + state.ground[i].slope * state.ground[i].slope;
+    let square = 1.0 + state.surface[i].slope * state.surface[i].slope;
     square * law.with_slope(state.mode[i].direction() * state.velocity_x[i] * square.sqrt()).1
 }
 
@@ -115,7 +115,7 @@ impl Chain<'_> {
 
     /// s_i s_j.
     fn square(&self, i: usize, j: usize) -> f64 {
-        self.state.ground[i].slope * self.state.ground[j].slope
+        self.state.surface[i].slope * self.state.surface[j].slope
     }
 
     /// The lateral dampers between two masses by ẋ_i ẋ_j, N s/m.
@@ -139,12 +139,12 @@ impl Chain<'_> {
 /// D = d_x + s² d_z + q² A τ_f' and K = κ f_z - c_x - s² c_z of the links to the carrier. The other links and the
 /// Maxwell elements only make it slower. Where D < 0 it is what is left without D: that is [`weakening`]'s.
 fn growth(model: &Model, state: &State, f_z: f64, i: usize) -> f64 {
-    let ground = &state.ground[i];
-    let driving = ground.curvature * f_z;
+    let surface = &state.surface[i];
+    let driving = surface.curvature * f_z;
     if driving <= 0.0 {
         return 0.0;
     }
-    let square = ground.slope * ground.slope;
+    let square = surface.slope * surface.slope;
     let [x, z] = [LinkKind::Horizontal, LinkKind::Vertical].map(|kind| &model.links[kind as usize]);
     let excess = driving - x.stiffness - square * z.stiffness;
     if excess <= 0.0 {

@@ -102,7 +102,7 @@ impl Numbers for Counters {
 
 /// A run at one instant.
 #[derive(Clone, Copy, Debug)]
-pub struct Moment<'a> {
+pub struct Snapshot<'a> {
     /// The model.
     pub model: &'a Model,
     /// The layer's state.
@@ -129,7 +129,7 @@ struct ContactSums {
     force_z: f64,
 }
 
-impl Moment<'_> {
+impl Snapshot<'_> {
     /// Writes the values of `variables`, in their order; Integers as whole numbers. What no variable asks for is not
     /// computed.
     pub fn evaluate(&self, variables: &[Variable], values: &mut [f64]) {
@@ -201,7 +201,7 @@ impl Moment<'_> {
         let mut sums = ContactSums::default();
         for i in 0..self.model.masses() {
             let Some(contact) = self.contact(i) else { continue };
-            let s = self.state.ground[i].slope;
+            let s = self.state.surface[i].slope;
             let friction = self.friction(i, &contact);
             sums.hysteresis -= contact.normal * s / contact.q;
             sums.adhesion -= friction / contact.q;
@@ -213,7 +213,7 @@ impl Moment<'_> {
     /// The forces in the contact at mass `i`; `None` where it is free.
     fn contact(&self, i: usize) -> Option<ContactForces> {
         let v = self.state.velocity_x[i];
-        self.state.mode[i].in_contact().then(|| self.forces.contact(self.model, i, v, &self.state.ground[i]))
+        self.state.mode[i].in_contact().then(|| self.forces.contact(self.model, i, v, &self.state.surface[i]))
     }
 
     fn friction(&self, i: usize, contact: &ContactForces) -> f64 {

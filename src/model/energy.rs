@@ -97,15 +97,15 @@ fn friction(model: &Model, state: &State, forces: &Forces) -> f64 {
     let at_rest: f64 = slipping()
         .map(|i| {
             let v = state.velocity_x[i];
-            let contact = forces.contact(model, i, v, &state.ground[i]);
+            let contact = forces.contact(model, i, v, &state.surface[i]);
             state.mode[i].direction() * contact.limit * v * contact.q
         })
         .sum();
     let Some(law) = &model.rate_shear else { return at_rest };
     let beyond = slipping().map(|i| {
-        let s = state.ground[i].slope;
+        let s = state.surface[i].slope;
         let speed = state.mode[i].direction() * state.velocity_x[i] * (1.0 + s * s).sqrt();
-        law.beyond(speed) * speed
+        law.excess(speed) * speed
     });
     at_rest + beyond.sum::<f64>()
 }
@@ -145,9 +145,9 @@ fn spring_energy(model: &Model, state: &State, kind: LinkKind) -> f64 {
 /// Σ ½ c e², of the part whose dashpots stand still ½ c_j (e - y_j)².
 fn springs_energy(model: &Model, kind: LinkKind, elongations: impl Iterator<Item = f64> + Clone) -> f64 {
     let law = &model.links[kind as usize];
-    let whole = 0.5 * (law.stiffness - law.still) * square_sum(elongations.clone());
-    if law.still == 0.0 {
+    let whole = 0.5 * (law.stiffness - law.frozen) * square_sum(elongations.clone());
+    if law.frozen == 0.0 {
         return whole;
     }
-    whole + 0.5 * law.still * square_sum(elongations.zip(model.still_dashpots(kind)).map(|(e, y)| e - y))
+    whole + 0.5 * law.frozen * square_sum(elongations.zip(model.frozen_dashpots(kind)).map(|(e, y)| e - y))
 }

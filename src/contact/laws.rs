@@ -5,29 +5,29 @@ use crate::scene::Initial;
 
 /// Where the carrier stands and how it moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CarrierPlace {
-    /// u as a place on the profile, m.
-    pub place: f64,
+pub struct CarrierPosition {
+    /// u as a position on the profile, m.
+    pub profile_position: f64,
     /// w, m.
     pub w: f64,
 }
 
-/// Puts every mass at its rest place, moving with the carrier; one that would lie under the profile is lifted onto it
+/// Puts every mass at its rest position, moving with the carrier; one that would lie under the profile is lifted onto it
 /// and keeps the part of its velocity along t. Which contacts stay and which stick is for [`decide_modes`] to say.
-pub fn place_layer(model: &Model, state: &mut State, at: CarrierPlace, carrier: &CarrierPoint) {
+pub fn place_layer(model: &Model, state: &mut State, at: CarrierPosition, carrier: &CarrierPoint) {
     for i in 0..model.masses() {
-        let ground = model.ground(model.rest_x[i] + at.place);
-        let gap = model.rest_z[i] + at.w - ground.height;
+        let surface = model.surface_at(model.rest_x[i] + at.profile_position);
+        let gap = model.rest_z[i] + at.w - surface.height;
         state.elongation_x[i] = 0.0;
         state.elongation_z[i] = 0.0;
         (state.velocity_x[i], state.velocity_z[i]) = (carrier.u_rate, carrier.w_rate);
-        let separation = carrier.w_rate - ground.slope * carrier.u_rate;
+        let separation = carrier.w_rate - surface.slope * carrier.u_rate;
         state.mode[i] = if gap < 0.0 {
-            let v_x = (carrier.u_rate + ground.slope * carrier.w_rate) / (1.0 + ground.slope * ground.slope);
-            touch_down(model, state, i, at.w, &ground, v_x);
+            let v_x = (carrier.u_rate + surface.slope * carrier.w_rate) / (1.0 + surface.slope * surface.slope);
+            touch_down(model, state, i, at.w, &surface, v_x);
             Mode::along(v_x)
         } else if gap == 0.0 && separation == 0.0 {
-            touch_down(model, state, i, at.w, &ground, carrier.u_rate);
+            touch_down(model, state, i, at.w, &surface, carrier.u_rate);
             Mode::along(carrier.u_rate)
         } else {
             Mode::Free
@@ -37,10 +37,10 @@ pub fn place_layer(model: &Model, state: &mut State, at: CarrierPlace, carrier: 
 }
 
 /// Puts mass `i` on the profile, moving along it.
-fn touch_down(model: &Model, state: &mut State, i: usize, w: f64, ground: &SurfacePoint, velocity_x: f64) {
-    state.ground[i] = *ground;
-    state.elongation_z[i] = ground.height - model.rest_z[i] - w;
-    (state.velocity_x[i], state.velocity_z[i]) = (velocity_x, ground.slope * velocity_x);
+fn touch_down(model: &Model, state: &mut State, i: usize, w: f64, surface: &SurfacePoint, velocity_x: f64) {
+    state.surface[i] = *surface;
+    state.elongation_z[i] = surface.height - model.rest_z[i] - w;
+    (state.velocity_x[i], state.velocity_z[i]) = (velocity_x, surface.slope * velocity_x);
 }
 
 /// Relaxed: y = e, so a = 0. Undeformed: y = 0, so a = e.
@@ -58,10 +58,10 @@ fn place_dashpots(model: &Model, state: &mut State) {
 }
 
 /// At the start a mass that rests on the profile, lifted by nothing, is in contact only if F_N > 0.
-pub fn free_unloaded(model: &Model, state: &mut State, at: CarrierPlace, forces: &Forces) {
+pub fn free_unloaded(model: &Model, state: &mut State, at: CarrierPosition, forces: &Forces) {
     for i in 0..model.masses() {
-        let rests = state.mode[i].in_contact() && model.rest_z[i] + at.w == state.ground[i].height;
-        if rests && forces.contact(model, i, state.velocity_x[i], &state.ground[i]).normal <= 0.0 {
+        let rests = state.mode[i].in_contact() && model.rest_z[i] + at.w == state.surface[i].height;
+        if rests && forces.contact(model, i, state.velocity_x[i], &state.surface[i]).normal <= 0.0 {
             state.mode[i] = Mode::Free;
         }
     }
@@ -70,24 +70,24 @@ pub fn free_unloaded(model: &Model, state: &mut State, at: CarrierPlace, forces:
 /// Applies the impacts due: every free mass within `reach` (m) of the profile that moves into it is stopped along n,
 /// with Coulomb's friction along t. Each uses its own velocity, so their order does not matter. Returns the energy
 /// lost, J.
-pub fn impacts_due(model: &Model, state: &mut State, at: CarrierPlace, reach: f64) -> f64 {
+pub fn impacts_due(model: &Model, state: &mut State, at: CarrierPosition, reach: f64) -> f64 {
     let mut lost = 0.0;
     for i in 0..model.masses() {
         if state.mode[i] != Mode::Free {
             continue;
         }
-        let ground = model.ground(model.rest_x[i] + (at.place + state.elongation_x[i]));
-        let gap = model.rest_z[i] + (at.w + state.elongation_z[i]) - ground.height;
-        if gap <= reach && state.velocity_z[i] < ground.slope * state.velocity_x[i] {
-            lost += impact(model, state, i, at.w, &ground);
+        let surface = model.surface_at(model.rest_x[i] + (at.profile_position + state.elongation_x[i]));
+        let gap = model.rest_z[i] + (at.w + state.elongation_z[i]) - surface.height;
+        if gap <= reach && state.velocity_z[i] < surface.slope * state.velocity_x[i] {
+            lost += impact(model, state, i, at.w, &surface);
         }
     }
     lost
 }
 
-fn impact(model: &Model, state: &mut State, i: usize, w: f64, ground: &SurfacePoint) -> f64 {
-    let (after, lost) = collision(model, (state.velocity_x[i], state.velocity_z[i]), ground.slope);
-    touch_down(model, state, i, w, ground, after / (1.0 + ground.slope * ground.slope).sqrt());
+fn impact(model: &Model, state: &mut State, i: usize, w: f64, surface: &SurfacePoint) -> f64 {
+    let (after, lost) = collision(model, (state.velocity_x[i], state.velocity_z[i]), surface.slope);
+    touch_down(model, state, i, w, surface, after / (1.0 + surface.slope * surface.slope).sqrt());
     state.mode[i] = Mode::along(after);
     lost
 }
@@ -139,7 +139,7 @@ pub fn decide_modes(model: &Model, state: &mut State, forces: &Forces) {
 
 pub(super) fn decided(model: &Model, state: &State, forces: &Forces, i: usize) -> Mode {
     let (mode, v) = (state.mode[i], state.velocity_x[i]);
-    let contact = forces.contact(model, i, v, &state.ground[i]);
+    let contact = forces.contact(model, i, v, &state.surface[i]);
     if contact.normal < 0.0 {
         return Mode::Free;
     }

@@ -15,7 +15,7 @@ pub struct RateShear {
     /// A τ_f0, N.
     largest: f64,
     /// A τ_f(v_c), N.
-    held: f64,
+    plateau: f64,
     /// 1/v_0, s/m.
     per_reference: f64,
     /// b = c/ln²10, so that τ_f = τ_f0 exp(-b ln²(v/v_0)).
@@ -39,13 +39,13 @@ impl RateShear {
         let per_reference = 1.0 / law.reference_speed;
         let (sharpness, creep_speed) = (law.sharpness / (LN_10 * LN_10), law.creep_speed());
         let fastest_fall = fastest_fall(sharpness);
-        let unheld = Self { largest, held: 0.0, per_reference, sharpness, creep_speed, fastest_fall };
-        (largest > 0.0).then(|| Self { held: unheld.whole(creep_speed).0, ..unheld })
+        let unheld = Self { largest, plateau: 0.0, per_reference, sharpness, creep_speed, fastest_fall };
+        (largest > 0.0).then(|| Self { plateau: unheld.whole(creep_speed).0, ..unheld })
     }
 
     /// A τ_f(v_c), N.
-    pub fn held(&self) -> f64 {
-        self.held
+    pub fn plateau(&self) -> f64 {
+        self.plateau
     }
 
     /// A τ_f(v), N, and -2b ln(v/v_0), the slope of its logarithm over ln v.
@@ -55,8 +55,8 @@ impl RateShear {
     }
 
     /// A τ_f(v) - A τ_f(v_c), N, at the `speed` in the direction of slip, m/s: 0 at creep and for what goes backwards.
-    pub fn beyond(&self, speed: f64) -> f64 {
-        if speed <= self.creep_speed { 0.0 } else { self.whole(speed).0 - self.held }
+    pub fn excess(&self, speed: f64) -> f64 {
+        if speed <= self.creep_speed { 0.0 } else { self.whole(speed).0 - self.plateau }
     }
 
     /// The same, and its derivative A τ_f'(v), N s/m.
@@ -65,7 +65,7 @@ impl RateShear {
             return (0.0, 0.0);
         }
         let (force, slope) = self.whole(speed);
-        (force - self.held, slope * force / speed)
+        (force - self.plateau, slope * force / speed)
     }
 
     /// The speed at which `weight` (v - `speed`) + A τ_f(v) - A τ_f(`speed`) is the same as on the curve's tangent at
@@ -91,9 +91,9 @@ impl RateShear {
             return free;
         }
         // A τ_f(v) - A τ_f(v_c) lies between these.
-        let (least, most) = (-self.held, self.largest - self.held);
+        let (least, most) = (-self.plateau, self.largest - self.plateau);
         let [low, high] = [most, least].map(|beyond| (free - beyond / weight).max(self.creep_speed));
-        let excess = |v: f64| (v - from) * weight + self.beyond(v) - force;
+        let excess = |v: f64| (v - from) * weight + self.excess(v) - force;
         if excess(low) >= 0.0 || !high.is_finite() {
             return low;
         }
@@ -161,13 +161,13 @@ mod tests {
                 FORCE * (-law.sharpness * decades * decades).exp()
             };
             // Roundings of an exponent of some hundreds.
-            assert!((found.held() - expected(6.0e-9)).abs() < 1e-12 * FORCE);
+            assert!((found.plateau() - expected(6.0e-9)).abs() < 1e-12 * FORCE);
             for speed in speeds() {
-                let whole = found.held() + found.beyond(speed);
+                let whole = found.plateau() + found.excess(speed);
                 assert!((whole - expected(speed)).abs() < 1e-12 * FORCE, "{speed:e}: {whole:e}");
             }
             for speed in [6.0e-9, 1.0e-9, 0.0, -1.0] {
-                assert_eq!((found.beyond(speed), found.with_slope(speed)), (0.0, (0.0, 0.0)));
+                assert_eq!((found.excess(speed), found.with_slope(speed)), (0.0, (0.0, 0.0)));
             }
         }
     }
@@ -177,9 +177,9 @@ mod tests {
         for law in laws() {
             for speed in speeds().filter(|&speed| speed > 1.01 * law.creep_speed) {
                 let h = 1e-4 * speed;
-                let quotient = (law.beyond(speed + h) - law.beyond(speed - h)) / (2.0 * h);
+                let quotient = (law.excess(speed + h) - law.excess(speed - h)) / (2.0 * h);
                 let (force, slope) = law.with_slope(speed);
-                assert_eq!(force, law.beyond(speed));
+                assert_eq!(force, law.excess(speed));
                 // The third derivative times h², and roundings over h.
                 let scale = law.largest / speed;
                 assert!((slope - quotient).abs() < 1e-6 * scale, "{speed:e}: {slope:e} {quotient:e}");
@@ -194,13 +194,13 @@ mod tests {
             for weight in [1e-3, 1.0, 1e3] {
                 for (from, to) in speeds().flat_map(|from| speeds().map(move |to| (from, to))) {
                     let (here, slope) = law.with_slope(from);
-                    let force = weight * (to - from) + law.beyond(to) - here;
+                    let force = weight * (to - from) + law.excess(to) - here;
                     // More than one speed may have this friction where it falls faster than the weight.
                     if law.with_slope(from).1 < -weight || law.with_slope(to).1 < -weight || slope.abs() > 1e12 {
                         continue;
                     }
                     let found = law.along_curve(from, force / (weight + slope), weight);
-                    let missed = weight * (found - from) + law.beyond(found) - here - force;
+                    let missed = weight * (found - from) + law.excess(found) - here - force;
                     let (_, there) = law.with_slope(found);
                     // As near as ln v is found, or, for a short way, as the tangent is.
                     let allowed = 0.1 * (weight + slope.abs() + there.abs()) * (found - from).abs()
