@@ -61,7 +61,7 @@ pub(super) fn heights(scene: &Scene, model: &Model) -> Vec<f64> {
     let (first, last) = ends(scene);
     let count = 4 * scene.surface.x.len();
     let place = |i: usize| first + (last - first) * (i as f64 + 0.5) / count as f64;
-    (0..count).map(|i| model.ground(place(i)).height).collect()
+    (0..count).map(|i| model.surface_at(place(i)).height).collect()
 }
 
 /// Clearance and mean roughness above the profile's mean: how far the carrier's rest line is from it at w = 0, m.
