@@ -1,13 +1,16 @@
 //! Rates of change at one stage.
 
+use serde::{Deserialize, Serialize};
+
 use crate::math::{Numbers, visit_all};
 use crate::model::{CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint};
 
 /// What is left of a quantity that has no limit.
 pub const NO_LIMIT: f64 = f64::MAX;
 
-/// What a stage leaves for the later ones, for the error estimate and for the events.
-#[derive(Clone, Debug)]
+/// Velocities, accelerations and contact forces at one stage, which later stages, the error estimate and the search for
+/// events use.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Rates {
     /// ẋ_i, m/s.
     pub velocity_x: Vec<f64>,

@@ -144,9 +144,7 @@ impl StageSolver {
         self.state.mode.copy_from_slice(&state.mode);
         self.contacts.clear();
         self.contacts.extend((0..state.mode.len()).filter(|&i| state.mode[i].in_contact()));
-        for &i in &self.contacts {
-            self.state.surface[i] = state.surface[i];
-        }
+        self.state.surface.copy_from_slice(&state.surface);
         self.slips.clear();
         self.slips.extend(self.contacts.iter().filter(|&&i| state.mode[i].slips()));
         self.slip.resize(self.slips.len(), Slip::default());
