@@ -1,5 +1,4 @@
-//! The command line program: `asperity simulate`, `sweep`, `plot`, `describe`, `pack`, `fit`, `material`, `surface` and
-//! `report`.
+//! The command line program `asperity`; its commands are in [`program`].
 
 mod program;
 
@@ -9,7 +8,7 @@ use clap::Parser;
 
 use program::{Arguments, run};
 
-#[expect(clippy::print_stderr, reason = "the one place where the program says why it stopped")]
+#[expect(clippy::print_stderr, reason = "the one place where the program prints the error that ended it")]
 fn main() -> ExitCode {
     match run(Arguments::parse()) {
         Ok(()) => ExitCode::SUCCESS,

@@ -255,7 +255,7 @@ fn a_description_tells_what_is_there_and_what_is_left_out() {
     for part in [
         "5 masses",
         "the paper's 2k + 4kn - 2n = 46 (k = 5, n = 2, every mass free)",
-        "as coded 56: two places and two velocities a mass, 36 Maxwell variables",
+        "as coded 56: two coordinates and two velocities a mass, 36 Maxwell variables",
         "Friction    left out",
         "elements     left out",
         "Reduce      left out",
@@ -406,7 +406,7 @@ fn a_description_tells_which_maxwell_elements_are_replaced_and_why() {
         "vertical    1 of 3 elements stay, K' = 4.1000e0 N/m",
         "[2] 0.1 N/m at 100 s is long: a spring, bound 2.44e-5",
         "[3] 0.1 N/m at 1e-4 s is short: a damper, bound 2.48e-6",
-        "as coded 10: two places and two velocities a mass, 2 Maxwell variables",
+        "as coded 10: two coordinates and two velocities a mass, 2 Maxwell variables",
     ] {
         assert!(text.contains(part), "{part}: {text}");
     }

@@ -145,7 +145,7 @@ fn what_cannot_be_told_is_refused() {
     fs::write(&source, scene("kind = 'file'\npath = 'profile.csv'")).unwrap();
     fs::write(&profile, "0 1\n1 2\n2 1\n").unwrap();
     let [source, profile] = [&source, &profile].map(|path| path.to_str().unwrap());
-    assert!(failure(&["surface", source, "--unit", "mm"]).contains("a scene says itself how its surface is read"));
+    assert!(failure(&["surface", source, "--unit", "mm"]).contains("a scene defines how its surface is read"));
     assert!(failure(&["surface", source, "--write", profile]).contains("will not write"));
     assert!(failure(&["surface", source, "-o", profile]).contains("expected a name that ends in .svg or .png"));
     assert!(failure(&["surface", profile, "--unit", "km"]).contains(r#"expected one of "m", "mm", "um", "nm""#));

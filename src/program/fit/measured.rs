@@ -3,9 +3,10 @@
 use std::fmt;
 use std::path::Path;
 
+use super::FitError;
 use super::compound::Sample;
 use super::quantity::{ALLOWED, Meaning, Quantity, Scale};
-use crate::program::error::ProgramError;
+use crate::program::files::FileError;
 
 /// Measured moduli in SI units.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,9 +90,9 @@ struct Line {
 
 impl Measured {
     /// Reads the table at `path` without the columns whose headers are `ignored`.
-    pub(super) fn read(path: &Path, ignored: &[String]) -> Result<Self, ProgramError> {
-        let bytes = std::fs::read(path).map_err(ProgramError::file("read", path))?;
-        parse(&bytes, ignored).map_err(|refusal| ProgramError::Moduli { path: path.to_owned(), refusal })
+    pub(super) fn read(path: &Path, ignored: &[String]) -> Result<Self, FitError> {
+        let bytes = std::fs::read(path).map_err(FileError::io("read", path))?;
+        parse(&bytes, ignored).map_err(|refusal| FitError::Moduli { path: path.to_owned(), refusal })
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::compound::Sample;
 use super::measured::{Measured, Refusal, Row};
-use crate::program::arguments::WlfConstants;
+use crate::program::cli::WlfConstants;
 
 /// The rows as measured at the reference temperature: at a_T ω, with the moduli that they have. Without temperatures,
 /// all are taken to be of it.

@@ -5,9 +5,9 @@ use std::path::Path;
 
 use super::compound::{Compound, Error, Errors, Sample};
 use super::measured::Measured;
-use crate::program::arguments::Fit;
+use crate::program::cli::Fit;
 use crate::program::plot::{Curve, Panel, Stacked, Stroke};
-use crate::program::text::{decimal, lines, rounded};
+use crate::program::terminal::{decimal, lines, rounded};
 
 /// Points of a drawn line in a decade.
 const POINTS_PER_DECADE: f64 = 20.0;

@@ -27,7 +27,7 @@ pub(crate) fn plot_files(command: &Plot) -> Result<(), ProgramError> {
         add_curves(&mut curves, command, i, path)?;
     }
     let chart = chart(command, curves);
-    write(&command.output, SIZE, command.title.as_deref(), |canvas| chart.draw_with_legend(canvas))
+    Ok(write(&command.output, SIZE, command.title.as_deref(), |canvas| chart.draw_with_legend(canvas))?)
 }
 
 /// Adds those of a file.

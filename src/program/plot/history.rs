@@ -11,7 +11,7 @@ use super::chart::Chart;
 use super::curve::{Curve, Stroke};
 use super::linear::Fit;
 use super::picture::write;
-use crate::program::error::ProgramError;
+use crate::program::files::FileError;
 
 const SIZE: (u32, u32) = (1000, 1080);
 
@@ -59,7 +59,7 @@ impl History {
     }
 
     /// Draws the picture.
-    pub(crate) fn draw(&self, path: &Path, name: &str) -> Result<(), ProgramError> {
+    pub(crate) fn draw(&self, path: &Path, name: &str) -> Result<(), FileError> {
         write(path, SIZE, Some(name), |canvas| {
             let canvases = canvas.split_evenly((PANELS.len(), 1));
             PANELS.iter().zip(&canvases).try_for_each(|(panel, canvas)| self.chart(panel).draw_with_legend(canvas))

@@ -9,7 +9,7 @@ use super::legend::{Legend, Swatch};
 use super::linear::Fit;
 use super::logarithmic::is_drawn;
 use super::picture::{FINE, write};
-use crate::program::error::ProgramError;
+use crate::program::files::FileError;
 
 /// One chart.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,7 +50,7 @@ impl Stacked {
     const PANEL_HEIGHT: u32 = 380;
 
     /// Draws the picture: as PNG where `path` ends so, else as SVG.
-    pub(crate) fn write(&self, path: &Path) -> Result<(), ProgramError> {
+    pub(crate) fn write(&self, path: &Path) -> Result<(), FileError> {
         let size = (Self::WIDTH, Self::PANEL_HEIGHT * self.panels.len() as u32);
         write(path, size, Some(&self.title), |canvas| {
             let canvases = canvas.split_evenly((self.panels.len(), 1));
@@ -80,7 +80,7 @@ impl SideBySide {
     const SEVERAL: u32 = 460;
 
     /// Draws the picture: as PNG where `path` ends so, else as SVG.
-    pub(crate) fn write(&self, path: &Path) -> Result<(), ProgramError> {
+    pub(crate) fn write(&self, path: &Path) -> Result<(), FileError> {
         let width = if self.panels.len() == 1 { Self::ALONE.0 } else { Self::SEVERAL * self.panels.len() as u32 };
         let x = Axis::logarithmic(&self.x_title, points(&self.panels).map(|point| point.0));
         let y = Axis::linear(&self.y_title, "", points(&self.panels).map(|point| point.1), Fit::Round);

@@ -8,8 +8,7 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 
 use super::raster::{self, png};
-use crate::program::ends_in;
-use crate::program::error::ProgramError;
+use crate::program::files::{FileError, ends_in};
 
 /// A part of a picture to draw on.
 pub(crate) type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -47,12 +46,12 @@ pub(super) fn write(
     size: (u32, u32),
     title: Option<&str>,
     draw: impl FnOnce(&Canvas<'_>) -> Drawn,
-) -> Result<(), ProgramError> {
+) -> Result<(), FileError> {
     let is_png = ends_in(path, "png");
     let bytes = svg(size, title, draw)
         .and_then(|text| if is_png { png(&text, raster::SHARP) } else { Ok(text.into_bytes()) })
-        .map_err(|error| ProgramError::picture(path, &*error))?;
-    fs::write(path, bytes).map_err(ProgramError::file("write", path))
+        .map_err(|error| FileError::picture(path, &*error))?;
+    fs::write(path, bytes).map_err(FileError::io("write", path))
 }
 
 /// The picture as the text of an SVG file.

@@ -7,7 +7,7 @@ use super::chart::Chart;
 use super::curve::{Curve, Stroke};
 use super::linear::Fit;
 use super::picture::{FINE, write};
-use crate::program::error::ProgramError;
+use crate::program::files::FileError;
 
 const SIZE: (u32, u32) = (1000, 860);
 /// Where the spectrum begins, from the top.
@@ -30,7 +30,7 @@ pub(crate) struct ProfilePicture {
 
 impl ProfilePicture {
     /// Draws the picture: as PNG where `path` ends so, else as SVG.
-    pub(crate) fn write(&self, path: &Path) -> Result<(), ProgramError> {
+    pub(crate) fn write(&self, path: &Path) -> Result<(), FileError> {
         write(path, SIZE, Some(&self.title), |canvas| {
             let (above, below) = canvas.split_vertically(SPLIT);
             self.profile().draw_with_legend(&above)?;

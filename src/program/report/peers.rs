@@ -2,12 +2,9 @@
 
 use std::path::Path;
 
-use csv::StringRecord;
-
 use super::ladder::{Figures, PROGRAM, Row};
 use super::table::MEASURED;
-use crate::program::error::ProgramError;
-use crate::program::result_file::{no_column, refusal};
+use crate::program::result_file::{CsvFile, ResultFileError};
 
 /// The peers' rows, and the scenes that the file has.
 #[derive(Debug, Default)]
@@ -20,34 +17,23 @@ pub(super) struct Peers {
 
 /// Reads the rows of the scene that goes by one of `names`. Those of this program are left out: its own are measured
 /// here.
-pub(super) fn read(path: &Path, names: &[&str]) -> Result<Peers, ProgramError> {
-    let wrong = |message: String| ProgramError::ResultFile { path: path.to_owned(), message };
-    let file = std::fs::File::open(path).map_err(ProgramError::file("read", path))?;
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
-    let head = reader.headers().map_err(|error| wrong(refusal(&error)))?.clone();
-    let columns = find_columns(&head).map_err(wrong)?;
+pub(super) fn read(path: &Path, names: &[&str]) -> Result<Peers, ResultFileError> {
+    let file = CsvFile::read(path)?;
+    let mut columns = [0; MEASURED.len()];
+    for (column, name) in columns.iter_mut().zip(MEASURED) {
+        *column = file.column(name)?;
+    }
     let mut peers = Peers::default();
-    for record in reader.records() {
-        let record = record.map_err(|error| wrong(refusal(&error)))?;
+    for record in file.records() {
         let fields = columns.map(|column| record.get(column).unwrap_or_default());
         if !peers.scenes.iter().any(|scene| scene == fields[0]) {
             peers.scenes.push(fields[0].to_owned());
         }
         if names.contains(&fields[0]) && fields[1] != PROGRAM {
-            let line = record.position().map_or(0, csv::Position::line);
-            peers.rows.push(row(fields).map_err(|message| wrong(format!("line {line}: {message}")))?);
+            peers.rows.push(row(fields).map_err(|message| file.error(record, message))?);
         }
     }
     Ok(peers)
-}
-
-fn find_columns(head: &StringRecord) -> Result<[usize; MEASURED.len()], String> {
-    let mut columns = [0; MEASURED.len()];
-    for (column, name) in columns.iter_mut().zip(MEASURED) {
-        let found = head.iter().position(|other| other == name);
-        *column = found.ok_or_else(|| no_column(name, head.iter()))?;
-    }
-    Ok(columns)
 }
 
 /// A row without a time is one of a run that did not come to its end.

@@ -6,7 +6,7 @@ use asperity::simulation::{Simulation, SimulationError};
 use cpu_time::ThreadTime;
 
 use super::trace::Trace;
-use crate::program::excitation::{Rows, Run};
+use crate::program::runner::{Rows, Runner};
 
 /// What a run gave.
 #[derive(Clone, Debug)]
@@ -92,9 +92,9 @@ pub(super) fn with_durations(scene: &Scene, durations: &[f64]) -> Scene {
 pub(super) fn run(scene: &Scene, rows: Rows, u: f64, tick: &dyn Fn(f64)) -> Result<Measured, SimulationError> {
     let duration: f64 = scene.excitation.iter().map(|phase| phase.duration).sum();
     let mut recorder = Recorder::new(scene);
-    let mut run = Run::displaced(scene, rows, u)?;
+    let mut run = Runner::new(scene, rows, u)?;
     let clock = ThreadTime::now();
-    let durations = run.follow(&scene.excitation, |carrier, simulation| {
+    let durations = run.run(&scene.excitation, |carrier, simulation| {
         recorder.row(simulation);
         tick(carrier.time / duration);
     })?;

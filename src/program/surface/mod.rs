@@ -1,83 +1,151 @@
-//! `asperity surface`: what a profile is like.
+//! `asperity surface`: analyses a profile.
 
-mod law;
 mod spectrum;
-mod statistics;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use asperity::scene;
 use serde::Serialize;
 
-use super::arguments::{Reading, Surface};
-use super::error::ProgramError;
+use super::cli::{Reading, Surface};
+use super::files::{self, FileError, check_outputs, ends_in, load, name_of, print, sources};
 use super::plot::ProfilePicture;
-use super::{check_output, ends_in, load, note, result_file, sources, text, warn};
-use law::Law;
-use spectrum::{Band, Spectrum};
-use statistics::Statistics;
+use super::terminal::{lines, note, real, warn};
+use spectrum::{Band, PowerLaw, Spectrum};
 
-/// All that is told of a profile.
-#[derive(Debug, Serialize)]
-struct Findings {
-    #[serde(flatten)]
-    statistics: Statistics,
-    law: Option<Law>,
-    /// How the spectrum was taken.
-    taken: String,
-    spectrum: Vec<Band>,
+/// `asperity surface` failed.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum SurfaceError {
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error("{}: a scene defines how its surface is read; these options are for profiles only", .path.display())]
+    SceneHasOptions { path: PathBuf },
+    #[error("cannot be written as JSON: {0}")]
+    Json(#[from] serde_json::Error),
 }
 
-/// Reads, tells, draws, writes.
-pub(crate) fn surface(command: &Surface) -> Result<(), ProgramError> {
+/// Reads the surface, prints the analysis, plots it and writes the profile.
+pub(crate) fn surface(command: &Surface) -> Result<(), SurfaceError> {
     let (surface, files) = read(command)?;
-    let outputs: Vec<&PathBuf> = command.output.iter().chain(&command.write).collect();
-    outputs.iter().try_for_each(|output| check_output(output, &files))?;
-    if let [first, second] = outputs[..] {
-        check_output(second, std::slice::from_ref(first))?;
-    }
-    let findings = Findings::of(&surface, command);
-    let text = if command.json { findings.json()? } else { findings.text() };
-    text::print(&text)?;
+    check_outputs(command.output.iter().chain(&command.write), files)?;
+    let analysis = Analysis::of(&surface, command);
+    let text = if command.json { serde_json::to_string(&analysis)? + "\n" } else { analysis.text() };
+    print(&text)?;
     if let Some(path) = &command.output {
-        picture(&surface, &findings, &command.file).write(path)?;
+        picture(&surface, &analysis, &command.file).write(path)?;
     }
     if let Some(path) = &command.write {
-        fs::write(path, columns(&surface)).map_err(ProgramError::file("write", path))?;
+        files::write(path, columns(&surface))?;
         note(&format!("{} holds the profile in m, for path = of a scene's surface", path.display()));
     }
     Ok(())
 }
 
 /// The surface, and the files that it was read from.
-fn read(command: &Surface) -> Result<(scene::Surface, Vec<PathBuf>), ProgramError> {
+fn read(command: &Surface) -> Result<(scene::Surface, Vec<PathBuf>), SurfaceError> {
     let path = &command.file;
     if ends_in(path, "toml") {
         if command.reading != Reading::default() {
-            return Err(ProgramError::SceneHasOptions { path: path.clone() });
+            return Err(SurfaceError::SceneHasOptions { path: path.clone() });
         }
         let scene = load(path)?;
         let files = sources(path, &scene);
         return Ok((scene.surface, files));
     }
-    let (surface, warnings) = scene::Surface::load(path, &command.reading.options())?;
+    let (surface, warnings) = scene::Surface::load(path, &command.reading.options()).map_err(FileError::from)?;
     warnings.iter().for_each(|warning| warn(warning));
     Ok((surface, vec![path.clone()]))
 }
 
-impl Findings {
+/// Heights and slopes of a profile, in SI units.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+struct Statistics {
+    /// Number of data points.
+    points: usize,
+    /// Distance from the first point to the last: the period, if the profile is periodic.
+    length: f64,
+    /// Shortest and longest step between points.
+    steps: [f64; 2],
+    periodic: bool,
+    mean_height: f64,
+    /// Slope of the least squares line.
+    tilt: f64,
+    /// Root mean square height about the mean.
+    rms_height: f64,
+    /// Root mean square height about the least squares line.
+    rms_height_without_tilt: f64,
+    peak_to_valley: f64,
+    /// Root mean square slope of the spline, including the tilt.
+    rms_slope: f64,
+    /// Largest absolute slope of the spline.
+    largest_slope: f64,
+}
+
+/// Gauss-Legendre nodes and weights on 0 to 1: exact for the square of a cubic's slope.
+const GAUSS: [(f64, f64); 3] =
+    [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
+
+/// Relative difference below which steps count as even: positions are rounded.
+const EVEN: f64 = 0.02;
+
+impl Statistics {
+    fn of(surface: &scene::Surface) -> Self {
+        let (x, z) = (&surface.x, &surface.z);
+        let spline = surface.spline();
+        let line = surface.line();
+        let length = x[x.len() - 1] - x[0];
+        let mean_square = |height: &dyn Fn(usize) -> f64| trapezoid(x, |i| height(i).powi(2)) / length;
+        let squares = x.windows(2).map(|ends| {
+            let step = ends[1] - ends[0];
+            step * GAUSS.iter().map(|(at, weight)| weight * spline.evaluate(ends[0] + at * step).1.powi(2)).sum::<f64>()
+        });
+        let steps = x.windows(2).map(|ends| ends[1] - ends[0]);
+        let (highest, lowest) = z.iter().fold((f64::MIN, f64::MAX), |(high, low), &z| (z.max(high), z.min(low)));
+        Self {
+            points: x.len(),
+            length,
+            steps: steps.fold([f64::MAX, 0.0], |[low, high], step| [step.min(low), step.max(high)]),
+            periodic: surface.periodic,
+            mean_height: line.z,
+            tilt: line.slope,
+            rms_height: mean_square(&|i| z[i] - line.z).sqrt(),
+            rms_height_without_tilt: mean_square(&|i| z[i] - line.at(x[i])).sqrt(),
+            peak_to_valley: highest - lowest,
+            rms_slope: (squares.sum::<f64>() / length).sqrt(),
+            largest_slope: spline.bounds().slope_max_abs,
+        }
+    }
+
+    fn is_even(&self) -> bool {
+        let [shortest, longest] = self.steps;
+        longest - shortest <= EVEN * longest
+    }
+}
+
+/// The integral over x by the trapezoidal rule, which is spectrally accurate over a whole period at even points.
+fn trapezoid(x: &[f64], value: impl Fn(usize) -> f64) -> f64 {
+    (1..x.len()).map(|i| 0.5 * (x[i] - x[i - 1]) * (value(i) + value(i - 1))).sum()
+}
+
+/// The analysis of a profile, as JSON has it.
+#[derive(Debug, Serialize)]
+struct Analysis {
+    #[serde(flatten)]
+    statistics: Statistics,
+    law: Option<PowerLaw>,
+    /// How the spectrum was computed.
+    taken: String,
+    spectrum: Vec<Band>,
+}
+
+impl Analysis {
     fn of(surface: &scene::Surface, command: &Surface) -> Self {
         let statistics = Statistics::of(surface);
         let bands = Spectrum::of(surface).bands();
-        let law = Law::of(&bands, command.wavelengths.as_ref());
+        let law = PowerLaw::of(&bands, command.wavelengths.as_ref());
         let points = if statistics.is_even() { "" } else { "at even points of the spline, " };
         let window = if surface.periodic { "over one period, as it is" } else { "without tilt, under a Hann window" };
         Self { statistics, law, taken: format!("{points}{window}"), spectrum: bands }
-    }
-
-    fn json(&self) -> Result<String, ProgramError> {
-        serde_json::to_string(self).map(|text| text + "\n").map_err(ProgramError::Json)
     }
 
     fn text(&self) -> String {
@@ -99,7 +167,7 @@ impl Findings {
         ];
         rows.push(("Spectrum", format!("taken {}", self.taken)));
         rows.extend(self.law_rows().into_iter().map(|row| ("", row)));
-        text::lines(&rows)
+        lines(&rows)
     }
 
     fn law_rows(&self) -> Vec<String> {
@@ -110,11 +178,11 @@ impl Findings {
             law.hurst, law.hurst_error
         )];
         rows.push(law.roll_off_wavelength.map_or_else(
-            || "no roll-off seen".into(),
+            || "no roll-off".into(),
             |wavelength| format!("roll-off at a wavelength of {wavelength:.3e} m, constant above"),
         ));
         if law.ends {
-            rows.push("the law ends there: a cut-off, a filter or noise below".into());
+            rows.push("shorter wavelengths deviate from the law: a cut-off, a filter or noise".into());
         }
         if !(0.0..=1.0).contains(&law.hurst) {
             rows.push("outside 0 to 1: the profile is not self-affine there".into());
@@ -123,26 +191,57 @@ impl Findings {
     }
 }
 
-fn picture(surface: &scene::Surface, findings: &Findings, file: &Path) -> ProfilePicture {
-    let name = file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    let law = findings.law.as_ref().map_or_else(Vec::new, |law| {
+fn picture(surface: &scene::Surface, analysis: &Analysis, file: &Path) -> ProfilePicture {
+    let law = analysis.law.as_ref().map_or_else(Vec::new, |law| {
         let shortest = law.wavelengths[0];
-        let shown = findings.spectrum.iter().map(|band| band.wave_number);
-        let reached = shown.filter(|q| q * shortest <= std::f64::consts::TAU * (1.0 + 1e-9));
-        reached.map(|q| (q, law.density(q))).collect()
+        let shown = analysis.spectrum.iter().map(|band| band.wave_number);
+        let covered = shown.filter(|q| q * shortest <= std::f64::consts::TAU * (1.0 + 1e-9));
+        covered.map(|q| (q, law.density(q))).collect()
     });
-    let hurst = findings.law.map(|law| format!(", Hurst exponent {:.2}", law.hurst)).unwrap_or_default();
+    let hurst = analysis.law.map(|law| format!(", Hurst exponent {:.2}", law.hurst)).unwrap_or_default();
     ProfilePicture {
-        title: format!("{name}: rms height {:.3e} m{hurst}", findings.statistics.rms_height),
+        title: format!("{}: rms height {:.3e} m{hurst}", name_of(file), analysis.statistics.rms_height),
         heights: surface.x.iter().copied().zip(surface.z.iter().copied()).collect(),
-        spectrum: findings.spectrum.iter().map(|band| (band.wave_number, band.density)).collect(),
+        spectrum: analysis.spectrum.iter().map(|band| (band.wave_number, band.density)).collect(),
         law,
     }
 }
 
 /// Two columns in m.
 fn columns(surface: &scene::Surface) -> String {
-    let row = |(x, z): (&f64, &f64)| format!("{},{}\n", result_file::real(*x), result_file::real(*z));
+    let row = |(x, z): (&f64, &f64)| format!("{},{}\n", real(*x), real(*z));
     let rows: String = surface.x.iter().zip(&surface.z).map(row).collect();
     format!("x [m],z [m]\n{rows}")
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+
+    #[test]
+    fn a_cosine_has_its_known_numbers() {
+        let x: Vec<f64> = (0..=1000).map(|i| f64::from(i) * 1e-6).collect();
+        let z: Vec<f64> = (0..=1000).map(|i| 2e-6 * (TAU * f64::from(i % 250) / 250.0).cos() + 1e-6).collect();
+        let numbers = Statistics::of(&scene::Surface { x, z, periodic: true });
+        let slope = 2e-6 * TAU / 250e-6;
+        // The spline through 250 points a wavelength is wrong by some 1e-8 of its slope.
+        let near = |found: f64, exact: f64| assert!((found / exact - 1.0).abs() < 1e-7, "{found} {exact}");
+        near(numbers.rms_height, 2e-6 / 2_f64.sqrt());
+        near(numbers.peak_to_valley, 4e-6);
+        near(numbers.rms_slope, slope / 2_f64.sqrt());
+        near(numbers.largest_slope, slope);
+        near(numbers.mean_height, 1e-6);
+        assert!(numbers.is_even() && numbers.tilt.abs() < 1e-5);
+    }
+
+    #[test]
+    fn a_ramp_is_all_tilt() {
+        let x = vec![0.0, 1.0, 4.0, 5.0];
+        let z = x.iter().map(|x| 0.25 * x).collect();
+        let numbers = Statistics::of(&scene::Surface { x, z, periodic: false });
+        assert!((numbers.tilt - 0.25).abs() < 1e-15 && (numbers.rms_slope - 0.25).abs() < 1e-15);
+        assert!(numbers.rms_height_without_tilt < 1e-15 && !numbers.is_even());
+    }
 }

@@ -1,52 +1,53 @@
-//! The power spectrum of a profile.
+//! The power spectrum of a profile and the power law that it follows: Hurst exponent, roll-off, cut-off.
 
 use std::f64::consts::{PI, TAU};
+use std::ops::RangeInclusive;
 
 use asperity::math::{Direction, fourier};
 use asperity::scene::Surface;
 use nalgebra::Complex;
 use serde::Serialize;
 
-/// The one-sided power spectrum C(q): its integral over q is the mean square height.
+/// The one-sided power spectrum C(q), whose integral over q is the mean square height.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Spectrum {
-    /// The distance 2π/length of the wave numbers, 1/m.
+    /// Spacing 2π/length of the wave numbers, rad/m.
     step: f64,
     /// C at 0, 1, 2, … steps, m³.
     density: Vec<f64>,
-    /// The first that can be trusted.
+    /// Index of the first reliable value.
     first: usize,
 }
 
-/// The mean of a spectrum over some wave numbers.
+/// The mean of a spectrum over a range of wave numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct Band {
-    /// The geometric mean of its wave numbers, rad/m.
+    /// Geometric mean of the wave numbers, rad/m.
     pub(super) wave_number: f64,
-    /// The mean of C, m³.
+    /// Mean of C, m³.
     pub(super) density: f64,
-    /// How many there are.
+    /// Number of wave numbers.
     pub(super) modes: usize,
 }
 
-/// Even points at most: more are a finer profile than is drawn or judged.
+/// Maximum number of even points: finer detail is neither drawn nor fitted.
 const MOST_POINTS: usize = 1 << 20;
-/// Bands of a power of ten.
+/// Bands per decade.
 const BANDS: f64 = 12.0;
 
 impl Spectrum {
-    /// The spectrum of a profile at as many even points as it has intervals. A periodic profile is taken as it is. Of
-    /// another one the tilt is removed, and its ends fade out under a Hann window, whose loss of power (3/8) is made up
-    /// for; the longest wavelength is then lost.
+    /// The spectrum of a profile at as many even points as it has intervals. A periodic profile needs no preparation. From
+    /// any other the tilt is removed, and a Hann window is applied and its loss of power (3/8) corrected; the longest
+    /// wavelength is then unreliable.
     pub(super) fn of(surface: &Surface) -> Self {
         let x = &surface.x;
         let (start, length) = (x[0], x[x.len() - 1] - x[0]);
         let n = (x.len() - 1).clamp(4, MOST_POINTS);
         let (spline, line) = (surface.spline(), surface.line());
-        let place = |i: usize| start + length * (i as f64 / n as f64);
+        let position = |i: usize| start + length * (i as f64 / n as f64);
         let window = |i: usize| if surface.periodic { 1.0 } else { (PI * i as f64 / n as f64).sin().powi(2) };
         let tilt = |x: f64| if surface.periodic { line.z } else { line.at(x) };
-        let heights = (0..n).map(|i| Complex::from(window(i) * (spline.evaluate(place(i)).0 - tilt(place(i)))));
+        let heights = (0..n).map(|i| Complex::from(window(i) * (spline.evaluate(position(i)).0 - tilt(position(i)))));
         let sums = fourier(&heights.collect::<Vec<_>>(), Direction::Forward);
         let step = TAU / length;
         let scale = 2.0 / (n as f64).powi(2) / step / if surface.periodic { 1.0 } else { 0.375 };
@@ -54,7 +55,7 @@ impl Spectrum {
         Self { step, density, first: if surface.periodic { 1 } else { 2 } }
     }
 
-    /// The bands, even in the logarithm; none without a wave number.
+    /// The means over bands that are even in the logarithm; a band without a wave number is omitted.
     pub(super) fn bands(&self) -> Vec<Band> {
         let mut bands = Vec::new();
         let mut start = self.first;
@@ -80,8 +81,138 @@ impl Spectrum {
     }
 }
 
+/// A spectrum that is constant up to the roll-off and falls as q^(-1-2H) above it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(super) struct PowerLaw {
+    /// Hurst exponent H, 1.
+    pub(super) hurst: f64,
+    /// Standard error of H, from the scatter of the bands.
+    pub(super) hurst_error: f64,
+    /// Wavelength 2π/q above which the spectrum is constant, m; none without a roll-off.
+    pub(super) roll_off_wavelength: Option<f64>,
+    /// Shortest and longest wavelength of the power law, m.
+    pub(super) wavelengths: [f64; 2],
+    /// Whether shorter wavelengths exist but deviate from the law: a cut-off, a filter or noise.
+    pub(super) ends: bool,
+    /// ln of the constant part, or of C at the longest wavelength (m³).
+    level: f64,
+}
+
+/// Minimum number of bands of a power law, and its minimum length in ln q: half a decade.
+const FEWEST_BANDS: usize = 4;
+const SHORTEST_SPAN: f64 = 1.15;
+/// The exponent must exceed this many of its standard errors.
+const SIGNIFICANT: f64 = 3.0;
+/// Variance of ln C that remains for any number of modes.
+const VARIANCE: f64 = 0.01;
+/// Penalty of a band that the law does not cover: a band is excluded where it deviates by more than three errors.
+const EXCLUDED_BAND: f64 = 9.0;
+/// Penalty of a roll-off, which must explain more than chance does.
+const ROLL_OFF: f64 = 6.0;
+/// Candidate positions of the roll-off between two bands.
+const FINE: usize = 8;
+
+/// A band in logarithms.
+#[derive(Clone, Copy, Debug)]
+struct Point {
+    /// ln q
+    x: f64,
+    /// ln C
+    y: f64,
+    /// 1 over the variance.
+    weight: f64,
+}
+
+/// A law fitted to the bands up to one of them.
+struct LawFit {
+    level: f64,
+    exponent: f64,
+    /// Standard error of the exponent.
+    error: f64,
+    /// Weighted sum of the squared residuals.
+    cost: f64,
+}
+
+impl PowerLaw {
+    /// The law that fits the bands best, over as many of them as possible; where `wavelengths` (m) are given, over exactly
+    /// these and without a roll-off. `None` where no part follows a power law.
+    pub(super) fn of(bands: &[Band], wavelengths: Option<&RangeInclusive<f64>>) -> Option<Self> {
+        let inside = |band: &&Band| wavelengths.is_none_or(|range| range.contains(&(TAU / band.wave_number)));
+        let seen = bands.iter().filter(inside).filter(|band| band.density > 0.0);
+        let bands: Vec<Point> = seen.map(Point::of).collect();
+        let mut best: Option<(f64, Self)> = None;
+        let ends = if wavelengths.is_some() { bands.len().max(FEWEST_BANDS) } else { FEWEST_BANDS }..=bands.len();
+        for end in ends {
+            for knee in 0..if wavelengths.is_some() { 1 } else { FINE * end } {
+                let Some(fit) = LawFit::of(&bands[..end], knee) else { continue };
+                let penalty = EXCLUDED_BAND * (bands.len() - end) as f64 + if knee > 0 { ROLL_OFF } else { 0.0 };
+                if best.as_ref().is_none_or(|(cost, _)| fit.cost + penalty < *cost) {
+                    best = Some((fit.cost + penalty, fit.law(&bands, end, knee)));
+                }
+            }
+        }
+        best.map(|(_, law)| law)
+    }
+
+    /// C of the law at `wave_number` (rad/m), m³.
+    pub(super) fn density(&self, wave_number: f64) -> f64 {
+        let longest = self.roll_off_wavelength.unwrap_or(self.wavelengths[1]);
+        let fallen = (wave_number * longest / TAU).ln().max(0.0);
+        (self.level - (1.0 + 2.0 * self.hurst) * fallen).exp()
+    }
+}
+
+impl Point {
+    fn of(band: &Band) -> Self {
+        let weight = 1.0 / (1.0 / band.modes as f64 + VARIANCE);
+        Self { x: band.wave_number.ln(), y: band.density.ln(), weight }
+    }
+}
+
+impl LawFit {
+    /// ln C = level - exponent · max(0, ln q - ln q_r) by weighted least squares, with the roll-off at position `knee`.
+    fn of(bands: &[Point], knee: usize) -> Option<Self> {
+        let start = knee_at(bands, knee)?;
+        let fallen = |band: &Point| (band.x - start).max(0.0);
+        let falling = bands.iter().filter(|band| fallen(band) > 0.0).count();
+        if falling + usize::from(knee == 0) < FEWEST_BANDS || fallen(bands.last()?) < SHORTEST_SPAN {
+            return None;
+        }
+        let sum = |value: &dyn Fn(&Point) -> f64| bands.iter().map(|band| band.weight * value(band)).sum::<f64>();
+        let whole = sum(&|_| 1.0);
+        let (x, y) = (sum(&fallen) / whole, sum(&|band| band.y) / whole);
+        let variance = sum(&|band| (fallen(band) - x).powi(2));
+        let exponent = -sum(&|band| (fallen(band) - x) * (band.y - y)) / variance;
+        let level = y + exponent * x;
+        let cost = sum(&|band| (band.y - level + exponent * fallen(band)).powi(2));
+        let error = variance.sqrt().recip();
+        (exponent > SIGNIFICANT * error).then_some(Self { level, exponent, error, cost })
+    }
+
+    fn law(&self, bands: &[Point], end: usize, knee: usize) -> PowerLaw {
+        let start = knee_at(bands, knee).unwrap_or_default().exp();
+        PowerLaw {
+            hurst: (self.exponent - 1.0) / 2.0,
+            hurst_error: self.error / 2.0,
+            roll_off_wavelength: (knee > 0).then_some(TAU / start),
+            wavelengths: [TAU / bands[end - 1].x.exp(), TAU / start],
+            ends: end < bands.len(),
+            level: self.level,
+        }
+    }
+}
+
+/// ln q at a position that counts parts of 1/[`FINE`] of a band from the first band on.
+fn knee_at(bands: &[Point], knee: usize) -> Option<f64> {
+    let at = |i: usize| bands.get(i).map(|band| band.x);
+    let (low, part) = (at(knee / FINE)?, (knee % FINE) as f64 / FINE as f64);
+    if part == 0.0 { Some(low) } else { Some(low + part * (at(knee / FINE + 1)? - low)) }
+}
+
 #[cfg(test)]
 mod tests {
+    use asperity::math::SplitMix64;
+
     use super::*;
 
     fn cosine(periodic: bool, amplitude: f64) -> Surface {
@@ -109,5 +240,48 @@ mod tests {
         assert_eq!(bands.iter().map(|band| band.modes).sum::<usize>(), 498);
         assert!(bands.iter().all(|band| (band.density - 1.0).abs() < 1e-12));
         assert!(bands.windows(2).all(|pair| pair[0].wave_number < pair[1].wave_number));
+    }
+
+    /// 12 bands per decade from 10 rad/m: constant up to `q_r`, falling with H up to `q_c`, negligible beyond.
+    fn bands(hurst: f64, q_r: f64, q_c: f64, noise: f64) -> Vec<Band> {
+        let mut random = SplitMix64::new(1);
+        let band = |i: u32| {
+            let wave_number = 10_f64.powf(1.0 + f64::from(i) / 12.0);
+            let modes = (wave_number / 60.0).ceil() as usize;
+            let scatter = noise * (random.unit() - 0.5) / (modes as f64).sqrt();
+            let law = (wave_number / q_r).max(1.0).powf(-1.0 - 2.0 * hurst);
+            let density = 1e-12 * law * scatter.exp() * if wave_number > q_c { 1e-9 } else { 1.0 };
+            Band { wave_number, density, modes }
+        };
+        (0..48).map(band).collect()
+    }
+
+    #[test]
+    fn the_exponent_and_its_range_are_found() {
+        for hurst in [0.3, 0.8, 1.0] {
+            let law = PowerLaw::of(&bands(hurst, 200.0, 3e4, 0.0), None).unwrap();
+            assert!((law.hurst - hurst).abs() < 0.005, "{law:?}");
+            assert!((law.roll_off_wavelength.unwrap() / (TAU / 200.0) - 1.0).abs() < 0.05, "{law:?}");
+            assert!(law.ends && (law.wavelengths[0] / (TAU / 3e4) - 1.0).abs() < 0.25, "{law:?}");
+            assert!((law.density(100.0) / 1e-12 - 1.0).abs() < 0.02, "{law:?}");
+        }
+        let law = PowerLaw::of(&bands(0.6, 1.0, 1e9, 0.0), None).unwrap();
+        assert!(law.roll_off_wavelength.is_none() && !law.ends, "{law:?}");
+        assert!((law.hurst - 0.6).abs() < 0.001, "{law:?}");
+    }
+
+    #[test]
+    fn scatter_moves_it_by_its_error() {
+        let law = PowerLaw::of(&bands(0.8, 200.0, 1e9, 1.0), None).unwrap();
+        assert!((law.hurst - 0.8).abs() < 3.0 * law.hurst_error && law.hurst_error < 0.03, "{law:?}");
+    }
+
+    #[test]
+    fn a_range_can_be_given_and_a_constant_is_no_law() {
+        let asked = 5e-4..=5e-3;
+        let law = PowerLaw::of(&bands(0.8, 200.0, 3e4, 0.0), Some(&asked)).unwrap();
+        assert!((law.hurst - 0.8).abs() < 0.005 && law.wavelengths.iter().all(|length| asked.contains(length)));
+        assert!(PowerLaw::of(&bands(0.8, 1e9, 1e9, 0.0), None).is_none());
+        assert!(PowerLaw::of(&[], None).is_none());
     }
 }

@@ -10,7 +10,7 @@ use crate::program::plot::{Curve, Panel, SideBySide, Stroke};
 /// Draws friction over speed at `path`: a panel for each temperature, a colour for each load; with one load, one panel
 /// and a colour for each temperature.
 pub(super) fn draw(path: &Path, table: &Table) -> Result<(), ProgramError> {
-    curves(table).write(path)
+    Ok(curves(table).write(path)?)
 }
 
 fn curves(table: &Table) -> SideBySide {

@@ -101,7 +101,7 @@ fn write(
 ) -> Result<(), ProgramError> {
     let mut writer = ResultWriter::create(path, variables)?;
     carriers.iter().zip(rows).try_for_each(|(carrier, row)| writer.write(*carrier, row))?;
-    writer.finish()
+    Ok(writer.finish()?)
 }
 
 /// The largest and the root mean square differences over the largest value of the layer.

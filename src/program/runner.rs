@@ -1,13 +1,13 @@
-//! The excitation of a scene, followed phase by phase.
+//! Runs a scene along its excitation, phase by phase, with rows at even intervals of each phase.
 
 use asperity::scene::{Phase, Scene};
 use asperity::simulation::{Handover, Motion, Simulation, SimulationError, Start};
 
-use super::warn;
+use super::terminal::warn;
 
-/// The carrier at one row of a result file.
+/// Time and carrier displacement at a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Carrier {
+pub(crate) struct CarrierSample {
     /// Time, s.
     pub(crate) time: f64,
     /// Displacement along x, m.
@@ -16,24 +16,26 @@ pub(crate) struct Carrier {
     pub(crate) w: f64,
 }
 
-/// How many even intervals a phase is divided into.
+impl CarrierSample {
+    /// The carrier a time `s` (s) after the start of `phase`, where `self` is the carrier at its start.
+    pub(crate) fn moved(self, phase: &Phase, s: f64) -> Self {
+        Self { time: self.time + s, u: self.u + phase.u.at(s), w: self.w + phase.w.at(s) }
+    }
+}
+
+/// Number of even intervals that a phase is divided into.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Rows {
-    /// So many, however long the phase is.
+    /// The same number for every phase.
     PerPhase(u32),
-    /// The fewest of at most `longest` (s), each divided once more into `parts`.
-    Within {
-        /// s.
-        longest: f64,
-        /// How many each is divided into.
-        parts: u32,
-    },
+    /// The fewest intervals of at most `longest` (s), each divided into `parts`.
+    Within { longest: f64, parts: u32 },
 }
 
 impl Rows {
-    /// The intervals of a phase of `duration` (s); of one that takes no time, none.
+    /// Number of intervals of a phase of `duration` (s); 0 for a phase without duration.
     pub(crate) fn of(self, duration: f64) -> u32 {
-        /// A duration that is a multiple of the interval but for rounding is divided without a rest.
+        /// Relative rounding error of a duration that is a multiple of the interval.
         const ROUNDING: f64 = 1e-9;
         match self {
             _ if duration <= 0.0 => 0,
@@ -42,15 +44,15 @@ impl Rows {
         }
     }
 
-    /// The ends of the intervals of a phase of `duration` (s). The last is the duration itself: a rounding above it
-    /// would be a row that the run never comes to.
+    /// Ends of the intervals of a phase of `duration` (s), in s from its start. The last is the duration itself: a row
+    /// later by a rounding error would never be reached.
     pub(crate) fn times(self, duration: f64) -> impl Iterator<Item = f64> {
         let count = self.of(duration);
         (1..=count).map(move |i| if i == count { duration } else { duration * f64::from(i) / f64::from(count) })
     }
 }
 
-/// The carrier at `u` (m) at time 0, moving as the first phase begins.
+/// The start with the carrier at `u` (m), moving as the first phase of the excitation begins.
 pub(crate) fn start(scene: &Scene, u: f64) -> Start {
     let first = scene.excitation.first();
     Start {
@@ -61,63 +63,65 @@ pub(crate) fn start(scene: &Scene, u: f64) -> Start {
     }
 }
 
-/// A run of a scene along its excitation.
+/// A simulation that follows phases of motion.
 #[derive(Debug)]
-pub(crate) struct Run {
+pub(crate) struct Runner {
     simulation: Simulation,
-    carrier: Carrier,
+    carrier: CarrierSample,
     rows: Rows,
-    /// Of the layer, m², if the scene gives it.
+    /// Number of phases followed so far.
+    phases: usize,
+    /// Area of the layer, m², if the scene gives it.
     area: Option<f64>,
 }
 
-impl Run {
-    /// The layer under the carrier at time 0, moving as the first phase begins.
-    pub(crate) fn new(scene: &Scene, rows: Rows) -> Result<Self, SimulationError> {
-        Self::displaced(scene, rows, 0.0)
-    }
-
-    /// The same with the carrier at `u` (m) instead of 0.
-    pub(crate) fn displaced(scene: &Scene, rows: Rows, u: f64) -> Result<Self, SimulationError> {
+impl Runner {
+    /// Starts a run of `scene` with the carrier at `u` (m), moving as the first phase begins.
+    pub(crate) fn new(scene: &Scene, rows: Rows, u: f64) -> Result<Self, SimulationError> {
         let start = start(scene, u);
-        let carrier = Carrier { time: start.time, u: start.u, w: start.w };
+        let carrier = CarrierSample { time: start.time, u: start.u, w: start.w };
         let mut simulation = Simulation::new(scene, &start)?;
         simulation.record_handovers(true);
-        Ok(Self { simulation, carrier, rows, area: scene.layer.area() })
+        Ok(Self { simulation, carrier, rows, phases: 0, area: scene.layer.area() })
     }
 
-    /// Between which drivers the run went to and fro since the last call: of the method *auto* alone.
-    pub(crate) fn take_handovers(&mut self) -> Vec<Handover> {
-        self.simulation.take_handovers()
-    }
-
-    /// The simulation where the run stands.
     pub(crate) fn simulation(&self) -> &Simulation {
         &self.simulation
     }
 
-    /// Calls `observe` at the start and then at even intervals of the time that each phase really takes. Returns these
-    /// times, s.
-    pub(crate) fn follow(
-        &mut self,
-        phases: &[Phase],
-        mut observe: impl FnMut(Carrier, &mut Simulation),
-    ) -> Result<Vec<f64>, SimulationError> {
-        observe(self.carrier, &mut self.simulation);
-        phases.iter().enumerate().map(|(i, phase)| self.follow_phase(i, phase, &mut observe)).collect()
+    /// The changes between event-driven and time-stepping driver since the last call; only method *auto* has any.
+    pub(crate) fn take_handovers(&mut self) -> Vec<Handover> {
+        self.simulation.take_handovers()
     }
 
-    fn follow_phase(
+    /// Calls `observe` at the current time, then follows `phases` and calls it at their rows. Returns the actual
+    /// durations of the phases, s: a phase that a force ends may be shorter than its nominal duration.
+    pub(crate) fn run(
         &mut self,
-        index: usize,
+        phases: &[Phase],
+        mut observe: impl FnMut(CarrierSample, &mut Simulation),
+    ) -> Result<Vec<f64>, SimulationError> {
+        self.observe_now(&mut observe);
+        phases.iter().map(|phase| self.run_phase(phase, &mut observe)).collect()
+    }
+
+    /// Calls `observe` at the current time.
+    pub(crate) fn observe_now(&mut self, mut observe: impl FnMut(CarrierSample, &mut Simulation)) {
+        observe(self.carrier, &mut self.simulation);
+    }
+
+    /// Follows one phase and calls `observe` at its rows. Returns the actual duration, s.
+    pub(crate) fn run_phase(
+        &mut self,
         phase: &Phase,
-        observe: &mut impl FnMut(Carrier, &mut Simulation),
+        mut observe: impl FnMut(CarrierSample, &mut Simulation),
     ) -> Result<f64, SimulationError> {
         let motion = Motion { duration: phase.duration, u: phase.u, w: phase.w };
         let force = phase.end_force(self.area);
         let reached = self.time_of_force(&motion, force)?;
+        self.phases += 1;
         if force.is_some() && reached.is_none() {
-            warn_of_force(index, phase);
+            warn_of_force(self.phases, phase);
         }
         let duration = reached.unwrap_or(phase.duration);
         if duration <= 0.0 {
@@ -125,32 +129,26 @@ impl Run {
         }
         let times: Vec<f64> = self.rows.times(duration).collect();
         let start = self.carrier;
-        let at = |s: f64| start.moved(phase, s);
-        let show = |s: f64, simulation: &mut Simulation| observe(at(s), simulation);
-        self.simulation.advance_observed(&Motion { duration, ..motion }, &times, show)?;
-        self.carrier = Carrier { time: self.simulation.time(), ..at(duration) };
+        let observe = |s: f64, simulation: &mut Simulation| observe(start.moved(phase, s), simulation);
+        self.simulation.advance_observed(&Motion { duration, ..motion }, &times, observe)?;
+        self.carrier = CarrierSample { time: self.simulation.time(), ..start.moved(phase, duration) };
         Ok(duration)
     }
 
-    /// When F_z rises to `force`. Found on a copy, so that the rows can divide the phase evenly.
+    /// The time at which F_z rises to `force` (N), in s from the start of the motion. A copy of the simulation finds
+    /// it, so that rows can divide the phase evenly.
     fn time_of_force(&self, motion: &Motion, force: Option<f64>) -> Result<Option<f64>, SimulationError> {
         force.map_or(Ok(None), |force| self.simulation.clone().advance_until_force(motion, force, &[], |_, _| ()))
     }
 }
 
-fn warn_of_force(index: usize, phase: &Phase) {
+/// Warns that phase `number`, counted from 1, ended before its force was reached.
+fn warn_of_force(number: usize, phase: &Phase) {
     let end = match (phase.until_force, phase.until_pressure) {
         (None, Some(pressure)) => format!("F_z over the layer's area did not rise to until_pressure = {pressure} Pa"),
         (force, _) => format!("F_z did not rise to until_force = {} N", force.unwrap_or_default()),
     };
-    warn(&format!("phase {} of the excitation: {end} within {} s", index + 1, phase.duration));
-}
-
-impl Carrier {
-    /// The carrier a time `s` after the start of `phase`, which began here.
-    pub(crate) fn moved(self, phase: &Phase, s: f64) -> Self {
-        Self { time: self.time + s, u: self.u + phase.u.at(s), w: self.w + phase.w.at(s) }
-    }
+    warn(&format!("phase {number} of the excitation: {end} within {} s", phase.duration));
 }
 
 #[cfg(test)]
@@ -158,7 +156,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_last_row_is_the_end_whatever_rounding_makes_of_it() {
+    fn the_last_row_is_the_end_despite_rounding() {
         const POINTS: u32 = 50;
         let mut above = 0;
         for duration in (1..200).map(|i| 1e-6 * f64::from(i)) {
@@ -170,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn intervals_of_a_length_are_no_longer_and_divide_without_a_rest() {
+    fn intervals_are_no_longer_than_asked_for_and_divide_evenly() {
         let rows = |parts| Rows::Within { longest: 1e-5, parts };
         assert_eq!([0.0, 1e-5, 3.0 * 1e-5, 3.1e-5, 1e-9].map(|duration| rows(1).of(duration)), [0, 1, 3, 4, 1]);
         let (coarse, fine): (Vec<_>, Vec<_>) = (rows(1).times(7.7e-5).collect(), rows(4).times(7.7e-5).collect());

@@ -1,0 +1,336 @@
+//! The command line: the arguments of every command. [`values`] parses and checks single values.
+
+mod values;
+
+use std::ffi::OsString;
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
+
+use asperity::scene::{LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt};
+use clap::{ArgGroup, Args, Parser, Subcommand};
+
+use super::sweep::{Shard, Values};
+use values::{
+    Frequencies, Tolerances, count, fit_error, key_and_value, picture, picture_or_table, positive, powers, seconds,
+    share, temperature, wavelengths,
+};
+pub(crate) use values::{WlfConstants, tenth};
+
+/// Simulates rubber on a rough surface and packs the simulation as an FMU.
+#[derive(Debug, Parser)]
+#[command(version)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Simulates a scene along its excitation and writes a result file.
+    Simulate(Simulate),
+    /// Plots columns of result files.
+    Plot(Plot),
+    /// Summarises a scene: what it contains, what it leaves out, and the constants derived from it.
+    Describe(Describe),
+    /// Packs a scene, or a point-contact element from a sweep table, as an FMI 2.0 co-simulation FMU.
+    Pack(Pack),
+    /// Fits Prony terms to measured moduli of a compound (DMA data).
+    Fit(Fit),
+    /// Plots the complex modulus of a scene's compound over frequency, or the complex stiffness of its links.
+    Material(Material),
+    /// Benchmarks a scene: accuracy, run time and robustness, as tables, plots and an HTML page.
+    Report(Report),
+    /// Analyses a measured profile or a scene's surface: heights, slopes, spectrum and Hurst exponent.
+    Surface(Surface),
+    /// Computes the friction coefficient over speed, pressure and temperature, as a table and a plot.
+    Sweep(Sweep),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Simulate {
+    /// The scene file.
+    #[arg(value_name = "SCENE.toml")]
+    pub(crate) scene: PathBuf,
+    /// The result file to write.
+    #[arg(short, long, value_name = "OUT.csv")]
+    pub(crate) output: PathBuf,
+    /// Number of result rows for each phase of the excitation.
+    #[arg(long, value_name = "N", default_value_t = 50, value_parser = count)]
+    pub(crate) points: u32,
+    /// Overrides a parameter of the scene, such as solver.relative_tolerance=1e-9. May be repeated.
+    #[arg(long, value_name = "KEY=VALUE", value_parser = key_and_value)]
+    pub(crate) set: Vec<(String, String)>,
+    /// Plots forces, contacts and dissipation over time, as SVG or PNG according to the file name.
+    #[arg(long, value_name = "OUT.svg", value_parser = picture())]
+    pub(crate) plot: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Plot {
+    /// The result files; each gives one curve for every --y.
+    #[arg(value_name = "FILE.csv", required = true)]
+    pub(crate) files: Vec<PathBuf>,
+    /// The column for the horizontal axis.
+    #[arg(long, value_name = "COLUMN", default_value = "time")]
+    pub(crate) x: String,
+    /// A column for the vertical axis. May be repeated.
+    #[arg(long, value_name = "COLUMN", required = true)]
+    pub(crate) y: Vec<String>,
+    /// The plot to write, as SVG or PNG according to the file name.
+    #[arg(short, long, value_name = "OUT.svg", value_parser = picture())]
+    pub(crate) output: PathBuf,
+    /// Names of the curves, one for each file. Default: the file names.
+    #[arg(long, value_name = "A,B,...", value_delimiter = ',')]
+    pub(crate) labels: Vec<String>,
+    /// A title above the plot.
+    #[arg(long)]
+    pub(crate) title: Option<String>,
+    /// Plots -y instead of y: F_x, the force on the carrier, is negative where the carrier slides towards +x.
+    #[arg(long)]
+    pub(crate) negate: bool,
+    /// Starts each curve where x begins to change: with x = u this omits a phase that only presses.
+    #[arg(long)]
+    pub(crate) from_motion: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Describe {
+    /// The scene file.
+    #[arg(value_name = "SCENE.toml")]
+    pub(crate) scene: PathBuf,
+    /// Prints the whole scene as one JSON object in SI units: links as constants, the profile as data points. Absent
+    /// entries are null or empty.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(group(ArgGroup::new("input").required(true)))]
+pub(crate) struct Pack {
+    /// The scene file.
+    #[arg(value_name = "SCENE.toml", group = "input")]
+    pub(crate) scene: Option<PathBuf>,
+    /// A sweep table: packs a point-contact element, which interpolates the table instead of simulating the layer.
+    #[arg(long, value_name = "TABLE.csv", group = "input")]
+    pub(crate) table: Option<PathBuf>,
+    /// The scene that was swept: compares the element with its layer between the table's points and along a
+    /// to-and-fro motion, and writes tables and plots to a folder beside the FMU.
+    #[arg(long, value_name = "SCENE.toml", requires = "table", conflicts_with = "scene")]
+    pub(crate) check: Option<PathBuf>,
+    /// Maximum number of points that --check compares.
+    #[arg(long, value_name = "N", default_value_t = 12, value_parser = count)]
+    pub(crate) points: u32,
+    /// The FMU to write.
+    #[arg(short, long, value_name = "OUT.fmu")]
+    pub(crate) output: PathBuf,
+    /// A shared library; for this platform unless linux64, win64 or darwin64 is given, as in win64=PATH. May be
+    /// repeated. Default: the library beside this program.
+    #[arg(long, value_name = "[PLATFORM=]PATH")]
+    pub(crate) library: Vec<OsString>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Fit {
+    /// The measured moduli: columns for frequency, E', E'' or tan delta, and temperature if it varies. The header
+    /// names quantities and units; the separator is comma, semicolon or tab.
+    #[arg(value_name = "DMA.csv")]
+    pub(crate) data: PathBuf,
+    /// The file of Prony terms to write, in the format that a scene reads.
+    #[arg(short, long, value_name = "OUT.csv")]
+    pub(crate) output: PathBuf,
+    /// The admissible error of the fit: the root mean square of the relative errors of E' and E'' at all points.
+    #[arg(long, value_name = "E", default_value_t = 0.02, value_parser = fit_error)]
+    pub(crate) error: f64,
+    /// Constants of the Williams-Landel-Ferry equation, which shifts rows at other temperatures to TREF: C1 (1), C2 (K),
+    /// TREF (K).
+    #[arg(long, value_name = "C1,C2,TREF", value_parser = WlfConstants::parse)]
+    pub(crate) wlf: Option<WlfConstants>,
+    /// Also fits a Kelvin-Voigt viscosity in parallel to the terms.
+    #[arg(long)]
+    pub(crate) viscosity: bool,
+    /// Ignores the column with this header, written exactly as in the file. May be repeated.
+    #[arg(long, value_name = "COLUMN")]
+    pub(crate) ignore: Vec<String>,
+    /// The plot of data and fit, as SVG or PNG according to the file name. Default: an SVG beside the output.
+    #[arg(long, value_name = "OUT.svg", value_parser = picture())]
+    pub(crate) plot: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Material {
+    /// The scene file.
+    #[arg(value_name = "SCENE.toml")]
+    pub(crate) scene: PathBuf,
+    /// A file to write: a table as CSV, or a plot as SVG or PNG, according to its name. May be repeated. Default: a
+    /// plot SCENE-material.svg.
+    #[arg(short, long, value_name = "OUT", value_parser = picture_or_table())]
+    pub(crate) output: Vec<PathBuf>,
+    /// The range of the angular frequency in rad/s, or of the frequency if Hz is appended. Default: derived from the
+    /// relaxation times.
+    #[arg(long, value_name = "A..B[Hz]", value_parser = Frequencies::parse)]
+    pub(crate) frequencies: Option<Frequencies>,
+    /// The compound's temperature in K, in place of the scene's.
+    #[arg(long, value_name = "T", value_parser = temperature, allow_negative_numbers = true)]
+    pub(crate) temperature: Option<f64>,
+    /// Overrides a parameter of the scene, such as material.poisson_ratio=0.48. May be repeated.
+    #[arg(long, value_name = "KEY=VALUE", value_parser = key_and_value)]
+    pub(crate) set: Vec<(String, String)>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Report {
+    /// The scene file.
+    #[arg(value_name = "SCENE.toml")]
+    pub(crate) scene: PathBuf,
+    /// The folder to write to; it is created if it does not exist.
+    #[arg(short, long, value_name = "FOLDER")]
+    pub(crate) output: PathBuf,
+    /// Range of relative tolerances to run at; each is a tenth of the previous one.
+    #[arg(long, value_name = "LOOSEST..TIGHTEST", default_value = "1e-2..1e-10", value_parser = Tolerances::parse)]
+    pub(crate) tolerances: Tolerances,
+    /// Number of rows for each phase of the excitation at which runs are compared.
+    #[arg(long, value_name = "N", default_value_t = 50, value_parser = count)]
+    pub(crate) points: u32,
+    /// Number of timings of each run; the median is reported.
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = count)]
+    pub(crate) repeat: u32,
+    /// Robustness test: varies the scene's quantities, singly and in pairs, by up to N powers of ten either way. 0
+    /// skips the test.
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = powers)]
+    pub(crate) stress: u32,
+    /// Approximate time limit in seconds for the pairs of the robustness test; the cheapest pairs run first.
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = seconds, allow_negative_numbers = true)]
+    pub(crate) stress_time: f64,
+    /// Results of other programs, in the format written by benches/peers/run.
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) peers: Option<PathBuf>,
+    /// Overrides a parameter of the scene, such as friction.coulomb=0.5. May be repeated.
+    #[arg(long, value_name = "KEY=VALUE", value_parser = key_and_value)]
+    pub(crate) set: Vec<(String, String)>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Surface {
+    /// The profile: text with columns x and z, or X3P (ISO 5436-2); or a scene, whose surface is analysed.
+    #[arg(value_name = "FILE")]
+    pub(crate) file: PathBuf,
+    /// Plots the profile and its spectrum, as SVG or PNG according to the file name.
+    #[arg(short, long, value_name = "OUT.svg", value_parser = picture())]
+    pub(crate) output: Option<PathBuf>,
+    /// Writes the profile as read, as two columns in m that a scene can use.
+    #[arg(long, value_name = "OUT.csv")]
+    pub(crate) write: Option<PathBuf>,
+    /// Prints one JSON object in SI units, including the bands of the spectrum.
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Range of wavelengths, in m, to fit the power law to. Default: the widest range that follows a power law.
+    #[arg(long, value_name = "SHORTEST..LONGEST", value_parser = wavelengths)]
+    pub(crate) wavelengths: Option<RangeInclusive<f64>>,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
+}
+
+/// How a profile is read: the keys of a surface of kind "file".
+#[derive(Debug, PartialEq, Default, Args)]
+pub(crate) struct Reading {
+    /// Unit of x and z: m, mm, um or nm. Default: the unit named in the file, otherwise m.
+    #[arg(long, value_name = "UNIT")]
+    pub(crate) unit: Option<LengthUnit>,
+    /// Unit of x only.
+    #[arg(long, value_name = "UNIT")]
+    pub(crate) x_unit: Option<LengthUnit>,
+    /// Unit of z only.
+    #[arg(long, value_name = "UNIT")]
+    pub(crate) z_unit: Option<LengthUnit>,
+    /// Missing heights: refuse the file, or fill the gaps by linear interpolation. Default: refuse.
+    #[arg(long, value_name = "refuse|fill")]
+    pub(crate) missing: Option<Missing>,
+    /// Tilt: keep it, or remove the least squares line. Default: keep.
+    #[arg(long, value_name = "keep|remove")]
+    pub(crate) tilt: Option<Tilt>,
+    /// What the third column marks: invalid points, valid points, or nothing (ignore). Default: taken from its header.
+    #[arg(long, value_name = "invalid|valid|ignore")]
+    pub(crate) third_column: Option<ThirdColumn>,
+    /// The line of an areal measurement, counted from 1.
+    #[arg(long, value_name = "N", value_parser = count)]
+    pub(crate) line: Option<u32>,
+    /// Treats the profile as periodic; its spectrum then needs no window.
+    #[arg(long)]
+    pub(crate) periodic: bool,
+}
+
+impl Reading {
+    pub(crate) fn options(&self) -> ProfileOptions {
+        ProfileOptions {
+            x_unit: self.x_unit.or(self.unit),
+            z_unit: self.z_unit.or(self.unit),
+            missing: self.missing.unwrap_or_default(),
+            tilt: self.tilt.unwrap_or_default(),
+            third_column: self.third_column,
+            line: self.line.map(|line| line as usize),
+            periodic: self.periodic,
+        }
+    }
+}
+
+/// Options of a sweep that --merge does not take.
+const OF_A_SCENE: [&str; 8] = ["speeds", "pressures", "forces", "temperatures", "distance", "shard", "force", "set"];
+
+#[derive(Debug, Args)]
+#[command(group(ArgGroup::new("input").required(true)))]
+pub(crate) struct Sweep {
+    /// The scene file; its excitation and outputs are not used.
+    #[arg(value_name = "SCENE.toml", group = "input")]
+    pub(crate) scene: Option<PathBuf>,
+    /// Speeds in m/s: a..b/n for n values evenly spaced in the logarithm, a list, or both, separated by commas.
+    #[arg(long, value_name = "VALUES", value_parser = Values::in_logarithm, required_unless_present = "merge")]
+    pub(crate) speeds: Option<Values>,
+    /// Mean pressures in Pa, in the format of --speeds. Requires a scene in the material form.
+    #[arg(long, value_name = "VALUES", value_parser = Values::in_logarithm, conflicts_with = "forces")]
+    pub(crate) pressures: Option<Values>,
+    /// Mean normal forces F_z of the whole layer in N, in place of pressures. Works with either form of scene.
+    #[arg(long, value_name = "VALUES", value_parser = Values::in_logarithm)]
+    pub(crate) forces: Option<Values>,
+    /// Temperatures in K: a..b/n for n evenly spaced values. Default: the scene's temperature.
+    #[arg(long, value_name = "VALUES", value_parser = Values::in_value)]
+    pub(crate) temperatures: Option<Values>,
+    /// The table to write; an existing table of the same sweep is continued. Default: the scene's file name with
+    /// .sweep.csv.
+    #[arg(short, long, value_name = "TABLE.csv")]
+    pub(crate) output: Option<PathBuf>,
+    /// The plot to write, as SVG or PNG according to the file name. Default: the table's name with .svg.
+    #[arg(long, value_name = "OUT.svg", value_parser = picture())]
+    pub(crate) plot: Option<PathBuf>,
+    /// Admissible standard error of the friction coefficient, relative to it.
+    #[arg(long, value_name = "SHARE", default_value_t = 5e-3, value_parser = share)]
+    pub(crate) error: f64,
+    /// Maximum sliding distance in m for a point to become steady. Default: 100 blocks; a block is a whole number of
+    /// profile periods or layer lengths.
+    #[arg(long, value_name = "METRES", value_parser = positive, allow_negative_numbers = true)]
+    pub(crate) distance: Option<f64>,
+    /// Computes only share I of N of the points, I from 1 to N.
+    #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
+    pub(crate) shard: Option<Shard>,
+    /// Merges the tables of shards into one.
+    #[arg(long, value_name = "TABLE.csv", num_args = 1.., group = "input", requires = "output")]
+    #[arg(conflicts_with_all = OF_A_SCENE)]
+    pub(crate) merge: Vec<PathBuf>,
+    /// Replaces an existing table instead of continuing it.
+    #[arg(long)]
+    pub(crate) force: bool,
+    /// Overrides a parameter of the scene, such as friction.coulomb=0.5. May be repeated.
+    #[arg(long, value_name = "KEY=VALUE", value_parser = key_and_value)]
+    pub(crate) set: Vec<(String, String)>,
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        Arguments::command().debug_assert();
+    }
+}

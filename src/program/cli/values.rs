@@ -1,0 +1,209 @@
+//! Values of command line options, parsed and checked. An error says what was expected.
+
+use std::f64::consts::TAU;
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
+
+use asperity::scene::Wlf;
+use clap::builder::{PathBufValueParser, TypedValueParser};
+
+use crate::program::files::ends_in;
+
+/// The key and the value of `--set`.
+pub(super) fn key_and_value(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().into(), value.trim().into())),
+        _ => Err("expected KEY=VALUE, such as solver.relative_tolerance=1e-9".into()),
+    }
+}
+
+pub(super) fn count(text: &str) -> Result<u32, String> {
+    let number = text.trim().parse().ok().filter(|&number: &u32| number > 0);
+    number.ok_or_else(|| "expected a whole number, 1 or more".into())
+}
+
+/// Powers of ten of the robustness test.
+pub(super) fn powers(text: &str) -> Result<u32, String> {
+    text.trim().parse().ok().filter(|&powers| powers <= 12).ok_or_else(|| "expected a whole number from 0 to 12".into())
+}
+
+/// A number that is `allowed`; `expected` describes those.
+fn number(text: &str, allowed: impl Fn(&f64) -> bool, expected: &str) -> Result<f64, String> {
+    text.trim().parse().ok().filter(allowed).ok_or_else(|| format!("expected {expected}"))
+}
+
+pub(super) fn positive(text: &str) -> Result<f64, String> {
+    number(text, |number| *number > 0.0 && number.is_finite(), "a number above 0")
+}
+
+pub(super) fn share(text: &str) -> Result<f64, String> {
+    number(text, |share| *share > 0.0 && *share <= 1.0, "a share above 0, up to 1, such as 5e-3")
+}
+
+pub(super) fn fit_error(text: &str) -> Result<f64, String> {
+    number(text, |error| (1e-12..=0.5).contains(error), "a number from 1e-12 to 0.5, such as 0.02 for 2 %")
+}
+
+pub(super) fn temperature(text: &str) -> Result<f64, String> {
+    number(text, |kelvin| *kelvin > 0.0 && kelvin.is_finite(), "a temperature above 0 K, such as 293.15")
+}
+
+pub(super) fn seconds(text: &str) -> Result<f64, String> {
+    number(text, |seconds| (0.0..).contains(seconds), "a number of seconds, 0 or more")
+}
+
+/// The two ends of `A..B`.
+fn ends(text: &str) -> Option<(f64, f64)> {
+    let number = |text: &str| text.trim().parse().ok();
+    text.split_once("..").and_then(|(first, last)| Some((number(first)?, number(last)?)))
+}
+
+pub(super) fn wavelengths(text: &str) -> Result<RangeInclusive<f64>, String> {
+    let allowed = |(shortest, longest): &(f64, f64)| *shortest > 0.0 && shortest < longest && longest.is_finite();
+    let message = || "expected SHORTEST..LONGEST in m, such as 1e-5..1e-3".to_owned();
+    ends(text).filter(allowed).map(|(shortest, longest)| shortest..=longest).ok_or_else(message)
+}
+
+/// A file for a plot; its name gives the format.
+pub(super) fn picture() -> impl TypedValueParser<Value = PathBuf> {
+    ending_in(&["svg", "png"], "a name that ends in .svg or .png")
+}
+
+/// A file for a plot or a table.
+pub(super) fn picture_or_table() -> impl TypedValueParser<Value = PathBuf> {
+    ending_in(&["svg", "png", "csv"], "a name that ends in .svg, .png or .csv")
+}
+
+fn ending_in(endings: &'static [&str], expected: &'static str) -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(move |path| {
+        if endings.iter().any(|ending| ends_in(&path, ending)) { Ok(path) } else { Err(format!("expected {expected}")) }
+    })
+}
+
+/// Constants of the Williams-Landel-Ferry equation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct WlfConstants {
+    /// C_1, 1.
+    pub(crate) c1: f64,
+    /// C_2, K.
+    pub(crate) c2: f64,
+    /// T_ref, K.
+    pub(crate) reference_temperature: f64,
+}
+
+impl WlfConstants {
+    /// The equation at `temperature` (K).
+    pub(crate) fn at(&self, temperature: f64) -> Wlf {
+        let Self { c1, c2, reference_temperature } = *self;
+        Wlf { c1, c2, reference_temperature, temperature }
+    }
+
+    pub(super) fn parse(text: &str) -> Result<Self, String> {
+        let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
+        match numbers.unwrap_or_default()[..] {
+            [c1, c2, reference_temperature]
+                if [c1, c2, reference_temperature].iter().all(|number| *number > 0.0 && number.is_finite()) =>
+            {
+                if reference_temperature < Wlf::COLDEST {
+                    let cold = reference_temperature;
+                    return Err(format!("TREF = {cold} is too cold for rubber: it is in K, 20 °C being 293.15 K"));
+                }
+                Ok(Self { c1, c2, reference_temperature })
+            }
+            _ => {
+                Err("expected C1,C2,TREF, three numbers above 0, such as 7.52,119.75,293.15 (C2 and TREF in K)".into())
+            }
+        }
+    }
+}
+
+/// A range of angular frequencies, rad/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Frequencies(pub(crate) (f64, f64));
+
+impl Frequencies {
+    pub(super) fn parse(text: &str) -> Result<Self, String> {
+        let (numbers, unit) = text.trim().strip_suffix("Hz").map_or((text, 1.0), |numbers| (numbers, TAU));
+        // Hz may be appended to both ends.
+        let numbers = numbers.replace("Hz", "");
+        let allowed = |(low, high): &(f64, f64)| *low >= 1e-30 && high > low && *high <= 1e30;
+        let message =
+            || "expected A..B, such as 1..1e5 in rad/s or 0.1..1e4Hz, from 1e-30 to 1e30, A below B".to_owned();
+        ends(&numbers).filter(allowed).map(|(low, high)| Self((low * unit, high * unit))).ok_or_else(message)
+    }
+}
+
+/// Relative tolerances from loose to tight, at least one.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Tolerances(pub(crate) Vec<f64>);
+
+impl Tolerances {
+    /// The largest tolerance that a scene may have.
+    const LOOSEST: f64 = 0.1;
+    /// Rounding hides any smaller one.
+    const TIGHTEST: f64 = 1e-14;
+
+    pub(super) fn parse(text: &str) -> Result<Self, String> {
+        let inside = |(loosest, tightest): &(f64, f64)| {
+            *loosest <= Self::LOOSEST && tightest <= loosest && *tightest >= Self::TIGHTEST
+        };
+        let Some((loosest, tightest)) = ends(text).filter(inside) else {
+            return Err("expected LOOSEST..TIGHTEST, such as 1e-2..1e-10, from at most 0.1 to at least 1e-14".into());
+        };
+        let ladder = std::iter::successors(Some(loosest), |&tolerance| Some(tenth(tolerance)));
+        /// Relative rounding error of a tolerance.
+        const ROUNDING: f64 = 1e-9;
+        Ok(Self(ladder.take_while(|&tolerance| tolerance >= tightest * (1.0 - ROUNDING)).collect()))
+    }
+}
+
+/// A tenth of a number, rounded in decimal: 1e-11 for 1e-10.
+pub(crate) fn tenth(number: f64) -> f64 {
+    let written = format!("{number:e}");
+    let parts = written.split_once('e').and_then(|(digits, power)| Some((digits, power.parse::<i32>().ok()?)));
+    parts.and_then(|(digits, power)| format!("{digits}e{}", power - 1).parse().ok()).unwrap_or(number / 10.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_parameter_is_split_at_the_first_equals_sign() {
+        assert_eq!(key_and_value("a.b = 1=2"), Ok(("a.b".into(), "1=2".into())));
+        assert!(key_and_value("a.b").is_err());
+        assert!(key_and_value("=1").is_err());
+    }
+
+    #[test]
+    fn wlf_takes_three_positive_numbers() {
+        let constants = WlfConstants::parse("7.52, 119.75,293.15").unwrap();
+        assert_eq!((constants.c1, constants.c2, constants.reference_temperature), (7.52, 119.75, 293.15));
+        for wrong in ["7.52,119.75", "7.52,x,119.75,293.15", "-1,100,300", "1,2,3,4", "7.52,x,119.75,20", ""] {
+            assert!(WlfConstants::parse(wrong).unwrap_err().contains("C1,C2,TREF"), "{wrong}");
+        }
+        assert!(WlfConstants::parse("7.52,119.75,20").unwrap_err().contains("20 °C being 293.15 K"));
+    }
+
+    #[test]
+    fn frequencies_are_angular_unless_in_hertz() {
+        assert_eq!(Frequencies::parse("1..1e5"), Ok(Frequencies((1.0, 1e5))));
+        for hertz in ["0.5..10Hz", "0.5Hz..10 Hz"] {
+            assert_eq!(Frequencies::parse(hertz), Ok(Frequencies((0.5 * TAU, 10.0 * TAU))), "{hertz}");
+        }
+        for wrong in ["1", "2..1", "0..1", "1..inf", "a..b"] {
+            assert!(Frequencies::parse(wrong).unwrap_err().contains("1..1e5"), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn tolerances_are_decimal_tenths() {
+        let ladder = Tolerances::parse("1e-2..1e-10").unwrap().0;
+        assert_eq!(ladder, [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10]);
+        assert_eq!(Tolerances::parse("0.05..1e-3").unwrap().0, [0.05, 0.005]);
+        assert_eq!(Tolerances::parse("1e-3..1e-3").unwrap().0, [1e-3]);
+        for wrong in ["1e-3", "1e-10..1e-2", "1..1e-2", "1e-2..0", "1e-2..NaN", "a..b"] {
+            assert!(Tolerances::parse(wrong).unwrap_err().contains("1e-2..1e-10"), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,368 @@
+//! `asperity describe`: summarises a scene.
+
+use asperity::model::{Model, Reduction, Replaced, Replacement};
+use asperity::outputs::variables;
+use asperity::scene::{
+    Extrapolation, Friction, Initial, Layer, Link, LinkKind, Material, OutputGroup, Parameter, Path, Phase, RateShear,
+    Scene, Surface, Value, Wlf,
+};
+use asperity::simulation::{Simulation, SimulationError, Start};
+use serde::Serialize;
+
+use super::cli::Describe;
+use super::files::{FileError, load, print};
+use super::terminal::{LabelledLine, decimal, labelled, lines, rounded};
+
+/// `asperity describe` failed.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum DescribeError {
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error("the run cannot start: {0}")]
+    Start(#[from] SimulationError),
+    #[error("cannot be written as JSON: {0}")]
+    Json(#[from] serde_json::Error),
+}
+
+/// Stands for what the scene does not give.
+const LEFT_OUT: &str = "left out";
+
+/// Prints the summary.
+pub(crate) fn describe(command: &Describe) -> Result<(), DescribeError> {
+    let scene = load(&command.scene)?;
+    let text = if command.json { json(&scene)? } else { text(&scene)? };
+    Ok(print(&text)?)
+}
+
+fn json(scene: &Scene) -> Result<String, DescribeError> {
+    Ok(serde_json::to_string(&JsonScene::new(scene))? + "\n")
+}
+
+fn text(scene: &Scene) -> Result<String, DescribeError> {
+    let simulation = Simulation::new(scene, &Start::default())?;
+    let title = scene.description.as_ref().map_or_else(|| scene.name.clone(), |text| format!("{}: {text}", scene.name));
+    let memory = ("Memory", format!("{} bytes a run", simulation.bytes()));
+    Ok(lines(&[vec![("Scene", title)], rows(scene), vec![memory]].concat()))
+}
+
+/// The summary without the scene's name.
+pub(super) fn rows(scene: &Scene) -> Vec<LabelledLine> {
+    let mut rows = vec![("Layer", masses(scene)), ("Roughness", roughness(scene))];
+    if let Some(material) = &scene.material {
+        rows.extend(labelled("Material", [body(scene, material), series(material), temperature(material)]));
+    }
+    rows.extend(labelled("Links", links(scene).map(link)));
+    rows.extend(labelled("Order", [paper_order(scene), order_as_coded(scene)]));
+    rows.push(("Profile", profile(&scene.surface)));
+    rows.extend(friction(scene));
+    rows.extend(labelled("Outputs", OutputGroup::ALL.map(|group| outputs(scene, group))));
+    rows.push(("Solver", solver(scene)));
+    rows.extend(reduction(scene));
+    rows.push(("Input", input(scene).into()));
+    rows.extend(excitation(scene));
+    rows
+}
+
+/// A number for reading: 12 digits, which hide the rounding errors of derived constants.
+fn number(value: f64) -> String {
+    decimal(rounded(value, 12), 1e-3..1e6)
+}
+
+fn or_left_out(value: Option<f64>, unit: &str) -> String {
+    value.map_or_else(|| LEFT_OUT.into(), |value| format!("{}{unit}", number(value)))
+}
+
+/// The word that the scene file has for `parameter`.
+fn word(scene: &Scene, parameter: Parameter) -> String {
+    match scene.parameter(parameter) {
+        Value::Text(word) => word,
+        other => other.to_string(),
+    }
+}
+
+fn masses(scene: &Scene) -> String {
+    let layer = &scene.layer;
+    format!(
+        "{} masses of {} kg, {} m apart from x = {} m, clearance {} m, {} at the start",
+        layer.masses,
+        number(scene.mass()),
+        number(layer.spacing),
+        number(layer.origin),
+        number(layer.clearance),
+        word(scene, Parameter::Initial)
+    )
+}
+
+fn roughness(scene: &Scene) -> String {
+    let heights = &scene.layer.roughness;
+    if heights.is_empty() { LEFT_OUT.into() } else { format!("{} m peak to valley", number(peak_to_valley(heights))) }
+}
+
+fn body(scene: &Scene, material: &Material) -> String {
+    let size = |value: Option<f64>| number(value.unwrap_or(0.0));
+    format!(
+        "{} m thick, {} m wide, density {} kg/m³, Poisson's ratio {}",
+        size(scene.layer.thickness),
+        size(scene.layer.width),
+        number(material.density),
+        number(material.poisson_ratio)
+    )
+}
+
+fn series(material: &Material) -> String {
+    let glassy: f64 = material.prony.iter().map(|term| term.modulus).sum();
+    format!(
+        "E_∞ {} Pa, viscosity {}, {} Prony terms, glassy modulus {:.4e} Pa",
+        number(material.equilibrium_modulus),
+        or_left_out(material.viscosity, " Pa s"),
+        material.prony.len(),
+        material.equilibrium_modulus + glassy
+    )
+}
+
+fn temperature(material: &Material) -> String {
+    let shift = |wlf: Wlf| {
+        format!(
+            "{} K, times given at {} K: a_T = {:.4e} (C_1 {}, C_2 {} K)",
+            number(wlf.temperature),
+            number(wlf.reference_temperature),
+            wlf.shift_factor(),
+            number(wlf.c1),
+            number(wlf.c2)
+        )
+    };
+    material.wlf.map_or_else(|| "temperature left out: times as given".into(), shift)
+}
+
+/// Name, constants and number of the links of a kind.
+type Links = (&'static str, Option<Link>, usize);
+
+fn links(scene: &Scene) -> [Links; 4] {
+    LinkKind::ALL.map(|kind| (kind.name(), scene.link(kind), kind.count(scene.layer.masses)))
+}
+
+fn link((name, link, count): Links) -> String {
+    let Some(link) = link else { return format!("{name:<12}{LEFT_OUT}") };
+    let stiffness = or_left_out(link.stiffness, " N/m");
+    let damping = or_left_out(link.damping, " N s/m");
+    format!("{name:<12}{count} of c {stiffness}, d {damping}, n = {}{}", link.maxwell.len(), elements(&link))
+}
+
+fn elements(link: &Link) -> String {
+    let texts = link
+        .maxwell
+        .iter()
+        .map(|element| format!("{} N/m at {} s", number(element.stiffness), number(element.relaxation_time)));
+    let texts: Vec<_> = texts.collect();
+    if texts.is_empty() { String::new() } else { format!(": {}", texts.join(", ")) }
+}
+
+/// Number of coordinates and internal variables of the free layer, as the paper counts them.
+fn paper_order(scene: &Scene) -> String {
+    let k = scene.layer.masses;
+    let counts = links(scene).map(|(_, link, count)| (link.map_or(0, |link| link.maxwell.len()), count));
+    let order = 2 * k + counts.iter().map(|(n, count)| n * count).sum::<usize>();
+    let n = counts[0].0;
+    if counts.iter().all(|(other, _)| *other == n) {
+        format!("the paper's 2k + 4kn - 2n = {order} (k = {k}, n = {n}, every mass free)")
+    } else {
+        format!("the paper's 2k and the Maxwell variables = {order} (k = {k}, n differs from link to link)")
+    }
+}
+
+fn order_as_coded(scene: &Scene) -> String {
+    let maxwell = Model::new(scene).maxwell_variables();
+    let order = 4 * scene.layer.masses + maxwell;
+    format!("as coded {order}: two coordinates and two velocities a mass, {maxwell} Maxwell variables")
+}
+
+fn profile(surface: &Surface) -> String {
+    let length = surface.x[surface.x.len() - 1] - surface.x[0];
+    let kind = if surface.periodic { "periodic" } else { "natural" };
+    format!(
+        "{} points over {} m, {kind}, {:.3e} m peak to valley, steepest slope between points {:.3}",
+        surface.x.len(),
+        number(length),
+        peak_to_valley(&surface.z),
+        steepest_slope(surface)
+    )
+}
+
+fn peak_to_valley(heights: &[f64]) -> f64 {
+    let highest = heights.iter().copied().fold(f64::MIN, f64::max);
+    highest - heights.iter().copied().fold(f64::MAX, f64::min)
+}
+
+fn steepest_slope(surface: &Surface) -> f64 {
+    let runs = surface.x.windows(2).map(|x| x[1] - x[0]);
+    let rises = surface.z.windows(2).map(|z| (z[1] - z[0]).abs());
+    rises.zip(runs).map(|(rise, run)| rise / run).fold(0.0, f64::max)
+}
+
+fn friction(scene: &Scene) -> Vec<LabelledLine> {
+    let Some(friction) = &scene.friction else { return vec![("Friction", LEFT_OUT.into())] };
+    let coulomb = format!("coulomb      {}", or_left_out(friction.coulomb, ""));
+    let shear = match friction.shear_strength {
+        Some(strength) => format!(
+            "shear        {} Pa: {} N a mass in contact",
+            number(strength),
+            number(scene.shear_force().unwrap_or(0.0))
+        ),
+        None => format!("shear_force  {}", or_left_out(friction.shear_force, " N a mass in contact")),
+    };
+    let rate_shear = scene.rate_shear().map_or_else(|| LEFT_OUT.into(), |law| rate_shear_text(&law));
+    labelled("Friction", [coulomb, shear, format!("rate_shear   {rate_shear}")])
+}
+
+/// The law of the contacts, for a material at its temperature.
+fn rate_shear_text(rate_shear: &RateShear) -> String {
+    format!(
+        "{} N a mass in contact at {} m/s, sharpness {}, constant below {} m/s",
+        number(rate_shear.force.unwrap_or(0.0)),
+        number(rate_shear.reference_speed),
+        number(rate_shear.sharpness),
+        number(rate_shear.creep_speed())
+    )
+}
+
+fn outputs(scene: &Scene, group: OutputGroup) -> String {
+    let names = if !scene.outputs.contains(&group) {
+        LEFT_OUT.into()
+    } else if group == OutputGroup::Elements {
+        format!("element[1..{}].x, .z, .F_N, .F_T, .mode", scene.layer.masses)
+    } else {
+        let own = variables(scene).into_iter().filter(|variable| variable.group == group);
+        own.map(|variable| variable.name).collect::<Vec<_>>().join(", ")
+    };
+    format!("{:<13}{names}", group.name())
+}
+
+fn solver(scene: &Scene) -> String {
+    format!(
+        "method {}, relative_tolerance {}, absolute_tolerance {} m, max_steps {}",
+        word(scene, Parameter::Method),
+        number(scene.solver.relative_tolerance),
+        number(scene.absolute_tolerance()),
+        scene.solver.max_steps
+    )
+}
+
+/// The Maxwell elements that `solver.reduce` replaces, why, and the bounds on the error.
+fn reduction(scene: &Scene) -> Vec<LabelledLine> {
+    let Some(reduction) = Reduction::new(scene) else { return vec![("Reduce", LEFT_OUT.into())] };
+    let meaning = format!(
+        "{}: the largest relative change of a link's force by the elements left out",
+        number(scene.solver.reduce)
+    );
+    let links = LinkKind::ALL.into_iter().flat_map(|kind| reduced_link(scene, &reduction, kind));
+    labelled("Reduce", [meaning, long_times(&reduction), short_times(scene, &reduction)].into_iter().chain(links))
+}
+
+fn long_times(reduction: &Reduction) -> String {
+    if reduction.run.is_finite() {
+        format!("long against the run of {:.4e} s becomes a spring; beyond it the bound grows with time", reduction.run)
+    } else {
+        "no [[excitation]], so the length of the run is not known: nothing is long, no element becomes a spring".into()
+    }
+}
+
+fn short_times(scene: &Scene, reduction: &Reduction) -> String {
+    if scene.layer.initial == Initial::Undeformed {
+        return "undeformed at the start, where no damper is equivalent to an element: none becomes one".into();
+    }
+    let period = if reduction.run.is_finite() {
+        "the shortest period of carrier, profile and layer"
+    } else {
+        "the layer's own shortest period, the carrier's motion not being known,"
+    };
+    format!(
+        "short against {period} 2π/ω, ω = {:.4e} rad/s, becomes a damper; a jump of ė adds d |Δė| for about τ",
+        reduction.frequency
+    )
+}
+
+fn reduced_link(scene: &Scene, reduction: &Reduction, kind: LinkKind) -> Vec<String> {
+    let Some(link) = scene.link(kind).filter(|link| !link.maxwell.is_empty()) else { return Vec::new() };
+    let stiffness = reduction.stiffness[kind as usize];
+    let replaced: Vec<_> = reduction.replaced.iter().filter(|one| one.kind == kind).collect();
+    let left = link.maxwell.len() - replaced.len();
+    let head = format!("{:<12}{left} of {} elements stay, K' = {stiffness:.4e} N/m", kind.name(), link.maxwell.len());
+    [head].into_iter().chain(replaced.iter().map(|one| replaced_element(one, stiffness))).collect()
+}
+
+fn replaced_element(one: &Replaced, stiffness: f64) -> String {
+    let (replacement, why) = match one.by {
+        Replacement::Spring => ("spring", "long"),
+        Replacement::Damper => ("damper", "short"),
+    };
+    let share = if one.bound > 0.0 { one.bound / stiffness } else { 0.0 };
+    format!(
+        "{:<12}[{}] {} N/m at {} s is {why}: a {replacement}, bound {share:.2e}",
+        "",
+        one.index + 1,
+        number(one.element.stiffness),
+        number(one.element.relaxation_time)
+    )
+}
+
+fn input(scene: &Scene) -> &'static str {
+    match scene.extrapolation {
+        Extrapolation::Linear => "u, w; values without rates continue at their last rate (linear)",
+        Extrapolation::Hold => "u, w; values without rates are reached at the end of the step (hold)",
+    }
+}
+
+fn excitation(scene: &Scene) -> Vec<LabelledLine> {
+    if scene.excitation.is_empty() {
+        return vec![("Excitation", LEFT_OUT.into())];
+    }
+    labelled("Excitation", scene.excitation.iter().enumerate().map(|(i, phase)| phase_text(i + 1, phase)))
+}
+
+fn phase_text(number_of: usize, phase: &Phase) -> String {
+    let motion = path_text("u", &phase.u) + &path_text("w", &phase.w);
+    let motion = if motion.is_empty() { ", at rest".into() } else { motion };
+    let end = match (phase.until_force, phase.until_pressure) {
+        (Some(force), _) => format!(", until F_z = {} N", number(force)),
+        (None, Some(pressure)) => format!(", until F_z = {} Pa times the layer's area", number(pressure)),
+        (None, None) => String::new(),
+    };
+    format!("{number_of}  {} s{motion}{end}", number(phase.duration))
+}
+
+fn path_text(name: &str, path: &Path) -> String {
+    let mut text = String::new();
+    if path.rate != 0.0 {
+        text += &format!(", {name} at {} m/s", number(path.rate));
+    }
+    if path.amplitude != 0.0 {
+        text += &format!(", {name} by {} m at {} Hz", number(path.amplitude), number(path.frequency));
+    }
+    text
+}
+
+/// A scene as JSON has it: as read, plus, in the material form, the constants that the direct form would give.
+#[derive(Debug, Serialize)]
+struct JsonScene {
+    #[serde(flatten)]
+    scene: Scene,
+    /// a_T, 1; null in the direct form.
+    shift_factor: Option<f64>,
+}
+
+impl JsonScene {
+    fn new(given: &Scene) -> Self {
+        let direct = given.direct_form();
+        let (thickness, width) = (given.layer.thickness, given.layer.width);
+        let shear_strength = given.friction.as_ref().and_then(|friction| friction.shear_strength);
+        let phases = direct.excitation.into_iter().zip(&given.excitation);
+        let scene = Scene {
+            material: given.material.clone(),
+            layer: Layer { thickness, width, ..direct.layer },
+            friction: direct.friction.map(|friction| Friction { shear_strength, ..friction }),
+            excitation: phases.map(|(phase, given)| Phase { until_pressure: given.until_pressure, ..phase }).collect(),
+            ..direct
+        };
+        Self { scene, shift_factor: given.material.as_ref().map(Material::shift_factor) }
+    }
+}

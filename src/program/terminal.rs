@@ -1,0 +1,80 @@
+//! Text for terminal and files: numbers, aligned lines, warnings, the progress bar.
+
+use std::ops::Range;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// A line with a label; without one it continues the line above.
+pub(crate) type LabelledLine = (&'static str, String);
+
+/// The lines as text, aligned after their labels.
+pub(crate) fn lines(lines: &[LabelledLine]) -> String {
+    lines.iter().map(|(label, text)| format!("{label:<12}{text}\n")).collect()
+}
+
+/// Lines of which the first has the label.
+pub(crate) fn labelled(label: &'static str, texts: impl IntoIterator<Item = String>) -> Vec<LabelledLine> {
+    texts.into_iter().enumerate().map(|(i, text)| (if i == 0 { label } else { "" }, text)).collect()
+}
+
+/// The shortest decimal that reads back as the same number; with an exponent outside the magnitudes `plain`.
+pub(crate) fn decimal(value: f64, plain: Range<f64>) -> String {
+    if value == 0.0 || plain.contains(&value.abs()) { format!("{value}") } else { format!("{value:e}") }
+}
+
+/// A number as files have it: the shortest decimal that reads back as the same number.
+pub(crate) fn real(value: f64) -> String {
+    decimal(value, 1e-4..1e16)
+}
+
+/// The number rounded to `digits` significant digits.
+pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
+}
+
+/// Prints a warning to standard error.
+pub(crate) fn warn(message: &str) {
+    note(&format!("warning: {message}"));
+}
+
+/// Prints a note to standard error.
+#[expect(clippy::print_stderr, reason = "standard output holds results only")]
+pub(crate) fn note(message: &str) {
+    eprintln!("asperity: {message}");
+}
+
+/// A progress bar of `length` positions; hidden where standard error is no terminal.
+pub(crate) fn bar(length: u64) -> ProgressBar {
+    let bar = ProgressBar::new(length);
+    match ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {eta} left") {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_far_from_one_have_an_exponent_and_few_digits_if_asked_for() {
+        assert_eq!([0.0, 1e-3, -12.5, 1e5].map(|value| decimal(value, 1e-3..1e5)), ["0", "0.001", "-12.5", "1e5"]);
+        assert_eq!(
+            [rounded(0.1 + 0.2, 12), rounded(-1234.5, 2), rounded(f64::INFINITY, 3)],
+            [0.3, -1200.0, f64::INFINITY]
+        );
+    }
+
+    #[test]
+    fn numbers_in_files_are_short_and_read_back_as_the_same() {
+        for (value, text) in [(0.0, "0"), (1e-5, "1e-5"), (0.1 + 0.2, "0.30000000000000004"), (-2.5, "-2.5")] {
+            assert_eq!(real(value), text);
+            assert_eq!(real(value).parse::<f64>().unwrap().to_bits(), value.to_bits());
+        }
+    }
+
+    #[test]
+    fn lines_are_aligned() {
+        assert_eq!(lines(&labelled("Scene", ["a".into(), "b".into()])), "Scene       a\n            b\n");
+    }
+}
