@@ -22,16 +22,16 @@ pub fn place_layer(model: &Model, state: &mut State, at: CarrierPosition, carrie
         state.elongation_z[i] = 0.0;
         (state.velocity_x[i], state.velocity_z[i]) = (carrier.u_rate, carrier.w_rate);
         let separation = carrier.w_rate - surface.slope * carrier.u_rate;
-        state.mode[i] = if gap < 0.0 {
+        if gap < 0.0 {
             let v_x = (carrier.u_rate + surface.slope * carrier.w_rate) / (1.0 + surface.slope * surface.slope);
             touch_down(model, state, i, at.w, &surface, v_x);
-            Mode::along(v_x)
+            state.mode[i] = Mode::along(v_x);
         } else if gap == 0.0 && separation == 0.0 {
             touch_down(model, state, i, at.w, &surface, carrier.u_rate);
-            Mode::along(carrier.u_rate)
+            state.mode[i] = Mode::along(carrier.u_rate);
         } else {
-            Mode::Free
-        };
+            state.release(i);
+        }
     }
     place_dashpots(model, state);
 }
@@ -62,7 +62,7 @@ pub fn free_unloaded(model: &Model, state: &mut State, at: CarrierPosition, forc
     for i in 0..model.masses() {
         let rests = state.mode[i].in_contact() && model.rest_z[i] + at.w == state.surface[i].height;
         if rests && forces.contact(model, i, state.velocity_x[i], &state.surface[i]).normal <= 0.0 {
-            state.mode[i] = Mode::Free;
+            state.release(i);
         }
     }
 }
@@ -131,13 +131,21 @@ pub(super) fn energy_at(model: &Model, (v_x, v_z): (f64, f64)) -> f64 {
 /// and a mass that breaks loose here is not stuck again.
 pub fn decide_modes(model: &Model, state: &mut State, forces: &Forces) {
     for i in 0..model.masses() {
-        if state.mode[i].in_contact() {
-            state.mode[i] = decided(model, state, forces, i);
+        decide_mode(model, state, forces, i);
+    }
+}
+
+/// Decides the contact of mass `i` anew; a free mass stays free.
+pub(super) fn decide_mode(model: &Model, state: &mut State, forces: &Forces, i: usize) {
+    if state.mode[i].in_contact() {
+        match decided(model, state, forces, i) {
+            Mode::Free => state.release(i),
+            mode => state.mode[i] = mode,
         }
     }
 }
 
-pub(super) fn decided(model: &Model, state: &State, forces: &Forces, i: usize) -> Mode {
+fn decided(model: &Model, state: &State, forces: &Forces, i: usize) -> Mode {
     let (mode, v) = (state.mode[i], state.velocity_x[i]);
     let contact = forces.contact(model, i, v, &state.surface[i]);
     if contact.normal < 0.0 {

@@ -4,7 +4,7 @@
 //! count each as the impulse times the mean of the velocities before and after it: that closes the account however
 //! stiff a damper is and however large a friction.
 
-use super::laws::{collision, decided, energy_at, has_reversed};
+use super::laws::{collision, decide_mode, energy_at, has_reversed};
 use crate::integrator::{Rates, TwoStageDense};
 use crate::math::bracketed_root;
 use crate::model::{Carrier, CarrierPoint, Forces, LinkKind, Mode, Model, Power, State, SurfacePoint};
@@ -125,6 +125,7 @@ impl<'a> Correction<'a> {
     fn raise(&mut self, i: usize, from: (f64, f64)) {
         let surface = self.step.model.surface_at(from.0);
         self.put(i, from, (from.0, surface), self.step.span.1);
+        self.end.state.release(i);
     }
 
     /// Moves mass `i` to the place `x` on `surface`. What it has moved in the last `time` (s) its dashpots have not, and
@@ -296,9 +297,7 @@ impl<'a> Correction<'a> {
 
     /// Decides contact `j` anew by the forces as they are, and finds the rates of mass `j` anew.
     pub(super) fn decide(&mut self, j: usize) {
-        if self.end.state.mode[j].in_contact() {
-            self.end.state.mode[j] = decided(self.step.model, self.end.state, self.end.forces, j);
-        }
+        decide_mode(self.step.model, self.end.state, self.end.forces, j);
         self.end.rates.refresh(self.step.model, self.end.state, self.end.forces, j, &self.here);
     }
 }

@@ -1,11 +1,13 @@
 //! The carrier's motion through one smooth piece.
 
+use serde::{Deserialize, Serialize};
+
 use crate::math::{Numbers, Spline, visit_all};
 use crate::scene::Path;
 
 /// The carrier on a smooth piece of its motion. TwoStageDense the piece all is counted from its start, so that a carrier that
 /// has gone far loses no digits but those of u itself.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Carrier {
     /// Time at the start of the piece, s.
     pub time: f64,
@@ -20,7 +22,7 @@ pub struct Carrier {
 }
 
 /// The carrier at one instant of a piece.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CarrierPoint {
     /// u less u at the start of the piece, m.
     pub du: f64,

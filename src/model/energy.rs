@@ -1,12 +1,14 @@
 //! Power and energy of the layer. E_in = [T + V] + E_damper + E_maxwell + E_friction + E_impact holds exactly in the
 //! model, so what it misses in a run is the run's numerical error.
 
+use serde::{Deserialize, Serialize};
+
 use crate::math::{Numbers, dot, visit_all};
 
 use super::{CarrierPoint, Forces, LinkKind, Model, State};
 
 /// Power through the channels, W; or, summed over time, the energy, J.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Power {
     /// P_damper = Σ d ė².
     pub damper: f64,
@@ -44,7 +46,7 @@ impl Power {
 }
 
 /// Power through the surface and through the carrier: what of [`Power`] is not the links' own.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Exchange {
     /// P_friction = Σ F_T v_t, W.
     pub friction: f64,

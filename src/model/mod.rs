@@ -17,12 +17,14 @@ pub use link::{LinkLaw, MaxwellRow};
 pub use reduction::{Reduction, Replaced, Replacement};
 pub use state::{Mode, State};
 
+use serde::{Deserialize, Serialize};
+
 use crate::math::{Numbers, Spline, visit_all};
 pub use crate::scene::LinkKind;
 use crate::scene::{Initial, Scene};
 
-/// The profile at one place.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// The profile at one position.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SurfacePoint {
     /// z_r, m.
     pub height: f64,

@@ -1,10 +1,12 @@
 //! The layer's state.
 
+use serde::{Deserialize, Serialize};
+
 use super::SurfacePoint;
 use crate::math::{Numbers, visit_all};
 
 /// How a mass stands to the surface. Each mode's inequality is what holds as long as the mode lasts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Mode {
     /// Gap g ≥ 0, no contact force.
     #[default]
@@ -61,7 +63,7 @@ impl Mode {
 /// Positions relative to the carrier, velocities in the inertial frame, Maxwell elongations and modes of all masses.
 ///
 /// In contact z = z_r(x) and ż = s ẋ are put in, not integrated, so the constraint can't drift.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// ξ_i - u, m: the elongation of the horizontal link.
     pub elongation_x: Vec<f64>,
@@ -76,7 +78,7 @@ pub struct State {
     pub maxwell: Vec<f64>,
     /// The modes.
     pub mode: Vec<Mode>,
-    /// The profile under each mass in contact.
+    /// The profile under each mass in contact; zeros for a free mass.
     pub surface: Vec<SurfacePoint>,
 }
 
@@ -93,6 +95,12 @@ impl State {
             mode: vec![Mode::Free; masses],
             surface: vec![SurfacePoint::default(); masses],
         }
+    }
+
+    /// Sets mass `i` free.
+    pub fn release(&mut self, i: usize) {
+        self.mode[i] = Mode::Free;
+        self.surface[i] = SurfacePoint::default();
     }
 
     /// Takes over `other`, a state of the same model, without allocating.

@@ -29,7 +29,7 @@ mod tests;
 
 use std::path::PathBuf;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::math::{Numbers, visit_all};
 
@@ -293,7 +293,7 @@ pub struct Phase {
 }
 
 /// A displacement from where it stood: rate · s + amplitude · sin(2π frequency s), s the time since the start.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Path {
     /// Constant rate, m/s.
     pub rate: f64,
