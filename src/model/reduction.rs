@@ -39,7 +39,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::LinkKind;
 use crate::math::Spline;
-use crate::scene::{Initial, Link, MaxwellElement, Scene};
+use crate::scene::{Initial, MaxwellElement, Scene};
 
 /// Which elements are replaced, and what that was decided by.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,14 +85,10 @@ impl Reduction {
     }
 
     fn chosen(scene: &Scene) -> Self {
-        let run = if scene.excitation.is_empty() {
-            f64::INFINITY
-        } else {
-            scene.excitation.iter().map(|phase| phase.duration).sum()
-        };
+        let run = if scene.excitation.is_empty() { f64::INFINITY } else { scene.duration() };
         let frequency = carrier_frequency(scene).max(passage_frequency(scene)).max(own_frequency(scene));
         let links = LinkKind::ALL.map(|kind| scene.link(kind).unwrap_or_default());
-        let stiffness = links.each_ref().map(|link| complex_stiffness(link, 1.0 / run).0);
+        let stiffness = links.each_ref().map(|link| link.complex_stiffness(1.0 / run).0);
         let mut replaced = Vec::new();
         for kind in LinkKind::ALL {
             let allowed = scene.solver.reduce * stiffness[kind as usize];
@@ -167,7 +163,7 @@ fn own_frequency(scene: &Scene) -> f64 {
     let along = |to_carrier: LinkKind, lateral: LinkKind| {
         let links = [to_carrier, lateral].map(|kind| scene.link(kind).unwrap_or_default());
         let stiffness = |omega: f64| {
-            let [carrier, lateral] = links.each_ref().map(|link| complex_stiffness(link, omega));
+            let [carrier, lateral] = links.each_ref().map(|link| link.complex_stiffness(omega));
             (carrier.0 + 4.0 * lateral.0).hypot(carrier.1 + 4.0 * lateral.1)
         };
         largest_balance(scene.mass(), stiffness)
@@ -191,14 +187,3 @@ fn largest_balance(mass: f64, stiffness: impl Fn(f64) -> f64) -> f64 {
 
 /// At least half of the distance, on a logarithmic scale, falls away with each: 1e-12 of any start.
 const MOST_ITERATIONS: usize = 60;
-
-/// K*(ω) = c + iωd + Σ c_j iωτ_j/(1 + iωτ_j), N/m: its real and its imaginary part.
-fn complex_stiffness(link: &Link, omega: f64) -> (f64, f64) {
-    let start = (link.stiffness.unwrap_or(0.0), omega * link.damping.unwrap_or(0.0));
-    link.maxwell.iter().fold(start, |(storage, loss), element| {
-        // Finite however long or short τ is.
-        let x = omega * element.relaxation_time;
-        let inverse = 1.0 / x;
-        (storage + element.stiffness / (1.0 + inverse * inverse), loss + element.stiffness / (x + inverse))
-    })
-}

@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
-use asperity::scene::{Link, LinkKind, ParameterError, Scene};
+use asperity::scene::{Link, LinkKind, MaxwellElement, ParameterError, Scene};
 
 use super::cli::Material;
 use super::files::{self, FileError, check_outputs, ends_in, load, print, set_parameters, sources};
@@ -81,27 +81,25 @@ fn evenly((low, high): Band, points: f64) -> Vec<f64> {
 struct Response {
     /// The kind of link; empty for the compound.
     name: &'static str,
-    /// E_∞ or c, Pa or N/m.
-    spring: f64,
-    /// η or d, Pa s or N s/m.
-    damper: f64,
-    /// (τ_j, E_j or c_j), s and Pa or N/m.
-    elements: Vec<(f64, f64)>,
+    /// The constants; for the compound its moduli (Pa) and its viscosity (Pa s), at the temperature.
+    link: Link,
 }
 
 /// The compound's modulus at the scene's temperature; in the direct form, the stiffnesses of the links.
 fn responses(scene: &Scene) -> Vec<Response> {
     let Some(material) = &scene.material else {
         let links = LinkKind::ALL.into_iter().filter_map(|kind| Some((kind, scene.link(kind)?)));
-        return links.map(|(kind, link)| Response::of_link(kind, &link)).collect();
+        return links.map(|(kind, link)| Response { name: kind.name(), link }).collect();
     };
     let shift = material.shift_factor();
-    vec![Response {
-        name: "",
-        spring: material.equilibrium_modulus,
-        damper: shift * material.viscosity.unwrap_or(0.0),
-        elements: material.prony.iter().map(|term| (shift * term.relaxation_time, term.modulus)).collect(),
-    }]
+    let shifted =
+        |element: MaxwellElement| MaxwellElement { relaxation_time: shift * element.relaxation_time, ..element };
+    let link = Link {
+        stiffness: Some(material.equilibrium_modulus),
+        damping: material.viscosity.map(|viscosity| shift * viscosity),
+        maxwell: material.prony.iter().map(|term| shifted(term.element())).collect(),
+    };
+    vec![Response { name: "", link }]
 }
 
 /// The band in which `responses` change, rounded outwards to powers of ten.
@@ -115,24 +113,19 @@ fn band(responses: &[Response]) -> Band {
 }
 
 impl Response {
-    fn of_link(kind: LinkKind, link: &Link) -> Self {
-        Self {
-            name: kind.name(),
-            spring: link.stiffness.unwrap_or(0.0),
-            damper: link.damping.unwrap_or(0.0),
-            elements: link.maxwell.iter().map(|element| (element.relaxation_time, element.stiffness)).collect(),
-        }
+    /// Storage and loss part at ω, Pa or N/m.
+    fn at(&self, omega: f64) -> (f64, f64) {
+        self.link.complex_stiffness(omega)
     }
 
-    /// Storage and loss part at ω: c + iωd + Σ c_j iωτ_j/(1 + iωτ_j).
-    fn at(&self, omega: f64) -> (f64, f64) {
-        let start = (self.spring, omega * self.damper);
-        self.elements.iter().fold(start, |(storage, loss), (tau, modulus)| {
-            // This form is finite for any τ.
-            let x = omega * tau;
-            let inverse = 1.0 / x;
-            (storage + modulus / (1.0 + inverse * inverse), loss + modulus / (x + inverse))
-        })
+    /// E_∞ or c, Pa or N/m.
+    fn equilibrium(&self) -> f64 {
+        self.link.stiffness.unwrap_or(0.0)
+    }
+
+    /// η or d, Pa s or N s/m.
+    fn damper(&self) -> f64 {
+        self.link.damping.unwrap_or(0.0)
     }
 
     fn loss_tangent(&self, omega: f64) -> f64 {
@@ -142,14 +135,15 @@ impl Response {
 
     /// The sum of all springs.
     fn glassy(&self) -> f64 {
-        self.spring + self.elements.iter().map(|(_, modulus)| modulus).sum::<f64>()
+        self.equilibrium() + self.link.maxwell.iter().map(|element| element.stiffness).sum::<f64>()
     }
 
     /// The rates at which it changes: 1/τ_j, and c/d.
     fn rates(&self) -> impl Iterator<Item = f64> {
-        let creep = (self.damper > 0.0 && self.spring > 0.0).then(|| self.spring / self.damper);
-        let elements = self.elements.iter().filter(|(_, modulus)| *modulus > 0.0).map(|(tau, _)| 1.0 / tau);
-        elements.chain(creep)
+        let (spring, damper) = (self.equilibrium(), self.damper());
+        let creep = (damper > 0.0 && spring > 0.0).then(|| spring / damper);
+        let elements = self.link.maxwell.iter().filter(|element| element.stiffness > 0.0);
+        elements.map(|element| 1.0 / element.relaxation_time).chain(creep)
     }
 
     /// The maximum of tan δ in `band`: ω and tan δ; `None` without any loss.
@@ -227,7 +221,7 @@ impl<'a> Responses<'a> {
     fn figures(&self, response: &Response) -> String {
         let (symbol, unit) = self.symbol_and_unit();
         let name = if response.name.is_empty() { String::new() } else { format!("{:<12}", response.name) };
-        let glassy = if response.damper > 0.0 {
+        let glassy = if response.damper() > 0.0 {
             "unbounded because of the damper".into()
         } else {
             format!("{} {unit}", short(response.glassy()))
@@ -240,7 +234,7 @@ impl<'a> Responses<'a> {
                 format!("tan δ at most {} at {} rad/s ({} Hz){end}", short(tangent), short(omega), short(omega / TAU))
             },
         );
-        format!("{name}equilibrium {symbol} {} {unit}, glassy {symbol} {glassy}, {loss}", short(response.spring))
+        format!("{name}equilibrium {symbol} {} {unit}, glassy {symbol} {glassy}, {loss}", short(response.equilibrium()))
     }
 
     /// Column names; with units, as `asperity fit` reads them, for a file.
@@ -337,8 +331,15 @@ fn short(value: f64) -> String {
 mod tests {
     use super::*;
 
+    /// A spring of 2 and Maxwell elements (τ_j, c_j).
+    fn response(elements: &[(f64, f64)]) -> Response {
+        let element = |&(relaxation_time, stiffness): &(f64, f64)| MaxwellElement { stiffness, relaxation_time };
+        let maxwell = elements.iter().map(element).collect();
+        Response { name: "", link: Link { stiffness: Some(2.0), damping: None, maxwell } }
+    }
+
     fn zener() -> Response {
-        Response { name: "", spring: 2.0, damper: 0.0, elements: vec![(0.1, 6.0)] }
+        response(&[(0.1, 6.0)])
     }
 
     /// Of one element, tan δ = E_1 x/(E_∞ + (E_∞ + E_1) x²) with x = ωτ: largest at x² = E_∞/(E_∞ + E_1) = 1/4.
@@ -359,13 +360,13 @@ mod tests {
 
     #[test]
     fn the_band_holds_every_rate() {
-        let two = Response { elements: vec![(0.1, 6.0), (1e-4, 1.0), (1e9, 0.0)], ..zener() };
+        let two = response(&[(0.1, 6.0), (1e-4, 1.0), (1e9, 0.0)]);
         assert_eq!(band(&[zener(), two]), (1.0, 1e5));
-        assert_eq!(band(&[Response { elements: Vec::new(), ..zener() }]), DEFAULT_BAND);
+        assert_eq!(band(&[response(&[])]), DEFAULT_BAND);
     }
 
     #[test]
     fn without_loss_there_is_no_maximum() {
-        assert_eq!(Response { elements: Vec::new(), ..zener() }.maximum_loss((1.0, 10.0)), None);
+        assert_eq!(response(&[]).maximum_loss((1.0, 10.0)), None);
     }
 }

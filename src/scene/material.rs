@@ -61,6 +61,39 @@ impl Wlf {
     }
 }
 
+impl PronyTerm {
+    /// The term as a Maxwell element, its modulus (Pa) in the place of a stiffness.
+    pub fn element(&self) -> MaxwellElement {
+        MaxwellElement { stiffness: self.modulus, relaxation_time: self.relaxation_time }
+    }
+}
+
+/// Real (storage) and imaginary (loss) part of the complex stiffness of a spring, a damper and Maxwell elements in
+/// parallel at the angular frequency ω ≥ 0 (rad/s): c + iωd + Σ c_j iωτ_j/(1 + iωτ_j).
+///
+/// In N/m for stiffnesses; in Pa for moduli, the damper then being a viscosity (2).
+pub fn complex_stiffness(
+    spring: f64,
+    damper: f64,
+    elements: impl IntoIterator<Item = MaxwellElement>,
+    omega: f64,
+) -> (f64, f64) {
+    elements.into_iter().fold((spring, omega * damper), |(storage, loss), element| {
+        // Finite however long or short τ is.
+        let x = omega * element.relaxation_time;
+        let inverse = 1.0 / x;
+        (storage + element.stiffness / (1.0 + inverse * inverse), loss + element.stiffness / (x + inverse))
+    })
+}
+
+impl Link {
+    /// K'(ω) and K''(ω), N/m, for ω ≥ 0 in rad/s: see [`complex_stiffness`].
+    pub fn complex_stiffness(&self, omega: f64) -> (f64, f64) {
+        let (spring, damper) = (self.stiffness.unwrap_or(0.0), self.damping.unwrap_or(0.0));
+        complex_stiffness(spring, damper, self.maxwell.iter().copied(), omega)
+    }
+}
+
 impl Material {
     /// a_T, the factor of every time at the layer's temperature; 1 without a temperature.
     pub fn shift_factor(&self) -> f64 {
@@ -70,14 +103,13 @@ impl Material {
     /// E'(ω) and E''(ω) at the layer's temperature, Pa, for ω ≥ 0 in rad/s (2), as the links have them:
     /// E*(ω) = E_∞ + iω a_T η + Σ_j E_j iω a_T τ_j/(1 + iω a_T τ_j).
     pub fn complex_modulus(&self, omega: f64) -> (f64, f64) {
-        let shifted = omega * self.shift_factor();
-        let start = (self.equilibrium_modulus, shifted * self.viscosity.unwrap_or(0.0));
-        self.prony.iter().fold(start, |(storage, loss), term| {
-            // Finite however long or short τ is.
-            let x = shifted * term.relaxation_time;
-            let inverse = 1.0 / x;
-            (storage + term.modulus / (1.0 + inverse * inverse), loss + term.modulus / (x + inverse))
-        })
+        let elements = self.prony.iter().map(PronyTerm::element);
+        complex_stiffness(
+            self.equilibrium_modulus,
+            self.viscosity.unwrap_or(0.0),
+            elements,
+            omega * self.shift_factor(),
+        )
     }
 
     /// A link whose constants are the moduli times `size`, m (model.md, section 7).

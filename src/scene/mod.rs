@@ -37,7 +37,7 @@ pub use allowed::{LARGEST, SMALLEST, is_possible};
 pub use derived::identifier;
 pub use error::{Problem, SceneError};
 pub use link_kind::LinkKind;
-pub use material::{Material, PronyTerm, Wlf};
+pub use material::{Material, PronyTerm, Wlf, complex_stiffness};
 pub use parameters::{MaterialParameter, Parameter, ParameterError, Value};
 pub use profile::{Extract, LengthUnit, Line, Missing, ProfileOptions, ThirdColumn, Tilt, UnknownWord};
 pub use unit::Unit;

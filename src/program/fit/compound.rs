@@ -1,6 +1,6 @@
 //! A Prony series and how far it is from measured moduli.
 
-use asperity::scene::PronyTerm;
+use asperity::scene::{MaxwellElement, PronyTerm, complex_stiffness};
 
 /// What was measured at one frequency, at the reference temperature.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,20 +24,16 @@ pub(super) struct Compound {
     pub(super) terms: Vec<PronyTerm>,
 }
 
-/// Real and imaginary part of iωτ/(1 + iωτ), finite however large or small ωτ is.
+/// Real and imaginary part of ix/(1 + ix), x = ωτ.
 pub(super) fn relaxation(x: f64) -> (f64, f64) {
-    let inverse = 1.0 / x;
-    (1.0 / (1.0 + inverse * inverse), 1.0 / (x + inverse))
+    complex_stiffness(0.0, 0.0, [MaxwellElement { stiffness: 1.0, relaxation_time: 1.0 }], x)
 }
 
 impl Compound {
     /// E' and E'' at ω, Pa (2).
     pub(super) fn complex_modulus(&self, omega: f64) -> (f64, f64) {
-        let start = (self.equilibrium_modulus, self.viscosity * omega);
-        self.terms.iter().fold(start, |(storage, loss), term| {
-            let (real, imaginary) = relaxation(omega * term.relaxation_time);
-            (storage + term.modulus * real, loss + term.modulus * imaginary)
-        })
+        let elements = self.terms.iter().map(PronyTerm::element);
+        complex_stiffness(self.equilibrium_modulus, self.viscosity, elements, omega)
     }
 
     /// The same with `digits` significant digits, at least four more than `error` has noughts: what is written is what

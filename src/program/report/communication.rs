@@ -59,7 +59,7 @@ pub(super) fn ladder_weight(reference: f64, scene: f64) -> f64 {
 /// Runs the ladder at the scene's own tolerance and method.
 pub(super) fn climb(reference: &Reference, progress: &Progress) -> Vec<Row> {
     let scene = &reference.scene;
-    let longest = round_down(LONGEST * duration(scene));
+    let longest = round_down(LONGEST * scene.duration());
     let finest = 1 << (RUNGS - 1);
     let rows = Rows::Within { longest, parts: finest };
     let tight = exact(&at_tolerance(scene, reference.tolerance));
@@ -112,7 +112,7 @@ fn compared(measured: &Measured, tight: &Trace, reference: &Reference) -> (Figur
 
 /// Drives `scene` as a master drives the FMU: communication points at the `rows`, the ends of phases among them.
 fn drive(scene: &Scene, given: Given, rows: Rows, tick: &dyn Fn(f64)) -> Result<Measured, String> {
-    let whole = duration(scene);
+    let whole = scene.duration();
     let mut master = Master::new(scene, given, 0.0).map_err(|error| error.to_string())?;
     let clock = ThreadTime::now();
     for phase in &scene.excitation {
@@ -188,11 +188,6 @@ impl<'a> Master<'a> {
 fn set_rates(inputs: &mut Inputs, phase: &Phase, s: f64) {
     inputs.set_rate(Input::U, phase.u.velocity(s));
     inputs.set_rate(Input::W, phase.w.velocity(s));
-}
-
-/// How long the excitation takes, s.
-pub(super) fn duration(scene: &Scene) -> f64 {
-    scene.excitation.iter().map(|phase| phase.duration).sum()
 }
 
 /// The largest of 1, 2 and 5 times a power of ten that is not above `value`.

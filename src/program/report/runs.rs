@@ -90,7 +90,7 @@ pub(super) fn with_durations(scene: &Scene, durations: &[f64]) -> Scene {
 
 /// Runs `scene` from the carrier at `u` (m); `tick` hears which share of the excitation is done.
 pub(super) fn run(scene: &Scene, rows: Rows, u: f64, tick: &dyn Fn(f64)) -> Result<Measured, SimulationError> {
-    let duration: f64 = scene.excitation.iter().map(|phase| phase.duration).sum();
+    let duration = scene.duration();
     let mut recorder = Recorder::new(scene);
     let mut run = Runner::new(scene, rows, u)?;
     let clock = ThreadTime::now();

@@ -4,7 +4,7 @@ use asperity::scene::{Phase, Scene};
 use asperity::simulation::{Motion, Simulation, SimulationError};
 
 use crate::program::excitation::{Rows, start};
-use crate::program::report::communication::{Given, Master, StepError, duration};
+use crate::program::report::communication::{Given, Master, StepError};
 use crate::program::report::runs::{Counts, Recorder};
 
 /// Communication steps of the whole run at the factor 1.
@@ -144,7 +144,7 @@ struct Plan {
 
 impl Plan {
     fn new(scene: &Scene, factor: f64) -> Self {
-        let base = duration(scene) / COMMUNICATION_STEPS;
+        let base = scene.duration() / COMMUNICATION_STEPS;
         let phases = scene.excitation.iter().enumerate();
         let longest = phases.max_by(|(_, a), (_, b)| a.duration.total_cmp(&b.duration)).map_or(0, |(i, _)| i);
         let many = COMMUNICATION_STEPS / factor > MOST_COMMUNICATION_STEPS;

@@ -11,7 +11,6 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use asperity::scene::Scene;
 use rayon::prelude::*;
 
-use super::communication::duration;
 use super::reference::{DISPLACEMENT, Reference};
 use crate::program::progress;
 use cell::Runner;
@@ -76,7 +75,7 @@ pub(super) fn run(reference: &Reference, powers: u32, points: u32, seconds: f64)
 /// The power of ten from which on a communication step takes a whole phase.
 fn longest(scene: &Scene) -> i32 {
     let phase = scene.excitation.iter().map(|phase| phase.duration).fold(0.0, f64::max);
-    (phase * COMMUNICATION_STEPS / duration(scene)).log10().ceil() as i32
+    (phase * COMMUNICATION_STEPS / scene.duration()).log10().ceil() as i32
 }
 
 impl Stress {
