@@ -81,7 +81,7 @@
 //! | h, γ, β | `h`, `Tableau::gamma()`, `beta` | s, 1, s | step, coefficient of a stage, γh |
 //! | G, K | `Jenkins::force`, `stiffness` | N, N/m | spring of a point-contact element, G = -F_x |
 //! | a, y | `Contact` over the approach | m, 1 | minus the separation of an element's carrier; ln of its pressure |
-//! | E_in, T, V | `Power::input`, `kinetic_energy`, `elastic_energy` | J | energy balance |
+//! | E_in, T, V | `ChannelEnergies::input`, `kinetic_energy`, `elastic_energy` | J | energy balance |
 
 pub mod contact;
 pub mod element;

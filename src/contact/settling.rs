@@ -7,7 +7,7 @@
 use super::laws::{collision, decide_mode, energy_at, has_reversed};
 use crate::integrator::{Rates, TwoStageDense};
 use crate::math::bracketed_root;
-use crate::model::{Carrier, CarrierPoint, Forces, LinkKind, Mode, Model, Power, State, SurfacePoint};
+use crate::model::{Carrier, CarrierPoint, ChannelEnergies, Forces, LinkKind, Mode, Model, State, SurfacePoint};
 
 /// To which share of a step the instant of a touch is found: what it misses is smaller than the parabola's own error.
 const INSTANT: f64 = 1e-4;
@@ -45,7 +45,7 @@ pub struct CorrectionEnergies {
     pub impact: f64,
     /// Through the channels, from the instants of the impacts on: what the masses in contact do beyond what free ones
     /// would.
-    pub channels: Power,
+    pub channels: ChannelEnergies,
 }
 
 /// A step whose end is being settled.

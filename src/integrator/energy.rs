@@ -7,7 +7,7 @@
 use super::maxwell::{Maxwell, StageCoefficients};
 use super::rates::Rates;
 use crate::math::{dot, sum_of_pairs, weighted_sum};
-use crate::model::{Exchange, LinkKind, MaxwellRow, Model, Power};
+use crate::model::{ChannelEnergies, Exchange, LinkKind, MaxwellRow, Model};
 
 /// Σ ė_i ė_j over the links of one kind, m²/s², for j ≤ i.
 type Products<const STAGES: usize> = [[f64; STAGES]; STAGES];
@@ -21,7 +21,7 @@ pub(super) fn through<const STAGES: usize>(
     (stages, exchange): (&[Rates], &[Exchange]),
     (h, weights): (f64, &[f64; STAGES]),
     workspace: &mut [f64],
-) -> Power {
+) -> ChannelEnergies {
     let mut energy = lost(model, maxwell, a, stages, (h, weights), workspace);
     for (weight, exchange) in weights.iter().zip(exchange) {
         energy.friction += h * weight * exchange.friction;
@@ -39,8 +39,8 @@ fn lost<const STAGES: usize>(
     stages: &[Rates],
     (h, weights): (f64, &[f64; STAGES]),
     workspace: &mut [f64],
-) -> Power {
-    let mut energy = Power::default();
+) -> ChannelEnergies {
+    let mut energy = ChannelEnergies::default();
     let mut products = [[[0.0; STAGES]; STAGES]; 4];
     let mut changes = [None; 4];
     for kind in LinkKind::ALL {
@@ -223,7 +223,7 @@ mod tests {
         let weights: [f64; STAGES] = std::array::from_fn(|_| number());
         let found = lost(&model, &maxwell, &start, &stages, (h, &weights), &mut [0.0; 5]);
 
-        let mut expected = Power::default();
+        let mut expected = ChannelEnergies::default();
         for (i, weight) in weights.iter().enumerate() {
             for kind in LinkKind::ALL {
                 let squares: f64 = stages[i].elongation_rate[kind as usize].iter().map(|rate| rate * rate).sum();

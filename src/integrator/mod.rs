@@ -21,7 +21,7 @@ pub use tolerance::Tolerance;
 pub use within::TwoStageDense;
 
 use crate::math::weighted_sum;
-use crate::model::{Carrier, CarrierPoint, Exchange, Forces, Model, Power, State};
+use crate::model::{Carrier, CarrierPoint, ChannelEnergies, Exchange, Forces, Model, State};
 use error::{ErrorTest, ErrorWorkspace};
 use maxwell::Maxwell;
 use sdirk::TwoStages;
@@ -310,7 +310,7 @@ impl Integrator {
     }
 
     /// Energies through the channels over the step of length `h` from `start` tried last, up to its fraction `theta`.
-    pub fn energies(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> Power {
+    pub fn energies(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> ChannelEnergies {
         let weights = if theta < 1.0 { &self.weights_within.at(theta) } else { METHOD.weights() };
         let stages = (&self.stages[..], &self.exchange[..]);
         energy::through(model, &self.maxwell, &start.maxwell, stages, (h, weights), self.error_workspace.any())

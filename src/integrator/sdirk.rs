@@ -5,7 +5,7 @@ use super::error::ErrorTest;
 use super::maxwell::Maxwell;
 use super::stage::{Accuracy, NoConvergence};
 use super::{Attempt, Integrator, Rates, STAGES, Tableau, Tolerance, WeightsWithin, energy};
-use crate::model::{Carrier, CarrierPoint, Forces, Mode, Model, Power, State};
+use crate::model::{Carrier, CarrierPoint, ChannelEnergies, Forces, Mode, Model, State};
 
 /// The two stages, and before them the start of the step: the method needs its rates for a guess alone.
 pub const TWO_STAGES: usize = 3;
@@ -140,7 +140,7 @@ impl Integrator {
 
     /// Energies through the channels over the step of two stages of length `h` from `start` tried last, up to its
     /// fraction `theta`.
-    pub fn two_stage_energies(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> Power {
+    pub fn two_stage_energies(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> ChannelEnergies {
         let workspace = &self.two_stages;
         let weights = if theta < 1.0 { &workspace.weights_within.at(theta) } else { SDIRK2.weights() };
         let stages = (&self.stages[..], &self.exchange[..]);

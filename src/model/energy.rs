@@ -7,9 +7,9 @@ use crate::math::{Numbers, dot, visit_all};
 
 use super::{CarrierPoint, Forces, LinkKind, Model, State};
 
-/// Power through the channels, W; or, summed over time, the energy, J.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Power {
+/// Power through the channels, W.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Powers {
     /// P_damper = Σ d ė².
     pub damper: f64,
     /// P_maxwell = Σ_j c_j τ_j ẏ_j² = Σ_j c_j a_j²/τ_j.
@@ -20,7 +20,7 @@ pub struct Power {
     pub input: f64,
 }
 
-impl Power {
+impl Powers {
     /// The powers in `state` with the forces there.
     pub fn evaluate(model: &Model, state: &State, carrier: &CarrierPoint, forces: &Forces) -> Self {
         Self {
@@ -31,21 +31,41 @@ impl Power {
         }
     }
 
-    /// Power lost in all channels, W; impacts take no time and count in energy alone.
+    /// Power dissipated in all channels, W. Impacts are instantaneous: they count in the energies alone.
+    pub fn dissipated(&self) -> f64 {
+        self.damper + self.maxwell + self.friction
+    }
+}
+
+/// Energy through the channels over a time, J: the integrals of [`Powers`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ChannelEnergies {
+    /// E_damper.
+    pub damper: f64,
+    /// E_maxwell.
+    pub maxwell: f64,
+    /// E_friction.
+    pub friction: f64,
+    /// E_in, of the carrier into the layer.
+    pub input: f64,
+}
+
+impl ChannelEnergies {
+    /// Energy dissipated in all channels, J.
     pub fn dissipated(&self) -> f64 {
         self.damper + self.maxwell + self.friction
     }
 
-    /// Adds `time` seconds of `power`.
-    pub fn add(&mut self, time: f64, power: &Self) {
-        self.damper += time * power.damper;
-        self.maxwell += time * power.maxwell;
-        self.friction += time * power.friction;
-        self.input += time * power.input;
+    /// Adds `other`.
+    pub fn add(&mut self, other: &Self) {
+        self.damper += other.damper;
+        self.maxwell += other.maxwell;
+        self.friction += other.friction;
+        self.input += other.input;
     }
 }
 
-/// Power through the surface and through the carrier: what of [`Power`] is not the links' own.
+/// Power through the surface and through the carrier: the part of [`Powers`] that is not the links' own.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Exchange {
     /// P_friction = Σ F_T v_t, W.
@@ -68,7 +88,7 @@ impl Numbers for Exchange {
     }
 }
 
-impl Numbers for Power {
+impl Numbers for ChannelEnergies {
     fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
         let Self { damper, maxwell, friction, input } = self;
         visit_all([damper, maxwell, friction, input], visit);

@@ -10,7 +10,7 @@ mod reduction;
 mod state;
 
 pub use carrier::{Carrier, CarrierPoint};
-pub use energy::{Exchange, Power, elastic_energy, kinetic_energy};
+pub use energy::{ChannelEnergies, Exchange, Powers, elastic_energy, kinetic_energy};
 pub use forces::{ContactForces, Forces, LinkMotion};
 pub use friction::RateShear;
 pub use link::{LinkLaw, MaxwellRow};

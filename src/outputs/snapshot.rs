@@ -1,8 +1,12 @@
 //! The values of output variables at one instant.
 
+use serde::{Deserialize, Serialize};
+
 use super::{Output, Variable};
 use crate::math::{Numbers, visit_all};
-use crate::model::{CarrierPoint, ContactForces, Forces, Mode, Model, Power, State, elastic_energy, kinetic_energy};
+use crate::model::{
+    CarrierPoint, ChannelEnergies, ContactForces, Forces, Mode, Model, Powers, State, elastic_energy, kinetic_energy,
+};
 use crate::scene::{OutputGroup, Scene};
 
 /// What a scene asks to be added up along the way.
@@ -29,10 +33,10 @@ impl Accounts {
 }
 
 /// Energies added up since the start, J.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energies {
     /// Through the channels that take time.
-    pub channels: Power,
+    pub channels: ChannelEnergies,
     /// Lost in impacts.
     pub impact: f64,
     /// T + V at the start.
@@ -54,7 +58,7 @@ impl Numbers for Energies {
 }
 
 /// What the solver counts since the start.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Counters {
     /// Accepted steps.
     pub steps: u64,
@@ -62,7 +66,8 @@ pub struct Counters {
     pub rejected: u64,
     /// Mode changes.
     pub events: u64,
-    /// Processor time, s.
+    /// Processor time, s: not a part of the run's state, so it is not serialised.
+    #[serde(skip)]
     pub run_time: f64,
     /// By how much F_z was off that of a finer run at most, N.
     largest_error: f64,
@@ -139,7 +144,7 @@ impl Snapshot<'_> {
             sums = self.contact_sums();
         }
         if asked(&[Output::DissipatedPower]) {
-            power = Power::evaluate(self.model, self.state, self.carrier, self.forces).dissipated();
+            power = Powers::evaluate(self.model, self.state, self.carrier, self.forces).dissipated();
         }
         if asked(&[Output::KineticEnergy, Output::ElasticEnergy, Output::EnergyResidual]) {
             kinetic = kinetic_energy(self.model, self.state);

@@ -347,7 +347,7 @@ impl Simulation {
         let Stride { h, share } = *stride;
         if self.settings.accounts.energy {
             let gain = self.integrator.energies(&self.model, &self.run.state, h, share);
-            self.run.energies.channels.add(1.0, &gain);
+            self.run.energies.channels.add(&gain);
         }
         self.run.counters.steps += 1;
         self.run.since_event += share * h;

@@ -5,7 +5,7 @@ use super::stepping::{AFTER_FAILURE, OF_PERIOD, Stride, fitted};
 use super::{Simulation, SimulationError};
 use crate::contact::{End, FixedModeStep, longest_weakening};
 use crate::integrator::{Attempt, Integrator, TWO_STAGES, TwoStageDense};
-use crate::model::{Model, Power};
+use crate::model::{ChannelEnergies, Model};
 
 /// A new step is this share of what the error allows. Mode changes come unforeseen, so it is less than in smooth
 /// motion.
@@ -86,8 +86,8 @@ impl Simulation {
         let settled = self.step_end.settle(step, End { state, forces, rates });
         if let Some(gain) = gain {
             let energies = &mut run.energies;
-            energies.channels.add(1.0, &gain);
-            energies.channels.add(1.0, &settled.map_or_else(Power::default, |settled| settled.channels));
+            energies.channels.add(&gain);
+            energies.channels.add(&settled.map_or_else(ChannelEnergies::default, |settled| settled.channels));
             energies.impact += settled.map_or(0.0, |settled| settled.impact);
         }
         self.integrator.accept_two_stages(&mut run.state);

@@ -3,7 +3,7 @@
 use super::Simulation;
 use super::stepping::Stride;
 use crate::math::bracketed_root;
-use crate::model::Power;
+use crate::model::ChannelEnergies;
 
 /// The most that the dense output may miss of the equations of motion where a step is cut at an event, as a velocity
 /// gained over the step, against the tolerance.
@@ -62,7 +62,7 @@ impl Simulation {
         let (s, energies) = (self.run.s, self.run.energies);
         if self.settings.accounts.energy {
             let gain = self.energies_within(h, theta);
-            self.run.energies.channels.add(1.0, &gain);
+            self.run.energies.channels.add(&gain);
         }
         self.look_within(h, theta);
         let mut within = std::mem::take(&mut self.within);
@@ -74,7 +74,7 @@ impl Simulation {
     }
 
     /// Energies through the channels from the start of the step of length `h` tried last to its fraction `theta`.
-    fn energies_within(&mut self, h: f64, theta: f64) -> Power {
+    fn energies_within(&mut self, h: f64, theta: f64) -> ChannelEnergies {
         if self.run.stepping {
             self.integrator.two_stage_energies(&self.model, &self.run.state, h, theta)
         } else {
