@@ -3,7 +3,7 @@
 mod fourier;
 mod monotone;
 mod numbers;
-mod polynomial;
+mod quintic;
 mod random;
 mod relaxation;
 mod root;
@@ -14,7 +14,7 @@ mod tridiagonal;
 pub use fourier::{Direction, fourier};
 pub use monotone::{Expansion, cubic, interval_of, monotone_slopes};
 pub use numbers::{Numbers, visit_all};
-pub use polynomial::{Jet, Quintic};
+pub use quintic::{Jet, Quintic};
 pub use random::SplitMix64;
 pub use relaxation::Relaxation;
 pub use root::bracketed_root;

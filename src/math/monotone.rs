@@ -1,4 +1,4 @@
-//! Interpolation that rises where its data rise and falls where they fall.
+//! Monotone interpolation: it rises where its data rise and falls where they fall.
 //!
 //! Between two neighbouring points lies the cubic with given slopes at both. The slopes are those of F. N. Fritsch and
 //! J. Butland (SIAM J. Sci. Stat. Comput. 5, 1984): a harmonic mean of the two secants, 0 where these differ in sign,
@@ -13,18 +13,19 @@ pub fn monotone_slopes(x: &[f64], y: &[f64], slopes: &mut [f64]) {
         *slope = match (i, last) {
             (_, 0) => 0.0,
             (_, 1) => secant(0),
-            (0, _) => end_slope((x[1] - x[0], secant(0)), (x[2] - x[1], secant(1))),
+            (0, _) => end_slope(x[1] - x[0], x[2] - x[1], secant(0), secant(1)),
             (i, last) if i == last => {
                 let (near, far) = (last - 1, last - 2);
-                end_slope((x[last] - x[near], secant(near)), (x[near] - x[far], secant(far)))
+                end_slope(x[last] - x[near], x[near] - x[far], secant(near), secant(far))
             }
-            (i, _) => inner_slope((x[i] - x[i - 1], secant(i - 1)), (x[i + 1] - x[i], secant(i))),
+            (i, _) => inner_slope(x[i] - x[i - 1], x[i + 1] - x[i], secant(i - 1), secant(i)),
         };
     }
 }
 
-/// The harmonic mean of two secants, that of the narrower interval weighing more (Fritsch and Butland's (5)).
-fn inner_slope((h0, d0): (f64, f64), (h1, d1): (f64, f64)) -> f64 {
+/// The harmonic mean of the secants d0 and d1 of two intervals of widths h0 and h1; the secant of the narrower interval
+/// weighs more (Fritsch and Butland's (5)).
+fn inner_slope(h0: f64, h1: f64, d0: f64, d1: f64) -> f64 {
     if d0 * d1 <= 0.0 {
         return 0.0;
     }
@@ -32,8 +33,9 @@ fn inner_slope((h0, d0): (f64, f64), (h1, d1): (f64, f64)) -> f64 {
     (w0 + w1) / (w0 / d0 + w1 / d1)
 }
 
-/// The slope of the parabola through the last three points, as far as the cubic stays monotone with it.
-fn end_slope((h0, d0): (f64, f64), (h1, d1): (f64, f64)) -> f64 {
+/// The slope of the parabola through the last three points, limited so that the cubic stays monotone; h0 and d0 are
+/// those of the interval at the end.
+fn end_slope(h0: f64, h1: f64, d0: f64, d1: f64) -> f64 {
     let slope = ((2.0 * h0 + h1) * d0 - h0 * d1) / (h0 + h1);
     if slope * d0 <= 0.0 {
         0.0
@@ -44,7 +46,7 @@ fn end_slope((h0, d0): (f64, f64), (h1, d1): (f64, f64)) -> f64 {
     }
 }
 
-/// A function near one place: its value and its first two derivatives there.
+/// A function's value and first two derivatives at one x.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Expansion {
     /// f

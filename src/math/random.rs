@@ -1,7 +1,7 @@
-//! Random numbers that are the same everywhere and for ever: their generator has a published definition.
+//! Random numbers that are the same on every platform and in every version: their generator has a published definition.
 
 /// SplitMix64: G. L. Steele, D. Lea, C. H. Flood, *Fast splittable pseudorandom number generators*, OOPSLA 2014, with
-/// the constants of `java.util.SplittableRandom`. Every seed is as good as another.
+/// the constants of `java.util.SplittableRandom`. All seeds are equally good.
 ///
 /// ```
 /// use asperity::math::SplitMix64;
@@ -20,7 +20,7 @@ impl SplitMix64 {
     }
 
     /// The next 64 bits.
-    #[expect(clippy::should_implement_trait, reason = "it never ends, and needs nothing of an iterator")]
+    #[expect(clippy::should_implement_trait, reason = "the sequence has no end and needs no iterator's methods")]
     pub fn next(&mut self) -> u64 {
         self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mixed = (self.state ^ (self.state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

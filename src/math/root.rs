@@ -3,7 +3,7 @@
 /// The root of `f` in [`a`, `b`], where `f(a)` and `f(b)` differ in sign or one of them is 0.
 ///
 /// T. R. Chandrupatla's method (Adv. Eng. Software 28, 1997): inverse quadratic interpolation where it is safe, else
-/// bisection. The bracket never opens, so the root found lies in it, whatever `f` is. Stops at a bracket of width
+/// bisection. The bracket only shrinks, so the result lies in it, whatever `f` is. Stops at a bracket of width
 /// `tolerance` or at `f = 0`; the work is bounded.
 pub fn bracketed_root(mut f: impl FnMut(f64) -> f64, (a, b): (f64, f64), tolerance: f64) -> f64 {
     let (mut newest, mut other) = ((a, f(a)), (b, f(b)));
@@ -27,7 +27,7 @@ pub fn bracketed_root(mut f: impl FnMut(f64) -> f64, (a, b): (f64, f64), toleran
 const MOST_STEPS: usize = 180;
 
 /// Where inverse quadratic interpolation through three points puts the root, as a fraction of the way from a to b;
-/// one half where the interpolation can't be trusted.
+/// one half where the interpolation cannot be trusted.
 fn interpolated_fraction((a, fa): (f64, f64), (b, fb): (f64, f64), (c, fc): (f64, f64)) -> f64 {
     let xi = (a - b) / (c - b);
     let phi = (fa - fb) / (fc - fb);

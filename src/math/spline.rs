@@ -1,18 +1,11 @@
 //! Cubic splines: the rigid profile z_r(x) with its slope z_r', curvature z_r'' and z_r''' (5), (9).
 
-mod bounds;
-mod grid;
-mod solve;
 #[cfg(test)]
 mod tests;
 
-pub use bounds::Bounds;
-use bounds::Extent;
-use grid::Grid;
-
 /// A cubic spline through data points: C², and C^∞ between the points.
 ///
-/// *Natural*: z'' = 0 at both ends and continued outside along the end tangents. *Periodic*: repeated for ever.
+/// *Natural*: z'' = 0 at both ends and continued outside along the end tangents. *Periodic*: repeated without end.
 ///
 /// ```
 /// use asperity::math::Spline;
@@ -25,7 +18,7 @@ pub struct Spline {
     pieces: Vec<Piece>,
     grid: Grid,
     ends: Ends,
-    inside: Extent,
+    inside: Bounds,
 }
 
 /// What lies outside the data points.
@@ -54,7 +47,7 @@ impl Spline {
     /// # Panics
     /// With fewer than two points.
     pub fn natural(x: &[f64], z: &[f64]) -> Self {
-        let pieces = pieces(x, z, &solve::natural_curvatures(x, z));
+        let pieces = pieces(x, z, &natural_curvatures(x, z));
         let (first, last) = (pieces[0], pieces[pieces.len() - 1]);
         let (z_end, slope_end, ..) = last.evaluate(last.end);
         let left = Piece::line(first.start, first.z, first.slope);
@@ -68,14 +61,14 @@ impl Spline {
     /// # Panics
     /// With fewer than two points.
     pub fn periodic(x: &[f64], z: &[f64]) -> Self {
-        let pieces = pieces(x, z, &solve::periodic_curvatures(x, z));
+        let pieces = pieces(x, z, &periodic_curvatures(x, z));
         let period = pieces[pieces.len() - 1].end - pieces[0].start;
         Self::assemble(pieces, Ends::Periodic { period })
     }
 
     fn assemble(pieces: Vec<Piece>, ends: Ends) -> Self {
         let grid = Grid::new(&pieces);
-        let inside = pieces.iter().map(|piece| piece.extent(piece.start, piece.end)).fold(Extent::EMPTY, Extent::and);
+        let inside = pieces.iter().map(|piece| piece.extent(piece.start, piece.end)).fold(Bounds::EMPTY, Bounds::and);
         Self { pieces, grid, ends, inside }
     }
 
@@ -96,7 +89,7 @@ impl Spline {
         }
     }
 
-    /// The place within the data points where a periodic spline is the same as at `x`; `x` itself for a natural one.
+    /// The x within the data points at which a periodic spline is the same as at `x`; `x` itself for a natural one.
     #[inline]
     pub fn reduce(&self, x: f64) -> f64 {
         match self.ends {
@@ -105,14 +98,13 @@ impl Spline {
         }
     }
 
-    /// Rounding may leave the place a digit outside of the period; it is put back, so that far places stay legal too.
+    /// Rounding may leave the result a digit outside of the period; it is put back, so that distant x stay legal too.
     fn wrap(&self, x: f64, period: f64) -> f64 {
         let first = self.first();
-        let place = x - period * floor((x - first) / period);
-        let place = if place >= self.last() { place - period } else { place };
-        // Below the first by a rounding; or so far away that the rounding is more than a period, and any place as
-        // right.
-        if (first..self.last()).contains(&place) { place } else { first }
+        let reduced = x - period * floor((x - first) / period);
+        let reduced = if reduced >= self.last() { reduced - period } else { reduced };
+        // Below the first by a rounding; or so far away that the rounding exceeds a period, and any result is as right.
+        if (first..self.last()).contains(&reduced) { reduced } else { first }
     }
 
     #[inline]
@@ -136,7 +128,7 @@ impl Spline {
     }
 }
 
-/// `f64::floor`, which on plain x86-64 is a call of the C library's; every mass beyond the first period asks for it.
+/// As `f64::floor`, which on plain x86-64 is a call into the C library; every mass beyond the first period needs it.
 #[inline]
 fn floor(x: f64) -> f64 {
     const WHOLE: f64 = (1_u64 << 52) as f64;
@@ -163,11 +155,8 @@ impl Piece {
 
 /// The polynomials between the points, from the curvatures at the points.
 fn pieces(x: &[f64], z: &[f64], curvatures: &[f64]) -> Vec<Piece> {
-    debug_assert!(
-        x.len() >= 2 && x.len() == z.len(),
-        "a spline needs two points or more, and as many heights as places"
-    );
-    debug_assert!(x.windows(2).all(|pair| pair[0] < pair[1]), "the places of a spline rise strictly");
+    debug_assert!(x.len() >= 2 && x.len() == z.len(), "a spline needs two points or more, and as many heights as x");
+    debug_assert!(x.windows(2).all(|pair| pair[0] < pair[1]), "the x of a spline rise strictly");
     (0..x.len() - 1)
         .map(|i| {
             let h = x[i + 1] - x[i];
@@ -176,4 +165,290 @@ fn pieces(x: &[f64], z: &[f64], curvatures: &[f64]) -> Vec<Piece> {
             Piece { start: x[i], end: x[i + 1], z: z[i], slope, curvature: curvatures[i], third }
         })
         .collect()
+}
+
+/// Finds the interval of an x without a search: a grid of equal cells over the data points, as many as there are
+/// intervals.
+#[derive(Clone, Debug)]
+struct Grid {
+    first: f64,
+    last: f64,
+    cells_per_meter: f64,
+    last_cell: usize,
+    /// For each cell the number of intervals that start in an earlier cell, and at the end the number of all intervals;
+    /// empty where the points are spaced evenly enough for a cell to be its interval or a neighbour of it.
+    starts_before: Vec<u32>,
+}
+
+impl Grid {
+    fn new(pieces: &[Piece]) -> Self {
+        let (first, last) = (pieces[0].start, pieces[pieces.len() - 1].end);
+        let cells_per_meter = pieces.len() as f64 / (last - first);
+        let mut grid = Self { first, last, cells_per_meter, last_cell: pieces.len() - 1, starts_before: Vec::new() };
+        if !grid.is_even(pieces) {
+            grid.starts_before = grid.count_starts(pieces);
+        }
+        grid
+    }
+
+    fn is_even(&self, pieces: &[Piece]) -> bool {
+        let off_grid = |i: usize| ((pieces[i].start - self.first) * self.cells_per_meter - i as f64).abs();
+        (0..pieces.len()).all(|i| off_grid(i) < 0.25)
+    }
+
+    fn count_starts(&self, pieces: &[Piece]) -> Vec<u32> {
+        let mut counts = vec![0; pieces.len() + 1];
+        pieces.iter().for_each(|piece| counts[self.cell(piece.start) + 1] += 1);
+        (1..counts.len()).for_each(|cell| counts[cell] += counts[cell - 1]);
+        counts
+    }
+
+    /// Rises with `x` even in rounded arithmetic, which is why counting starts by cells is exact.
+    #[inline]
+    fn cell(&self, x: f64) -> usize {
+        (((x - self.first) * self.cells_per_meter) as usize).min(self.last_cell)
+    }
+
+    /// The interval of `x`, or the nearest one where `x` is outside.
+    #[inline]
+    fn interval(&self, pieces: &[Piece], x: f64) -> usize {
+        let cell = self.cell(x);
+        if self.starts_before.is_empty() { self.neighbour(pieces, cell, x) } else { self.search(pieces, cell, x) }
+    }
+
+    #[inline]
+    fn neighbour(&self, pieces: &[Piece], cell: usize, x: f64) -> usize {
+        if x < pieces[cell].start {
+            cell.saturating_sub(1)
+        } else if x >= pieces[cell].end {
+            (cell + 1).min(self.last_cell)
+        } else {
+            cell
+        }
+    }
+
+    /// The last interval that starts at or before `x`: one of those that start in the cell, or the last before it.
+    #[inline]
+    fn search(&self, pieces: &[Piece], cell: usize, x: f64) -> usize {
+        let (from, to) = (self.starts_before[cell] as usize, self.starts_before[cell + 1] as usize);
+        let started = pieces[from..to].partition_point(|piece| piece.start <= x);
+        (from + started).saturating_sub(1)
+    }
+}
+
+/// More intervals than this in a range, and the bounds of all intervals are taken instead.
+const INTERVALS_SCANNED: usize = 16;
+
+/// Bounds of a spline over a range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// The highest z, m. Infinite where a natural spline rises outwards without end.
+    pub z_max: f64,
+    /// The largest |z'|, 1.
+    pub slope_max_abs: f64,
+    /// The largest |z''|, 1/m.
+    pub curvature_max_abs: f64,
+}
+
+impl Bounds {
+    const EMPTY: Self = Self { z_max: f64::NEG_INFINITY, slope_max_abs: 0.0, curvature_max_abs: 0.0 };
+
+    /// The bounds over two ranges together.
+    fn and(self, other: Self) -> Self {
+        Self {
+            z_max: self.z_max.max(other.z_max),
+            slope_max_abs: self.slope_max_abs.max(other.slope_max_abs),
+            curvature_max_abs: self.curvature_max_abs.max(other.curvature_max_abs),
+        }
+    }
+}
+
+impl Spline {
+    /// The bounds over all x.
+    pub fn bounds(&self) -> Bounds {
+        match &self.ends {
+            Ends::Periodic { .. } => self.inside,
+            Ends::Tangents { left, right } if left.slope < 0.0 || right.slope > 0.0 => {
+                Bounds { z_max: f64::INFINITY, ..self.inside }
+            }
+            Ends::Tangents { .. } => self.inside,
+        }
+    }
+
+    /// Bounds over the range from `x_low` to `x_high`, m: the true extremes over a few intervals, those of all
+    /// intervals where the range spans many. `x_low` ≤ `x_high`.
+    pub fn local_bounds(&self, x_low: f64, x_high: f64) -> Bounds {
+        match &self.ends {
+            Ends::Periodic { period } => self.periodic_bounds(x_low, x_high - x_low, *period),
+            Ends::Tangents { left, right } => self.natural_bounds(x_low, x_high, left, right),
+        }
+    }
+
+    fn periodic_bounds(&self, x_low: f64, width: f64, period: f64) -> Bounds {
+        if width.is_nan() || width >= period {
+            return self.inside;
+        }
+        let low = self.reduce(x_low);
+        let beyond = low + width - self.last();
+        if beyond > 0.0 {
+            self.bounds_inside(low, self.last()).and(self.bounds_inside(self.first(), self.first() + beyond))
+        } else {
+            self.bounds_inside(low, low + width)
+        }
+    }
+
+    fn natural_bounds(&self, x_low: f64, x_high: f64, left: &Piece, right: &Piece) -> Bounds {
+        let (first, last) = (self.first(), self.last());
+        let mut bounds = Bounds::EMPTY;
+        if x_low < first {
+            bounds = bounds.and(left.extent(x_low, x_high.min(first)));
+        }
+        if x_high > last {
+            bounds = bounds.and(right.extent(x_low.max(last), x_high));
+        }
+        if x_low <= last && x_high >= first {
+            bounds = bounds.and(self.bounds_inside(x_low.max(first), x_high.min(last)));
+        }
+        bounds
+    }
+
+    /// Bounds over a range within the data points.
+    fn bounds_inside(&self, low: f64, high: f64) -> Bounds {
+        let (from, to) = (self.grid.interval(&self.pieces, low), self.grid.interval(&self.pieces, high));
+        if to.saturating_sub(from) >= INTERVALS_SCANNED {
+            return self.inside;
+        }
+        let within = |piece: &Piece| piece.extent(low.max(piece.start), high.min(piece.end));
+        self.pieces[from..=to.max(from)].iter().map(within).fold(Bounds::EMPTY, Bounds::and)
+    }
+}
+
+impl Piece {
+    /// The extremes of this polynomial from `low` to `high`.
+    fn extent(&self, low: f64, high: f64) -> Bounds {
+        let ((z_low, slope_low, curvature_low, _), (z_high, slope_high, curvature_high, _)) =
+            (self.evaluate(low), self.evaluate(high));
+        let steepest = self.steepest(low, high);
+        let mut z_max = z_low.max(z_high);
+        for x in self.level(low, high, [slope_low, slope_high, steepest]) {
+            z_max = z_max.max(self.evaluate(x).0);
+        }
+        Bounds {
+            z_max,
+            slope_max_abs: slope_low.abs().max(slope_high.abs()).max(steepest.abs()),
+            curvature_max_abs: curvature_low.abs().max(curvature_high.abs()),
+        }
+    }
+
+    /// The slope where z'' = 0, if that is between `low` and `high`; else 0.
+    fn steepest(&self, low: f64, high: f64) -> f64 {
+        let inflection = self.start - self.curvature / self.third;
+        if low < inflection && inflection < high { self.evaluate(inflection).1 } else { 0.0 }
+    }
+
+    /// The x between `low` and `high` where z' = 0, clamped to the range; none where the slopes there have one sign.
+    fn level(&self, low: f64, high: f64, slopes: [f64; 3]) -> impl Iterator<Item = f64> {
+        let one_sign = slopes.iter().all(|&slope| slope >= 0.0) || slopes.iter().all(|&slope| slope <= 0.0);
+        let discriminant = self.curvature * self.curvature - 2.0 * self.third * self.slope;
+        // Both roots of ½ z''' t² + z'' t + z' = 0 without cancellation.
+        let sum = -(self.curvature + discriminant.max(0.0).sqrt().copysign(self.curvature));
+        let roots = [sum / self.third, 2.0 * self.slope / sum];
+        let real = move |t: &f64| !one_sign && t.is_finite();
+        roots.into_iter().filter(real).map(move |t| (self.start + t).clamp(low, high))
+    }
+}
+
+// The curvatures M_i = z''(x_i) that make a spline C²: with h_i = x_{i+1} - x_i, μ_i = h_{i-1}/(h_{i-1} + h_i),
+// λ_i = 1 - μ_i and the second divided difference of the heights,
+//
+//     μ_i M_{i-1} + 2 M_i + λ_i M_{i+1} = 6 z[x_{i-1}, x_i, x_{i+1}]
+//
+// (Stoer & Bulirsch, Introduction to Numerical Analysis, 2.4.2). The equations are diagonally dominant: no pivoting.
+
+/// One equation of a tridiagonal system; the diagonal is 2 except where the cyclic solution changes it.
+#[derive(Clone, Copy, Debug)]
+struct Equation {
+    lower: f64,
+    diagonal: f64,
+    upper: f64,
+    right: f64,
+}
+
+/// The curvatures at the points of a natural spline: 0 at both ends.
+fn natural_curvatures(x: &[f64], z: &[f64]) -> Vec<f64> {
+    let inner: Vec<Equation> = (1..x.len() - 1)
+        .map(|i| equation(x[i] - x[i - 1], x[i + 1] - x[i], z[i] - z[i - 1], z[i + 1] - z[i]))
+        .collect();
+    let mut curvatures = Vec::with_capacity(x.len());
+    curvatures.push(0.0);
+    curvatures.extend(solve_tridiagonal(&inner, inner.iter().map(|row| row.right)));
+    curvatures.push(0.0);
+    curvatures
+}
+
+/// The curvatures at the points of a periodic spline: the last equal to the first.
+fn periodic_curvatures(x: &[f64], z: &[f64]) -> Vec<f64> {
+    let intervals = x.len() - 1;
+    let before = |i: usize| if i == 0 { intervals - 1 } else { i - 1 };
+    let width = |i: usize| x[i + 1] - x[i];
+    let rise = |i: usize| z[i + 1] - z[i];
+    let rows: Vec<Equation> =
+        (0..intervals).map(|i| equation(width(before(i)), width(i), rise(before(i)), rise(i))).collect();
+    let mut curvatures = solve_cyclic(&rows);
+    curvatures.push(curvatures[0]);
+    curvatures
+}
+
+fn equation(h_left: f64, h_right: f64, rise_left: f64, rise_right: f64) -> Equation {
+    let span = h_left + h_right;
+    let right = 6.0 * (rise_right / h_right - rise_left / h_left) / span;
+    Equation { lower: h_left / span, diagonal: 2.0, upper: h_right / span, right }
+}
+
+/// Gauss's elimination of a tridiagonal system.
+fn solve_tridiagonal(rows: &[Equation], right: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut uppers = Vec::with_capacity(rows.len());
+    let mut solution: Vec<f64> = Vec::with_capacity(rows.len());
+    let (mut upper_before, mut right_before) = (0.0, 0.0);
+    for (row, right) in rows.iter().zip(right) {
+        let pivot = row.diagonal - row.lower * upper_before;
+        upper_before = row.upper / pivot;
+        right_before = (right - row.lower * right_before) / pivot;
+        uppers.push(upper_before);
+        solution.push(right_before);
+    }
+    for i in (1..solution.len()).rev() {
+        solution[i - 1] -= uppers[i - 1] * solution[i];
+    }
+    solution
+}
+
+/// A tridiagonal system whose first row's `lower` and last row's `upper` wrap around the matrix.
+///
+/// With fewer than three unknowns the wrapped entries fall onto others.
+fn solve_cyclic(rows: &[Equation]) -> Vec<f64> {
+    match rows {
+        [] => Vec::new(),
+        // One interval from a height to the same height: flat.
+        [_] => vec![0.0],
+        // lower + upper = 1 and the right sides are opposite: 2 M_0 + M_1 = r, M_0 + 2 M_1 = -r.
+        [first, _] => vec![first.right, -first.right],
+        _ => solve_sherman_morrison(rows),
+    }
+}
+
+/// Sherman and Morrison: the cyclic matrix is a tridiagonal one plus the dyad (γ, 0, …, α)ᵀ (1, 0, …, β/γ).
+fn solve_sherman_morrison(rows: &[Equation]) -> Vec<f64> {
+    let last = rows.len() - 1;
+    let (alpha, beta, gamma) = (rows[last].upper, rows[0].lower, -rows[0].diagonal);
+    let mut plain = rows.to_vec();
+    plain[0].diagonal -= gamma;
+    plain[last].diagonal -= alpha * beta / gamma;
+    let mut solution = solve_tridiagonal(&plain, rows.iter().map(|row| row.right));
+    let dyad = (0..=last).map(|i| [0.0, gamma, alpha][usize::from(i == 0) + 2 * usize::from(i == last)]);
+    let correction = solve_tridiagonal(&plain, dyad);
+    let along = |v: &[f64]| v[0] + beta / gamma * v[last];
+    let factor = along(&solution) / (1.0 + along(&correction));
+    solution.iter_mut().zip(&correction).for_each(|(value, shift)| *value -= factor * shift);
+    solution
 }

@@ -1,4 +1,4 @@
-//! Weighted sums of arrays: what the history of a Runge-Kutta stage is made of.
+//! Weighted sums of arrays, such as the terms of a Runge-Kutta stage from the stages before.
 
 /// Terms that one pass over the memory takes.
 const MOST_TERMS: usize = 8;
@@ -21,7 +21,7 @@ pub fn weighted_sum<'a>(out: &mut [f64], terms: impl IntoIterator<Item = (f64, &
     }
 }
 
-/// Takes the next terms; how many there were.
+/// Takes the next terms and returns their number.
 fn fill<'a>(batch: &mut [(f64, &'a [f64]); MOST_TERMS], terms: &mut impl Iterator<Item = (f64, &'a [f64])>) -> usize {
     let mut filled = 0;
     while filled < MOST_TERMS
@@ -66,7 +66,7 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     sum_of_pairs(a, b, |a, b| a * b)
 }
 
-/// Σ_i term(a_i, b_i) over the shorter of both, some at a time.
+/// Σ_i term(a_i, b_i) over the shorter of both, in `LANES` partial sums.
 #[inline]
 pub fn sum_of_pairs(a: &[f64], b: &[f64], term: impl Fn(f64, f64) -> f64) -> f64 {
     let n = a.len().min(b.len());
@@ -81,7 +81,7 @@ pub fn sum_of_pairs(a: &[f64], b: &[f64], term: impl Fn(f64, f64) -> f64) -> f64
     sums.iter().sum::<f64>() + rest
 }
 
-/// Σ_i term(i) for i = 0 … n-1, some at a time.
+/// Σ_i term(i) for i = 0 … n-1, in `LANES` partial sums.
 #[inline]
 pub fn sum_of(n: usize, term: impl Fn(usize) -> f64) -> f64 {
     let mut sums = [0.0; LANES];

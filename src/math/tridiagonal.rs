@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix2, Vector2};
 
-/// Lower_i δ_{i-1} + Diagonal_i δ_i + Upper_i δ_{i+1} = Right_i, i = 0 … n-1, and room to solve it.
+/// Lower_i δ_{i-1} + Diagonal_i δ_i + Upper_i δ_{i+1} = Right_i, i = 0 … n-1, with the workspace to solve it.
 ///
 /// Blocks are eliminated from both ends towards the middle, and back: two chains of divisions that do not wait for each
 /// other.
@@ -23,7 +23,7 @@ pub struct BlockTridiagonal {
 }
 
 impl BlockTridiagonal {
-    /// Room for `n` ≥ 1 block rows.
+    /// A system of `n` ≥ 1 block rows, all zero.
     pub fn new(n: usize) -> Self {
         let zero = vec![Matrix2::zeros(); n];
         Self {

@@ -1,4 +1,4 @@
-//! The quintic through place, speed and acceleration at both ends of a step.
+//! The quintic through position, speed and acceleration at both ends of a step.
 
 /// A polynomial of degree 5 on [0, 1] in Bernstein form: its values lie between the least and the largest coefficient.
 #[derive(Clone, Copy, Debug, PartialEq)]
