@@ -21,6 +21,7 @@ mod self_affine;
 mod settings;
 mod surface;
 mod table;
+pub mod text_table;
 mod unit;
 mod warnings;
 

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use super::allowed::{self, Range};
 use super::error::Place;
-use super::profile::{Row, split, text_of};
 use super::table::Entry;
+use super::text_table::{Columns, decode};
 use super::{Problem, PronyTerm, SceneError};
 
 const COLUMNS: [&str; 2] = ["relaxation_time", "modulus"];
@@ -28,7 +28,7 @@ pub(super) fn read(entry: &Entry<'_>, path: &Path) -> Result<Vec<PronyTerm>, Sce
 }
 
 fn parse(bytes: &[u8]) -> Result<Vec<PronyTerm>, Refusal> {
-    let text = text_of(bytes).map_err(|problem| (1, "", problem))?;
+    let text = decode(bytes).map_err(|error| (1, "", error.into()))?;
     if let Some((line, header)) = swapped_header(&text) {
         return Err((line, "columns", refused(&format!("`{header}`"), "relaxation_time before modulus")));
     }
@@ -48,14 +48,14 @@ fn swapped_header(text: &str) -> Option<(usize, &str)> {
 }
 
 /// The columns of the lines that hold data, without comments and a header, and the lines' numbers from 1.
-fn rows(text: &str) -> impl Iterator<Item = (usize, Row<'_>)> {
+fn rows(text: &str) -> impl Iterator<Item = (usize, Columns<'_>)> {
     let numbered = text.lines().zip(1..).map(|(line, number)| (line.trim(), number));
     let filled = numbered.filter(|(line, _)| !line.is_empty() && !line.starts_with('#'));
-    let rows = filled.map(|(line, number)| (number, split(line, false))).enumerate();
+    let rows = filled.map(|(line, number)| (number, Columns::split(line, false))).enumerate();
     rows.filter(|(count, (_, row))| *count > 0 || !row.is_header()).map(|(_, row)| row)
 }
 
-fn term(line: usize, row: &Row<'_>) -> Result<PronyTerm, Refusal> {
+fn term(line: usize, row: &Columns<'_>) -> Result<PronyTerm, Refusal> {
     if row.count != COLUMNS.len() {
         return Err((line, "columns", refused(&row.count.to_string(), EXPECTED_COLUMNS)));
     }
@@ -65,7 +65,7 @@ fn term(line: usize, row: &Row<'_>) -> Result<PronyTerm, Refusal> {
     })
 }
 
-fn number(row: &Row<'_>, column: usize, line: usize, range: &Range) -> Result<f64, Refusal> {
+fn number(row: &Columns<'_>, column: usize, line: usize, range: &Range) -> Result<f64, Refusal> {
     let number = row.number(column).filter(|&number| range.holds(number));
     let given = || format!("\"{}\"", row.fields[column].chars().take(60).collect::<String>());
     number.ok_or_else(|| (line, COLUMNS[column], refused(&given(), &range.to_string())))

@@ -1,7 +1,7 @@
 //! What stands above the data: units, and the name of a third column.
 
-use super::columns::{Row, split};
 use super::{LengthUnit, ThirdColumn};
+use crate::scene::text_table::Columns;
 
 /// What the header says.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +29,7 @@ pub(super) fn read(lines: &[&str]) -> Header {
     Header {
         units: [x.or(z), z.or(x)],
         is_one_sided: x.is_none() != z.is_none(),
-        third_column: near().find_map(|line| third_column(&split(line, true))),
+        third_column: near().find_map(|line| third_column(&Columns::split(line, true))),
     }
 }
 
@@ -53,7 +53,7 @@ fn setting(line: &str) -> Option<(&'static [usize], LengthUnit)> {
 /// The units beside the names of two columns, or below them.
 fn column_units(line: &str) -> [Option<LengthUnit>; 2] {
     if line.contains([';', '\t', ',']) {
-        let row = split(line, true);
+        let row = Columns::split(line, true);
         return [field_unit(row.fields[0]), field_unit(row.fields[1])];
     }
     let fields: Vec<&str> = line.split_whitespace().collect();
@@ -93,7 +93,7 @@ fn unit_of(word: &str) -> Option<LengthUnit> {
     })
 }
 
-fn third_column(row: &Row<'_>) -> Option<ThirdColumn> {
+fn third_column(row: &Columns<'_>) -> Option<ThirdColumn> {
     if row.count < 3 {
         return None;
     }

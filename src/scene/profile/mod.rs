@@ -1,13 +1,11 @@
 //! Measured profiles: files as they come from instruments, and what is done to them before they are a surface.
 //!
-//! Text holds two columns x, z, see [`columns`], [`header`] and [`text`]; an X3P file holds them in its own way, see
+//! Text holds two columns x, z, see [`header`] and [`super::text_table`]; an X3P file holds them in its own way, see
 //! [`x3p`].
 
-mod columns;
 mod header;
 mod repair;
 mod table;
-mod text;
 mod words;
 #[cfg(feature = "x3p")]
 mod x3p;
@@ -18,12 +16,11 @@ mod tests;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
-pub(super) use columns::{Row, split};
-pub(super) use text::text_of;
 pub use words::UnknownWord;
 
 use super::error::Place;
 use super::points::{self, Axis};
+use super::text_table::decode;
 use super::{Problem, SceneError, Surface};
 
 /// How a file is to be read. What is not given is as the file says, or else as the defaults are.
@@ -222,7 +219,8 @@ fn parse(bytes: &[u8], options: &ProfileOptions, is_extract: bool) -> Result<Par
         let expected = "no such number for a profile: it chooses the line of an areal measurement (X3P)";
         return Err(refuse(None, "line", &line.to_string(), expected));
     }
-    let text = text_of(bytes).map_err(|problem| ProfileError { line: Some(1), key: String::new(), problem })?;
+    let text =
+        decode(bytes).map_err(|error| ProfileError { line: Some(1), key: String::new(), problem: error.into() })?;
     let (surface, warnings) = finish(table::read(&text, options)?, options)?;
     Ok((surface, warnings, None))
 }

@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use super::columns::{Row, split};
 use super::{Missing, ProfileError, ProfileOptions, Raw, ThirdColumn, header, refuse};
 use crate::scene::allowed;
+use crate::scene::text_table::Columns;
 
 const EXPECTED_COLUMNS: &str = "two, x and z, separated by comma, semicolon, tab or blanks";
 const ONE_UNIT: &str = "the header names a unit for one of the two columns alone; it is taken for both: x_unit and z_unit \
@@ -53,11 +53,11 @@ fn is_comment(line: &str) -> bool {
 fn first_point<'a>(lines: impl Iterator<Item = (usize, &'a str)>) -> Option<usize> {
     let mut lines = lines.filter(|(_, line)| !is_comment(line)).peekable();
     while let Some((number, line)) = lines.next() {
-        if !split(line, false).is_point() {
+        if !Columns::split(line, false).is_point() {
             continue;
         }
         let goes_on = lines.peek().is_none_or(|(_, line)| {
-            let next = split(line, false);
+            let next = Columns::split(line, false);
             next.count > 1 && next.number(0).is_some()
         });
         if goes_on {
@@ -72,7 +72,7 @@ fn first_point<'a>(lines: impl Iterator<Item = (usize, &'a str)>) -> Option<usiz
 fn check_header(above: &[(usize, &str)]) -> Result<(), ProfileError> {
     let mut lines = above.iter().filter(|(_, line)| !is_comment(line));
     let (Some((number, line)), None) = (lines.next(), lines.next()) else { return Ok(()) };
-    let row = split(line, false);
+    let row = Columns::split(line, false);
     if row.is_header() { Ok(()) } else { Err(refuse_row(&row, *number, line)) }
 }
 
@@ -80,12 +80,14 @@ fn check_header(above: &[(usize, &str)]) -> Result<(), ProfileError> {
 fn refuse_all<'a>(text: &str, lines: impl Iterator<Item = (usize, &'a str)>) -> ProfileError {
     let mut lines = lines.filter(|(_, line)| !is_comment(line));
     match lines.next() {
-        Some((number, line)) if !split(line, false).is_header() => refuse_row(&split(line, false), number, line),
+        Some((number, line)) if !Columns::split(line, false).is_header() => {
+            refuse_row(&Columns::split(line, false), number, line)
+        }
         _ => refuse(Some(text.lines().count().max(1)), "points", "0", "at least 2 points for a profile"),
     }
 }
 
-fn refuse_row(row: &Row<'_>, number: usize, line: &str) -> ProfileError {
+fn refuse_row(row: &Columns<'_>, number: usize, line: &str) -> ProfileError {
     match row.count {
         2 if row.number(0).is_none_or(|x| !allowed::PLACE.holds(x)) => refuse_field(row, 0, number),
         2 => refuse_field(row, 1, number),
@@ -93,13 +95,13 @@ fn refuse_row(row: &Row<'_>, number: usize, line: &str) -> ProfileError {
     }
 }
 
-fn refuse_count(row: &Row<'_>, number: usize, line: &str) -> ProfileError {
+fn refuse_count(row: &Columns<'_>, number: usize, line: &str) -> ProfileError {
     let given = format!("{} in `{}`", row.count, cut(line));
     let third = "; third_column tells what a third one says";
     refuse(Some(number), "columns", &given, &format!("{EXPECTED_COLUMNS}{}", if row.count == 3 { third } else { "" }))
 }
 
-fn refuse_field(row: &Row<'_>, column: usize, number: usize) -> ProfileError {
+fn refuse_field(row: &Columns<'_>, column: usize, number: usize) -> ProfileError {
     let given = format!("\"{}\"", cut(row.fields[column]));
     let missing = if column == 1 { ", or missing = \"fill\" where heights are missing" } else { "" };
     refuse(Some(number), ["x", "z"][column], &given, &format!("{}{missing}", allowed::PLACE))
@@ -122,7 +124,7 @@ impl Reader {
     }
 
     fn add(&mut self, number: usize, line: &str) -> Result<(), ProfileError> {
-        let row = split(line, self.third_column.is_some());
+        let row = Columns::split(line, self.third_column.is_some());
         let is_table = match self.third_column {
             None => row.count == 2,
             Some(ThirdColumn::Ignore) => row.count >= 2,
@@ -145,7 +147,7 @@ impl Reader {
     }
 
     /// Whether the third column takes the height away.
-    fn is_invalid(&self, row: &Row<'_>) -> bool {
+    fn is_invalid(&self, row: &Columns<'_>) -> bool {
         match self.third_column {
             Some(ThirdColumn::Invalid) => row.is_marked(2),
             Some(ThirdColumn::Valid) => !row.is_marked(2),
@@ -153,12 +155,12 @@ impl Reader {
         }
     }
 
-    fn is_gap(&self, row: &Row<'_>) -> bool {
+    fn is_gap(&self, row: &Columns<'_>) -> bool {
         self.is_invalid(row) || row.is_missing(1) || row.number(1).is_some_and(f64::is_nan)
     }
 }
 
-fn refuse_invalid(row: &Row<'_>, number: usize) -> ProfileError {
+fn refuse_invalid(row: &Columns<'_>, number: usize) -> ProfileError {
     let given = format!("\"{}\"", cut(row.fields[2]));
     refuse(Some(number), "third column", &given, "valid points alone, or missing = \"fill\"")
 }

@@ -6,7 +6,8 @@ use std::io::{Cursor, Read};
 use zip::ZipArchive;
 use zip::read::ZipFile;
 
-use crate::scene::profile::{ProfileError, refuse, text};
+use crate::scene::profile::{ProfileError, refuse};
+use crate::scene::text_table::decode;
 
 /// The longest document, bytes: heights inline of some million points.
 const LONGEST_MAIN: u64 = 1 << 27;
@@ -42,8 +43,11 @@ impl<'a> Archive<'a> {
         if bytes.len() as u64 > LONGEST_MAIN {
             return Err(refuse(None, "main.xml", "too long", &format!("at most {LONGEST_MAIN} bytes")));
         }
-        let text =
-            text::text_of(&bytes).map_err(|problem| ProfileError { line: None, key: "main.xml".into(), problem })?;
+        let text = decode(&bytes).map_err(|error| ProfileError {
+            line: None,
+            key: "main.xml".into(),
+            problem: error.into(),
+        })?;
         Ok(text.into_owned())
     }
 
