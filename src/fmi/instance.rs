@@ -3,8 +3,8 @@
 use std::ffi::CString;
 use std::sync::Arc;
 
-use crate::outputs::{self, Output, Variable};
-use crate::scene::{OutputGroup, Parameter, Unit, Value};
+use crate::outputs::{self, Output};
+use crate::scene::{Parameter, Value};
 use crate::simulation::{Handover, ModeChange};
 
 use super::beyond::Beyond;
@@ -237,7 +237,8 @@ impl Instance {
         let (true, Ok(plant)) = (self.log.tells(Category::Solver), self.run.plant()) else { return };
         let Some(simulation) = plant.simulation() else { return };
         let mut values = [0.0; 3];
-        simulation.evaluate(&[Output::Steps, Output::Rejected, Output::Events].map(count), &mut values);
+        let counts = [Output::Steps, Output::Rejected, Output::Events].into_iter().filter_map(outputs::variable);
+        simulation.evaluate(&counts.collect::<Vec<_>>(), &mut values);
         let [steps, rejected, events] = values;
         let time = self.run.clock.time;
         let text = format!("t = {time} s: {steps} steps, {rejected} rejected, {events} mode changes since the start");
@@ -258,18 +259,6 @@ fn mode(number: i8) -> &'static str {
         1 => "slipping forwards",
         -1 => "slipping backwards",
         _ => "sticking",
-    }
-}
-
-/// A count that is told whether or not the scene has it as an output.
-fn count(output: Output) -> Variable {
-    Variable {
-        output,
-        group: OutputGroup::Solver,
-        name: String::new(),
-        unit: Unit::One,
-        kind: outputs::Kind::Integer,
-        description: String::new(),
     }
 }
 

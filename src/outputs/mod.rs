@@ -1,10 +1,192 @@
-//! What a run gives: the variables of the output groups and their values.
+//! The outputs of a run: which variables a scene has (`Variable`), and their values, directional derivatives and direct
+//! dependencies at one instant of the run (`Snapshot`). All that differs from output to output stands in one table.
 
-mod dependencies;
 mod derivative;
 mod snapshot;
-mod variables;
+mod table;
 
-pub use dependencies::{Dependencies, dependencies};
 pub use snapshot::{Accounts, Counters, Energies, Snapshot};
-pub use variables::{Kind, Output, Variable, unit_of, variable, variables};
+
+use crate::scene::{OutputGroup, Scene, Unit};
+use table::{Row, TABLE};
+
+/// The quantity behind an output variable; its row in the table says more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Output {
+    /// F_x = Σ F_x,i, N.
+    ForceX,
+    /// F_z = Σ F_z,i, N.
+    ForceZ,
+    /// Power dissipated in dampers, Maxwell elements and friction, W.
+    DissipatedPower,
+    /// Energy dissipated since the start through all channels, J.
+    DissipatedEnergy,
+    /// Energy dissipated in dampers, J.
+    DamperEnergy,
+    /// Energy dissipated in Maxwell elements, J.
+    MaxwellEnergy,
+    /// Energy dissipated in friction, J.
+    FrictionEnergy,
+    /// Energy dissipated in impacts, J.
+    ImpactEnergy,
+    /// Σ -F_N s/q, N.
+    Hysteresis,
+    /// Σ -F_T/q, N.
+    Adhesion,
+    /// |F_x|/F_z, 0 where F_z ≤ 0.
+    FrictionCoefficient,
+    /// Number of masses in contact.
+    ContactCount,
+    /// Number of masses that stick.
+    StickingCount,
+    /// Masses in contact over all masses.
+    ContactRatio,
+    /// Area of the masses in contact, m².
+    ContactArea,
+    /// Sum of the contact forces on the masses along x, N.
+    ContactForceX,
+    /// Sum of the contact forces on the masses along z, N.
+    ContactForceZ,
+    /// Work of the carrier since the start, J.
+    InputEnergy,
+    /// T, J.
+    KineticEnergy,
+    /// V, J.
+    ElasticEnergy,
+    /// Residual of the energy balance, J.
+    EnergyResidual,
+    /// Derivative of F_x at the end of a step by the target of û in that step, N/m.
+    TangentXU,
+    /// Derivative of F_x by the target of ŵ, N/m.
+    TangentXW,
+    /// Derivative of F_z by the target of û, N/m.
+    TangentZU,
+    /// Derivative of F_z by the target of ŵ, N/m.
+    TangentZW,
+    /// Accepted steps since the start.
+    Steps,
+    /// Mode changes since the start.
+    Events,
+    /// Rejected steps since the start.
+    Rejected,
+    /// Estimated accumulated error of F_z over its largest value so far.
+    EstimatedError,
+    /// Processor time since the start, s.
+    RunTime,
+    /// Position of mass `.0` (from 0) along x, m.
+    ElementX(usize),
+    /// Height of mass `.0` (from 0), m.
+    ElementZ(usize),
+    /// Normal force on mass `.0` (from 0), N.
+    ElementNormalForce(usize),
+    /// Friction force on mass `.0` (from 0), against v_t, N.
+    ElementFrictionForce(usize),
+    /// Mode of mass `.0` (from 0): 0 free, 1 or -1 slipping, 2 sticking.
+    ElementMode(usize),
+}
+
+/// The type of a variable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A Real, continuous.
+    Real,
+    /// An Integer, discrete.
+    Integer,
+}
+
+/// An output variable of a scene: a column of the result file, a variable of the FMU.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variable {
+    /// The quantity.
+    pub output: Output,
+    /// The output group that it belongs to.
+    pub group: OutputGroup,
+    /// The variable's name.
+    pub name: String,
+    /// The unit of its values.
+    pub unit: Unit,
+    /// Real or Integer.
+    pub kind: Kind,
+    /// What it is, in a few words.
+    pub description: String,
+    row: &'static Row,
+    /// Which mass (from 0) it belongs to, if to a single one; else 0.
+    mass: usize,
+}
+
+impl Variable {
+    /// Whether it is an output of the FMU; the fields of the elements are local variables.
+    pub fn is_output(&self) -> bool {
+        self.group != OutputGroup::Elements
+    }
+
+    /// The variable of a quantity of the whole layer.
+    fn of_layer(row: &'static Row, output: Output) -> Self {
+        Self::named(row, output, 0, row.name.into(), row.description.into())
+    }
+
+    /// The variable of mass `i` (from 0).
+    fn of_mass(row: &'static Row, output: Output, i: usize) -> Self {
+        let name = format!("element[{}].{}", i + 1, row.name);
+        Self::named(row, output, i, name, format!("{} {}", row.description, i + 1))
+    }
+
+    fn named(row: &'static Row, output: Output, mass: usize, name: String, description: String) -> Self {
+        Self { output, group: row.group, name, unit: row.unit, kind: row.kind, description, row, mass }
+    }
+}
+
+/// The output variables of `scene`, in the order of the result files.
+pub fn variables(scene: &Scene) -> Vec<Variable> {
+    scene.outputs.iter().flat_map(|&group| group_variables(scene, group)).collect()
+}
+
+fn group_variables(scene: &Scene, group: OutputGroup) -> Vec<Variable> {
+    let rows = || TABLE.iter().filter(|row| row.group == group && (row.exists)(scene));
+    let of_layer = rows().filter_map(|row| row.of_layer().map(|output| Variable::of_layer(row, output)));
+    let of_mass = |i| rows().filter_map(move |row| row.of_mass(i).map(|output| Variable::of_mass(row, output, i)));
+    of_layer.chain((0..scene.layer.masses).flat_map(of_mass)).collect()
+}
+
+/// The variable of an output, whatever the scene; `None` for those of single masses.
+pub fn variable(output: Output) -> Option<Variable> {
+    let row = TABLE.iter().find(|row| row.is(output))?;
+    row.of_layer().map(|output| Variable::of_layer(row, output))
+}
+
+/// The unit of the output variable called `name`, whatever the scene; `None` for a name that no scene can have.
+pub fn unit_of(name: &str) -> Option<Unit> {
+    let (name, of_mass) = name.split_once("].").map_or((name, false), |(_, field)| (field, true));
+    let named = |row: &&Row| row.name == name && row.of_layer().is_none() == of_mass;
+    TABLE.iter().find(named).map(|row| row.unit)
+}
+
+/// The inputs on which something depends directly: with all states frozen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Dependencies {
+    /// On u.
+    pub on_u: bool,
+    /// On w.
+    pub on_w: bool,
+}
+
+impl Dependencies {
+    /// The components of a direction (along u, along w) that count.
+    pub fn part_of(self, (du, dw): (f64, f64)) -> (f64, f64) {
+        (if self.on_u { du } else { 0.0 }, if self.on_w { dw } else { 0.0 })
+    }
+
+    fn or(self, other: Self) -> Self {
+        Self { on_u: self.on_u || other.on_u, on_w: self.on_w || other.on_w }
+    }
+
+    fn only_if(self, condition: bool) -> Self {
+        if condition { self } else { Self::default() }
+    }
+}
+
+/// The inputs on which `output` depends directly in `scene`.
+pub fn dependencies(scene: &Scene, output: Output) -> Dependencies {
+    let of_row = |row: &Row| (row.dependencies)(scene);
+    TABLE.iter().find(|row| row.is(output)).map_or_else(Dependencies::default, of_row)
+}

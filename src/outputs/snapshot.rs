@@ -1,8 +1,11 @@
 //! The values of output variables at one instant.
 
+use std::cell::OnceCell;
+
 use serde::{Deserialize, Serialize};
 
-use super::{Output, Variable};
+use super::Variable;
+use super::derivative::CarrierShift;
 use crate::math::{Numbers, visit_all};
 use crate::model::{
     CarrierPoint, ChannelEnergies, ContactForces, Forces, Mode, Model, Powers, State, elastic_energy, kinetic_energy,
@@ -126,79 +129,101 @@ pub struct Snapshot<'a> {
     pub counters: &'a Counters,
 }
 
-/// Sums over the masses in contact.
-#[derive(Clone, Copy, Default)]
-struct ContactSums {
-    hysteresis: f64,
-    adhesion: f64,
-    force_z: f64,
+/// A snapshot with the sums that several outputs need: each is evaluated once, when it is first asked for.
+#[derive(Debug)]
+pub(super) struct Evaluation<'a> {
+    pub(super) at: &'a Snapshot<'a>,
+    contact_sums: OnceCell<ContactSums>,
+    kinetic_energy: OnceCell<f64>,
+    elastic_energy: OnceCell<f64>,
+}
+
+/// Sums over the masses in contact, N.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct ContactSums {
+    pub(super) hysteresis: f64,
+    pub(super) adhesion: f64,
+    pub(super) force_z: f64,
+}
+
+impl<'a> Evaluation<'a> {
+    fn new(at: &'a Snapshot<'a>) -> Self {
+        let (kinetic_energy, elastic_energy) = (OnceCell::new(), OnceCell::new());
+        Self { at, contact_sums: OnceCell::new(), kinetic_energy, elastic_energy }
+    }
+
+    pub(super) fn contact_sums(&self) -> &ContactSums {
+        self.contact_sums.get_or_init(|| self.at.contact_sums())
+    }
+
+    /// T, J.
+    pub(super) fn kinetic_energy(&self) -> f64 {
+        *self.kinetic_energy.get_or_init(|| kinetic_energy(self.at.model, self.at.state))
+    }
+
+    /// V, J.
+    pub(super) fn elastic_energy(&self) -> f64 {
+        *self.elastic_energy.get_or_init(|| elastic_energy(self.at.model, self.at.state))
+    }
+
+    /// E_in - Δ(T + V) - E_diss, J.
+    pub(super) fn energy_residual(&self) -> f64 {
+        let energies = &self.at.energies;
+        let gained = self.kinetic_energy() + self.elastic_energy() - energies.initial;
+        energies.channels.input - gained - energies.dissipated()
+    }
 }
 
 impl Snapshot<'_> {
-    /// Writes the values of `variables`, in their order; Integers as whole numbers. What no variable asks for is not
-    /// computed.
+    /// Writes the values of `variables`, in their order, into `values`; Integers as whole numbers. What no variable
+    /// asks for is not computed.
     pub fn evaluate(&self, variables: &[Variable], values: &mut [f64]) {
-        let asked = |outputs: &[Output]| variables.iter().any(|variable| outputs.contains(&variable.output));
-        let (mut sums, mut power, mut kinetic, mut elastic) = (ContactSums::default(), 0.0, 0.0, 0.0);
-        if asked(&[Output::Hysteresis, Output::Adhesion, Output::ContactForceX, Output::ContactForceZ]) {
-            sums = self.contact_sums();
-        }
-        if asked(&[Output::DissipatedPower]) {
-            power = Powers::evaluate(self.model, self.state, self.carrier, self.forces).dissipated();
-        }
-        if asked(&[Output::KineticEnergy, Output::ElasticEnergy, Output::EnergyResidual]) {
-            kinetic = kinetic_energy(self.model, self.state);
-            elastic = elastic_energy(self.model, self.state);
-        }
-        let count = |test: fn(&Mode) -> bool| self.state.mode.iter().filter(|mode| test(mode)).count() as f64;
-        let channels = &self.energies.channels;
+        let now = Evaluation::new(self);
         for (variable, value) in variables.iter().zip(values) {
-            *value = match variable.output {
-                Output::ForceX => self.forces.on_carrier_x(),
-                Output::ForceZ => self.forces.on_carrier_z(),
-                Output::DissipatedPower => power,
-                Output::DissipatedEnergy => self.energies.dissipated(),
-                Output::DamperEnergy => channels.damper,
-                Output::MaxwellEnergy => channels.maxwell,
-                Output::FrictionEnergy => channels.friction,
-                Output::ImpactEnergy => self.energies.impact,
-                Output::Hysteresis => sums.hysteresis,
-                Output::Adhesion => sums.adhesion,
-                Output::FrictionCoefficient => self.friction_coefficient(),
-                Output::ContactCount => count(|mode| mode.in_contact()),
-                Output::StickingCount => count(|&mode| mode == Mode::Stick),
-                Output::ContactRatio => count(|mode| mode.in_contact()) / self.model.masses() as f64,
-                Output::ContactArea => count(|mode| mode.in_contact()) * self.model.element_area,
-                Output::ContactForceX => sums.hysteresis + sums.adhesion,
-                Output::ContactForceZ => sums.force_z,
-                Output::InputEnergy => channels.input,
-                Output::KineticEnergy => kinetic,
-                Output::ElasticEnergy => elastic,
-                Output::EnergyResidual => {
-                    channels.input - (kinetic + elastic - self.energies.initial) - self.energies.dissipated()
-                }
-                Output::TangentXU => self.tangents[0],
-                Output::TangentXW => self.tangents[1],
-                Output::TangentZU => self.tangents[2],
-                Output::TangentZW => self.tangents[3],
-                Output::Steps => held(self.counters.steps),
-                Output::Events => held(self.counters.events),
-                Output::Rejected => held(self.counters.rejected),
-                Output::EstimatedError => self.counters.estimated_error(),
-                Output::RunTime => self.counters.run_time,
-                Output::ElementX(i) => self.model.rest_x[i] + (self.displacement.0 + self.state.elongation_x[i]),
-                Output::ElementZ(i) => self.model.rest_z[i] + (self.displacement.1 + self.state.elongation_z[i]),
-                Output::ElementNormalForce(i) => self.contact(i).map_or(0.0, |contact| contact.normal),
-                Output::ElementFrictionForce(i) => self.contact(i).map_or(0.0, |contact| self.friction(i, &contact)),
-                Output::ElementMode(i) => f64::from(self.mode(i).number()),
-            };
+            *value = variable.row.value(&now, variable.mass);
         }
     }
 
-    /// |F_x|/F_z, 0 where F_z ≤ 0; held at the largest number where next to nothing presses.
-    fn friction_coefficient(&self) -> f64 {
+    /// Writes into `values` the derivatives of `variables`, in their order, with the carrier shifted along x and z by
+    /// `direction` (m per unit) and all states frozen.
+    pub fn differentiate(&self, variables: &[Variable], direction: (f64, f64), values: &mut [f64]) {
+        let (now, shift) = (Evaluation::new(self), CarrierShift::new(self.model, direction));
+        for (variable, value) in variables.iter().zip(values) {
+            *value = variable.row.derivative(&now, variable.mass, &shift);
+        }
+    }
+
+    pub(super) fn powers(&self) -> Powers {
+        Powers::evaluate(self.model, self.state, self.carrier, self.forces)
+    }
+
+    /// |F_x|/F_z, 0 where F_z ≤ 0; at most the largest number where F_z is next to nothing.
+    pub(super) fn friction_coefficient(&self) -> f64 {
         let normal = self.forces.on_carrier_z();
         if normal > 0.0 { (self.forces.on_carrier_x().abs() / normal).min(f64::MAX) } else { 0.0 }
+    }
+
+    /// The number of masses whose mode passes `test`.
+    pub(super) fn count(&self, test: fn(Mode) -> bool) -> f64 {
+        self.state.mode.iter().filter(|&&mode| test(mode)).count() as f64
+    }
+
+    /// Position of mass `i` along x and z, m.
+    pub(super) fn position(&self, i: usize) -> (f64, f64) {
+        (
+            self.model.rest_x[i] + (self.displacement.0 + self.state.elongation_x[i]),
+            self.model.rest_z[i] + (self.displacement.1 + self.state.elongation_z[i]),
+        )
+    }
+
+    /// F_N on mass `i`, N; 0 where it is free.
+    pub(super) fn normal_force(&self, i: usize) -> f64 {
+        self.contact(i).map_or(0.0, |contact| contact.normal)
+    }
+
+    /// F_T on mass `i` against v_t, N; 0 where it is free.
+    pub(super) fn friction_force(&self, i: usize) -> f64 {
+        self.contact(i).map_or(0.0, |contact| self.friction(i, &contact))
     }
 
     /// The surface pushes a mass with F_N n - F_T t, n = (-s, 1)/q, t = (1, s)/q (6), (7).
@@ -226,16 +251,11 @@ impl Snapshot<'_> {
         if self.model.has_friction { contact.friction(self.model, mode, v) } else { 0.0 }
     }
 
-    /// The mode of mass `i`; without friction a contact slips the way it moves.
-    fn mode(&self, i: usize) -> Mode {
+    /// The mode of mass `i`; without friction a contact slips in the direction of its velocity.
+    pub(super) fn mode(&self, i: usize) -> Mode {
         match self.state.mode[i] {
             mode if mode.slips() && !self.model.has_friction => Mode::along(self.state.velocity_x[i]),
             mode => mode,
         }
     }
-}
-
-/// A counter as an Integer of FMI: held at 2³¹ - 1.
-fn held(count: u64) -> f64 {
-    count.min(i32::MAX as u64) as f64
 }

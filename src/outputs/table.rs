@@ -1,0 +1,321 @@
+//! The table of the outputs: one row each.
+//!
+//! To add an output, add a variant to [`Output`] and a row here.
+//!
+//! # Direct dependencies
+//!
+//! Which outputs depend directly on the inputs, with the states frozen? The states are the positions and velocities of
+//! the masses, the dashpots' y_j and the contact modes, all in the inertial frame. The inputs u and w then enter through
+//! the elongations ξ_i - u of the horizontal and ζ_i - w of the vertical links alone; rates of the inputs are no inputs.
+//! So:
+//!
+//! - F = c e + d ė + Σ c_j (e - y_j) of a carrier link, and with it F_x or F_z, depends on its input where the link has
+//!   a spring or Maxwell elements. A damper alone gives no dependency: ė is a rate.
+//! - F_N = (m κ ẋ² - f_z + s f_x)/q of a mass in contact depends on w through f_z and, on a slope, on u through f_x;
+//!   F_T depends on μ F_N while it slips and on f·t = (f_x + s f_z)/q while it sticks. So do the sums of the contact
+//!   forces.
+//! - P_maxwell = Σ c_j τ_j ẏ_j² with ẏ_j = (e - y_j)/τ_j depends on each input whose link has Maxwell elements;
+//!   P_friction = Σ F_T v_t depends on F_N where there is Coulomb friction (a shear force is constant while the mass
+//!   slips, and where it sticks v_t = 0); P_damper has no dependency.
+//! - V depends on each input whose link has a spring or Maxwell elements, and with V `energy.residual`.
+//! - T, all that is integrated and all that is counted are states or functions of states alone.
+
+use std::mem::discriminant;
+
+use super::derivative::{CarrierShift, ContactChange};
+use super::snapshot::Evaluation;
+use super::{Dependencies, Kind, Output};
+use crate::model::Mode;
+use crate::scene::{Link, LinkKind, OutputGroup, Scene, Unit};
+
+/// One output.
+#[derive(Debug)]
+pub(super) struct Row {
+    pub group: OutputGroup,
+    /// Of the variable; of a quantity of single masses the part behind `element[i].`.
+    pub name: &'static str,
+    pub kind: Kind,
+    pub unit: Unit,
+    pub description: &'static str,
+    /// Whether a scene has it: a channel of dissipation, say, that the scene cannot have is no variable.
+    pub exists: fn(&Scene) -> bool,
+    /// The inputs on which it depends directly.
+    pub dependencies: fn(&Scene) -> Dependencies,
+    pub quantity: Quantity,
+}
+
+/// The value of an output and its derivative when the carrier is shifted; `None` where it has no direct dependency.
+#[derive(Debug)]
+pub(super) enum Quantity {
+    /// A quantity of the whole layer.
+    Layer {
+        output: Output,
+        value: fn(&Evaluation<'_>) -> f64,
+        derivative: Option<fn(&Evaluation<'_>, &CarrierShift) -> f64>,
+    },
+    /// A quantity of each mass i (from 0).
+    Mass {
+        output: fn(usize) -> Output,
+        value: fn(&Evaluation<'_>, usize) -> f64,
+        derivative: Option<fn(&Evaluation<'_>, usize, &CarrierShift) -> f64>,
+    },
+}
+
+/// Rows are the same only if they are one.
+impl PartialEq for Row {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self, other)
+    }
+}
+
+impl Row {
+    /// The output, if it is one of the whole layer.
+    pub(super) fn of_layer(&self) -> Option<Output> {
+        match self.quantity {
+            Quantity::Layer { output, .. } => Some(output),
+            Quantity::Mass { .. } => None,
+        }
+    }
+
+    /// The output of mass `i` (from 0), if it is one of single masses.
+    pub(super) fn of_mass(&self, i: usize) -> Option<Output> {
+        match self.quantity {
+            Quantity::Layer { .. } => None,
+            Quantity::Mass { output, .. } => Some(output(i)),
+        }
+    }
+
+    /// Whether this is the row of `output`, of whichever mass.
+    pub(super) fn is(&self, output: Output) -> bool {
+        let own = self.of_layer().or_else(|| self.of_mass(0));
+        own.is_some_and(|own| discriminant(&own) == discriminant(&output))
+    }
+
+    /// The value in `now`; of mass `i` if it is a quantity of single masses.
+    pub(super) fn value(&self, now: &Evaluation<'_>, i: usize) -> f64 {
+        match self.quantity {
+            Quantity::Layer { value, .. } => value(now),
+            Quantity::Mass { value, .. } => value(now, i),
+        }
+    }
+
+    /// The derivative in `now` as the carrier is shifted; of mass `i` if it is a quantity of single masses.
+    pub(super) fn derivative(&self, now: &Evaluation<'_>, i: usize, shift: &CarrierShift) -> f64 {
+        match self.quantity {
+            Quantity::Layer { derivative, .. } => derivative.map_or(0.0, |derivative| derivative(now, shift)),
+            Quantity::Mass { derivative, .. } => derivative.map_or(0.0, |derivative| derivative(now, i, shift)),
+        }
+    }
+
+    /// The row of a quantity that not every scene has.
+    const fn only_where(mut self, exists: fn(&Scene) -> bool) -> Self {
+        self.exists = exists;
+        self
+    }
+
+    /// The row of a quantity of the layer that depends directly on inputs.
+    const fn depending(
+        mut self,
+        dependencies: fn(&Scene) -> Dependencies,
+        change: fn(&Evaluation<'_>, &CarrierShift) -> f64,
+    ) -> Self {
+        self.dependencies = dependencies;
+        if let Quantity::Layer { derivative, .. } = &mut self.quantity {
+            *derivative = Some(change);
+        }
+        self
+    }
+
+    /// The row of a quantity of single masses that depends directly on inputs.
+    const fn each_depending(
+        mut self,
+        dependencies: fn(&Scene) -> Dependencies,
+        change: fn(&Evaluation<'_>, usize, &CarrierShift) -> f64,
+    ) -> Self {
+        self.dependencies = dependencies;
+        if let Quantity::Mass { derivative, .. } = &mut self.quantity {
+            *derivative = Some(change);
+        }
+        self
+    }
+}
+
+/// The row of a quantity of the whole layer.
+const fn layer(
+    output: Output,
+    group: OutputGroup,
+    name: &'static str,
+    kind: Kind,
+    unit: Unit,
+    description: &'static str,
+    value: fn(&Evaluation<'_>) -> f64,
+) -> Row {
+    let quantity = Quantity::Layer { output, value, derivative: None };
+    Row { group, name, kind, unit, description, exists: always, dependencies: none, quantity }
+}
+
+/// The row of a quantity of each mass.
+const fn mass(
+    output: fn(usize) -> Output,
+    name: &'static str,
+    kind: Kind,
+    unit: Unit,
+    description: &'static str,
+    value: fn(&Evaluation<'_>, usize) -> f64,
+) -> Row {
+    let group = OutputGroup::Elements;
+    let quantity = Quantity::Mass { output, value, derivative: None };
+    Row { group, name, kind, unit, description, exists: always, dependencies: none, quantity }
+}
+
+/// All outputs, in the order of the result files within their groups.
+#[rustfmt::skip]
+pub(super) static TABLE: [Row; 35] = {
+    use Kind::{Integer, Real};
+    use OutputGroup::{Contact, Dissipation, Energy, Forces, Friction, Solver, Tangent};
+    use Unit::{Joule, Meter, Newton, NewtonPerMeter, One, Second, SquareMeter, Watt};
+    [
+        layer(Output::ForceX, Forces, "F_x", Real, Newton, "Force of the layer on the carrier along x",
+            |now| now.at.forces.on_carrier_x())
+            .depending(elastic_x, |now, shift| now.at.force_changes(shift).0),
+        layer(Output::ForceZ, Forces, "F_z", Real, Newton, "Force of the layer on the carrier along z, positive when compressed",
+            |now| now.at.forces.on_carrier_z())
+            .depending(elastic_z, |now, shift| now.at.force_changes(shift).1),
+        layer(Output::DissipatedPower, Dissipation, "P_diss", Real, Watt, "Power lost now",
+            |now| now.at.powers().dissipated())
+            .depending(dissipated_power, |now, shift| now.at.maxwell_power_change(shift) + now.at.friction_power_change(shift)),
+        layer(Output::DissipatedEnergy, Dissipation, "E_diss", Real, Joule, "Energy lost since the start, all channels",
+            |now| now.at.energies.dissipated()),
+        layer(Output::DamperEnergy, Dissipation, "dissipation.E_damper", Real, Joule, "Energy lost in dampers",
+            |now| now.at.energies.channels.damper)
+            .only_where(has_dampers),
+        layer(Output::MaxwellEnergy, Dissipation, "dissipation.E_maxwell", Real, Joule, "Energy lost in Maxwell elements",
+            |now| now.at.energies.channels.maxwell)
+            .only_where(has_maxwell_elements),
+        layer(Output::FrictionEnergy, Dissipation, "dissipation.E_friction", Real, Joule, "Energy lost in friction",
+            |now| now.at.energies.channels.friction)
+            .only_where(|scene| scene.friction.is_some()),
+        layer(Output::ImpactEnergy, Dissipation, "dissipation.E_impact", Real, Joule, "Energy lost in impacts",
+            |now| now.at.energies.impact),
+        layer(Output::Hysteresis, Friction, "friction.F_hysteresis", Real, Newton, "Tangential force of the normal forces on the slopes",
+            |now| now.contact_sums().hysteresis)
+            .depending(elastic, |now, shift| now.at.contact_sum(shift, ContactChange::hysteresis)),
+        layer(Output::Adhesion, Friction, "friction.F_adhesion", Real, Newton, "Tangential force of the friction in the contacts",
+            |now| now.contact_sums().adhesion)
+            .depending(elastic_friction, |now, shift| now.at.contact_sum(shift, ContactChange::adhesion)),
+        layer(Output::FrictionCoefficient, Friction, "friction.coefficient", Real, One, "|F_x|/F_z, 0 where F_z <= 0",
+            |now| now.at.friction_coefficient())
+            .depending(elastic, |now, shift| now.at.friction_coefficient_change(shift)),
+        layer(Output::ContactCount, Contact, "contact.count", Integer, One, "Masses in contact",
+            |now| now.at.count(Mode::in_contact)),
+        layer(Output::StickingCount, Contact, "contact.sticking", Integer, One, "Masses that stick",
+            |now| now.at.count(|mode| mode == Mode::Stick)),
+        layer(Output::ContactRatio, Contact, "contact.ratio", Real, One, "Masses in contact over all masses",
+            |now| now.at.count(Mode::in_contact) / now.at.model.masses() as f64),
+        layer(Output::ContactArea, Contact, "contact.area", Real, SquareMeter, "Area that the masses in contact stand for",
+            |now| now.at.count(Mode::in_contact) * now.at.model.element_area)
+            .only_where(|scene| scene.layer.element_area().is_some()),
+        layer(Output::ContactForceX, Contact, "contact.F_x", Real, Newton, "Sum of the contact forces on the masses along x",
+            |now| now.contact_sums().hysteresis + now.contact_sums().adhesion)
+            .depending(elastic, |now, shift| now.at.contact_sum(shift, ContactChange::force_x)),
+        layer(Output::ContactForceZ, Contact, "contact.F_z", Real, Newton, "Sum of the contact forces on the masses along z",
+            |now| now.contact_sums().force_z)
+            .depending(elastic, |now, shift| now.at.contact_sum(shift, ContactChange::force_z)),
+        layer(Output::InputEnergy, Energy, "energy.input", Real, Joule, "Work of the carrier on the layer since the start",
+            |now| now.at.energies.channels.input),
+        layer(Output::KineticEnergy, Energy, "energy.kinetic", Real, Joule, "Kinetic energy of the masses",
+            |now| now.kinetic_energy()),
+        layer(Output::ElasticEnergy, Energy, "energy.elastic", Real, Joule, "Elastic energy of the links",
+            |now| now.elastic_energy())
+            .depending(elastic, |now, shift| now.at.elastic_energy_change(shift)),
+        layer(Output::EnergyResidual, Energy, "energy.residual", Real, Joule, "What the energy balance misses: the run's numerical error",
+            |now| now.energy_residual())
+            .depending(elastic, |now, shift| -now.at.elastic_energy_change(shift)),
+        layer(Output::TangentXU, Tangent, "tangent.dF_x_du", Real, NewtonPerMeter, "Change of F_x at the end of a step with the target of u in that step",
+            |now| now.at.tangents[0]),
+        layer(Output::TangentXW, Tangent, "tangent.dF_x_dw", Real, NewtonPerMeter, "Change of F_x at the end of a step with the target of w in that step",
+            |now| now.at.tangents[1]),
+        layer(Output::TangentZU, Tangent, "tangent.dF_z_du", Real, NewtonPerMeter, "Change of F_z at the end of a step with the target of u in that step",
+            |now| now.at.tangents[2]),
+        layer(Output::TangentZW, Tangent, "tangent.dF_z_dw", Real, NewtonPerMeter, "Change of F_z at the end of a step with the target of w in that step",
+            |now| now.at.tangents[3]),
+        layer(Output::Steps, Solver, "solver.steps", Integer, One, "Accepted steps since the start",
+            |now| as_integer(now.at.counters.steps)),
+        layer(Output::Events, Solver, "solver.events", Integer, One, "Mode changes since the start",
+            |now| as_integer(now.at.counters.events)),
+        layer(Output::Rejected, Solver, "solver.rejected", Integer, One, "Rejected steps since the start",
+            |now| as_integer(now.at.counters.rejected)),
+        layer(Output::EstimatedError, Solver, "solver.error", Real, One, "Estimated accumulated error of F_z over its largest value so far",
+            |now| now.at.counters.estimated_error()),
+        layer(Output::RunTime, Solver, "solver.run_time", Real, Second, "Processor time since the start",
+            |now| now.at.counters.run_time),
+        mass(Output::ElementX, "x", Real, Meter, "Place along x of mass",
+            |now, i| now.at.position(i).0),
+        mass(Output::ElementZ, "z", Real, Meter, "Height of mass",
+            |now, i| now.at.position(i).1),
+        mass(Output::ElementNormalForce, "F_N", Real, Newton, "Normal force on mass",
+            |now, i| now.at.normal_force(i))
+            .each_depending(elastic, |now, i, shift| now.at.contact_change(i, shift).normal),
+        mass(Output::ElementFrictionForce, "F_T", Real, Newton, "Friction force, against its velocity, on mass",
+            |now, i| now.at.friction_force(i))
+            .each_depending(elastic_friction, |now, i, shift| now.at.contact_change(i, shift).friction),
+        mass(Output::ElementMode, "mode", Integer, One, "Mode (0 free, 1 or -1 slipping, 2 sticking) of mass",
+            |now, i| f64::from(now.at.mode(i).number())),
+    ]
+};
+
+/// A counter as an Integer of FMI: 2³¹ - 1 at most.
+fn as_integer(count: u64) -> f64 {
+    count.min(i32::MAX as u64) as f64
+}
+
+fn always(_: &Scene) -> bool {
+    true
+}
+
+fn any_link(scene: &Scene, test: fn(&Link) -> bool) -> bool {
+    LinkKind::ALL.into_iter().any(|kind| scene.link(kind).as_ref().is_some_and(test))
+}
+
+fn has_maxwell_elements(scene: &Scene) -> bool {
+    any_link(scene, |link| !link.maxwell.is_empty())
+}
+
+/// `solver.reduce` may replace a Maxwell element by a damper.
+fn has_dampers(scene: &Scene) -> bool {
+    any_link(scene, |link| link.damping.is_some()) || (scene.solver.reduce > 0.0 && has_maxwell_elements(scene))
+}
+
+fn none(_: &Scene) -> Dependencies {
+    Dependencies::default()
+}
+
+/// Springs and Maxwell elements of the links to the carrier.
+fn elastic(scene: &Scene) -> Dependencies {
+    carrier_links(scene, |link| link.stiffness.is_some() || !link.maxwell.is_empty())
+}
+
+fn elastic_x(scene: &Scene) -> Dependencies {
+    Dependencies { on_w: false, ..elastic(scene) }
+}
+
+fn elastic_z(scene: &Scene) -> Dependencies {
+    Dependencies { on_u: false, ..elastic(scene) }
+}
+
+fn elastic_friction(scene: &Scene) -> Dependencies {
+    elastic(scene).only_if(scene.friction.is_some())
+}
+
+fn dissipated_power(scene: &Scene) -> Dependencies {
+    let coulomb = scene.friction.as_ref().is_some_and(|friction| friction.coulomb.is_some());
+    carrier_links(scene, |link| !link.maxwell.is_empty()).or(elastic(scene).only_if(coulomb))
+}
+
+/// The inputs whose links to the carrier pass `test`: u elongates the horizontal ones, w the vertical ones.
+fn carrier_links(scene: &Scene, test: fn(&Link) -> bool) -> Dependencies {
+    Dependencies {
+        on_u: scene.link(LinkKind::Horizontal).as_ref().is_some_and(test),
+        on_w: scene.link(LinkKind::Vertical).as_ref().is_some_and(test),
+    }
+}
