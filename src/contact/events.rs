@@ -29,12 +29,12 @@ const ROUNDINGS: f64 = 4.0;
 impl EventTolerance {
     /// The tolerances that go with those of the steps.
     pub fn new(model: &Model, tolerance: &Tolerance) -> Self {
-        let felt = || model.felt_stiffness().max(model.mass * model.felt_frequency().powi(2));
+        let felt = || model.mass_stiffness_without_rods().max(model.mass * model.frequency_without_rods().powi(2));
         let stiffness = model.long_term_stiffness().unwrap_or_else(felt);
         // A rod makes a force of the rounding of its elongation: of the layer's height, the absolute tolerance over the
         // relative one, at most.
         let height = tolerance.position / tolerance.relative;
-        let rounding = ROUNDINGS * f64::EPSILON * height * model.rounded_stiffness();
+        let rounding = ROUNDINGS * f64::EPSILON * height * model.rounding_stiffness();
         Self {
             gap: SHARE * tolerance.position,
             velocity: SHARE * tolerance.velocity,

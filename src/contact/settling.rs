@@ -192,7 +192,7 @@ impl<'a> Correction<'a> {
         let damping = |along, lateral| self.damping(along) + 2.0 * self.passing(lateral, time);
         let damping =
             damping(LinkKind::Horizontal, LinkKind::LateralX) + damping(LinkKind::Vertical, LinkKind::LateralZ) * s * s;
-        let slowing = time * (damping / (q * q) + time * model.glassy_stiffness()) / model.mass;
+        let slowing = time * (damping / (q * q) + time * model.mass_stiffness()) / model.mass;
         // No term in κ: how the profile bends from the touch to here is in v_t already.
         let driving = contact.tangential + self.not_passed(i, rest);
         let beyond =

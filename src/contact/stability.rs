@@ -65,7 +65,7 @@ fn swing(model: &Model) -> (f64, f64) {
     let kind = LinkKind::Horizontal;
     let link = &model.links[kind as usize];
     // From above, as if no dashpot yielded, the frequency falls to the largest there is.
-    let mut square = (link.stiffness + model.rows_of(kind).map(|row| row.stiffness).sum::<f64>()) / model.mass;
+    let mut square = model.instantaneous_stiffness(kind) / model.mass;
     let mut damping = link.damping;
     for _ in 0..MOST_ROUNDS {
         let (before, mut stiffness) = (square, link.stiffness);

@@ -62,7 +62,7 @@ impl EndCorrection {
         self.touches.clear();
         self.contacts.clear();
         self.force = 0.0;
-        let frequency = step.model.felt_frequency();
+        let frequency = step.model.frequency_without_rods();
         let stiffness = step.model.mass * frequency * frequency;
         let mut sum = 0.0;
         for i in 0..step.model.masses() {

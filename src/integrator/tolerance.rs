@@ -57,13 +57,13 @@ pub(super) const NEWTON_SHARE: f64 = 0.05;
 impl Tolerance {
     /// The tolerances of `model` for a relative and an absolute (m) one.
     pub fn new(model: &Model, relative: f64, absolute: f64) -> Self {
-        let felt = model.felt_stiffness();
+        let felt = model.mass_stiffness_without_rods();
         let rod = |kind: LinkKind| (model.is_rod(kind) && felt > 0.0).then(|| Rod::new(model, kind));
         let per_elongation = |kind: LinkKind| if rod(kind).is_some() { felt } else { model.glassy[kind as usize] };
         Self {
             relative,
             position: absolute,
-            velocity: absolute * model.felt_frequency(),
+            velocity: absolute * model.frequency_without_rods(),
             per_elongation: LinkKind::ALL.map(per_elongation),
             rods: LinkKind::ALL.map(rod),
             lasting: model.long_term_stiffness(),

@@ -1,5 +1,5 @@
-//! Power and energy of the layer. E_in = [T + V] + E_damper + E_maxwell + E_friction + E_impact holds exactly in the
-//! model, so what it misses in a run is the run's numerical error.
+//! Powers and energies of the layer. E_in = Δ(T + V) + E_damper + E_maxwell + E_friction + E_impact holds exactly in the
+//! model, so its residual in a run is the run's numerical error.
 
 use serde::{Deserialize, Serialize};
 
@@ -124,12 +124,12 @@ fn friction(model: &Model, state: &State, forces: &Forces) -> f64 {
         })
         .sum();
     let Some(law) = &model.rate_shear else { return at_rest };
-    let beyond = slipping().map(|i| {
+    let excess = slipping().map(|i| {
         let s = state.surface[i].slope;
         let speed = state.mode[i].direction() * state.velocity_x[i] * (1.0 + s * s).sqrt();
         law.excess(speed) * speed
     });
-    at_rest + beyond.sum::<f64>()
+    at_rest + excess.sum::<f64>()
 }
 
 /// A carrier at rest does no work, whatever the forces.
@@ -144,7 +144,7 @@ pub fn kinetic_energy(model: &Model, state: &State) -> f64 {
     0.5 * model.mass * (square_sum(state.velocity_x.iter().copied()) + square_sum(state.velocity_z.iter().copied()))
 }
 
-/// V = Σ ½ c e² + Σ_j ½ c_j (e - y_j)², J, the dashpots that stand still included.
+/// V = Σ ½ c e² + Σ_j ½ c_j (e - y_j)², J, frozen dashpots included.
 pub fn elastic_energy(model: &Model, state: &State) -> f64 {
     let springs: f64 = LinkKind::ALL.map(|kind| spring_energy(model, state, kind)).iter().sum();
     let row_energy = |row: &super::MaxwellRow| {
@@ -164,7 +164,7 @@ fn spring_energy(model: &Model, state: &State, kind: LinkKind) -> f64 {
     }
 }
 
-/// Σ ½ c e², of the part whose dashpots stand still ½ c_j (e - y_j)².
+/// Σ ½ c e², and ½ c_j (e - y_j)² of the part with frozen dashpots.
 fn springs_energy(model: &Model, kind: LinkKind, elongations: impl Iterator<Item = f64> + Clone) -> f64 {
     let law = &model.links[kind as usize];
     let whole = 0.5 * (law.stiffness - law.frozen) * square_sum(elongations.clone());

@@ -1,9 +1,95 @@
-//! Forces of the links and of the contacts at one instant.
+//! The links (springs, dampers and Maxwell elements in parallel) and their forces at one instant.
 
-use super::{CarrierPoint, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint};
+use std::ops::Range;
+
+use super::reduction::{Reduction, Replacement};
+use super::{CarrierPoint, Model, State};
 use crate::math::sum_of;
+use crate::scene::{Initial, LinkKind, Scene};
 
-/// Forces at one instant, and workspace for them.
+/// The spring and the damper of one kind of link.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LinkLaw {
+    /// Whether the scene has the link at all; an absent one has no forces and no energies.
+    pub present: bool,
+    /// Stiffness c, N/m, that of the Maxwell elements replaced by springs included.
+    pub stiffness: f64,
+    /// Damping d, N s/m, that of the Maxwell elements replaced by dampers included.
+    pub damping: f64,
+    /// Part of the stiffness that belongs to replaced Maxwell elements whose dashpots are frozen at the elongation of the
+    /// start, N/m.
+    pub frozen: f64,
+}
+
+impl LinkLaw {
+    pub(super) fn new(scene: &Scene, kind: LinkKind, reduction: Option<&Reduction>) -> Self {
+        let Some(link) = scene.link(kind) else { return Self::default() };
+        let mut law = Self {
+            present: true,
+            stiffness: link.stiffness.unwrap_or(0.0),
+            damping: link.damping.unwrap_or(0.0),
+            frozen: 0.0,
+        };
+        // At the start the links along x are not elongated, and in an undeformed layer no dashpot is.
+        let elongated = scene.layer.initial == Initial::Relaxed && !kind.is_along_x();
+        let replaced = reduction.map_or(&[][..], |reduction| &reduction.replaced);
+        for one in replaced.iter().filter(|one| one.kind == kind) {
+            match one.by {
+                Replacement::Spring => law.stiffness += one.element.stiffness,
+                Replacement::Damper => law.damping += one.element.stiffness * one.element.relaxation_time,
+            }
+            if one.by == Replacement::Spring && elongated {
+                law.frozen += one.element.stiffness;
+            }
+        }
+        law
+    }
+}
+
+/// One Maxwell element of every link of a kind: its constants, and the indices of the elongations a_j = e - y_j of its
+/// springs in [`State::maxwell`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct MaxwellRow {
+    /// The kind of link.
+    pub kind: LinkKind,
+    /// Stiffness c_j, N/m.
+    pub stiffness: f64,
+    /// Relaxation time τ_j, s.
+    pub relaxation_time: f64,
+    /// Its index in [`Model::relaxation_times`].
+    pub time_index: usize,
+    /// Indices in [`State::maxwell`], link by link.
+    pub range: Range<usize>,
+}
+
+/// The rows of the elements that are not replaced, and their relaxation times, each once.
+pub(super) fn maxwell_rows(scene: &Scene, reduction: Option<&Reduction>) -> (Vec<MaxwellRow>, Vec<f64>) {
+    let kept = |kind: LinkKind, index: usize| reduction.is_none_or(|all| all.replacement(kind, index).is_none());
+    let (mut rows, mut times) = (Vec::new(), Vec::new());
+    let mut start = 0;
+    for kind in LinkKind::ALL {
+        let elements = scene.link(kind).map_or_else(Vec::new, |link| link.maxwell);
+        for (_, element) in elements.iter().enumerate().filter(|&(index, _)| kept(kind, index)) {
+            let end = start + kind.count(scene.layer.masses);
+            let tau = element.relaxation_time;
+            let time_index = times.iter().position(|&known| known == tau).unwrap_or_else(|| {
+                times.push(tau);
+                times.len() - 1
+            });
+            rows.push(MaxwellRow {
+                kind,
+                stiffness: element.stiffness,
+                relaxation_time: tau,
+                time_index,
+                range: start..end,
+            });
+            start = end;
+        }
+    }
+    (rows, times)
+}
+
+/// Forces of the links at one instant.
 #[derive(Clone, Debug, Default)]
 pub struct Forces {
     /// Forces of the links by kind, N; empty where the scene has no such link.
@@ -17,15 +103,15 @@ pub struct Forces {
 }
 
 impl Forces {
-    /// Room for the forces of `model`.
+    /// Workspace for the forces of `model`.
     pub fn new(model: &Model) -> Self {
         let k = model.masses();
-        let workspace = |kind: LinkKind| if model.links[kind as usize].present { kind.count(k) } else { 0 };
-        let by_kind = || LinkKind::ALL.map(|kind| vec![0.0; workspace(kind)]);
+        let links = |kind: LinkKind| if model.links[kind as usize].present { kind.count(k) } else { 0 };
+        let by_kind = || LinkKind::ALL.map(|kind| vec![0.0; links(kind)]);
         Self { link: by_kind(), rate: by_kind(), on_mass_x: vec![0.0; k], on_mass_z: vec![0.0; k] }
     }
 
-    /// The forces in `state` under the carrier's rates.
+    /// Evaluates the forces in `state` with the carrier's rates.
     pub fn evaluate(&mut self, model: &Model, state: &State, carrier: &CarrierPoint) {
         let motion = LinkMotion::of(state, carrier);
         for kind in LinkKind::ALL {
@@ -42,13 +128,13 @@ impl Forces {
         self.sum_on_masses();
     }
 
-    /// ė and F = c e + d ė of every link of a kind, for (c, d), and with the forces `known` added, if any.
+    /// Evaluates ė and F = c e + d ė of every link of a kind with `law` = (c, d), and adds the forces `known` (N), if any.
     pub fn spring_and_damper(&mut self, kind: LinkKind, law: (f64, f64), motion: &LinkMotion<'_>, known: &[f64]) {
         let (rate, force) = (&mut self.rate[kind as usize][..], &mut self.link[kind as usize][..]);
         if kind.is_lateral() {
-            motion.pull_on_neighbours(kind, rate, force, law);
+            motion.lateral_link_forces(kind, rate, force, law);
         } else {
-            motion.pull_on_carrier(kind, rate, force, law);
+            motion.carrier_link_forces(kind, rate, force, law);
         }
         for (force, known) in force.iter_mut().zip(known) {
             *force += known;
@@ -62,7 +148,7 @@ impl Forces {
         sum_on_masses(&mut self.on_mass_z, vertical, lateral_z);
     }
 
-    /// Computes the forces of the links of mass `i` afresh, and those on it and on its neighbours.
+    /// Evaluates the forces of the links of mass `i`, and the sums on it and on its neighbours, anew.
     pub fn refresh(&mut self, model: &Model, state: &State, carrier: &CarrierPoint, i: usize) {
         let k = model.masses();
         let motion = LinkMotion::of(state, carrier);
@@ -79,8 +165,7 @@ impl Forces {
         }
     }
 
-    /// Follows a change of the velocity of mass `i` by (`dx`, `dz`), m/s: the dampers' forces on it and on its
-    /// neighbours.
+    /// Updates the dampers' forces on mass `i` and on its neighbours for a change of its velocity by (`dx`, `dz`), m/s.
     pub fn add_velocity(&mut self, model: &Model, i: usize, (dx, dz): (f64, f64)) {
         for kind in LinkKind::ALL.into_iter().filter(|&kind| model.links[kind as usize].present) {
             let change = if kind.is_along_x() { dx } else { dz };
@@ -105,14 +190,14 @@ impl Forces {
 
     fn refresh_link(&mut self, model: &Model, state: &State, motion: &LinkMotion<'_>, kind: LinkKind, link: usize) {
         let law = &model.links[kind as usize];
-        let (place, velocity, carrier_rate) = motion.along(kind);
+        let (elongation, velocity, carrier_rate) = motion.along(kind);
         let (e, rate) = if kind.is_lateral() {
-            (place[link + 1] - place[link], velocity[link + 1] - velocity[link])
+            (elongation[link + 1] - elongation[link], velocity[link + 1] - velocity[link])
         } else {
-            (place[link], velocity[link] - carrier_rate)
+            (elongation[link], velocity[link] - carrier_rate)
         };
-        let element = |row: &MaxwellRow| row.stiffness * state.maxwell[row.range.start + link];
-        let maxwell: f64 = model.rows_of(kind).map(element).sum();
+        let of_element = |row: &MaxwellRow| row.stiffness * state.maxwell[row.range.start + link];
+        let maxwell: f64 = model.rows_of(kind).map(of_element).sum();
         self.link[kind as usize][link] = law.stiffness * e + law.damping * rate + maxwell;
     }
 
@@ -121,26 +206,20 @@ impl Forces {
         sum(&self.link[LinkKind::Horizontal as usize])
     }
 
-    /// F_z of the layer on the carrier, N: positive when the layer is compressed.
-    ///
-    /// A compressed vertical link (e > 0: the mass is pushed up towards the carrier) pushes the carrier up.
+    /// F_z of the layer on the carrier, N: positive when the layer is compressed (e > 0, the masses are nearer to the
+    /// carrier than at rest).
     pub fn on_carrier_z(&self) -> f64 {
         sum(&self.link[LinkKind::Vertical as usize])
     }
 
-    /// Bytes that the forces hold.
+    /// Bytes that the vectors hold.
     pub fn bytes(&self) -> usize {
         let by_link: usize = self.link.iter().chain(&self.rate).map(Vec::len).sum();
         (by_link + self.on_mass_x.len() + self.on_mass_z.len()) * size_of::<f64>()
     }
-
-    /// What the surface and the links do to mass `i`, which is in contact over `surface`.
-    pub fn contact(&self, model: &Model, i: usize, velocity_x: f64, surface: &SurfacePoint) -> ContactForces {
-        ContactForces::new(model, (self.on_mass_x[i], self.on_mass_z[i]), velocity_x, surface)
-    }
 }
 
-/// Elongations and rates from which those of all links follow.
+/// Elongations of the carrier links and velocities, from which the elongations of all links and their rates follow.
 #[derive(Clone, Copy, Debug)]
 pub struct LinkMotion<'a> {
     /// Elongations of the horizontal links, m.
@@ -167,23 +246,29 @@ impl<'a> LinkMotion<'a> {
         }
     }
 
-    fn pull_on_carrier(&self, kind: LinkKind, rate: &mut [f64], force: &mut [f64], (stiffness, damping): (f64, f64)) {
-        let (place, velocity, carrier_rate) = self.along(kind);
-        for ((force, rate), (e, v)) in force.iter_mut().zip(rate).zip(place.iter().zip(velocity)) {
-            *rate = v - carrier_rate;
-            *force = stiffness * e + damping * *rate;
-        }
-    }
-
-    fn pull_on_neighbours(
+    fn carrier_link_forces(
         &self,
         kind: LinkKind,
         rate: &mut [f64],
         force: &mut [f64],
         (stiffness, damping): (f64, f64),
     ) {
-        let (place, velocity, _) = self.along(kind);
-        let elongations = place.iter().zip(place.iter().skip(1));
+        let (elongation, velocity, carrier_rate) = self.along(kind);
+        for ((force, rate), (e, v)) in force.iter_mut().zip(rate).zip(elongation.iter().zip(velocity)) {
+            *rate = v - carrier_rate;
+            *force = stiffness * e + damping * *rate;
+        }
+    }
+
+    fn lateral_link_forces(
+        &self,
+        kind: LinkKind,
+        rate: &mut [f64],
+        force: &mut [f64],
+        (stiffness, damping): (f64, f64),
+    ) {
+        let (elongation, velocity, _) = self.along(kind);
+        let elongations = elongation.iter().zip(elongation.iter().skip(1));
         let rates = velocity.iter().zip(velocity.iter().skip(1));
         for ((force, rate), ((e, e_next), (v, v_next))) in force.iter_mut().zip(rate).zip(elongations.zip(rates)) {
             *rate = v_next - v;
@@ -224,54 +309,4 @@ fn sum_on_masses(sum: &mut [f64], to_carrier: &[f64], lateral: &[f64]) {
 fn sum_on_mass(i: usize, to_carrier: &[f64], lateral: &[f64]) -> f64 {
     let of = |link: Option<&f64>| link.copied().unwrap_or(0.0);
     of(lateral.get(i)) - of(to_carrier.get(i)) - if i > 0 { of(lateral.get(i - 1)) } else { 0.0 }
-}
-
-/// The forces in one contact, from (6)-(9).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactForces {
-    /// F_N of the surface on the mass, N.
-    pub normal: f64,
-    /// f·t = (f_x + s f_z)/q of the links, N.
-    pub tangential: f64,
-    /// T(0) = μ F_N + A τ_0 + A τ_f(v_c): the largest friction force at rest, N.
-    pub limit: f64,
-    /// q = √(1 + s²).
-    pub q: f64,
-}
-
-impl ContactForces {
-    /// Forces from those of the links on the mass, (f_x, f_z), its velocity ẋ and the surface under it.
-    #[inline]
-    pub fn new(model: &Model, (f_x, f_z): (f64, f64), velocity_x: f64, surface: &SurfacePoint) -> Self {
-        let s = surface.slope;
-        let q = (1.0 + s * s).sqrt();
-        // From (6)-(9): the normal force needs no acceleration.
-        let normal = (model.mass * surface.curvature * velocity_x * velocity_x - f_z + s * f_x) / q;
-        let limit = model.friction_coefficient * normal + model.shear_force;
-        Self { normal, tangential: (f_x + s * f_z) / q, limit, q }
-    }
-
-    /// F_T on a mass in `mode` at the velocity ẋ, N, counted against v_t: what holds a sticking mass, T(v_t) sign(v_t)
-    /// of a slipping one.
-    #[inline]
-    pub fn friction(&self, model: &Model, mode: Mode, velocity_x: f64) -> f64 {
-        match mode {
-            Mode::Free => 0.0,
-            Mode::Stick => self.tangential,
-            Mode::Forward | Mode::Backward => {
-                let sigma = mode.direction();
-                let beyond = model.rate_shear.map_or(0.0, |shear| shear.excess(sigma * velocity_x * self.q));
-                sigma * (self.limit + beyond)
-            }
-        }
-    }
-
-    /// ẍ of a mass in contact in `mode`: m q² ẍ + m s κ ẋ² = f_x + s f_z - F_T q.
-    pub fn acceleration(&self, model: &Model, mode: Mode, velocity_x: f64, surface: &SurfacePoint) -> f64 {
-        if mode == Mode::Stick {
-            return 0.0;
-        }
-        let centripetal = surface.slope * surface.curvature * velocity_x * velocity_x;
-        ((self.tangential - self.friction(model, mode, velocity_x)) / model.mass - centripetal / self.q) / self.q
-    }
 }

@@ -1,15 +1,78 @@
-//! The rate-dependent shear strength of rubber: τ_f(v) = τ_f0 exp(-c [log10(v/v_0)]²) above a creep speed v_c, below
-//! which it is held (B. Lorenz et al., J. Phys.: Condens. Matter 25, 2013).
+//! The contact laws: the normal force of a mass in contact, and its friction.
 //!
-//! What is held, A τ_f(v_c), acts on a contact at rest as well: it is a part of [`Model::shear_force`](super::Model).
-//! The rest is what a contact that slips has beyond that.
+//! Friction has three parts: Coulomb's, a constant shear force, and a shear force that depends on the speed,
+//!
+//!   T(v_t) = μ F_N + A τ_0 + A τ_f(v_t)
+//!
+//! The last is the shear strength of rubber, τ_f(v) = τ_f0 exp(-c [log10(v/v_0)]²) above a creep speed v_c and constant
+//! below it (B. Lorenz et al., J. Phys.: Condens. Matter 25, 2013). Its plateau A τ_f(v_c) acts at rest too and is
+//! counted in [`Model::shear_force`]; a contact that slips has the [excess](RateShear::excess) over it.
 
 use std::f64::consts::LN_10;
 
+use super::{Forces, Mode, Model, SurfacePoint};
 use crate::math::bracketed_root;
 use crate::scene;
 
-/// What A τ_f(v) is beyond A τ_f(v_c), of one mass in contact.
+/// The forces in one contact, from (6)-(9).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactForces {
+    /// F_N of the surface on the mass, N.
+    pub normal: f64,
+    /// f·t = (f_x + s f_z)/q of the links, N.
+    pub tangential: f64,
+    /// T(0) = μ F_N + A τ_0 + A τ_f(v_c): the largest friction force at rest, N.
+    pub limit: f64,
+    /// q = √(1 + s²).
+    pub q: f64,
+}
+
+impl ContactForces {
+    /// The contact forces that follow from the links' force on the mass (f_x, f_z), N, its velocity ẋ, m/s, and the
+    /// surface under it.
+    #[inline]
+    pub fn new(model: &Model, (f_x, f_z): (f64, f64), velocity_x: f64, surface: &SurfacePoint) -> Self {
+        let s = surface.slope;
+        let q = (1.0 + s * s).sqrt();
+        // From (6)-(9): the normal force needs no acceleration.
+        let normal = (model.mass * surface.curvature * velocity_x * velocity_x - f_z + s * f_x) / q;
+        let limit = model.friction_coefficient * normal + model.shear_force;
+        Self { normal, tangential: (f_x + s * f_z) / q, limit, q }
+    }
+
+    /// F_T on a mass in `mode` at the velocity ẋ, N, positive against +t: f·t of a sticking mass, T(v_t) sign(v_t) of a
+    /// slipping one.
+    #[inline]
+    pub fn friction(&self, model: &Model, mode: Mode, velocity_x: f64) -> f64 {
+        match mode {
+            Mode::Free => 0.0,
+            Mode::Stick => self.tangential,
+            Mode::Forward | Mode::Backward => {
+                let sigma = mode.direction();
+                let excess = model.rate_shear.map_or(0.0, |law| law.excess(sigma * velocity_x * self.q));
+                sigma * (self.limit + excess)
+            }
+        }
+    }
+
+    /// ẍ of a mass in contact in `mode`: m q² ẍ + m s κ ẋ² = f_x + s f_z - F_T q.
+    pub fn acceleration(&self, model: &Model, mode: Mode, velocity_x: f64, surface: &SurfacePoint) -> f64 {
+        if mode == Mode::Stick {
+            return 0.0;
+        }
+        let centripetal = surface.slope * surface.curvature * velocity_x * velocity_x;
+        ((self.tangential - self.friction(model, mode, velocity_x)) / model.mass - centripetal / self.q) / self.q
+    }
+}
+
+impl Forces {
+    /// The contact forces on mass `i`, which is in contact with `surface` and has the velocity ẋ.
+    pub fn contact(&self, model: &Model, i: usize, velocity_x: f64, surface: &SurfacePoint) -> ContactForces {
+        ContactForces::new(model, (self.on_mass_x[i], self.on_mass_z[i]), velocity_x, surface)
+    }
+}
+
+/// The law A τ_f(v) of one mass in contact: its plateau A τ_f(v_c) and its excess over that.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RateShear {
     /// A τ_f0, N.
@@ -26,10 +89,10 @@ pub struct RateShear {
     fastest_fall: f64,
 }
 
-/// How near to the law's own curve a correction is taken, as a difference of ln v.
-const ON_THE_CURVE: f64 = 1e-3;
+/// Accuracy of a speed on the curve, as a difference of ln v.
+const SPEED_ACCURACY: f64 = 1e-3;
 
-/// Share of the speed up to which the curve's tangent serves for it.
+/// Changes up to this share of the speed are taken along the tangent instead of the curve.
 const STRAIGHT: f64 = 0.1;
 
 impl RateShear {
@@ -39,8 +102,8 @@ impl RateShear {
         let per_reference = 1.0 / law.reference_speed;
         let (sharpness, creep_speed) = (law.sharpness / (LN_10 * LN_10), law.creep_speed());
         let fastest_fall = fastest_fall(sharpness);
-        let unheld = Self { largest, plateau: 0.0, per_reference, sharpness, creep_speed, fastest_fall };
-        (largest > 0.0).then(|| Self { plateau: unheld.whole(creep_speed).0, ..unheld })
+        let without_plateau = Self { largest, plateau: 0.0, per_reference, sharpness, creep_speed, fastest_fall };
+        (largest > 0.0).then(|| Self { plateau: without_plateau.whole(creep_speed).0, ..without_plateau })
     }
 
     /// A τ_f(v_c), N.
@@ -54,12 +117,13 @@ impl RateShear {
         (self.largest * (-self.sharpness * y * y).exp(), -2.0 * self.sharpness * y)
     }
 
-    /// A τ_f(v) - A τ_f(v_c), N, at the `speed` in the direction of slip, m/s: 0 at creep and for what goes backwards.
+    /// A τ_f(v) - A τ_f(v_c), N, at the `speed` in the direction of slip, m/s; 0 up to the creep speed and for negative
+    /// speeds.
     pub fn excess(&self, speed: f64) -> f64 {
         if speed <= self.creep_speed { 0.0 } else { self.whole(speed).0 - self.plateau }
     }
 
-    /// The same, and its derivative A τ_f'(v), N s/m.
+    /// The [excess](Self::excess), N, and its derivative A τ_f'(v), N s/m.
     pub fn with_slope(&self, speed: f64) -> (f64, f64) {
         if speed <= self.creep_speed {
             return (0.0, 0.0);
@@ -68,15 +132,15 @@ impl RateShear {
         (force - self.plateau, slope * force / speed)
     }
 
-    /// The speed at which `weight` (v - `speed`) + A τ_f(v) - A τ_f(`speed`) is the same as on the curve's tangent at
-    /// `speed` the change `by` makes it, m/s: a correction of Newton's, taken along the curve.
+    /// A correction `by` (m/s) of Newton's method at `speed`, taken along the curve and not along its tangent: the speed
+    /// v, m/s, at which `weight` (v - `speed`) + A τ_f(v) - A τ_f(`speed`) has the value that the tangent predicts.
     ///
-    /// The curve is all but a logarithm: at creep its tangent is as steep as it is short, and corrections along it go
-    /// from one end of the decades to the other and back.
+    /// The curve is nearly a logarithm: at creep speeds its tangent is steep and valid over a short range only, and
+    /// corrections along it would alternate between both ends of the decades.
     pub fn along_curve(&self, speed: f64, by: f64, weight: f64) -> f64 {
         let linear = speed + by;
-        let stays = linear <= self.creep_speed && speed <= self.creep_speed;
-        if stays || by.abs() <= STRAIGHT * speed || weight.is_nan() || weight <= 0.0 {
+        let constant = linear <= self.creep_speed && speed <= self.creep_speed;
+        if constant || by.abs() <= STRAIGHT * speed || weight.is_nan() || weight <= 0.0 {
             return linear;
         }
         let (here, slope) = self.with_slope(speed);
@@ -84,7 +148,7 @@ impl RateShear {
     }
 
     /// The speed v, m/s, at which `weight` (v - `from`) + A τ_f(v) - A τ_f(v_c) is `force` (N). Where friction falls
-    /// faster than the weight there may be three: it is the one that comes first from `from`, as motion comes to it.
+    /// faster than the weight there may be three: then it is the first one from `from`, as the motion reaches it.
     pub fn balance(&self, from: f64, force: f64, weight: f64) -> f64 {
         let free = from + force / weight;
         if free <= self.creep_speed {
@@ -92,28 +156,29 @@ impl RateShear {
         }
         // A τ_f(v) - A τ_f(v_c) lies between these.
         let (least, most) = (-self.plateau, self.largest - self.plateau);
-        let [low, high] = [most, least].map(|beyond| (free - beyond / weight).max(self.creep_speed));
-        let excess = |v: f64| (v - from) * weight + self.excess(v) - force;
-        if excess(low) >= 0.0 || !high.is_finite() {
+        let [low, high] = [most, least].map(|excess| (free - excess / weight).max(self.creep_speed));
+        let residual = |v: f64| (v - from) * weight + self.excess(v) - force;
+        if residual(low) >= 0.0 || !high.is_finite() {
             return low;
         }
-        let (low, high) = self.first(excess, from.clamp(low, high), (low, high));
+        let (low, high) = self.first_bracket(residual, from.clamp(low, high), (low, high));
         let speed = |y: f64| self.creep_speed * y.exp();
         let bracket = [low, high].map(|v| (v / self.creep_speed).ln());
-        speed(bracketed_root(|y| excess(speed(y)), (bracket[0], bracket[1]), ON_THE_CURVE))
+        speed(bracketed_root(|y| residual(speed(y)), (bracket[0], bracket[1]), SPEED_ACCURACY))
     }
 
-    /// The part of the bracket, m/s, of the first zero of `excess` from the speed `from`. Between the largest strength
-    /// and where it falls fastest, and on both sides of these, there is one zero at most where the ends differ in sign.
-    fn first(&self, excess: impl Fn(f64) -> f64, from: f64, (mut low, mut high): (f64, f64)) -> (f64, f64) {
+    /// The part of the bracket (m/s) with the first zero of `residual` from the speed `from`. The largest strength and
+    /// the steepest fall divide the speeds into three parts: in each there is one zero at most if the signs at its ends
+    /// differ.
+    fn first_bracket(&self, residual: impl Fn(f64) -> f64, from: f64, (mut low, mut high): (f64, f64)) -> (f64, f64) {
         let marks = [1.0, self.fastest_fall].map(|share| share / self.per_reference);
-        let faster = excess(from) < 0.0;
+        let faster = residual(from) < 0.0;
         *(if faster { &mut low } else { &mut high }) = from;
         for mark in if faster { marks } else { [marks[1], marks[0]] } {
             if !(low < mark && mark < high) {
                 continue;
             }
-            let above = excess(mark) >= 0.0;
+            let above = residual(mark) >= 0.0;
             *(if above { &mut high } else { &mut low }) = mark;
             if above == faster {
                 break;

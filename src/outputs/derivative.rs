@@ -19,18 +19,12 @@ pub(super) struct CarrierShift {
 impl CarrierShift {
     /// A shift of u and w by (δu, δw), m.
     pub(super) fn new(model: &Model, (du, dw): (f64, f64)) -> Self {
-        let stiffness = |kind| instant_stiffness(model, kind);
+        let stiffness = |kind| model.instantaneous_stiffness(kind);
         Self {
             elongation: (-du, -dw),
             on_mass: (stiffness(LinkKind::Horizontal) * du, stiffness(LinkKind::Vertical) * dw),
         }
     }
-}
-
-/// c + Σ c_j of a link, N/m: its stiffness while the dashpots are frozen.
-fn instant_stiffness(model: &Model, kind: LinkKind) -> f64 {
-    let maxwell: f64 = model.rows.iter().filter(|row| row.kind == kind).map(|row| row.stiffness).sum();
-    model.links[kind as usize].stiffness + maxwell
 }
 
 /// Changes of the forces in a contact, N, and the slope there.

@@ -52,7 +52,7 @@ impl Units {
         let model = Model::new(&case.scene);
         let frequency = model.stiffest_frequency();
         let damping: f64 = model.links.iter().map(|link| link.damping).sum();
-        let one = model.glassy_stiffness().max(model.mass * frequency * frequency) + damping * frequency;
+        let one = model.mass_stiffness().max(model.mass * frequency * frequency) + damping * frequency;
         Self {
             relative: case.scene.solver.relative_tolerance,
             absolute: case.scene.absolute_tolerance(),

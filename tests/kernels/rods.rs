@@ -119,9 +119,9 @@ fn rods_are_links_far_beyond_the_others() {
 fn without_rods_all_springs_are_felt() {
     for changes in [&[][..], &[("layer.lateral_z.stiffness", "1e6")]] {
         let model = Model::new(&scene(changes));
-        assert_eq!(model.felt_stiffness(), model.glassy_stiffness());
-        assert_eq!(model.felt_frequency(), model.stiffest_frequency());
+        assert_eq!(model.mass_stiffness_without_rods(), model.mass_stiffness());
+        assert_eq!(model.frequency_without_rods(), model.stiffest_frequency());
     }
     let rod = Model::new(&scene(&[("layer.lateral_x.stiffness", "5e14")]));
-    assert_eq!(rod.felt_stiffness(), Model::new(&scene(&[])).glassy[0] + 2.0 * 500.0);
+    assert_eq!(rod.mass_stiffness_without_rods(), Model::new(&scene(&[])).glassy[0] + 2.0 * 500.0);
 }

@@ -25,7 +25,7 @@ impl Bars {
     /// The layer of `model` in the long run: its vertical springs alone.
     pub(super) fn new(model: &Model, heights: &[f64]) -> Self {
         let stiffness = model.links[LinkKind::Vertical as usize].stiffness;
-        let stiffness = if stiffness > 0.0 { stiffness } else { model.glassy_stiffness() };
+        let stiffness = if stiffness > 0.0 { stiffness } else { model.mass_stiffness() };
         let mut rest = model.rest_z.clone();
         rest.sort_by(f64::total_cmp);
         rest.dedup();

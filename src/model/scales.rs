@@ -1,0 +1,101 @@
+//! The stiffness and frequency scales of a layer: what tolerances, event limits and first steps are derived from.
+//!
+//! All start from the glassy stiffness c + Σ c_j of each kind of link ([`Model::glassy`]), with every dashpot at rest.
+
+use super::{LinkKind, Model};
+use crate::scene::Link;
+
+impl Model {
+    /// Stiffness of all links on one mass while the dashpots are at rest, N/m, lateral links counted twice: along x or
+    /// along z, whichever is larger.
+    pub fn mass_stiffness(&self) -> f64 {
+        on_mass(self.glassy)
+    }
+
+    /// The same without the links that are [rods](Self::is_rod), N/m: it relates an error of a position to one of the
+    /// forces.
+    pub fn mass_stiffness_without_rods(&self) -> f64 {
+        let largest = ROD_FREQUENCY * ROD_FREQUENCY * self.reference_stiffness();
+        on_mass(self.glassy.map(|stiffness| if stiffness > largest { 0.0 } else { stiffness }))
+    }
+
+    /// Whether the links of `kind` work as rods: their springs are so much stiffer, or their dampers so much stronger,
+    /// than the other springs that the other forces determine theirs. Positions and velocities within their tolerances
+    /// do not.
+    pub fn is_rod(&self, kind: LinkKind) -> bool {
+        let reference = self.reference_stiffness();
+        let (stiffness, damping) = (self.glassy[kind as usize], self.links[kind as usize].damping);
+        reference > 0.0
+            && (stiffness > ROD_FREQUENCY * ROD_FREQUENCY * reference
+                || damping > ROD_FREQUENCY * (reference * self.mass).sqrt())
+    }
+
+    /// Long-term stiffness of the vertical links, or the stiffness of the softest other links where that is larger, N/m;
+    /// `None` unless the vertical Maxwell elements are far stiffer than that. Where they are and have relaxed, a
+    /// position within its tolerance does not determine the force that presses a mass on.
+    pub fn long_term_stiffness(&self) -> Option<f64> {
+        let elements: f64 = self.rows_of(LinkKind::Vertical).map(|row| row.stiffness).sum();
+        let long_term = self.links[LinkKind::Vertical as usize].stiffness.max(self.softest_other_link());
+        (long_term > 0.0 && elements > ROD_FREQUENCY * ROD_FREQUENCY * long_term).then_some(long_term)
+    }
+
+    /// The largest stiffness by which the rounding of a position becomes a force, N/m. Vertical Maxwell elements far
+    /// stiffer than the long-term stiffness do not count: each integrates its own elongation.
+    pub fn rounding_stiffness(&self) -> f64 {
+        let [vertical, horizontal, lateral_x, lateral_z] = self.glassy;
+        let link = &self.links[LinkKind::Vertical as usize];
+        let vertical = if self.long_term_stiffness().is_some() { link.stiffness } else { vertical };
+        on_mass([vertical, horizontal, lateral_x, lateral_z])
+    }
+
+    /// c + Σ c_j of the links of `kind` as they are in this model, N/m: replaced Maxwell elements count as what they are
+    /// replaced by.
+    pub fn instantaneous_stiffness(&self, kind: LinkKind) -> f64 {
+        self.links[kind as usize].stiffness + self.rows_of(kind).map(|row| row.stiffness).sum::<f64>()
+    }
+
+    /// The stiffness that the others are compared with, N/m: that of the vertical links, whose elongation is prescribed,
+    /// or of the softest others where these are stiffer.
+    fn reference_stiffness(&self) -> f64 {
+        self.glassy[LinkKind::Vertical as usize].max(self.softest_other_link())
+    }
+
+    /// Of the links that are not vertical, N/m; 0 where there are none.
+    fn softest_other_link(&self) -> f64 {
+        let [_, others @ ..] = self.glassy;
+        others.into_iter().filter(|&stiffness| stiffness > 0.0).reduce(f64::min).unwrap_or(0.0)
+    }
+
+    /// The highest frequency of one mass, rad/s; the largest damping rate, 1/s, where the layer has no springs, and 1
+    /// where it has no dampers either.
+    pub fn stiffest_frequency(&self) -> f64 {
+        self.frequency_of(self.mass_stiffness())
+    }
+
+    /// The same without the springs of [rods](Self::is_rod).
+    pub fn frequency_without_rods(&self) -> f64 {
+        self.frequency_of(self.mass_stiffness_without_rods())
+    }
+
+    fn frequency_of(&self, stiffness: f64) -> f64 {
+        let frequency = (stiffness / self.mass).sqrt();
+        let damping = self.links.iter().map(|link| link.damping).fold(0.0, f64::max) / self.mass;
+        [frequency, damping].into_iter().find(|&rate| rate > 0.0).unwrap_or(1.0)
+    }
+}
+
+/// c + Σ c_j, N/m.
+pub(super) fn glassy(link: &Link) -> f64 {
+    let maxwell: f64 = link.maxwell.iter().map(|element| element.stiffness).sum();
+    link.stiffness.unwrap_or(0.0) + maxwell
+}
+
+fn on_mass([vertical, horizontal, lateral_x, lateral_z]: [f64; 4]) -> f64 {
+    (horizontal + 2.0 * lateral_x).max(vertical + 2.0 * lateral_z)
+}
+
+/// The frequency of a mass on a rod is at least this many times that on the other springs.
+///
+/// Recommended 30 to 1000. A layer of a material has (H/Δx)², some thousands at most, between the stiffness of its
+/// lateral links and that of those to the carrier; its dampers are critical or weaker.
+const ROD_FREQUENCY: f64 = 100.0;
