@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use asperity::scene::{Link, LinkKind, MaxwellElement, ParameterError, Scene};
 
 use super::cli::Material;
+use super::figure::{Curve, Figure as _, Panel, Stacked, Stroke};
 use super::files::{self, FileError, check_outputs, ends_in, load, print, set_parameters, sources};
-use super::plot::{Curve, Panel, Stacked, Stroke};
 use super::terminal::{LabelledLine, decimal, lines, rounded};
 
 /// `asperity material` failed.

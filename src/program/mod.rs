@@ -3,12 +3,12 @@
 mod cli;
 mod describe;
 mod error;
+mod figure;
 mod files;
 mod fit;
 mod html;
 mod material;
 mod pack;
-mod plot;
 mod report;
 mod result_file;
 mod runner;
@@ -34,18 +34,14 @@ mod progress {
 }
 
 mod text {
-    pub(crate) use super::terminal::{LabelledLine as Row, decimal, lines, rounded};
-
-    pub(crate) fn print(text: &str) -> Result<(), super::error::ProgramError> {
-        Ok(super::files::print(text)?)
-    }
+    pub(crate) use super::terminal::{LabelledLine as Row, rounded};
 }
 
 /// Executes the command of the command line.
 pub(crate) fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
     match arguments.command {
         Command::Simulate(command) => simulate::simulate(&command)?,
-        Command::Plot(command) => plot::plot_files(&command)?,
+        Command::Plot(command) => figure::plot_files(&command)?,
         Command::Describe(command) => describe::describe(&command)?,
         Command::Pack(command) => pack::pack(&command)?,
         Command::Fit(command) => fit::fit(&command)?,

@@ -8,8 +8,8 @@ use asperity::simulation::{Handover, Simulation, SimulationError};
 use indicatif::ProgressBar;
 
 use super::cli::Simulate;
+use super::figure::{Figure as _, History};
 use super::files::{FileError, check_outputs, load, set_parameters, sources};
-use super::plot::History;
 use super::result_file::ResultWriter;
 use super::runner::{CarrierSample, Rows, Runner};
 use super::terminal::{bar, note, warn};
@@ -38,7 +38,7 @@ pub(crate) fn simulate(command: &Simulate) -> Result<(), SimulateError> {
     let history = recorder.finish()?;
     result?;
     match (&command.plot, history) {
-        (Some(path), Some(history)) => Ok(history.draw(path, &scene.name)?),
+        (Some(path), Some(history)) => Ok(history.write(path)?),
         _ => Ok(()),
     }
 }

@@ -11,6 +11,7 @@ mod tell;
 use std::path::PathBuf;
 
 use super::cli::Fit;
+use super::figure::Figure as _;
 use super::files::{self, FileError, check_outputs, print};
 use super::terminal::note;
 use compound::{Errors, Sample};

@@ -6,7 +6,7 @@ use std::path::Path;
 use super::compound::{Compound, Error, Errors, Sample};
 use super::measured::Measured;
 use crate::program::cli::Fit;
-use crate::program::plot::{Curve, Panel, Stacked, Stroke};
+use crate::program::figure::{Curve, Panel, Stacked, Stroke};
 use crate::program::terminal::{decimal, lines, rounded};
 
 /// Points of a drawn line in a decade.

@@ -1,32 +1,36 @@
-//! The zip archive: the same entries give the same bytes.
+//! The zip archive of an FMU: its entries, the shared libraries among them, and their packing.
 
 use std::collections::BTreeMap;
+use std::ffi::OsString;
 use std::io::{Cursor, Write as _};
+use std::path::{Path, PathBuf};
 
 use zip::result::ZipResult;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
+
+use crate::program::error::ProgramError;
+use crate::program::files::FileError;
 
 /// A file of the archive.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Entry {
     /// Its path, with forward slashes.
     pub(super) name: String,
-    /// Its content.
     pub(super) bytes: Vec<u8>,
-    /// A shared library, which some systems want executable.
+    /// Some systems want shared libraries to be executable.
     pub(super) executable: bool,
 }
 
 impl Entry {
-    /// A file that is only read.
-    pub(super) fn new(name: String, bytes: Vec<u8>) -> Self {
-        Self { name, bytes, executable: false }
+    /// A file that is not executable.
+    pub(super) fn new(name: impl Into<String>, bytes: impl Into<Vec<u8>>) -> Self {
+        Self { name: name.into(), bytes: bytes.into(), executable: false }
     }
 }
 
-/// Packs `entries` in the order of their names, all from 1980-01-01. Of two of one name, which a scene that names a
-/// file twice gives, one stays.
+/// Packs `entries`, ordered by name and dated 1980-01-01: the same entries give the same bytes. Of entries of one name,
+/// which a scene has that names a file twice, the last is kept.
 pub(super) fn zip(entries: Vec<Entry>) -> ZipResult<Vec<u8>> {
     let sorted: BTreeMap<String, Entry> = entries.into_iter().map(|entry| (entry.name.clone(), entry)).collect();
     let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
@@ -44,6 +48,77 @@ fn options(entry: &Entry) -> SimpleFileOptions {
         .unix_permissions(if entry.executable { 0o755 } else { 0o644 })
 }
 
+/// A platform as FMI 2.0 names it.
+#[derive(Debug, PartialEq)]
+struct Platform {
+    /// Its folder in `binaries/`.
+    folder: &'static str,
+    /// The extension of its shared libraries.
+    extension: &'static str,
+}
+
+const LINUX: Platform = Platform { folder: "linux64", extension: "so" };
+const WINDOWS: Platform = Platform { folder: "win64", extension: "dll" };
+const MACOS: Platform = Platform { folder: "darwin64", extension: "dylib" };
+
+/// The platform that this program was built for.
+const HOST: Platform = if cfg!(target_os = "windows") {
+    WINDOWS
+} else if cfg!(target_os = "macos") {
+    MACOS
+} else {
+    LINUX
+};
+
+/// The entries of the shared libraries that `--library` names; by default of the one beside this program.
+pub(super) fn binaries(identifier: &str, arguments: &[OsString]) -> Result<Vec<Entry>, ProgramError> {
+    let mut libraries: Vec<_> = arguments.iter().map(library).collect();
+    if libraries.is_empty() {
+        libraries.push((HOST, default_library()));
+    }
+    check_platforms(&libraries)?;
+    libraries.iter().map(|(platform, path)| binary(identifier, platform, path)).collect()
+}
+
+/// `PLATFORM=PATH`, or a path alone for this program's platform.
+fn library(argument: &OsString) -> (Platform, PathBuf) {
+    let named = argument.to_str().and_then(|text| text.split_once('=')).and_then(|(name, path)| {
+        let platform = [LINUX, WINDOWS, MACOS].into_iter().find(|platform| platform.folder == name);
+        platform.map(|platform| (platform, path.into()))
+    });
+    named.unwrap_or_else(|| (HOST, argument.into()))
+}
+
+/// The library that cargo builds beside this program.
+fn default_library() -> PathBuf {
+    let name = format!("{}asperity.{}", std::env::consts::DLL_PREFIX, HOST.extension);
+    std::env::current_exe().unwrap_or_default().with_file_name(name)
+}
+
+/// Each platform may have one library.
+fn check_platforms(libraries: &[(Platform, PathBuf)]) -> Result<(), ProgramError> {
+    for (i, (platform, second)) in libraries.iter().enumerate() {
+        if let Some((_, first)) = libraries[..i].iter().find(|(other, _)| other == platform) {
+            let (first, second) = (first.clone(), second.clone());
+            return Err(ProgramError::SamePlatform { platform: platform.folder, first, second });
+        }
+    }
+    Ok(())
+}
+
+fn binary(identifier: &str, platform: &Platform, path: &Path) -> Result<Entry, ProgramError> {
+    if !path.is_file() {
+        return Err(ProgramError::NoLibrary { path: path.to_owned() });
+    }
+    let name = format!("binaries/{}/{identifier}.{}", platform.folder, platform.extension);
+    Ok(Entry { executable: true, ..Entry::new(name, read(path)?) })
+}
+
+/// The bytes of a file.
+pub(super) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
+    std::fs::read(path).map_err(FileError::io("read", path))
+}
+
 #[cfg(test)]
 mod tests {
     use zip::ZipArchive;
@@ -52,15 +127,15 @@ mod tests {
 
     #[test]
     fn the_order_of_the_entries_makes_no_difference() {
-        let [a, b] = ["a", "b"].map(|name| Entry::new(name.into(), name.repeat(1000).into_bytes()));
+        let [a, b] = ["a", "b"].map(|name| Entry::new(name, name.repeat(1000)));
         let packed = zip(vec![a.clone(), b.clone()]).unwrap();
         assert_eq!(packed, zip(vec![b, a]).unwrap());
     }
 
     #[test]
     fn entries_are_plain_files_that_any_reader_can_unpack() {
-        let library = Entry { executable: true, ..Entry::new("a".into(), vec![7; 1000]) };
-        let packed = zip(vec![library, Entry::new("b".into(), Vec::new())]).unwrap();
+        let library = Entry { executable: true, ..Entry::new("a", [7; 1000]) };
+        let packed = zip(vec![library, Entry::new("b", [])]).unwrap();
         let mut archive = ZipArchive::new(Cursor::new(&packed)).unwrap();
         for (i, mode) in [0o755, 0o644].into_iter().enumerate() {
             let file = archive.by_index(i).unwrap();
@@ -71,5 +146,21 @@ mod tests {
             assert_eq!(&header[4..6], &[20, 0], "version needed to extract is 2.0");
             assert_eq!(&header[10..14], &[0, 0, 0x21, 0], "1980-01-01, 00:00");
         }
+    }
+
+    #[test]
+    fn a_library_is_this_platforms_unless_another_is_named() {
+        let library = |text: &str| library(&text.into());
+        assert_eq!(library("a/b.so"), (HOST, "a/b.so".into()));
+        assert_eq!(library("win64=a/b.dll"), (WINDOWS, "a/b.dll".into()));
+        assert_eq!(library("a=b/c.so"), (HOST, "a=b/c.so".into()));
+    }
+
+    #[test]
+    fn a_platform_has_one_library() {
+        let two = [(WINDOWS, "a".into()), (LINUX, "b".into()), (WINDOWS, "c".into())];
+        let text = check_platforms(&two).unwrap_err().to_string();
+        assert_eq!(text, "--library: two of win64: a and c");
+        assert!(check_platforms(&two[..2]).is_ok());
     }
 }

@@ -1,51 +1,117 @@
-//! documentation/index.html: what is packed, what is left out, its variables, its parameters, the equations.
+//! documentation/: the page index.html, its style sheet and the licences.
 
 use std::io;
 
+use asperity::element::{LeftOut, Load, Place, Table, left_out};
 use asperity::fmi::{Catalogue, Entry, Kind, Subject};
 use quick_xml::escape::escape;
 
-use super::model_description::clean;
-use super::parts::{ELEMENT_PAGE, PAGE};
-use super::{units, variables};
+use super::description;
 use crate::program::html::{self, Cell};
-use crate::program::text::Row;
+use crate::program::terminal::{LabelledLine, labelled};
 
-/// The page, filled in.
-pub(super) fn write(subject: &Subject, catalogue: &Catalogue, said: &[Row]) -> io::Result<Vec<u8>> {
-    let page = if matches!(subject, Subject::Element(_)) { ELEMENT_PAGE } else { PAGE };
-    let rows: Vec<_> = said.iter().map(|(name, text)| [(*name).into(), clean(text)]).collect();
+const LAYER_PAGE: &str = include_str!("../../../modelDescription/documentation/index.html");
+const ELEMENT_PAGE: &str = include_str!("../../../modelDescription/documentation/element.html");
+
+/// The files that are the same in every archive: path, content.
+pub(super) const FILES: [(&str, &str); 5] = [
+    ("documentation/style.css", include_str!("../../../modelDescription/documentation/style.css")),
+    // The entry point that FMI 2.0 asks for: it names the others.
+    (
+        "documentation/licenses/license.txt",
+        include_str!("../../../modelDescription/documentation/licenses/license.txt"),
+    ),
+    ("documentation/licenses/LICENSE-APACHE", include_str!("../../../LICENSE-APACHE")),
+    ("documentation/licenses/LICENSE-MIT", include_str!("../../../LICENSE-MIT")),
+    (
+        "documentation/licenses/third-party.txt",
+        include_str!("../../../modelDescription/documentation/licenses/third-party.txt"),
+    ),
+];
+
+/// index.html: a summary of the scene or the table, the variables, the parameters, the equations.
+pub(super) fn write(definition: &Subject, catalogue: &Catalogue, summary: &[LabelledLine]) -> io::Result<Vec<u8>> {
+    let page = if matches!(definition, Subject::Element(_)) { ELEMENT_PAGE } else { LAYER_PAGE };
+    let summary: Vec<_> = summary.iter().map(|(name, text)| [(*name).into(), description::clean(text)]).collect();
+    let is_parameter = |entry: &Entry<'_>| matches!(entry, Entry::Parameter(..));
+    let (parameters, variables): (Vec<_>, Vec<_>) = catalogue.entries().map(|(_, entry)| entry).partition(is_parameter);
+    let variables: Vec<_> = variables.iter().map(|entry| row(entry, description::causality(entry).into())).collect();
+    let start = |entry| description::start(definition, entry).unwrap_or_default();
+    let parameters: Vec<_> = parameters.iter().map(|entry| row(entry, start(entry))).collect();
     let fields = [
-        ("name", escape(clean(&subject.name())).into_owned()),
-        ("description", escape(clean(&subject.description())).into_owned()),
+        ("name", escape(description::clean(&definition.name())).into_owned()),
+        ("description", escape(description::clean(&definition.description())).into_owned()),
         ("version", env!("CARGO_PKG_VERSION").to_owned()),
-        ("scene", table(["", "What is there"], &rows)?),
-        ("variables", table(["Name", "Causality", "Unit", "Description"], &variable_rows(catalogue))?),
-        ("parameters", table(["Name", "Start", "Unit", "Description"], &parameter_rows(subject, catalogue))?),
+        ("scene", table(["", "What is there"], &summary)?),
+        ("variables", table(["Name", "Causality", "Unit", "Description"], &variables)?),
+        ("parameters", table(["Name", "Start", "Unit", "Description"], &parameters)?),
     ];
     Ok(html::fill(page, &fields).into_bytes())
 }
 
-fn variable_rows(catalogue: &Catalogue) -> Vec<[String; 4]> {
-    let entries = catalogue.entries().map(|(_, entry)| entry).filter(|entry| !is_parameter(entry));
-    entries.map(|entry| row(&entry, variables::causality(&entry).into())).collect()
-}
-
-fn parameter_rows(subject: &Subject, catalogue: &Catalogue) -> Vec<[String; 4]> {
-    let entries = catalogue.entries().map(|(_, entry)| entry).filter(is_parameter);
-    entries.map(|entry| row(&entry, variables::start(subject, &entry).unwrap_or_default())).collect()
-}
-
-fn is_parameter(entry: &Entry<'_>) -> bool {
-    matches!(entry, Entry::Parameter(..))
-}
-
 fn row(entry: &Entry<'_>, second: String) -> [String; 4] {
-    let unit = if entry.kind() == Kind::Real { units::of(entry).name() } else { "" };
-    [entry.name(), second, unit.into(), variables::description(entry)]
+    let unit = if entry.kind() == Kind::Real { description::unit(entry).name() } else { "" };
+    [entry.name(), second, unit.into(), description::description(entry)]
 }
 
 fn table<const N: usize>(head: [&str; N], rows: &[[String; N]]) -> io::Result<String> {
     let rows: Vec<Vec<Cell>> = rows.iter().map(|cells| cells.iter().map(Cell::from).collect()).collect();
     html::table(&head.map(Cell::from), &rows)
+}
+
+/// The summary of an element: its table, and the errors where points of it are left out and interpolated.
+pub(super) fn table_rows(table: &Table) -> Vec<LabelledLine> {
+    let mut rows = vec![
+        ("Swept", table.scene.clone()),
+        ("Speeds", range(&table.speeds, "m/s")),
+        ("Loads", range(&table.pressures, table.load.unit())),
+    ];
+    if !table.temperatures.is_empty() {
+        rows.push(("Temperature", range(&table.temperatures, "K")));
+    }
+    if table.load == Load::Pressure {
+        rows.push(("Area", format!("{:e} m²", table.nominal_area)));
+    }
+    rows.push(("w = 0", format!("a separation of {:e} m", table.rest_separation)));
+    let mut errors: Vec<_> = left_out(table).iter().filter_map(errors).collect();
+    if errors.is_empty() {
+        errors.push("no axis has a point between two others".to_owned());
+    }
+    rows.extend(labelled("Left out", errors));
+    rows
+}
+
+fn range(values: &[f64], unit: &str) -> String {
+    match values {
+        [] => "none".into(),
+        [one] => format!("{one} {unit}"),
+        [first, .., last] => format!("{} from {first} to {last} {unit}", values.len()),
+    }
+}
+
+/// The errors at the points of an axis, each left out in turn.
+fn errors(errors: &LeftOut) -> Option<String> {
+    let of = |name: &str, error: Option<(f64, Place)>| {
+        error.map(|(error, place)| format!("{name} is off by at most {:.2} %, at {place}", 100.0 * error))
+    };
+    let texts = [of("the friction coefficient", errors.friction), of("F_z", errors.force_z)];
+    let texts: Vec<String> = texts.into_iter().flatten().collect();
+    let axis = errors.axis;
+    (!texts.is_empty()).then(|| format!("one {axis} and looked up over the gap: {}", texts.join("; ")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_licences_have_an_entry_point_that_names_the_others() {
+        let licences: Vec<_> = FILES
+            .iter()
+            .filter_map(|(path, text)| Some((path.strip_prefix("documentation/licenses/")?, text)))
+            .collect();
+        let (_, entry_point) = licences.iter().find(|(name, _)| *name == "license.txt").unwrap();
+        let others = licences.iter().map(|(name, _)| *name).filter(|name| *name != "license.txt");
+        assert!(others.clone().count() > 0 && others.clone().all(|name| entry_point.contains(name)), "{entry_point}");
+    }
 }

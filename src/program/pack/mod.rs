@@ -1,53 +1,34 @@
-//! `asperity pack`: a scene, or a table, and the shared library as one FMU.
+//! `asperity pack`: packs a scene, or the table of a sweep, and the shared library as one FMU.
 
 mod archive;
 mod check;
+mod description;
 mod documentation;
-mod element;
-mod libraries;
-mod model_description;
-mod parts;
 mod picture;
-mod units;
-mod variables;
 
-use std::fs;
 use std::path::{Component, Path, PathBuf};
 
 use asperity::element::{PointContact, Table};
 use asperity::fmi::{Catalogue, Sources, Subject, guid};
 
-use super::arguments::Pack;
+use super::cli::Pack;
 use super::describe;
 use super::error::ProgramError;
-use super::text::Row;
-use archive::Entry;
-use parts::PARTS;
+use super::files::{FileError, check_output, print, write};
+use super::terminal::{LabelledLine, lines};
+use archive::{Entry, read};
 
-/// Writes the FMU.
+/// Writes the FMU; of an element, prints its table and errors.
 pub(crate) fn pack(command: &Pack) -> Result<(), ProgramError> {
-    let (subject, path) = load(command)?;
-    super::check_output(&command.output, &subject.sources(&path))?;
-    let mut entries = libraries::binaries(&subject.model_identifier(), &command.library)?;
-    entries.extend(resources(&subject, &path)?);
-    let said = said(command, &subject)?;
-    entries.extend(documents(&subject, &path, &said)?);
+    let (definition, path) = load(command)?;
+    check_output(&command.output, &definition.sources(&path))?;
+    let mut entries = archive::binaries(&definition.model_identifier(), &command.library)?;
+    entries.extend(resources(&definition, &path)?);
+    let summary = summary(command, &definition)?;
+    entries.extend(documents(&definition, &path, &summary)?);
     let bytes = archive::zip(entries)?;
-    fs::write(&command.output, bytes).map_err(ProgramError::file("write", &command.output))?;
-    if matches!(subject, Subject::Element(_)) { element::tell(&said) } else { Ok(()) }
-}
-
-/// What the page says of the scene or of the table, and of how well that is interpolated.
-fn said(command: &Pack, subject: &Subject) -> Result<Vec<Row>, ProgramError> {
-    let contact = match subject {
-        Subject::Layer(scene) => return Ok(describe::rows(scene)),
-        Subject::Element(contact) => contact,
-    };
-    let mut rows = element::rows(contact.table());
-    if let Some(scene) = &command.check {
-        rows.extend(check::check(command, contact, scene)?);
-    }
-    Ok(rows)
+    write(&command.output, bytes)?;
+    if matches!(definition, Subject::Element(_)) { Ok(print(&lines(&summary))?) } else { Ok(()) }
 }
 
 /// What is packed, and the file that it is read from.
@@ -56,23 +37,36 @@ fn load(command: &Pack) -> Result<(Subject, PathBuf), ProgramError> {
         (Some(table), _) => Ok((PointContact::new(Table::load(table)?).into(), table.clone())),
         (None, scene) => {
             let path = scene.clone().unwrap_or_default();
-            Ok((super::load(&path)?.into(), path))
+            Ok((super::files::load(&path)?.into(), path))
         }
     }
 }
 
-/// The scene or the table, under a fixed name, and what a scene reads.
-fn resources(subject: &Subject, path: &Path) -> Result<Vec<Entry>, ProgramError> {
+/// What there is in the scene or in the table, and the errors of an element.
+fn summary(command: &Pack, definition: &Subject) -> Result<Vec<LabelledLine>, ProgramError> {
+    let contact = match definition {
+        Subject::Layer(scene) => return Ok(describe::rows(scene)),
+        Subject::Element(contact) => contact,
+    };
+    let mut rows = documentation::table_rows(contact.table());
+    if let Some(scene) = &command.check {
+        rows.extend(check::check(command, contact, scene)?);
+    }
+    Ok(rows)
+}
+
+/// The scene or the table, under a fixed name, and the files that a scene reads.
+fn resources(definition: &Subject, path: &Path) -> Result<Vec<Entry>, ProgramError> {
     let folder = path.parent().unwrap_or(Path::new(""));
-    let mut entries = vec![Entry::new(format!("resources/{}", subject.file_name()), read(path)?)];
-    for file in subject.files() {
-        let bytes = subject.carried(folder, file).map_err(ProgramError::file("read", &folder.join(file)))?;
+    let mut entries = vec![Entry::new(format!("resources/{}", definition.file_name()), read(path)?)];
+    for file in definition.files() {
+        let bytes = definition.carried(folder, file).map_err(FileError::io("read", &folder.join(file)))?;
         entries.push(Entry::new(format!("resources/{}", archive_path(file)?), bytes));
     }
     Ok(entries)
 }
 
-/// `file` with forward slashes; an FMU is unpacked anywhere, so nothing outside the scene's folder can go with it.
+/// `file` with forward slashes. It must lie below the scene's folder: the FMU is unpacked elsewhere.
 fn archive_path(file: &Path) -> Result<String, ProgramError> {
     let parts = file.components().filter(|part| *part != Component::CurDir).map(|part| match part {
         Component::Normal(name) => Ok(name.to_string_lossy()),
@@ -81,24 +75,21 @@ fn archive_path(file: &Path) -> Result<String, ProgramError> {
     Ok(parts.collect::<Result<Vec<_>, _>>()?.join("/"))
 }
 
-fn documents(subject: &Subject, path: &Path, said: &[Row]) -> Result<Vec<Entry>, ProgramError> {
+/// Model description, documentation, picture, licences.
+fn documents(definition: &Subject, path: &Path, summary: &[LabelledLine]) -> Result<Vec<Entry>, ProgramError> {
     let document = |document, source| ProgramError::Document { document, source };
-    let catalogue = Catalogue::of(subject);
-    let guid = guid(&Sources::of(path, subject).map_err(ProgramError::file("read", path))?, &catalogue);
-    let description = model_description::write(subject, &catalogue, &guid);
+    let catalogue = Catalogue::of(definition);
+    let guid = guid(&Sources::of(path, definition).map_err(FileError::io("read", path))?, &catalogue);
+    let description = description::write(definition, &catalogue, &guid);
     let description = description.map_err(|error| document("modelDescription.xml", error))?;
-    let index = documentation::write(subject, &catalogue, said);
+    let index = documentation::write(definition, &catalogue, summary);
     let index = index.map_err(|error| document("documentation/index.html", error))?;
-    let picture = match subject {
-        Subject::Layer(scene) => picture::png(scene),
+    let picture = match definition {
+        Subject::Layer(scene) => picture::layer_png(scene),
         Subject::Element(contact) => picture::element_png(contact.table()),
     };
-    let picture = picture.map_err(|error| ProgramError::picture(Path::new("model.png"), &*error))?;
-    let parts = PARTS.iter().map(|(name, text)| Entry::new((*name).into(), text.as_bytes().to_vec()));
+    let picture = picture.map_err(|error| FileError::picture(Path::new("model.png"), &*error))?;
     let written = [("modelDescription.xml", description), ("documentation/index.html", index), ("model.png", picture)];
-    Ok(written.into_iter().map(|(name, bytes)| Entry::new(name.into(), bytes)).chain(parts).collect())
-}
-
-fn read(path: &Path) -> Result<Vec<u8>, ProgramError> {
-    fs::read(path).map_err(ProgramError::file("read", path))
+    let fixed = documentation::FILES.iter().map(|&(name, text)| Entry::new(name, text));
+    Ok(written.into_iter().map(|(name, bytes)| Entry::new(name, bytes)).chain(fixed).collect())
 }

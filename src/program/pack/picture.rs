@@ -1,90 +1,97 @@
-//! model.png: the first masses of the layer at rest between the carrier and the profile, drawn from the scene.
-
-mod curves;
-mod sketch;
+//! model.png: of a layer the first masses at rest between the carrier and the profile, of an element its friction
+//! coefficients. Both are pictures without text, in pixels from the upper left corner.
 
 use std::error::Error;
 
+use asperity::element::{Quantity, Table};
 use asperity::math::Spline;
 use asperity::scene::{LinkKind, Scene};
-use plotters::style::RGBColor;
+use plotters::prelude::*;
 
-use crate::program::plot::Drawn;
-pub(super) use curves::element_png;
-use sketch::{Point, SIZE, Sketch};
+use crate::program::figure::{Backend, Canvas, DrawResult, FINE, Figure};
 
-/// Pixels: width, height.
+/// Width and height, pixels.
+const SIZE: (u32, u32) = (240, 160);
 const WIDTH: f64 = SIZE.0 as f64;
 const HEIGHT: f64 = SIZE.1 as f64;
-/// Masses drawn at most: so few that each is seen.
+/// Width of a line, pixels.
+const LINE: f64 = 1.4;
+
+/// Most masses drawn: few enough to be told apart.
 const MASSES: usize = 10;
 /// The carrier's lower edge, pixels from the top.
 const CARRIER: f64 = 22.0;
-/// Where heights are drawn, pixels from the top: of the highest point and of the lowest.
+/// Of the highest and of the lowest point of profile and masses, pixels from the top.
 const HEIGHTS: (f64, f64) = (92.0, 140.0);
 /// Radius of a mass, pixels.
 const MASS: f64 = 4.0;
-/// Half the width of a spring's windings, pixels.
+/// Half the width of a spring, pixels.
 const WINDING: f64 = 3.5;
-/// Corners of a spring.
 const CORNERS: usize = 9;
 
 const STEEL: RGBColor = RGBColor(70, 70, 70);
-const GROUND: RGBColor = RGBColor(196, 188, 176);
+const SURFACE: RGBColor = RGBColor(196, 188, 176);
 const EDGE: RGBColor = RGBColor(110, 100, 88);
 const RUBBER: RGBColor = RGBColor(0, 114, 178);
 const LINK: RGBColor = RGBColor(86, 160, 210);
 
-/// The picture as a PNG file.
-pub(super) fn png(scene: &Scene) -> Result<Vec<u8>, Box<dyn Error>> {
-    let view = View::new(scene);
-    Sketch::png(|sketch| {
-        view.draw_ground(sketch)?;
-        sketch.fill([(0.0, 0.0), (WIDTH, 0.0), (WIDTH, CARRIER), (0.0, CARRIER)].into_iter(), STEEL)?;
-        view.draw_links(sketch)?;
-        view.masses.iter().try_for_each(|&centre| sketch.disc(centre, MASS, RUBBER))
-    })
+/// The PNG file of a layer.
+pub(super) fn layer_png(scene: &Scene) -> Result<Vec<u8>, Box<dyn Error>> {
+    LayerPicture::new(scene).png(1)
 }
 
-/// What is drawn, in pixels.
-struct View<'a> {
+/// A layer at rest, in pixels.
+struct LayerPicture<'a> {
     scene: &'a Scene,
-    /// The profile's height at each column of pixels, and at the picture's right edge.
-    ground: Vec<f64>,
+    /// The profile at each column of pixels, and at the picture's right edge.
+    profile: Vec<f64>,
     /// The masses' centres: a mass touches with its lowest point.
     masses: Vec<Point>,
 }
 
-impl<'a> View<'a> {
+impl<'a> LayerPicture<'a> {
     fn new(scene: &'a Scene) -> Self {
         let layer = &scene.layer;
         let masses = layer.masses.min(MASSES);
         let pitch = layer.spacing * masses as f64 / WIDTH;
         let left = layer.origin - layer.spacing / 2.0;
         let rest: Vec<f64> = (0..masses).map(|i| layer.clearance + layer.roughness.get(i).unwrap_or(&0.0)).collect();
-        let ground = heights(&scene.surface.spline(), left, pitch);
-        let row = rows(rest.iter().chain(&ground));
+        let profile = heights(&scene.surface.spline(), left, pitch);
+        let row = rows(rest.iter().chain(&profile));
         let column = |i: usize| (i as f64 + 0.5) * WIDTH / masses as f64;
         let centre = |(i, z): (usize, &f64)| (column(i), row(*z) - MASS);
         let masses = rest.iter().enumerate().map(centre).collect();
-        Self { scene, masses, ground: ground.iter().map(|z| row(*z)).collect() }
+        Self { scene, masses, profile: profile.iter().map(|z| row(*z)).collect() }
     }
 
-    fn draw_ground(&self, sketch: &Sketch<'_, '_>) -> Drawn {
-        let edge = || self.ground.iter().enumerate().map(|(i, &y)| (i as f64, y));
-        sketch.fill(edge().chain([(WIDTH, HEIGHT), (0.0, HEIGHT)]), GROUND)?;
-        sketch.line(edge(), EDGE)
+    fn draw_profile<B: Backend>(&self, canvas: &Canvas<B>) -> DrawResult {
+        let edge = || self.profile.iter().enumerate().map(|(i, &y)| (i as f64, y));
+        fill(canvas, edge().chain([(WIDTH, HEIGHT), (0.0, HEIGHT)]), SURFACE)?;
+        line(canvas, edge(), EDGE)
     }
 
-    fn draw_links(&self, sketch: &Sketch<'_, '_>) -> Drawn {
+    fn draw_links<B: Backend>(&self, canvas: &Canvas<B>) -> DrawResult {
         let has = |kinds: [LinkKind; 2]| kinds.into_iter().any(|kind| self.scene.link(kind).is_some());
         if has([LinkKind::LateralX, LinkKind::LateralZ]) {
-            sketch.line(self.masses.iter().copied(), LINK)?;
+            line(canvas, self.masses.iter().copied(), LINK)?;
         }
         if has([LinkKind::Vertical, LinkKind::Horizontal]) {
-            self.masses.iter().try_for_each(|&mass| sketch.line(spring(mass), LINK))?;
+            self.masses.iter().try_for_each(|&mass| line(canvas, spring(mass), LINK))?;
         }
         Ok(())
+    }
+}
+
+impl Figure for LayerPicture<'_> {
+    fn size(&self) -> (u32, u32) {
+        SIZE
+    }
+
+    fn draw<B: Backend>(&self, canvas: &Canvas<B>) -> DrawResult {
+        self.draw_profile(canvas)?;
+        fill(canvas, [(0.0, 0.0), (WIDTH, 0.0), (WIDTH, CARRIER), (0.0, CARRIER)].into_iter(), STEEL)?;
+        self.draw_links(canvas)?;
+        self.masses.iter().try_for_each(|&centre| disc(canvas, centre, MASS, RUBBER))
     }
 }
 
@@ -93,7 +100,8 @@ fn heights(profile: &Spline, left: f64, pitch: f64) -> Vec<f64> {
     (0..=SIZE.0).map(|i| profile.evaluate(left + pitch * i as f64).0).collect()
 }
 
-/// Where a height is drawn, so that all of `heights` (m) fit in; a flat scene lies in the middle.
+/// The map from a height (m) to pixels from the top, so that `heights` fill their space; a flat scene lies in the
+/// middle.
 fn rows<'a>(heights: impl Iterator<Item = &'a f64> + Clone) -> impl Fn(f64) -> f64 {
     let highest = heights.clone().copied().fold(f64::MIN, f64::max);
     let lowest = heights.copied().fold(f64::MAX, f64::min);
@@ -111,6 +119,86 @@ fn spring((x, end): Point) -> impl Iterator<Item = Point> {
     })
 }
 
+/// Between the edges of an element's picture and its axes, pixels.
+const MARGIN: f64 = 14.0;
+/// Radius of a point of the table, pixels.
+const POINT: f64 = 2.0;
+/// Colours of the lowest and the highest pressure.
+const PRESSURES: [[u8; 3]; 2] = [[86, 160, 210], [0, 60, 100]];
+
+/// The PNG file of an element.
+pub(super) fn element_png(table: &Table) -> Result<Vec<u8>, Box<dyn Error>> {
+    ElementPicture(table).png(1)
+}
+
+/// Friction coefficients over the logarithm of speed, a line for each pressure; of several temperatures, at the middle
+/// one.
+struct ElementPicture<'a>(&'a Table);
+
+impl Figure for ElementPicture<'_> {
+    fn size(&self) -> (u32, u32) {
+        SIZE
+    }
+
+    fn draw<B: Backend>(&self, canvas: &Canvas<B>) -> DrawResult {
+        let corners = [(MARGIN, MARGIN), (MARGIN, HEIGHT - MARGIN), (WIDTH - MARGIN, HEIGHT - MARGIN)];
+        line(canvas, corners.into_iter(), STEEL)?;
+        let count = self.0.pressures.len();
+        (0..count).try_for_each(|i| {
+            let (points, colour) = (self.points(i), pressure_colour(i, count));
+            line(canvas, points.iter().copied(), colour)?;
+            points.iter().try_for_each(|&point| disc(canvas, point, POINT, colour))
+        })
+    }
+}
+
+impl ElementPicture<'_> {
+    /// The points of a pressure, in pixels.
+    fn points(&self, pressure: usize) -> Vec<Point> {
+        let table = self.0;
+        let temperature = table.temperatures.len() / 2;
+        let friction = |i, j| table.value(Quantity::Friction, (temperature, i, j));
+        let all = (0..table.pressures.len()).flat_map(|i| (0..table.speeds.len()).map(move |j| friction(i, j)));
+        let largest = all.fold(f64::MIN_POSITIVE, f64::max);
+        let point = |j: usize| {
+            let share = if table.speeds.len() > 1 { j as f64 / (table.speeds.len() - 1) as f64 } else { 0.5 };
+            let x = MARGIN + POINT + share * (WIDTH - 2.0 * (MARGIN + POINT));
+            (x, MARGIN + (1.0 - friction(pressure, j) / largest) * (HEIGHT - 2.0 * MARGIN))
+        };
+        (0..table.speeds.len()).map(point).collect()
+    }
+}
+
+fn pressure_colour(i: usize, count: usize) -> RGBColor {
+    let share = i as f64 / (count.max(2) - 1) as f64;
+    let [red, green, blue] = std::array::from_fn(|k| {
+        let [low, high] = PRESSURES.map(|end| f64::from(end[k]));
+        (low + share * (high - low)).round() as u8
+    });
+    RGBColor(red, green, blue)
+}
+
+/// x to the right, y down.
+type Point = (f64, f64);
+
+fn fill<B: Backend>(canvas: &Canvas<B>, corners: impl Iterator<Item = Point>, colour: RGBColor) -> DrawResult {
+    Ok(canvas.draw(&Polygon::new(corners.map(subpixel).collect::<Vec<_>>(), colour.filled()))?)
+}
+
+fn line<B: Backend>(canvas: &Canvas<B>, points: impl Iterator<Item = Point>, colour: RGBColor) -> DrawResult {
+    let width = (LINE * f64::from(FINE)).round() as u32;
+    Ok(canvas.draw(&PathElement::new(points.map(subpixel).collect::<Vec<_>>(), colour.stroke_width(width)))?)
+}
+
+fn disc<B: Backend>(canvas: &Canvas<B>, centre: Point, radius: f64, colour: RGBColor) -> DrawResult {
+    Ok(canvas.draw(&Circle::new(subpixel(centre), radius * f64::from(FINE), colour.filled()))?)
+}
+
+fn subpixel((x, y): Point) -> (i32, i32) {
+    let subpixel = |length: f64| (length * f64::from(FINE)).round() as i32;
+    (subpixel(x), subpixel(y))
+}
+
 #[cfg(test)]
 mod tests {
     use std::path::Path;
@@ -125,26 +213,26 @@ mod tests {
     #[test]
     fn masses_on_a_flat_profile_rest_on_it() {
         let scene = scene("masses = 3\nspacing = 1e-4\nmass = 1e-6", "kind = 'flat'");
-        let view = View::new(&scene);
-        assert_eq!(view.masses, [(40.0, 112.0), (120.0, 112.0), (200.0, 112.0)]);
-        assert_eq!(view.ground, [116.0; SIZE.0 as usize + 1]);
+        let picture = LayerPicture::new(&scene);
+        assert_eq!(picture.masses, [(40.0, 112.0), (120.0, 112.0), (200.0, 112.0)]);
+        assert_eq!(picture.profile, [116.0; SIZE.0 as usize + 1]);
     }
 
     #[test]
-    fn heights_fill_the_room_there_is() {
+    fn heights_fill_their_space() {
         let layer = "masses = 1\nspacing = 1e-3\nclearance = 2e-6\nmass = 1e-6";
         let scene = scene(layer, "kind = 'sinusoid'\namplitude = 1e-6\nwavelength = 1e-3");
-        let view = View::new(&scene);
-        assert_eq!(view.masses, [(120.0, HEIGHTS.0 - MASS)]);
-        let lowest = view.ground.iter().copied().fold(f64::MIN, f64::max);
+        let picture = LayerPicture::new(&scene);
+        assert_eq!(picture.masses, [(120.0, HEIGHTS.0 - MASS)]);
+        let lowest = picture.profile.iter().copied().fold(f64::MIN, f64::max);
         assert!((lowest - HEIGHTS.1).abs() < 1e-3, "{lowest}");
     }
 
     #[test]
     fn the_picture_is_a_png_and_always_the_same() {
         let scene = scene("masses = 200\nspacing = 1e-4\nmass = 1e-6", "kind = 'flat'");
-        let bytes = png(&scene).unwrap();
+        let bytes = layer_png(&scene).unwrap();
         assert_eq!(&bytes[..8], b"\x89PNG\r\n\x1a\n");
-        assert_eq!(bytes, png(&scene).unwrap());
+        assert_eq!(bytes, layer_png(&scene).unwrap());
     }
 }

@@ -21,7 +21,7 @@ use asperity::scene::Scene;
 
 use super::arguments::Report;
 use super::error::ProgramError;
-use super::plot::{Ladders, SHARP, png};
+use super::figure::{Figure as _, Ladders};
 use ladder::Ladder;
 use peers::Peers;
 use progress::Progress;
@@ -156,14 +156,9 @@ impl Folder {
     /// Draws a picture as SVG and PNG and returns the text of the SVG.
     fn draw(&self, name: &str, picture: &Ladders) -> Result<String, ProgramError> {
         let [svg_file, png_file] = ["svg", "png"].map(|ending| self.file(name, ending));
+        picture.write(&png_file)?;
         let svg = picture.svg().map_err(|error| ProgramError::picture(&svg_file, &*error))?;
-        let png = png(&svg, SHARP).map_err(|error| ProgramError::picture(&png_file, &*error))?;
-        write(&svg_file, svg.as_bytes())?;
-        write(&png_file, &png)?;
+        fs::write(&svg_file, &svg).map_err(ProgramError::file("write", &svg_file))?;
         Ok(svg)
     }
-}
-
-fn write(path: &Path, content: &[u8]) -> Result<(), ProgramError> {
-    fs::write(path, content).map_err(ProgramError::file("write", path))
 }

@@ -4,7 +4,7 @@ use super::communication::{self, Given};
 use super::ladder::{PROGRAM, Row};
 use super::reference::Reference;
 use super::trace::{Errors, QUANTITIES};
-use crate::program::plot::{Ladder, LadderPanel, Ladders, Rung};
+use crate::program::figure::{Ladder, LadderPanel, Ladders, Rung};
 
 /// Errors over run time, one line for each program and method.
 pub(super) fn errors(reference: &Reference, rows: &[Row]) -> Ladders {

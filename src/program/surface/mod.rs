@@ -8,8 +8,8 @@ use asperity::scene;
 use serde::Serialize;
 
 use super::cli::{Reading, Surface};
+use super::figure::{Figure as _, ProfilePicture};
 use super::files::{self, FileError, check_outputs, ends_in, load, name_of, print, sources};
-use super::plot::ProfilePicture;
 use super::terminal::{lines, note, real, warn};
 use spectrum::{Band, PowerLaw, Spectrum};
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::grid::Values;
 use super::table::{Line, Table};
 use crate::program::error::ProgramError;
-use crate::program::plot::{Curve, Panel, SideBySide, Stroke};
+use crate::program::figure::{Curve, Figure as _, Panel, SideBySide, Stroke};
 
 /// Draws friction over speed at `path`: a panel for each temperature, a colour for each load; with one load, one panel
 /// and a colour for each temperature.

@@ -9,7 +9,7 @@ use asperity::simulation::Start;
 use rayon::prelude::*;
 
 use crate::program::error::ProgramError;
-use crate::program::plot::{Ladder, LadderPanel, Ladders, Rung};
+use crate::program::figure::{Ladder, LadderPanel, Ladders, Rung};
 use crate::program::progress;
 use crate::program::result_file::real;
 use crate::program::sweep::{Sliding, sliding};

@@ -12,7 +12,7 @@ use asperity::scene::Scene;
 
 use crate::program::arguments::Pack;
 use crate::program::error::ProgramError;
-use crate::program::plot::plot_files;
+use crate::program::figure::{Figure as _, plot_files};
 use crate::program::text::Row;
 
 /// Runs the layer and the element, writes what they do and says how far they are apart.
@@ -28,7 +28,7 @@ pub(super) fn check(command: &Pack, contact: &PointContact, scene: &Path) -> Res
     let folder = Folder::beside(&command.output)?;
     let checks = cells::run(contact, &scene, command.points as usize);
     cells::write(&folder.file("points.csv"), contact.table().load, &checks)?;
-    folder.write("errors.svg", &cells::picture(&checks, contact.table().load))?;
+    cells::picture(&checks, contact.table().load).write(&folder.file("errors.svg"))?;
     let mut rows = cells::rows(&checks);
     let compared: Vec<_> = checks.iter().filter(|check| check.errors().is_some()).collect();
     if let Some(middle) = compared.get(compared.len() / 2) {
@@ -75,11 +75,5 @@ impl Folder {
 
     fn file(&self, name: &str) -> PathBuf {
         self.path.join(name)
-    }
-
-    fn write(&self, name: &str, picture: &crate::program::plot::Ladders) -> Result<(), ProgramError> {
-        let path = self.file(name);
-        let svg = picture.svg().map_err(|error| ProgramError::picture(&path, &*error))?;
-        fs::write(&path, svg).map_err(ProgramError::file("write", &path))
     }
 }

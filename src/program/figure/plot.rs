@@ -1,20 +1,38 @@
-//! `asperity plot`: columns of result files over each other.
+//! `asperity plot`: columns of result files in one chart.
 
 use std::path::Path;
 
 use asperity::outputs::unit_of;
 
-use super::axis::Axis;
-use super::chart::Chart;
-use super::curve::{Curve, Stroke};
-use super::linear::Fit;
-use super::picture::write;
-use crate::program::arguments::Plot;
+use super::axis::{Axis, Fit};
+use super::chart::{Chart, Curve, Stroke};
+use super::{Backend, Canvas, DrawResult, Figure};
+use crate::program::cli::Plot;
 use crate::program::error::ProgramError;
+use crate::program::files::check_output;
 use crate::program::result_file::ResultFile;
-use crate::program::{check_output, warn};
+use crate::program::terminal::warn;
 
-const SIZE: (u32, u32) = (1000, 620);
+/// A chart with a title above.
+#[derive(Debug)]
+struct TitledChart {
+    title: String,
+    chart: Chart,
+}
+
+impl Figure for TitledChart {
+    fn size(&self) -> (u32, u32) {
+        (1000, 620)
+    }
+
+    fn title(&self) -> &str {
+        &self.title
+    }
+
+    fn draw<B: Backend>(&self, canvas: &Canvas<B>) -> DrawResult {
+        self.chart.draw_with_legend(canvas)
+    }
+}
 
 /// Draws one line for each file and y.
 pub(crate) fn plot_files(command: &Plot) -> Result<(), ProgramError> {
@@ -26,11 +44,11 @@ pub(crate) fn plot_files(command: &Plot) -> Result<(), ProgramError> {
     for (i, path) in command.files.iter().enumerate() {
         add_curves(&mut curves, command, i, path)?;
     }
-    let chart = chart(command, curves);
-    Ok(write(&command.output, SIZE, command.title.as_deref(), |canvas| chart.draw_with_legend(canvas))?)
+    let title = command.title.clone().unwrap_or_default();
+    TitledChart { title, chart: chart(command, curves) }.write(&command.output)?;
+    Ok(())
 }
 
-/// Adds those of a file.
 fn add_curves(curves: &mut Vec<Curve>, command: &Plot, index: usize, path: &Path) -> Result<(), ProgramError> {
     let file = ResultFile::read(path)?;
     let x = file.column(&command.x)?;
@@ -41,14 +59,14 @@ fn add_curves(curves: &mut Vec<Curve>, command: &Plot, index: usize, path: &Path
         let points: Vec<_> = x.iter().zip(&y).skip(first).map(|(&x, &y)| (x, sign * y)).collect();
         let name = curve_name(command, index, path, column);
         if !points.iter().any(|(x, y)| x.is_finite() && y.is_finite()) {
-            warn(&format!("{}: nothing to draw of {column}: no finite numbers", path.display()));
+            warn(&format!("{}: nothing to draw of {column}: it has no finite numbers", path.display()));
         }
         curves.push(Curve { name, look: curves.len(), stroke: Stroke::Line, points });
     }
     Ok(())
 }
 
-/// The last row at which x is still what it was in the first.
+/// The last row before x changes for the first time.
 fn last_before_motion(x: &[f64]) -> usize {
     x.iter().position(|value| *value != x[0]).map_or(0, |moved| moved - 1)
 }
@@ -74,7 +92,7 @@ fn chart(command: &Plot, curves: Vec<Curve>) -> Chart {
     }
 }
 
-/// The unit of a column; none for a plain number or a column that we do not know.
+/// The unit of a column; empty for a plain number or an unknown column.
 fn unit(column: &str) -> &'static str {
     match column {
         "time" => "s",

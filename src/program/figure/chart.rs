@@ -1,0 +1,301 @@
+//! A chart: curves over axes, and a legend above them.
+
+use std::error::Error;
+
+use plotters::element::DashedPathElement;
+use plotters::prelude::*;
+
+use super::axis::Axis;
+use super::{
+    Backend, Canvas, DrawResult, FINE, GRID, INK, LINE_WIDTH, TEXT_SIZE, TICK_SIZE, colour, text_style, text_width,
+};
+
+/// Between the edges of a chart and its axes; more at the right, where half of a tick's label stands.
+const MARGIN: u32 = 6 * FINE;
+const RIGHT_MARGIN: u32 = 28 * FINE;
+/// Space for ticks and title of the vertical axis, and of the horizontal one.
+const BESIDE: u32 = 72 * FINE;
+const BELOW: u32 = 46 * FINE;
+/// From the left edge to the vertical axis, and to the legend.
+const LEFT: u32 = MARGIN + BESIDE;
+const TICK: u32 = 5 * FINE;
+/// Space for a tick's label along a horizontal and along a vertical axis.
+const LABEL: (u32, u32) = (42 * FINE, 28 * FINE);
+/// Radius of a circle at a point.
+const CIRCLE: i32 = 4 * FINE as i32;
+/// Radius of a marker.
+pub(super) const MARKER: i32 = 5 * FINE as i32;
+
+const LEGEND_LINE: u32 = 30 * FINE;
+const SYMBOL: u32 = 26 * FINE;
+/// Between a symbol and its name; three times that before the next symbol.
+const GAP: u32 = 7 * FINE;
+
+/// How a curve is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Stroke {
+    Line,
+    Dashed,
+    Dotted,
+    /// A circle at every point, and no line.
+    Rings,
+}
+
+/// A curve.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Curve {
+    /// Its name in the legend.
+    pub(crate) name: String,
+    /// The number of its colour.
+    pub(crate) look: usize,
+    pub(crate) stroke: Stroke,
+    /// In the units of the quantities; points that an axis cannot show are left out.
+    pub(crate) points: Vec<(f64, f64)>,
+}
+
+/// Curves over axes.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Chart {
+    /// Above the chart; empty for none.
+    pub(super) title: String,
+    pub(super) x: Axis,
+    pub(super) y: Axis,
+    /// In the order of the legend.
+    pub(super) curves: Vec<Curve>,
+}
+
+pub(super) type Context<'a, B> = ChartContext<'a, B, Cartesian2d<Axis, Axis>>;
+
+impl Chart {
+    /// Draws the legend and, below it, the chart.
+    pub(super) fn draw_with_legend<B: Backend>(&self, canvas: &Canvas<B>) -> DrawResult {
+        let names = self.curves.iter().map(|curve| (curve.name.as_str(), Symbol::of(curve)));
+        let legend = Legend::new(names, canvas.dim_in_pixel().0);
+        let (above, below) = canvas.split_vertically(legend.height());
+        legend.draw(&above)?;
+        self.draw(&below)
+    }
+
+    /// Draws axes and curves.
+    pub(super) fn draw<B: Backend>(&self, canvas: &Canvas<B>) -> DrawResult {
+        let mut context = context(canvas, &self.title, &self.x, &self.y)?;
+        draw_axes(&mut context, &self.x, &self.y)?;
+        self.curves.iter().try_for_each(|curve| {
+            let drawn = |point: &(f64, f64)| Some((self.x.coordinate(point.0)?, self.y.coordinate(point.1)?));
+            draw_line(&mut context, curve.points.iter().filter_map(drawn).collect(), curve.stroke, curve.look)
+        })
+    }
+}
+
+/// The plotting area of a chart, with nothing drawn but the title.
+pub(super) fn context<'a, B: Backend>(
+    canvas: &'a Canvas<B>,
+    title: &str,
+    x: &Axis,
+    y: &Axis,
+) -> Result<Context<'a, B>, Box<dyn Error>> {
+    let mut builder = ChartBuilder::on(canvas);
+    builder.margin(MARGIN).margin_right(RIGHT_MARGIN).x_label_area_size(BELOW).y_label_area_size(BESIDE);
+    if !title.is_empty() {
+        builder.caption(title, text_style(TEXT_SIZE));
+    }
+    Ok(builder.build_cartesian_2d(x.clone(), y.clone())?)
+}
+
+/// Draws grid, ticks and titles.
+pub(super) fn draw_axes<B: Backend>(context: &mut Context<'_, B>, x: &Axis, y: &Axis) -> DrawResult {
+    let (width, height) = context.plotting_area().dim_in_pixel();
+    context
+        .configure_mesh()
+        .bold_line_style(GRID.stroke_width(FINE))
+        .light_line_style(GRID.mix(0.45).stroke_width(FINE / 2))
+        .axis_style(INK.stroke_width(FINE))
+        .set_all_tick_mark_size(TICK)
+        .x_labels((width / LABEL.0) as usize)
+        .y_labels((height / LABEL.1) as usize)
+        .label_style(text_style(TICK_SIZE))
+        .axis_desc_style(text_style(TEXT_SIZE))
+        .x_desc(&x.title)
+        .y_desc(&y.title)
+        .draw()?;
+    Ok(())
+}
+
+/// Draws a curve through drawn values.
+pub(super) fn draw_line<B: Backend>(
+    context: &mut Context<'_, B>,
+    points: Vec<(f64, f64)>,
+    stroke: Stroke,
+    look: usize,
+) -> DrawResult {
+    let line = colour(look).stroke_width(LINE_WIDTH);
+    if stroke == Stroke::Rings {
+        context.draw_series(points.into_iter().map(|point| Circle::new(point, CIRCLE, translucent(colour(look)))))?;
+    } else if let Some((dash, gap)) = stroke.dashes() {
+        context.draw_series([DashedPathElement::new(points.into_iter(), dash, gap, line)])?;
+    } else {
+        context.draw_series([PathElement::new(points, line)])?;
+    }
+    Ok(())
+}
+
+/// A line through many circles is seen behind them.
+fn translucent(colour: RGBColor) -> ShapeStyle {
+    colour.mix(0.5).stroke_width(LINE_WIDTH)
+}
+
+impl Stroke {
+    /// A dash and the gap after it, subpixels; a symbol of the legend ends with a whole dash.
+    fn dashes(self) -> Option<(u32, u32)> {
+        match self {
+            Self::Dashed => Some((6 * FINE, 4 * FINE)),
+            Self::Dotted => Some((2 * FINE, 4 * FINE)),
+            Self::Line | Self::Rings => None,
+        }
+    }
+}
+
+/// Draws a disc, a square, a triangle or a diamond, or its outline: lines are told apart without their colours.
+pub(super) fn draw_marker<B: Backend>(canvas: &Canvas<B>, (x, y): (i32, i32), look: usize, hollow: bool) -> DrawResult {
+    let (r, edge) = (MARKER, colour(look).stroke_width(LINE_WIDTH));
+    let inside = if hollow { WHITE } else { colour(look) };
+    let corners: &[(i32, i32)] = match look % 4 {
+        0 => {
+            canvas.draw(&Circle::new((x, y), r, inside.filled()))?;
+            canvas.draw(&Circle::new((x, y), r, edge))?;
+            return Ok(());
+        }
+        1 => &[(-r, -r), (r, -r), (r, r), (-r, r)],
+        2 => &[(0, -r * 5 / 4), (r * 5 / 4, r), (-r * 5 / 4, r)],
+        _ => &[(0, -r * 4 / 3), (r * 4 / 3, 0), (0, r * 4 / 3), (-r * 4 / 3, 0)],
+    };
+    let mut corners: Vec<(i32, i32)> = corners.iter().map(|(dx, dy)| (x + dx, y + dy)).collect();
+    canvas.draw(&Polygon::new(corners.clone(), inside.filled()))?;
+    corners.extend([corners[0], corners[1]]);
+    canvas.draw(&PathElement::new(corners, edge))?;
+    Ok(())
+}
+
+/// What stands before a name of the legend.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Symbol {
+    Line(Stroke, RGBColor),
+    /// A marker on a line that may be dashed.
+    Marker {
+        look: usize,
+        dashed: bool,
+    },
+    /// A shaded area.
+    Area(RGBColor),
+}
+
+/// Names, each once, in as many lines as they need. plotters' own legend covers a part of the curves.
+#[derive(Debug)]
+pub(super) struct Legend {
+    items: Vec<Item>,
+    lines: u32,
+}
+
+#[derive(Debug)]
+struct Item {
+    name: String,
+    symbol: Symbol,
+    left: u32,
+    line: u32,
+}
+
+impl Legend {
+    /// The legend of `names` on a canvas of some width, subpixels.
+    pub(super) fn new<'a>(names: impl Iterator<Item = (&'a str, Symbol)>, width: u32) -> Self {
+        let mut legend = Self { items: Vec::new(), lines: 1 };
+        let mut left = LEFT;
+        for (name, symbol) in names.filter(|(name, _)| !name.is_empty()) {
+            if legend.items.iter().any(|item| item.name == name) {
+                continue;
+            }
+            let item_width = SYMBOL + GAP + text_width(name, TEXT_SIZE);
+            if left + item_width > width && left > LEFT {
+                (left, legend.lines) = (LEFT, legend.lines + 1);
+            }
+            legend.items.push(Item { name: name.to_owned(), symbol, left, line: legend.lines - 1 });
+            left += item_width + 3 * GAP;
+        }
+        legend
+    }
+
+    pub(super) fn height(&self) -> u32 {
+        self.lines * LEGEND_LINE
+    }
+
+    pub(super) fn draw<B: Backend>(&self, canvas: &Canvas<B>) -> DrawResult {
+        self.items.iter().try_for_each(|item| item.draw(canvas))
+    }
+}
+
+impl Item {
+    fn draw<B: Backend>(&self, canvas: &Canvas<B>) -> DrawResult {
+        let (left, right) = (self.left as i32, (self.left + SYMBOL) as i32);
+        let top = self.line * LEGEND_LINE;
+        self.symbol.draw(canvas, (left, right), (top + LEGEND_LINE / 2 + FINE) as i32)?;
+        let corner = (right + GAP as i32, (top + (LEGEND_LINE - TEXT_SIZE) / 2 + 2 * FINE) as i32);
+        canvas.draw(&Text::new(self.name.as_str(), corner, text_style(TEXT_SIZE)))?;
+        Ok(())
+    }
+}
+
+impl Symbol {
+    pub(super) fn of(curve: &Curve) -> Self {
+        Self::Line(curve.stroke, colour(curve.look))
+    }
+
+    /// That of a stroke in any colour.
+    pub(super) fn of_stroke(stroke: Stroke) -> Self {
+        Self::Line(stroke, INK)
+    }
+
+    fn draw<B: Backend>(self, canvas: &Canvas<B>, (left, right): (i32, i32), middle: i32) -> DrawResult {
+        let centre = i32::midpoint(left, right);
+        let line = |from: i32, to: i32, colour: RGBColor| {
+            canvas.draw(&PathElement::new([(from, middle), (to, middle)], colour.stroke_width(LINE_WIDTH)))
+        };
+        match self {
+            Self::Line(Stroke::Rings, colour) => {
+                canvas.draw(&Circle::new((centre, middle), CIRCLE, translucent(colour)))?;
+            }
+            Self::Line(stroke, colour) => {
+                let (dash, gap) = stroke.dashes().unwrap_or((SYMBOL, 1));
+                let starts = (left..right).step_by((dash + gap) as usize);
+                starts.into_iter().try_for_each(|start| line(start, (start + dash as i32).min(right), colour))?;
+            }
+            Self::Marker { look, dashed } => {
+                let gap = if dashed { 2 * MARKER } else { 0 };
+                line(left, centre - gap, colour(look))?;
+                line(centre + gap, right, colour(look))?;
+                draw_marker(canvas, (centre, middle), look, false)?;
+            }
+            Self::Area(shade) => {
+                let half = (TEXT_SIZE / 2) as i32;
+                let corners = [(left, middle - half), (right, middle + half)];
+                canvas.draw(&Rectangle::new(corners, shade.filled()))?;
+                canvas.draw(&Rectangle::new(corners, GRID.stroke_width(FINE)))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_legend_has_each_name_once_and_no_line_too_long() {
+        let names: Vec<String> = (0..12).map(|i| format!("ladder number {}", i % 6)).collect();
+        let width = 400 * FINE;
+        let legend = Legend::new(names.iter().map(|name| (name.as_str(), Symbol::Area(GRID))), width);
+        assert_eq!(legend.items.len(), 6);
+        assert!(legend.lines > 1);
+        let ends = legend.items.iter().map(|item| item.left + SYMBOL + GAP + text_width(&item.name, TEXT_SIZE));
+        assert!(ends.clone().all(|end| end <= width), "{:?}", ends.collect::<Vec<_>>());
+    }
+}
