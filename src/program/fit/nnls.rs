@@ -3,9 +3,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// A column whose part that no other column has is shorter than this, over its length, adds nothing but rounding.
+/// A column counts as dependent if its part orthogonal to the others is below this, relative to its length.
 const INDEPENDENT: f64 = 1e-12;
-/// Solutions of the free problem that may be tried, over the number of unknowns: Lawson and Hanson's own bound.
+/// Maximum number of unconstrained solutions, per unknown: Lawson and Hanson's bound.
 const TRIES: usize = 3;
 
 /// The x ≥ 0 that minimises ‖A x - b‖.
@@ -19,7 +19,7 @@ pub(super) fn non_negative_least_squares(a: &DMatrix<f64>, b: &DVector<f64>) -> 
     x
 }
 
-/// [A b] with the columns of A at length 1; where it is tall, its triangular factor, in which the problem is the same.
+/// [A b] with the columns of A scaled to length 1; if it is tall, its triangular factor, which has the same solution.
 fn compressed(a: &DMatrix<f64>, b: &DVector<f64>, lengths: &[f64]) -> DMatrix<f64> {
     let mut both = a.clone().insert_column(a.ncols(), 0.0);
     both.set_column(a.ncols(), b);
@@ -29,12 +29,12 @@ fn compressed(a: &DMatrix<f64>, b: &DVector<f64>, lengths: &[f64]) -> DMatrix<f6
     if both.nrows() > both.ncols() { both.qr().r() } else { both }
 }
 
-/// The state of the search: the unknowns that are free to be positive, the others are 0.
+/// State of the search: free unknowns may be positive, all others are 0.
 struct ActiveSet<'a> {
     a: &'a DMatrix<f64>,
     b: &'a DVector<f64>,
     x: DVector<f64>,
-    /// Free unknowns, in the order in which they became so.
+    /// Free unknowns, in the order of their release.
     free: Vec<usize>,
 }
 
@@ -50,7 +50,7 @@ impl<'a> ActiveSet<'a> {
         {
             tries -= 1;
             let mut wanted = solution;
-            while tries > 0 && !self.go_towards(&wanted) {
+            while tries > 0 && !self.move_towards(&wanted) {
                 tries -= 1;
                 match self.free_solution() {
                     Some(solution) => wanted = solution,
@@ -61,8 +61,8 @@ impl<'a> ActiveSet<'a> {
         self.x
     }
 
-    /// Frees the unknown along which the residual falls most steeply, if it falls at all and the unknown then becomes
-    /// positive; the solution with it.
+    /// Releases the unknown along which the residual falls most steeply, if any falls and the unknown becomes positive.
+    /// Returns the solution with it.
     fn release(&mut self) -> Option<DVector<f64>> {
         let gradient = self.a.tr_mul(&(self.b - self.a * &self.x));
         let threshold = 10.0 * self.a.nrows() as f64 * f64::EPSILON * self.b.norm();
@@ -79,7 +79,7 @@ impl<'a> ActiveSet<'a> {
         None
     }
 
-    /// The least squares solution for the free unknowns, whatever their signs; `None` where they depend on one another.
+    /// The least squares solution for the free unknowns, of any sign; `None` if their columns are dependent.
     fn free_solution(&self) -> Option<DVector<f64>> {
         let qr = self.a.select_columns(&self.free).qr();
         let r = qr.r();
@@ -91,15 +91,15 @@ impl<'a> ActiveSet<'a> {
         r.solve_upper_triangular(&right.rows(0, self.free.len()))
     }
 
-    /// Goes from x towards `wanted` as far as no unknown becomes negative; those that reach 0 are no longer free.
-    /// Whether it arrived.
-    fn go_towards(&mut self, wanted: &DVector<f64>) -> bool {
+    /// Moves x towards `wanted` as far as no unknown becomes negative; those that reach 0 are no longer free. Returns
+    /// whether it arrived.
+    fn move_towards(&mut self, wanted: &DVector<f64>) -> bool {
         let blocking = |(&j, &to): (&usize, &f64)| (to <= 0.0).then(|| self.x[j] / (self.x[j] - to));
         let share = self.free.iter().zip(wanted.iter()).filter_map(blocking).fold(1.0, f64::min);
         let arrived = self.free.iter().zip(wanted.iter()).all(|(_, &to)| to > 0.0);
         for (&j, &to) in self.free.iter().zip(wanted.iter()) {
             let reached = if arrived { to } else { self.x[j] + share * (to - self.x[j]) };
-            // What blocks is at 0 but for rounding.
+            // A blocking unknown is at 0 up to rounding.
             let blocks = to <= 0.0 && self.x[j] <= share * (self.x[j] - to) * (1.0 + 4.0 * f64::EPSILON);
             self.x[j] = if blocks { 0.0 } else { reached.max(0.0) };
         }
@@ -111,9 +111,11 @@ impl<'a> ActiveSet<'a> {
 
 #[cfg(test)]
 mod tests {
+    use asperity::math::SplitMix64;
+
     use super::*;
 
-    /// The free minimum, at (1, -1), is not allowed: along x_2 = 0 it is at x_1 = (1·1 + 1·0 + 0·(-1))/2.
+    /// The unconstrained minimum, at (1, -1), is not allowed: along x_2 = 0 it is at x_1 = (1·1 + 1·0 + 0·(-1))/2.
     #[test]
     fn an_unknown_that_would_be_negative_is_0() {
         let a = DMatrix::from_row_slice(3, 2, &[1.0, 0.0, 1.0, 1.0, 0.0, 1.0]);
@@ -130,7 +132,7 @@ mod tests {
         assert!((x[0] - 0.5).abs() < 1e-14 && (x[1] - 4.0).abs() < 1e-14, "{x}");
     }
 
-    /// A column twice, one that is 0, and fewer rows than columns: none of it stops the search.
+    /// A duplicate column, a zero column, and fewer rows than columns.
     #[test]
     fn columns_that_add_nothing_are_left_out() {
         let a = DMatrix::from_row_slice(2, 4, &[1.0, 1.0, 0.0, 1.0, 2.0, 2.0, 0.0, 0.0]);
@@ -140,34 +142,21 @@ mod tests {
         assert_eq!((x[0] * x[1], x[2]), (0.0, 0.0));
     }
 
-    /// Karush, Kuhn and Tucker: x ≥ 0, Aᵀ(A x - b) ≥ 0, and one of the two 0 for each unknown; on problems as they
-    /// come.
+    /// The Karush-Kuhn-Tucker conditions: x ≥ 0, Aᵀ(A x - b) ≥ 0, and one of the two 0 for each unknown.
     #[test]
     fn random_problems_fulfil_the_conditions_of_a_minimum() {
-        let mut random = Random(1);
+        let mut random = SplitMix64::new(1);
         for case in 0..200 {
             let (rows, columns) = (1 + case % 37, 1 + case % 23);
-            let a = DMatrix::from_fn(rows, columns, |_, _| random.next());
-            let b = DVector::from_fn(rows, |_, _| random.next());
+            let a = DMatrix::from_fn(rows, columns, |_, _| 2.0 * random.unit() - 1.0);
+            let b = DVector::from_fn(rows, |_, _| 2.0 * random.unit() - 1.0);
             let x = non_negative_least_squares(&a, &b);
             let gradient = a.tr_mul(&(&a * &x - &b));
-            // Rounding in sums of up to 37 products, times the condition that such a matrix may have.
+            // Rounding in sums of up to 37 products, times the condition of such a matrix.
             let tolerance = 1e-11 * b.norm() * a.norm().max(1.0);
             for (x, gradient) in x.iter().zip(gradient.iter()) {
                 assert!(*x >= 0.0 && *gradient > -tolerance && x * gradient < tolerance * x.max(1.0), "case {case}");
             }
-        }
-    }
-
-    /// Numbers from -1 to 1, the same each time: xorshift64 of G. Marsaglia.
-    struct Random(u64);
-
-    impl Random {
-        fn next(&mut self) -> f64 {
-            self.0 ^= self.0 << 13;
-            self.0 ^= self.0 >> 7;
-            self.0 ^= self.0 << 17;
-            (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
         }
     }
 }

@@ -1,59 +1,159 @@
-//! The search for as few Maxwell terms as keep the error within a bound.
+//! A compound as a Prony series, its error at measured points, and the search for the fewest terms within an error bound.
 //!
 //! The error of a series is the root mean square of the relative errors of both moduli at all N points,
 //!
 //! ε² = (1/2N) Σ [(E'/E'_measured - 1)² + (E''/E''_measured - 1)²].
 //!
 //! For given relaxation times, the moduli follow by non-negative least squares, which is convex: on a grid of times so
-//! fine that a finer one gains nothing, they tell the least error that any series with E_j ≥ 0 has. Of that series,
-//! neighbours on the grid are one term that lies between them. Then terms are taken out one by one, those first that
-//! are missed least, and each time the others move to where the error is least: Gauss-Newton steps in ln τ.
+//! fine that a finer one gains nothing, they give the smallest error of any series with E_j ≥ 0. Neighbours on the grid
+//! are then merged into one term between them. Finally terms are removed one by one, those that matter least first, and
+//! after each removal the relaxation times of the others are optimised: Gauss-Newton steps in ln τ.
 
 use std::f64::consts::LN_10;
 
-use asperity::scene::PronyTerm;
+use asperity::scene::{MaxwellElement, PronyTerm, complex_stiffness};
 use nalgebra::{DMatrix, DVector};
 
-use super::compound::{Compound, Sample, relaxation};
 use super::nnls::non_negative_least_squares;
 
-/// How far beyond 1/ω of the data relaxation times may lie, in decades: there a term is a spring or a damper, but for
-/// 1e-3 of its modulus.
-const BEYOND: f64 = 1.5;
-/// Times of the fine grid in a decade. A term half way between two of them is both together, but for some 2e-3.
+/// Measured moduli at one frequency, at the reference temperature.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Sample {
+    /// Angular frequency ω, rad/s.
+    pub(super) omega: f64,
+    /// Storage modulus E', Pa.
+    pub(super) storage: f64,
+    /// Loss modulus E'', Pa.
+    pub(super) loss: f64,
+}
+
+/// A spring, a dashpot and Maxwell elements in parallel, as moduli.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Compound {
+    /// E_∞, Pa.
+    pub(super) equilibrium_modulus: f64,
+    /// Kelvin-Voigt viscosity η, Pa s.
+    pub(super) viscosity: f64,
+    /// (τ_j, E_j), from short to long.
+    pub(super) terms: Vec<PronyTerm>,
+}
+
+/// Real and imaginary part of ix/(1 + ix), x = ωτ.
+fn relaxation(x: f64) -> (f64, f64) {
+    complex_stiffness(0.0, 0.0, [MaxwellElement { stiffness: 1.0, relaxation_time: 1.0 }], x)
+}
+
+impl Compound {
+    /// E' and E'' at ω, Pa (2).
+    pub(super) fn complex_modulus(&self, omega: f64) -> (f64, f64) {
+        let elements = self.terms.iter().map(PronyTerm::element);
+        complex_stiffness(self.equilibrium_modulus, self.viscosity, elements, omega)
+    }
+
+    /// The compound with some digits more than a fit of relative error `error` warrants. Errors are reported for the
+    /// rounded compound, as it is written to the file.
+    pub(super) fn rounded(&self, error: f64) -> Self {
+        let digits = (3.0 - error.log10()).ceil().clamp(4.0, 17.0) as usize;
+        let round = |value: f64| format!("{value:.*e}", digits - 1).parse().unwrap_or(value);
+        let term =
+            |term: &PronyTerm| PronyTerm { relaxation_time: round(term.relaxation_time), modulus: round(term.modulus) };
+        Self {
+            equilibrium_modulus: round(self.equilibrium_modulus),
+            viscosity: round(self.viscosity),
+            terms: self.terms.iter().map(term).collect(),
+        }
+    }
+}
+
+/// Relative error of a quantity, 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct RelativeError {
+    /// Root mean square over the points.
+    pub(super) rms: f64,
+    /// Largest absolute value.
+    pub(super) largest: f64,
+    /// Angular frequency of the largest error, rad/s.
+    pub(super) at: f64,
+}
+
+/// Errors of a compound at measured points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct FitErrors {
+    pub(super) storage: RelativeError,
+    pub(super) loss: RelativeError,
+    pub(super) loss_tangent: RelativeError,
+    /// E' and E'' together: the error that the search bounds.
+    pub(super) both: RelativeError,
+}
+
+impl FitErrors {
+    pub(super) fn of(compound: &Compound, samples: &[Sample]) -> Self {
+        let of = |error: fn(&Sample, f64, f64) -> f64| {
+            RelativeError::of(samples.iter().map(|sample| {
+                let (storage, loss) = compound.complex_modulus(sample.omega);
+                (sample.omega, error(sample, storage, loss))
+            }))
+        };
+        let storage = of(|sample, storage, _| storage / sample.storage - 1.0);
+        let loss = of(|sample, _, loss| loss / sample.loss - 1.0);
+        let loss_tangent = of(|sample, storage, loss| loss / storage * sample.storage / sample.loss - 1.0);
+        let worse = if storage.largest > loss.largest { storage } else { loss };
+        let rms = ((storage.rms.powi(2) + loss.rms.powi(2)) / 2.0).sqrt();
+        Self { storage, loss, loss_tangent, both: RelativeError { rms, ..worse } }
+    }
+}
+
+impl RelativeError {
+    fn of(errors: impl Iterator<Item = (f64, f64)>) -> Self {
+        let (mut squares, mut count, mut found) = (0.0, 0.0, Self::default());
+        for (omega, error) in errors {
+            squares += error * error;
+            count += 1.0;
+            if error.abs() >= found.largest {
+                found = Self { largest: error.abs(), at: omega, ..found };
+            }
+        }
+        Self { rms: (squares / count).sqrt(), ..found }
+    }
+}
+
+/// Decades by which relaxation times may exceed the range of 1/ω of the data: there a term acts as a spring or a damper
+/// up to 1e-3 of its modulus.
+const MARGIN: f64 = 1.5;
+/// Points of the fine grid per decade. Two neighbours together represent a term half way between them up to 2e-3.
 const PER_DECADE: f64 = 8.0;
-/// Where the error wanted cannot be had, the best series has the fewest terms that come so near to the least error.
+/// Where the requested error cannot be reached, the search accepts this multiple of the smallest error.
 const NEAR: f64 = 1.01;
-/// Terms that may be the next to go: those missed least while the others stand.
+/// Number of terms tried for removal: those whose removal costs least while the others are fixed.
 const CANDIDATES: usize = 3;
 
-/// What is sought.
+/// What the search may use and has to reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Wanted {
-    /// The largest error ε, 1.
+pub(super) struct Target {
+    /// The admissible error ε, 1.
     pub(super) error: f64,
-    /// Whether a Kelvin-Voigt viscosity may be among the unknowns.
+    /// Whether a Kelvin-Voigt viscosity is among the unknowns.
     pub(super) viscosity: bool,
 }
 
-/// The series with the fewest terms that the search finds within the error wanted; where that cannot be had, within
-/// [`NEAR`] of the least that can.
-pub(super) fn search(samples: &[Sample], wanted: &Wanted) -> Compound {
-    let problem = Problem::new(samples, wanted.viscosity);
+/// The series with the fewest terms found within the target's error or, if it cannot be reached, within [`NEAR`] of the
+/// smallest error.
+pub(super) fn search(samples: &[Sample], target: &Target) -> Compound {
+    let problem = Problem::new(samples, target.viscosity);
     let fine = problem.solve(&problem.grid());
     let mut best = problem.refine(problem.solve(&fine.merged()));
-    if best.error > wanted.error {
+    if best.error > target.error {
         let unmerged = problem.refine(fine);
         best = if NEAR * unmerged.error < best.error { unmerged } else { best };
     }
-    let goal = wanted.error.max(NEAR * best.error);
+    let goal = target.error.max(NEAR * best.error);
     while let Some(fewer) = problem.without_one(&best, goal) {
         best = fewer;
     }
     best.compound()
 }
 
-/// The moduli of least error for some relaxation times; what is 0 is left out.
+/// The moduli of smallest error for given relaxation times; terms with modulus 0 are omitted.
 #[derive(Clone, Debug)]
 struct Solution {
     /// E_∞ and η.
@@ -73,7 +173,7 @@ impl Solution {
         Compound { equilibrium_modulus: self.constants[0], viscosity: self.constants[1], terms }
     }
 
-    /// ln τ with neighbours on the fine grid as one, at their mean by modulus.
+    /// ln τ with neighbours on the fine grid merged at their mean, weighted by modulus.
     fn merged(&self) -> Vec<f64> {
         let terms: Vec<(f64, f64)> = self.times.iter().copied().zip(self.moduli.iter().copied()).collect();
         let near = |a: &(f64, f64), b: &(f64, f64)| b.0 - a.0 < 1.5 * LN_10 / PER_DECADE;
@@ -85,11 +185,11 @@ impl Solution {
     }
 }
 
-/// The measured moduli as a problem of least squares: each row is a modulus at one point over that measured.
+/// The measured moduli as a least squares problem: a row is a modulus at one point over the measured one.
 struct Problem<'a> {
     samples: &'a [Sample],
     viscosity: bool,
-    /// Ends of ln τ.
+    /// Bounds of ln τ.
     low: f64,
     high: f64,
 }
@@ -98,7 +198,7 @@ impl<'a> Problem<'a> {
     fn new(samples: &'a [Sample], viscosity: bool) -> Self {
         let omegas = || samples.iter().map(|sample| sample.omega);
         let (slow, fast) = (omegas().fold(f64::MAX, f64::min), omegas().fold(0.0, f64::max));
-        Self { samples, viscosity, low: -fast.ln() - BEYOND * LN_10, high: -slow.ln() + BEYOND * LN_10 }
+        Self { samples, viscosity, low: -fast.ln() - MARGIN * LN_10, high: -slow.ln() + MARGIN * LN_10 }
     }
 
     /// ln τ of the fine grid.
@@ -107,7 +207,7 @@ impl<'a> Problem<'a> {
         (0..=intervals as usize).map(|i| self.low + (self.high - self.low) * i as f64 / intervals).collect()
     }
 
-    /// The column of an unknown with the parts (storage, loss) at ω.
+    /// The column of an unknown whose storage and loss part at ω are `parts`.
     fn column(&self, parts: impl Fn(f64) -> (f64, f64)) -> DVector<f64> {
         let count = self.samples.len();
         let mut column = DVector::zeros(2 * count);
@@ -141,10 +241,9 @@ impl<'a> Problem<'a> {
         Solution { constants: [x[0], x[1]], times, moduli, error }
     }
 
-    /// Moves the relaxation times to where the error is least: K. Levenberg's and D. Marquardt's steps, of the error as
-    /// a function of ln τ alone.
+    /// Optimises the relaxation times by the Levenberg-Marquardt method, with the error as a function of ln τ alone.
     fn refine(&self, mut solution: Solution) -> Solution {
-        /// A step that gains less, as a share of the error, is the last.
+        /// Relative gain below which the iteration ends.
         const GAIN: f64 = 1e-4;
         const STEPS: usize = 60;
         const DAMPING: [f64; 2] = [1e-12, 1e4];
@@ -166,8 +265,8 @@ impl<'a> Problem<'a> {
         solution
     }
 
-    /// The damped step of ln τ, none of it longer than 1. The moduli go along: their share of the slopes is projected
-    /// out (variable projection as L. Kaufman has it, 1975).
+    /// The damped step of ln τ, at most 1 in each component. The moduli follow the times: their part of the slopes is
+    /// projected out (variable projection, L. Kaufman, BIT 15, 1975).
     fn step(&self, solution: &Solution, damping: f64) -> Option<DVector<f64>> {
         let terms = solution.times.iter().zip(&solution.moduli);
         let slopes: Vec<_> = terms.map(|(time, modulus)| self.slope(time.exp(), *modulus)).collect();
@@ -194,7 +293,7 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// The columns and the values of the unknowns that are not 0.
+    /// Columns and values of the unknowns above 0.
     fn positive(&self, solution: &Solution) -> (DMatrix<f64>, DVector<f64>) {
         let all: Vec<f64> = solution.constants.iter().chain(&solution.moduli).copied().collect();
         let used: Vec<usize> = (0..all.len()).filter(|&i| all[i] > 0.0).collect();
@@ -202,7 +301,7 @@ impl<'a> Problem<'a> {
         (self.matrix(&solution.times).select_columns(&used), x)
     }
 
-    /// One term less, if the error then stays within `goal`.
+    /// The solution without one of its terms, if the error then stays within `goal`.
     fn without_one(&self, solution: &Solution, goal: f64) -> Option<Solution> {
         let without = |i: usize| {
             let mut rest = solution.times.clone();
@@ -219,7 +318,8 @@ impl<'a> Problem<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::compound::Errors;
+    use asperity::math::SplitMix64;
+
     use super::*;
 
     /// Points of `compound`, five a decade from 10^low to 10^high rad/s.
@@ -250,22 +350,16 @@ mod tests {
         series(4.44e6, &terms)
     }
 
-    fn find(samples: &[Sample], error: f64) -> (Compound, Errors) {
-        let compound = search(samples, &Wanted { error, viscosity: false });
-        let errors = Errors::of(&compound, samples);
+    fn find(samples: &[Sample], error: f64) -> (Compound, FitErrors) {
+        let compound = search(samples, &Target { error, viscosity: false });
+        let errors = FitErrors::of(&compound, samples);
         (compound, errors)
     }
 
-    /// Every relative error in `samples` by a normal deviate of `sigma`: G. Box's and M. Muller's.
+    /// Multiplies the moduli by 1 + `sigma` times a normal deviate (Box-Muller).
     fn noisy(mut samples: Vec<Sample>, sigma: f64) -> Vec<Sample> {
-        let mut state: u64 = 88_172_645_463_325_252;
-        let mut uniform = || {
-            state ^= state << 13;
-            state ^= state >> 7;
-            state ^= state << 17;
-            ((state >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
-        };
-        let mut normal = || (-2.0 * uniform().ln()).sqrt() * (std::f64::consts::TAU * uniform()).cos();
+        let mut random = SplitMix64::new(1);
+        let mut normal = || (-2.0 * (1.0 - random.unit()).ln()).sqrt() * (std::f64::consts::TAU * random.unit()).cos();
         for sample in &mut samples {
             sample.storage *= 1.0 + sigma * normal();
             sample.loss *= 1.0 + sigma * normal();
@@ -273,28 +367,27 @@ mod tests {
         samples
     }
 
-    /// No fewer terms do, so the search ends on the terms themselves.
+    /// No fewer terms suffice, so the search ends at the terms themselves.
     #[test]
     fn known_terms_are_found_again() {
         for (known, low, high) in [(three(), -3, 7), (sixteen(), -5, 15)] {
             let (found, errors) = find(&samples(&known, low, high), 1e-3);
             assert_eq!(found.terms.len(), known.terms.len());
-            assert!(errors.largest() < 1e-9, "{errors:?}");
+            assert!(errors.both.largest < 1e-9, "{errors:?}");
             for (found, known) in found.terms.iter().zip(&known.terms) {
-                // The moduli of neighbours differ by 1e3, which is what rounding grows by.
+                // The moduli of neighbours differ by 1e3, which amplifies rounding errors as much.
                 assert!((found.relaxation_time / known.relaxation_time - 1.0).abs() < 1e-6, "{found:?} {known:?}");
                 assert!((found.modulus / known.modulus - 1.0).abs() < 1e-6, "{found:?} {known:?}");
             }
         }
     }
 
-    /// Data that end within the spectrum: terms beyond act as springs and dampers, which stand-ins near the ends are
-    /// too.
+    /// Data that end within the spectrum: terms outside act as springs and dampers, which terms near the ends represent.
     #[test]
     fn a_part_of_a_spectrum_is_fitted_within_what_is_asked() {
         let samples = samples(&sixteen(), -2, 6);
         let (found, errors) = find(&samples, 1e-4);
-        assert!(found.terms.len() <= 10 && errors.both.rms <= 1e-4 && errors.largest() < 1e-3, "{errors:?}");
+        assert!(found.terms.len() <= 10 && errors.both.rms <= 1e-4 && errors.both.largest < 1e-3, "{errors:?}");
     }
 
     #[test]
@@ -308,15 +401,15 @@ mod tests {
         assert!(counts[0] < counts[1] && counts[1] < counts[2] && counts[2] < 16, "{counts:?}");
     }
 
-    /// 5 % of noise: what remains is the noise, and its mean goes: the compound itself is met to a part of it.
+    /// 5 % of noise: the residual is the noise, which averages out, so that the compound itself is met more closely.
     #[test]
     fn noise_is_not_fitted() {
         for (known, low, high) in [(three(), -3, 7), (sixteen(), -5, 15)] {
             let measured = noisy(samples(&known, low, high), 0.05);
             let (found, errors) = find(&measured, 0.02);
-            // Some 35 unknowns of 202 figures take their share of it; the deviate itself has 5 % ± 0.25 %.
+            // Some 35 unknowns for 202 values absorb part of it; the deviate itself has 5 % ± 0.25 %.
             assert!((0.04..0.055).contains(&errors.both.rms), "{errors:?}");
-            let truth = Errors::of(&found, &samples(&known, low, high));
+            let truth = FitErrors::of(&found, &samples(&known, low, high));
             assert!(truth.both.rms < 0.025, "{truth:?}");
             assert!(found.terms.len() < known.terms.len() + 3, "{}", found.terms.len());
         }
@@ -325,8 +418,8 @@ mod tests {
     #[test]
     fn viscosity_is_found_where_it_is_allowed() {
         let known = Compound { viscosity: 200.0, ..series(2e6, &[(1e-2, 3e6)]) };
-        let wanted = Wanted { error: 1e-3, viscosity: true };
-        let found = search(&samples(&known, -1, 5), &wanted);
+        let target = Target { error: 1e-3, viscosity: true };
+        let found = search(&samples(&known, -1, 5), &target);
         assert_eq!(found.terms.len(), 1);
         assert!((found.viscosity / 200.0 - 1.0).abs() < 1e-9, "{found:?}");
     }
@@ -334,6 +427,6 @@ mod tests {
     #[test]
     fn one_point_is_met_by_one_term() {
         let (found, errors) = find(&[Sample { omega: 10.0, storage: 2e6, loss: 3e5 }], 1e-3);
-        assert!(found.terms.len() == 1 && errors.largest() < 1e-12, "{found:?}");
+        assert!(found.terms.len() == 1 && errors.both.largest < 1e-12, "{found:?}");
     }
 }

@@ -1,8 +1,8 @@
-//! What a column of a table of moduli holds, by its header: names and units as people and instruments write them.
+//! Headers of columns with measured moduli: quantities and units as people and instruments write them.
 
 use std::f64::consts::TAU;
 
-/// What a column holds.
+/// The quantity in a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
     /// Frequency or angular frequency.
@@ -17,38 +17,38 @@ pub(super) enum Quantity {
     Temperature,
 }
 
-/// From a number as it is written to SI units (rad/s, Pa, 1, K): `factor` times it and `offset` more.
+/// Conversion to SI units (rad/s, Pa, 1, K): `factor` times the number plus `offset`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Scale {
     pub(super) factor: f64,
     pub(super) offset: f64,
 }
 
-/// A header that is understood.
+/// A header that could be parsed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Meaning {
+pub(super) struct Header {
     pub(super) quantity: Quantity,
     /// `None` where the header names no unit.
     pub(super) scale: Option<Scale>,
-    /// Whether a frequency without a unit is one in rad/s.
+    /// Whether a frequency without a unit is in rad/s.
     angular: bool,
 }
 
-/// The headers and units that are understood, for messages.
-pub(super) const ALLOWED: &str = "a quantity and its unit, such as frequency [Hz], f (Hz), omega [rad/s], E' [MPa], \
+/// The headers and units that can be parsed, for messages.
+pub(super) const EXPECTED_HEADER: &str = "a quantity and its unit, such as frequency [Hz], f (Hz), omega [rad/s], E' [MPa], \
      E'' (Pa), storage modulus [MPa], loss modulus [MPa], tan delta, tan(d), temperature [°C], T [K]; units Hz, kHz, MHz, \
-     mHz, rad/s, Pa, kPa, MPa, GPa, °C, K; a column that is not needed is left out by --ignore NAME";
+     mHz, rad/s, Pa, kPa, MPa, GPa, °C, K; --ignore NAME skips a column";
 
-/// Words of a quantity's names: a header is the quantity if it has one of the first and none that is in neither list.
+/// Words of a quantity's names: a header names the quantity if it has a key word and no word outside both lists.
 struct Words {
     quantity: Quantity,
     angular: bool,
-    telling: &'static [&'static str],
-    others: &'static [&'static str],
+    key_words: &'static [&'static str],
+    other_words: &'static [&'static str],
 }
 
-const fn words(quantity: Quantity, telling: &'static [&'static str], others: &'static [&'static str]) -> Words {
-    Words { quantity, angular: false, telling, others }
+const fn words(quantity: Quantity, key_words: &'static [&'static str], other_words: &'static [&'static str]) -> Words {
+    Words { quantity, angular: false, key_words, other_words }
 }
 
 const NAMES: [Words; 6] = [
@@ -71,11 +71,11 @@ const NAMES: [Words; 6] = [
     words(Quantity::Temperature, &["t", "temp", "temperature", "temperatur"], &["sample"]),
 ];
 
-/// Units by their spelling without blanks and signs of multiplication.
+/// Units, without blanks and multiplication signs.
 const FREQUENCIES: [(&str, f64); 5] =
     [("Hz", TAU), ("mHz", 1e-3 * TAU), ("kHz", 1e3 * TAU), ("MHz", 1e6 * TAU), ("GHz", 1e9 * TAU)];
 const ANGULAR_FREQUENCIES: [(&str, f64); 3] = [("rad/s", 1.0), ("rads-1", 1.0), ("rad/sec", 1.0)];
-/// Of a frequency a cycle, of an angular one a radian in a second.
+/// Means cycles per second for a frequency, radians per second for an angular one.
 const PER_SECOND: [(&str, f64); 2] = [("1/s", 1.0), ("s-1", 1.0)];
 const MODULI: [(&str, f64); 6] = [("Pa", 1.0), ("kPa", 1e3), ("MPa", 1e6), ("GPa", 1e9), ("N/mm2", 1e6), ("N/m2", 1.0)];
 const NUMBERS: [(&str, f64); 3] = [("-", 1.0), ("1", 1.0), ("", 1.0)];
@@ -85,9 +85,9 @@ const CELSIUS: [(&str, f64); 6] =
 /// 0 °C in K.
 const FREEZING: f64 = 273.15;
 
-impl Meaning {
-    /// What `header` says; `None` if it cannot be read.
-    pub(super) fn of(header: &str) -> Option<Self> {
+impl Header {
+    /// `None` if the text is no known quantity and unit.
+    pub(super) fn parse(header: &str) -> Option<Self> {
         let header = plain(header);
         splits(&header).find_map(|(name, unit)| {
             let words = named(name)?;
@@ -99,14 +99,14 @@ impl Meaning {
         })
     }
 
-    /// The same with the unit that stands in a line below the headers; `None` if it is none of the quantity's.
+    /// The header with a unit from the line below; `None` if the quantity has no such unit.
     pub(super) fn with_unit(self, unit: &str) -> Option<Self> {
         let unit = plain(unit);
         let bare = unit.trim().trim_start_matches(['[', '(']).trim_end_matches([']', ')']);
         Some(Self { scale: Some(scale(self.quantity, self.angular, bare)?), ..self })
     }
 
-    /// The unit that a header without one means: s⁻¹, as the name says, and 1. Others mean none.
+    /// The unit of a header that names none: Hz or rad/s for a frequency, 1 for tan δ; none for other quantities.
     pub(super) fn default_scale(&self) -> Option<Scale> {
         match self.quantity {
             Quantity::Frequency => Some(Scale { factor: if self.angular { 1.0 } else { TAU }, offset: 0.0 }),
@@ -117,16 +117,15 @@ impl Meaning {
 }
 
 impl Scale {
-    /// Of what is in SI units as it is written.
+    /// Of numbers in SI units.
     pub(super) const ONE: Self = Self { factor: 1.0, offset: 0.0 };
 
-    /// In SI units.
     pub(super) fn apply(self, written: f64) -> f64 {
         self.factor * written + self.offset
     }
 }
 
-/// One sign for what people type for one: primes, degrees, powers.
+/// The text with one spelling of primes, degrees and powers.
 fn plain(text: &str) -> String {
     const SIGNS: [(&str, &str); 24] = [
         ("″", "''"),
@@ -157,7 +156,7 @@ fn plain(text: &str) -> String {
     SIGNS.iter().fold(text.trim().to_owned(), |text, (sign, plain)| text.replace(sign, plain))
 }
 
-/// The ways to see a name and a unit in a header.
+/// The candidate splits of a header into name and unit.
 fn splits(header: &str) -> impl Iterator<Item = (&str, Option<&str>)> {
     let bracketed = [('[', ']'), ('(', ')')].into_iter().filter_map(move |(open, close)| {
         let (name, unit) = header.strip_suffix(close)?.rsplit_once(open)?;
@@ -176,8 +175,8 @@ fn named(name: &str) -> Option<&'static Words> {
     let lower = lower.replace("e ''", "e''").replace("e '", "e'");
     let found: Vec<&str> = lower.split([' ', '-', '.', '(', ')']).filter(|word| !word.is_empty()).collect();
     NAMES.iter().find(|words| {
-        let known = |word: &&str| words.telling.contains(word) || words.others.contains(word);
-        found.iter().any(|word| words.telling.contains(word)) && found.iter().all(known)
+        let known = |word: &&str| words.key_words.contains(word) || words.other_words.contains(word);
+        found.iter().any(|word| words.key_words.contains(word)) && found.iter().all(known)
     })
 }
 
@@ -199,7 +198,7 @@ fn scale(quantity: Quantity, angular: bool, unit: &str) -> Option<Scale> {
     factor.map(|factor| Scale { factor, offset: 0.0 })
 }
 
-/// As it is written; else whatever its case, unless a small m may mean milli: in mPa and mhz, not in mpa.
+/// Matches exactly or else in any case, except where m may mean milli: in mPa and mhz, but not in mpa.
 fn factor(units: &[(&str, f64)], unit: &str) -> Option<f64> {
     let exact = units.iter().find(|(name, _)| *name == unit);
     let milli = unit.starts_with('m') && unit != "mpa";
@@ -212,7 +211,7 @@ mod tests {
     use super::*;
 
     fn read(header: &str) -> Option<(Quantity, Option<f64>)> {
-        Meaning::of(header).map(|meaning| (meaning.quantity, meaning.scale.map(|scale| scale.apply(1.0))))
+        Header::parse(header).map(|header| (header.quantity, header.scale.map(|scale| scale.apply(1.0))))
     }
 
     #[test]
@@ -264,7 +263,7 @@ mod tests {
         }
     }
 
-    /// Other quantities, other units, and the milli that is no mega.
+    /// Other quantities, other units, and milli instead of mega.
     #[test]
     fn headers_that_cannot_be_read() {
         let wrong = [
@@ -289,7 +288,7 @@ mod tests {
 
     #[test]
     fn a_line_of_units_stands_for_units_in_the_headers() {
-        let unit = |header: &str, unit: &str| Meaning::of(header)?.with_unit(unit)?.scale;
+        let unit = |header: &str, unit: &str| Header::parse(header)?.with_unit(unit)?.scale;
         assert_eq!(unit("E'", "MPa"), Some(Scale { factor: 1e6, offset: 0.0 }));
         assert_eq!(unit("Temperature", "(°C)"), Some(Scale { factor: 1.0, offset: FREEZING }));
         assert_eq!(unit("tan(d)", ""), Some(Scale::ONE));
