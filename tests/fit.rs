@@ -120,14 +120,14 @@ fn a_compound_of_three_terms_is_fitted_by_three() {
 }
 
 #[test]
-fn noise_is_told_and_its_mean_is_met() {
+fn noise_is_reported_and_its_mean_is_met() {
     let folder = scratch("fit-noise");
     let (data, frequencies) = (folder.join("dma.csv"), frequencies(-5, 15));
     write_moduli(&data, &sixteen(), &frequencies, noise(0.05));
     let (output, result) = fit(&data, &["--error", "0.02"]);
     assert_eq!(result.status.code(), Some(1));
     let message = String::from_utf8(result.stderr).unwrap();
-    assert!(message.contains("the error asked for, 2 %, cannot be had") && message.contains("fitted.csv"), "{message}");
+    assert!(message.contains("the error asked for, 2 %, cannot be reached") && message.contains("fitted.csv"), "{message}");
     assert!(output.exists() && output.with_extension("svg").exists(), "what was found is there all the same");
     let scene = scene_of(&folder, &String::from_utf8(result.stdout).unwrap());
     let best = Scene::load(&scene).unwrap().material.unwrap();
@@ -140,7 +140,7 @@ fn noise_is_told_and_its_mean_is_met() {
 
 /// Two decades at each of thirteen temperatures, in degrees, with decimal commas and in Latin-1, make one curve.
 #[test]
-fn temperatures_come_together() {
+fn temperatures_make_one_curve() {
     let folder = scratch("fit-temperatures");
     let data = folder.join("dma.csv");
     let mut text = String::from("f [Hz];E' [MPa];tan(d);Temperature [°C]\r\n");
@@ -191,7 +191,7 @@ fn the_picture_holds_data_and_fit() {
 }
 
 #[test]
-fn the_file_tells_what_it_is_of() {
+fn the_file_says_what_it_was_fitted_to() {
     let folder = scratch("fit-file");
     let data = folder.join("dma.csv");
     write_moduli(&data, &three(), &frequencies(-4, 6), || 1.0);

@@ -68,7 +68,7 @@ fn no_output_takes_the_place_of_what_is_read_or_written() {
 
 /// What was expected, what was found, where.
 #[test]
-fn what_is_wrong_on_the_command_line_is_told() {
+fn errors_on_the_command_line_say_what_was_expected() {
     let folder = scratch("program-wrong");
     let scene = changed(&folder, "", "").to_str().unwrap().to_owned();
     let result = folder.join("ok.csv").to_str().unwrap().to_owned();
@@ -157,7 +157,7 @@ fn a_bad_scene_is_refused_in_one_line_with_its_place() {
 }
 
 #[test]
-fn a_run_that_gives_up_keeps_its_rows_and_says_so() {
+fn a_run_that_fails_keeps_its_rows_and_says_so() {
     let folder = scratch("program-gives-up");
     let output = folder.join("out.csv");
     let scene = reference("rough-coulomb");
@@ -250,7 +250,7 @@ fn result_files_are_drawn_over_each_other() {
 }
 
 #[test]
-fn a_description_tells_what_is_there_and_what_is_left_out() {
+fn a_description_summarises_what_is_there_and_what_is_left_out() {
     let text = run(asperity().arg("describe").arg(reference("free-chain")));
     for part in [
         "5 masses",
@@ -333,7 +333,7 @@ fn a_phase_ends_at_a_pressure_on_the_whole_layer() {
 }
 
 #[test]
-fn a_description_of_a_material_tells_the_links_that_follow_and_the_shift() {
+fn a_description_of_a_material_has_the_derived_links_and_the_shift() {
     let folder = scratch("program-rubber");
     let scene = rubber(&folder, RUBBER);
     let text = run(asperity().arg("describe").arg(&scene));
@@ -389,7 +389,7 @@ fn the_archive_holds_the_compound() {
 
 /// One mass on a stiff, a long and a short element: K' = 3, m ω² = 3 + 2, T = 0.1 s.
 #[test]
-fn a_description_tells_which_maxwell_elements_are_replaced_and_why() {
+fn a_description_says_which_maxwell_elements_are_replaced_and_why() {
     let layer = "layer = { masses = 2, spacing = 1.0, mass = 5e-4, vertical = { stiffness = 3.0, maxwell = [\
                  { stiffness = 2.0, relaxation_time = 1e-1 }, { stiffness = 1e-1, relaxation_time = 1e2 },\
                  { stiffness = 1e-1, relaxation_time = 1e-4 }] } }";

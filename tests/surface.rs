@@ -118,7 +118,7 @@ fn a_measured_surface_is_found_as_it_was_made() {
 }
 
 #[test]
-fn what_is_told_can_be_read_and_drawn() {
+fn the_analysis_is_printed_and_plotted() {
     let folder = scratch("surface-told");
     let [source, svg, png] = ["scene.toml", "rough.svg", "rough.png"].map(|name| folder.join(name));
     fs::write(&source, rough(0.8, 4000)).unwrap();
@@ -139,7 +139,7 @@ fn what_is_told_can_be_read_and_drawn() {
 }
 
 #[test]
-fn what_cannot_be_told_is_refused() {
+fn what_cannot_be_analysed_is_refused() {
     let folder = scratch("surface-refused");
     let [source, profile] = ["scene.toml", "profile.csv"].map(|name| folder.join(name));
     fs::write(&source, scene("kind = 'file'\npath = 'profile.csv'")).unwrap();

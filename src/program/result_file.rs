@@ -1,9 +1,11 @@
 //! Result files: columns `time`, `u` and `w`, then the output variables. And the reader of CSV files with a header.
 
-use std::fs::File;
+use std::borrow::Cow;
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
 use asperity::outputs::{Kind, Variable};
+use asperity::scene::text_table::{self, Row};
 
 use super::files::FileError;
 use super::runner::CarrierSample;
@@ -15,7 +17,7 @@ pub(crate) enum ResultFileError {
     #[error(transparent)]
     File(#[from] FileError),
     #[error("{}: line {line}: {message}", .path.display())]
-    Line { path: PathBuf, line: u64, message: String },
+    Line { path: PathBuf, line: usize, message: String },
     #[error("{}: no column {name}; there are {}", .path.display(), .columns.join(", "))]
     NoColumn { path: PathBuf, name: String, columns: Vec<String> },
     #[error("{}: expected a line with the columns' names and rows of numbers below it, found no rows", .path.display())]
@@ -71,16 +73,34 @@ fn write_error(path: &Path, error: csv::Error) -> FileError {
 pub(crate) struct CsvFile {
     path: PathBuf,
     names: Vec<String>,
-    records: Vec<csv::StringRecord>,
+    records: Vec<Record>,
+}
+
+/// The fields of a line, as many as there are columns.
+#[derive(Debug)]
+pub(crate) struct Record {
+    line: usize,
+    pub(crate) fields: Vec<String>,
 }
 
 impl CsvFile {
     pub(crate) fn read(path: &Path) -> Result<Self, ResultFileError> {
-        let file = File::open(path).map_err(FileError::io("read", path))?;
-        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
-        let names = reader.headers().map_err(|error| read_error(path, &error))?.iter().map(str::to_owned).collect();
-        let records = reader.records().map(|record| record.map_err(|error| read_error(path, &error)));
-        Ok(Self { path: path.to_owned(), names, records: records.collect::<Result<_, _>>()? })
+        let bytes = fs::read(path).map_err(FileError::io("read", path))?;
+        let error = |line: usize, message: String| ResultFileError::Line { path: path.to_owned(), line, message };
+        let text = text_table::decode(&bytes).map_err(|problem| error(1, problem.to_string()))?;
+        let owned = |row: Row<'_>| -> Vec<String> { row.fields.into_iter().map(Cow::into_owned).collect() };
+        let mut rows = text_table::rows(&text, Some(','));
+        let names = rows.next().map(owned).unwrap_or_default();
+        let record = |row: Row<'_>| {
+            let (line, fields) = (row.line, owned(row));
+            if fields.len() == names.len() {
+                return Ok(Record { line, fields });
+            }
+            let (expected, found) = (names.len(), fields.len());
+            Err(error(line, format!("expected as many fields as in the first line, {expected}, found {found}")))
+        };
+        let records = rows.map(record).collect::<Result<_, _>>()?;
+        Ok(Self { path: path.to_owned(), names, records })
     }
 
     /// Index of the column `name`.
@@ -92,32 +112,18 @@ impl CsvFile {
         })
     }
 
-    pub(crate) fn records(&self) -> &[csv::StringRecord] {
+    pub(crate) fn records(&self) -> &[Record] {
         &self.records
     }
 
     /// The error `message` about a record, with its line.
-    pub(crate) fn error(&self, record: &csv::StringRecord, message: String) -> ResultFileError {
-        let line = record.position().map_or(0, csv::Position::line);
-        ResultFileError::Line { path: self.path.clone(), line, message }
+    pub(crate) fn error(&self, record: &Record, message: String) -> ResultFileError {
+        ResultFileError::Line { path: self.path.clone(), line: record.line, message }
     }
 
-    /// The number in a field of a record.
-    pub(crate) fn number(&self, record: &csv::StringRecord, column: usize) -> Result<f64, ResultFileError> {
-        let text = &record[column];
+    fn number(&self, record: &Record, text: &str) -> Result<f64, ResultFileError> {
         text.parse().map_err(|_| self.error(record, format!("expected a number, found {text:?}")))
     }
-}
-
-fn read_error(path: &Path, error: &csv::Error) -> ResultFileError {
-    let message = match error.kind() {
-        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            format!("expected as many fields as in the first line, {expected_len}, found {len}")
-        }
-        csv::ErrorKind::Utf8 { .. } => "expected text in UTF-8".into(),
-        _ => error.to_string(),
-    };
-    ResultFileError::Line { path: path.to_owned(), line: error.position().map_or(1, csv::Position::line), message }
 }
 
 /// The columns of a result file.
@@ -130,7 +136,7 @@ pub(crate) struct ResultFile {
 impl ResultFile {
     pub(crate) fn read(path: &Path) -> Result<Self, ResultFileError> {
         let file = CsvFile::read(path)?;
-        let numbers = |record| (0..file.names.len()).map(|column| file.number(record, column)).collect();
+        let numbers = |record: &Record| record.fields.iter().map(|text| file.number(record, text)).collect();
         let rows: Vec<_> = file.records.iter().map(numbers).collect::<Result<_, _>>()?;
         if rows.is_empty() { Err(ResultFileError::NoRows { path: path.to_owned() }) } else { Ok(Self { file, rows }) }
     }

@@ -25,7 +25,7 @@ pub(super) fn read(path: &Path, names: &[&str]) -> Result<Peers, ResultFileError
     }
     let mut peers = Peers::default();
     for record in file.records() {
-        let fields = columns.map(|column| record.get(column).unwrap_or_default());
+        let fields = columns.map(|column| record.fields[column].as_str());
         if !peers.scenes.iter().any(|scene| scene == fields[0]) {
             peers.scenes.push(fields[0].to_owned());
         }
