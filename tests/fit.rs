@@ -127,7 +127,10 @@ fn noise_is_reported_and_its_mean_is_met() {
     let (output, result) = fit(&data, &["--error", "0.02"]);
     assert_eq!(result.status.code(), Some(1));
     let message = String::from_utf8(result.stderr).unwrap();
-    assert!(message.contains("the error asked for, 2 %, cannot be reached") && message.contains("fitted.csv"), "{message}");
+    assert!(
+        message.contains("the error asked for, 2 %, cannot be reached") && message.contains("fitted.csv"),
+        "{message}"
+    );
     assert!(output.exists() && output.with_extension("svg").exists(), "what was found is there all the same");
     let scene = scene_of(&folder, &String::from_utf8(result.stdout).unwrap());
     let best = Scene::load(&scene).unwrap().material.unwrap();

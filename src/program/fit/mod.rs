@@ -9,7 +9,9 @@ use std::f64::consts::TAU;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::cli::Fit;
+use asperity::scene::PronyTerm;
+
+use super::cli::{Fit, WlfConstants};
 use super::figure::{Curve, Figure as _, Panel, Stacked, Stroke};
 use super::files::{self, FileError, check_outputs, name_of, print};
 use super::terminal::{decimal, lines, note, rounded};
@@ -83,32 +85,21 @@ impl<'a> FitResult<'a> {
             text += &format!("# {name} = {value}\n");
         }
         text += "relaxation_time,modulus\n";
-        let rows = self
-            .compound
-            .terms
-            .iter()
-            .map(|term| format!("{},{}\n", written(term.relaxation_time), written(term.modulus)));
-        text + &rows.collect::<String>()
+        let row = |term: &PronyTerm| format!("{},{}\n", written(term.relaxation_time), written(term.modulus));
+        text + &self.compound.terms.iter().map(row).collect::<String>()
     }
 
     fn facts(&self) -> Vec<(&'static str, String)> {
+        let both = self.errors.both;
+        let (rms, largest) = (percent(both.rms), percent(both.largest));
         let mut facts = vec![
             ("equilibrium_modulus", format!("{} Pa", written(self.compound.equilibrium_modulus))),
             ("units", "relaxation_time in s, modulus in Pa".into()),
             ("source", name_of(&self.command.data)),
             ("data", self.data()),
             ("options", self.options()),
-            (
-                "error",
-                format!(
-                    "{} (root mean square of the relative errors of E' and E'' at all rows)",
-                    percent(self.errors.both.rms)
-                ),
-            ),
-            (
-                "largest_error",
-                format!("{} at {}", percent(self.errors.both.largest), self.frequency(self.errors.both.at)),
-            ),
+            ("error", format!("{rms} (root mean square of the relative errors of E' and E'' at all rows)")),
+            ("largest_error", format!("{largest} at {}", self.frequency(both.at))),
         ];
         if self.command.viscosity {
             facts.insert(1, ("viscosity", format!("{} Pa s", written(self.compound.viscosity))));
@@ -117,26 +108,22 @@ impl<'a> FitResult<'a> {
     }
 
     fn data(&self) -> String {
-        let range = |omegas: &mut dyn Iterator<Item = f64>| {
-            omegas.fold((f64::MAX, 0.0_f64), |(low, high), omega| (low.min(omega), high.max(omega)))
-        };
-        let (low, high) = range(&mut self.measured.points.iter().map(|row| row.sample.omega));
+        let (low, high) = range(self.measured.points.iter().map(|point| point.sample.omega));
         let rows = format!("{} rows, {} to {}", self.samples.len(), self.frequency(low), self.frequency(high));
-        let temperatures = || self.measured.points.iter().filter_map(|row| row.temperature);
-        match self.command.wlf {
-            Some(wlf) if self.measured.temperature.is_some() => {
-                let (cold, hot) =
-                    temperatures().fold((f64::MAX, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
-                let (low, high) = range(&mut self.samples.iter().map(|sample| sample.omega));
-                format!(
-                    "{rows}, {cold:.2} to {hot:.2} K, shifted to {} K: {} to {}",
-                    wlf.reference_temperature,
-                    self.frequency(low),
-                    self.frequency(high)
-                )
-            }
-            _ => rows,
-        }
+        let Some(wlf) = self.shift() else { return rows };
+        let (cold, hot) = range(self.measured.points.iter().filter_map(|point| point.temperature));
+        let (low, high) = range(self.samples.iter().map(|sample| sample.omega));
+        format!(
+            "{rows}, {cold:.2} to {hot:.2} K, shifted to {} K: {} to {}",
+            wlf.reference_temperature,
+            self.frequency(low),
+            self.frequency(high)
+        )
+    }
+
+    /// The constants by which the data were shifted, if they were.
+    fn shift(&self) -> Option<WlfConstants> {
+        self.command.wlf.filter(|_| self.measured.temperature.is_some())
     }
 
     fn options(&self) -> String {
@@ -160,25 +147,12 @@ impl<'a> FitResult<'a> {
         let glassy: f64 = compound.terms.iter().map(|term| term.modulus).sum::<f64>() + compound.equilibrium_modulus;
         rows.push(("Glassy", format!("{} Pa, the sum of all moduli", short(glassy))));
         rows.push(("Terms", self.terms()));
-        rows.push((
-            "Error",
-            format!(
-                "{} rms of E' and E'' together; {} requested",
-                percent(errors.both.rms),
-                percent(self.command.error)
-            ),
-        ));
+        let (rms, requested) = (percent(errors.both.rms), percent(self.command.error));
+        rows.push(("Error", format!("{rms} rms of E' and E'' together; {requested} requested")));
         rows.push(("", format!("{:<11}{:<11}{:<11}at", "", "rms", "largest")));
         let row = |name: &str, error: &RelativeError| {
-            (
-                "",
-                format!(
-                    "{name:<11}{:<11}{:<11}{}",
-                    percent(error.rms),
-                    percent(error.largest),
-                    self.frequency(error.at)
-                ),
-            )
+            let (rms, largest) = (percent(error.rms), percent(error.largest));
+            ("", format!("{name:<11}{rms:<11}{largest:<11}{}", self.frequency(error.at)))
         };
         rows.extend([row("E'", &errors.storage), row("E''", &errors.loss), row("tan delta", &errors.loss_tangent)]);
         rows.push(("Written", format!("{}, {}", self.command.output.display(), picture.display())));
@@ -253,12 +227,8 @@ impl<'a> FitResult<'a> {
 
     fn x_title(&self) -> String {
         let quantity = if self.measured.in_hertz { "frequency in Hz" } else { "angular frequency in rad/s" };
-        match self.command.wlf {
-            Some(wlf) if self.measured.temperature.is_some() => {
-                format!("{quantity}, shifted to {} K", wlf.reference_temperature)
-            }
-            _ => quantity.into(),
-        }
+        let shifted = |wlf: WlfConstants| format!("{quantity}, shifted to {} K", wlf.reference_temperature);
+        self.shift().map_or_else(|| quantity.into(), shifted)
     }
 
     /// A frequency in the unit of the data.
@@ -269,10 +239,13 @@ impl<'a> FitResult<'a> {
 
 /// Angular frequencies over the range of `samples`, evenly spaced in the logarithm.
 fn between(samples: &[Sample]) -> Vec<f64> {
-    let logarithms = || samples.iter().map(|sample| sample.omega.log10());
-    let (low, high) = (logarithms().fold(f64::MAX, f64::min), logarithms().fold(f64::MIN, f64::max));
+    let (low, high) = range(samples.iter().map(|sample| sample.omega.log10()));
     let intervals = ((high - low) * POINTS_PER_DECADE).ceil().max(1.0);
     (0..=intervals as usize).map(|i| 10.0_f64.powf(low + (high - low) * i as f64 / intervals)).collect()
+}
+
+fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values.fold((f64::MAX, f64::MIN), |(low, high), value| (low.min(value), high.max(value)))
 }
 
 /// A number as files have it.
