@@ -328,8 +328,8 @@ fn a_phase_ends_at_a_pressure_on_the_whole_layer() {
     let force = table.column("F_z")[10];
     assert!((force / (2.0 * 1e-6) - 1e4).abs() < 0.1, "{force}");
     assert!(table.column("time")[10] < 1e-3);
-    let told = warnings(&rubber(&folder, &RUBBER.replace("until_pressure = 1e4", "until_pressure = 1e9")), &folder);
-    assert!(told.contains("warning: phase 1") && told.contains("until_pressure = 1000000000 Pa"), "{told}");
+    let text = warnings(&rubber(&folder, &RUBBER.replace("until_pressure = 1e4", "until_pressure = 1e9")), &folder);
+    assert!(text.contains("warning: phase 1") && text.contains("until_pressure = 1000000000 Pa"), "{text}");
 }
 
 #[test]

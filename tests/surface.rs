@@ -119,7 +119,7 @@ fn a_measured_surface_is_found_as_it_was_made() {
 
 #[test]
 fn the_analysis_is_printed_and_plotted() {
-    let folder = scratch("surface-told");
+    let folder = scratch("surface-analysis");
     let [source, svg, png] = ["scene.toml", "rough.svg", "rough.png"].map(|name| folder.join(name));
     fs::write(&source, rough(0.8, 4000)).unwrap();
     let text = run(asperity().arg("surface").arg(&source).arg("-o").arg(&svg));

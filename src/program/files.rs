@@ -62,8 +62,8 @@ pub(crate) fn sources(path: &Path, scene: &Scene) -> Vec<PathBuf> {
 
 /// Refuses an output that would overwrite one of `others`. A file that does not exist yet overwrites none.
 pub(crate) fn check_output(output: &Path, others: &[PathBuf]) -> Result<(), FileError> {
-    let place = |path: &Path| path.canonicalize().ok();
-    let same = |other: &PathBuf| other == output || (place(output).is_some() && place(other) == place(output));
+    let resolved = |path: &Path| path.canonicalize().ok();
+    let same = |other: &PathBuf| other == output || (resolved(output).is_some() && resolved(other) == resolved(output));
     if others.iter().any(same) { Err(FileError::Overwrites { path: output.to_owned() }) } else { Ok(()) }
 }
 
