@@ -1,6 +1,6 @@
 //! Why the program stops.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use asperity::element::TableError;
 use asperity::scene::ParameterError;
@@ -37,28 +37,9 @@ pub(crate) enum ProgramError {
     /// A temperature that the scene cannot have.
     #[error("{option}: {refusal}")]
     Temperature { option: &'static str, refusal: ParameterError },
-    /// What the command line asks of `plot` cannot be.
-    #[error("--labels: expected {files}, one name for each file, found {labels}")]
-    Labels { labels: usize, files: usize },
-    /// The shared library is not there.
-    #[error(
-        "no shared library at {}: build it with `cargo rustc --release --lib --no-default-features --crate-type \
-         cdylib` and name it with --library, or use build-fmu.sh, which does both",
-        .path.display()
-    )]
-    NoLibrary { path: PathBuf },
-    /// Two libraries for one platform.
-    #[error("--library: two of {platform}: {} and {}", .first.display(), .second.display())]
-    SamePlatform { platform: &'static str, first: PathBuf, second: PathBuf },
-    /// A file of the scene has no place in the archive.
-    #[error("the scene reads {}, which is not below the scene's folder: an FMU carries only what is", .path.display())]
-    Outside { path: PathBuf },
-    /// The archive cannot be written.
-    #[error("cannot pack: {0}")]
-    Archive(#[from] zip::result::ZipError),
-    /// A document of the archive cannot be written.
-    #[error("cannot write {document}: {source}")]
-    Document { document: &'static str, source: std::io::Error },
+    /// A plot is refused.
+    #[error(transparent)]
+    Plot(#[from] super::figure::PlotError),
 }
 
 impl ProgramError {

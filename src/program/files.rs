@@ -79,6 +79,10 @@ pub(crate) fn check_outputs<'a>(
     })
 }
 
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
+    fs::read(path).map_err(FileError::io("read", path))
+}
+
 pub(crate) fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), FileError> {
     fs::write(path, content).map_err(FileError::io("write", path))
 }

@@ -1,13 +1,13 @@
 //! Result files: columns `time`, `u` and `w`, then the output variables. And the reader of CSV files with a header.
 
 use std::borrow::Cow;
-use std::fs::{self, File};
+use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use asperity::outputs::{Kind, Variable};
 use asperity::scene::text_table::{self, Row};
 
-use super::files::FileError;
+use super::files::{FileError, read};
 use super::runner::CarrierSample;
 pub(crate) use super::terminal::real;
 
@@ -85,7 +85,7 @@ pub(crate) struct Record {
 
 impl CsvFile {
     pub(crate) fn read(path: &Path) -> Result<Self, ResultFileError> {
-        let bytes = fs::read(path).map_err(FileError::io("read", path))?;
+        let bytes = read(path)?;
         let error = |line: usize, message: String| ResultFileError::Line { path: path.to_owned(), line, message };
         let text = text_table::decode(&bytes).map_err(|problem| error(1, problem.to_string()))?;
         let owned = |row: Row<'_>| -> Vec<String> { row.fields.into_iter().map(Cow::into_owned).collect() };

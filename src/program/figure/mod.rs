@@ -19,7 +19,7 @@ use plotters_backend::{BackendColor, BackendCoord, BackendStyle, DrawingErrorKin
 pub(crate) use chart::{Curve, Stroke};
 pub(crate) use ladders::{Ladder, LadderPanel, Ladders, Rung};
 pub(crate) use panels::{History, Panel, ProfilePicture, SideBySide, Stacked};
-pub(crate) use plot::plot_files;
+pub(crate) use plot::{PlotError, plot_files};
 
 use super::files::{self, FileError, ends_in};
 

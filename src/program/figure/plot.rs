@@ -8,10 +8,20 @@ use super::axis::{Axis, Fit};
 use super::chart::{Chart, Curve, Stroke};
 use super::{Backend, Canvas, DrawResult, Figure};
 use crate::program::cli::Plot;
-use crate::program::error::ProgramError;
-use crate::program::files::check_output;
-use crate::program::result_file::ResultFile;
+use crate::program::files::{FileError, check_output};
+use crate::program::result_file::{ResultFile, ResultFileError};
 use crate::program::terminal::warn;
+
+/// `asperity plot` failed.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum PlotError {
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error(transparent)]
+    ResultFile(#[from] ResultFileError),
+    #[error("--labels: expected {files}, one name for each file, found {labels}")]
+    Labels { labels: usize, files: usize },
+}
 
 /// A chart with a title above.
 #[derive(Debug)]
@@ -35,9 +45,9 @@ impl Figure for TitledChart {
 }
 
 /// Draws one line for each file and y.
-pub(crate) fn plot_files(command: &Plot) -> Result<(), ProgramError> {
+pub(crate) fn plot_files(command: &Plot) -> Result<(), PlotError> {
     if !command.labels.is_empty() && command.labels.len() != command.files.len() {
-        return Err(ProgramError::Labels { labels: command.labels.len(), files: command.files.len() });
+        return Err(PlotError::Labels { labels: command.labels.len(), files: command.files.len() });
     }
     check_output(&command.output, &command.files)?;
     let mut curves = Vec::new();
@@ -49,7 +59,7 @@ pub(crate) fn plot_files(command: &Plot) -> Result<(), ProgramError> {
     Ok(())
 }
 
-fn add_curves(curves: &mut Vec<Curve>, command: &Plot, index: usize, path: &Path) -> Result<(), ProgramError> {
+fn add_curves(curves: &mut Vec<Curve>, command: &Plot, index: usize, path: &Path) -> Result<(), PlotError> {
     let file = ResultFile::read(path)?;
     let x = file.column(&command.x)?;
     let first = if command.from_motion { last_before_motion(&x) } else { 0 };

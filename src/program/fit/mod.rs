@@ -6,7 +6,6 @@ mod nnls;
 mod search;
 
 use std::f64::consts::TAU;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use asperity::scene::PronyTerm;
@@ -41,7 +40,7 @@ const POINTS_PER_DECADE: f64 = 20.0;
 pub(crate) fn fit(command: &Fit) -> Result<(), FitError> {
     let picture = command.plot.clone().unwrap_or_else(|| command.output.with_extension("svg"));
     check_outputs([&command.output, &picture], vec![command.data.clone()])?;
-    let bytes = fs::read(&command.data).map_err(FileError::io("read", &command.data))?;
+    let bytes = files::read(&command.data)?;
     let in_file = |error: ModuliError| FitError::Moduli { path: command.data.clone(), error };
     let measured = MeasuredModuli::parse(&bytes, &command.ignore).map_err(in_file)?;
     measured.notes.iter().for_each(|text| note(text));

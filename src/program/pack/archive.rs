@@ -5,12 +5,28 @@ use std::ffi::OsString;
 use std::io::{Cursor, Write as _};
 use std::path::{Path, PathBuf};
 
-use zip::result::ZipResult;
+use zip::result::{ZipError, ZipResult};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-use crate::program::error::ProgramError;
-use crate::program::files::FileError;
+use crate::program::files::{FileError, read};
+
+/// The archive cannot be made.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum ArchiveError {
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error(
+        "no shared library at {}: build it with `cargo rustc --release --lib --no-default-features --crate-type \
+         cdylib` and name it with --library, or use build-fmu.sh, which does both",
+        .path.display()
+    )]
+    NoLibrary { path: PathBuf },
+    #[error("--library: two of {platform}: {} and {}", .first.display(), .second.display())]
+    SamePlatform { platform: &'static str, first: PathBuf, second: PathBuf },
+    #[error("cannot pack: {0}")]
+    Zip(#[from] ZipError),
+}
 
 /// A file of the archive.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,7 +87,7 @@ const HOST: Platform = if cfg!(target_os = "windows") {
 };
 
 /// The entries of the shared libraries that `--library` names; by default of the one beside this program.
-pub(super) fn binaries(identifier: &str, arguments: &[OsString]) -> Result<Vec<Entry>, ProgramError> {
+pub(super) fn binaries(identifier: &str, arguments: &[OsString]) -> Result<Vec<Entry>, ArchiveError> {
     let mut libraries: Vec<_> = arguments.iter().map(library).collect();
     if libraries.is_empty() {
         libraries.push((HOST, default_library()));
@@ -96,27 +112,22 @@ fn default_library() -> PathBuf {
 }
 
 /// Each platform may have one library.
-fn check_platforms(libraries: &[(Platform, PathBuf)]) -> Result<(), ProgramError> {
+fn check_platforms(libraries: &[(Platform, PathBuf)]) -> Result<(), ArchiveError> {
     for (i, (platform, second)) in libraries.iter().enumerate() {
         if let Some((_, first)) = libraries[..i].iter().find(|(other, _)| other == platform) {
             let (first, second) = (first.clone(), second.clone());
-            return Err(ProgramError::SamePlatform { platform: platform.folder, first, second });
+            return Err(ArchiveError::SamePlatform { platform: platform.folder, first, second });
         }
     }
     Ok(())
 }
 
-fn binary(identifier: &str, platform: &Platform, path: &Path) -> Result<Entry, ProgramError> {
+fn binary(identifier: &str, platform: &Platform, path: &Path) -> Result<Entry, ArchiveError> {
     if !path.is_file() {
-        return Err(ProgramError::NoLibrary { path: path.to_owned() });
+        return Err(ArchiveError::NoLibrary { path: path.to_owned() });
     }
     let name = format!("binaries/{}/{identifier}.{}", platform.folder, platform.extension);
     Ok(Entry { executable: true, ..Entry::new(name, read(path)?) })
-}
-
-/// The bytes of a file.
-pub(super) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
-    std::fs::read(path).map_err(FileError::io("read", path))
 }
 
 #[cfg(test)]

@@ -6,44 +6,62 @@ mod description;
 mod documentation;
 mod picture;
 
+use std::io;
 use std::path::{Component, Path, PathBuf};
 
-use asperity::element::{PointContact, Table};
+use asperity::element::{PointContact, Table, TableError};
 use asperity::fmi::{Catalogue, Sources, Subject, guid};
 
 use super::cli::Pack;
 use super::describe;
 use super::error::ProgramError;
-use super::files::{FileError, check_output, print, write};
+use super::files::{self, FileError, check_output, print, read, write};
 use super::terminal::{LabelledLine, lines};
-use archive::{Entry, read};
+use archive::{ArchiveError, Entry};
+
+/// `asperity pack` failed.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum PackError {
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error(transparent)]
+    Table(#[from] TableError),
+    #[error(transparent)]
+    Check(#[from] ProgramError),
+    #[error(transparent)]
+    Archive(#[from] ArchiveError),
+    #[error("the scene reads {}, which is not below the scene's folder: an FMU carries only what is", .path.display())]
+    Outside { path: PathBuf },
+    #[error("cannot write {document}: {source}")]
+    Document { document: &'static str, source: io::Error },
+}
 
 /// Writes the FMU; of an element, prints its table and errors.
-pub(crate) fn pack(command: &Pack) -> Result<(), ProgramError> {
+pub(crate) fn pack(command: &Pack) -> Result<(), PackError> {
     let (definition, path) = load(command)?;
     check_output(&command.output, &definition.sources(&path))?;
     let mut entries = archive::binaries(&definition.model_identifier(), &command.library)?;
     entries.extend(resources(&definition, &path)?);
     let summary = summary(command, &definition)?;
     entries.extend(documents(&definition, &path, &summary)?);
-    let bytes = archive::zip(entries)?;
+    let bytes = archive::zip(entries).map_err(ArchiveError::from)?;
     write(&command.output, bytes)?;
     if matches!(definition, Subject::Element(_)) { Ok(print(&lines(&summary))?) } else { Ok(()) }
 }
 
 /// What is packed, and the file that it is read from.
-fn load(command: &Pack) -> Result<(Subject, PathBuf), ProgramError> {
+fn load(command: &Pack) -> Result<(Subject, PathBuf), PackError> {
     match (&command.table, &command.scene) {
         (Some(table), _) => Ok((PointContact::new(Table::load(table)?).into(), table.clone())),
         (None, scene) => {
             let path = scene.clone().unwrap_or_default();
-            Ok((super::files::load(&path)?.into(), path))
+            Ok((files::load(&path)?.into(), path))
         }
     }
 }
 
 /// What there is in the scene or in the table, and the errors of an element.
-fn summary(command: &Pack, definition: &Subject) -> Result<Vec<LabelledLine>, ProgramError> {
+fn summary(command: &Pack, definition: &Subject) -> Result<Vec<LabelledLine>, PackError> {
     let contact = match definition {
         Subject::Layer(scene) => return Ok(describe::rows(scene)),
         Subject::Element(contact) => contact,
@@ -56,7 +74,7 @@ fn summary(command: &Pack, definition: &Subject) -> Result<Vec<LabelledLine>, Pr
 }
 
 /// The scene or the table, under a fixed name, and the files that a scene reads.
-fn resources(definition: &Subject, path: &Path) -> Result<Vec<Entry>, ProgramError> {
+fn resources(definition: &Subject, path: &Path) -> Result<Vec<Entry>, PackError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut entries = vec![Entry::new(format!("resources/{}", definition.file_name()), read(path)?)];
     for file in definition.files() {
@@ -67,17 +85,17 @@ fn resources(definition: &Subject, path: &Path) -> Result<Vec<Entry>, ProgramErr
 }
 
 /// `file` with forward slashes. It must lie below the scene's folder: the FMU is unpacked elsewhere.
-fn archive_path(file: &Path) -> Result<String, ProgramError> {
+fn archive_path(file: &Path) -> Result<String, PackError> {
     let parts = file.components().filter(|part| *part != Component::CurDir).map(|part| match part {
         Component::Normal(name) => Ok(name.to_string_lossy()),
-        _ => Err(ProgramError::Outside { path: file.to_owned() }),
+        _ => Err(PackError::Outside { path: file.to_owned() }),
     });
     Ok(parts.collect::<Result<Vec<_>, _>>()?.join("/"))
 }
 
 /// Model description, documentation, picture, licences.
-fn documents(definition: &Subject, path: &Path, summary: &[LabelledLine]) -> Result<Vec<Entry>, ProgramError> {
-    let document = |document, source| ProgramError::Document { document, source };
+fn documents(definition: &Subject, path: &Path, summary: &[LabelledLine]) -> Result<Vec<Entry>, PackError> {
+    let document = |document, source| PackError::Document { document, source };
     let catalogue = Catalogue::of(definition);
     let guid = guid(&Sources::of(path, definition).map_err(FileError::io("read", path))?, &catalogue);
     let description = description::write(definition, &catalogue, &guid);
