@@ -1,0 +1,516 @@
+//! The end-of-step contact correction of the time-stepping driver: mode changes within a step are made at its end.
+//!
+//! A step keeps its modes, and the state at its end shows which of them were violated on the way: a free mass is below
+//! the profile, a contact has F_N < 0, a slip has reversed, a stick is beyond T. The step is not repeated with other
+//! modes. Only the masses concerned are corrected:
+//!
+//! - A mass below the profile goes back to the instant of its touch, has its impact there, and moves along the profile
+//!   for the remaining time of the step. Its dashpots follow, and the lateral dampers pass its displacement on to the
+//!   neighbours as impulses.
+//! - A slip that has reversed stops.
+//! - Lifts and breaks begin at the end of the step, since only the forces went past their limits.
+//!
+//! Then the rules of model.md decide on these masses and their neighbours by the forces as they are.
+//!
+//! So a step takes any number of mode changes at its own cost. The error of their lateness falls with the square of the
+//! step's length, like that of the method; it is estimated together with that one, and where it is too large the step
+//! is shortened. Repeating the step with the modes of its end would cost the stages again, and make the changes too
+//! early instead of too late.
+//!
+//! A corrected mass has received impulses that the step as tried does not know, and so have its neighbours. The energies
+//! count each impulse with the mean of the velocities before and after it: so the energy balance is closed however
+//! strong a damper or the friction is.
+
+use super::laws::{collision, decide_mode, energy_at, has_reversed};
+use crate::integrator::{Rates, Tolerance, TwoStageDense};
+use crate::math::{Bounds, bracketed_root};
+use crate::model::{Carrier, CarrierPoint, ChannelEnergies, Forces, LinkKind, Mode, Model, State, SurfacePoint};
+
+/// Weight of the lateness of mode changes in the error of a step.
+///
+/// Recommended 3 to 10. With 5, masses that touch and lift at a relative tolerance of 1e-2 add errors of some 1e-2 to
+/// the forces of a layer; larger values reject more steps where many masses do.
+const LATENESS: f64 = 5.0;
+
+/// Number of masses to each side that a correction concerns: the neighbours receive impulses, and their neighbours the
+/// forces that these change.
+const REACH: usize = 2;
+
+/// Accuracy of the instant of a touch, as a share of the step: the error of the parabola is larger.
+const INSTANT: f64 = 1e-4;
+
+/// A step that was tried with its modes kept: what the correction does not change.
+#[derive(Clone, Copy, Debug)]
+pub struct FixedModeStep<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// The carrier's motion.
+    pub carrier: &'a Carrier,
+    /// Start of the step after the start of the carrier's piece, and its length, s.
+    pub span: (f64, f64),
+    /// State at the start.
+    pub start: &'a State,
+    /// Rates at the first stage.
+    pub first: &'a Rates,
+}
+
+/// The end of that step, to be corrected.
+#[derive(Debug)]
+pub struct End<'a> {
+    /// The state.
+    pub state: &'a mut State,
+    /// The forces in it.
+    pub forces: &'a mut Forces,
+    /// The rates in it.
+    pub rates: &'a mut Rates,
+}
+
+/// Energies of the mode changes at the end of a step, J.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct CorrectionEnergies {
+    /// Lost in impacts.
+    pub impact: f64,
+    /// Through the channels from the instants of the impacts on: the difference that contact makes against free motion.
+    pub channels: ChannelEnergies,
+}
+
+/// The end-of-step correction: the masses whose modes were violated in a step, and workspace.
+#[derive(Clone, Debug)]
+pub struct EndCorrection {
+    /// Free masses that are below the profile at the end.
+    touches: Vec<usize>,
+    /// Contacts that are past a limit at the end.
+    contacts: Vec<usize>,
+    /// Bound of the change of the forces on the carrier by the correction, N.
+    force: f64,
+    /// By mass: whether a correction changes its forces.
+    concerned: Vec<bool>,
+    /// Extremes of the whole profile.
+    profile: Bounds,
+    /// [`Model::long_term_stiffness`], N/m: it relates a friction force past its limit to an elongation.
+    long_term: Option<f64>,
+}
+
+impl EndCorrection {
+    /// Workspace for the steps of `model`.
+    pub fn new(model: &Model) -> Self {
+        let k = model.masses();
+        Self {
+            touches: Vec::with_capacity(k),
+            contacts: Vec::with_capacity(k),
+            force: 0.0,
+            concerned: vec![false; k],
+            profile: model.profile.bounds(),
+            long_term: model.long_term_stiffness(),
+        }
+    }
+
+    /// Finds the masses whose modes were violated in `step`. Returns the error of their lateness over the tolerance, as
+    /// a mean over all masses.
+    pub fn find(&mut self, step: &TwoStageDense<'_>, tolerance: &Tolerance) -> f64 {
+        self.touches.clear();
+        self.contacts.clear();
+        self.force = 0.0;
+        let frequency = step.model.frequency_without_rods();
+        let stiffness = step.model.mass * frequency * frequency;
+        let mut sum = 0.0;
+        for i in 0..step.model.masses() {
+            let late = match step.end.mode[i] {
+                Mode::Free => self.detect_touch(step, i),
+                _ => self.detect_limit(step, i, stiffness),
+            };
+            if let Some(late) = late {
+                let error = LATENESS * late.error(frequency);
+                sum += error * error / tolerance.of_position(step.end.elongation_x[i]);
+            }
+        }
+        (sum / step.model.masses() as f64).sqrt()
+    }
+
+    /// Bound of the change that the correction of what [`find`](Self::find) found makes in the forces on the carrier, N:
+    /// the forces of springs and dampers by the penetrations, and those past the limits.
+    pub fn unsettled_force(&self) -> f64 {
+        self.force
+    }
+
+    /// The lateness of the touch of free mass `i`, if there is one.
+    fn detect_touch(&mut self, step: &TwoStageDense<'_>, i: usize) -> Option<Lateness> {
+        let height = step.height(i, 1.0);
+        if height.min(step.height(i, TwoStageDense::FIRST)) > self.profile.z_max {
+            return None;
+        }
+        let surface = step.model.surface_at(step.place(i, 1.0));
+        let gap = height - surface.height;
+        if gap >= 0.0 {
+            return self.detect_dip(step, i, gap);
+        }
+        self.touches.push(i);
+        let closing = surface.slope * step.end.velocity_x[i] - step.end.velocity_z[i];
+        let link = &step.model.links[LinkKind::Vertical as usize];
+        self.force += link.stiffness * -gap + link.damping * closing.max(0.0);
+        let time = if closing > 0.0 { (-gap / closing).min(step.span.1) } else { step.span.1 };
+        Some(Lateness { length: -gap, time })
+    }
+
+    /// A mass that is above the profile at the end, by `gap`, and below it at the first stage has passed through an
+    /// asperity: the whole penetration is an error.
+    fn detect_dip(&self, step: &TwoStageDense<'_>, i: usize, gap: f64) -> Option<Lateness> {
+        let rise = step.height(i, 1.0) - step.height(i, TwoStageDense::FIRST);
+        let distance = (step.place(i, 1.0) - step.place(i, TwoStageDense::FIRST)).abs();
+        if gap > rise + distance * self.profile.slope_max_abs {
+            return None;
+        }
+        let gap_at_first = step.gap(i, TwoStageDense::FIRST);
+        (gap_at_first < 0.0).then_some(Lateness { length: -gap_at_first, time: f64::INFINITY })
+    }
+
+    /// The lateness of contact `i` past a limit, if it is past one: by the elongation that makes such a force, or by the
+    /// distance that it slipped back.
+    fn detect_limit(&mut self, step: &TwoStageDense<'_>, i: usize, stiffness: f64) -> Option<Lateness> {
+        let (first, last) = (step.first, step.last);
+        let late = if last.normal[i] < 0.0 {
+            let time = step.time_below(first.normal[i], last.normal[i]);
+            Lateness { length: -last.normal[i] / stiffness, time }
+        } else if step.model.has_friction && last.margin[i] < 0.0 {
+            let time = step.time_below(first.margin[i], last.margin[i]);
+            let long_term = self.long_term.unwrap_or(stiffness);
+            let unit = if step.end.mode[i] == Mode::Stick { 1.0 / long_term } else { 0.5 * time };
+            Lateness { length: -last.margin[i] * unit, time }
+        } else {
+            return None;
+        };
+        self.contacts.push(i);
+        self.force += stiffness * late.length;
+        Some(late)
+    }
+
+    /// Corrects the masses that [`find`](Self::find) found; `None` where there are none.
+    pub fn settle(&mut self, step: FixedModeStep<'_>, end: End<'_>) -> Option<CorrectionEnergies> {
+        if self.touches.is_empty() && self.contacts.is_empty() {
+            return None;
+        }
+        let mut correction = Correction::new(step, end);
+        for &i in &self.touches {
+            correction.touch(i);
+        }
+        for &i in &self.contacts {
+            correction.stop_reversed(i);
+        }
+        for &i in self.touches.iter().chain(&self.contacts) {
+            let end = (i + REACH + 1).min(self.concerned.len());
+            self.concerned[i.saturating_sub(REACH)..end].fill(true);
+        }
+        for (j, concerned) in self.concerned.iter_mut().enumerate().filter(|(_, concerned)| **concerned) {
+            correction.decide(j);
+            *concerned = false;
+        }
+        Some(correction.energies)
+    }
+}
+
+/// How late a mode change is.
+#[derive(Clone, Copy, Debug)]
+struct Lateness {
+    /// How far the mass goes past the limit, m.
+    length: f64,
+    /// For how long, s.
+    time: f64,
+}
+
+impl Lateness {
+    /// The error that remains after the correction, m: in a time that is short against 1/ω of the highest frequency ω
+    /// the forces past the limit move the mass little.
+    fn error(self, frequency: f64) -> f64 {
+        self.length * (frequency * self.time).min(1.0)
+    }
+}
+
+/// A correction under way.
+struct Correction<'a> {
+    step: FixedModeStep<'a>,
+    /// The carrier at the end.
+    carrier: CarrierPoint,
+    end: End<'a>,
+    energies: CorrectionEnergies,
+}
+
+/// The part of the step that remains for a mass after its impact.
+#[derive(Clone, Copy)]
+struct Remainder {
+    /// Its duration, s.
+    time: f64,
+    /// Velocity of the mass at the end of the step if it had stayed free, m/s.
+    free: (f64, f64),
+    /// Velocities of its neighbours at the end of the step before they received impulses, m/s.
+    neighbours: [Option<(f64, f64)>; 2],
+}
+
+/// The speed v_t along the profile in the remaining part of the step, m/s.
+#[derive(Clone, Copy)]
+struct Speed {
+    mean: f64,
+    /// As the dampers have it: at the end, as the step is implicit.
+    at_end: f64,
+}
+
+impl<'a> Correction<'a> {
+    fn new(step: FixedModeStep<'a>, end: End<'a>) -> Self {
+        let (s, h) = step.span;
+        Self { carrier: step.carrier.at(s + h), step, end, energies: CorrectionEnergies::default() }
+    }
+
+    fn dense(&self) -> TwoStageDense<'_> {
+        let FixedModeStep { model, carrier, span, start, first } = self.step;
+        TwoStageDense::new(model, carrier, span, (start, first), (self.end.state, self.end.rates))
+    }
+
+    /// Takes mass `i`, which is free and below the profile, back to its touch and through its impact, and moves it along
+    /// the profile for the remaining time.
+    fn touch(&mut self, i: usize) {
+        let (model, dense) = (self.step.model, self.dense());
+        let theta = instant_of_touch(&dense, i);
+        let (x, velocity, free) = (dense.place(i, theta), dense.velocity(i, theta), dense.velocity(i, 1.0));
+        let from = (dense.place(i, 1.0), dense.height(i, 1.0));
+        let slope = model.surface_at(x).slope;
+        if velocity.1 >= slope * velocity.0 {
+            return self.lift_onto_profile(i, from);
+        }
+        let (v_t, lost) = collision(model, velocity, slope);
+        self.energies.impact += lost;
+        let neighbours = neighbours(i).map(|j| self.velocity(j));
+        let rest = Remainder { time: (1.0 - theta) * self.step.span.1, free, neighbours };
+        let x = x + rest.time * v_t / (1.0 + slope * slope).sqrt();
+        self.move_to(i, from, x, model.surface_at(x), rest.time);
+        self.end.state.mode[i] = Mode::along(v_t);
+        let speed = self.advance_along_profile(i, v_t, &rest);
+        self.add_damper_energies(i, speed, &rest);
+    }
+
+    /// The velocity of mass `j`, m/s; `None` where there is no such mass.
+    fn velocity(&self, j: usize) -> Option<(f64, f64)> {
+        let state = &*self.end.state;
+        (j < self.step.model.masses()).then(|| (state.velocity_x[j], state.velocity_z[j]))
+    }
+
+    /// Lifts mass `i`, which leaves the profile already, onto it. It stays free.
+    fn lift_onto_profile(&mut self, i: usize, from: (f64, f64)) {
+        let surface = self.step.model.surface_at(from.0);
+        self.move_to(i, from, from.0, surface, self.step.span.1);
+        self.end.state.release(i);
+    }
+
+    /// Moves mass `i` from the position `from` to `x` on `surface`. In the last `time` (s) its dashpots have not followed
+    /// that displacement, and the lateral dampers have passed it on to the neighbours as an impulse.
+    fn move_to(&mut self, i: usize, from: (f64, f64), x: f64, surface: SurfacePoint, time: f64) {
+        let moved = (x - from.0, surface.height - from.1);
+        let state = &mut *self.end.state;
+        state.elongation_x[i] += moved.0;
+        state.elongation_z[i] = surface.height - self.step.model.rest_z[i] - (self.step.carrier.w + self.carrier.dw);
+        state.surface[i] = surface;
+        for row in &self.step.model.rows {
+            let along = if row.kind.is_along_x() { moved.0 } else { moved.1 };
+            let by = along * row.relaxation_time / (row.relaxation_time + time);
+            let a = &mut state.maxwell[row.range.clone()];
+            if !row.kind.is_lateral() {
+                a[i] += by;
+                continue;
+            }
+            if let Some(a) = a.get_mut(i) {
+                *a -= by;
+            }
+            if i > 0 {
+                a[i - 1] += by;
+            }
+        }
+        self.end.forces.refresh(self.step.model, self.end.state, &self.carrier, i);
+        for j in neighbours(i) {
+            if j < self.step.model.masses() {
+                self.pass_impulse_to(j, moved, time);
+            }
+        }
+    }
+
+    /// The impulse d Δ of the lateral dampers on neighbour `j` of a mass that was displaced by Δ (m); `time` (s) bounds
+    /// the velocity that it makes where the dampers are faster than that.
+    fn pass_impulse_to(&mut self, j: usize, displacement: (f64, f64), time: f64) {
+        let model = self.step.model;
+        let gain = |kind| self.passing(kind, time) / model.mass;
+        let (x, z) = (displacement.0 * gain(LinkKind::LateralX), displacement.1 * gain(LinkKind::LateralZ));
+        if x == 0.0 && z == 0.0 {
+            return;
+        }
+        let state = &*self.end.state;
+        let (mode, slope, v) = (state.mode[j], state.surface[j].slope, (state.velocity_x[j], state.velocity_z[j]));
+        if mode == Mode::Free {
+            self.set_velocity(j, (v.0 + x, v.1 + z));
+        } else if mode.slips() {
+            let after = v.0 + (x + slope * z) / (1.0 + slope * slope);
+            // Forces decide whether a slip reverses, not this correction.
+            if !model.has_friction || after * v.0 > 0.0 {
+                self.set_slip_velocity(j, after);
+            }
+        }
+    }
+
+    /// Integrates the speed v_t of mass `i` from its impact to the end of the step by an implicit step for it alone.
+    fn advance_along_profile(&mut self, i: usize, v_t: f64, rest: &Remainder) -> Speed {
+        let (model, mode, surface) = (self.step.model, self.end.state.mode[i], self.end.state.surface[i]);
+        let (s, time) = (surface.slope, rest.time);
+        let q = (1.0 + s * s).sqrt();
+        self.set_slip_velocity(i, v_t / q);
+        let contact = self.end.forces.contact(model, i, v_t / q, &surface);
+        let at_rest = if contact.normal < 0.0 { 0.0 } else { mode.direction() * contact.limit };
+        let damping = |along, lateral| self.damping(along) + 2.0 * self.passing(lateral, time);
+        let damping =
+            damping(LinkKind::Horizontal, LinkKind::LateralX) + damping(LinkKind::Vertical, LinkKind::LateralZ) * s * s;
+        let slowing = time * (damping / (q * q) + time * model.mass_stiffness()) / model.mass;
+        // No term in κ: v_t contains already how the profile bends from the touch to here.
+        let driving = contact.tangential + self.not_passed(i, rest);
+        let excess =
+            if contact.normal < 0.0 { 0.0 } else { rate_excess(model, mode, v_t, driving - at_rest, time, slowing) };
+        let friction = at_rest + excess;
+        let acceleration = (driving - friction) / model.mass;
+        let after = v_t + time * acceleration / (1.0 + slowing);
+        if model.has_friction && contact.normal >= 0.0 && mode.direction() * after < 0.0 {
+            let distance = -0.5 * v_t * v_t / acceleration;
+            self.energies.channels.friction += friction * distance;
+            self.stop_after(i, (distance - v_t * time) / q, time);
+            return Speed { mean: distance / time, at_end: distance / time };
+        }
+        let mean = 0.5 * (v_t + after);
+        self.energies.channels.friction += friction * time * mean;
+        self.set_slip_velocity(i, after / q);
+        Speed { mean, at_end: after }
+    }
+
+    /// d of the links of a kind, N s/m.
+    fn damping(&self, kind: LinkKind) -> f64 {
+        self.step.model.links[kind as usize].damping
+    }
+
+    /// The part of a damper d between two masses, N s/m, by which a correction of one of them within the `time` (s) acts
+    /// on the other: all of d, unless the damper makes both velocities equal within that time.
+    fn passing(&self, kind: LinkKind, time: f64) -> f64 {
+        let (damping, mass) = (self.damping(kind), self.step.model.mass);
+        damping * mass / (mass + 2.0 * time * damping)
+    }
+
+    /// The force along t of the lateral dampers on mass `i` by the part of them that does not pass impulses, N.
+    fn not_passed(&self, i: usize, rest: &Remainder) -> f64 {
+        let [x, z] = [LinkKind::LateralX, LinkKind::LateralZ].map(|kind| {
+            let pick = |velocity| component(kind, velocity);
+            let change = |j, before| self.velocity(j).map_or(0.0, |after| pick(after) - pick(before));
+            let by_neighbours = neighbours(i).into_iter().zip(rest.neighbours);
+            let own = change(i, rest.free);
+            let sum: f64 = by_neighbours.filter_map(|(j, before)| Some(own - change(j, before?))).sum();
+            (self.damping(kind) - self.passing(kind, rest.time)) * sum
+        });
+        let s = self.end.state.surface[i].slope;
+        (x + s * z) / (1.0 + s * s).sqrt()
+    }
+
+    /// Adds the differences that the correction of mass `i` makes to the losses of its dampers in the remaining part of
+    /// the step, and to the work of the carrier.
+    fn add_damper_energies(&mut self, i: usize, speed: Speed, rest: &Remainder) {
+        let s = self.end.state.surface[i].slope;
+        let q = (1.0 + s * s).sqrt();
+        let [mean, at_end] = [speed.mean, speed.at_end].map(|v_t| (v_t / q, s * v_t / q));
+        let carrier = (self.carrier.u_rate, self.carrier.w_rate);
+        for kind in LinkKind::ALL {
+            let (damping, passing) = (rest.time * self.damping(kind), rest.time * self.passing(kind, rest.time));
+            let [free, mean, at_end, carrier] =
+                [rest.free, mean, at_end, carrier].map(|velocity| component(kind, velocity));
+            if !kind.is_lateral() {
+                let more = (at_end - carrier) * (mean - carrier) - (free - carrier).powi(2);
+                self.energies.channels.damper += damping * more;
+                self.energies.channels.input -= damping * (at_end - free) * carrier;
+                continue;
+            }
+            for (j, before) in neighbours(i).into_iter().zip(rest.neighbours) {
+                let (Some(before), Some(after)) = (before, self.velocity(j)) else { continue };
+                let (before, after) = (component(kind, before), component(kind, after));
+                let trial = free - before;
+                let impulse = damping * trial + passing * (at_end - after - trial);
+                self.energies.channels.damper += impulse * (mean - 0.5 * (before + after)) - damping * trial * trial;
+            }
+        }
+    }
+
+    /// Stops mass `i` at `distance` (m) along x from where it is.
+    fn stop_after(&mut self, i: usize, distance: f64, time: f64) {
+        self.set_slip_velocity(i, 0.0);
+        let model = self.step.model;
+        let x =
+            model.rest_x[i] + (self.step.carrier.profile_position + (self.carrier.du + self.end.state.elongation_x[i]));
+        let from = (x, self.end.state.surface[i].height);
+        self.move_to(i, from, x + distance, model.surface_at(x + distance), time);
+    }
+
+    /// Stops mass `i` if its slip has reversed, so that the rule for *stop* decides on it.
+    fn stop_reversed(&mut self, i: usize) {
+        let (model, state) = (self.step.model, &*self.end.state);
+        let v = state.velocity_x[i];
+        if model.has_friction && has_reversed(state.mode[i], v) {
+            self.energies.channels.friction += energy_at(model, (v, state.surface[i].slope * v));
+            self.set_slip_velocity(i, 0.0);
+        }
+    }
+
+    /// Sets ẋ of mass `i`, and ż along the profile.
+    fn set_slip_velocity(&mut self, i: usize, v_x: f64) {
+        self.set_velocity(i, (v_x, self.end.state.surface[i].slope * v_x));
+    }
+
+    fn set_velocity(&mut self, i: usize, (v_x, v_z): (f64, f64)) {
+        let state = &mut *self.end.state;
+        let change = (v_x - state.velocity_x[i], v_z - state.velocity_z[i]);
+        (state.velocity_x[i], state.velocity_z[i]) = (v_x, v_z);
+        self.end.forces.add_velocity(self.step.model, i, change);
+    }
+
+    /// Decides contact `j` anew by the forces as they are, and evaluates the rates of mass `j` anew.
+    fn decide(&mut self, j: usize) {
+        decide_mode(self.step.model, self.end.state, self.end.forces, j);
+        self.end.rates.refresh(self.step.model, self.end.state, self.end.forces, j, &self.carrier);
+    }
+}
+
+/// The excess of the rate-dependent friction over that at rest, N, of a mass in `mode` that starts with v_t (m/s) and is
+/// driven by a force (N) for a `time` (s): at the end of that time, since the law is steep at creep speeds. The speed
+/// changes by `slowing` as much less as the force alone would change it.
+fn rate_excess(model: &Model, mode: Mode, v_t: f64, driving: f64, time: f64, slowing: f64) -> f64 {
+    let Some(law) = model.rate_shear.filter(|_| time > 0.0) else { return 0.0 };
+    let sigma = mode.direction();
+    let weight = model.mass * (1.0 + slowing) / time;
+    let (from, driving) = (sigma * v_t, sigma * driving);
+    sigma * (driving - weight * (law.balance(from, driving, weight) - from))
+}
+
+/// The indices beside mass `i`; one of them may be out of range.
+fn neighbours(i: usize) -> [usize; 2] {
+    [i.wrapping_sub(1), i + 1]
+}
+
+/// The component of (x, z) along the links of a kind.
+fn component(kind: LinkKind, (x, z): (f64, f64)) -> f64 {
+    if kind.is_along_x() { x } else { z }
+}
+
+/// The fraction of the step at which free mass `i`, below the profile at the end, touched it.
+fn instant_of_touch(dense: &TwoStageDense<'_>, i: usize) -> f64 {
+    if dense.gap(i, 0.0) <= 0.0 { 0.0 } else { bracketed_root(|theta| dense.gap(i, theta), (0.0, 1.0), INSTANT) }
+}
+
+impl TwoStageDense<'_> {
+    /// The height of mass `i` above the profile at the fraction `theta` of the step, m.
+    fn gap(&self, i: usize, theta: f64) -> f64 {
+        self.height(i, theta) - self.model.surface_at(self.place(i, theta)).height
+    }
+
+    /// For how long a quantity with the values `first` at the first stage and `last` < 0 at the end has been negative,
+    /// s, by the line through them.
+    fn time_below(&self, first: f64, last: f64) -> f64 {
+        let fall = (first - last) / (1.0 - Self::FIRST);
+        self.span.1 * if fall > -last { -last / fall } else { 1.0 }
+    }
+}
