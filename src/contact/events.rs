@@ -1,12 +1,12 @@
-//! Which mode change comes first within a step.
+//! The first mode change within a step: touch, lift, stop or break.
 
 use super::gap::first_touch;
 use crate::integrator::{DenseOutput, DenseWorkspace, METHOD, Rates, STAGES, Tolerance};
 use crate::math::bracketed_root;
 use crate::model::{Mode, Model, State};
 
-/// How far a quantity may pass its limit before the mode changes. An event is located where it is half that far past,
-/// so that after it the limit is passed without doubt.
+/// How far a quantity may pass its limit before the mode changes. An event is located where the quantity is half as far
+/// past it, so that the limit has been passed for certain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EventTolerance {
     /// Of the gap, m.
@@ -17,22 +17,22 @@ pub struct EventTolerance {
     pub force: f64,
 }
 
-/// Share of the step tolerances that events may take.
+/// Event tolerances as a share of the step tolerances.
 ///
-/// Recommended 0.01 to 1. The error of a late lift, break or stop grows with the square of its delay, so these are not
-/// what limits the accuracy; smaller only costs steps.
+/// Recommended 0.01 to 1. The error of a late lift, break or stop grows with the square of its delay, so events do not
+/// limit the accuracy; smaller values only cost steps.
 const SHARE: f64 = 0.1;
 
-/// How many roundings a force may be off by.
+/// The rounding error of a force, as a number of roundings of a position.
 const ROUNDINGS: f64 = 4.0;
 
 impl EventTolerance {
-    /// The tolerances that go with those of the steps.
+    /// The event tolerances that belong to the step tolerances.
     pub fn new(model: &Model, tolerance: &Tolerance) -> Self {
-        let felt = || model.mass_stiffness_without_rods().max(model.mass * model.frequency_without_rods().powi(2));
-        let stiffness = model.long_term_stiffness().unwrap_or_else(felt);
-        // A rod makes a force of the rounding of its elongation: of the layer's height, the absolute tolerance over the
-        // relative one, at most.
+        let usual = || model.mass_stiffness_without_rods().max(model.mass * model.frequency_without_rods().powi(2));
+        let stiffness = model.long_term_stiffness().unwrap_or_else(usual);
+        // The rounding of a position, at most of the layer's height (the absolute tolerance over the relative one), is
+        // a force in a rod.
         let height = tolerance.position / tolerance.relative;
         let rounding = ROUNDINGS * f64::EPSILON * height * model.rounding_stiffness();
         Self {
@@ -48,7 +48,7 @@ impl EventTolerance {
     }
 }
 
-/// The fraction of the step at which the first mode change is due; `None` where none is.
+/// The fraction of the step at which the first mode change is due; `None` if none is.
 pub fn first_event(
     step: &DenseOutput<'_>,
     stages: &[Rates],
@@ -71,8 +71,8 @@ fn earlier(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     }
 }
 
-/// The contacts through a step: where a stage shows a limit passed, the dense output is asked, which is more accurate
-/// than the stages are and from which the run goes on.
+/// The contacts through a step. Where a stage shows that a limit is passed, the dense output decides: it is more
+/// accurate than the stages, and the run continues from it.
 struct Contacts<'a> {
     step: &'a DenseOutput<'a>,
     stages: &'a [Rates],
@@ -80,7 +80,7 @@ struct Contacts<'a> {
     workspace: &'a mut DenseWorkspace,
 }
 
-/// What of a contact may pass its limit.
+/// A quantity of a contact with a limit.
 #[derive(Clone, Copy, PartialEq)]
 enum Limit {
     /// F_N ≥ 0.
@@ -108,17 +108,17 @@ impl Contacts<'_> {
         first
     }
 
-    /// Where a quantity of mass `i` first falls below -`tolerance`, aimed at -`tolerance`/2; `first` where it does not
-    /// before that.
+    /// The fraction at which a quantity of mass `i` first falls below -`tolerance`, located where it is -`tolerance`/2;
+    /// `first` if it does not before that.
     fn fall(&mut self, i: usize, limit: Limit, tolerance: f64, first: Option<f64>) -> Option<f64> {
         let latest = first.unwrap_or(1.0);
-        let place = (1..STAGES).find(|&place| self.at_stage(place, i, limit) < -tolerance);
-        let Some(place) = place.filter(|&place| METHOD.c[IN_TIME[place - 1]] < latest) else { return first };
-        let falls_until = |contacts: &mut Self, place: usize| {
-            let theta = METHOD.c[IN_TIME[place]].min(latest);
-            contacts.at_stage(place, i, limit) < -tolerance && contacts.value(i, limit, theta) < -tolerance
+        let rank = (1..STAGES).find(|&rank| self.at_stage(rank, i, limit) < -tolerance);
+        let Some(rank) = rank.filter(|&rank| METHOD.c[IN_TIME[rank - 1]] < latest) else { return first };
+        let falls_until = |contacts: &mut Self, rank: usize| {
+            let theta = METHOD.c[IN_TIME[rank]].min(latest);
+            contacts.at_stage(rank, i, limit) < -tolerance && contacts.value(i, limit, theta) < -tolerance
         };
-        let Some(below) = (place..STAGES).find(|&place| falls_until(self, place)) else { return first };
+        let Some(below) = (rank..STAGES).find(|&rank| falls_until(self, rank)) else { return first };
         let aim = 0.5 * tolerance;
         let bracket = (METHOD.c[IN_TIME[below - 1]].min(latest), METHOD.c[IN_TIME[below]].min(latest));
         if self.value(i, limit, bracket.0) <= -aim {
@@ -127,9 +127,9 @@ impl Contacts<'_> {
         Some(bracketed_root(|theta| self.value(i, limit, theta) + aim, bracket, LOCATED))
     }
 
-    /// The quantity at the stage that is `place`-th in time.
-    fn at_stage(&self, place: usize, i: usize, limit: Limit) -> f64 {
-        let stage = &self.stages[IN_TIME[place]];
+    /// The quantity at the stage that is `rank`-th in time.
+    fn at_stage(&self, rank: usize, i: usize, limit: Limit) -> f64 {
+        let stage = &self.stages[IN_TIME[rank]];
         if limit == Limit::Normal { stage.normal[i] } else { stage.margin[i] }
     }
 
@@ -144,39 +144,46 @@ impl Contacts<'_> {
     }
 }
 
-/// Share of a step to which an event is located: far below what the tolerances can tell apart.
+/// Accuracy of an event's instant as a share of the step: far below the resolution of the tolerances.
 const LOCATED: f64 = 1e-12;
 
 fn any_below(values: &[f64], limit: f64) -> bool {
     values.iter().fold(f64::MAX, |least, &value| if value < least { value } else { least }) < limit
 }
 
-/// The stages in the order of time.
+/// The indices of the stages in the order of time.
 const IN_TIME: [usize; STAGES] = in_time();
 
 const fn in_time() -> [usize; STAGES] {
     let mut order = [0; STAGES];
     let mut i = 0;
     while i < STAGES {
-        let mut place = i;
-        while place > 0 && METHOD.c[order[place - 1]] > METHOD.c[i] {
-            order[place] = order[place - 1];
-            place -= 1;
+        let mut rank = i;
+        while rank > 0 && METHOD.c[order[rank - 1]] > METHOD.c[i] {
+            order[rank] = order[rank - 1];
+            rank -= 1;
         }
-        order[place] = i;
+        order[rank] = i;
         i += 1;
     }
     order
 }
 
-/// Share of an event tolerance by which a limit must be passed for the event to have come.
+/// Share of an event tolerance by which a limit must be passed at the end of a step for an event to be due.
 const PASSED: f64 = 0.05;
 
-/// Whether at the end of a step an event has come: `state` and `rates` are those there.
-pub fn is_due(model: &Model, state: &State, rates: &Rates, (place, w): (f64, f64), tolerance: &EventTolerance) -> bool {
+/// Whether an event is due at the end of a step with `state` and `rates`, where the carrier is at `position` on the
+/// profile and at `w`, m.
+pub fn is_due(
+    model: &Model,
+    state: &State,
+    rates: &Rates,
+    (position, w): (f64, f64),
+    tolerance: &EventTolerance,
+) -> bool {
     (0..model.masses()).any(|i| match state.mode[i] {
         Mode::Free => {
-            let surface = model.surface_at(model.rest_x[i] + (place + state.elongation_x[i]));
+            let surface = model.surface_at(model.rest_x[i] + (position + state.elongation_x[i]));
             let gap = model.rest_z[i] + (w + state.elongation_z[i]) - surface.height;
             gap < -PASSED * tolerance.gap && state.velocity_z[i] < surface.slope * state.velocity_x[i]
         }

@@ -2,31 +2,36 @@
 
 use crate::math::{Bounds, Quintic, Spline};
 
-/// A part over which the gap bends by less than this share of the tolerance is judged by its ends: what it may dip
-/// further does not count. So the search ends even where a mass glides along the very limit.
+/// A part over which the gap bends by less than this share of the tolerance is decided by its ends: a deeper dip between
+/// them does not matter. So the search ends even where a mass moves along the limit.
 const NEGLIGIBLE_BEND: f64 = 0.01;
-/// Halvings of a step after which a part is judged by its ends; a step over 2⁴⁰ is beyond the clock's digits.
+/// Halvings of a step after which a part is decided by its ends: a step over 2⁴⁰ is below the resolution of time.
 const MOST_HALVINGS: u32 = 40;
 
-/// Parts of a step that are looked at. A few are the rule; where numbers are so large that no bounds hold, all would
-/// be.
+/// Largest number of parts of a step that are examined. A few are usual; where numbers are so large that no bounds hold,
+/// the search would not end.
 const MOST_PARTS: u32 = 10_000;
 
 /// The first fraction of a step at which the gap between a mass and the profile falls below -`tolerance` (m), located
-/// where it is -`tolerance`/2; `None` where it does not. `place` and `height` give the mass's motion through the step,
-/// its place only where it may matter.
+/// where it is -`tolerance`/2; `None` if it does not. `position` (along x, evaluated only if it matters) and `height`
+/// are the mass's motion through the step, m.
 ///
-/// Nothing is sampled: a part of the step is passed over only when bounds of the motion and of the profile there show
-/// that the gap stays above, so that no dip is missed, however short. What the bounds leave open is halved. Where that
-/// would not come to an end, the fraction up to which all is known is returned: the step is to be cut there, too.
-pub fn first_touch(profile: &Spline, place: impl FnOnce() -> Quintic, height: Quintic, tolerance: f64) -> Option<f64> {
-    // The bounds of the whole profile are at hand, and most masses are far enough away for them.
+/// Nothing is sampled: a part of the step is skipped only if bounds of the motion and of the profile there show that the
+/// gap stays above the limit. So no dip is missed, however short. Other parts are halved. Where that would not end, the
+/// fraction up to which there is no touch is returned: the step is to be cut there, too.
+pub fn first_touch(
+    profile: &Spline,
+    position: impl FnOnce() -> Quintic,
+    height: Quintic,
+    tolerance: f64,
+) -> Option<f64> {
+    // The bounds of the whole profile are known already, and for most masses they are enough.
     let bounds = profile.bounds();
     if height.range().0 - bounds.z_max > -tolerance {
         return None;
     }
     let mut search = Search { profile, tolerance, parts: 0 };
-    let whole = Part { place: place(), height, start: 0.0, length: 1.0 };
+    let whole = Part { position: position(), height, start: 0.0, length: 1.0 };
     let Ends { start, end, bend } = search.ends(&whole, &bounds);
     if search.stays_above(start, end, bend) {
         return None;
@@ -37,13 +42,13 @@ pub fn first_touch(profile: &Spline, place: impl FnOnce() -> Quintic, height: Qu
 struct Search<'a> {
     profile: &'a Spline,
     tolerance: f64,
-    /// Parts looked at so far.
+    /// Parts examined so far.
     parts: u32,
 }
 
 /// The motion through a part of the step.
 struct Part {
-    place: Quintic,
+    position: Quintic,
     height: Quintic,
     start: f64,
     length: f64,
@@ -60,7 +65,7 @@ struct Ends {
 impl Search<'_> {
     fn first_touch(&mut self, part: &Part, halvings: u32) -> Option<f64> {
         self.parts += 1;
-        let (x_low, x_high) = part.place.range();
+        let (x_low, x_high) = part.position.range();
         if self.parts > MOST_PARTS || !(x_low.is_finite() && x_high.is_finite()) {
             return Some(part.start);
         }
@@ -81,15 +86,15 @@ impl Search<'_> {
         self.first_touch(&first, halvings + 1).or_else(|| self.first_touch(&second, halvings + 1))
     }
 
-    /// The gap at the ends of a part, and how far it bends between them where the profile keeps within `profile`.
+    /// The gap at the ends of a part, and its largest bend between them with the bounds `profile`.
     fn ends(&self, part: &Part, profile: &Bounds) -> Ends {
         // |g''| over the part: g = z - z_r(x), g'' = z̈ - s ẍ - κ ẋ².
-        let (speed_x, bend_x) = part.place.derivative_bounds();
+        let (speed_x, bend_x) = part.position.derivative_bounds();
         let bend = part.height.derivative_bounds().1
             + profile.slope_max_abs * bend_x
             + profile.curvature_max_abs * speed_x * speed_x;
         let gap = |(x, z): (f64, f64)| z - self.profile.evaluate(x).0;
-        let (x, z) = (part.place.ends(), part.height.ends());
+        let (x, z) = (part.position.ends(), part.height.ends());
         Ends { start: gap((x.0, z.0)), end: gap((x.1, z.1)), bend }
     }
 
@@ -106,23 +111,23 @@ impl Search<'_> {
     }
 
     fn gap(&self, part: &Part, theta: f64) -> f64 {
-        part.height.evaluate(theta).place - self.profile.evaluate(part.place.evaluate(theta).place).0
+        part.height.evaluate(theta).place - self.profile.evaluate(part.position.evaluate(theta).place).0
     }
 
     fn gap_rate(&self, part: &Part, theta: f64) -> f64 {
-        let place = part.place.evaluate(theta);
-        part.height.evaluate(theta).speed - self.profile.evaluate(place.place).1 * place.speed
+        let position = part.position.evaluate(theta);
+        part.height.evaluate(theta).speed - self.profile.evaluate(position.place).1 * position.speed
     }
 }
 
 impl Part {
     fn halves(&self) -> (Self, Self) {
-        let (place_first, place_second) = self.place.halves();
+        let (position_first, position_second) = self.position.halves();
         let (height_first, height_second) = self.height.halves();
         let length = 0.5 * self.length;
         (
-            Self { place: place_first, height: height_first, start: self.start, length },
-            Self { place: place_second, height: height_second, start: self.start + length, length },
+            Self { position: position_first, height: height_first, start: self.start, length },
+            Self { position: position_second, height: height_second, start: self.start + length, length },
         )
     }
 }

@@ -1,19 +1,20 @@
-//! The rules of mode changes, at the start and during a run: impact, lift, stop, break.
+//! The rules of mode changes, at the start and during a run: impact, lift, stop, stick, break. They are those of
+//! model.md.
 
 use crate::model::{CarrierPoint, Forces, Mode, Model, State, SurfacePoint};
 use crate::scene::Initial;
 
-/// Where the carrier stands and how it moves.
+/// Position of the carrier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CarrierPosition {
-    /// u as a position on the profile, m.
+    /// u as a position on the profile, reduced to its period, m.
     pub profile_position: f64,
     /// w, m.
     pub w: f64,
 }
 
-/// Puts every mass at its rest position, moving with the carrier; one that would lie under the profile is lifted onto it
-/// and keeps the part of its velocity along t. Which contacts stay and which stick is for [`decide_modes`] to say.
+/// Places every mass at its rest position, moving with the carrier. A mass that would lie under the profile is lifted
+/// onto it and keeps its velocity along t. [`decide_modes`] then decides which contacts remain and which stick.
 pub fn place_layer(model: &Model, state: &mut State, at: CarrierPosition, carrier: &CarrierPoint) {
     for i in 0..model.masses() {
         let surface = model.surface_at(model.rest_x[i] + at.profile_position);
@@ -36,7 +37,7 @@ pub fn place_layer(model: &Model, state: &mut State, at: CarrierPosition, carrie
     place_dashpots(model, state);
 }
 
-/// Puts mass `i` on the profile, moving along it.
+/// Puts mass `i` onto the profile, moving along it.
 fn touch_down(model: &Model, state: &mut State, i: usize, w: f64, surface: &SurfacePoint, velocity_x: f64) {
     state.surface[i] = *surface;
     state.elongation_z[i] = surface.height - model.rest_z[i] - w;
@@ -57,19 +58,18 @@ fn place_dashpots(model: &Model, state: &mut State) {
     }
 }
 
-/// At the start a mass that rests on the profile, lifted by nothing, is in contact only if F_N > 0.
+/// At the start a mass that just touches the profile is in contact only if F_N > 0.
 pub fn free_unloaded(model: &Model, state: &mut State, at: CarrierPosition, forces: &Forces) {
     for i in 0..model.masses() {
-        let rests = state.mode[i].in_contact() && model.rest_z[i] + at.w == state.surface[i].height;
-        if rests && forces.contact(model, i, state.velocity_x[i], &state.surface[i]).normal <= 0.0 {
+        let touches = state.mode[i].in_contact() && model.rest_z[i] + at.w == state.surface[i].height;
+        if touches && forces.contact(model, i, state.velocity_x[i], &state.surface[i]).normal <= 0.0 {
             state.release(i);
         }
     }
 }
 
-/// Applies the impacts due: every free mass within `reach` (m) of the profile that moves into it is stopped along n,
-/// with Coulomb's friction along t. Each uses its own velocity, so their order does not matter. Returns the energy
-/// lost, J.
+/// Applies the impacts due: every free mass within `reach` (m) of the profile that moves into it has an impact. Each
+/// impact depends on the velocity of its own mass alone, so their order does not matter. Returns the energy lost, J.
 pub fn impacts_due(model: &Model, state: &mut State, at: CarrierPosition, reach: f64) -> f64 {
     let mut lost = 0.0;
     for i in 0..model.masses() {
@@ -92,7 +92,8 @@ fn impact(model: &Model, state: &mut State, i: usize, w: f64, surface: &SurfaceP
     lost
 }
 
-/// v_n⁺ = 0 with the impulse J = -m v_n; v_t⁺ = sign(v_t) max(|v_t| - μ J/m, 0): v_t⁺, m/s, and the energy lost, J.
+/// The law of impact, perfectly inelastic along n with Coulomb's friction along t: v_n⁺ = 0 by the impulse J = -m v_n,
+/// and v_t⁺ = sign(v_t) max(|v_t| - μ J/m, 0). `s` is the slope. Returns v_t⁺, m/s, and the energy lost, J.
 pub(super) fn collision(model: &Model, (v_x, v_z): (f64, f64), s: f64) -> (f64, f64) {
     let q = (1.0 + s * s).sqrt();
     let v_n = (v_z - s * v_x) / q;
@@ -101,8 +102,8 @@ pub(super) fn collision(model: &Model, (v_x, v_z): (f64, f64), s: f64) -> (f64, 
     (after, 0.5 * model.mass * (v_n * v_n + v_t * v_t - after * after))
 }
 
-/// Brings slipping masses whose velocity has passed 0 to rest, so that the rule for *stop* decides on them. Returns the
-/// work, J, of the friction that does so: it takes back what it gave them past the stop.
+/// Stops slipping masses whose velocity has passed 0, so that the rule for *stop* decides on them. Returns the kinetic
+/// energy that this takes from them, J: friction did that much work on them past the stop.
 pub fn stop_reversed(model: &Model, state: &mut State) -> f64 {
     let mut work = 0.0;
     for i in 0..if model.has_friction { model.masses() } else { 0 } {
@@ -115,27 +116,27 @@ pub fn stop_reversed(model: &Model, state: &mut State) -> f64 {
     work
 }
 
-/// Whether a slip at ẋ = `v` goes against its direction.
+/// Whether a slip with ẋ = `v` goes against its direction.
 pub(super) fn has_reversed(mode: Mode, v: f64) -> bool {
     mode.slips() && mode.direction() * v < 0.0
 }
 
-/// Energy of a mass at this velocity, J.
+/// Kinetic energy of one mass, J.
 pub(super) fn energy_at(model: &Model, (v_x, v_z): (f64, f64)) -> f64 {
     0.5 * model.mass * (v_x * v_x + v_z * v_z)
 }
 
-/// Decides every contact anew from the forces after a jump.
+/// Decides the mode of every contact anew from the forces after a jump.
 ///
-/// Neither the forces nor the velocities depend on the modes, so one pass decides: repeating it would change nothing,
-/// and a mass that breaks loose here is not stuck again.
+/// Neither the forces nor the velocities depend on the modes, so one pass is enough: a second one would change nothing,
+/// and a mass that breaks loose does not stick again at once.
 pub fn decide_modes(model: &Model, state: &mut State, forces: &Forces) {
     for i in 0..model.masses() {
         decide_mode(model, state, forces, i);
     }
 }
 
-/// Decides the contact of mass `i` anew; a free mass stays free.
+/// Decides the mode of mass `i` anew if it is in contact.
 pub(super) fn decide_mode(model: &Model, state: &mut State, forces: &Forces, i: usize) {
     if state.mode[i].in_contact() {
         match decided(model, state, forces, i) {
@@ -145,6 +146,7 @@ pub(super) fn decide_mode(model: &Model, state: &mut State, forces: &Forces, i: 
     }
 }
 
+/// Lift where F_N < 0; a mass at rest sticks up to |f·t| = T(0) and breaks loose beyond; a slip goes on.
 fn decided(model: &Model, state: &State, forces: &Forces, i: usize) -> Mode {
     let (mode, v) = (state.mode[i], state.velocity_x[i]);
     let contact = forces.contact(model, i, v, &state.surface[i]);
