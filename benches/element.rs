@@ -61,7 +61,7 @@ fn element() -> Element {
 /// The element's speeds and heights change from step to step, so that its law is looked up anew in each.
 fn step_element(element: &mut Element, i: u32) {
     let sign = f64::from(i % 2) - 0.5;
-    element.advance(STEP, (SPEED + 0.01 * sign, 1e-3 * sign)).unwrap();
+    element.advance(STEP, SPEED + 0.01 * sign, 1e-3 * sign).unwrap();
 }
 
 fn steps(criterion: &mut Criterion) {

@@ -33,7 +33,7 @@ fn table(folder: &Path, grid: &Grid) -> PathBuf {
 }
 
 #[test]
-fn no_fault_is_found_in_an_element() {
+fn a_packed_element_is_valid() {
     let folder = scratch("element-validate");
     let warm = Grid { temperatures: vec![290.0, 300.0, 310.0], ..Grid::plain() };
     for grid in [Grid::plain(), warm] {
@@ -80,7 +80,7 @@ fn driven_in_fmpy_it_gives_what_the_library_gives() {
     let mut own = vec![vec![0.0; variables.len()]];
     element.evaluate(&variables, &mut own[0]);
     for i in 0..time.len() - 1 {
-        element.advance(time[i + 1] - time[i], (rate(&u, i), rate(&w, i))).unwrap();
+        element.advance(time[i + 1] - time[i], rate(&u, i), rate(&w, i)).unwrap();
         let mut row = vec![0.0; variables.len()];
         element.evaluate(&variables, &mut row);
         own.push(row);

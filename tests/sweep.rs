@@ -215,12 +215,12 @@ fn what_cannot_be_is_refused() {
     assert!(!table.exists());
     // Another file, another sweep, a table of more points: none is replaced unless it is asked for.
     fs::write(&table, "time,u,w\n0,0,0\n").unwrap();
-    assert!(asked(&["--speeds", "1", "--forces", "1"]).contains("no sweep's table: line 1"));
+    assert!(asked(&["--speeds", "1", "--forces", "1"]).contains("not the table of a sweep: expected the line"));
     sweep(&scene, &table, &["--speeds", "1,2", "--forces", "1", "--force"]);
     let whole = fs::read(&table).unwrap();
     assert!(
         asked(&["--speeds", "1", "--forces", "1"])
-            .contains("has points that this sweep has not, the first at 2 m/s, 1 N")
+            .contains("has points that this sweep does not have, the first at 2 m/s, 1 N")
     );
     let set = ["--speeds", "1,2", "--forces", "1", "--set", "friction.coulomb=0.5"];
     assert!(asked(&set).contains("is the table of another sweep"));

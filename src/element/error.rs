@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::table::{Load, Place};
+use super::grid::Load;
 use crate::simulation::OutOfRange;
 
 /// Why a table is refused: what was expected, what was found, and where.
@@ -16,6 +16,17 @@ pub struct TableError {
     problem: TableProblem,
 }
 
+impl TableError {
+    pub(super) fn new(file: &Path, line: Option<usize>, problem: TableProblem) -> Self {
+        Self { file: file.to_owned(), line, problem }
+    }
+
+    /// What is wrong.
+    pub fn problem(&self) -> &TableProblem {
+        &self.problem
+    }
+}
+
 /// What is wrong with a table.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -23,10 +34,10 @@ pub enum TableProblem {
     /// The file cannot be read.
     #[error("cannot be read: {0}")]
     Unreadable(String),
-    /// The file is no table of a sweep, or of another version.
-    #[error("no table of a sweep: expected the line `# asperity sweep = 1`, found {0}")]
+    /// The file is not the table of a sweep, or is one of another version.
+    #[error("not the table of a sweep: expected the line `# asperity sweep = 1`, found {0}")]
     Format(String),
-    /// A line at the top that has to be there is not, or says something else.
+    /// A line of the header is missing or says something else.
     #[error("`# {key} = {found}`: expected {expected}")]
     Header {
         /// Its key.
@@ -36,10 +47,13 @@ pub enum TableProblem {
         /// What is expected.
         expected: &'static str,
     },
-    /// A column that has to be there is not.
+    /// A column is missing.
     #[error("no column `{0}`")]
     NoColumn(String),
-    /// A row with more or fewer fields than there are columns.
+    /// The columns are not those that a sweep writes.
+    #[error("expected the columns {0}")]
+    Columns(String),
+    /// A row has more or fewer fields than there are columns.
     #[error("{found} fields, expected {expected}")]
     Fields {
         /// How many there are.
@@ -59,60 +73,47 @@ pub enum TableProblem {
     },
     /// Two rows of one point.
     #[error("a second row of {0}")]
-    Twice(Place),
+    Twice(String),
     /// Points that failed or were never steady.
     #[error("{}; an element needs every point of the table: sweep them again, or leave a speed, a pressure or a \
-             temperature out", list(.0.iter().map(|(place, status)| format!("{place} is not steady: {status}"))))]
-    NotSteady(Vec<(Place, String)>),
+             temperature out", some_of(.0))]
+    NotSteady(Vec<String>),
     /// Points that have no row.
-    #[error("no row of {}; an element needs every point of the table", list(.0.iter().map(ToString::to_string)))]
-    Missing(Vec<Place>),
-    /// Too few values of an axis to interpolate along it.
+    #[error("no row of {}; an element needs every point of the table", some_of(.0))]
+    Missing(Vec<String>),
+    /// Too few loads to interpolate between.
     #[error("{found} values of the {load}, expected at least two: the normal stiffness is the slope between them")]
-    Pressures {
-        /// Pressure or force.
+    Loads {
+        /// `pressure` or `force`.
         load: &'static str,
         /// How many there are.
         found: usize,
     },
     /// The carrier does not come closer as it presses harder.
-    #[error("separation = {here} m at {place}, but {before} m at the {load} below: expected a smaller one")]
+    #[error("separation = {here} m at {point}, but {before} m at the {load} below: expected a smaller one")]
     Separation {
-        /// Pressure or force.
+        /// `pressure` or `force`.
         load: &'static str,
         /// Where.
-        place: Place,
+        point: String,
         /// The separation there, m.
         here: f64,
-        /// The separation at the pressure below, m.
+        /// The separation at the load below, m.
         before: f64,
     },
 }
 
-impl TableError {
-    pub(super) fn new(file: &Path, line: Option<usize>, problem: TableProblem) -> Self {
-        Self { file: file.to_owned(), line, problem }
-    }
-
-    /// What is wrong.
-    pub fn problem(&self) -> &TableProblem {
-        &self.problem
+/// The first of `texts`, and how many more there are.
+fn some_of(texts: &[String]) -> String {
+    const SHOWN: usize = 6;
+    let shown = texts.iter().take(SHOWN).map(String::as_str).collect::<Vec<_>>().join("; ");
+    match texts.len().saturating_sub(SHOWN) {
+        0 => shown,
+        more => format!("{shown}; {more} more"),
     }
 }
 
-/// The most that a list names.
-const NAMED: usize = 6;
-
-fn list(texts: impl ExactSizeIterator<Item = String>) -> String {
-    let rest = texts.len().saturating_sub(NAMED);
-    let mut named: Vec<String> = texts.take(NAMED).collect();
-    if rest > 0 {
-        named.push(format!("{rest} more"));
-    }
-    named.join("; ")
-}
-
-/// Why an element cannot be where its carrier would be; it is then as it was.
+/// Why a motion of an element is refused; the element is then as it was.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ElementError {
     /// The carrier's motion is out of range, whatever the table.
@@ -135,7 +136,7 @@ pub enum ElementError {
         least: f64,
         /// What the table's loads are.
         load: Load,
-        /// The largest pressure of the table, Pa, or force, N.
+        /// The largest load of the table, Pa or N.
         largest: f64,
         /// The speed, m/s.
         speed: f64,
@@ -144,31 +145,33 @@ pub enum ElementError {
     },
     /// The carrier is faster than the table goes.
     #[error(
-        "the speed is {speed} m/s at t = {time} s: the table goes from {} to {} m/s (table.extrapolation = \"hold\" goes on beyond)",
-        range.0, range.1
+        "the speed is {speed} m/s at t = {time} s: the table goes from {least} to {largest} m/s (table.extrapolation = \"hold\" goes \
+         on beyond)"
     )]
     Speed {
         /// When, s.
         time: f64,
         /// The speed, m/s.
         speed: f64,
-        /// The least and the largest speed of the table, m/s.
-        range: (f64, f64),
+        /// The least speed of the table, m/s.
+        least: f64,
+        /// The largest speed of the table, m/s.
+        largest: f64,
     },
 }
 
-/// Why a run cannot go on from what was saved.
+/// Why a run cannot be continued from a saved state.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RestoreError {
-    /// No run gets to such a number.
-    #[error("{what} = {value}, which no run gets to")]
-    Number {
+    /// A number that is not valid in any run.
+    #[error("{what} = {value} is not a valid state")]
+    Invalid {
         /// Which number.
         what: &'static str,
         /// Its value.
         value: f64,
     },
-    /// The run stands where the table does not go.
+    /// The carrier is beyond the table.
     #[error(transparent)]
-    Place(#[from] ElementError),
+    BeyondTable(#[from] ElementError),
 }

@@ -15,7 +15,7 @@ use super::law::{Contact, Curve};
 use crate::math::bracketed_root;
 use crate::model::Mode;
 
-/// Turns between stick and slip in one piece, at most: more are roundings where both are the same.
+/// Most changes between stick and slip in one piece: more are rounding, where both are the same.
 const MOST_TURNS: usize = 6;
 /// Share of the limit that counts as the limit.
 const AT_LIMIT: f64 = 1.0 - 1e-12;
@@ -31,12 +31,11 @@ pub(super) struct Rates {
     pub(super) approach: f64,
 }
 
-/// What hears of losses and of changes between stick and slip: with the approach (m) and the energy (J) or the time
-/// since the start of the motion (s) and the mode.
+/// Takes note of losses and of changes between stick and slip.
 pub(super) trait Listener {
-    /// Energy lost about an approach.
+    /// An energy (J) was lost near an approach (m).
     fn lost(&mut self, approach: f64, energy: f64);
-    /// The mode from here on.
+    /// The mode from `elapsed` s after the start of the motion on.
     fn changed(&mut self, elapsed: f64, mode: Mode);
 }
 
@@ -74,7 +73,7 @@ impl Jenkins {
         if self.stiffness > 0.0 { self.force * self.force / (2.0 * self.stiffness) } else { 0.0 }
     }
 
-    /// The speed has changed, and with it the law, at the same place.
+    /// The speed has changed, and with it the law, at the same position.
     pub(super) fn take_over(&mut self, contact: &Contact, approach: f64, listener: &mut impl Listener) {
         let before = self.energy();
         let (stiffness, limit) = (contact.stiffness.value, contact.limit.value);
@@ -90,7 +89,8 @@ impl Jenkins {
     pub(super) fn slide(
         &mut self,
         contact: &Contact,
-        (approach, u_rate): (f64, f64),
+        approach: f64,
+        u_rate: f64,
         time: f64,
         listener: &mut impl Listener,
     ) {
@@ -117,13 +117,15 @@ impl Jenkins {
         }
     }
 
-    /// The carrier goes straight through a piece of the approach, `from` to `to` (m), in which the stiffness only grows
-    /// or only falls; `elapsed` (s) is counted where it begins.
+    /// The carrier moves straight through a piece of the approach, `from` to `to` (m), in which the stiffness only grows
+    /// or only falls; the piece begins `elapsed` s after the start of the motion.
     pub(super) fn cross(
         &mut self,
         curve: &Curve,
-        (from, to): (f64, f64),
-        (rates, elapsed): (Rates, f64),
+        from: f64,
+        to: f64,
+        rates: Rates,
+        elapsed: f64,
         listener: &mut impl Listener,
     ) {
         let end = curve.at(to);
@@ -144,7 +146,7 @@ impl Jenkins {
             } else {
                 phase.end_of_stick(to)
             };
-            let mode = if slips { phase.direction() } else { Mode::Stick };
+            let mode = if slips { Mode::along(phase.start.force) } else { Mode::Stick };
             self.turn(mode, elapsed + (at - from) / rates.approach, listener);
             phase.advance(self, stop, slips, listener);
             if stop == to {
@@ -159,43 +161,39 @@ impl Jenkins {
 }
 
 impl Phase<'_> {
-    fn direction(&self) -> Mode {
-        Mode::along(self.start.force)
-    }
-
     fn sign(&self) -> f64 {
         self.start.force.signum()
     }
 
-    /// How far u moves until the approach is `at`, m.
-    fn moved(&self, at: f64) -> f64 {
+    /// Change of u until the approach is `at`, m.
+    fn change_of_u(&self, at: f64) -> f64 {
         self.rates.u * (at - self.from) / self.rates.approach
     }
 
     fn is_slip(&self) -> bool {
         let limit = self.here.limit.value;
-        limit > 0.0 && self.start.force.abs() >= AT_LIMIT * limit && self.push(&self.here) >= 0.0
+        limit > 0.0 && self.start.force.abs() >= AT_LIMIT * limit && self.excess_rate(&self.here) >= 0.0
     }
 
     /// By how much the force of a sticking spring at its limit would grow faster than the limit, N/s.
-    fn push(&self, contact: &Contact) -> f64 {
+    fn excess_rate(&self, contact: &Contact) -> f64 {
         let (k, l) = (contact.stiffness, contact.limit);
         let lost = if self.rising || k.value <= 0.0 { 0.0 } else { k.slope * self.rates.approach * l.value / k.value };
         self.sign() * k.value * self.rates.u + lost - l.slope * self.rates.approach
     }
 
-    /// Where a slip ends that would go on to `to`.
+    /// The approach at which slip ends, `to` at the latest, m.
     fn end_of_slip(&self, to: f64) -> f64 {
-        if self.push(&self.curve.at(to)) >= 0.0 {
+        if self.excess_rate(&self.curve.at(to)) >= 0.0 {
             return to;
         }
-        if self.push(&self.here) <= 0.0 {
+        if self.excess_rate(&self.here) <= 0.0 {
             return self.from;
         }
-        bracketed_root(|at| self.push(&self.curve.at(at)), (self.from, to), ROOT * (to - self.from).abs())
+        bracketed_root(|at| self.excess_rate(&self.curve.at(at)), (self.from, to), ROOT * (to - self.from).abs())
     }
 
-    /// Where a stick ends that would go on to `to`.
+    /// The approach at which stick ends, `to` at the latest, m.
     fn end_of_stick(&self, to: f64) -> f64 {
         let excess = |at: f64| {
             let contact = self.curve.at(at);
@@ -210,16 +208,16 @@ impl Phase<'_> {
         bracketed_root(inside, (self.from, to), ROOT * (to - self.from).abs())
     }
 
-    /// G of a sticking spring.
+    /// G of a sticking spring, N.
     fn stick_force(&self, at: f64, contact: &Contact) -> f64 {
         if self.rising {
             self.start.force + self.rates.u / self.rates.approach * self.integral(at, |_, here| here.stiffness.value)
         } else {
-            contact.stiffness.value * (self.elongation() + self.moved(at))
+            contact.stiffness.value * (self.elongation() + self.change_of_u(at))
         }
     }
 
-    /// G/K at the start.
+    /// G/K at the start, m.
     fn elongation(&self) -> f64 {
         self.start.force / self.start.stiffness
     }
@@ -237,7 +235,7 @@ impl Phase<'_> {
         half * GAUSS.into_iter().map(pair).sum::<f64>()
     }
 
-    /// Goes on to the approach `to`.
+    /// Moves on to the approach `to`, m.
     fn advance(&self, spring: &mut Jenkins, to: f64, slips: bool, listener: &mut impl Listener) {
         let end = self.curve.at(to);
         let per = self.rates.u / self.rates.approach;
@@ -249,9 +247,10 @@ impl Phase<'_> {
             let (force, limit) = (self.stick_force(to, &end), end.limit.value);
             spring.force = force.clamp(-limit, limit);
             if self.rising {
-                force * self.moved(to) - per * self.integral(to, |at, here| self.moved(at) * here.stiffness.value)
+                force * self.change_of_u(to)
+                    - per * self.integral(to, |at, here| self.change_of_u(at) * here.stiffness.value)
             } else {
-                per * self.integral(to, |at, here| here.stiffness.value * (self.elongation() + self.moved(at)))
+                per * self.integral(to, |at, here| here.stiffness.value * (self.elongation() + self.change_of_u(at)))
             }
         };
         spring.stiffness = end.stiffness.value;

@@ -2,7 +2,7 @@
 //!
 //! Along temperature and the logarithm of speed the quantities are interpolated as they are, but the separation by its
 //! differences from one pressure to the next: these are positive and stay so, so that at every speed and temperature
-//! the carrier is closer where it presses harder. Along the pressure everything follows its logarithm y = ln p, and y
+//! the carrier is closer where it presses harder. Along the load everything follows its logarithm y = ln p, and y
 //! follows the approach a = -separation. Beyond the pressures of the table, with A the nominal area and p_1 and p_n the
 //! least and the largest pressure:
 //!
@@ -13,18 +13,34 @@
 //!
 //! Below the least speed of the table everything is as at the least, above the largest as at the largest.
 
-use super::table::{Load, Quantity, Table};
+use super::grid::{Load, OperatingPoint};
+use super::table::{Node, Table, TableAxis};
+use super::table_format::Quantity;
 use crate::math::{Expansion, cubic, interval_of, monotone_slopes};
 
 /// The most that y changes over one piece of the approach. Over it the limit of the friction force is so near to a
 /// polynomial that Gauss's formula of six points gives its integral to rounding.
 const LONGEST_PIECE: f64 = 0.25;
 
-/// A quantity at the speeds of one pressure, with its slopes along the logarithm of speed.
+/// Values along an axis with their slopes along it.
 #[derive(Clone, Debug)]
-struct Row {
+struct Series {
     values: Vec<f64>,
     slopes: Vec<f64>,
+}
+
+impl Series {
+    fn new(x: &[f64], values: Vec<f64>) -> Self {
+        let mut slopes = vec![0.0; values.len()];
+        monotone_slopes(x, &values, &mut slopes);
+        Self { values, slopes }
+    }
+
+    /// The value at `at`, between two of `x`, and how it changes there.
+    fn at(&self, x: &[f64], i: usize, at: f64) -> Expansion {
+        let point = |i: usize| (x[i], self.values[i], self.slopes[i]);
+        cubic(point(i), point(i + 1), at)
+    }
 }
 
 /// The table at one temperature.
@@ -44,78 +60,64 @@ pub(super) struct Law {
     pub(super) load: Load,
     /// The largest pressure, Pa, or force, N.
     pub(super) largest_pressure: f64,
-    /// By quantity, where the table knows it, and pressure.
-    rows: [Option<Vec<Row>>; Quantity::ALL.len()],
+    /// Along the logarithm of speed: by quantity, where the table has it, and pressure.
+    rows: [Option<Vec<Series>>; Quantity::ALL.len()],
 }
 
 impl Law {
     /// The table at `temperature` (K), where it has temperatures.
     pub(super) fn new(table: &Table, temperature: f64) -> Self {
-        let speeds: Vec<f64> = table.speeds.iter().map(|speed| speed.ln()).collect();
+        let grid = &table.grid;
+        let speeds: Vec<f64> = grid.speeds.iter().map(|speed| speed.ln()).collect();
         let rows = Quantity::ALL.map(|quantity| {
-            let row = |i| {
-                let values: Vec<f64> =
-                    (0..speeds.len()).map(|j| at_temperature(table, quantity, (i, j), temperature)).collect();
-                let mut slopes = vec![0.0; values.len()];
-                monotone_slopes(&speeds, &values, &mut slopes);
-                Row { values, slopes }
+            let row = |load| {
+                let at = |speed| at_temperature(table, quantity, Node { temperature: 0, load, speed }, temperature);
+                Series::new(&speeds, (0..speeds.len()).map(at).collect())
             };
-            table.has(quantity).then(|| (0..table.pressures.len()).map(row).collect())
+            table.has(quantity).then(|| (0..grid.loads.len()).map(row).collect())
         });
         Self {
-            nominal_area: table.nominal_area,
+            nominal_area: table.load.area(),
             rest_separation: table.rest_separation,
-            speed_range: (table.speeds[0], table.speeds[table.speeds.len() - 1]),
+            speed_range: (grid.speeds[0], grid.speeds[grid.speeds.len() - 1]),
             speeds,
-            pressures: table.pressures.iter().map(|pressure| pressure.ln()).collect(),
+            pressures: grid.loads.iter().map(|pressure| pressure.ln()).collect(),
             load: table.load,
-            largest_pressure: table.pressures[table.pressures.len() - 1],
+            largest_pressure: grid.loads[grid.loads.len() - 1],
             rows,
         }
     }
 
     /// Writes the values of a quantity at all pressures, at a speed between those of the table.
-    fn at_speed(&self, rows: &[Row], speed: f64, values: &mut [f64]) {
+    fn at_speed(&self, rows: &[Series], speed: f64, values: &mut [f64]) {
         if self.speeds.len() == 1 {
             return values.iter_mut().zip(rows).for_each(|(value, row)| *value = row.values[0]);
         }
         let x = speed.ln();
         let j = interval_of(&self.speeds, x);
-        for (value, row) in values.iter_mut().zip(rows) {
-            let point = |j: usize| (self.speeds[j], row.values[j], row.slopes[j]);
-            *value = cubic(point(j), point(j + 1), x).value;
-        }
+        values.iter_mut().zip(rows).for_each(|(value, row)| *value = row.at(&self.speeds, j, x).value);
     }
 }
 
-/// What is interpolated of a quantity at a pressure and a speed: of the separation its difference to the next pressure.
-fn node(table: &Table, quantity: Quantity, (temperature, pressure, speed): (usize, usize, usize)) -> f64 {
-    let here = table.value(quantity, (temperature, pressure, speed));
-    if quantity == Quantity::Separation && pressure + 1 < table.pressures.len() {
-        here - table.value(quantity, (temperature, pressure + 1, speed))
+/// What is interpolated of a quantity: of the separation its difference to the next pressure.
+fn interpolated(table: &Table, quantity: Quantity, node: Node) -> f64 {
+    let here = table.value(quantity, node);
+    if quantity == Quantity::Separation && node.load + 1 < table.grid.loads.len() {
+        here - table.value(quantity, Node { load: node.load + 1, ..node })
     } else {
         here
     }
 }
 
-fn at_temperature(table: &Table, quantity: Quantity, (i, j): (usize, usize), temperature: f64) -> f64 {
-    let temperatures = &table.temperatures;
+/// The same at a temperature between those of the table, whatever that of `node` is.
+fn at_temperature(table: &Table, quantity: Quantity, node: Node, kelvin: f64) -> f64 {
+    let temperatures = &table.grid.temperatures;
+    let of = |temperature| interpolated(table, quantity, Node { temperature, ..node });
     if temperatures.len() < 2 {
-        return node(table, quantity, (0, i, j));
+        return of(0);
     }
-    let values: Vec<f64> = (0..temperatures.len()).map(|k| node(table, quantity, (k, i, j))).collect();
-    let mut slopes = vec![0.0; values.len()];
-    monotone_slopes(temperatures, &values, &mut slopes);
-    let k = interval_of(temperatures, temperature);
-    let point = |k: usize| (temperatures[k], values[k], slopes[k]);
-    cubic(point(k), point(k + 1), temperature).value
-}
-
-/// A quantity at the pressures, with its slopes along y.
-#[derive(Clone, Debug)]
-struct Column {
-    values: Vec<f64>,
-    slopes: Vec<f64>,
+    let series = Series::new(temperatures, (0..temperatures.len()).map(of).collect());
+    series.at(temperatures, interval_of(temperatures, kelvin), kelvin).value
 }
 
 /// The law at one speed.
@@ -131,7 +133,8 @@ pub(super) struct Curve {
     slopes: Vec<f64>,
     /// a_0, m: where the contact begins.
     pub(super) touch: f64,
-    columns: [Option<Column>; Quantity::ALL.len()],
+    /// Along y, where the table has the quantity.
+    columns: [Option<Series>; Quantity::ALL.len()],
     /// The ends of the pieces that the approach is taken in, m, rising.
     ends: Vec<f64>,
     nominal_area: f64,
@@ -142,7 +145,7 @@ impl Curve {
     pub(super) fn new(law: &Law, speed: f64) -> Self {
         let n = law.pressures.len();
         let column =
-            |rows: &Option<Vec<Row>>| rows.as_ref().map(|_| Column { values: vec![0.0; n], slopes: vec![0.0; n] });
+            |rows: &Option<Vec<Series>>| rows.as_ref().map(|_| Series { values: vec![0.0; n], slopes: vec![0.0; n] });
         let mut curve = Self {
             speed: f64::NAN,
             pressures: law.pressures.clone(),
@@ -283,9 +286,9 @@ impl Curve {
 
     /// A quantity over y in the interval `i` of the pressures.
     fn along_pressure(&self, quantity: Quantity, i: usize, y: f64) -> Expansion {
-        let Some(column) = &self.columns[quantity as usize] else { return Expansion::default() };
-        let point = |i: usize| (self.pressures[i], column.values[i], column.slopes[i]);
-        cubic(point(i), point(i + 1), y)
+        self.columns[quantity as usize]
+            .as_ref()
+            .map_or_else(Expansion::default, |column| column.at(&self.pressures, i, y))
     }
 
     /// A quantity at the pressure `i`.
@@ -335,4 +338,70 @@ pub(super) struct Contact {
     pub(super) limit: Expansion,
     /// Tangential stiffness, N/m; 0 without contact.
     pub(super) stiffness: Expansion,
+}
+
+/// The interpolation errors of a table along an axis, found by leaving its inner points out one by one and looking them
+/// up in the rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LeftOut {
+    /// `speed`, `pressure` or `force`, `temperature`.
+    pub axis: &'static str,
+    /// The largest error of the friction coefficient, as a share of it, and where; `None` where the axis has no inner
+    /// point.
+    pub friction: Option<(f64, OperatingPoint)>,
+    /// That of F_z at the separation of the point.
+    pub force_z: Option<(f64, OperatingPoint)>,
+}
+
+/// Leaves out the speeds, the pressures and the temperatures between the first and the last, one by one.
+///
+/// The steps that are interpolated over are then twice as long as the table's: of a method of third order, the table's
+/// own errors are some eight times smaller.
+pub fn left_out(table: &Table) -> [LeftOut; 3] {
+    TableAxis::ALL.map(|axis| {
+        let name = match axis {
+            TableAxis::Speed => "speed",
+            TableAxis::Load => table.load.name(),
+            TableAxis::Temperature => "temperature",
+        };
+        let mut result = LeftOut { axis: name, friction: None, force_z: None };
+        for index in 1..axis.values(&table.grid).len().saturating_sub(1) {
+            result.leave_out(table, axis, index);
+        }
+        result
+    })
+}
+
+impl LeftOut {
+    /// Looks the points at `index` of an axis up in the rest of the table.
+    fn leave_out(&mut self, table: &Table, axis: TableAxis, index: usize) {
+        let rest = table.without(axis, index);
+        let indices = |other: TableAxis| {
+            if other == axis { index..index + 1 } else { 0..other.values(&table.grid).len().max(1) }
+        };
+        for temperature in indices(TableAxis::Temperature) {
+            let kelvin = table.grid.temperatures.get(temperature).copied();
+            let law = Law::new(&rest, kelvin.unwrap_or(0.0));
+            for speed in indices(TableAxis::Speed) {
+                let curve = Curve::new(&law, table.grid.speeds[speed]);
+                indices(TableAxis::Load)
+                    .for_each(|load| self.compare(table, &curve, Node { temperature, load, speed }));
+            }
+        }
+    }
+
+    fn compare(&mut self, table: &Table, curve: &Curve, node: Node) {
+        let point = table.point(node);
+        let found = curve.at(-table.value(Quantity::Separation, node));
+        keep_larger(&mut self.force_z, found.normal.value / table.load.force(point.load) - 1.0, point);
+        let friction = curve.at_pressure(Quantity::Friction, point.load);
+        keep_larger(&mut self.friction, friction / table.value(Quantity::Friction, node) - 1.0, point);
+    }
+}
+
+fn keep_larger(largest: &mut Option<(f64, OperatingPoint)>, error: f64, point: OperatingPoint) {
+    let error = error.abs();
+    if error.is_finite() && largest.is_none_or(|(other, _)| error > other) {
+        *largest = Some((error, point));
+    }
 }

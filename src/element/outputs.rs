@@ -1,9 +1,10 @@
-//! What an element gives: the variables of a layer that its table knows, and how they follow the carrier.
+//! The output variables of an element and their derivatives.
 
 use super::jenkins::Rates;
 use super::law::Contact;
 use super::run::Element;
-use super::table::{Quantity, Table};
+use super::table::Table;
+use super::table_format::Quantity;
 use crate::math::Expansion;
 use crate::outputs::{Dependencies, Output, Variable, variable};
 
@@ -27,8 +28,8 @@ pub fn variables(table: &Table) -> Vec<Variable> {
     known.filter_map(|(output, _)| variable(output)).collect()
 }
 
-/// What an output depends on directly, the slider's place held while the contact sticks: F_x on u through the spring,
-/// all that follows the pressure on w.
+/// What an output depends on directly, the slider's position held while the contact sticks: F_x on u through the
+/// spring, everything that depends on the pressure on w.
 pub fn dependencies(output: Output) -> Dependencies {
     match output {
         Output::ForceZ | Output::ContactRatio => Dependencies { on_u: false, on_w: true },
@@ -41,9 +42,9 @@ pub fn dependencies(output: Output) -> Dependencies {
     }
 }
 
-/// An element where it stands, or how it changes.
+/// What the outputs are computed from, or how it changes.
 #[derive(Clone, Copy, Debug, Default)]
-struct Moment {
+struct Snapshot {
     /// G = -F_x, N.
     force: f64,
     /// F_z, N.
@@ -58,7 +59,7 @@ struct Moment {
 impl Element {
     /// Writes the values of `variables`, in their order, into `values`.
     pub fn evaluate(&self, variables: &[Variable], values: &mut [f64]) {
-        let (now, state) = (self.moment(&self.contact()), &self.state);
+        let (now, state) = (self.snapshot(&self.contact()), &self.state);
         for (variable, value) in variables.iter().zip(values) {
             *value = match variable.output {
                 Output::ForceX => -now.force,
@@ -78,8 +79,8 @@ impl Element {
         }
     }
 
-    fn moment(&self, contact: &Contact) -> Moment {
-        Moment {
+    fn snapshot(&self, contact: &Contact) -> Snapshot {
+        Snapshot {
             force: self.spring.force,
             normal: contact.normal.value,
             power: self.power(contact),
@@ -95,7 +96,7 @@ impl Element {
     /// stays.
     pub fn directional_derivative(&self, variables: &[Variable], direction: (f64, f64), values: &mut [f64]) {
         let contact = self.contact();
-        let (now, change) = (self.moment(&contact), self.change(&contact, direction));
+        let (now, change) = (self.snapshot(&contact), self.change(&contact, direction.0, direction.1));
         for (variable, value) in variables.iter().zip(values) {
             *value = match variable.output {
                 Output::ForceX => -change.force,
@@ -113,17 +114,17 @@ impl Element {
         }
     }
 
-    /// Ḟ_x and Ḟ_z where the run stands, N/s, as the carrier came there.
+    /// Ḟ_x and Ḟ_z, N/s, at the rates of the last motion.
     pub fn force_rates(&self) -> (f64, f64) {
         let Rates { u, approach } = self.rates();
-        let change = self.change(&self.contact(), (u, -approach));
+        let change = self.change(&self.contact(), u, -approach);
         (-change.force, change.normal)
     }
 
-    fn change(&self, contact: &Contact, (du, dw): (f64, f64)) -> Moment {
+    fn change(&self, contact: &Contact, du: f64, dw: f64) -> Snapshot {
         let da = -dw;
         let force = self.force_change(contact, du, da);
-        Moment {
+        Snapshot {
             force,
             normal: contact.normal.slope * da,
             power: self.power_change(contact, force, da),
@@ -143,7 +144,7 @@ impl Element {
         }
     }
 
-    /// What is lost now, W: G u̇ - V̇ with V = G²/(2K), so ½ (G/K)² |K̇| while the spring sticks.
+    /// Power lost, W: G u̇ - V̇ with V = G²/(2K), so ½ (G/K)² |K̇| while the spring sticks.
     fn power(&self, contact: &Contact) -> f64 {
         let (k, l, rates, force) = (contact.stiffness, contact.limit, self.rates(), self.spring.force);
         if k.value <= 0.0 {
@@ -174,7 +175,7 @@ impl Element {
         }
     }
 
-    /// 0 where there is no friction.
+    /// Hysteresis over friction coefficient; 0 where there is no friction.
     fn hysteresis_share(&self, contact: &Contact) -> Expansion {
         let [part, whole] =
             [Quantity::Hysteresis, Quantity::Friction].map(|quantity| self.curve.other(quantity, contact));

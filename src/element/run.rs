@@ -8,18 +8,18 @@ use super::PointContact;
 use super::error::{ElementError, RestoreError};
 use super::jenkins::{Jenkins, Listener, Rates};
 use super::law::{Contact, Curve, Law};
-use super::table::Quantity;
+use super::table_format::Quantity;
 use crate::model::Mode;
 use crate::scene::is_possible;
 use crate::simulation::{ModeChange, Start};
 
-/// Share of the speeds and separations of the table by which the carrier may be beyond: the rounding of a master that
-/// goes to the very end.
+/// Share of the speeds and separations of the table by which the carrier may exceed them: rounding of a master that goes
+/// to the very end.
 const ROUNDING: f64 = 1e-9;
 
-/// What changes in a run, SI units.
+/// All that changes in a run, SI units.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Saved {
+pub struct ElementState {
     time: f64,
     u: f64,
     w: f64,
@@ -35,17 +35,16 @@ pub struct Saved {
     pub(super) lost_by_channel: [f64; 4],
 }
 
-/// A run of an element: as a layer's [`Simulation`](crate::simulation::Simulation), but looked up in the table.
+/// A run of an element, as a [`Simulation`](crate::simulation::Simulation) is that of a layer.
 ///
-/// A clone is the whole of it: both go on alike, bit for bit.
+/// A clone continues as the original does, bit for bit.
 #[derive(Clone, Debug)]
 pub struct Element {
     law: Arc<Law>,
     /// The law at the present speed.
     pub(super) curve: Curve,
-    /// Whether the carrier may go beyond the table.
-    goes_beyond: bool,
-    pub(super) state: Saved,
+    extrapolates: bool,
+    pub(super) state: ElementState,
     pub(super) spring: Jenkins,
     mode_changes: Option<Vec<ModeChange>>,
 }
@@ -54,32 +53,32 @@ impl Element {
     /// An element under the carrier, its spring relaxed.
     ///
     /// # Errors
-    /// [`ElementError`] where the table does not go.
+    /// [`ElementError`] where the carrier is beyond the table.
     pub fn new(contact: &PointContact, start: &Start) -> Result<Self, ElementError> {
         start.check()?;
-        let state = Saved {
+        let state = ElementState {
             time: start.time,
             u: start.u,
             w: start.w,
             u_rate: start.u_rate,
             w_rate: start.w_rate,
-            ..Saved::default()
+            ..ElementState::default()
         };
-        let mut element = Self::standing(contact, state)?;
+        let mut element = Self::at(contact, state)?;
         element.spring = Jenkins::new(&element.contact());
         element.state.mode = element.spring.mode.number();
         Ok(element)
     }
 
-    /// An element whose spring is still to be told.
-    fn standing(contact: &PointContact, state: Saved) -> Result<Self, ElementError> {
+    /// An element in `state`, its spring not set yet.
+    fn at(contact: &PointContact, state: ElementState) -> Result<Self, ElementError> {
         let law = Arc::new(Law::new(contact.table(), contact.temperature()));
         let curve = Curve::new(&law, state.u_rate);
         let spring = Jenkins::new(&Contact::default());
-        let goes_beyond = contact.goes_beyond();
-        let element = Self { law, curve, goes_beyond, state, spring, mode_changes: None };
+        let extrapolates = contact.extrapolates_table();
+        let element = Self { law, curve, extrapolates, state, spring, mode_changes: None };
         element.check_speed(state.u_rate)?;
-        element.check_separation((state.w, state.u_rate), false)?;
+        element.check_separation(state.w, state.u_rate, false)?;
         Ok(element)
     }
 
@@ -88,7 +87,7 @@ impl Element {
         self.state.time
     }
 
-    /// Where the carrier stands: u and w, m.
+    /// The carrier's displacements u and w, m.
     pub fn carrier(&self) -> (f64, f64) {
         (self.state.u, self.state.w)
     }
@@ -96,20 +95,20 @@ impl Element {
     /// Follows the carrier straight on for `duration` (s) at the rates u̇ and ẇ (m/s).
     ///
     /// # Errors
-    /// [`ElementError`] where the table does not go; the element is then as it was.
-    pub fn advance(&mut self, duration: f64, (u_rate, w_rate): (f64, f64)) -> Result<(), ElementError> {
-        let Saved { time, u, w, .. } = self.state;
+    /// [`ElementError`] where the carrier leaves the table; the element is then as it was.
+    pub fn advance(&mut self, duration: f64, u_rate: f64, w_rate: f64) -> Result<(), ElementError> {
+        let ElementState { time, u, w, .. } = self.state;
         let end = Start { time: time + duration, u: u + u_rate * duration, w: w + w_rate * duration, u_rate, w_rate };
         end.check()?;
         self.check_speed(u_rate)?;
         let before = self.curve.speed();
         self.curve.set_speed(&self.law, u_rate);
-        let room = self.check_separation((w, u_rate), false);
-        if let Err(error) = room.and_then(|()| self.check_separation((end.w, u_rate), true)) {
+        let start = self.check_separation(w, u_rate, false);
+        if let Err(error) = start.and_then(|()| self.check_separation(end.w, u_rate, true)) {
             self.curve.set_speed(&self.law, before);
             return Err(error);
         }
-        self.follow(duration, (u_rate, w_rate), end.w);
+        self.follow(duration, u_rate, w_rate, end.w);
         let state = &mut self.state;
         (state.u_rate, state.w_rate) = (u_rate, w_rate);
         (state.time, state.u, state.w) = (end.time, end.u, end.w);
@@ -117,7 +116,7 @@ impl Element {
         Ok(())
     }
 
-    fn follow(&mut self, duration: f64, (u_rate, w_rate): (f64, f64), end: f64) {
+    fn follow(&mut self, duration: f64, u_rate: f64, w_rate: f64, end: f64) {
         let Self { law, curve, state, spring, mode_changes, .. } = self;
         let mut ledger = Ledger { curve, state, mode_changes, mode: spring.mode };
         let approach = |w: f64| -(law.rest_separation + w);
@@ -125,7 +124,7 @@ impl Element {
         let here = curve.at(from);
         spring.take_over(&here, from, &mut ledger);
         if from == to {
-            return spring.slide(&here, (from, u_rate), duration, &mut ledger);
+            return spring.slide(&here, from, u_rate, duration, &mut ledger);
         }
         let rates = Rates { u: u_rate, approach: -w_rate };
         let closer = to > from;
@@ -133,18 +132,18 @@ impl Element {
         while at != to {
             let stop = curve.end_of_piece(at, closer);
             let next = if closer { stop.min(to) } else { stop.max(to) };
-            spring.cross(curve, (at, next), (rates, (at - from) / rates.approach), &mut ledger);
+            spring.cross(curve, at, next, rates, (at - from) / rates.approach, &mut ledger);
             at = next;
         }
     }
 
-    /// The way over which the spring goes from nothing to its limit where the run stands, m; 0 without contact.
-    pub fn slip_way(&self) -> f64 {
+    /// Displacement over which a relaxed spring reaches its limit at the present approach, m; 0 without contact.
+    pub fn stick_length(&self) -> f64 {
         let contact = self.contact();
         if contact.stiffness.value > 0.0 { contact.limit.value / contact.stiffness.value } else { 0.0 }
     }
 
-    /// What the contact bears where the run stands.
+    /// The contact at the present approach.
     pub(super) fn contact(&self) -> Contact {
         self.curve.at(-(self.law.rest_separation + self.state.w))
     }
@@ -156,17 +155,17 @@ impl Element {
 
     fn check_speed(&self, speed: f64) -> Result<(), ElementError> {
         let range = self.law.speed_range;
-        if self.goes_beyond || speed.abs() <= range.1 * (1.0 + ROUNDING) {
+        if self.extrapolates || speed.abs() <= range.1 * (1.0 + ROUNDING) {
             return Ok(());
         }
-        Err(ElementError::Speed { time: self.state.time, speed: speed.abs(), range })
+        Err(ElementError::Speed { time: self.state.time, speed: speed.abs(), least: range.0, largest: range.1 })
     }
 
-    /// Whether the carrier may be at `w` with the law at the present speed.
-    fn check_separation(&self, (w, speed): (f64, f64), within: bool) -> Result<(), ElementError> {
+    /// Whether the carrier may be at `w` with the law at the present speed; `within` is the error's.
+    fn check_separation(&self, w: f64, speed: f64, within: bool) -> Result<(), ElementError> {
         let (separation, least) = (self.law.rest_separation + w, -self.curve.closest());
         let slack = ROUNDING * (self.curve.closest() - self.curve.touch);
-        if self.goes_beyond || separation >= least - slack {
+        if self.extrapolates || separation >= least - slack {
             return Ok(());
         }
         Err(ElementError::Pressure {
@@ -181,26 +180,26 @@ impl Element {
         })
     }
 
-    /// Everything that the run has become.
-    pub fn save(&self) -> Saved {
+    /// All that changes in the run.
+    pub fn save(&self) -> ElementState {
         self.state
     }
 
-    /// A run that goes on from `saved`, bit for bit as the run that was saved.
+    /// A run that continues from `saved`, bit for bit as the run that was saved.
     ///
     /// # Errors
-    /// [`RestoreError`] where no run of this contact gets there.
-    pub fn restore(contact: &PointContact, saved: &Saved) -> Result<Self, RestoreError> {
+    /// [`RestoreError`] where `saved` is no valid state of a run of this contact.
+    pub fn restore(contact: &PointContact, saved: &ElementState) -> Result<Self, RestoreError> {
         saved.check()?;
-        let mut element = Self::standing(contact, *saved)?;
+        let mut element = Self::at(contact, *saved)?;
         let here = element.contact();
-        let number = |what, value| Err(RestoreError::Number { what, value });
+        let invalid = |what, value| Err(RestoreError::Invalid { what, value });
         let mode = match Mode::of_number(saved.mode) {
             Some(mode) if mode.in_contact() == (here.stiffness.value > 0.0) => mode,
-            _ => return number("the mode", f64::from(saved.mode)),
+            _ => return invalid("the mode", f64::from(saved.mode)),
         };
         if saved.force.abs() > here.limit.value * (1.0 + ROUNDING) {
-            return number("the force in the spring", saved.force);
+            return invalid("the force in the spring", saved.force);
         }
         element.spring = Jenkins { force: saved.force, stiffness: here.stiffness.value, mode };
         Ok(element)
@@ -217,28 +216,28 @@ impl Element {
     }
 }
 
-impl Saved {
+impl ElementState {
     fn check(&self) -> Result<(), RestoreError> {
         let Self { time, u, w, u_rate, w_rate, force, mode: _, lost, lost_by_channel } = *self;
-        let places = [time, u, w].into_iter().find(|place| !is_possible(*place));
+        let positions = [time, u, w].into_iter().find(|position| !is_possible(*position));
         let others = [u_rate, w_rate, force, lost].into_iter().chain(lost_by_channel).find(|other| !other.is_finite());
-        match places.or(others) {
-            Some(value) => Err(RestoreError::Number { what: "a number", value }),
+        match positions.or(others) {
+            Some(value) => Err(RestoreError::Invalid { what: "a number", value }),
             None => Ok(()),
         }
     }
 }
 
-/// Adds up what a motion costs and records its turns.
+/// Adds up the losses of a motion and records its mode changes.
 struct Ledger<'a> {
     curve: &'a Curve,
-    state: &'a mut Saved,
+    state: &'a mut ElementState,
     mode_changes: &'a mut Option<Vec<ModeChange>>,
     mode: Mode,
 }
 
 impl Listener for Ledger<'_> {
-    /// By channel in the shares that they have in steady sliding there.
+    /// The channels share the loss as in steady sliding at that approach.
     fn lost(&mut self, approach: f64, energy: f64) {
         if energy == 0.0 {
             return;
@@ -258,7 +257,7 @@ impl Listener for Ledger<'_> {
 }
 
 impl Curve {
-    /// The shares of the channels of [`Quantity::CHANNELS`] in what is lost at an approach, m.
+    /// The shares of the channels of [`Quantity::CHANNELS`] in the losses at an approach, m.
     fn channel_shares(&self, approach: f64) -> [f64; 4] {
         let contact = self.at(approach);
         let powers = Quantity::CHANNELS.map(|channel| self.other(channel, &contact).value.max(0.0));

@@ -56,7 +56,7 @@ fn at_the_points_of_the_table_it_is_the_table() {
         for v in Grid::plain().speeds {
             let w = separation(v, p, WARM) - REST;
             let mut element = Element::new(&contact(), &Start { w, u_rate: v, ..Start::default() }).unwrap();
-            element.advance(1e-2 / v, (v, 0.0)).unwrap();
+            element.advance(1e-2 / v, v, 0.0).unwrap();
             let (x, z) = forces(&element);
             // The separations are summed up from differences, 1e-16 m of a fall of 6e-6 m.
             close(z, p * AREA, 1e-9);
@@ -82,7 +82,7 @@ fn between_the_points_the_error_falls_as_the_grid_gets_finer() {
             for p in logarithmic(1.1e5, 7.3e5, 23) {
                 let w = separation(v, p, WARM) - REST;
                 let mut element = Element::new(&contact, &Start { w, u_rate: v, ..Start::default() }).unwrap();
-                element.advance(1.0, (v, 0.0)).unwrap();
+                element.advance(1.0, v, 0.0).unwrap();
                 let (x, z) = forces(&element);
                 largest[0] = largest[0].max((z / (p * AREA) - 1.0).abs());
                 largest[1] = largest[1].max((-x / z / friction(v, p, WARM) - 1.0).abs());
@@ -105,7 +105,7 @@ fn between_temperatures_it_is_the_law_in_between() {
         let (v, p) = (0.1, 3e5);
         let w = separation(v, p, t) - REST;
         let mut element = Element::new(&contact, &Start { w, u_rate: v, ..Start::default() }).unwrap();
-        element.advance(1.0, (v, 0.0)).unwrap();
+        element.advance(1.0, v, 0.0).unwrap();
         let (x, z) = forces(&element);
         // Steps of 10 K are half a decade of speed, and the hump is a decade and a half wide.
         close(-x / z, friction(v, p, t), 0.02);
@@ -144,7 +144,7 @@ fn a_hysteresis_loop_is_the_jenkins_elements() {
     let mut element = at_w(&contact(), separation(v, p, WARM) - REST);
     let (k, limit) = (stiffness(p), friction(v, p, WARM) * p * AREA);
     let go = |element: &mut Element, distance: f64| {
-        element.advance(distance.abs() / v, (distance.signum() * v, 0.0)).unwrap();
+        element.advance(distance.abs() / v, distance.signum() * v, 0.0).unwrap();
         -forces(element).0
     };
     // At rest the law is that of the least speed; at v the spring starts afresh, as it holds nothing.
@@ -177,7 +177,7 @@ const MOTIONS: [(f64, f64, f64); 11] = [
 
 fn go(element: &mut Element, (duration, u_rate, w_rate): (f64, f64, f64), parts: &[f64]) {
     let sum: f64 = parts.iter().sum();
-    parts.iter().for_each(|part| element.advance(duration * part / sum, (u_rate, w_rate)).unwrap());
+    parts.iter().for_each(|part| element.advance(duration * part / sum, u_rate, w_rate).unwrap());
 }
 
 /// However a motion is cut into steps, it ends at the same.
@@ -271,26 +271,26 @@ fn the_ends_of_the_table_refuse_or_hold() {
     let mut contact = contact();
     let mut element = at_w(&contact, separation(1e-4, 1e5, WARM) - REST);
     let before = element.save();
-    let fast = element.advance(1e-6, (-10.1, 0.0)).unwrap_err();
+    let fast = element.advance(1e-6, -10.1, 0.0).unwrap_err();
     assert!(fast.to_string().contains("10.1 m/s") && fast.to_string().contains("from 0.0001 to 10 m/s"), "{fast}");
-    let deep = element.advance(1.0, (0.0, -2e-5)).unwrap_err();
+    let deep = element.advance(1.0, 0.0, -2e-5).unwrap_err();
     assert!(matches!(deep, ElementError::Pressure { within: true, .. }));
     assert!(deep.to_string().contains("800000 Pa") && deep.to_string().contains("table.extrapolation"), "{deep}");
-    assert_eq!((element.save(), element.advance(1e-3, (10.0, 0.0))), (before, Ok(())));
+    assert_eq!((element.save(), element.advance(1e-3, 10.0, 0.0)), (before, Ok(())));
     // At the same height as slow, faster is closer to the layer: its pressure is beyond at once.
     let mut low = at_w(&contact, separation(1e-4, 7.9e5, WARM) - REST);
-    assert!(matches!(low.advance(1e-3, (10.0, 0.0)), Err(ElementError::Pressure { within: false, .. })));
+    assert!(matches!(low.advance(1e-3, 10.0, 0.0), Err(ElementError::Pressure { within: false, .. })));
 
     contact.set_parameter(Parameter::TableExtrapolation, Value::Text("hold".into())).unwrap();
     let far = Element::new(&contact, &Start { w: 1e31, ..Start::default() }).unwrap_err();
     assert_eq!(far.to_string(), "the carrier's motion is out of range: w = 1e31, expected a number up to ±1e30");
     for (duration, rates) in [(1e30, (2.0, 0.0)), (1e-3, (0.0, f64::NAN)), (f64::INFINITY, (0.0, 0.0))] {
-        assert!(matches!(element.advance(duration, rates), Err(ElementError::OutOfRange(_))));
+        assert!(matches!(element.advance(duration, rates.0, rates.1), Err(ElementError::OutOfRange(_))));
     }
     let w = separation(10.0, 8e5, WARM) - REST;
     let mut held = Element::new(&contact, &Start { w, u_rate: 10.0, ..Start::default() }).unwrap();
     let slope = held.contact().normal.slope;
-    held.advance(1.0, (100.0, -1e-5)).unwrap();
+    held.advance(1.0, 100.0, -1e-5).unwrap();
     let (x, z) = forces(&held);
     close(z, 8e5 * AREA + slope * 1e-5, 1e-12);
     close(-x, friction(10.0, 8e5, WARM) * z, 1e-9);
@@ -303,8 +303,8 @@ fn below_the_least_speed_it_is_as_at_the_least() {
     let element = |v: f64| {
         let w = separation(1e-4, 3e5, WARM) - REST;
         let mut element = Element::new(&contact(), &Start { w, u_rate: v, ..Start::default() }).unwrap();
-        element.advance(1e-1, (0.1, 0.0)).unwrap();
-        element.advance(1e-3, (v, 0.0)).unwrap();
+        element.advance(1e-1, 0.1, 0.0).unwrap();
+        element.advance(1e-3, v, 0.0).unwrap();
         forces(&element)
     };
     assert_eq!(element(0.0), element(1e-4));
@@ -314,11 +314,11 @@ fn below_the_least_speed_it_is_as_at_the_least() {
 #[test]
 fn lifted_it_bears_nothing() {
     let mut element = pressed(1e5);
-    element.advance(1e-3, (0.1, 0.0)).unwrap();
-    element.advance(1.0, (0.0, 3e-5)).unwrap();
+    element.advance(1e-3, 0.1, 0.0).unwrap();
+    element.advance(1.0, 0.0, 3e-5).unwrap();
     assert_eq!((forces(&element), element.spring.mode), ((0.0, 0.0), Mode::Free));
     assert_eq!(get(&element, Output::FrictionCoefficient), 0.0);
-    element.advance(1.0, (1.0, 0.0)).unwrap();
+    element.advance(1.0, 1.0, 0.0).unwrap();
     assert_eq!((forces(&element), stored(&element)), ((0.0, 0.0), 0.0));
 }
 
@@ -340,9 +340,9 @@ fn a_saved_run_goes_on_bit_for_bit() {
 
 /// Eight bytes a number in the order of the fields, one for the mode.
 #[test]
-fn what_no_run_gets_to_is_refused() {
+fn invalid_states_are_refused() {
     let mut element = pressed(2e5);
-    element.advance(1e-2, (0.1, 0.0)).unwrap();
+    element.advance(1e-2, 0.1, 0.0).unwrap();
     let bytes = postcard::to_stdvec(&element.save()).unwrap();
     let refused = |at: usize, new: &[u8]| {
         let mut bytes = bytes.clone();
@@ -352,18 +352,18 @@ fn what_no_run_gets_to_is_refused() {
     let [w, u_rate, force, mode] = [16, 24, 40, 48];
     assert!(refused(w, &(-1.0_f64).to_le_bytes()).contains("table.extrapolation"));
     assert!(refused(u_rate, &20.0_f64.to_le_bytes()).contains("the speed is 20 m/s"));
-    assert!(refused(w, &f64::NAN.to_le_bytes()).contains("a number = NaN, which no run gets to"));
+    assert!(refused(w, &f64::NAN.to_le_bytes()).contains("a number = NaN is not a valid state"));
     assert!(refused(force, &1e3_f64.to_le_bytes()).contains("the force in the spring = 1000"));
     assert!(refused(mode, &[7]).contains("the mode = 7"));
     assert!(refused(mode, &[0]).contains("the mode = 0"));
 }
 
 #[test]
-fn leaving_points_out_tells_how_well_the_table_is_interpolated() {
+fn left_out_points_show_the_interpolation_error() {
     let [speed, pressure, temperature] = left_out(&table(&Grid::plain()));
-    let (error, place) = speed.friction.unwrap();
+    let (error, point) = speed.friction.unwrap();
     // The worst is at the hump's top, at 0.1 m/s: the cubic does not rise above its points.
-    assert!((0.03..0.2).contains(&error) && (0.03..0.4).contains(&place.speed), "{error} at {place}");
+    assert!((0.03..0.2).contains(&error) && (0.03..0.4).contains(&point.speed), "{error} at {point:?}");
     assert!((1e-6..0.05).contains(&pressure.force_z.unwrap().0), "{pressure:?}");
     assert_eq!((temperature.friction, temperature.force_z), (None, None));
 }
@@ -377,7 +377,7 @@ fn a_table_that_is_not_full_is_refused_with_what_is_missing() {
         let kept: Vec<&str> = lines.iter().enumerate().filter(|(i, _)| *i != skip).map(|(_, line)| *line).collect();
         kept.join("\n")
     };
-    assert!(refused(&without(0)).contains("no table of a sweep"));
+    assert!(refused(&without(0)).contains("not the table of a sweep"));
     assert!(refused(&without(3)).contains("nominal_area"));
     let missing = refused(&without(8));
     assert!(missing.starts_with("t.csv: no row of ") && missing.contains("m/s, 100000 Pa"), "{missing}");

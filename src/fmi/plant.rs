@@ -18,7 +18,7 @@ pub(super) enum Plant {
 #[derive(Serialize, Deserialize)]
 pub(super) enum Saved {
     Layer(simulation::Saved),
-    Element(element::Saved),
+    Element(element::ElementState),
 }
 
 impl Plant {
@@ -34,7 +34,7 @@ impl Plant {
     pub(super) fn advance(&mut self, motion: &Motion) -> Result<(), Fault> {
         match self {
             Self::Layer(simulation) => simulation.advance(motion)?,
-            Self::Element(element) => element.advance(motion.duration, (motion.u.rate, motion.w.rate))?,
+            Self::Element(element) => element.advance(motion.duration, motion.u.rate, motion.w.rate)?,
         }
         Ok(())
     }

@@ -2,13 +2,10 @@
 
 use std::path::Path;
 
-use asperity::element::TableError;
-use asperity::scene::ParameterError;
 use asperity::simulation::SimulationError;
 
 use super::files::FileError;
 use super::result_file::ResultFileError;
-use super::sweep::SweepError;
 
 /// Why the program stops; its text is the one line that the user sees.
 #[derive(Debug, thiserror::Error)]
@@ -19,27 +16,12 @@ pub(crate) enum ProgramError {
     /// A result file is refused.
     #[error(transparent)]
     Results(#[from] ResultFileError),
-    /// The table is refused.
-    #[error(transparent)]
-    Table(#[from] TableError),
-    /// What is to be told cannot be written as JSON.
-    #[error("cannot be written as JSON: {0}")]
-    Json(serde_json::Error),
     /// There is no run to report on.
     #[error("the scene {0}")]
     NoRun(&'static str),
     /// No run comes to its end, so that there is nothing to compare with.
     #[error("no reference: not even the loosest tolerance comes to its end: {0}")]
     Reference(SimulationError),
-    /// A sweep stops, or has points without a result.
-    #[error(transparent)]
-    Sweep(#[from] SweepError),
-    /// A temperature that the scene cannot have.
-    #[error("{option}: {refusal}")]
-    Temperature { option: &'static str, refusal: ParameterError },
-    /// A plot is refused.
-    #[error(transparent)]
-    Plot(#[from] super::figure::PlotError),
 }
 
 impl ProgramError {

@@ -34,7 +34,7 @@ mod progress {
 }
 
 mod text {
-    pub(crate) use super::terminal::{LabelledLine as Row, rounded};
+    pub(crate) use super::terminal::{LabelledLine as Row};
 }
 
 /// Executes the command of the command line.

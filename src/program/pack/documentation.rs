@@ -2,7 +2,7 @@
 
 use std::io;
 
-use asperity::element::{LeftOut, Load, Place, Table, left_out};
+use asperity::element::{LeftOut, Load, OperatingPoint, Table, left_out};
 use asperity::fmi::{Catalogue, Entry, Kind, Subject};
 use quick_xml::escape::escape;
 
@@ -63,17 +63,17 @@ fn table<const N: usize>(head: [&str; N], rows: &[[String; N]]) -> io::Result<St
 pub(super) fn table_rows(table: &Table) -> Vec<LabelledLine> {
     let mut rows = vec![
         ("Swept", table.scene.clone()),
-        ("Speeds", range(&table.speeds, "m/s")),
-        ("Loads", range(&table.pressures, table.load.unit())),
+        ("Speeds", range(&table.grid.speeds, "m/s")),
+        ("Loads", range(&table.grid.loads, table.load.unit())),
     ];
-    if !table.temperatures.is_empty() {
-        rows.push(("Temperature", range(&table.temperatures, "K")));
+    if !table.grid.temperatures.is_empty() {
+        rows.push(("Temperature", range(&table.grid.temperatures, "K")));
     }
-    if table.load == Load::Pressure {
-        rows.push(("Area", format!("{:e} m²", table.nominal_area)));
+    if let Load::Pressure { area } = table.load {
+        rows.push(("Area", format!("{area:e} m²")));
     }
     rows.push(("w = 0", format!("a separation of {:e} m", table.rest_separation)));
-    let mut errors: Vec<_> = left_out(table).iter().filter_map(errors).collect();
+    let mut errors: Vec<_> = left_out(table).iter().filter_map(|axis| errors(axis, table.load)).collect();
     if errors.is_empty() {
         errors.push("no axis has a point between two others".to_owned());
     }
@@ -90,9 +90,11 @@ fn range(values: &[f64], unit: &str) -> String {
 }
 
 /// The errors at the points of an axis, each left out in turn.
-fn errors(errors: &LeftOut) -> Option<String> {
-    let of = |name: &str, error: Option<(f64, Place)>| {
-        error.map(|(error, place)| format!("{name} is off by at most {:.2} %, at {place}", 100.0 * error))
+fn errors(errors: &LeftOut, load: Load) -> Option<String> {
+    let of = |name: &str, error: Option<(f64, OperatingPoint)>| {
+        error.map(|(error, point)| {
+            format!("{name} is off by at most {:.2} %, at {}", 100.0 * error, point.describe(load))
+        })
     };
     let texts = [of("the friction coefficient", errors.friction), of("F_z", errors.force_z)];
     let texts: Vec<String> = texts.into_iter().flatten().collect();

@@ -14,10 +14,10 @@ use asperity::fmi::{Catalogue, Sources, Subject, guid};
 
 use super::cli::Pack;
 use super::describe;
-use super::error::ProgramError;
 use super::files::{self, FileError, check_output, print, read, write};
 use super::terminal::{LabelledLine, lines};
 use archive::{ArchiveError, Entry};
+use check::CheckError;
 
 /// `asperity pack` failed.
 #[derive(Debug, thiserror::Error)]
@@ -27,7 +27,7 @@ pub(crate) enum PackError {
     #[error(transparent)]
     Table(#[from] TableError),
     #[error(transparent)]
-    Check(#[from] ProgramError),
+    Check(#[from] CheckError),
     #[error(transparent)]
     Archive(#[from] ArchiveError),
     #[error("the scene reads {}, which is not below the scene's folder: an FMU carries only what is", .path.display())]

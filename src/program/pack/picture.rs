@@ -3,7 +3,7 @@
 
 use std::error::Error;
 
-use asperity::element::{Quantity, Table};
+use asperity::element::{Node, Quantity, Table};
 use asperity::math::Spline;
 use asperity::scene::{LinkKind, Scene};
 use plotters::prelude::*;
@@ -156,16 +156,16 @@ impl ElementPicture<'_> {
     /// The points of a pressure, in pixels.
     fn points(&self, pressure: usize) -> Vec<Point> {
         let table = self.0;
-        let temperature = table.temperatures.len() / 2;
-        let friction = |i, j| table.value(Quantity::Friction, (temperature, i, j));
-        let all = (0..table.pressures.len()).flat_map(|i| (0..table.speeds.len()).map(move |j| friction(i, j)));
+        let temperature = table.grid.temperatures.len() / 2;
+        let friction = |load, speed| table.value(Quantity::Friction, Node { temperature, load, speed });
+        let all = (0..table.grid.loads.len()).flat_map(|i| (0..table.grid.speeds.len()).map(move |j| friction(i, j)));
         let largest = all.fold(f64::MIN_POSITIVE, f64::max);
         let point = |j: usize| {
-            let share = if table.speeds.len() > 1 { j as f64 / (table.speeds.len() - 1) as f64 } else { 0.5 };
+            let share = if table.grid.speeds.len() > 1 { j as f64 / (table.grid.speeds.len() - 1) as f64 } else { 0.5 };
             let x = MARGIN + POINT + share * (WIDTH - 2.0 * (MARGIN + POINT));
             (x, MARGIN + (1.0 - friction(pressure, j) / largest) * (HEIGHT - 2.0 * MARGIN))
         };
-        (0..table.speeds.len()).map(point).collect()
+        (0..table.grid.speeds.len()).map(point).collect()
     }
 }
 

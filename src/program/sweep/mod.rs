@@ -1,89 +1,109 @@
-//! `asperity sweep`: the friction coefficient over speed, load and temperature, as a table and a picture.
+//! `asperity sweep`: the friction coefficient over speed, load and temperature, as a table and a plot.
 
-mod error;
-mod estimate;
-mod file;
-mod grid;
-mod merge;
+mod load_search;
 mod plot;
 mod point;
-mod secant;
 mod slide;
 mod steady;
-mod stiffness;
-mod table;
+mod table_file;
+mod values;
 
 use std::path::{Path, PathBuf};
 
+use asperity::element::{Load, OperatingPoint, SweepGrid, TableHeader};
 use asperity::model::Model;
-use asperity::scene::{Initial, OutputGroup, Path as Motion, Phase, Scene};
+use asperity::scene::{Initial, OutputGroup, ParameterError, Path as Displacement, Phase, Scene};
 use rayon::prelude::*;
 
-use super::arguments::Sweep;
-use super::error::ProgramError;
-use super::progress;
-pub(crate) use error::SweepError;
-use file::TableFile;
-use grid::{Grid, Point};
-pub(crate) use grid::{Shard, Values};
+use super::cli::Sweep;
+use super::files::{FileError, check_output, load, set_parameters, sources};
+use super::terminal;
+use load_search::{heights, rest_separation};
 use point::Bounds;
-use table::{Header, LoadKind, Table};
+pub(crate) use point::SteadySliding;
+use table_file::{SweepTable, TableFile, TableFileError};
+pub(crate) use values::{Shard, Values};
 
-/// Makes a table or joins several.
-pub(crate) fn sweep(command: &Sweep) -> Result<(), ProgramError> {
+/// `asperity sweep` failed, or not all of its points are steady.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum SweepError {
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error(transparent)]
+    TableFile(#[from] TableFileError),
+    #[error("cannot be written as JSON: {0}")]
+    Json(#[from] serde_json::Error),
+    #[error(
+        "--pressures: the scene is in the direct form, which has no width and so no area: give --forces, F_z of the whole \
+         layer in N"
+    )]
+    NoArea,
+    #[error("expected --pressures or --forces, the loads to sweep over")]
+    NoLoad,
+    #[error("--temperatures: the scene has no material.wlf, so nothing in it depends on the temperature")]
+    NoWlf,
+    #[error("--temperatures: {0}")]
+    Temperature(ParameterError),
+    #[error("{failed} of {total} points are not steady or failed: the column status in {} says why", .path.display())]
+    NotSteady { failed: usize, total: usize, path: PathBuf },
+}
+
+/// Computes a table or merges several.
+pub(crate) fn sweep(command: &Sweep) -> Result<(), SweepError> {
     match (&command.scene, &command.speeds, &command.output) {
-        (Some(scene), Some(speeds), _) => make(command, scene, speeds),
-        (_, _, Some(output)) => join(command, output),
-        // clap asks for a scene and speeds, or for tables and an output.
+        (Some(scene), Some(speeds), _) => compute(command, scene, speeds),
+        (_, _, Some(output)) => merge(command, output),
+        // clap requires a scene and speeds, or tables and an output.
         _ => Ok(()),
     }
 }
 
-fn join(command: &Sweep, output: &Path) -> Result<(), ProgramError> {
-    super::check_output(output, &command.merge)?;
-    let table = merge::merge(&command.merge, output)?;
+fn merge(command: &Sweep, output: &Path) -> Result<(), SweepError> {
+    check_output(output, &command.merge)?;
+    let table = SweepTable::merge(&command.merge, output)?;
     finish(command, output, &table)
 }
 
-fn make(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), ProgramError> {
-    let mut scene = super::load(path)?;
-    super::set_parameters(&mut scene, &command.set)?;
-    let (load, loads) = load_kind(command, &scene)?;
-    let grid = Grid { speeds: speeds.clone(), loads, temperatures: temperatures(command, &scene)? };
+fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepError> {
+    let mut scene = load(path)?;
+    set_parameters(&mut scene, &command.set)?;
+    let (load, loads) = loads(command, &scene)?;
+    let grid = SweepGrid { speeds: speeds.0.clone(), loads, temperatures: temperatures(command, &scene)? };
     let output = command.output.clone().unwrap_or_else(|| default_output(path));
-    super::check_output(&output, &super::sources(path, &scene))?;
-    let scene = bare(scene);
+    check_output(&output, &sources(path, &scene))?;
+    let scene = relevant(scene);
     let model = Model::new(&scene);
-    let header = Header {
+    let header = TableHeader {
         fingerprint: fingerprint(&scene, command, load)?,
         scene: scene.name.clone(),
         load,
-        rest_separation: estimate::rest_separation(&model, &estimate::heights(&scene, &model)),
+        rest_separation: rest_separation(&model, &heights(&scene, &model)),
         grid,
     };
     let file = TableFile::open(&output, &header, command.force)?;
     run(command, &scene, &header, &file)?;
-    let table = sorted(file::read(&output)?);
-    file::write_table(&output, &header, table.lines.iter().map(|line| line.text.as_str()))?;
+    let mut table = SweepTable { header, ..SweepTable::read(&output)? };
+    table.sort();
+    table.write(&output)?;
     finish(command, &output, &table)
 }
 
-/// Does the points that are not done yet, on all cores.
-fn run(command: &Sweep, scene: &Scene, header: &Header, file: &TableFile) -> Result<(), ProgramError> {
-    let points = header.grid.points();
-    let asked = |number: usize| command.shard.is_none_or(|shard| shard.has(number));
-    let own: Vec<Point> = points.into_iter().enumerate().filter(|(i, _)| asked(*i)).map(|(_, point)| point).collect();
-    let done = |point: &Point| file.done.iter().any(|line| line.point == *point);
-    let left: Vec<Point> = own.iter().filter(|point| !done(point)).copied().collect();
-    let bar = progress::bar(own.len() as u64);
-    bar.set_position((own.len() - left.len()) as u64);
+/// Computes the points that are not done yet, on all cores.
+fn run(command: &Sweep, scene: &Scene, header: &TableHeader, file: &TableFile) -> Result<(), FileError> {
+    let in_shard = |index: usize| command.shard.is_none_or(|shard| shard.has(index));
+    let points = header.grid.points().enumerate().filter(|(index, _)| in_shard(*index)).map(|(_, point)| point);
+    let points: Vec<OperatingPoint> = points.collect();
+    let is_done = |point: &OperatingPoint| file.done.iter().any(|stored| stored.row.point == *point);
+    let left: Vec<OperatingPoint> = points.iter().filter(|point| !is_done(point)).copied().collect();
+    let bar = terminal::bar(points.len() as u64);
+    bar.set_position((points.len() - left.len()) as u64);
     bar.reset_eta();
-    bar.set_message(format!("of {} points", own.len()));
+    bar.set_message(format!("of {} points", points.len()));
     bar.enable_steady_tick(std::time::Duration::from_secs(1));
     let bounds = Bounds { error: command.error, distance: command.distance };
     let work = left.par_iter().with_max_len(1).try_for_each(|point| {
-        let row = point::find(&at(scene, point), point.speed, header.load.force(point.load), bounds);
-        file.add(&row.line(point, header))?;
+        let result = point::find(&scene_at(scene, point), point.speed, header.load.force(point.load), bounds);
+        file.add(&result.row(*point, header))?;
         bar.inc(1);
         Ok(())
     });
@@ -91,25 +111,15 @@ fn run(command: &Sweep, scene: &Scene, header: &Header, file: &TableFile) -> Res
     work
 }
 
-/// Draws the picture and says which points are not to be relied on.
-fn finish(command: &Sweep, output: &Path, table: &Table) -> Result<(), ProgramError> {
+/// Draws the plot and counts the points that are not steady.
+fn finish(command: &Sweep, output: &Path, table: &SweepTable) -> Result<(), SweepError> {
     if command.shard.is_none() {
         let picture = command.plot.clone().unwrap_or_else(|| output.with_extension("svg"));
-        super::check_output(&picture, &[vec![output.to_owned()], command.merge.clone()].concat())?;
+        check_output(&picture, &[vec![output.to_owned()], command.merge.clone()].concat())?;
         plot::draw(&picture, table)?;
     }
-    let failed = table.lines.iter().filter(|line| !line.is_steady()).count();
-    if failed == 0 {
-        return Ok(());
-    }
-    Err(SweepError::Failed { failed, total: table.lines.len(), path: output.to_owned() }.into())
-}
-
-/// The table with its rows in the order of the points.
-fn sorted(mut table: Table) -> Table {
-    let points = table.header.grid.points();
-    table.lines.sort_by_key(|line| points.iter().position(|point| *point == line.point));
-    table
+    let (failed, total) = (table.rows.iter().filter(|stored| !stored.row.is_steady()).count(), table.rows.len());
+    if failed == 0 { Ok(()) } else { Err(SweepError::NotSteady { failed, total, path: output.to_owned() }) }
 }
 
 fn default_output(scene: &Path) -> PathBuf {
@@ -117,29 +127,28 @@ fn default_output(scene: &Path) -> PathBuf {
     PathBuf::from(stem).with_extension("sweep.csv")
 }
 
-fn load_kind(command: &Sweep, scene: &Scene) -> Result<(LoadKind, Values), SweepError> {
+fn loads(command: &Sweep, scene: &Scene) -> Result<(Load, Vec<f64>), SweepError> {
     match (&command.pressures, &command.forces) {
-        (_, Some(forces)) => Ok((LoadKind::Force, forces.clone())),
+        (_, Some(forces)) => Ok((Load::Force, forces.0.clone())),
         (Some(pressures), None) => {
             let area = scene.layer.area().ok_or(SweepError::NoArea)?;
-            Ok((LoadKind::Pressure { area }, pressures.clone()))
+            Ok((Load::Pressure { area }, pressures.0.clone()))
         }
         (None, None) => Err(SweepError::NoLoad),
     }
 }
 
-/// Those asked for, or the scene's own; `None` where it has none.
-fn temperatures(command: &Sweep, scene: &Scene) -> Result<Option<Values>, ProgramError> {
+/// Those asked for, or the scene's own; none where it has none.
+fn temperatures(command: &Sweep, scene: &Scene) -> Result<Vec<f64>, SweepError> {
     let own = scene.material.as_ref().and_then(|material| material.wlf.as_ref()).map(|wlf| wlf.temperature);
     let Some(own) = own else {
-        return if command.temperatures.is_some() { Err(SweepError::NoWlf.into()) } else { Ok(None) };
+        return if command.temperatures.is_some() { Err(SweepError::NoWlf) } else { Ok(Vec::new()) };
     };
-    let values = command.temperatures.clone().unwrap_or_else(|| Values(vec![own]));
-    for &temperature in &values.0 {
-        let refused = |refusal| ProgramError::Temperature { option: "--temperatures", refusal };
-        with_temperature(scene, temperature).check().map_err(refused)?;
+    let values = command.temperatures.clone().map_or_else(|| vec![own], |values| values.0);
+    for &temperature in &values {
+        with_temperature(scene, temperature).check().map_err(SweepError::Temperature)?;
     }
-    Ok(Some(values))
+    Ok(values)
 }
 
 fn with_temperature(scene: &Scene, temperature: f64) -> Scene {
@@ -150,8 +159,8 @@ fn with_temperature(scene: &Scene, temperature: f64) -> Scene {
     scene
 }
 
-/// The scene without what is no matter to a sweep, and with the outputs that it reads.
-fn bare(scene: Scene) -> Scene {
+/// The scene without what a sweep does not depend on, and with the outputs that it reads.
+fn relevant(scene: Scene) -> Scene {
     use OutputGroup::{Contact, Dissipation, Energy, Forces, Friction};
     let outputs = vec![Forces, Dissipation, Friction, Contact, Energy];
     let mut scene = Scene { outputs, excitation: Vec::new(), description: None, ..scene };
@@ -159,58 +168,42 @@ fn bare(scene: Scene) -> Scene {
     scene
 }
 
-/// The scene of one point. Its excitation is there for `solver.reduce`, which goes by the speed and by how long a run
-/// is: steady motion has no end, so that no element is a spring.
-fn at(scene: &Scene, point: &Point) -> Scene {
+/// The scene of one point. `solver.reduce` depends on the speed and on the duration of its excitation: as steady motion
+/// has no end, no Maxwell element becomes a spring.
+fn scene_at(scene: &Scene, point: &OperatingPoint) -> Scene {
     let mut scene = match point.temperature {
         Some(temperature) => with_temperature(scene, temperature),
         None => scene.clone(),
     };
-    let u = Motion { rate: point.speed, ..Motion::default() };
+    let u = Displacement { rate: point.speed, ..Displacement::default() };
     scene.excitation = vec![Phase {
         duration: asperity::scene::LARGEST,
         u,
-        w: Motion::default(),
+        w: Displacement::default(),
         until_force: None,
         until_pressure: None,
     }];
     scene
 }
 
-fn fingerprint(scene: &Scene, command: &Sweep, load: LoadKind) -> Result<String, ProgramError> {
-    // Whatever the temperature is: each point has its own.
+fn fingerprint(scene: &Scene, command: &Sweep, load: Load) -> Result<String, serde_json::Error> {
+    // The same for all temperatures: each point has its own.
     let scene = with_temperature(scene, 0.0);
-    let settings = format!("{} {:?} {:?}", load.name(), command.error, command.distance);
-    table::fingerprint(&scene, &settings).map_err(ProgramError::Json)
+    table_file::fingerprint(&scene, &format!("{} {:?} {:?}", load.name(), command.error, command.distance))
 }
 
-/// What a layer does in steady sliding.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Sliding {
-    /// Where the carrier is, m.
-    pub(crate) w: f64,
-    /// Mean F_z, N.
-    pub(crate) force_z: f64,
-    /// Mean force against the motion, N.
-    pub(crate) drag: f64,
-    /// Power lost, W.
-    pub(crate) power: f64,
-}
-
-/// One point of a sweep of `scene`, a `load` being the force on the layer (N); what is wrong in words where it is not
-/// steady.
-pub(crate) fn sliding(
+/// Steady sliding at one point, the friction coefficient known to `error` relative to it; where the layer does not
+/// become steady, the status of the point.
+pub(crate) fn steady_sliding(
     scene: &Scene,
-    speed: f64,
-    load: f64,
-    temperature: Option<f64>,
+    point: &OperatingPoint,
+    load: Load,
     error: f64,
-) -> Result<Sliding, String> {
-    let scene = at(&bare(scene.clone()), &Point { speed, load, temperature });
-    let row = point::find(&scene, speed, load, Bounds { error, distance: None });
-    let found = (row.status == table::STEADY).then_some(()).and_then(|()| {
-        let (w, force_z, [friction, ..]) = (row.w?, row.force?, row.friction?);
-        Some(Sliding { w, force_z, drag: friction * force_z, power: row.power.iter().flatten().sum() })
-    });
-    found.ok_or(row.status)
+) -> Result<SteadySliding, String> {
+    let scene = scene_at(&relevant(scene.clone()), point);
+    let result = point::find(&scene, point.speed, load.force(point.load), Bounds { error, distance: None });
+    match result.sliding {
+        Some(sliding) if result.status == asperity::element::STEADY => Ok(sliding),
+        _ => Err(result.status),
+    }
 }

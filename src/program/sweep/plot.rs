@@ -1,71 +1,74 @@
-//! The picture of a table: friction over speed, its parts dashed.
+//! The plot of a table: friction over speed, its parts dashed.
 
 use std::path::Path;
 
-use super::grid::Values;
-use super::table::{Line, Table};
-use crate::program::error::ProgramError;
+use asperity::element::Quantity;
+
+use super::table_file::{StoredRow, SweepTable};
+use crate::program::files::FileError;
 use crate::program::figure::{Curve, Figure as _, Panel, SideBySide, Stroke};
 
 /// Draws friction over speed at `path`: a panel for each temperature, a colour for each load; with one load, one panel
 /// and a colour for each temperature.
-pub(super) fn draw(path: &Path, table: &Table) -> Result<(), ProgramError> {
-    Ok(curves(table).write(path)?)
+pub(super) fn draw(path: &Path, table: &SweepTable) -> Result<(), FileError> {
+    plot(table).write(path)
 }
 
-fn curves(table: &Table) -> SideBySide {
-    let grid = &table.header.grid;
-    let temperatures: Vec<Option<f64>> = match &grid.temperatures {
-        Some(Values(values)) => values.iter().map(|&value| Some(value)).collect(),
-        None => vec![None],
+fn plot(table: &SweepTable) -> SideBySide {
+    let (grid, unit) = (&table.header.grid, table.header.load.unit());
+    let temperatures = match grid.temperatures.as_slice() {
+        [] => vec![None],
+        values => values.iter().copied().map(Some).collect(),
     };
-    let loads = &grid.loads.0;
     let of = |load: f64, temperature: Option<f64>| {
-        let same = move |line: &&Line| line.point.load == load && line.point.temperature == temperature;
-        table.lines.iter().filter(same).filter(|line| line.is_steady()).collect::<Vec<_>>()
+        let rows = table.rows.iter().filter(|stored| stored.row.is_steady());
+        rows.filter(move |stored| stored.row.point.load == load && stored.row.point.temperature == temperature)
     };
     let kelvin = |temperature: Option<f64>| temperature.map(|kelvin| format!("{kelvin} K"));
-    let load_name = |load: f64| handy(load, table.header.load.unit());
-    let panels = if loads.len() == 1 {
-        let colours = temperatures.iter().enumerate();
-        let name = |&temperature: &Option<f64>| kelvin(temperature).unwrap_or_else(|| load_name(loads[0]));
-        let lines =
-            colours.flat_map(|(look, temperature)| lines(&name(temperature), look, &of(loads[0], *temperature)));
-        let title = temperatures[0].map(|_| load_name(loads[0])).unwrap_or_default();
-        vec![Panel { title, curves: lines.collect() }]
+    let panels = if let [load] = grid.loads[..] {
+        let load_name = with_prefix(load, unit);
+        let curves = temperatures.iter().enumerate().flat_map(|(look, &temperature)| {
+            curves(&kelvin(temperature).unwrap_or_else(|| load_name.clone()), look, of(load, temperature))
+        });
+        let curves = curves.collect();
+        vec![Panel { title: temperatures[0].map(|_| load_name).unwrap_or_default(), curves }]
     } else {
-        let panel = |&temperature: &Option<f64>| Panel {
-            title: kelvin(temperature).unwrap_or_default(),
-            curves: loads
-                .iter()
-                .enumerate()
-                .flat_map(|(look, &load)| lines(&load_name(load), look, &of(load, temperature)))
-                .collect(),
+        let panel = |&temperature: &Option<f64>| {
+            let loads = grid.loads.iter().enumerate();
+            let curves =
+                loads.flat_map(|(look, &load)| curves(&with_prefix(load, unit), look, of(load, temperature))).collect();
+            Panel { title: kelvin(temperature).unwrap_or_default(), curves }
         };
         temperatures.iter().map(panel).collect()
     };
     SideBySide { x_title: "speed in m/s".into(), y_title: "friction coefficient".into(), panels }
 }
 
-/// The whole friction and its parts; of these only one that is there.
-fn lines(name: &str, look: usize, points: &[&Line]) -> Vec<Curve> {
-    let part = |i: usize| {
-        let at = |line: &&Line| line.friction.map(|parts| (line.point.speed, parts[i]));
-        points.iter().filter_map(at).collect::<Vec<_>>()
-    };
-    let curve = |name: String, stroke, points| Curve { name, look, stroke, points };
-    let mut curves = vec![curve(name.to_owned(), Stroke::Line, part(0))];
-    for (i, stroke, what) in [(1, Stroke::Dashed, "hysteresis"), (2, Stroke::Dotted, "adhesion")] {
-        let points = part(i);
-        if points.iter().any(|point| point.1 != 0.0) {
-            curves.push(curve(what.to_owned(), stroke, points));
+/// The friction coefficient and those of its parts that are not 0.
+fn curves<'a>(name: &str, look: usize, rows: impl Iterator<Item = &'a StoredRow>) -> Vec<Curve> {
+    let parts = [Quantity::Friction, Quantity::Hysteresis, Quantity::Adhesion];
+    let mut points = parts.map(|_| Vec::new());
+    for row in rows.map(|stored| &stored.row) {
+        let values = parts.map(|part| row.value(part));
+        if let [Some(_), Some(_), Some(_)] = values {
+            points
+                .iter_mut()
+                .zip(values)
+                .for_each(|(points, value)| points.extend(value.map(|y| (row.point.speed, y))));
         }
     }
+    let looks = [(name, Stroke::Line), ("hysteresis", Stroke::Dashed), ("adhesion", Stroke::Dotted)];
+    let curves =
+        looks.into_iter().zip(points).map(|((name, stroke), points)| Curve { name: name.into(), look, stroke, points });
     curves
+        .enumerate()
+        .filter(|(i, curve)| *i == 0 || curve.points.iter().any(|point| point.1 != 0.0))
+        .map(|(_, curve)| curve)
+        .collect()
 }
 
-/// A quantity in a handy unit: `0.2 MPa`.
-fn handy(value: f64, unit: &str) -> String {
+/// A quantity with a prefix of its unit: `0.2 MPa`.
+fn with_prefix(value: f64, unit: &str) -> String {
     let (prefix, factor) = match value {
         value if value >= 1e5 => ("M", 1e6),
         value if value >= 1e3 => ("k", 1e3),
@@ -82,8 +85,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn loads_are_named_in_a_handy_unit() {
-        let names = [2e5, 4e4, 20.0, 0.05].map(|value| handy(value, "Pa"));
+    fn loads_have_a_prefix_of_their_unit() {
+        let names = [2e5, 4e4, 20.0, 0.05].map(|value| with_prefix(value, "Pa"));
         assert_eq!(names, ["0.2 MPa", "40 kPa", "20 Pa", "50 mPa"]);
     }
 }

@@ -1,179 +1,259 @@
 //! One point of a sweep: pressed to its load, slid until its means are steady, averaged.
 //!
-//! A point starts at full speed and at the w at which the layer's vertical springs alone would bear the load, pressed
-//! long ago, so that nothing rings for long. It is then searched block by block: after each, w moves by the secant, and
-//! the dashpots along z go where the block's means say that they will be ([`Simulation::relax_dashpots`]), for a
-//! compound has elements that would take minutes. Once a block bears the load and its dashpots nothing, w is held and
-//! nothing is touched any more: these blocks are the window, judged as in [`steady`](super::steady). Where its mean is
-//! off the load, w moves by what is missing, and a new window begins.
+//! A point starts relaxed and at full speed, at the w at which the layer's vertical springs alone would bear the load. It
+//! is then searched block by block: after each block, w moves by the [`LoadSearch`], and the dashpots along z move to
+//! where the block's means say that they will be ([`Simulation::relax_dashpots`]), as a compound has elements that would
+//! take minutes. Once a block bears the load and its dashpots nothing, w is held and nothing is changed any more: these
+//! blocks are the window, judged as in [`steady`](super::steady). Where the mean of F_z differs from the load, w moves
+//! again, and a new window begins.
 //!
-//! A point knows nothing of the others, so a table is the same in whatever order and on however many machines it is
-//! made.
+//! A point is independent of the others, so a table is the same in whatever order and on however many machines it is
+//! computed.
 //!
 //! [`Simulation::relax_dashpots`]: asperity::simulation::Simulation::relax_dashpots
 
+use asperity::element::{OperatingPoint, Quantity, STEADY, TableHeader, TableRow};
 use asperity::model::{LinkKind, Model};
 use asperity::scene::Scene;
 use asperity::simulation::SimulationError;
 
-use super::estimate::{self, Bars};
-use super::secant::Secant;
-use super::slide::{Means, Slide, Way};
+use super::load_search::LoadSearch;
+use super::slide::{BlockMeans, Blocks, Slide, tangential_stiffness};
 use super::steady::{FEWEST, Window, window};
-use super::stiffness::tangential_stiffness;
-use super::table::{Row, STEADY};
 
 /// The mean of F_z over the window is the load within this share of it.
 const LOAD: f64 = 1e-3;
-/// Standard error of that mean, and its trend: so well known, a correction of w reaches [`LOAD`].
+/// Standard error of that mean, and its trend, as shares of the load: small enough for a correction of w to reach
+/// [`LOAD`].
 const LOAD_ERROR: f64 = 5e-4;
-/// The search ends with a block as close as this to the load, its dashpots to none ...
+/// The search ends with a block whose F_z is as close as this to the load, and the force of its dashpots to 0, ...
 const NEAR: f64 = 5e-4;
-/// ... or after so many: what is left, the windows find.
+/// ... or after so many blocks: the windows correct the rest.
 const SEARCHES: usize = 12;
-/// A part of a block over which w is changed, and one over which that dies away.
+/// Fraction of a block over which w is changed, and fraction over which the effect of that decays.
 const RAMP: f64 = 0.125;
 const CALM: f64 = 0.125;
-/// A window of so many blocks whose load has a trend is given up: dashpots are not yet where they will be.
-const GIVEN_UP: usize = 6;
-/// A friction coefficient smaller than this is known well enough with the error of this one.
+/// A window of so many blocks whose load has a trend is abandoned: the dashpots are not yet at rest.
+const ABANDONED: usize = 6;
+/// The relative error of a friction coefficient smaller than this is taken relative to this.
 const SMALL: f64 = 1e-2;
-/// Blocks that a point may take where no distance is given.
-pub(super) const BLOCKS: f64 = 100.0;
+/// Longest distance in blocks where none is given.
+const BLOCKS: f64 = 100.0;
 
-/// What a point is judged by.
+/// When a point ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Bounds {
     /// Standard error of the friction coefficient over its mean.
     pub(super) error: f64,
-    /// How far a point may be slid, m; none for [`BLOCKS`] blocks.
+    /// Longest distance, m; `None`: [`BLOCKS`] blocks.
     pub(super) distance: Option<f64>,
 }
 
-/// Blocks at one w, and what they say.
+/// What a layer does in steady sliding.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SteadySliding {
+    /// Displacement of the carrier, m.
+    pub(crate) w: f64,
+    /// Mean F_z, N.
+    pub(crate) force_z: f64,
+    /// Friction coefficient and its parts, 1.
+    friction: Friction,
+    /// Standard error of the friction coefficient, 1.
+    friction_error: f64,
+    /// Masses in contact over all masses, 1.
+    contact_ratio: f64,
+    /// Power lost in dampers, Maxwell elements, friction and impacts, W; `None` for a channel that the scene cannot have.
+    channels: [Option<f64>; 4],
+    /// Number of displacements w that were tried.
+    runs: u32,
+    /// Time of the last run, s.
+    time: f64,
+}
+
+impl SteadySliding {
+    /// Mean force against the motion, N.
+    pub(crate) fn drag(&self) -> f64 {
+        self.friction.whole * self.force_z
+    }
+
+    /// Power lost, W.
+    pub(crate) fn power(&self) -> f64 {
+        self.channels.iter().flatten().sum()
+    }
+}
+
+/// The friction coefficient and its parts, 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Friction {
+    whole: f64,
+    hysteresis: f64,
+    adhesion: f64,
+}
+
+/// What was found at a point.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct PointResult {
+    /// [`STEADY`], or what is wrong.
+    pub(super) status: String,
+    /// `None` where a run failed or there was no room for a window.
+    pub(super) sliding: Option<SteadySliding>,
+    /// N/m.
+    tangential_stiffness: Option<f64>,
+}
+
+impl PointResult {
+    fn failed(status: String) -> Self {
+        Self { status, sliding: None, tangential_stiffness: None }
+    }
+
+    /// The row of the table.
+    pub(super) fn row(&self, point: OperatingPoint, header: &TableHeader) -> TableRow {
+        let mut row = TableRow::new(point, self.status.clone());
+        row.set(Quantity::Stiffness, self.tangential_stiffness);
+        let Some(sliding) = &self.sliding else { return row };
+        let values = [
+            (Quantity::Friction, sliding.friction.whole),
+            (Quantity::FrictionStandardError, sliding.friction_error),
+            (Quantity::Hysteresis, sliding.friction.hysteresis),
+            (Quantity::Adhesion, sliding.friction.adhesion),
+            (Quantity::MeanLoad, header.load.of_force(sliding.force_z)),
+            (Quantity::ContactRatio, sliding.contact_ratio),
+            (Quantity::Separation, header.rest_separation + sliding.w),
+            (Quantity::Displacement, sliding.w),
+            (Quantity::Runs, f64::from(sliding.runs)),
+            (Quantity::Time, sliding.time),
+        ];
+        values.into_iter().for_each(|(quantity, value)| row.set(quantity, Some(value)));
+        Quantity::CHANNELS.into_iter().zip(sliding.channels).for_each(|(channel, power)| row.set(channel, power));
+        row
+    }
+}
+
+/// Blocks at one w, averaged.
 #[derive(Clone, Debug, PartialEq)]
 struct Average {
-    means: Means,
+    means: BlockMeans,
     friction: Window,
     load: Window,
     steady: bool,
-    /// F_z grows or falls for good.
+    /// F_z has a trend.
     drifts: bool,
 }
 
-/// A layer on its way to a load and to steady means.
+/// The search for steady sliding under a load.
 #[derive(Debug)]
 struct Search<'a> {
     scene: &'a Scene,
-    way: Way,
+    blocks: Blocks,
     error: f64,
     distance: f64,
     slide: Slide,
-    secant: Secant,
+    load: LoadSearch,
     runs: u32,
-    /// How far all that started anew went before, m.
-    gone: f64,
+    /// Distance of the slides before the present one, m.
+    distance_before: f64,
 }
 
-/// What the layer of `scene` does at `speed` (m/s) under the force `load` (N).
-pub(super) fn find(scene: &Scene, speed: f64, load: f64, bounds: Bounds) -> Row {
-    let failed = |error: SimulationError| Row { status: error.to_string(), ..Row::default() };
+/// Steady sliding of the layer of `scene` at `speed` (m/s) under the force `load` (N).
+pub(super) fn find(scene: &Scene, speed: f64, load: f64, bounds: Bounds) -> PointResult {
+    let failed = |error: SimulationError| PointResult::failed(error.to_string());
     let model = Model::new(scene);
-    let secant = Secant::new(load, Bars::new(&model, &estimate::heights(scene, &model)).displacement(load));
-    let way = estimate::way(scene, speed);
-    let row = Search::new(scene, way, bounds, secant).and_then(Search::finish).unwrap_or_else(failed);
-    if row.friction.is_none() {
-        return row;
+    let load = LoadSearch::estimated(load, scene, &model);
+    let blocks = Blocks::new(scene, speed);
+    let result = Search::new(scene, blocks, bounds, load).and_then(Search::finish).unwrap_or_else(failed);
+    if result.sliding.is_none() {
+        return result;
     }
     let stiffness = model.links[LinkKind::Vertical as usize].stiffness;
     let frequency = if stiffness > 0.0 { (stiffness / model.mass).sqrt() } else { model.stiffest_frequency() };
-    match tangential_stiffness(scene, way, secant, frequency) {
-        Ok(tangential_stiffness) => Row { tangential_stiffness, ..row },
-        Err(error) if row.status == STEADY => Row { status: format!("tangential stiffness: {error}"), ..row },
-        Err(_) => row,
+    match tangential_stiffness(scene, blocks, load, frequency) {
+        Ok(tangential_stiffness) => PointResult { tangential_stiffness, ..result },
+        Err(error) if result.status == STEADY => {
+            PointResult { status: format!("tangential stiffness: {error}"), ..result }
+        }
+        Err(_) => result,
     }
 }
 
 impl<'a> Search<'a> {
-    fn new(scene: &'a Scene, way: Way, bounds: Bounds, secant: Secant) -> Result<Self, SimulationError> {
-        let distance = bounds.distance.unwrap_or(BLOCKS * way.block);
-        let slide = Slide::new(scene, way, secant.w)?;
-        Ok(Self { scene, way, error: bounds.error, distance, slide, secant, runs: 1, gone: 0.0 })
+    fn new(scene: &'a Scene, blocks: Blocks, bounds: Bounds, load: LoadSearch) -> Result<Self, SimulationError> {
+        let distance = bounds.distance.unwrap_or(BLOCKS * blocks.length);
+        let slide = Slide::new(scene, blocks, load.w)?;
+        Ok(Self { scene, blocks, error: bounds.error, distance, slide, load, runs: 1, distance_before: 0.0 })
     }
 
     /// Presses, then averages at one w after the other until a window is steady and has the load.
-    fn finish(mut self) -> Result<Row, SimulationError> {
+    fn finish(mut self) -> Result<PointResult, SimulationError> {
         self.slide.press(RAMP + CALM, 0.0)?;
         let mut first = self.press()?;
         loop {
             let Some(average) = self.average(first.take())? else {
-                let status = format!("not steady: no room for {FEWEST} blocks of {} m", self.way.block);
-                return Ok(Row { status, ..Row::default() });
+                let status = format!("not steady: no room for {FEWEST} blocks of {} m", self.blocks.length);
+                return Ok(PointResult::failed(status));
             };
-            let off = average.load.mean / self.secant.load - 1.0;
-            let pressed = average.steady && off.abs() <= LOAD;
+            let deviation = average.load.mean / self.load.load - 1.0;
+            let pressed = average.steady && deviation.abs() <= LOAD;
             if pressed || !self.has_room(RAMP + CALM + FEWEST as f64) {
-                return Ok(self.row(&average));
+                return Ok(self.result(&average));
             }
-            let borne = if average.drifts { self.slide.relax() } else { 0.0 };
-            self.correct(average.load.mean, borne)?;
+            let maxwell = if average.drifts { self.slide.relax() } else { 0.0 };
+            self.correct(average.load.mean, maxwell)?;
         }
     }
 
-    /// Slides on until F_z is near the load and the slow dashpots are where they will be. Returns the last block, if
-    /// that is so.
-    fn press(&mut self) -> Result<Option<Means>, SimulationError> {
+    /// Slides until F_z is near the load and the slow dashpots are at rest. Returns the last block if they are.
+    fn press(&mut self) -> Result<Option<BlockMeans>, SimulationError> {
         for _ in 0..SEARCHES {
             if !self.has_room(1.0) || !self.slide.has_room(1.0) {
                 break;
             }
             let means = self.slide.block()?;
-            let borne = self.slide.relax();
-            let near = |force: f64| force.abs() <= NEAR * self.secant.load;
-            if near(means.load - self.secant.load) && near(borne) {
+            let maxwell = self.slide.relax();
+            let near = |force: f64| force.abs() <= NEAR * self.load.load;
+            if near(means.load - self.load.load) && near(maxwell) {
                 return Ok(Some(means));
             }
-            self.correct(means.load, borne)?;
+            self.correct(means.load, maxwell)?;
         }
         Ok(None)
     }
 
-    /// Changes w where F_z was `force`, of which the Maxwell elements bore `borne` (N). On a profile that ends, a new
-    /// run begins where no room is left.
-    fn correct(&mut self, force: f64, borne: f64) -> Result<(), SimulationError> {
-        let change = self.secant.change(force, borne);
+    /// Changes w where F_z was `force`, of which the Maxwell elements bore `maxwell` (N). On a profile that ends, a new
+    /// slide begins where no room is left.
+    fn correct(&mut self, force: f64, maxwell: f64) -> Result<(), SimulationError> {
+        let change = self.load.change(force, maxwell);
         self.runs += 1;
         if !self.slide.has_room(RAMP + CALM + FEWEST as f64) {
-            return self.start_anew();
+            return self.restart();
         }
         self.slide.press(RAMP, change)?;
         self.slide.press(CALM, 0.0)
     }
 
-    /// A new run from the start of a profile that ends.
-    fn start_anew(&mut self) -> Result<(), SimulationError> {
-        self.gone += self.slide.distance();
-        self.slide = Slide::new(self.scene, self.way, self.secant.w)?;
+    /// A new slide from the start of a profile that ends.
+    fn restart(&mut self) -> Result<(), SimulationError> {
+        self.distance_before += self.slide.distance();
+        self.slide = Slide::new(self.scene, self.blocks, self.load.w)?;
         self.slide.press(RAMP + CALM, 0.0)
     }
 
     fn has_room(&self, blocks: f64) -> bool {
-        self.gone + self.slide.distance() + blocks * self.way.block <= self.distance
+        self.distance_before + self.slide.distance() + blocks * self.blocks.length <= self.distance
     }
 
     /// Blocks with w held, after a `first` one, until their means are steady or there is no room for more; `None` where
-    /// there is not even room for a window.
-    fn average(&mut self, first: Option<Means>) -> Result<Option<Average>, SimulationError> {
-        let mut blocks: Vec<Means> = first.into_iter().collect();
+    /// there is no room for a window.
+    fn average(&mut self, first: Option<BlockMeans>) -> Result<Option<Average>, SimulationError> {
+        let mut blocks: Vec<BlockMeans> = first.into_iter().collect();
         if !self.slide.has_room(FEWEST as f64) {
             blocks.clear();
-            self.start_anew()?;
+            self.restart()?;
         }
         while self.has_room(1.0) && self.slide.has_room(1.0) {
             blocks.push(self.slide.block()?);
             if blocks.len() >= FEWEST {
                 let average = self.judge(&blocks);
-                if average.steady || (blocks.len().is_multiple_of(GIVEN_UP) && average.drifts) {
+                if average.steady || (blocks.len().is_multiple_of(ABANDONED) && average.drifts) {
                     return Ok(Some(average));
                 }
             }
@@ -181,76 +261,77 @@ impl<'a> Search<'a> {
         Ok((blocks.len() >= FEWEST).then(|| self.judge(&blocks)))
     }
 
-    fn judge(&self, blocks: &[Means]) -> Average {
+    fn judge(&self, blocks: &[BlockMeans]) -> Average {
         let used = &blocks[window(blocks.len())..];
-        let of = |value: fn(&Means) -> f64| Window::new(&used.iter().map(value).collect::<Vec<_>>());
+        let of = |value: fn(&BlockMeans) -> f64| Window::new(&used.iter().map(value).collect::<Vec<_>>());
         let (friction, load) = (of(|means| means.drag / means.load), of(|means| means.load));
         let steady = friction.is_steady(self.error * friction.mean.abs().max(SMALL))
-            && load.is_steady(LOAD_ERROR * self.secant.load);
-        let drifts = load.has_trend(LOAD_ERROR * self.secant.load);
-        Average { means: Means::mean(used), friction, load, steady, drifts }
+            && load.is_steady(LOAD_ERROR * self.load.load);
+        let drifts = load.has_trend(LOAD_ERROR * self.load.load);
+        Average { means: BlockMeans::mean(used), friction, load, steady, drifts }
     }
 
-    fn row(&self, average: &Average) -> Row {
+    fn result(&self, average: &Average) -> PointResult {
         let means = &average.means;
         let [damper, maxwell, friction, impact] = means.power;
-        let channels = [damper, maxwell, friction, Some(impact.unwrap_or(0.0))];
-        Row {
-            status: self.status(average),
-            friction: Some(parts(means, average.friction.error)),
-            force: Some(means.load),
-            contact: Some(means.contact),
-            power: channels,
-            tangential_stiffness: None,
-            w: Some(self.secant.w),
-            runs: Some(self.runs),
-            time: Some(self.slide.time()),
-        }
+        let sliding = SteadySliding {
+            w: self.load.w,
+            force_z: means.load,
+            friction: Friction::new(means),
+            friction_error: average.friction.error,
+            contact_ratio: means.contact,
+            channels: [damper, maxwell, friction, Some(impact.unwrap_or(0.0))],
+            runs: self.runs,
+            time: self.slide.time(),
+        };
+        PointResult { status: self.status(average), sliding: Some(sliding), tangential_stiffness: None }
     }
 
     fn status(&self, average: &Average) -> String {
-        let off = average.load.mean / self.secant.load - 1.0;
-        let way = self.gone + self.slide.distance();
+        let deviation = average.load.mean / self.load.load - 1.0;
+        let distance = self.distance_before + self.slide.distance();
         if !average.steady {
             let error = average.friction.error / average.friction.mean.abs().max(SMALL);
             format!(
-                "not steady after {way:.4} m: standard error of the friction coefficient {:.2} % of it",
+                "not steady after {distance:.4} m: standard error of the friction coefficient {:.2} % of it",
                 100.0 * error
             )
-        } else if off.abs() > LOAD {
-            format!("not pressed after {way:.4} m: mean F_z is off by {:.2} %", 100.0 * off)
+        } else if deviation.abs() > LOAD {
+            format!("not pressed after {distance:.4} m: mean F_z is off by {:.2} %", 100.0 * deviation)
         } else {
             STEADY.to_owned()
         }
     }
 }
 
-/// The friction coefficient, its standard error, its hysteresis and its adhesion part. The whole is the carrier's work,
-/// which is exact; the parts are sampled and miss the impulses of impacts, so what they lack is shared out as they are.
-fn parts(means: &Means, error: f64) -> [f64; 4] {
-    let [whole, hysteresis, adhesion] = [means.drag, means.hysteresis, means.adhesion].map(|force| force / means.load);
-    let size = hysteresis.abs() + adhesion.abs();
-    let share = if size > 0.0 { hysteresis.abs() / size } else { 1.0 };
-    let hysteresis = hysteresis + share * (whole - hysteresis - adhesion);
-    [whole, error, hysteresis, whole - hysteresis]
+impl Friction {
+    /// The whole is the carrier's work, which is exact; the parts are sampled and miss the impulses of impacts, so what
+    /// they lack is divided in proportion to them.
+    fn new(means: &BlockMeans) -> Self {
+        let [whole, hysteresis, adhesion] =
+            [means.drag, means.hysteresis, means.adhesion].map(|force| force / means.load);
+        let size = hysteresis.abs() + adhesion.abs();
+        let share = if size > 0.0 { hysteresis.abs() / size } else { 1.0 };
+        let hysteresis = hysteresis + share * (whole - hysteresis - adhesion);
+        Self { whole, hysteresis, adhesion: whole - hysteresis }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// The parts add up, and one that is not there stays so.
+    /// The parts add up, and one that is absent stays absent.
     #[test]
     fn parts_add_up() {
         let of = |drag, hysteresis, adhesion| {
-            let means = Means { drag, load: 2.0, hysteresis, adhesion, ..Means::default() };
-            parts(&means, 0.0)
+            Friction::new(&BlockMeans { drag, load: 2.0, hysteresis, adhesion, ..BlockMeans::default() })
         };
-        assert_eq!(of(1.0, 0.0, 0.98), [0.5, 0.0, 0.0, 0.5]);
-        assert_eq!(of(1.0, 0.98, 0.0), [0.5, 0.0, 0.5, 0.0]);
-        let [whole, _, hysteresis, adhesion] = of(1.0, 0.6, 0.2);
+        assert_eq!(of(1.0, 0.0, 0.98), Friction { whole: 0.5, hysteresis: 0.0, adhesion: 0.5 });
+        assert_eq!(of(1.0, 0.98, 0.0), Friction { whole: 0.5, hysteresis: 0.5, adhesion: 0.0 });
+        let Friction { whole, hysteresis, adhesion } = of(1.0, 0.6, 0.2);
         assert!((hysteresis + adhesion - whole).abs() < 1e-15 && (hysteresis / adhesion - 3.0).abs() < 1e-12);
         // Nothing sampled: all that there is are slopes.
-        assert_eq!(of(0.0, 0.0, 0.0), [0.0; 4]);
+        assert_eq!(of(0.0, 0.0, 0.0), Friction::default());
     }
 }

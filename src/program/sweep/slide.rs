@@ -1,19 +1,41 @@
-//! A layer that slides at constant speed, block by block.
+//! A layer that slides at constant speed, block by block, and its tangential stiffness as it is set in motion.
 
 use asperity::outputs::{Output, Variable, variables};
 use asperity::scene::{Path, Scene};
 use asperity::simulation::{Motion, Simulation, SimulationError, Start};
 
-/// What is sampled at even times of a block; its mean is exact up to the frequency of the samples.
+use super::load_search::{LoadSearch, ends};
+
+/// A block is the whole period of a periodic profile, where that is not longer than so many layers.
+const LONGEST_PERIOD: f64 = 20.0;
+/// Samples of a block, at least and at most; between, as many as the block has data points of the profile.
+const SAMPLES: (f64, f64) = (128.0, 2048.0);
+
+/// Sampled at evenly spaced times of a block.
 const SAMPLED: [Output; 4] = [Output::ForceZ, Output::Hysteresis, Output::Adhesion, Output::ContactRatio];
-/// What the run itself adds up; a block's mean is the difference over its duration.
-const ADDED: [Output; 5] =
+/// Integrated by the run itself: a block's mean is the difference over its duration.
+const INTEGRATED: [Output; 5] =
     [Output::InputEnergy, Output::DamperEnergy, Output::MaxwellEnergy, Output::FrictionEnergy, Output::ImpactEnergy];
 
-/// Means over one block.
+/// Distance over which the tangential stiffness is taken, m, ...
+const STIFFNESS_DISTANCE: f64 = 1e-6;
+/// ... or this share of a block, where that is shorter: a fine profile has fine contacts.
+const STIFFNESS_SHARE: f64 = 1e-3;
+/// Samples on that distance.
+const STIFFNESS_SAMPLES: u32 = 16;
+/// F_z at rest is the load within this share of it.
+const LOAD_AT_REST: f64 = 1e-3;
+/// Displacements w that are tried for that.
+const TRIES: usize = 12;
+/// Time to come to rest, in periods of a mass over 2π.
+const REST: f64 = 100.0;
+/// How often that and a relaxation of the dashpots are repeated.
+const RELAXATIONS: usize = 3;
+
+/// Means over a block.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Means {
-    /// |F_x|, counted positive against the motion: the carrier's work over the way, N.
+pub(super) struct BlockMeans {
+    /// |F_x|, positive against the motion: the carrier's work over the distance, N.
     pub(super) drag: f64,
     /// F_z, N.
     pub(super) load: f64,
@@ -27,7 +49,7 @@ pub(super) struct Means {
     pub(super) power: [Option<f64>; 4],
 }
 
-impl Means {
+impl BlockMeans {
     /// Over several blocks, at least one.
     pub(super) fn mean(blocks: &[Self]) -> Self {
         let share = 1.0 / blocks.len() as f64;
@@ -44,49 +66,69 @@ impl Means {
     }
 }
 
-/// How a layer is slid: what all its blocks have in common.
+/// The blocks in which a layer slides.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Way {
-    /// Of the carrier along x, m/s.
+pub(super) struct Blocks {
+    /// Speed of the carrier along x, m/s.
     pub(super) speed: f64,
     /// Length of a block, m.
-    pub(super) block: f64,
-    /// Samples a block.
-    pub(super) samples: u32,
-    /// Where the carrier starts, m.
-    pub(super) start: f64,
-    /// How far it may go from there, m; infinite on a periodic profile.
-    pub(super) end: f64,
+    pub(super) length: f64,
+    /// Samples of a block.
+    samples: u32,
+    /// u at the start, m.
+    start: f64,
+    /// Longest distance from there, m; infinite on a periodic profile.
+    longest: f64,
+}
+
+impl Blocks {
+    /// Those of a layer over the profile of `scene` at `speed` (m/s).
+    pub(super) fn new(scene: &Scene, speed: f64) -> Self {
+        let (first, last) = ends(scene);
+        let layer = scene.layer.spacing * scene.layer.masses as f64;
+        let flat = scene.surface.z.iter().all(|z| *z == scene.surface.z[0]);
+        let period = last - first;
+        let whole = scene.surface.periodic && !flat && period <= LONGEST_PERIOD * layer;
+        let block = if whole { period } else { layer };
+        let points = block / period * scene.surface.x.len() as f64;
+        let samples = points.clamp(SAMPLES.0, SAMPLES.1) as u32;
+        if flat || scene.surface.periodic {
+            return Self { speed, length: block, samples, start: 0.0, longest: f64::INFINITY };
+        }
+        let longest = (period - layer + scene.layer.spacing).max(0.0);
+        Self { speed, length: block, samples, start: first - scene.layer.origin, longest }
+    }
 }
 
 /// A layer that slides.
 #[derive(Debug)]
 pub(super) struct Slide {
     simulation: Simulation,
-    way: Way,
+    blocks: Blocks,
     sampled: Vec<Variable>,
-    added: Vec<Variable>,
+    integrated: Vec<Variable>,
+    /// Times of the samples within a block, s.
     times: Vec<f64>,
     /// Mean elongations of the Maxwell springs over the last block, m.
     elongations: Vec<f64>,
-    /// Blocks gone, parts of one included.
-    gone: f64,
+    /// Blocks slid, fractions included.
+    slid: f64,
 }
 
 impl Slide {
-    /// Starts at the displacement `w` (m), pressed long ago, at full speed.
-    pub(super) fn new(scene: &Scene, way: Way, w: f64) -> Result<Self, SimulationError> {
-        let start = Start { u: way.start, u_rate: way.speed, w, ..Start::default() };
+    /// Starts at the displacement `w` (m), relaxed and at full speed.
+    pub(super) fn new(scene: &Scene, blocks: Blocks, w: f64) -> Result<Self, SimulationError> {
+        let start = Start { u: blocks.start, u_rate: blocks.speed, w, ..Start::default() };
         let simulation = Simulation::new(scene, &start)?;
-        let duration = way.block / way.speed;
+        let duration = blocks.length / blocks.speed;
         Ok(Self {
             elongations: vec![0.0; simulation.maxwell_elongations().len()],
             simulation,
-            way,
+            blocks,
             sampled: chosen(scene, &SAMPLED),
-            added: chosen(scene, &ADDED),
-            times: (1..=way.samples).map(|i| duration * (f64::from(i) / f64::from(way.samples))).collect(),
-            gone: 0.0,
+            integrated: chosen(scene, &INTEGRATED),
+            times: (1..=blocks.samples).map(|i| duration * (f64::from(i) / f64::from(blocks.samples))).collect(),
+            slid: 0.0,
         })
     }
 
@@ -95,70 +137,129 @@ impl Slide {
         self.simulation.time()
     }
 
-    /// How far the carrier has gone, m.
+    /// Distance slid, m.
     pub(super) fn distance(&self) -> f64 {
-        self.gone * self.way.block
+        self.slid * self.blocks.length
     }
 
-    /// Whether there is room for so many more blocks.
+    /// Whether the profile is long enough for so many more blocks.
     pub(super) fn has_room(&self, blocks: f64) -> bool {
-        (self.gone + blocks) * self.way.block <= self.way.end
+        (self.slid + blocks) * self.blocks.length <= self.blocks.longest
     }
 
-    /// Slides on over a part of a block while w goes on by `dw` (m).
-    pub(super) fn press(&mut self, part: f64, dw: f64) -> Result<(), SimulationError> {
-        let duration = part * self.way.block / self.way.speed;
-        self.gone += part;
-        self.simulation.advance(&Motion { duration, u: rate(self.way.speed), w: rate(dw / duration) })
+    /// Slides over a fraction of a block while w changes by `dw` (m).
+    pub(super) fn press(&mut self, fraction: f64, dw: f64) -> Result<(), SimulationError> {
+        let duration = fraction * self.blocks.length / self.blocks.speed;
+        self.slid += fraction;
+        self.simulation.advance(&Motion { duration, u: rate(self.blocks.speed), w: rate(dw / duration) })
     }
 
     /// Slides over one block with w held.
-    pub(super) fn block(&mut self) -> Result<Means, SimulationError> {
-        let duration = self.way.block / self.way.speed;
-        let motion = Motion { duration, u: rate(self.way.speed), w: Path::default() };
+    pub(super) fn block(&mut self) -> Result<BlockMeans, SimulationError> {
+        let duration = self.blocks.length / self.blocks.speed;
+        let motion = Motion { duration, u: rate(self.blocks.speed), w: Path::default() };
         let (mut values, mut sums) = (vec![0.0; self.sampled.len()], vec![0.0; self.sampled.len()]);
         self.elongations.fill(0.0);
         let before = self.energies();
         let (sampled, elongations) = (&self.sampled, &mut self.elongations);
-        self.simulation.advance_observed(&motion, &self.times, |_, simulation| {
-            simulation.evaluate(sampled, &mut values);
+        self.simulation.advance_observed(&motion, &self.times, |_, now| {
+            now.evaluate(sampled, &mut values);
             add(&mut sums, &values);
-            add(elongations, simulation.maxwell_elongations());
+            add(elongations, now.maxwell_elongations());
         })?;
-        self.gone += 1.0;
-        let share = 1.0 / f64::from(self.way.samples);
+        self.slid += 1.0;
+        let share = 1.0 / f64::from(self.blocks.samples);
         self.elongations.iter_mut().chain(&mut sums).for_each(|sum| *sum *= share);
         let gain = self.energies();
         let mean = |i: usize| Some((gain[i]? - before[i]?) / duration);
         let [load, hysteresis, adhesion, contact] = [0, 1, 2, 3].map(|i| sums[i]);
-        let (drag, power) = (mean(0).unwrap_or(0.0) / self.way.speed, [1, 2, 3, 4].map(mean));
-        Ok(Means { drag, load, hysteresis: -hysteresis, adhesion: -adhesion, contact, power })
+        let (drag, power) = (mean(0).unwrap_or(0.0) / self.blocks.speed, [1, 2, 3, 4].map(mean));
+        Ok(BlockMeans { drag, load, hysteresis: -hysteresis, adhesion: -adhesion, contact, power })
     }
 
-    /// Brings the slow dashpots to where the last block says that they will be. Returns what they bore of F_z, N.
+    /// Moves the slow dashpots to where they will be in steady motion, by the means of the last block. Returns what the
+    /// vertical ones bore of F_z, N.
     pub(super) fn relax(&mut self) -> f64 {
-        self.simulation.relax_dashpots(&self.elongations, self.way.block / self.way.speed)
+        self.simulation.relax_dashpots(&self.elongations, self.blocks.length / self.blocks.speed)
     }
 
-    fn energies(&mut self) -> [Option<f64>; ADDED.len()] {
-        let mut values = vec![0.0; self.added.len()];
-        self.simulation.evaluate(&self.added, &mut values);
-        let of = |output| self.added.iter().position(|variable| variable.output == output).map(|i| values[i]);
-        ADDED.map(of)
+    fn energies(&mut self) -> [Option<f64>; INTEGRATED.len()] {
+        let mut values = vec![0.0; self.integrated.len()];
+        self.simulation.evaluate(&self.integrated, &mut values);
+        let of = |output| self.integrated.iter().position(|variable| variable.output == output).map(|i| values[i]);
+        INTEGRATED.map(of)
     }
 }
 
-/// A displacement at constant rate, m/s.
-pub(super) fn rate(rate: f64) -> Path {
+fn rate(rate: f64) -> Path {
     Path { rate, ..Path::default() }
 }
 
 /// The variables of the scene that give these outputs, in this order; a channel that the scene cannot have has none.
-pub(super) fn chosen(scene: &Scene, outputs: &[Output]) -> Vec<Variable> {
+fn chosen(scene: &Scene, outputs: &[Output]) -> Vec<Variable> {
     let all = variables(scene);
     outputs.iter().filter_map(|output| all.iter().find(|variable| variable.output == *output).cloned()).collect()
 }
 
 fn add(sums: &mut [f64], values: &[f64]) {
     sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
+}
+
+/// The tangential stiffness: slope of |F_x| over u as the relaxed layer is set in motion from stick, N/m; `None` where
+/// there is no friction, or where the layer does not come to its load.
+pub(super) fn tangential_stiffness(
+    scene: &Scene,
+    blocks: Blocks,
+    mut search: LoadSearch,
+    frequency: f64,
+) -> Result<Option<f64>, SimulationError> {
+    if scene.friction.is_none() {
+        return Ok(None);
+    }
+    let forces = chosen(scene, &[Output::ForceX, Output::ForceZ]);
+    for _ in 0..TRIES {
+        let mut simulation = at_rest(scene, blocks, search.w, REST / frequency)?;
+        let mut values = [0.0; 2];
+        simulation.evaluate(&forces, &mut values);
+        let [before, load] = values;
+        if (load / search.load - 1.0).abs() <= LOAD_AT_REST {
+            return slope(&mut simulation, blocks, &forces, before).map(Some);
+        }
+        let _ = search.change(load, 0.0);
+    }
+    Ok(None)
+}
+
+/// The layer at rest at w, its dashpots relaxed.
+fn at_rest(scene: &Scene, blocks: Blocks, w: f64, duration: f64) -> Result<Simulation, SimulationError> {
+    let mut simulation = Simulation::new(scene, &Start { u: blocks.start, w, ..Start::default() })?;
+    for _ in 0..RELAXATIONS {
+        simulation.advance(&Motion { duration, u: Path::default(), w: Path::default() })?;
+        let elongations = simulation.maxwell_elongations().to_vec();
+        simulation.relax_dashpots(&elongations, 0.0);
+    }
+    simulation.advance(&Motion { duration, u: Path::default(), w: Path::default() })?;
+    Ok(simulation)
+}
+
+/// Slope of the straight line from F_x = `before` (N) that fits -F_x, the first of `forces`, best, N/m.
+fn slope(
+    simulation: &mut Simulation,
+    blocks: Blocks,
+    forces: &[Variable],
+    before: f64,
+) -> Result<f64, SimulationError> {
+    let duration = STIFFNESS_DISTANCE.min(STIFFNESS_SHARE * blocks.length) / blocks.speed;
+    let samples = STIFFNESS_SAMPLES;
+    let share = |i: u32| if i == samples { 1.0 } else { f64::from(i) / f64::from(samples) };
+    let times: Vec<f64> = (1..=samples).map(|i| duration * share(i)).collect();
+    let (mut products, mut squares, mut values) = (0.0, 0.0, [0.0; 2]);
+    let motion = Motion { duration, u: rate(blocks.speed), w: Path::default() };
+    simulation.advance_observed(&motion, &times, |time, now| {
+        now.evaluate(forces, &mut values);
+        let u = blocks.speed * time;
+        products += u * (before - values[0]);
+        squares += u * u;
+    })?;
+    Ok(products / squares)
 }

@@ -1,28 +1,26 @@
 //! When the means of a run are steady: judged by its blocks.
 //!
-//! The run is cut into blocks of equal length, and the mean of a quantity over each is all that is looked at. The
-//! latter half of the blocks, at least [`FEWEST`], is the window; what comes before is left to the transient. The
-//! window is steady where
+//! The run is divided into blocks of equal length, of which only the means of a quantity are used. The latter half of
+//! the blocks, at least [`FEWEST`], is the window; those before are left to the transient. The window is steady where
 //!
-//! - its mean is known: the standard error is at most the tolerance. Blocks that follow each other may be alike, which
-//!   would make a mean seem better known than it is. So s/√n is enlarged by what the blocks' correlation r with the
-//!   next makes of it, √((1+r)/(1-r)); and neighbours are joined in pairs, and pairs again, as long as
-//!   [`FEWEST_JOINED`] are left: the largest standard error of all these is taken (Flyvbjerg and Petersen, J. Chem.
-//!   Phys. 91, 1989);
+//! - the standard error of its mean is at most the tolerance. Successive blocks may be correlated, which would make a
+//!   mean seem better known than it is. So s/√n is multiplied by √((1+r)/(1-r)), r being the correlation of a block
+//!   with the next; and neighbours are joined in pairs, and pairs again, as long as [`FEWEST_JOINED`] are left: the
+//!   largest standard error of all these is taken (Flyvbjerg and Petersen, J. Chem. Phys. 91, 1989);
 //! - it has no trend: the change along the straight line of least squares from the first block to the last is at most
 //!   the tolerance, or no more than twice what scatter alone would make of it.
 //!
-//! On a periodic profile a block is a whole number of periods: the means of a layer in steady motion are then the same
-//! in all of them, and [`FEWEST`] blocks do.
+//! On a periodic profile a block is a whole number of periods: in steady motion the means of all blocks are then the
+//! same, and [`FEWEST`] blocks are enough.
 
 /// The fewest blocks of a window.
 pub(super) const FEWEST: usize = 3;
-/// The fewest blocks, joined ones, whose scatter or correlation says anything of the mean of many.
+/// The fewest blocks, joined ones, whose scatter or correlation is used.
 const FEWEST_JOINED: usize = 8;
-/// The largest correlation of a block with the next that is believed.
+/// The largest correlation of a block with the next that is used.
 const CORRELATED: f64 = 0.95;
 
-/// What the blocks of a window say of a quantity.
+/// A quantity over the blocks of a window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Window {
     /// The mean.
@@ -41,7 +39,7 @@ pub(super) fn window(count: usize) -> usize {
 }
 
 impl Window {
-    /// What the blocks of a window, at least two, say.
+    /// From the means of the blocks, at least two.
     pub(super) fn new(blocks: &[f64]) -> Self {
         let mean = mean(blocks);
         let (trend, trend_error) = trend(blocks, mean);
@@ -63,7 +61,7 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// The largest standard error of the mean that blocks joined in pairs, pairs of pairs and so on make likely.
+/// The largest standard error of the mean of the blocks, of pairs of them, of pairs of pairs and so on.
 fn standard_error(blocks: &[f64]) -> f64 {
     let mut joined = blocks.to_vec();
     let r = correlation(blocks);
@@ -75,7 +73,7 @@ fn standard_error(blocks: &[f64]) -> f64 {
     error
 }
 
-/// s/√n of blocks that know nothing of each other.
+/// s/√n, the standard error of independent blocks.
 fn error_of_mean(blocks: &[f64]) -> f64 {
     let n = blocks.len() as f64;
     let mean = mean(blocks);
@@ -83,8 +81,8 @@ fn error_of_mean(blocks: &[f64]) -> f64 {
     (squares / (n * (n - 1.0).max(1.0))).sqrt()
 }
 
-/// Correlation of a block with the next, 0 where it is not told from scatter; few blocks make it seem smaller than it
-/// is, by (1 + 3r)/n.
+/// Correlation of a block with the next, 0 where it is not distinct from scatter. Few blocks make it seem smaller than
+/// it is, by (1 + 3r)/n.
 fn correlation(blocks: &[f64]) -> f64 {
     let n = blocks.len() as f64;
     let mean = mean(blocks);
@@ -101,12 +99,12 @@ fn correlation(blocks: &[f64]) -> f64 {
 /// The change along the line of least squares and its standard error from the scatter about the line.
 fn trend(blocks: &[f64], mean: f64) -> (f64, f64) {
     let n = blocks.len() as f64;
-    let place = |i: usize| i as f64 - 0.5 * (n - 1.0);
-    let places = n * (n * n - 1.0) / 12.0;
-    let slope = blocks.iter().enumerate().map(|(i, block)| place(i) * (block - mean)).sum::<f64>() / places;
-    let rest = |(i, block): (usize, &f64)| (block - mean - slope * place(i)).powi(2);
+    let position = |i: usize| i as f64 - 0.5 * (n - 1.0);
+    let squares = n * (n * n - 1.0) / 12.0;
+    let slope = blocks.iter().enumerate().map(|(i, block)| position(i) * (block - mean)).sum::<f64>() / squares;
+    let rest = |(i, block): (usize, &f64)| (block - mean - slope * position(i)).powi(2);
     let scatter: f64 = blocks.iter().enumerate().map(rest).sum();
-    let variance = scatter / (n - 2.0).max(1.0) / places;
+    let variance = scatter / (n - 2.0).max(1.0) / squares;
     ((n - 1.0) * slope, (n - 1.0) * variance.sqrt())
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use asperity::element::{Element, PointContact, Quantity, Table};
+use asperity::element::{Element, Node, PointContact, Quantity, Table};
 use asperity::outputs::Variable;
 use asperity::scene::{Parameter, Value};
 use asperity::simulation::Start;
@@ -22,8 +22,9 @@ pub fn run(bytes: &[u8]) {
 
 /// From the middle of the table to its ends and past them, along both axes.
 fn run_table(table: Table, goes_beyond: bool) {
-    let (slow, fast) = (table.speeds[0], table.speeds[table.speeds.len() - 1]);
-    let separations = [0, table.pressures.len() - 1].map(|at| table.value(Quantity::Separation, (0, at, 0)));
+    let (slow, fast) = (table.grid.speeds[0], table.grid.speeds[table.grid.speeds.len() - 1]);
+    let separations =
+        [0, table.grid.loads.len() - 1].map(|load| table.value(Quantity::Separation, Node { load, ..Node::default() }));
     let height = separations[0] - separations[1];
     let w = 0.5 * (separations[0] + separations[1]) - table.rest_separation;
     let mut contact = PointContact::new(table);
@@ -33,13 +34,13 @@ fn run_table(table: Table, goes_beyond: bool) {
     let variables = contact.variables();
     let Ok(mut element) = Element::new(&contact, &Start { w, ..Start::default() }) else { return };
     check(&element, &variables);
-    let way = element.slip_way().max(height);
+    let way = element.stick_length().max(height);
     for (u_rate, moved) in
         [(slow, 0.0), (fast, -0.3 * height), (-fast, 0.3 * height), (2.0 * fast, -height), (0.0, way)]
     {
         let duration = way / fast;
         let before = element.save();
-        match element.advance(duration, (u_rate, moved / duration)) {
+        match element.advance(duration, u_rate, moved / duration) {
             Ok(()) => check(&element, &variables),
             Err(error) => {
                 assert!(!error.to_string().is_empty());

@@ -1,39 +1,37 @@
-//! The points of a sweep: values as the command line gives them, their product, its shards.
+//! The values of a sweep and its shards as the command line gives them.
 
-use std::fmt;
+use crate::program::terminal::rounded;
 
-use crate::program::text::rounded;
-
-/// Values of one quantity, rising, each once.
+/// Values of a quantity, rising, each once.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Values(pub(crate) Vec<f64>);
 
-/// How `a..b/n` is divided.
+/// The spacing of the values of `a..b/n`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Even {
-    InLogarithm,
-    InValue,
+enum Spacing {
+    Logarithmic,
+    Linear,
 }
 
-/// The most values of one quantity.
+/// Most values between two ends.
 const MOST: usize = 10_000;
-/// Digits that a value between two ends keeps: enough to be even, few enough to be read.
+/// Significant digits of the values between two ends.
 const DIGITS: usize = 6;
 
 impl Values {
-    /// Speeds, pressures or forces: `1e-4..10/20` is 20 values evenly in the logarithm, ends included; also a list, or
-    /// both joined by commas.
+    /// Speeds, pressures or forces: `1e-4..10/20` is 20 values evenly spaced in the logarithm, ends included; also a
+    /// list, or both separated by commas.
     pub(crate) fn in_logarithm(text: &str) -> Result<Self, String> {
-        Self::parse(text, Even::InLogarithm)
+        Self::parse(text, Spacing::Logarithmic)
     }
 
-    /// Temperatures: `273..313/3` is 3 values evenly.
+    /// Temperatures: `273..313/3` is 3 evenly spaced values.
     pub(crate) fn in_value(text: &str) -> Result<Self, String> {
-        Self::parse(text, Even::InValue)
+        Self::parse(text, Spacing::Linear)
     }
 
-    fn parse(text: &str, even: Even) -> Result<Self, String> {
-        let parts: Result<Vec<Vec<f64>>, String> = text.split(',').map(|part| values(part.trim(), even)).collect();
+    fn parse(text: &str, spacing: Spacing) -> Result<Self, String> {
+        let parts: Result<Vec<Vec<f64>>, String> = text.split(',').map(|part| values(part.trim(), spacing)).collect();
         let mut all = parts?.concat();
         all.sort_by(f64::total_cmp);
         all.dedup();
@@ -41,15 +39,7 @@ impl Values {
     }
 }
 
-/// Those of a header: `0.1,1,10`.
-impl fmt::Display for Values {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let texts: Vec<String> = self.0.iter().map(|&value| crate::program::result_file::real(value)).collect();
-        f.write_str(&texts.join(","))
-    }
-}
-
-fn values(part: &str, even: Even) -> Result<Vec<f64>, String> {
+fn values(part: &str, spacing: Spacing) -> Result<Vec<f64>, String> {
     let Some((low, rest)) = part.split_once("..") else { return Ok(vec![number(part)?]) };
     let (high, count) = rest.split_once('/').ok_or_else(|| wrong(part, "a..b/n, such as 1e-4..10/20"))?;
     let (low, high) = (number(low)?, number(high)?);
@@ -58,11 +48,11 @@ fn values(part: &str, even: Even) -> Result<Vec<f64>, String> {
         return Err(wrong(part, &format!("a..b/n with a < b and 2 to {MOST} values")));
     }
     let last = count - 1;
-    let at = |i: usize| match (i, even) {
+    let at = |i: usize| match (i, spacing) {
         (0, _) => low,
         (i, _) if i == last => high,
-        (i, Even::InLogarithm) => rounded(low * (high / low).powf(i as f64 / last as f64), DIGITS),
-        (i, Even::InValue) => rounded(low + (high - low) * (i as f64 / last as f64), DIGITS),
+        (i, Spacing::Logarithmic) => rounded(low * (high / low).powf(i as f64 / last as f64), DIGITS),
+        (i, Spacing::Linear) => rounded(low + (high - low) * (i as f64 / last as f64), DIGITS),
     };
     Ok((0..count).map(at).collect())
 }
@@ -74,41 +64,6 @@ fn number(text: &str) -> Result<f64, String> {
 
 fn wrong(found: &str, expected: &str) -> String {
     format!("expected {expected}, found {found:?}")
-}
-
-/// One point of a sweep.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Point {
-    /// m/s.
-    pub(super) speed: f64,
-    /// Pressure, Pa, or force, N.
-    pub(super) load: f64,
-    /// K; `None` where the scene knows no temperature.
-    pub(super) temperature: Option<f64>,
-}
-
-/// All points: every speed at every load at every temperature.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Grid {
-    pub(super) speeds: Values,
-    pub(super) loads: Values,
-    /// `None` where the scene knows no temperature.
-    pub(super) temperatures: Option<Values>,
-}
-
-impl Grid {
-    /// The points by temperature, load, speed.
-    pub(super) fn points(&self) -> Vec<Point> {
-        let temperatures = match &self.temperatures {
-            Some(values) => values.0.iter().map(|&value| Some(value)).collect(),
-            None => vec![None],
-        };
-        let at = |temperature: Option<f64>, load: f64| {
-            self.speeds.0.iter().map(move |&speed| Point { speed, load, temperature })
-        };
-        let loads = |temperature| self.loads.0.iter().flat_map(move |&load| at(temperature, load));
-        temperatures.into_iter().flat_map(loads).collect()
-    }
 }
 
 /// One share of a sweep.
@@ -129,9 +84,9 @@ impl Shard {
         }
     }
 
-    /// Whether the point with this number is in it: every `count`th is, so that all shards have slow and quick ones.
-    pub(super) fn has(self, number: usize) -> bool {
-        number % self.count == self.index - 1
+    /// Whether the point of this index is in it: every `count`th is, so that all shards have slow and quick points.
+    pub(super) fn has(self, index: usize) -> bool {
+        index % self.count == self.index - 1
     }
 }
 
@@ -175,18 +130,5 @@ mod tests {
         let shards: Vec<Shard> = ["1/3", "2/3", "3/3"].map(|text| Shard::parse(text).unwrap()).into();
         assert!((0..10).all(|number| shards.iter().filter(|shard| shard.has(number)).count() == 1));
         assert!(["0/3", "4/3", "1", "a/2", "1/0"].iter().all(|text| Shard::parse(text).is_err()));
-    }
-
-    #[test]
-    fn points_come_by_temperature_load_and_speed() {
-        let values = |list: &[f64]| Values(list.to_vec());
-        let grid =
-            Grid { speeds: values(&[1.0, 2.0]), loads: values(&[3.0, 4.0]), temperatures: Some(values(&[5.0, 6.0])) };
-        let points = grid.points();
-        let expected = [(1.0, 3.0, 5.0), (2.0, 3.0, 5.0), (1.0, 4.0, 5.0)];
-        assert_eq!(points.len(), 8);
-        for (point, (speed, load, temperature)) in points.iter().zip(expected) {
-            assert_eq!(*point, Point { speed, load, temperature: Some(temperature) });
-        }
     }
 }

@@ -1,0 +1,132 @@
+//! The points of a sweep: speeds, loads and temperatures.
+
+/// What presses the layer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Load {
+    /// A mean pressure on the nominal area, Pa.
+    Pressure {
+        /// The nominal area, m².
+        area: f64,
+    },
+    /// F_z of the whole layer, N: of a scene that has no area.
+    Force,
+}
+
+impl Load {
+    /// `pressure` or `force`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pressure { .. } => "pressure",
+            Self::Force => "force",
+        }
+    }
+
+    /// The unit of the loads.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Pressure { .. } => "Pa",
+            Self::Force => "N",
+        }
+    }
+
+    /// Area that the loads act on, m²; 1 where they are forces.
+    pub fn area(self) -> f64 {
+        match self {
+            Self::Pressure { area } => area,
+            Self::Force => 1.0,
+        }
+    }
+
+    /// F_z of a load, N.
+    pub fn force(self, load: f64) -> f64 {
+        load * self.area()
+    }
+
+    /// The load of a force F_z, N.
+    pub fn of_force(self, force: f64) -> f64 {
+        force / self.area()
+    }
+}
+
+/// A point of a sweep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OperatingPoint {
+    /// Sliding speed, m/s.
+    pub speed: f64,
+    /// Pressure, Pa, or force, N.
+    pub load: f64,
+    /// Temperature, K; `None` where the scene has none.
+    pub temperature: Option<f64>,
+}
+
+impl OperatingPoint {
+    /// The point in words: `0.1 m/s, 200000 Pa, 293.15 K`.
+    pub fn describe(&self, load: Load) -> String {
+        let temperature = self.temperature.map_or_else(String::new, |temperature| format!(", {temperature} K"));
+        format!("{} m/s, {} {}{temperature}", self.speed, self.load, load.unit())
+    }
+}
+
+/// The points of a sweep: every speed at every load at every temperature. The values of each axis rise.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SweepGrid {
+    /// Speeds, m/s.
+    pub speeds: Vec<f64>,
+    /// Pressures, Pa, or forces, N.
+    pub loads: Vec<f64>,
+    /// Temperatures, K; none where the scene has none.
+    pub temperatures: Vec<f64>,
+}
+
+impl SweepGrid {
+    /// The number of points.
+    pub fn count(&self) -> usize {
+        self.temperatures.len().max(1) * self.loads.len() * self.speeds.len()
+    }
+
+    /// The points by temperature, load, speed.
+    pub fn points(&self) -> impl Iterator<Item = OperatingPoint> {
+        (0..self.count()).map(|index| self.point(index))
+    }
+
+    /// The point at an index of [`points`](Self::points).
+    pub fn point(&self, index: usize) -> OperatingPoint {
+        let (speeds, loads) = (self.speeds.len(), self.loads.len());
+        OperatingPoint {
+            speed: self.speeds[index % speeds],
+            load: self.loads[index / speeds % loads],
+            temperature: self.temperatures.get(index / speeds / loads).copied(),
+        }
+    }
+
+    /// The index of a point in [`points`](Self::points), if it is one of them.
+    pub fn index(&self, point: &OperatingPoint) -> Option<usize> {
+        let on = |axis: &[f64], value: f64| axis.iter().position(|&other| other == value);
+        let temperature = match point.temperature {
+            Some(temperature) => on(&self.temperatures, temperature)?,
+            None if self.temperatures.is_empty() => 0,
+            None => return None,
+        };
+        let load = temperature * self.loads.len() + on(&self.loads, point.load)?;
+        Some(load * self.speeds.len() + on(&self.speeds, point.speed)?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_come_by_temperature_load_and_speed() {
+        let grid = SweepGrid { speeds: vec![1.0, 2.0], loads: vec![3.0, 4.0], temperatures: vec![5.0, 6.0] };
+        let points: Vec<OperatingPoint> = grid.points().collect();
+        let expected = [(1.0, 3.0, 5.0), (2.0, 3.0, 5.0), (1.0, 4.0, 5.0)];
+        assert_eq!(points.len(), 8);
+        for (point, (speed, load, temperature)) in points.iter().zip(expected) {
+            assert_eq!(*point, OperatingPoint { speed, load, temperature: Some(temperature) });
+        }
+        assert!(points.iter().enumerate().all(|(index, point)| grid.index(point) == Some(index)));
+        assert_eq!(grid.index(&OperatingPoint { temperature: None, ..points[0] }), None);
+        assert_eq!(grid.index(&OperatingPoint { speed: 1.5, ..points[0] }), None);
+    }
+}

@@ -1,0 +1,515 @@
+//! The file format of a sweep's table, written and read here alone: a header of lines `# key = value`, the names of the
+//! columns with their units, and one row for each operating point.
+//!
+//! The columns of numbers are those of [`Quantity`]; one is added there. Readers find columns by their names.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use super::error::{TableError, TableProblem};
+use super::grid::{Load, OperatingPoint, SweepGrid};
+use crate::scene::{SMALLEST, is_possible};
+
+/// The first line of a table; its number grows when readers have to know of a change.
+pub const FORMAT: &str = "# asperity sweep = 1";
+/// The status of a point whose values can be relied on.
+pub const STEADY: &str = "steady";
+/// The columns before those of [`Quantity`]; `{load}` and `{unit}` stand for those of the table's [`Load`].
+const POINT_COLUMNS: [&str; 4] = ["speed [m/s]", "{load} [{unit}]", "temperature [K]", "status"];
+
+/// The values that a column may hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Range {
+    Any,
+    NonNegative,
+    Positive,
+}
+
+/// What an element makes of a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Need {
+    Required,
+    Optional,
+    Ignored,
+}
+
+/// A column of numbers.
+struct Column {
+    name: &'static str,
+    range: Range,
+    need: Need,
+}
+
+macro_rules! columns {
+    ($($(#[$doc:meta])* $quantity:ident: $name:literal, $range:ident, $need:ident;)*) => {
+        /// The columns of numbers of a table.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Quantity {
+            $($(#[$doc])* $quantity,)*
+        }
+
+        const COLUMNS: [Column; Quantity::ALL.len()] =
+            [$(Column { name: $name, range: Range::$range, need: Need::$need },)*];
+
+        impl Quantity {
+            /// All of them, in their order in a file.
+            pub const ALL: [Self; [$(Self::$quantity),*].len()] = [$(Self::$quantity),*];
+        }
+    };
+}
+
+columns! {
+    /// Friction coefficient, 1.
+    Friction: "friction [1]", NonNegative, Required;
+    /// Standard error of the friction coefficient, 1.
+    FrictionStandardError: "friction_standard_error [1]", NonNegative, Ignored;
+    /// Part of the friction coefficient that is hysteresis, 1.
+    Hysteresis: "friction_hysteresis [1]", Any, Optional;
+    /// Part of the friction coefficient that is adhesion, 1.
+    Adhesion: "friction_adhesion [1]", Any, Ignored;
+    /// Mean load over the window, Pa or N.
+    MeanLoad: "mean_{load} [{unit}]", Positive, Ignored;
+    /// Masses in contact over all masses, 1.
+    ContactRatio: "contact_ratio [1]", NonNegative, Optional;
+    /// Power lost in dampers, W.
+    DamperPower: "P_damper [W]", NonNegative, Optional;
+    /// Power lost in Maxwell elements, W.
+    MaxwellPower: "P_maxwell [W]", NonNegative, Optional;
+    /// Power lost in friction, W.
+    FrictionPower: "P_friction [W]", NonNegative, Optional;
+    /// Power lost in impacts, W.
+    ImpactPower: "P_impact [W]", NonNegative, Optional;
+    /// Mean separation of the carrier's rest line and the profile's mean line, m.
+    Separation: "separation [m]", Any, Required;
+    /// Tangential stiffness at the start of motion, N/m.
+    Stiffness: "tangential_stiffness [N/m]", Positive, Required;
+    /// Displacement w of the carrier, m.
+    Displacement: "w [m]", Any, Ignored;
+    /// Number of displacements w that were tried, 1.
+    Runs: "runs [1]", Positive, Ignored;
+    /// Simulated time of the last run, s.
+    Time: "time [s]", Positive, Ignored;
+}
+
+impl Quantity {
+    /// The powers lost, by channel.
+    pub const CHANNELS: [Self; 4] = [Self::DamperPower, Self::MaxwellPower, Self::FrictionPower, Self::ImpactPower];
+
+    fn column(self) -> &'static Column {
+        &COLUMNS[self as usize]
+    }
+
+    fn name(self, load: Load) -> String {
+        column_name(self.column().name, load)
+    }
+
+    fn expected(self) -> &'static str {
+        match self.column().range {
+            Range::Any => "a number",
+            Range::NonNegative => "a number, 0 or more",
+            Range::Positive => "a number above 0",
+        }
+    }
+
+    fn allows(self, value: f64) -> bool {
+        is_possible(value)
+            && match self.column().range {
+                Range::Any => true,
+                Range::NonNegative => value >= 0.0,
+                Range::Positive => value >= SMALLEST,
+            }
+    }
+}
+
+/// The name of a column in a table of such loads.
+fn column_name(template: &str, load: Load) -> String {
+    template.replace("{load}", load.name()).replace("{unit}", load.unit())
+}
+
+/// The names of all columns, in their order in a file.
+fn columns(load: Load) -> Vec<String> {
+    let point = POINT_COLUMNS.iter().map(|name| column_name(name, load));
+    point.chain(Quantity::ALL.iter().map(|quantity| quantity.name(load))).collect()
+}
+
+/// What a table says before its rows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TableHeader {
+    /// The name of the scene that was swept.
+    pub scene: String,
+    /// What tells this sweep from others.
+    pub fingerprint: String,
+    /// What the loads are.
+    pub load: Load,
+    /// Separation at w = 0, m.
+    pub rest_separation: f64,
+    /// The points that the table is to have.
+    pub grid: SweepGrid,
+}
+
+impl TableHeader {
+    /// The lines of the header, the names of the columns included.
+    pub fn text(&self) -> String {
+        let grid = &self.grid;
+        let mut lines = vec![
+            FORMAT.to_owned(),
+            format!("# scene = {}", one_line(&self.scene)),
+            format!("# fingerprint = {}", self.fingerprint),
+        ];
+        if let Load::Pressure { area } = self.load {
+            lines.push(format!("# nominal_area = {} m2", number(area)));
+        }
+        lines.push(format!("# rest_separation = {} m", number(self.rest_separation)));
+        lines.push(format!("# speeds = {} m/s", list(&grid.speeds)));
+        lines.push(format!("# {}s = {} {}", self.load.name(), list(&grid.loads), self.load.unit()));
+        if !grid.temperatures.is_empty() {
+            lines.push(format!("# temperatures = {} K", list(&grid.temperatures)));
+        }
+        lines.push(columns(self.load).join(","));
+        lines.join("\n") + "\n"
+    }
+}
+
+/// The row of a point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TableRow {
+    /// The point.
+    pub point: OperatingPoint,
+    /// [`STEADY`], or what is wrong.
+    pub status: String,
+    values: [Option<f64>; Quantity::ALL.len()],
+}
+
+impl TableRow {
+    /// A row without values.
+    pub fn new(point: OperatingPoint, status: String) -> Self {
+        Self { point, status, values: [None; Quantity::ALL.len()] }
+    }
+
+    /// A value; `None` where the point has none.
+    pub fn value(&self, quantity: Quantity) -> Option<f64> {
+        self.values[quantity as usize]
+    }
+
+    /// Sets a value.
+    pub fn set(&mut self, quantity: Quantity, value: Option<f64>) {
+        self.values[quantity as usize] = value;
+    }
+
+    /// Whether the values can be relied on.
+    pub fn is_steady(&self) -> bool {
+        self.status == STEADY
+    }
+
+    /// The row's line, its end included.
+    pub fn line(&self) -> String {
+        let text = |value: &Option<f64>| value.map(number).unwrap_or_default();
+        let point = [Some(self.point.speed), Some(self.point.load), self.point.temperature];
+        let fields = point.iter().map(text).chain([quoted(&self.status)]).chain(self.values.iter().map(text));
+        fields.collect::<Vec<_>>().join(",") + "\n"
+    }
+}
+
+/// The shortest decimal that reads back as the same number; far from 1 with an exponent.
+fn number(value: f64) -> String {
+    if value == 0.0 || (1e-4..1e16).contains(&value.abs()) { format!("{value}") } else { format!("{value:e}") }
+}
+
+fn list(values: &[f64]) -> String {
+    values.iter().map(|&value| number(value)).collect::<Vec<_>>().join(",")
+}
+
+fn one_line(text: &str) -> String {
+    text.replace(['\n', '\r'], " ")
+}
+
+fn quoted(text: &str) -> String {
+    let text = one_line(text);
+    if text.contains([',', '"']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text }
+}
+
+/// A table's text, divided into its fields.
+#[derive(Debug)]
+pub struct TableText {
+    file: PathBuf,
+    /// The values of the header by key.
+    header: BTreeMap<String, String>,
+    columns: Vec<String>,
+    /// The rows, none of them checked.
+    pub lines: Vec<TableLine>,
+}
+
+/// The line of a row.
+#[derive(Debug)]
+pub struct TableLine {
+    /// Its number in the file, from 1.
+    number: usize,
+    /// Its text without its end.
+    pub text: String,
+    fields: Vec<String>,
+}
+
+impl TableText {
+    /// Divides `text` into its fields; `file` is where it comes from.
+    ///
+    /// # Errors
+    /// [`TableError`] where it is not the table of a sweep, or a row has more or fewer fields than there are columns.
+    pub fn parse(text: &str, file: &Path) -> Result<Self, TableError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let (comments, lines): (Vec<_>, Vec<_>) = text
+            .lines()
+            .zip(1..)
+            .filter(|(line, _)| !line.trim().is_empty())
+            .partition(|(line, _)| line.starts_with('#'));
+        let header = comments.iter().filter_map(|(line, _)| key_and_value(&line[1..])).collect();
+        let mut lines = lines.into_iter();
+        let columns = lines.next().map_or_else(Vec::new, |(line, _)| fields(line));
+        let lines = lines.map(|(line, number)| TableLine { number, text: line.to_owned(), fields: fields(line) });
+        let table = Self { file: file.to_owned(), header, columns, lines: lines.collect() };
+        table.check()?;
+        Ok(table)
+    }
+
+    fn check(&self) -> Result<(), TableError> {
+        match self.header.get("asperity sweep").map(String::as_str) {
+            Some("1") => (),
+            found => return Err(self.error(None, TableProblem::Format(found.unwrap_or("none").to_owned()))),
+        }
+        let expected = self.columns.len();
+        match self.lines.iter().find(|line| line.fields.len() != expected) {
+            Some(line) => {
+                Err(self.error(Some(line.number), TableProblem::Fields { found: line.fields.len(), expected }))
+            }
+            None => Ok(()),
+        }
+    }
+
+    pub(super) fn error(&self, line: Option<usize>, problem: TableProblem) -> TableError {
+        TableError::new(&self.file, line, problem)
+    }
+
+    /// The name of the scene that was swept.
+    pub fn scene(&self) -> String {
+        self.header.get("scene").cloned().unwrap_or_else(|| "contact".into())
+    }
+
+    /// What the loads are.
+    ///
+    /// # Errors
+    /// [`TableError`] where they are pressures and the header does not give the area.
+    pub fn load(&self) -> Result<Load, TableError> {
+        if self.column(&column_name(POINT_COLUMNS[1], Load::Force)).is_ok() {
+            return Ok(Load::Force);
+        }
+        let area = self.header_number("nominal_area", "m2", "an area above 0 in m2", |area| area > 0.0)?;
+        Ok(Load::Pressure { area })
+    }
+
+    /// Separation at w = 0, m.
+    ///
+    /// # Errors
+    /// [`TableError`] where the header does not give it.
+    pub fn rest_separation(&self) -> Result<f64, TableError> {
+        self.header_number("rest_separation", "m", "a length in m", |_| true)
+    }
+
+    /// The header of a table as a sweep writes it.
+    ///
+    /// # Errors
+    /// [`TableError`] where a line of it is missing, or the columns are not those of this version in their order.
+    pub fn header(&self) -> Result<TableHeader, TableError> {
+        let load = self.load()?;
+        let expected = columns(load);
+        if self.columns != expected {
+            return Err(self.error(None, TableProblem::Columns(expected.join(","))));
+        }
+        let loads = match load {
+            Load::Pressure { .. } => self.header_numbers("pressures", "Pa"),
+            Load::Force => self.header_numbers("forces", "N"),
+        };
+        let has_temperatures = self.header.contains_key("temperatures");
+        Ok(TableHeader {
+            scene: self.scene(),
+            fingerprint: self.header_text("fingerprint")?.to_owned(),
+            load,
+            rest_separation: self.rest_separation()?,
+            grid: SweepGrid {
+                speeds: self.header_numbers("speeds", "m/s")?,
+                loads: loads?,
+                temperatures: if has_temperatures { self.header_numbers("temperatures", "K")? } else { Vec::new() },
+            },
+        })
+    }
+
+    fn header_text(&self, key: &'static str) -> Result<&str, TableError> {
+        self.header.get(key).map(String::as_str).ok_or_else(|| self.header_error(key, "such a line"))
+    }
+
+    fn header_error(&self, key: &'static str, expected: &'static str) -> TableError {
+        let found = self.header.get(key).cloned().unwrap_or_default();
+        self.error(None, TableProblem::Header { key, found, expected })
+    }
+
+    fn header_number(
+        &self,
+        key: &'static str,
+        unit: &str,
+        expected: &'static str,
+        allowed: fn(f64) -> bool,
+    ) -> Result<f64, TableError> {
+        let text = self.header.get(key).and_then(|text| text.strip_suffix(unit));
+        let number = text.and_then(|number| number.trim().parse().ok());
+        let number = number.filter(|&number| is_possible(number) && allowed(number));
+        number.ok_or_else(|| self.header_error(key, expected))
+    }
+
+    fn header_numbers(&self, key: &'static str, unit: &str) -> Result<Vec<f64>, TableError> {
+        let text = self.header_text(key)?;
+        let numbers = text.strip_suffix(unit).and_then(|list| list.split(',').map(|n| n.trim().parse().ok()).collect());
+        numbers.ok_or_else(|| self.header_error(key, "numbers with their unit"))
+    }
+
+    /// The rows, their points checked; fields that are no numbers have no value.
+    ///
+    /// # Errors
+    /// [`TableError`] where a column is missing or a point is not given by positive numbers.
+    pub fn rows(&self, load: Load) -> Result<Vec<TableRow>, TableError> {
+        let points = self.points(load)?;
+        let status = self.column(POINT_COLUMNS[3])?;
+        let columns = Quantity::ALL.map(|quantity| self.column(&quantity.name(load)).ok());
+        let row = |(line, point): (&TableLine, OperatingPoint)| TableRow {
+            point,
+            status: line.fields[status].clone(),
+            values: columns.map(|column| line.fields[column?].parse().ok()),
+        };
+        Ok(self.lines.iter().zip(points).map(row).collect())
+    }
+
+    fn points(&self, load: Load) -> Result<Vec<OperatingPoint>, TableError> {
+        let names = POINT_COLUMNS.map(|name| column_name(name, load));
+        let (speed, pressed) = (self.column(&names[0])?, self.column(&names[1])?);
+        let temperature = self.column(&names[2])?;
+        let point = |line: &TableLine| {
+            let positive = |column: usize| {
+                let number = line.fields[column].parse().ok();
+                let number = number.filter(|&number: &f64| number >= SMALLEST && is_possible(number));
+                number.ok_or_else(|| self.field_error(line, column, "a number above 0"))
+            };
+            let has_temperature = !line.fields[temperature].is_empty();
+            Ok(OperatingPoint {
+                speed: positive(speed)?,
+                load: positive(pressed)?,
+                temperature: if has_temperature { Some(positive(temperature)?) } else { None },
+            })
+        };
+        let points: Vec<OperatingPoint> = self.lines.iter().map(point).collect::<Result<_, TableError>>()?;
+        match points.iter().position(|point| point.temperature.is_none()) {
+            Some(row) if points.iter().any(|point| point.temperature.is_some()) => {
+                Err(self.field_error(&self.lines[row], temperature, "a number, as in other rows"))
+            }
+            _ => Ok(points),
+        }
+    }
+
+    /// The values of a quantity that an element reads, in the order of `rows`; `None` where the column is ignored, or
+    /// is missing or empty and need not be there.
+    pub(super) fn values(
+        &self,
+        load: Load,
+        quantity: Quantity,
+        rows: &[usize],
+    ) -> Result<Option<Vec<f64>>, TableError> {
+        let need = quantity.column().need;
+        let column = self.column(&quantity.name(load));
+        let column = match (need, column) {
+            (Need::Ignored, _) | (Need::Optional, Err(_)) => return Ok(None),
+            (_, column) => column?,
+        };
+        if need == Need::Optional && rows.iter().all(|&row| self.lines[row].fields[column].is_empty()) {
+            return Ok(None);
+        }
+        let value = |&row: &usize| {
+            let line = &self.lines[row];
+            let number = line.fields[column].parse().ok().filter(|&number| quantity.allows(number));
+            number.ok_or_else(|| self.field_error(line, column, quantity.expected()))
+        };
+        rows.iter().map(value).collect::<Result<_, _>>().map(Some)
+    }
+
+    /// The number in the file of the line of a row.
+    pub(super) fn line_number(&self, row: usize) -> usize {
+        self.lines[row].number
+    }
+
+    fn column(&self, name: &str) -> Result<usize, TableError> {
+        let index = self.columns.iter().position(|column| column == name);
+        index.ok_or_else(|| self.error(None, TableProblem::NoColumn(name.into())))
+    }
+
+    fn field_error(&self, line: &TableLine, column: usize, expected: &'static str) -> TableError {
+        let (column, found) = (self.columns[column].clone(), line.fields[column].clone());
+        self.error(Some(line.number), TableProblem::Field { column, found, expected })
+    }
+}
+
+fn key_and_value(comment: &str) -> Option<(String, String)> {
+    let (key, value) = comment.split_once('=')?;
+    Some((key.trim().to_owned(), value.trim().to_owned()))
+}
+
+/// The fields of a line; one in quotes may hold commas, and quotes doubled.
+fn fields(line: &str) -> Vec<String> {
+    let (mut fields, mut field, mut quoted) = (Vec::new(), String::new(), false);
+    let mut letters = line.chars().peekable();
+    while let Some(letter) = letters.next() {
+        match letter {
+            '"' if quoted && letters.next_if_eq(&'"').is_some() => field.push('"'),
+            '"' => quoted = !quoted,
+            ',' if !quoted => fields.push(std::mem::take(&mut field)),
+            _ => field.push(letter),
+        }
+    }
+    fields.push(field);
+    fields.iter().map(|field| field.trim().to_owned()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fields_in_quotes_hold_commas_and_quotes() {
+        assert_eq!(fields(r#"1, "a, ""b""" ,,c"#), ["1", r#"a, "b""#, "", "c"]);
+        assert_eq!(fields(&quoted("a, \"b\"\nc")), ["a, \"b\" c"]);
+    }
+
+    #[test]
+    fn a_row_has_as_many_fields_as_there_are_columns() {
+        let parse = |text: &str| TableText::parse(text, Path::new("t.csv"));
+        let error = parse("# asperity sweep = 1\nx [m],y [1]\n\n1,2\n1\n").unwrap_err();
+        assert_eq!(error.to_string(), "t.csv:5: 1 fields, expected 2");
+        let text = parse("# asperity sweep = 1\n# a = 1 = 2\nx [m],y [1]\n1,2\n").unwrap();
+        assert_eq!((text.header["a"].as_str(), text.column("y [1]").unwrap()), ("1 = 2", 1));
+        assert_eq!(text.column("y [m]").unwrap_err().to_string(), "t.csv: no column `y [m]`");
+    }
+
+    /// What is written is read back as the same, whatever the loads are.
+    #[test]
+    fn tables_are_read_as_they_were_written() {
+        for (load, temperatures) in [(Load::Force, vec![]), (Load::Pressure { area: 2e-5 }, vec![273.15, 293.15])] {
+            let grid = SweepGrid { speeds: vec![1e-5, 0.1 + 0.2], loads: vec![2e5, 1e30], temperatures };
+            let (scene, fingerprint) = ("a = b, c".to_owned(), "00ff".to_owned());
+            let header = TableHeader { scene, fingerprint, load, rest_separation: -1.5e-5, grid };
+            let row = |(i, point): (usize, OperatingPoint)| {
+                let mut row = TableRow::new(point, if i == 0 { STEADY } else { "not steady, \"by far\"" }.into());
+                let values = Quantity::ALL.iter().zip(1..).filter(|(_, number)| number % 3 != 0);
+                values.for_each(|(&quantity, number)| row.set(quantity, Some(f64::from(number) / 7.0)));
+                row
+            };
+            let rows: Vec<TableRow> = header.grid.points().enumerate().map(row).collect();
+            let written = header.text() + &rows.iter().map(TableRow::line).collect::<String>();
+            let text = TableText::parse(&written, Path::new("t.csv")).unwrap();
+            assert_eq!((text.header().unwrap(), text.rows(load).unwrap()), (header, rows));
+        }
+    }
+}

@@ -1,0 +1,350 @@
+//! `asperity pack --table TABLE.csv --check SCENE.toml`: the element against the layer that was swept, in steady sliding
+//! between the points of the table and along a motion to and fro.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use asperity::element::{Element, Load, OperatingPoint, PointContact, SweepGrid};
+use asperity::outputs::{Output, Variable, variable};
+use asperity::scene::{Initial, MaterialParameter, OutputGroup, Parameter, Path as Displacement, Scene, Value};
+use asperity::simulation::{Motion, Simulation, Start};
+use rayon::prelude::*;
+
+use crate::program::cli::{Pack, Plot};
+use crate::program::files::{self, FileError};
+use crate::program::figure::{Figure as _, Ladder, LadderPanel, Ladders, PlotError, Rung, plot_files};
+use crate::program::result_file::ResultWriter;
+use crate::program::runner::CarrierSample;
+use crate::program::sweep::{SteadySliding, steady_sliding};
+use crate::program::terminal::{self, LabelledLine, labelled, real};
+
+/// Standard error of the layer's friction coefficient, relative to it.
+const ERROR: f64 = 0.01;
+/// What is compared in steady sliding.
+const COMPARED: [&str; 3] = ["F_x", "F_z", "P_diss"];
+/// Distance over which the element slides, m: far more than it sticks.
+const SLIDING_DISTANCE: f64 = 1.0;
+/// What is compared along the motion to and fro.
+const LOOP_OUTPUTS: [Output; 4] = [Output::ForceX, Output::ForceZ, Output::DissipatedPower, Output::DissipatedEnergy];
+/// Displacements of the motion to and fro, over the length over which the element sticks.
+const LEGS: [f64; 3] = [10.0, -20.0, 20.0];
+/// Rows of each of them.
+const ROWS: u32 = 200;
+
+/// An element cannot be compared with its layer.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum CheckError {
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error(transparent)]
+    Plot(#[from] PlotError),
+}
+
+/// Compares the layer and the element, writes the results beside the FMU and summarises them.
+pub(super) fn check(command: &Pack, contact: &PointContact, scene: &Path) -> Result<Vec<LabelledLine>, CheckError> {
+    let scene = files::load(scene)?;
+    let (swept, load) = (&contact.table().scene, contact.table().load);
+    if scene.name != *swept {
+        terminal::warn(&format!("--check: the table is of {swept}, the scene is {}", scene.name));
+    }
+    let folder = folder_beside(&command.output)?;
+    let checks = check_points(contact, &scene, command.points as usize);
+    write_points(&folder.join("points.csv"), load, &checks)?;
+    errors_plot(&checks, load).write(&folder.join("errors.svg"))?;
+    let mut lines = summary(&checks);
+    let compared: Vec<_> = checks.iter().filter(|check| check.errors().is_some()).collect();
+    if let Some(middle) = compared.get(compared.len() / 2) {
+        lines.extend(to_and_fro(contact, &scene, middle, &folder)?);
+    }
+    lines.push(("", format!("in {}", folder.display())));
+    Ok(lines)
+}
+
+fn folder_beside(output: &Path) -> Result<PathBuf, FileError> {
+    let stem = output.file_stem().map_or_else(|| "element".into(), |stem| stem.to_string_lossy());
+    let path = output.with_file_name(format!("{stem}-check"));
+    fs::create_dir_all(&path).map_err(FileError::io("create", &path))?;
+    Ok(path)
+}
+
+/// The layer and the element at a point between those of the table.
+#[derive(Debug)]
+struct PointCheck {
+    point: OperatingPoint,
+    /// The status where the layer was not steady.
+    layer: Result<SteadySliding, String>,
+    /// |F_x|, F_z and P_diss of the element at the layer's w.
+    element: Option<Result<[f64; 3], String>>,
+}
+
+/// Checks `count` points, evenly selected.
+fn check_points(contact: &PointContact, scene: &Scene, count: usize) -> Vec<PointCheck> {
+    let table = contact.table();
+    let points = selected(&centres(&table.grid), count);
+    let bar = terminal::bar(points.len() as u64);
+    let check = |&point: &OperatingPoint| {
+        let layer = steady_sliding(scene, &point, table.load, ERROR);
+        let element = layer.as_ref().ok().map(|layer| element_sliding(contact, &point, layer.w));
+        bar.inc(1);
+        PointCheck { point, layer, element }
+    };
+    let checks = points.par_iter().with_max_len(1).map(check).collect();
+    bar.finish_and_clear();
+    checks
+}
+
+/// The centres of the cells of a grid; an axis of one value keeps it.
+fn centres(grid: &SweepGrid) -> Vec<OperatingPoint> {
+    let centres = |axis: &[f64], mean: fn(f64, f64) -> f64| match axis {
+        [one] => vec![*one],
+        _ => axis.windows(2).map(|ends| mean(ends[0], ends[1])).collect::<Vec<_>>(),
+    };
+    let geometric: fn(f64, f64) -> f64 = |a, b| (a * b).sqrt();
+    let grid = SweepGrid {
+        speeds: centres(&grid.speeds, geometric),
+        loads: centres(&grid.loads, geometric),
+        temperatures: centres(&grid.temperatures, f64::midpoint),
+    };
+    grid.points().collect()
+}
+
+fn selected(points: &[OperatingPoint], count: usize) -> Vec<OperatingPoint> {
+    let (all, count) = (points.len(), count.min(points.len()));
+    (0..count).map(|i| points[(2 * i + 1) * all / (2 * count)]).collect()
+}
+
+/// The element at the temperature of a point.
+fn element_at(contact: &PointContact, point: &OperatingPoint, start: &Start) -> Result<Element, String> {
+    let mut contact = contact.clone();
+    if let (Some(kelvin), true) = (point.temperature, contact.table().grid.temperatures.len() > 1) {
+        let parameter = Parameter::Material(MaterialParameter::Temperature);
+        contact.set_parameter(parameter, Value::Real(kelvin)).map_err(|error| error.to_string())?;
+    }
+    Element::new(&contact, start).map_err(|error| error.to_string())
+}
+
+fn element_sliding(contact: &PointContact, point: &OperatingPoint, w: f64) -> Result<[f64; 3], String> {
+    let mut element = element_at(contact, point, &Start { w, u_rate: point.speed, ..Start::default() })?;
+    element.advance(SLIDING_DISTANCE / point.speed, point.speed, 0.0).map_err(|error| error.to_string())?;
+    let variables = LOOP_OUTPUTS[..3].iter().copied().filter_map(variable).collect::<Vec<_>>();
+    let mut values = [0.0; 3];
+    element.evaluate(&variables, &mut values);
+    let [x, z, power] = values;
+    Ok([-x, z, power])
+}
+
+impl PointCheck {
+    /// Errors of the element relative to the layer; `None` where one of them has no values.
+    fn errors(&self) -> Option<[f64; 3]> {
+        let (layer, element) = (self.layer_values()?, self.element.as_ref()?.as_ref().ok()?);
+        Some(std::array::from_fn(|i| element[i] / layer[i] - 1.0))
+    }
+
+    fn layer_values(&self) -> Option<[f64; 3]> {
+        self.layer.as_ref().ok().map(|layer| [layer.drag(), layer.force_z, layer.power()])
+    }
+
+    fn status(&self) -> String {
+        match (&self.layer, &self.element) {
+            (Err(status), _) => format!("layer {status}"),
+            (_, Some(Err(status))) => format!("element: {status}"),
+            _ => "compared".into(),
+        }
+    }
+
+    fn fields(&self) -> Vec<String> {
+        let text = |value: Option<f64>| value.map(real).unwrap_or_default();
+        let point = self.point;
+        let w = self.layer.as_ref().ok().map(|layer| layer.w);
+        let mut fields = vec![real(point.speed), real(point.load), text(point.temperature), self.status(), text(w)];
+        let element = self.element.as_ref().and_then(|element| element.as_ref().ok());
+        for i in 0..COMPARED.len() {
+            fields.push(text(self.layer_values().map(|values| values[i])));
+            fields.push(text(element.map(|values| values[i])));
+            fields.push(text(self.errors().map(|errors| errors[i])));
+        }
+        fields
+    }
+}
+
+/// The largest and the root mean square errors, and what could not be compared.
+fn summary(checks: &[PointCheck]) -> Vec<LabelledLine> {
+    let errors: Vec<[f64; 3]> = checks.iter().filter_map(PointCheck::errors).collect();
+    let mut texts = vec![format!("{} of {} points between the table's, in steady sliding", errors.len(), checks.len())];
+    for (i, name) in COMPARED.iter().enumerate().filter(|_| !errors.is_empty()) {
+        texts.push(deviation(name, errors.iter().map(|error| error[i])));
+    }
+    let failed = checks.iter().filter(|check| check.errors().is_none());
+    texts.extend(
+        failed.map(|check| format!("{:.3e} m/s, {:.3e}: {}", check.point.speed, check.point.load, check.status())),
+    );
+    labelled("Checked", texts)
+}
+
+/// The largest and the root mean square of relative errors.
+fn deviation(name: &str, errors: impl ExactSizeIterator<Item = f64>) -> String {
+    let count = errors.len() as f64;
+    let (largest, squares) =
+        errors.fold((0.0_f64, 0.0), |(largest, sum), error| (largest.max(error.abs()), sum + error * error));
+    let root = (squares / count).sqrt();
+    format!("{name}: off by at most {:.2} %, in root mean square {:.2} %", 100.0 * largest, 100.0 * root)
+}
+
+fn write_points(path: &Path, load: Load, checks: &[PointCheck]) -> Result<(), FileError> {
+    let failed = |error: csv::Error| FileError::io("write", path)(error.into());
+    let mut writer = csv::Writer::from_path(path).map_err(failed)?;
+    let mut head = vec!["speed [m/s]".to_owned(), format!("{} [{}]", load.name(), load.unit())];
+    head.extend(["temperature [K]", "status", "w [m]"].map(String::from));
+    head.extend(COMPARED.iter().flat_map(|name| ["layer", "element", "error"].map(|of| format!("{name} {of}"))));
+    writer.write_record(head).map_err(failed)?;
+    for check in checks {
+        writer.write_record(check.fields()).map_err(failed)?;
+    }
+    writer.flush().map_err(FileError::io("write", path))
+}
+
+/// Errors over speed, one line for each load.
+fn errors_plot(checks: &[PointCheck], load: Load) -> Ladders {
+    let mut loads: Vec<f64> = checks.iter().map(|check| check.point.load).collect();
+    loads.sort_by(f64::total_cmp);
+    loads.dedup();
+    let ladder = |look: usize, of: f64, i: usize| {
+        let own = checks.iter().filter(|check| check.point.load == of);
+        let rung =
+            |check: &PointCheck| Some(Rung { x: check.point.speed, y: check.errors()?[i].abs(), label: String::new() });
+        let name = format!("{of:.3e} {}", load.unit());
+        Ladder { name, dashed: false, look, rungs: own.filter_map(rung).collect() }
+    };
+    let panel = |(i, name): (usize, &&str)| LadderPanel {
+        title: format!("error of {name}, as a share of it"),
+        floor: None,
+        ladders: loads.iter().enumerate().map(|(look, &of)| ladder(look, of, i)).collect(),
+    };
+    Ladders { x_title: "speed in m/s".into(), panels: COMPARED.iter().enumerate().map(panel).collect() }
+}
+
+/// The layer and the element along the motion to and fro, row by row.
+#[derive(Default)]
+struct Loop {
+    carriers: Vec<CarrierSample>,
+    layer: Vec<[f64; 4]>,
+    element: Vec<[f64; 4]>,
+}
+
+/// Drags both to and fro from rest at the height and the speed of `check`; writes them as result files and plots them.
+fn to_and_fro(
+    contact: &PointContact,
+    scene: &Scene,
+    check: &PointCheck,
+    folder: &Path,
+) -> Result<Vec<LabelledLine>, CheckError> {
+    let Ok(layer) = &check.layer else { return Ok(Vec::new()) };
+    let variables: Vec<Variable> = LOOP_OUTPUTS.into_iter().filter_map(variable).collect();
+    let files = ["loop-layer.csv", "loop-element.csv"].map(|name| folder.join(name));
+    let rows = match Loop::run(contact, scene, &check.point, layer.w, &variables) {
+        Ok(rows) => rows,
+        Err(status) => return Ok(vec![("", format!("to and fro at {:.3e} m/s: {status}", check.point.speed))]),
+    };
+    rows.write(&files[0], &variables, &rows.layer)?;
+    rows.write(&files[1], &variables, &rows.element)?;
+    plot_files(&Plot {
+        files: files.to_vec(),
+        x: "u".into(),
+        y: vec!["F_x".into()],
+        output: folder.join("loop.svg"),
+        labels: vec!["layer".into(), "element".into()],
+        title: None,
+        negate: true,
+        from_motion: false,
+    })?;
+    Ok(rows.summary(&variables, check.point.speed))
+}
+
+impl Loop {
+    fn run(
+        contact: &PointContact,
+        scene: &Scene,
+        point: &OperatingPoint,
+        w: f64,
+        variables: &[Variable],
+    ) -> Result<Self, String> {
+        let start = Start { w, ..Start::default() };
+        let mut element = element_at(contact, point, &start)?;
+        let mut layer = Simulation::new(&relaxed(scene, point.temperature)?, &start).map_err(|e| e.to_string())?;
+        let mut rows = Self::default();
+        rows.add(&mut layer, &element, w, variables);
+        let length = element.stick_length();
+        if length <= 0.0 {
+            return Err("no contact, or no friction".into());
+        }
+        for leg in LEGS {
+            let (duration, rate) = ((leg * length).abs() / point.speed, leg.signum() * point.speed);
+            let step = duration / f64::from(ROWS);
+            let motion = Motion {
+                duration: step,
+                u: Displacement { rate, ..Displacement::default() },
+                w: Displacement::default(),
+            };
+            for _ in 0..ROWS {
+                layer.advance(&motion).map_err(|e| e.to_string())?;
+                element.advance(step, rate, 0.0).map_err(|e| e.to_string())?;
+                rows.add(&mut layer, &element, w, variables);
+            }
+        }
+        Ok(rows)
+    }
+
+    fn add(&mut self, layer: &mut Simulation, element: &Element, w: f64, variables: &[Variable]) {
+        let (mut of_layer, mut of_element) = ([0.0; 4], [0.0; 4]);
+        layer.evaluate(variables, &mut of_layer);
+        element.evaluate(variables, &mut of_element);
+        self.carriers.push(CarrierSample { time: layer.time(), u: layer.carrier().0, w });
+        self.layer.push(of_layer);
+        self.element.push(of_element);
+    }
+
+    fn write(&self, path: &Path, variables: &[Variable], rows: &[[f64; 4]]) -> Result<(), FileError> {
+        let mut writer = ResultWriter::create(path, variables)?;
+        self.carriers.iter().zip(rows).try_for_each(|(carrier, row)| writer.write(*carrier, row))?;
+        writer.finish()
+    }
+
+    /// The largest and the root mean square differences over the largest value of the layer.
+    fn summary(&self, variables: &[Variable], speed: f64) -> Vec<LabelledLine> {
+        let distance = self.carriers.iter().fold(0.0_f64, |distance, carrier| distance.max(carrier.u.abs()));
+        let head =
+            format!("to and fro by {distance:.3e} m at {speed:.3e} m/s, from rest, over the layer's largest value");
+        let of = |(i, variable): (usize, &Variable)| {
+            let largest = self.layer.iter().fold(f64::MIN_POSITIVE, |largest, row| largest.max(row[i].abs()));
+            let errors = self.layer.iter().zip(&self.element).map(|(a, b)| (a[i] - b[i]).abs() / largest);
+            ("", deviation(&variable.name, errors))
+        };
+        std::iter::once(("", head)).chain(variables.iter().enumerate().map(of)).collect()
+    }
+}
+
+/// The scene relaxed at the start and with the outputs that are compared.
+fn relaxed(scene: &Scene, temperature: Option<f64>) -> Result<Scene, String> {
+    let outputs = vec![OutputGroup::Forces, OutputGroup::Dissipation];
+    let mut scene = Scene { outputs, excitation: Vec::new(), ..scene.clone() };
+    scene.layer.initial = Initial::Relaxed;
+    if let Some(kelvin) = temperature {
+        let parameter = Parameter::Material(MaterialParameter::Temperature);
+        scene.set_parameter(parameter, Value::Real(kelvin)).map_err(|error| error.to_string())?;
+    }
+    Ok(scene)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_are_selected_evenly_and_each_once() {
+        let point = |speed: f64| OperatingPoint { speed, load: 1.0, temperature: None };
+        let points: Vec<OperatingPoint> = (0..10).map(|i| point(f64::from(i))).collect();
+        let speeds = |count| selected(&points, count).iter().map(|point| point.speed).collect::<Vec<_>>();
+        assert_eq!(speeds(2), [2.0, 7.0]);
+        assert_eq!(speeds(99), (0..10).map(f64::from).collect::<Vec<_>>());
+    }
+}

@@ -1,0 +1,214 @@
+//! The file of a sweep: points are added as they are done and not computed again; shards are merged into one.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+use asperity::element::{FORMAT, OperatingPoint, TableError, TableHeader, TableRow, TableText};
+use asperity::scene::Scene;
+
+use crate::program::files::FileError;
+
+/// A table cannot be read, continued or merged.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum TableFileError {
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error(transparent)]
+    Table(#[from] TableError),
+    #[error("{0}; name another -o, or give --force to replace it")]
+    NotATable(TableError),
+    #[error(
+        "{} is the table of another sweep: its fingerprint is {found}, that of this scene with these settings {expected}; name \
+         another -o, or give --force to replace it",
+        .path.display()
+    )]
+    OtherSweep { path: PathBuf, found: String, expected: String },
+    #[error(
+        "{} has points that this sweep does not have, the first at {point}: include their values, name another -o, or give --force \
+         to replace the table",
+        .path.display()
+    )]
+    UnknownPoint { path: PathBuf, point: String },
+    #[error("--merge: {} and {} are of different sweeps: {difference}", .first.display(), .other.display())]
+    Different { first: PathBuf, other: PathBuf, difference: String },
+    #[error("--merge: {} and {} differ at {point}", .first.display(), .other.display())]
+    Contradiction { first: PathBuf, other: PathBuf, point: String },
+    #[error(
+        "{} of {total} points are missing: {}; {} has the others, and `asperity sweep` with this -o continues it",
+        .missing.len(), some_of(.missing), .path.display()
+    )]
+    Missing { missing: Vec<String>, total: usize, path: PathBuf },
+}
+
+/// The first of `points`, and how many more there are.
+fn some_of(points: &[String]) -> String {
+    const SHOWN: usize = 10;
+    let shown = points.iter().take(SHOWN).cloned().collect::<Vec<_>>().join("; ");
+    match points.len().saturating_sub(SHOWN) {
+        0 => shown,
+        more => format!("{shown}; and {more} more"),
+    }
+}
+
+/// A row as it stands in a file: a table that is continued or merged keeps it to the letter.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct StoredRow {
+    pub(super) row: TableRow,
+    text: String,
+}
+
+/// A table read from a file.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct SweepTable {
+    pub(super) header: TableHeader,
+    pub(super) rows: Vec<StoredRow>,
+}
+
+impl SweepTable {
+    pub(super) fn read(path: &Path) -> Result<Self, TableFileError> {
+        let text = fs::read_to_string(path).map_err(FileError::io("read", path))?;
+        Ok(Self::parse(&text, path)?)
+    }
+
+    fn parse(text: &str, path: &Path) -> Result<Self, TableError> {
+        // A last line without an end was cut off as its writer was stopped.
+        let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
+        let text = TableText::parse(whole, path)?;
+        let header = text.header()?;
+        let rows = text.rows(header.load)?.into_iter().zip(&text.lines);
+        let rows = rows.map(|(row, line)| StoredRow { row, text: format!("{}\n", line.text) }).collect();
+        Ok(Self { header, rows })
+    }
+
+    /// Sorts the rows in the order of the points.
+    pub(super) fn sort(&mut self) {
+        let grid = &self.header.grid;
+        self.rows.sort_by_key(|stored| grid.index(&stored.row.point));
+    }
+
+    /// Writes the table at once: what is at `path` is the one before or this one, whole.
+    pub(super) fn write(&self, path: &Path) -> Result<(), FileError> {
+        let mut part = path.as_os_str().to_owned();
+        part.push(".part");
+        let part = PathBuf::from(part);
+        let text = self.header.text() + &self.rows.iter().map(|stored| stored.text.as_str()).collect::<String>();
+        let write = || {
+            let mut file = File::create(&part)?;
+            file.write_all(text.as_bytes())?;
+            file.sync_all()?;
+            fs::rename(&part, path)
+        };
+        write().map_err(FileError::io("write", path))
+    }
+
+    /// Merges the tables at `paths` and writes the result at `output`.
+    pub(super) fn merge(paths: &[PathBuf], output: &Path) -> Result<Self, TableFileError> {
+        let tables: Vec<Self> = paths.iter().map(|path| Self::read(path)).collect::<Result<_, _>>()?;
+        let header = tables[0].header.clone();
+        for (path, table) in paths.iter().zip(&tables) {
+            if let Some(difference) = difference(&header, &table.header) {
+                let (first, other) = (paths[0].clone(), path.clone());
+                return Err(TableFileError::Different { first, other, difference });
+            }
+        }
+        let (mut rows, mut missing) = (Vec::new(), Vec::new());
+        for point in header.grid.points() {
+            match row_of(&tables, paths, &point)? {
+                Some(stored) => rows.push(stored.clone()),
+                None => missing.push(point.describe(header.load)),
+            }
+        }
+        let table = Self { header, rows };
+        table.write(output)?;
+        if missing.is_empty() {
+            return Ok(table);
+        }
+        let total = table.rows.len() + missing.len();
+        Err(TableFileError::Missing { missing, total, path: output.to_owned() })
+    }
+}
+
+/// The row of a point, which is the same in all tables that have it.
+fn row_of<'a>(
+    tables: &'a [SweepTable],
+    paths: &[PathBuf],
+    point: &OperatingPoint,
+) -> Result<Option<&'a StoredRow>, TableFileError> {
+    let all = tables.iter().zip(paths).flat_map(|(table, path)| table.rows.iter().map(move |stored| (stored, path)));
+    let mut found = all.filter(|(stored, _)| stored.row.point == *point);
+    let Some((stored, first)) = found.next() else { return Ok(None) };
+    match found.find(|(other, _)| other.text != stored.text) {
+        Some((_, other)) => {
+            let point = point.describe(tables[0].header.load);
+            Err(TableFileError::Contradiction { first: first.clone(), other: other.clone(), point })
+        }
+        None => Ok(Some(stored)),
+    }
+}
+
+fn difference(first: &TableHeader, other: &TableHeader) -> Option<String> {
+    if first.fingerprint != other.fingerprint {
+        return Some(format!("fingerprint {} and {}", first.fingerprint, other.fingerprint));
+    }
+    (first != other).then(|| "they have different points".to_owned())
+}
+
+/// A table to which rows are added.
+#[derive(Debug)]
+pub(super) struct TableFile {
+    path: PathBuf,
+    /// A line is written at once, so that one that is cut off has no end.
+    file: Mutex<File>,
+    /// The rows that were there.
+    pub(super) done: Vec<StoredRow>,
+}
+
+impl TableFile {
+    /// Begins a table or, unless it is to be replaced, continues the one that is there.
+    pub(super) fn open(path: &Path, header: &TableHeader, replace: bool) -> Result<Self, TableFileError> {
+        let done = if replace { Vec::new() } else { rows_done(path, header)? };
+        let table = SweepTable { header: header.clone(), rows: done };
+        table.write(path)?;
+        let file = OpenOptions::new().append(true).open(path).map_err(FileError::io("write", path))?;
+        Ok(Self { path: path.to_owned(), file: Mutex::new(file), done: table.rows })
+    }
+
+    /// Adds a row; it is in the file when this returns.
+    pub(super) fn add(&self, row: &TableRow) -> Result<(), FileError> {
+        let mut file = self.file.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let written = file.write_all(row.line().as_bytes()).and_then(|()| file.sync_data());
+        written.map_err(FileError::io("write", &self.path))
+    }
+}
+
+/// The rows of the table at `path`; none where there is no file, or only the beginning of a header.
+fn rows_done(path: &Path, header: &TableHeader) -> Result<Vec<StoredRow>, TableFileError> {
+    let text = match fs::read(path) {
+        Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(error) => return Err(FileError::io("read", path)(error).into()),
+    };
+    if header.text().starts_with(&text) {
+        return Ok(Vec::new());
+    }
+    let table = SweepTable::parse(&text, path).map_err(TableFileError::NotATable)?;
+    if table.header.fingerprint != header.fingerprint {
+        let (found, expected) = (table.header.fingerprint, header.fingerprint.clone());
+        return Err(TableFileError::OtherSweep { path: path.to_owned(), found, expected });
+    }
+    match table.rows.iter().find(|stored| header.grid.index(&stored.row.point).is_none()) {
+        Some(stored) => {
+            let point = stored.row.point.describe(header.load);
+            Err(TableFileError::UnknownPoint { path: path.to_owned(), point })
+        }
+        None => Ok(table.rows),
+    }
+}
+
+/// Tells one sweep from another: depends on everything in the scene that its points depend on, and on the settings.
+pub(super) fn fingerprint(scene: &Scene, settings: &str) -> Result<String, serde_json::Error> {
+    let text = format!("{FORMAT}\n{}\n{settings}\n{}", env!("CARGO_PKG_VERSION"), serde_json::to_string(scene)?);
+    Ok(uuid::Uuid::new_v5(&uuid::Uuid::NAMESPACE_OID, text.as_bytes()).simple().to_string())
+}
