@@ -3,12 +3,13 @@
 //!
 //! The columns of numbers are those of [`Quantity`]; one is added there. Readers find columns by their names.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::error::{TableError, TableProblem};
 use super::grid::{Load, OperatingPoint, SweepGrid};
-use crate::scene::{SMALLEST, is_possible};
+use crate::scene::{SMALLEST, is_possible, text_table};
 
 /// The first line of a table; its number grows when readers have to know of a change.
 pub const FORMAT: &str = "# asperity sweep = 1";
@@ -256,13 +257,8 @@ impl TableText {
     /// [`TableError`] where it is not the table of a sweep, or a row has more or fewer fields than there are columns.
     pub fn parse(text: &str, file: &Path) -> Result<Self, TableError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let (comments, lines): (Vec<_>, Vec<_>) = text
-            .lines()
-            .zip(1..)
-            .filter(|(line, _)| !line.trim().is_empty())
-            .partition(|(line, _)| line.starts_with('#'));
-        let header = comments.iter().filter_map(|(line, _)| key_and_value(&line[1..])).collect();
-        let mut lines = lines.into_iter();
+        let header = text_table::comments(text).filter_map(|(_, comment)| key_and_value(comment)).collect();
+        let mut lines = text.lines().zip(1..).filter(|(line, _)| !line.starts_with('#') && !line.trim().is_empty());
         let columns = lines.next().map_or_else(Vec::new, |(line, _)| fields(line));
         let lines = lines.map(|(line, number)| TableLine { number, text: line.to_owned(), fields: fields(line) });
         let table = Self { file: file.to_owned(), header, columns, lines: lines.collect() };
@@ -271,6 +267,7 @@ impl TableText {
     }
 
     fn check(&self) -> Result<(), TableError> {
+        // Key and value of `FORMAT`.
         match self.header.get("asperity sweep").map(String::as_str) {
             Some("1") => (),
             found => return Err(self.error(None, TableProblem::Format(found.unwrap_or("none").to_owned()))),
@@ -457,20 +454,8 @@ fn key_and_value(comment: &str) -> Option<(String, String)> {
     Some((key.trim().to_owned(), value.trim().to_owned()))
 }
 
-/// The fields of a line; one in quotes may hold commas, and quotes doubled.
 fn fields(line: &str) -> Vec<String> {
-    let (mut fields, mut field, mut quoted) = (Vec::new(), String::new(), false);
-    let mut letters = line.chars().peekable();
-    while let Some(letter) = letters.next() {
-        match letter {
-            '"' if quoted && letters.next_if_eq(&'"').is_some() => field.push('"'),
-            '"' => quoted = !quoted,
-            ',' if !quoted => fields.push(std::mem::take(&mut field)),
-            _ => field.push(letter),
-        }
-    }
-    fields.push(field);
-    fields.iter().map(|field| field.trim().to_owned()).collect()
+    text_table::fields(line, ',').map(Cow::into_owned).collect()
 }
 
 #[cfg(test)]
@@ -478,8 +463,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn fields_in_quotes_hold_commas_and_quotes() {
-        assert_eq!(fields(r#"1, "a, ""b""" ,,c"#), ["1", r#"a, "b""#, "", "c"]);
+    fn quoted_fields_hold_commas_and_quotes() {
         assert_eq!(fields(&quoted("a, \"b\"\nc")), ["a, \"b\" c"]);
     }
 
