@@ -33,10 +33,6 @@ mod progress {
     pub(crate) use super::terminal::bar;
 }
 
-mod text {
-    pub(crate) use super::terminal::{LabelledLine as Row};
-}
-
 /// Executes the command of the command line.
 pub(crate) fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
     match arguments.command {

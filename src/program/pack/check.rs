@@ -11,8 +11,8 @@ use asperity::simulation::{Motion, Simulation, Start};
 use rayon::prelude::*;
 
 use crate::program::cli::{Pack, Plot};
-use crate::program::files::{self, FileError};
 use crate::program::figure::{Figure as _, Ladder, LadderPanel, Ladders, PlotError, Rung, plot_files};
+use crate::program::files::{self, FileError};
 use crate::program::result_file::ResultWriter;
 use crate::program::runner::CarrierSample;
 use crate::program::sweep::{SteadySliding, steady_sliding};

@@ -143,7 +143,7 @@ impl Figure for ElementPicture<'_> {
     fn draw<B: Backend>(&self, canvas: &Canvas<B>) -> DrawResult {
         let corners = [(MARGIN, MARGIN), (MARGIN, HEIGHT - MARGIN), (WIDTH - MARGIN, HEIGHT - MARGIN)];
         line(canvas, corners.into_iter(), STEEL)?;
-        let count = self.0.pressures.len();
+        let count = self.0.grid.loads.len();
         (0..count).try_for_each(|i| {
             let (points, colour) = (self.points(i), pressure_colour(i, count));
             line(canvas, points.iter().copied(), colour)?;

@@ -5,8 +5,8 @@ use std::path::Path;
 use asperity::element::Quantity;
 
 use super::table_file::{StoredRow, SweepTable};
-use crate::program::files::FileError;
 use crate::program::figure::{Curve, Figure as _, Panel, SideBySide, Stroke};
+use crate::program::files::FileError;
 
 /// Draws friction over speed at `path`: a panel for each temperature, a colour for each load; with one load, one panel
 /// and a colour for each temperature.
