@@ -1,12 +1,12 @@
-//! The carrier's motion through one smooth piece.
+//! The carrier's motion.
 
 use serde::{Deserialize, Serialize};
 
 use crate::math::{Numbers, Spline, visit_all};
 use crate::scene::Path;
 
-/// The carrier on a smooth piece of its motion. TwoStageDense the piece all is counted from its start, so that a carrier that
-/// has gone far loses no digits but those of u itself.
+/// The carrier on a smooth piece of its motion. Displacements are counted from the start of the piece, so that a carrier
+/// far away loses no digits but those of u itself.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Carrier {
     /// Time at the start of the piece, s.
@@ -15,7 +15,7 @@ pub struct Carrier {
     pub u: f64,
     /// w at the start of the piece, m.
     pub w: f64,
-    /// u at the start of the piece as a position on the profile, m: reduced to one period where there is one.
+    /// u at the start of the piece as a position on the profile, m: reduced to its period if it is periodic.
     pub profile_position: f64,
     u_path: Path,
     w_path: Path,
@@ -24,9 +24,9 @@ pub struct Carrier {
 /// The carrier at one instant of a piece.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CarrierPoint {
-    /// u less u at the start of the piece, m.
+    /// u minus u at the start of the piece, m.
     pub du: f64,
-    /// w less w at the start of the piece, m.
+    /// w minus w at the start of the piece, m.
     pub dw: f64,
     /// u̇, m/s.
     pub u_rate: f64,
@@ -39,34 +39,34 @@ pub struct CarrierPoint {
 }
 
 impl Carrier {
-    /// A piece that starts at time `time` from `u`, `w` over `profile`.
+    /// A piece that starts at `time` (s) from `u`, `w` (m) over `profile`.
     pub fn new(time: f64, (u, w): (f64, f64), (u_path, w_path): (Path, Path), profile: &Spline) -> Self {
         Self { time, u, w, profile_position: profile.reduce(u), u_path, w_path }
     }
 
-    /// The carrier `s` seconds after the start of the piece.
+    /// The carrier at the time `s` after the start of the piece, s.
     pub fn at(&self, s: f64) -> CarrierPoint {
         let [du, u_rate, u_acceleration] = self.u_path.motion(s);
         let [dw, w_rate, w_acceleration] = self.w_path.motion(s);
         CarrierPoint { du, dw, u_rate, w_rate, u_acceleration, w_acceleration }
     }
 
-    /// Computes the position on the profile afresh from u.
+    /// Computes the position on the profile anew from u.
     pub fn find_profile_position(&mut self, profile: &Spline) {
         self.profile_position = profile.reduce(self.u);
     }
 
-    /// How far u and w move from `s` to `span` after it, s, m.
+    /// The changes of u and w from the time `s` on over `span`, m; both in s.
     pub fn moved(&self, s: f64, span: f64) -> (f64, f64) {
         (self.u_path.change(s, span), self.w_path.change(s, span))
     }
 
-    /// The shorter period of the two sines, s; infinite where there is none.
+    /// The shorter period of the two sines, s; infinite if there is none.
     pub fn shortest_period(&self) -> f64 {
         self.u_path.period().min(self.w_path.period())
     }
 
-    /// The amplitude of w's sine, m.
+    /// The amplitude of the sine of w, m.
     pub fn swing(&self) -> f64 {
         self.w_path.amplitude.abs()
     }

@@ -1,39 +1,40 @@
-//! Maxwell elements that a scene's time scales can't tell from a spring or from a damper (`solver.reduce`).
+//! Maxwell elements that act like a spring or like a damper on the time scales of a scene, and are replaced by one
+//! (`solver.reduce`).
 //!
-//! **Long.** For an element that starts with its dashpot at y(0), let b = e - y(0) and z = y - y(0): ż = (b - z)/τ and
+//! **Long relaxation times.** For an element that starts with its dashpot at y(0), let b = e - y(0) and z = y - y(0): ż = (b - z)/τ and
 //! z(0) = 0, so |z(t)| ≤ (1 - e^{-t/τ}) max|b|. Its force c_j (b - z) is that of a spring at rest at y(0), and through
 //! a run of length T the two differ by at most
 //!
 //!   c_j (1 - e^{-T/τ}) max|b|     (≈ T/τ of the spring's own force where τ ≫ T)
 //!
-//! whatever the motion, impacts included. A run that goes on beyond T leaves the bound in proportion.
+//! whatever the motion, impacts included. In a run longer than T the error may exceed the bound in proportion.
 //!
-//! **Short.** Let δ = a - τ ė: δ̇ = -δ/τ - τ ë, so |δ(t)| ≤ |δ(0)| e^{-t/τ} + τ² max|ë|. The element's force c_j a and
+//! **Short relaxation times.** Let δ = a - τ ė: δ̇ = -δ/τ - τ ë, so |δ(t)| ≤ |δ(0)| e^{-t/τ} + τ² max|ë|. The element's force c_j a and
 //! that of a damper c_j τ_j differ by c_j δ: in motion up to the frequency ω, where |ë| ≤ ω² |e|, by at most
 //!
 //!   c_j (ωτ)² max|e|
 //!
-//! A jump of ė, by an impact or a kink of the carrier, excites all frequencies, and no bound of this kind holds right
-//! after it: it adds c_j τ_j |Δė|, which dies away as e^{-t/τ} and is an impulse of c_j τ_j² |Δė|. An element that
-//! starts undeformed under a mass lifted onto the profile holds c_j e, an impulse of c_j τ_j e that no damper has; so
-//! where the layer starts undeformed no element becomes a damper. The frequency ω is the largest of: the carrier's
-//! sines, 2πf; the way along the profile, v q, with the carrier's largest speed v and the profile's shortest waves, q =
-//! max|z_r'''|/max|z_r''| (exact for a sine; never more than half a wave from one data point to the next); and the
+//! A jump of ė, by an impact or a kink of the carrier's motion, excites all frequencies, and no bound of this kind holds
+//! right after it: it adds c_j τ_j |Δė|, which decays as e^{-t/τ} and is an impulse of c_j τ_j² |Δė|. An element that
+//! starts undeformed under a mass lifted onto the profile has the force c_j e, an impulse of c_j τ_j e that no damper
+//! has; so in a layer that starts undeformed no element becomes a damper. The frequency ω is the largest of: the
+//! carrier's sines, 2πf; the passage along the profile, v q, with the carrier's largest speed v and the profile's
+//! shortest waves, q = max|z_r'''|/max|z_r''| (exact for a sine; at most half a wave between two data points); and the
 //! layer's own.
 //!
-//! **The layer's own frequency** is the largest ω at which the links bear a mass's inertia, m ω² = |K*(ω)|, with
-//! K* = K*_carrier + 4 K*_lateral: neighbours that swing against each other, the chain's highest mode. Not glassy:
-//! elements much shorter than it have relaxed. The curvature of the profile under load is not counted.
+//! **The layer's own frequency** is the largest ω at which the links balance a mass's inertia, m ω² = |K*(ω)|, with
+//! K* = K*_carrier + 4 K*_lateral: neighbours move against each other, the chain's highest mode. It is not glassy:
+//! elements with much shorter relaxation times have relaxed. The curvature of the profile under load is not counted.
 //!
-//! **What is replaced.** Link by link, smallest bounds first, as long as their sum is at most `reduce` times the link's
-//! storage stiffness at the run's slowest frequency, K' = c + Σ_j c_j (τ_j/T)²/(1 + (τ_j/T)²). Below |K*(ω)| for every
-//! ω from 1/T on, it is the smallest force that the link answers a unit of motion with. So `reduce` bounds the error of
-//! each link's force, for the same motion, as a share of that force; what the layer makes of it is not bounded, as it
-//! is not for any other parameter. The glassy stiffness would be a poor measure: that of rubber is a thousand times
-//! what the link shows in the run.
+//! **Selection.** Link by link, smallest bounds first, as long as their sum is at most `reduce` times the link's
+//! storage stiffness at the run's slowest frequency, K' = c + Σ_j c_j (τ_j/T)²/(1 + (τ_j/T)²). It is below |K*(ω)|
+//! for every ω from 1/T on: the smallest force of the link for a unit of motion. So `reduce` bounds the error of each
+//! link's force, for the same motion, as a share of that force. The effect on the layer's motion is not bounded, as for
+//! any other parameter. The glassy stiffness would be a poor reference: that of rubber is a thousand times the stiffness
+//! that the link has in the run.
 //!
-//! Without an `[[excitation]]` nothing is known of the run's length nor of the carrier's motion: then no element is
-//! long (T is infinite), and ω is the layer's own.
+//! Without an `[[excitation]]` neither the run's length nor the carrier's motion is known: then no element counts as long
+//! (T is infinite), and ω is the layer's own.
 
 use std::f64::consts::{PI, TAU};
 
@@ -41,7 +42,7 @@ use super::LinkKind;
 use crate::math::Spline;
 use crate::scene::{Initial, MaxwellElement, Scene};
 
-/// Which elements are replaced, and what that was decided by.
+/// The elements that are replaced, and the quantities that this was decided by.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reduction {
     /// The elements replaced, link by link in the order of the scene.
@@ -50,7 +51,7 @@ pub struct Reduction {
     pub run: f64,
     /// The highest frequency considered ω, rad/s.
     pub frequency: f64,
-    /// Storage stiffness of the links at 1/T, N/m, in the order of [`LinkKind::ALL`]: what the bounds are shares of.
+    /// Storage stiffness of the links at 1/T, N/m, in the order of [`LinkKind::ALL`]: the bounds refer to it.
     pub stiffness: [f64; 4],
 }
 
@@ -63,23 +64,23 @@ pub struct Replaced {
     pub index: usize,
     /// The element.
     pub element: MaxwellElement,
-    /// What stands in its place.
+    /// Its replacement.
     pub by: Replacement,
     /// Bound of the error of its force over its link's elongation, N/m.
     pub bound: f64,
 }
 
-/// What stands in the place of a Maxwell element.
+/// The replacement of a Maxwell element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Replacement {
-    /// A spring c_j: τ is long against the run.
+    /// A spring c_j: τ is long compared with the run.
     Spring,
-    /// A damper c_j τ_j: τ is short against the shortest period.
+    /// A damper c_j τ_j: τ is short compared with the shortest period.
     Damper,
 }
 
 impl Reduction {
-    /// What `solver.reduce` leaves out of `scene`; `None` where it is 0.
+    /// The elements of `scene` that `solver.reduce` replaces; `None` if it is 0.
     pub fn new(scene: &Scene) -> Option<Self> {
         (scene.solver.reduce > 0.0).then(|| Self::chosen(scene))
     }
@@ -103,14 +104,14 @@ impl Reduction {
         Self { replaced, run, frequency, stiffness }
     }
 
-    /// The replacement of element `index` (from 0) of a kind of link, if it has one.
+    /// The replacement of element `index` (from 0) of a kind of link, if it is replaced.
     pub fn replacement(&self, kind: LinkKind, index: usize) -> Option<Replacement> {
         self.replaced.iter().find(|one| (one.kind, one.index) == (kind, index)).map(|one| one.by)
     }
 }
 
-/// The replacement with the smaller bound, and the bound, N/m: a spring where the length of the run is known, a damper
-/// where the highest frequency counts.
+/// The replacement with the smaller bound, and the bound, N/m: a spring if the run's length is known, a damper if a
+/// highest `frequency` is given.
 fn better(element: &MaxwellElement, run: f64, frequency: Option<f64>) -> Option<(Replacement, f64)> {
     let tau = element.relaxation_time;
     let spring = run.is_finite().then(|| (Replacement::Spring, element.stiffness * -(-run / tau).exp_m1()));
@@ -118,7 +119,7 @@ fn better(element: &MaxwellElement, run: f64, frequency: Option<f64>) -> Option<
     spring.into_iter().chain(damper).min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Those with the smallest bounds whose sum is `allowed`, in their first order.
+/// Those with the smallest bounds whose sum is at most `allowed`, in their original order.
 fn smallest(mut candidates: Vec<Replaced>, allowed: f64) -> Vec<Replaced> {
     candidates.sort_by(|a, b| a.bound.total_cmp(&b.bound));
     let mut sum = 0.0;
@@ -131,13 +132,13 @@ fn smallest(mut candidates: Vec<Replaced>, allowed: f64) -> Vec<Replaced> {
     chosen
 }
 
-/// That of the carrier's sines, rad/s.
+/// The highest frequency of the carrier's sines, rad/s.
 fn carrier_frequency(scene: &Scene) -> f64 {
     let paths = scene.excitation.iter().flat_map(|phase| [phase.u, phase.w]);
     paths.map(|path| TAU / path.period()).fold(0.0, f64::max)
 }
 
-/// That of the profile's shortest waves under a mass that moves with the carrier, rad/s.
+/// The highest frequency of the passage of the profile's shortest waves under a mass that moves with the carrier, rad/s.
 fn passage_frequency(scene: &Scene) -> f64 {
     let speeds =
         scene.excitation.iter().map(|phase| phase.u.rate.abs() + phase.u.amplitude.abs() * TAU / phase.u.period());
@@ -149,9 +150,9 @@ fn passage_frequency(scene: &Scene) -> f64 {
 fn shortest_wave(x: &[f64], profile: &Spline) -> f64 {
     let (mut curvature, mut third, mut interval) = (0.0_f64, 0.0_f64, f64::INFINITY);
     for pair in x.windows(2) {
-        let (_, _, here, change) = profile.evaluate(0.5 * (pair[0] + pair[1]));
+        let (_, _, middle, change) = profile.evaluate(0.5 * (pair[0] + pair[1]));
         let half = 0.5 * (pair[1] - pair[0]);
-        curvature = curvature.max(here.abs() + half * change.abs());
+        curvature = curvature.max(middle.abs() + half * change.abs());
         third = third.max(change.abs());
         interval = interval.min(2.0 * half);
     }
@@ -171,8 +172,8 @@ fn own_frequency(scene: &Scene) -> f64 {
     along(LinkKind::Horizontal, LinkKind::LateralX).max(along(LinkKind::Vertical, LinkKind::LateralZ))
 }
 
-/// The largest ω with m ω² = |K(ω)|, by ω ← √(|K(ω)|/m) from above: |K| grows with ω, but no faster than ω, so the
-/// sequence falls towards it and never below.
+/// The largest ω with m ω² = |K(ω)|, by ω ← √(|K(ω)|/m) from above: |K| grows with ω, but not faster than ω, so the
+/// sequence decreases towards it.
 fn largest_balance(mass: f64, stiffness: impl Fn(f64) -> f64) -> f64 {
     let balanced = |omega: f64| (stiffness(omega) / mass).sqrt();
     let mut omega = 1.0;
@@ -185,5 +186,5 @@ fn largest_balance(mass: f64, stiffness: impl Fn(f64) -> f64) -> f64 {
     omega
 }
 
-/// At least half of the distance, on a logarithmic scale, falls away with each: 1e-12 of any start.
+/// Each iteration at least halves the distance on a logarithmic scale: to 1e-12 from any start.
 const MOST_ITERATIONS: usize = 60;

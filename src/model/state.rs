@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::SurfacePoint;
 use crate::math::{Numbers, visit_all};
 
-/// How a mass stands to the surface. Each mode's inequality is what holds as long as the mode lasts.
+/// The contact mode of a mass, with the conditions that hold in it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Mode {
     /// Gap g ≥ 0, no contact force.
@@ -25,12 +25,12 @@ impl Mode {
         self != Self::Free
     }
 
-    /// Whether the mass is in contact and may move along the surface.
+    /// Whether the mass is in contact and may move along the profile.
     pub fn slips(self) -> bool {
         matches!(self, Self::Forward | Self::Backward)
     }
 
-    /// The direction σ of slip along t: 1, -1, or 0 where there is none.
+    /// The direction σ of slip along t, 1 or -1; 0 in the other modes.
     pub fn direction(self) -> f64 {
         match self {
             Self::Forward => 1.0,
@@ -39,12 +39,12 @@ impl Mode {
         }
     }
 
-    /// The slip mode for a velocity or force along t of this sign.
+    /// The slip mode for a velocity or a force along t of this sign.
     pub fn along(tangential: f64) -> Self {
         if tangential < 0.0 { Self::Backward } else { Self::Forward }
     }
 
-    /// The number that stands for the mode outside: 0 free, 1 or -1 slipping, 2 sticking.
+    /// The number of the mode in outputs and records: 0 free, 1 or -1 slipping, 2 sticking.
     pub fn number(self) -> i8 {
         match self {
             Self::Free => 0,
@@ -54,7 +54,7 @@ impl Mode {
         }
     }
 
-    /// The mode that `number` stands for.
+    /// The mode with this number, if there is one.
     pub fn of_number(number: i8) -> Option<Self> {
         [Self::Free, Self::Forward, Self::Backward, Self::Stick].into_iter().find(|mode| mode.number() == number)
     }
@@ -62,7 +62,7 @@ impl Mode {
 
 /// Positions relative to the carrier, velocities in the inertial frame, Maxwell elongations and modes of all masses.
 ///
-/// In contact z = z_r(x) and ż = s ẋ are put in, not integrated, so the constraint can't drift.
+/// In contact z = z_r(x) and ż = s ẋ are imposed, not integrated, so the constraint does not drift.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// ξ_i - u, m: the elongation of the horizontal link.
@@ -73,17 +73,17 @@ pub struct State {
     pub velocity_x: Vec<f64>,
     /// ż_i, m/s.
     pub velocity_z: Vec<f64>,
-    /// a_j = e - y_j of all Maxwell elements, m, as [`MaxwellRow::range`](super::MaxwellRow::range) says. The force of
-    /// an element is c_j a_j; da_j/dt = ė - a_j/τ_j keeps all its digits when τ_j is short, where e - y_j would cancel.
+    /// a_j = e - y_j of all Maxwell elements, m, at the indices [`MaxwellRow::range`](super::MaxwellRow::range). The force
+    /// of an element is c_j a_j. da_j/dt = ė - a_j/τ_j keeps all digits also for a short τ_j, where e - y_j would cancel.
     pub maxwell: Vec<f64>,
-    /// The modes.
+    /// The contact modes.
     pub mode: Vec<Mode>,
     /// The profile under each mass in contact; zeros for a free mass.
     pub surface: Vec<SurfacePoint>,
 }
 
 impl State {
-    /// At rest and free.
+    /// All masses at rest and free.
     pub fn new(masses: usize, maxwell_variables: usize) -> Self {
         let zero = vec![0.0; masses];
         Self {
@@ -103,7 +103,7 @@ impl State {
         self.surface[i] = SurfacePoint::default();
     }
 
-    /// Takes over `other`, a state of the same model, without allocating.
+    /// Copies `other`, a state of the same model, without allocating.
     pub fn copy_from(&mut self, other: &Self) {
         self.elongation_x.copy_from_slice(&other.elongation_x);
         self.elongation_z.copy_from_slice(&other.elongation_z);
