@@ -206,7 +206,8 @@ impl TableRow {
     pub fn line(&self) -> String {
         let text = |value: &Option<f64>| value.map(number).unwrap_or_default();
         let point = [Some(self.point.speed), Some(self.point.load), self.point.temperature];
-        let fields = point.iter().map(text).chain([quoted(&self.status)]).chain(self.values.iter().map(text));
+        let fields =
+            point.iter().map(text).chain([text_table::quoted(&self.status)]).chain(self.values.iter().map(text));
         fields.collect::<Vec<_>>().join(",") + "\n"
     }
 }
@@ -222,11 +223,6 @@ fn list(values: &[f64]) -> String {
 
 fn one_line(text: &str) -> String {
     text.replace(['\n', '\r'], " ")
-}
-
-fn quoted(text: &str) -> String {
-    let text = one_line(text);
-    if text.contains([',', '"']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text }
 }
 
 /// A table's text, divided into its fields.
@@ -461,11 +457,6 @@ fn fields(line: &str) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn quoted_fields_hold_commas_and_quotes() {
-        assert_eq!(fields(&quoted("a, \"b\"\nc")), ["a, \"b\" c"]);
-    }
 
     #[test]
     fn a_row_has_as_many_fields_as_there_are_columns() {

@@ -1,7 +1,8 @@
-//! Result files: columns `time`, `u` and `w`, then the output variables. And the reader of CSV files with a header.
+//! CSV files with a header; result files among them: columns `time`, `u` and `w`, then the output variables.
 
 use std::borrow::Cow;
 use std::fs::File;
+use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
 use asperity::outputs::{Kind, Variable};
@@ -24,36 +25,56 @@ pub(crate) enum ResultFileError {
     NoRows { path: PathBuf },
 }
 
+/// Writes a CSV file line by line.
+#[derive(Debug)]
+pub(crate) struct CsvWriter {
+    path: PathBuf,
+    file: BufWriter<File>,
+}
+
+impl CsvWriter {
+    /// Creates the file at `path` and writes its header.
+    pub(crate) fn create<'a>(path: &Path, head: impl IntoIterator<Item = &'a str>) -> Result<Self, FileError> {
+        let file = File::create(path).map_err(FileError::io("write", path))?;
+        let mut writer = Self { path: path.to_owned(), file: BufWriter::new(file) };
+        writer.write(head)?;
+        Ok(writer)
+    }
+
+    pub(crate) fn write<T: AsRef<str>>(&mut self, fields: impl IntoIterator<Item = T>) -> Result<(), FileError> {
+        let fields: Vec<String> = fields.into_iter().map(|field| text_table::quoted(field.as_ref())).collect();
+        writeln!(self.file, "{}", fields.join(",")).map_err(FileError::io("write", &self.path))
+    }
+
+    /// Flushes the file.
+    pub(crate) fn finish(mut self) -> Result<(), FileError> {
+        self.file.flush().map_err(FileError::io("write", &self.path))
+    }
+}
+
 /// Writes a result file row by row.
 #[derive(Debug)]
 pub(crate) struct ResultWriter {
-    path: PathBuf,
-    writer: csv::Writer<File>,
+    file: CsvWriter,
     kinds: Vec<Kind>,
-    fields: Vec<String>,
 }
 
 impl ResultWriter {
     /// Creates the file at `path` and writes its header.
     pub(crate) fn create(path: &Path, variables: &[Variable]) -> Result<Self, FileError> {
-        let file = File::create(path).map_err(FileError::io("write", path))?;
-        let mut writer = csv::Writer::from_writer(file);
         let names = ["time", "u", "w"].into_iter().chain(variables.iter().map(|variable| variable.name.as_str()));
-        writer.write_record(names).map_err(|error| write_error(path, error))?;
         let kinds = variables.iter().map(|variable| variable.kind).collect();
-        Ok(Self { path: path.to_owned(), writer, kinds, fields: Vec::new() })
+        Ok(Self { file: CsvWriter::create(path, names)?, kinds })
     }
 
     pub(crate) fn write(&mut self, carrier: CarrierSample, values: &[f64]) -> Result<(), FileError> {
-        self.fields.clear();
-        self.fields.extend([carrier.time, carrier.u, carrier.w].map(real));
-        self.fields.extend(self.kinds.iter().zip(values).map(|(&kind, &value)| field(kind, value)));
-        self.writer.write_record(&self.fields).map_err(|error| write_error(&self.path, error))
+        let variables = self.kinds.iter().zip(values).map(|(&kind, &value)| field(kind, value));
+        self.file.write([carrier.time, carrier.u, carrier.w].map(real).into_iter().chain(variables))
     }
 
     /// Flushes the file.
-    pub(crate) fn finish(mut self) -> Result<(), FileError> {
-        self.writer.flush().map_err(FileError::io("write", &self.path))
+    pub(crate) fn finish(self) -> Result<(), FileError> {
+        self.file.finish()
     }
 }
 
@@ -62,10 +83,6 @@ fn field(kind: Kind, value: f64) -> String {
         Kind::Real => real(value),
         Kind::Integer => format!("{value:.0}"),
     }
-}
-
-fn write_error(path: &Path, error: csv::Error) -> FileError {
-    FileError::io("write", path)(error.into())
 }
 
 /// A CSV file with a header, its fields as text.

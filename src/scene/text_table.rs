@@ -124,6 +124,12 @@ fn unquoted(field: &str) -> Cow<'_, str> {
     Cow::Owned(text.trim().to_owned())
 }
 
+/// The text as one field of a line with commas: in quotation marks where it needs them, line ends replaced by blanks.
+pub fn quoted(text: &str) -> String {
+    let text = text.replace(['\n', '\r'], " ");
+    if text.contains([',', '"']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text }
+}
+
 /// The first columns of a line whose separator shows in the line itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Columns<'a> {
@@ -237,6 +243,8 @@ mod tests {
         for (line, separator, expected) in cases {
             assert_eq!(fields(line, separator).collect::<Vec<_>>(), expected, "{line}");
         }
+        assert_eq!(fields(&quoted("a, \"b\"\nc"), ',').collect::<Vec<_>>(), ["a, \"b\" c"]);
+        assert_eq!(quoted("a b"), "a b");
     }
 
     #[test]

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use asperity::scene::{LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt};
 use clap::{ArgGroup, Args, Parser, Subcommand};
 
-use super::sweep::{Shard, Values};
+use super::sweep::values::{Shard, Values};
 use values::{
     Frequencies, Tolerances, count, fit_error, key_and_value, picture, picture_or_table, positive, powers, seconds,
     share, temperature, wavelengths,

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use crate::program::cli::{Pack, Plot};
 use crate::program::figure::{Figure as _, Ladder, LadderPanel, Ladders, PlotError, Rung, plot_files};
 use crate::program::files::{self, FileError};
-use crate::program::result_file::ResultWriter;
+use crate::program::result_file::{CsvWriter, ResultWriter};
 use crate::program::runner::CarrierSample;
 use crate::program::sweep::{SteadySliding, steady_sliding};
 use crate::program::terminal::{self, LabelledLine, labelled, real};
@@ -191,16 +191,12 @@ fn deviation(name: &str, errors: impl ExactSizeIterator<Item = f64>) -> String {
 }
 
 fn write_points(path: &Path, load: Load, checks: &[PointCheck]) -> Result<(), FileError> {
-    let failed = |error: csv::Error| FileError::io("write", path)(error.into());
-    let mut writer = csv::Writer::from_path(path).map_err(failed)?;
     let mut head = vec!["speed [m/s]".to_owned(), format!("{} [{}]", load.name(), load.unit())];
     head.extend(["temperature [K]", "status", "w [m]"].map(String::from));
     head.extend(COMPARED.iter().flat_map(|name| ["layer", "element", "error"].map(|of| format!("{name} {of}"))));
-    writer.write_record(head).map_err(failed)?;
-    for check in checks {
-        writer.write_record(check.fields()).map_err(failed)?;
-    }
-    writer.flush().map_err(FileError::io("write", path))
+    let mut writer = CsvWriter::create(path, head.iter().map(String::as_str))?;
+    checks.iter().try_for_each(|check| writer.write(check.fields()))?;
+    writer.finish()
 }
 
 /// Errors over speed, one line for each load.

@@ -6,7 +6,7 @@ mod point;
 mod slide;
 mod steady;
 mod table_file;
-mod values;
+pub(super) mod values;
 
 use std::path::{Path, PathBuf};
 
@@ -22,7 +22,7 @@ use load_search::{heights, rest_separation};
 use point::Bounds;
 pub(crate) use point::SteadySliding;
 use table_file::{SweepTable, TableFile, TableFileError};
-pub(crate) use values::{Shard, Values};
+use values::Values;
 
 /// `asperity sweep` failed, or not all of its points are steady.
 #[derive(Debug, thiserror::Error)]
