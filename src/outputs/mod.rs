@@ -8,7 +8,7 @@ mod table;
 pub use snapshot::{Accounts, Counters, Energies, Snapshot};
 
 use crate::scene::{OutputGroup, Scene, Unit};
-use table::{Row, TABLE};
+use table::{OutputRow, TABLE};
 
 /// The quantity behind an output variable; its row in the table says more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -109,7 +109,7 @@ pub struct Variable {
     pub kind: Kind,
     /// What it is, in a few words.
     pub description: String,
-    row: &'static Row,
+    row: &'static OutputRow,
     /// Which mass (from 0) it belongs to, if to a single one; else 0.
     mass: usize,
 }
@@ -121,17 +121,17 @@ impl Variable {
     }
 
     /// The variable of a quantity of the whole layer.
-    fn of_layer(row: &'static Row, output: Output) -> Self {
+    fn of_layer(row: &'static OutputRow, output: Output) -> Self {
         Self::named(row, output, 0, row.name.into(), row.description.into())
     }
 
     /// The variable of mass `i` (from 0).
-    fn of_mass(row: &'static Row, output: Output, i: usize) -> Self {
+    fn of_mass(row: &'static OutputRow, output: Output, i: usize) -> Self {
         let name = format!("element[{}].{}", i + 1, row.name);
         Self::named(row, output, i, name, format!("{} {}", row.description, i + 1))
     }
 
-    fn named(row: &'static Row, output: Output, mass: usize, name: String, description: String) -> Self {
+    fn named(row: &'static OutputRow, output: Output, mass: usize, name: String, description: String) -> Self {
         Self { output, group: row.group, name, unit: row.unit, kind: row.kind, description, row, mass }
     }
 }
@@ -157,7 +157,7 @@ pub fn variable(output: Output) -> Option<Variable> {
 /// The unit of the output variable called `name`, whatever the scene; `None` for a name that no scene can have.
 pub fn unit_of(name: &str) -> Option<Unit> {
     let (name, of_mass) = name.split_once("].").map_or((name, false), |(_, field)| (field, true));
-    let named = |row: &&Row| row.name == name && row.of_layer().is_none() == of_mass;
+    let named = |row: &&OutputRow| row.name == name && row.of_layer().is_none() == of_mass;
     TABLE.iter().find(named).map(|row| row.unit)
 }
 
@@ -187,6 +187,6 @@ impl Dependencies {
 
 /// The inputs on which `output` depends directly in `scene`.
 pub fn dependencies(scene: &Scene, output: Output) -> Dependencies {
-    let of_row = |row: &Row| (row.dependencies)(scene);
+    let of_row = |row: &OutputRow| (row.dependencies)(scene);
     TABLE.iter().find(|row| row.is(output)).map_or_else(Dependencies::default, of_row)
 }

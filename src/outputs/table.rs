@@ -30,7 +30,7 @@ use crate::scene::{Link, LinkKind, OutputGroup, Scene, Unit};
 
 /// One output.
 #[derive(Debug)]
-pub(super) struct Row {
+pub(super) struct OutputRow {
     pub group: OutputGroup,
     /// Of the variable; of a quantity of single masses the part behind `element[i].`.
     pub name: &'static str,
@@ -41,12 +41,13 @@ pub(super) struct Row {
     pub exists: fn(&Scene) -> bool,
     /// The inputs on which it depends directly.
     pub dependencies: fn(&Scene) -> Dependencies,
-    pub quantity: Quantity,
+    pub scope: Scope,
 }
 
-/// The value of an output and its derivative when the carrier is shifted; `None` where it has no direct dependency.
+/// What an output belongs to, its value, and its derivative as the carrier is shifted; `None` if it has no direct
+/// dependency.
 #[derive(Debug)]
-pub(super) enum Quantity {
+pub(super) enum Scope {
     /// A quantity of the whole layer.
     Layer {
         output: Output,
@@ -61,27 +62,27 @@ pub(super) enum Quantity {
     },
 }
 
-/// Rows are the same only if they are one.
-impl PartialEq for Row {
+/// Each row of the table is equal to itself alone.
+impl PartialEq for OutputRow {
     fn eq(&self, other: &Self) -> bool {
         std::ptr::eq(self, other)
     }
 }
 
-impl Row {
+impl OutputRow {
     /// The output, if it is one of the whole layer.
     pub(super) fn of_layer(&self) -> Option<Output> {
-        match self.quantity {
-            Quantity::Layer { output, .. } => Some(output),
-            Quantity::Mass { .. } => None,
+        match self.scope {
+            Scope::Layer { output, .. } => Some(output),
+            Scope::Mass { .. } => None,
         }
     }
 
     /// The output of mass `i` (from 0), if it is one of single masses.
     pub(super) fn of_mass(&self, i: usize) -> Option<Output> {
-        match self.quantity {
-            Quantity::Layer { .. } => None,
-            Quantity::Mass { output, .. } => Some(output(i)),
+        match self.scope {
+            Scope::Layer { .. } => None,
+            Scope::Mass { output, .. } => Some(output(i)),
         }
     }
 
@@ -93,17 +94,17 @@ impl Row {
 
     /// The value in `now`; of mass `i` if it is a quantity of single masses.
     pub(super) fn value(&self, now: &Evaluation<'_>, i: usize) -> f64 {
-        match self.quantity {
-            Quantity::Layer { value, .. } => value(now),
-            Quantity::Mass { value, .. } => value(now, i),
+        match self.scope {
+            Scope::Layer { value, .. } => value(now),
+            Scope::Mass { value, .. } => value(now, i),
         }
     }
 
     /// The derivative in `now` as the carrier is shifted; of mass `i` if it is a quantity of single masses.
     pub(super) fn derivative(&self, now: &Evaluation<'_>, i: usize, shift: &CarrierShift) -> f64 {
-        match self.quantity {
-            Quantity::Layer { derivative, .. } => derivative.map_or(0.0, |derivative| derivative(now, shift)),
-            Quantity::Mass { derivative, .. } => derivative.map_or(0.0, |derivative| derivative(now, i, shift)),
+        match self.scope {
+            Scope::Layer { derivative, .. } => derivative.map_or(0.0, |derivative| derivative(now, shift)),
+            Scope::Mass { derivative, .. } => derivative.map_or(0.0, |derivative| derivative(now, i, shift)),
         }
     }
 
@@ -120,7 +121,7 @@ impl Row {
         change: fn(&Evaluation<'_>, &CarrierShift) -> f64,
     ) -> Self {
         self.dependencies = dependencies;
-        if let Quantity::Layer { derivative, .. } = &mut self.quantity {
+        if let Scope::Layer { derivative, .. } = &mut self.scope {
             *derivative = Some(change);
         }
         self
@@ -133,7 +134,7 @@ impl Row {
         change: fn(&Evaluation<'_>, usize, &CarrierShift) -> f64,
     ) -> Self {
         self.dependencies = dependencies;
-        if let Quantity::Mass { derivative, .. } = &mut self.quantity {
+        if let Scope::Mass { derivative, .. } = &mut self.scope {
             *derivative = Some(change);
         }
         self
@@ -149,9 +150,9 @@ const fn layer(
     unit: Unit,
     description: &'static str,
     value: fn(&Evaluation<'_>) -> f64,
-) -> Row {
-    let quantity = Quantity::Layer { output, value, derivative: None };
-    Row { group, name, kind, unit, description, exists: always, dependencies: none, quantity }
+) -> OutputRow {
+    let scope = Scope::Layer { output, value, derivative: None };
+    OutputRow { group, name, kind, unit, description, exists: always, dependencies: none, scope }
 }
 
 /// The row of a quantity of each mass.
@@ -162,15 +163,15 @@ const fn mass(
     unit: Unit,
     description: &'static str,
     value: fn(&Evaluation<'_>, usize) -> f64,
-) -> Row {
+) -> OutputRow {
     let group = OutputGroup::Elements;
-    let quantity = Quantity::Mass { output, value, derivative: None };
-    Row { group, name, kind, unit, description, exists: always, dependencies: none, quantity }
+    let scope = Scope::Mass { output, value, derivative: None };
+    OutputRow { group, name, kind, unit, description, exists: always, dependencies: none, scope }
 }
 
 /// All outputs, in the order of the result files within their groups.
 #[rustfmt::skip]
-pub(super) static TABLE: [Row; 35] = {
+pub(super) static TABLE: [OutputRow; 35] = {
     use Kind::{Integer, Real};
     use OutputGroup::{Contact, Dissipation, Energy, Forces, Friction, Solver, Tangent};
     use Unit::{Joule, Meter, Newton, NewtonPerMeter, One, Second, SquareMeter, Watt};
