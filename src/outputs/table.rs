@@ -182,21 +182,21 @@ pub(super) static TABLE: [OutputRow; 35] = {
         layer(Output::ForceZ, Forces, "F_z", Real, Newton, "Force of the layer on the carrier along z, positive when compressed",
             |now| now.at.forces.on_carrier_z())
             .depending(elastic_z, |now, shift| now.at.force_changes(shift).1),
-        layer(Output::DissipatedPower, Dissipation, "P_diss", Real, Watt, "Power lost now",
+        layer(Output::DissipatedPower, Dissipation, "P_diss", Real, Watt, "Power dissipated now",
             |now| now.at.powers().dissipated())
             .depending(dissipated_power, |now, shift| now.at.maxwell_power_change(shift) + now.at.friction_power_change(shift)),
-        layer(Output::DissipatedEnergy, Dissipation, "E_diss", Real, Joule, "Energy lost since the start, all channels",
+        layer(Output::DissipatedEnergy, Dissipation, "E_diss", Real, Joule, "Energy dissipated since the start, all channels",
             |now| now.at.energies.dissipated()),
-        layer(Output::DamperEnergy, Dissipation, "dissipation.E_damper", Real, Joule, "Energy lost in dampers",
+        layer(Output::DamperEnergy, Dissipation, "dissipation.E_damper", Real, Joule, "Energy dissipated in dampers",
             |now| now.at.energies.channels.damper)
             .only_where(has_dampers),
-        layer(Output::MaxwellEnergy, Dissipation, "dissipation.E_maxwell", Real, Joule, "Energy lost in Maxwell elements",
+        layer(Output::MaxwellEnergy, Dissipation, "dissipation.E_maxwell", Real, Joule, "Energy dissipated in Maxwell elements",
             |now| now.at.energies.channels.maxwell)
             .only_where(has_maxwell_elements),
-        layer(Output::FrictionEnergy, Dissipation, "dissipation.E_friction", Real, Joule, "Energy lost in friction",
+        layer(Output::FrictionEnergy, Dissipation, "dissipation.E_friction", Real, Joule, "Energy dissipated in friction",
             |now| now.at.energies.channels.friction)
             .only_where(|scene| scene.friction.is_some()),
-        layer(Output::ImpactEnergy, Dissipation, "dissipation.E_impact", Real, Joule, "Energy lost in impacts",
+        layer(Output::ImpactEnergy, Dissipation, "dissipation.E_impact", Real, Joule, "Energy dissipated in impacts",
             |now| now.at.energies.impact),
         layer(Output::Hysteresis, Friction, "friction.F_hysteresis", Real, Newton, "Tangential force of the normal forces on the slopes",
             |now| now.contact_sums().hysteresis)
@@ -213,7 +213,7 @@ pub(super) static TABLE: [OutputRow; 35] = {
             |now| now.at.count(|mode| mode == Mode::Stick)),
         layer(Output::ContactRatio, Contact, "contact.ratio", Real, One, "Masses in contact over all masses",
             |now| now.at.count(Mode::in_contact) / now.at.model.masses() as f64),
-        layer(Output::ContactArea, Contact, "contact.area", Real, SquareMeter, "Area that the masses in contact stand for",
+        layer(Output::ContactArea, Contact, "contact.area", Real, SquareMeter, "Area of the masses in contact",
             |now| now.at.count(Mode::in_contact) * now.at.model.element_area)
             .only_where(|scene| scene.layer.element_area().is_some()),
         layer(Output::ContactForceX, Contact, "contact.F_x", Real, Newton, "Sum of the contact forces on the masses along x",
@@ -229,7 +229,7 @@ pub(super) static TABLE: [OutputRow; 35] = {
         layer(Output::ElasticEnergy, Energy, "energy.elastic", Real, Joule, "Elastic energy of the links",
             |now| now.elastic_energy())
             .depending(elastic, |now, shift| now.at.elastic_energy_change(shift)),
-        layer(Output::EnergyResidual, Energy, "energy.residual", Real, Joule, "What the energy balance misses: the run's numerical error",
+        layer(Output::EnergyResidual, Energy, "energy.residual", Real, Joule, "Residual of the energy balance: the numerical error of the run",
             |now| now.energy_residual())
             .depending(elastic, |now, shift| -now.at.elastic_energy_change(shift)),
         layer(Output::TangentXU, Tangent, "tangent.dF_x_du", Real, NewtonPerMeter, "Change of F_x at the end of a step with the target of u in that step",
@@ -250,7 +250,7 @@ pub(super) static TABLE: [OutputRow; 35] = {
             |now| now.at.counters.estimated_error()),
         layer(Output::RunTime, Solver, "solver.run_time", Real, Second, "Processor time since the start",
             |now| now.at.counters.run_time),
-        mass(Output::ElementX, "x", Real, Meter, "Place along x of mass",
+        mass(Output::ElementX, "x", Real, Meter, "Position along x of mass",
             |now, i| now.at.position(i).0),
         mass(Output::ElementZ, "z", Real, Meter, "Height of mass",
             |now, i| now.at.position(i).1),
