@@ -225,7 +225,6 @@ impl Lateness {
     }
 }
 
-/// A correction under way.
 struct Correction<'a> {
     step: FixedModeStep<'a>,
     /// The carrier at the end.

@@ -28,7 +28,6 @@ use super::{Dependencies, Kind, Output};
 use crate::model::Mode;
 use crate::scene::{Link, LinkKind, OutputGroup, Scene, Unit};
 
-/// One output.
 #[derive(Debug)]
 pub(super) struct OutputRow {
     pub group: OutputGroup,

@@ -102,13 +102,13 @@ impl Chain {
         (forces, (0..masses).map(column).collect())
     }
 
-    /// The largest errors of F_x and F_z over the largest force, and of the places over the way that masses go.
+    /// The largest errors of F_x and F_z over the largest force, and of the positions over the way that masses go.
     fn errors(&self, tolerance: f64) -> [f64; 2] {
         let (found, exact) = (self.run(tolerance), self.exact());
         let error = |column: usize| difference(&found[column], &exact[column]);
         let force = largest(&exact[0]).max(largest(&exact[1]));
-        let places = (2..found.len()).map(error).fold(0.0, f64::max);
-        [error(0).max(error(1)) / force, places / WAY]
+        let positions = (2..found.len()).map(error).fold(0.0, f64::max);
+        [error(0).max(error(1)) / force, positions / WAY]
     }
 }
 
@@ -127,7 +127,7 @@ fn times() -> Vec<f64> {
 fn follows_the_exponential(seed: u64, masses: usize, elements: [usize; 4]) {
     let chain = Chain::random(seed, masses, elements);
     let (coarse, fine) = (chain.errors(1e-6), chain.errors(1e-9));
-    for (what, coarse, fine) in [("forces", coarse[0], fine[0]), ("places", coarse[1], fine[1])] {
+    for (what, coarse, fine) in [("forces", coarse[0], fine[0]), ("positions", coarse[1], fine[1])] {
         assert!(coarse <= 1e-4, "{what} at 1e-6 are off by {coarse:e}");
         assert!(fine <= 1e-7, "{what} at 1e-9 are off by {fine:e}");
         assert!(fine <= 0.01 * coarse, "{what}: from {coarse:e} only to {fine:e}");

@@ -18,7 +18,7 @@ const LIMIT: f64 = COULOMB * STIFFNESS * PRESSED + SHEAR;
 /// err by the tolerances, 1e-9: of times of 1e-5 to 1e-3 s, a millionth of a microsecond.
 const TIME: f64 = 1.0e-12;
 
-/// Of energies and places: ten times the relative tolerance.
+/// Of energies and positions: ten times the relative tolerance.
 const SHARE: f64 = 1.0e-8;
 
 /// A mass pressed on the flat, under a link to the carrier along x.

@@ -15,7 +15,7 @@ const FRICTION: f64 = 0.3;
 /// err by the tolerances, 1e-9: of times of 1e-5 to 1e-3 s, a millionth of a microsecond.
 const TIME: f64 = 1.0e-12;
 
-/// Of energies and places: ten times the relative tolerance.
+/// Of energies and positions: ten times the relative tolerance.
 const SHARE: f64 = 1.0e-8;
 
 struct One {

@@ -7,7 +7,7 @@ use crate::run::{Law, REST, Random, Run, difference, largest, link, mean, rate, 
 
 const MASSES: usize = 4;
 const SPACING: f64 = 1.0 / 8192.0;
-/// A power of two, so that far places are multiples of it to the last digit.
+/// A power of two, so that far positions are multiples of it to the last digit.
 const PERIOD: f64 = 1.0 / 2048.0;
 const POINTS: usize = 32;
 
@@ -131,37 +131,37 @@ fn contact_forces_are_the_carriers_on_the_mean() {
     }
 }
 
-/// The largest differences of two travels, over the largest values: of forces, energy, and the place of the first mass
+/// The largest differences of two travels, over the largest values: of forces, energy, and the position of the first mass
 /// less where the carrier started (m).
 fn apart(near: &[Vec<f64>], far: &[Vec<f64>], offset: f64) -> (f64, f64) {
     let forces = (0..7).map(|column| difference(&near[column], &far[column]) / largest(&near[column]));
-    let places: Vec<f64> = far[7].iter().map(|x| x - offset).collect();
-    (forces.fold(0.0, f64::max), difference(&near[7], &places))
+    let positions: Vec<f64> = far[7].iter().map(|x| x - offset).collect();
+    (forces.fold(0.0, f64::max), difference(&near[7], &positions))
 }
 
 /// Over a periodic profile a carrier that starts 2^20 m away, 2^31 periods, sees the same. Where u comes to exact
-/// values at the ends of the motions nothing is lost at all; only the places, as outputs, are rounded, twice by up to
+/// values at the ends of the motions nothing is lost at all; only the positions, as outputs, are rounded, twice by up to
 /// 2^-33 m.
 #[test]
 fn a_far_carrier_loses_nothing_where_u_is_exact() {
     let offset = 2.0_f64.powi(20);
     let (near, far) = (travel(false, 0.0, &exact_motions()), travel(false, offset, &exact_motions()));
-    let (forces, places) = apart(&near, &far, offset);
+    let (forces, positions) = apart(&near, &far, offset);
     assert_eq!(forces, 0.0);
-    assert!(places <= 2.0_f64.powi(-32), "{places:e}");
+    assert!(positions <= 2.0_f64.powi(-32), "{positions:e}");
 }
 
 /// Elsewhere u itself is rounded at the end of each motion: by up to 2^-33 m = 1.2e-10 m at 2^20 m, 2^-43 m at 2^10 m.
 /// On slopes of 0.1 that moves springs of 3 kN/m by 3e-8 N of some 1e-2 N, 1e-5 of the force with three motions, and
-/// what friction and events make of it. The places are rounded five times.
+/// what friction and events make of it. The positions are rounded five times.
 #[test]
 fn a_far_carrier_loses_what_rounding_takes_from_u() {
     let near = travel(false, 0.0, &other_motions());
     for (power, allowed) in [(20, 1e-4), (10, 1e-4 / 1024.0)] {
         let offset = 2.0_f64.powi(power);
-        let (forces, places) = apart(&near, &travel(false, offset, &other_motions()), offset);
+        let (forces, positions) = apart(&near, &travel(false, offset, &other_motions()), offset);
         assert!(forces <= allowed, "2^{power} m: {forces:e}");
-        assert!(places <= 8.0 * 2.0_f64.powi(power - 53), "2^{power} m: {places:e}");
+        assert!(positions <= 8.0 * 2.0_f64.powi(power - 53), "2^{power} m: {positions:e}");
     }
 }
 
