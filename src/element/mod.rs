@@ -19,7 +19,7 @@ mod tests;
 use std::sync::Arc;
 
 use crate::outputs::Variable;
-use crate::scene::{Extrapolation, MaterialParameter, Parameter, ParameterError, Problem, Value};
+use crate::scene::{Extrapolation, Parameter, ParameterError, Problem, Value};
 
 pub use error::{ElementError, RestoreError, TableError, TableProblem};
 pub use grid::{Load, OperatingPoint, SweepGrid};
@@ -84,15 +84,14 @@ impl PointContact {
 
     /// Its parameters.
     pub fn parameters(&self) -> Vec<Parameter> {
-        let temperature =
-            (self.table.grid.temperatures.len() > 1).then_some(Parameter::Material(MaterialParameter::Temperature));
+        let temperature = (self.table.grid.temperatures.len() > 1).then_some(Parameter::Temperature);
         temperature.into_iter().chain([Parameter::TableExtrapolation, Parameter::Extrapolation]).collect()
     }
 
     /// The value of a parameter.
     pub fn parameter(&self, parameter: Parameter) -> Value {
         match parameter {
-            Parameter::Material(MaterialParameter::Temperature) => Value::Real(self.temperature),
+            Parameter::Temperature => Value::Real(self.temperature),
             Parameter::TableExtrapolation => {
                 let word =
                     TABLE_EXTRAPOLATIONS.iter().find(|(_, extrapolates)| *extrapolates == self.extrapolates_table);
@@ -111,7 +110,7 @@ impl PointContact {
             Err(ParameterError::new(parameter.name(), Problem::Value { given: value.to_string(), expected }))
         };
         match (parameter, &value) {
-            (Parameter::Material(MaterialParameter::Temperature), &Value::Real(temperature)) => {
+            (Parameter::Temperature, &Value::Real(temperature)) => {
                 let temperatures = &self.table.grid.temperatures;
                 let (low, high) = (temperatures.first(), temperatures.last());
                 match (low, high) {

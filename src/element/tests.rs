@@ -9,7 +9,7 @@ use std::path::Path;
 use super::*;
 use crate::model::Mode;
 use crate::outputs::{Output, variable};
-use crate::scene::{MaterialParameter, Parameter, Value};
+use crate::scene::{Parameter, Value};
 use crate::simulation::Start;
 use sweeps::{AREA, Grid, REST, WARM, friction, logarithmic, separation, stiffness};
 
@@ -99,9 +99,9 @@ fn between_the_points_the_error_falls_as_the_grid_gets_finer() {
 fn between_temperatures_it_is_the_law_in_between() {
     let temperatures = [280.0, 290.0, 300.0, 310.0, 320.0].to_vec();
     let mut contact = PointContact::new(table(&Grid { temperatures, ..Grid::plain() }));
-    assert_eq!(contact.parameter(Parameter::Material(MaterialParameter::Temperature)), Value::Real(300.0));
+    assert_eq!(contact.parameter(Parameter::Temperature), Value::Real(300.0));
     for t in [283.0, 305.0, 320.0] {
-        contact.set_parameter(Parameter::Material(MaterialParameter::Temperature), Value::Real(t)).unwrap();
+        contact.set_parameter(Parameter::Temperature, Value::Real(t)).unwrap();
         let (v, p) = (0.1, 3e5);
         let w = separation(v, p, t) - REST;
         let mut element = Element::new(&contact, &Start { w, u_rate: v, ..Start::default() }).unwrap();
@@ -111,10 +111,7 @@ fn between_temperatures_it_is_the_law_in_between() {
         close(-x / z, friction(v, p, t), 0.02);
         close(z, p * AREA, 0.01);
     }
-    let refused = contact
-        .set_parameter(Parameter::Material(MaterialParameter::Temperature), Value::Real(279.0))
-        .unwrap_err()
-        .to_string();
+    let refused = contact.set_parameter(Parameter::Temperature, Value::Real(279.0)).unwrap_err().to_string();
     let expected =
         "material.wlf.temperature = 279.0: expected a number from 280.0 to 320.0, the temperatures of the table";
     assert_eq!(refused, expected);

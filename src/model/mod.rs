@@ -96,7 +96,7 @@ impl Model {
         Self {
             mass: scene.mass(),
             element_area: layer.element_area().unwrap_or(0.0),
-            rest_x: (0..k).map(|i| layer.place(i)).collect(),
+            rest_x: (0..k).map(|i| layer.rest_position(i)).collect(),
             rest_z: (0..k).map(|i| layer.clearance + roughness(i)).collect(),
             frozen: if links.iter().any(|link| link.frozen > 0.0) { vec![0.0; k] } else { Vec::new() },
             links,

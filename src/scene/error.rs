@@ -1,4 +1,4 @@
-//! Why a scene, or a parameter's value, is refused.
+//! Errors of scenes and of parameters: what was expected, what was found, and where.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -8,35 +8,54 @@ use std::path::{Path, PathBuf};
 /// It reads like `scene.toml:12: layer.mass = -1.0: expected a number from 1e-30 to 1e30`.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
-pub struct SceneError(Box<Refusal>);
+pub struct SceneError(Box<Details>);
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Details {
+    location: Location,
+    key: String,
+    problem: Problem,
+    /// The key that names the file, and where it is.
+    named_by: Option<(Location, String)>,
+}
+
+/// Why the value or the name of a parameter is refused.
+///
+/// It reads like `layer.mass = -1.0: expected a number from 1e-30 to 1e30`.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}", problem.about(name))]
+pub struct ParameterError {
+    name: String,
+    problem: Problem,
+}
 
 /// What is wrong with a key or its value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Problem {
-    /// The scene is no TOML.
+    /// The scene is not TOML.
     Syntax {
-        /// What the TOML parser says.
+        /// The message of the TOML parser.
         reason: String,
     },
     /// A file cannot be read.
     Unreadable {
         /// The value that names the file; empty for the scene file itself.
         given: String,
-        /// What the system says.
+        /// The message of the operating system.
         reason: String,
     },
     /// There is no such key or parameter.
     Unknown {
-        /// What there is instead.
+        /// Those that there are.
         allowed: Vec<String>,
     },
-    /// A key that must be there is not.
+    /// A required key is missing.
     Missing {
         /// What it should hold.
         expected: String,
     },
-    /// A value of the wrong type, out of range or against another one.
+    /// A value has the wrong type, is out of range or contradicts another one.
     Value {
         /// The value as it was written.
         given: String,
@@ -45,43 +64,50 @@ pub enum Problem {
     },
 }
 
+/// A line of a file, counted from 1; no line where the whole file is meant.
 #[derive(Clone, Debug, PartialEq, Eq)]
-struct Refusal {
-    place: Place,
-    key: String,
-    problem: Problem,
-    named_by: Option<(Place, String)>,
-}
-
-/// A line of a file, counted from 1; no line where the file as a whole is meant.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Place {
+pub(super) struct Location {
     pub(super) file: PathBuf,
     pub(super) line: Option<usize>,
 }
 
+/// What is wrong in the content of a file that a scene names, before it is known which file that is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct ContentError {
+    pub(super) line: Option<usize>,
+    /// The column or the element; empty where there is none.
+    pub(super) key: String,
+    pub(super) problem: Problem,
+}
+
 impl SceneError {
-    pub(super) fn new(place: Place, key: impl Into<String>, problem: Problem) -> Self {
-        Self(Box::new(Refusal { place, key: key.into(), problem, named_by: None }))
+    pub(super) fn new(location: Location, key: impl Into<String>, problem: Problem) -> Self {
+        Self(Box::new(Details { location, key: key.into(), problem, named_by: None }))
     }
 
-    /// The same, telling which key of the scene names the file.
-    pub(super) fn named_by(mut self, place: Place, key: &str) -> Self {
-        self.0.named_by = Some((place, key.to_owned()));
+    /// The error of a file that cannot be read and that no key names.
+    pub(super) fn unreadable(file: &Path, error: &std::io::Error) -> Self {
+        let problem = Problem::Unreadable { given: String::new(), reason: error.to_string() };
+        Self::new(Location { file: file.to_owned(), line: None }, "", problem)
+    }
+
+    /// Adds the key that names the file, and where it is.
+    pub(super) fn named_by(mut self, location: Location, key: &str) -> Self {
+        self.0.named_by = Some((location, key.to_owned()));
         self
     }
 
-    /// The file in which the mistake is: the scene's or one that the scene names.
+    /// The file with the error: the scene's or one that the scene names.
     pub fn file(&self) -> &Path {
-        &self.0.place.file
+        &self.0.location.file
     }
 
-    /// The line of the mistake, counted from 1.
+    /// The line of the error, counted from 1.
     pub fn line(&self) -> Option<usize> {
-        self.0.place.line
+        self.0.location.line
     }
 
-    /// The key's full path, or the column of a profile; empty where there is none.
+    /// The full path of the key, or the column of a profile; empty where there is none.
     pub fn key(&self) -> &str {
         &self.0.key
     }
@@ -92,24 +118,44 @@ impl SceneError {
     }
 }
 
-impl fmt::Display for Refusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.place, self.problem.about(&self.key))?;
-        match &self.named_by {
-            Some((place, key)) => write!(f, " (file named by {key}, {place})"),
-            None => Ok(()),
-        }
+impl ContentError {
+    pub(super) fn new(line: Option<usize>, key: impl Into<String>, problem: impl Into<Problem>) -> Self {
+        Self { line, key: key.into(), problem: problem.into() }
+    }
+
+    /// The error of a value that is not what was `expected`.
+    pub(super) fn value(line: Option<usize>, key: &str, given: &str, expected: &str) -> Self {
+        Self::new(line, key, Problem::value(given, expected))
+    }
+
+    /// The error of that `file`.
+    pub(super) fn in_file(self, file: PathBuf) -> SceneError {
+        SceneError::new(Location { file, line: self.line }, self.key, self.problem)
     }
 }
 
-impl fmt::Display for Place {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.file.display())?;
-        self.line.map_or(Ok(()), |line| write!(f, ":{line}"))
+impl ParameterError {
+    /// The error of the parameter called `name`.
+    pub(crate) fn new(name: impl Into<String>, problem: Problem) -> Self {
+        Self { name: name.into(), problem }
+    }
+
+    /// The name of the parameter, as it was given.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What was given and what is allowed.
+    pub fn problem(&self) -> &Problem {
+        &self.problem
     }
 }
 
 impl Problem {
+    pub(super) fn value(given: impl ToString, expected: impl ToString) -> Self {
+        Self::Value { given: given.to_string(), expected: expected.to_string() }
+    }
+
     /// The problem in words, as that of `key`.
     pub(super) fn about(&self, key: &str) -> String {
         match self {
@@ -128,5 +174,22 @@ fn assignment(key: &str, given: &str) -> String {
         (key, "") => format!("{key}: "),
         ("", given) => format!("{given}: "),
         (key, given) => format!("{key} = {given}: "),
+    }
+}
+
+impl fmt::Display for Details {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.location, self.problem.about(&self.key))?;
+        match &self.named_by {
+            Some((location, key)) => write!(f, " (file named by {key}, {location})"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl fmt::Display for Location {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.file.display())?;
+        self.line.map_or(Ok(()), |line| write!(f, ":{line}"))
     }
 }

@@ -1,31 +1,99 @@
-//! Reading of `[[excitation]]`.
+//! The motion of the carrier in runs without a master: phases, one after another.
 
-use super::allowed;
-use super::form::{Form, FormKeys};
-use super::table::TableReader;
-use super::{Path, Phase, SceneError};
+use std::f64::consts::TAU;
 
-const KEYS: [&str; 5] = ["duration", "u_rate", "w_rate", "u_sine", "w_sine"];
-const OF_FORM: FormKeys = FormKeys { direct: &["until_force"], material: &["until_pressure"] };
+use serde::{Deserialize, Serialize};
 
-pub(super) fn read_phase(table: &mut TableReader<'_>, form: Form) -> Result<Phase, SceneError> {
-    form.allow(table, &KEYS, &OF_FORM)?;
-    Ok(Phase {
-        duration: table.number("duration", &allowed::DURATION)?,
-        u: read_path(table, "u_rate", "u_sine")?,
-        w: read_path(table, "w_rate", "w_sine")?,
-        until_force: table.optional_number("until_force", &allowed::FORCE)?,
-        until_pressure: table.optional_number("until_pressure", &allowed::PRESSURE)?,
-    })
+use crate::math::{Numbers, visit_all};
+
+/// One phase of the carrier's motion.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Phase {
+    /// Duration, s.
+    pub duration: f64,
+    /// Motion along x from the phase's start on.
+    pub u: Path,
+    /// Motion along z from the phase's start on.
+    pub w: Path,
+    /// The phase ends when F_z rises to this force, N; in the direct form alone, see [`Phase::end_force`].
+    pub until_force: Option<f64>,
+    /// The phase ends when F_z over the layer's area rises to this pressure, Pa; in the material form alone.
+    pub until_pressure: Option<f64>,
 }
 
-fn read_path(table: &mut TableReader<'_>, rate: &'static str, sine: &'static str) -> Result<Path, SceneError> {
-    let rate = table.optional_number(rate, &allowed::RATE)?.unwrap_or(0.0);
-    let (amplitude, frequency) = table.optional_table(sine, read_sine)?.unwrap_or((0.0, 0.0));
-    Ok(Path { rate, amplitude, frequency })
+impl Phase {
+    /// F_z at which the phase of a layer of this area (m²) ends, N, if it does: given, or that of the pressure.
+    pub fn end_force(&self, area: Option<f64>) -> Option<f64> {
+        self.until_force.or_else(|| Some(self.until_pressure? * area?))
+    }
 }
 
-fn read_sine(table: &mut TableReader<'_>) -> Result<(f64, f64), SceneError> {
-    table.allow(&["amplitude", "frequency"])?;
-    Ok((table.number("amplitude", &allowed::AMPLITUDE)?, table.number("frequency", &allowed::FREQUENCY)?))
+/// A displacement from the start: rate · s + amplitude · sin(2π frequency s), s the time since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Path {
+    /// Constant rate, m/s.
+    pub rate: f64,
+    /// Amplitude of the sine, m.
+    pub amplitude: f64,
+    /// Frequency of the sine, Hz.
+    pub frequency: f64,
+}
+
+impl Numbers for Path {
+    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
+        let Self { rate, amplitude, frequency } = self;
+        visit_all([rate, amplitude, frequency], visit);
+    }
+}
+
+impl Path {
+    /// The displacement at `time` (s) after the start, m.
+    pub fn at(&self, time: f64) -> f64 {
+        self.motion(time)[0]
+    }
+
+    /// The velocity at `time` (s) after the start, m/s.
+    pub fn velocity(&self, time: f64) -> f64 {
+        self.motion(time)[1]
+    }
+
+    /// The displacement from `time` to `span` after it, s, m: where the rate is large and the time long, with more
+    /// digits than the difference of two displacements.
+    pub fn change(&self, time: f64, span: f64) -> f64 {
+        let omega = TAU * self.frequency;
+        let swing = if self.amplitude == 0.0 { 0.0 } else { (omega * (time + span)).sin() - (omega * time).sin() };
+        self.rate * span + self.amplitude * swing
+    }
+
+    /// The period of the sine, s; infinite where there is none.
+    pub fn period(&self) -> f64 {
+        if self.amplitude == 0.0 || self.frequency == 0.0 { f64::INFINITY } else { 1.0 / self.frequency }
+    }
+
+    /// Displacement (m), velocity (m/s) and acceleration (m/s²) at `time` (s) after the start.
+    pub fn motion(&self, time: f64) -> [f64; 3] {
+        if self.amplitude == 0.0 {
+            return [self.rate * time, self.rate, 0.0];
+        }
+        let omega = TAU * self.frequency;
+        let (sine, cosine) = (omega * time).sin_cos();
+        let swing = self.amplitude * sine;
+        [self.rate * time + swing, self.rate + self.amplitude * omega * cosine, -omega * omega * swing]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_has_the_rates_of_its_displacement() {
+        let path = Path { rate: 0.3, amplitude: 1e-3, frequency: 40.0 };
+        let (s, h) = (0.0123, 1e-6);
+        let [_, velocity, acceleration] = path.motion(s);
+        let difference = |component: usize| (path.motion(s + h)[component] - path.motion(s - h)[component]) / (2.0 * h);
+        // Central differences: error h² ω³ amplitude / 6, and roundings of 1e-16 over h.
+        assert!((difference(0) - velocity).abs() < 1e-8);
+        assert!((difference(1) - acceleration).abs() < 1e-5);
+    }
 }

@@ -1,9 +1,12 @@
-//! The material form of a scene: moduli, density and the layer's thickness instead of the constants of links.
+//! The material form of a scene: moduli, density and the layer's thickness instead of the constants of links; and the
+//! file of a Prony series.
 
 use serde::Serialize;
 
-use super::allowed::{self, Range};
-use super::{Layer, Link, LinkKind, MaxwellElement, ParameterError, Phase, Problem, RateShear, Scene};
+use super::error::{ContentError, ParameterError, Problem};
+use super::keys;
+use super::text_table::{Columns, decode};
+use super::{Layer, Link, LinkKind, MaxwellElement, RateShear, Scene};
 
 /// A linear viscoelastic solid: a spring, a dashpot and Maxwell elements in parallel, as moduli.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -45,7 +48,8 @@ pub struct Wlf {
 }
 
 impl Wlf {
-    /// No rubber is soft below this, K (silicone's glass transition is at some 150 K): a lower temperature is meant in °C.
+    /// No rubber is soft below this, K (silicone's glass transition is at about 150 K): a lower temperature is probably
+    /// meant in °C.
     pub const COLDEST: f64 = 100.0;
 
     /// a_T: log10 a_T = -C_1 (T - T_ref)/(C_2 + T - T_ref), for T above
@@ -148,13 +152,6 @@ impl Layer {
     }
 }
 
-impl Phase {
-    /// F_z at which the phase of a layer of this area (m²) ends, N, if it does: given, or of the pressure.
-    pub fn end_force(&self, area: Option<f64>) -> Option<f64> {
-        self.until_force.or_else(|| Some(self.until_pressure? * area?))
-    }
-}
-
 impl Scene {
     /// The link of a kind, if the scene has it: given, or following from the material.
     pub fn link(&self, kind: LinkKind) -> Option<Link> {
@@ -222,7 +219,7 @@ impl Scene {
     pub fn check(&self) -> Result<(), ParameterError> {
         let Some(material) = &self.material else { return Ok(()) };
         material.wlf.map_or(Ok(()), |wlf| wlf.check())?;
-        in_range("mass of a point mass, from the material", self.mass(), &allowed::MASS)?;
+        in_range("mass of a point mass, from the material", self.mass(), "layer.mass")?;
         self.rate_shear().map_or(Ok(()), |law| law.check())?;
         LinkKind::ALL
             .into_iter()
@@ -233,9 +230,11 @@ impl Scene {
 impl RateShear {
     /// Checks the law at the layer's temperature.
     fn check(&self) -> Result<(), ParameterError> {
-        let speed = |what: &str, speed: f64| in_range(&format!("{what}, at the temperature"), speed, &allowed::SPEED);
-        speed("reference speed of the shear strength", self.reference_speed)?;
-        speed("creep speed of the shear strength", self.creep_speed())
+        let speed = |what: &str, speed: f64, key: &str| {
+            in_range(&format!("{what} of the shear strength, at the temperature"), speed, key)
+        };
+        speed("reference speed", self.reference_speed, "friction.rate_shear.reference_speed")?;
+        speed("creep speed", self.creep_speed(), "friction.rate_shear.creep_speed")
     }
 }
 
@@ -248,27 +247,125 @@ impl Wlf {
             "more than material.wlf.reference_temperature - c2 = {:.2} K, where the shift has its pole",
             self.lowest_temperature()
         );
-        let problem = Problem::Value { given: format!("{:?}", self.temperature), expected };
+        let problem = Problem::value(format_args!("{:?}", self.temperature), expected);
         Err(ParameterError::new("material.wlf.temperature", problem))
     }
 }
 
 fn check_link(link: &Link, what: &str) -> Result<(), ParameterError> {
-    let check = |quantity: &str, value: f64, range: &Range| {
-        in_range(&format!("{quantity} of the {what}, from the material"), value, range)
+    let check = |quantity: &str, value: f64, key: &str| {
+        in_range(&format!("{quantity} of the {what}, from the material"), value, &format!("layer.vertical.{key}"))
     };
-    check("stiffness", link.stiffness.unwrap_or(0.0), &allowed::STIFFNESS)?;
-    check("damping", link.damping.unwrap_or(0.0), &allowed::DAMPING)?;
+    check("stiffness", link.stiffness.unwrap_or(0.0), "stiffness")?;
+    check("damping", link.damping.unwrap_or(0.0), "damping")?;
     link.maxwell.iter().try_for_each(|element| {
-        check("stiffness of an element", element.stiffness, &allowed::STIFFNESS)?;
-        check("relaxation time of an element", element.relaxation_time, &allowed::RELAXATION_TIME)
+        check("stiffness of an element", element.stiffness, "maxwell.stiffness")?;
+        check("relaxation time of an element", element.relaxation_time, "maxwell.relaxation_time")
     })
 }
 
-fn in_range(what: &str, value: f64, range: &Range) -> Result<(), ParameterError> {
-    if range.holds(value) {
-        return Ok(());
+/// Checks a value that follows from others against the range of `key`.
+fn in_range(what: &str, value: f64, key: &str) -> Result<(), ParameterError> {
+    let range = keys::range_of(key);
+    let error = || ParameterError::new(what, Problem::value(format_args!("{value:?}"), range));
+    if range.holds(value) { Ok(()) } else { Err(error()) }
+}
+
+const COLUMNS: [&str; 2] = ["relaxation_time", "modulus"];
+const EXPECTED_COLUMNS: &str = "two, relaxation_time and modulus, separated by comma, semicolon, tab or blanks";
+
+impl PronyTerm {
+    /// Reads a Prony series from the bytes of a file: two columns, relaxation time in s and modulus in Pa, separated by
+    /// comma, semicolon, tab or blanks, with or without a header line.
+    pub(super) fn parse(bytes: &[u8]) -> Result<Vec<Self>, ContentError> {
+        let text = decode(bytes).map_err(|error| ContentError::new(Some(1), "", error))?;
+        if let Some((line, header)) = swapped_header(&text) {
+            let given = format!("`{header}`");
+            return Err(ContentError::value(Some(line), "columns", &given, "relaxation_time before modulus"));
+        }
+        let terms: Vec<Self> = lines(&text).map(|(line, row)| Self::of_row(line, &row)).collect::<Result<_, _>>()?;
+        if terms.is_empty() {
+            let last = text.lines().count().max(1);
+            return Err(ContentError::value(Some(last), "terms", "0", "at least one term"));
+        }
+        Ok(terms)
     }
-    let problem = Problem::Value { given: format!("{value:?}"), expected: range.to_string() };
-    Err(ParameterError::new(what, problem))
+
+    fn of_row(line: usize, row: &Columns<'_>) -> Result<Self, ContentError> {
+        if row.count != COLUMNS.len() {
+            return Err(ContentError::value(Some(line), "columns", &row.count.to_string(), EXPECTED_COLUMNS));
+        }
+        let number = |column: usize| {
+            let name = COLUMNS[column];
+            let range = keys::range_of(&format!("material.prony.{name}"));
+            let given = || format!("\"{}\"", row.fields[column].chars().take(60).collect::<String>());
+            let number = row.number(column).filter(|&number| range.holds(number));
+            number.ok_or_else(|| ContentError::value(Some(line), name, &given(), &range.to_string()))
+        };
+        Ok(Self { relaxation_time: number(0)?, modulus: number(1)? })
+    }
+}
+
+/// A header that names the columns the other way round: its numbers would be taken for each other.
+fn swapped_header(text: &str) -> Option<(usize, &str)> {
+    let header = filled_lines(text).next()?;
+    let names = header.1.to_lowercase();
+    (names.find("modulus")? < names.find("relaxation")?).then_some(header)
+}
+
+/// The columns of the lines that hold data, without comments and a header, and the lines' numbers from 1.
+fn lines(text: &str) -> impl Iterator<Item = (usize, Columns<'_>)> {
+    let rows = filled_lines(text).map(|(number, line)| (number, Columns::split(line, false))).enumerate();
+    rows.filter(|(count, (_, row))| *count > 0 || !row.is_header()).map(|(_, row)| row)
+}
+
+fn filled_lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let numbered = (1..).zip(text.lines().map(str::trim));
+    numbered.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reads_every_separator_with_and_without_a_header() {
+        let texts = [
+            "1e-3,2e6\n10,5e5\n",
+            "relaxation_time,modulus\n1e-3,2e6\n10,5e5\n",
+            "relaxation_time [s]; modulus [Pa]\r\n0,001;2000000\r\n1e1;5e5\r\n",
+            "# a compound\n\ntau E\n1e-3 2e6\n# long\n10\t5e5",
+        ];
+        let expected =
+            [(1e-3, 2e6), (10.0, 5e5)].map(|(relaxation_time, modulus)| PronyTerm { relaxation_time, modulus });
+        for text in texts {
+            assert_eq!(PronyTerm::parse(text.as_bytes()).as_deref(), Ok(&expected[..]), "{text:?}");
+        }
+    }
+
+    #[test]
+    fn refuses_what_is_no_series() {
+        let cases = [
+            ("", 1, "terms = 0: expected at least one term"),
+            ("tau,E\n", 1, "terms = 0: expected at least one term"),
+            ("tau,E\n1,2\n0,3\n", 3, "relaxation_time = \"0\": expected a number from 1e-30 to 1e30"),
+            ("1,2\n2,-3\n", 2, "modulus = \"-3\": expected 0 or a number from 1e-30 to 1e30"),
+            ("1,2\n2,soft\n", 2, "modulus = \"soft\": expected 0 or a number from 1e-30 to 1e30"),
+            (
+                "1,2,3\n",
+                1,
+                "columns = 3: expected two, relaxation_time and modulus, separated by comma, semicolon, tab or blanks",
+            ),
+            (
+                "# a compound\nModulus (Pa); Relaxation time (s)\n1e6;1\n",
+                2,
+                "columns = `Modulus (Pa); Relaxation time (s)`: expected relaxation_time before modulus",
+            ),
+            ("1\0,2\n", 1, "bytes that are zero: expected text in UTF-8, UTF-16 or Latin-1"),
+        ];
+        for (text, line, message) in cases {
+            let error = PronyTerm::parse(text.as_bytes()).unwrap_err();
+            assert_eq!((error.line, error.problem.about(&error.key)), (Some(line), message.to_owned()), "{text:?}");
+        }
+    }
 }

@@ -2,46 +2,39 @@
 //!
 //! Every field is in SI units. A feature that the scene does not name is `None` or empty, and costs nothing at run
 //! time.
+//!
+//! A new key is a line in the table of `keys`, a field of the data below and a line in `reader`. A key that the FMU has
+//! as a parameter is also a variant of [`Parameter`], with its path and its field in `parameters`.
 
-mod allowed;
-mod derived;
 mod error;
 mod excitation;
-mod form;
-mod layer;
-mod link_kind;
+mod keys;
 mod material;
-mod material_reader;
 mod parameters;
-mod points;
 mod profile;
-mod prony_file;
 mod reader;
-mod self_affine;
-mod settings;
 mod surface;
-mod table;
 pub mod text_table;
-mod unit;
+mod values;
 mod warnings;
 
 #[cfg(test)]
 mod tests;
 
-use std::path::PathBuf;
+use std::path::{Path as FilePath, PathBuf};
+use std::{fs, io};
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
-use crate::math::{Numbers, visit_all};
+use values::Word;
 
-pub use allowed::{LARGEST, SMALLEST, is_possible};
-pub use derived::identifier;
-pub use error::{Problem, SceneError};
-pub use link_kind::LinkKind;
+pub use error::{ParameterError, Problem, SceneError};
+pub use excitation::{Path, Phase};
 pub use material::{Material, PronyTerm, Wlf, complex_stiffness};
-pub use parameters::{MaterialParameter, Parameter, ParameterError, Value};
-pub use profile::{Extract, LengthUnit, Line, Missing, ProfileOptions, ThirdColumn, Tilt, UnknownWord};
-pub use unit::Unit;
+pub use parameters::{Parameter, Value};
+pub use profile::{Extract, LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt, UnknownWord};
+pub use surface::{Line, Surface};
+pub use values::{LARGEST, SMALLEST, Unit, is_possible};
 
 /// A whole scene, checked. Serialised, it is every number of it: what the scene does not name is null or empty.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -73,7 +66,7 @@ pub struct Scene {
     /// The lines of areal measurements among them.
     #[serde(skip)]
     pub extracts: Vec<Extract>,
-    /// What is worth telling though the scene is valid.
+    /// Warnings: what is probably not meant though the scene is valid.
     #[serde(skip)]
     pub warnings: Vec<String>,
 }
@@ -85,7 +78,7 @@ pub struct Layer {
     pub masses: usize,
     /// Distance Δx of the masses at rest, m.
     pub spacing: f64,
-    /// Place X_1 of the first mass at rest, m.
+    /// Position X_1 of the first mass at rest, m.
     pub origin: f64,
     /// Height of the layer above the profile's datum at w = 0, m.
     pub clearance: f64,
@@ -107,6 +100,85 @@ pub struct Layer {
     pub lateral_x: Option<Link>,
     /// Mass to mass, along z.
     pub lateral_z: Option<Link>,
+}
+
+impl Layer {
+    /// Position X_i of mass `i` (from 0) at rest, m.
+    pub fn rest_position(&self, i: usize) -> f64 {
+        self.origin + i as f64 * self.spacing
+    }
+
+    /// The link of a kind as it is given; in the direct form alone, see [`Scene::link`].
+    pub fn link(&self, kind: LinkKind) -> Option<&Link> {
+        match kind {
+            LinkKind::Vertical => self.vertical.as_ref(),
+            LinkKind::Horizontal => self.horizontal.as_ref(),
+            LinkKind::LateralX => self.lateral_x.as_ref(),
+            LinkKind::LateralZ => self.lateral_z.as_ref(),
+        }
+    }
+
+    fn link_mut(&mut self, kind: LinkKind) -> Option<&mut Link> {
+        match kind {
+            LinkKind::Vertical => self.vertical.as_mut(),
+            LinkKind::Horizontal => self.horizontal.as_mut(),
+            LinkKind::LateralX => self.lateral_x.as_mut(),
+            LinkKind::LateralZ => self.lateral_z.as_mut(),
+        }
+    }
+}
+
+/// The four kinds of link.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum LinkKind {
+    /// Carrier to mass, along z: elongation ζ_i - w.
+    Vertical,
+    /// Carrier to mass, along x: elongation ξ_i - u.
+    Horizontal,
+    /// Mass i to mass i+1, along x: elongation ξ_{i+1} - ξ_i.
+    LateralX,
+    /// Mass i to mass i+1, along z: elongation ζ_{i+1} - ζ_i.
+    LateralZ,
+}
+
+impl LinkKind {
+    /// The kinds in the order of the scene's keys; `kind as usize` counts them.
+    pub const ALL: [Self; 4] = [Self::Vertical, Self::Horizontal, Self::LateralX, Self::LateralZ];
+
+    /// The name of the link's table in `[layer]`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Vertical => "vertical",
+            Self::Horizontal => "horizontal",
+            Self::LateralX => "lateral_x",
+            Self::LateralZ => "lateral_z",
+        }
+    }
+
+    /// What the link joins, in a few words.
+    pub fn description(self) -> &'static str {
+        match self {
+            Self::Vertical => "vertical link (carrier to mass)",
+            Self::Horizontal => "horizontal link (carrier to mass)",
+            Self::LateralX => "lateral link along x (mass to mass)",
+            Self::LateralZ => "lateral link along z (mass to mass)",
+        }
+    }
+
+    /// Whether the link joins two masses.
+    pub fn is_lateral(self) -> bool {
+        matches!(self, Self::LateralX | Self::LateralZ)
+    }
+
+    /// Whether the link's elongation lies along x.
+    pub fn is_along_x(self) -> bool {
+        matches!(self, Self::Horizontal | Self::LateralX)
+    }
+
+    /// How many links of this kind a layer of `masses` ≥ 1 masses has.
+    pub fn count(self, masses: usize) -> usize {
+        masses - usize::from(self.is_lateral())
+    }
 }
 
 /// A spring, a damper and Maxwell elements in parallel. A key that the scene does not name is `None`.
@@ -133,21 +205,14 @@ pub struct MaxwellElement {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Initial {
-    /// y_j = e_j: pressed long ago.
+    /// y_j = e_j: the layer was deformed long ago.
     Relaxed,
-    /// y_j = 0: pressed just now.
+    /// y_j = 0: the layer was deformed just now.
     Undeformed,
 }
 
-/// The data points of the rigid profile; the spline through them is the model's business.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Surface {
-    /// Places of the data points, m, strictly rising; at least two.
-    pub x: Vec<f64>,
-    /// Heights of the data points, m. Periodic: the last equals the first.
-    pub z: Vec<f64>,
-    /// Repeated for ever, or continued along its end tangents.
-    pub periodic: bool,
+impl Word for Initial {
+    const WORDS: &'static [(&'static str, Self)] = &[("relaxed", Self::Relaxed), ("undeformed", Self::Undeformed)];
 }
 
 /// The parts of the friction law that the scene names.
@@ -163,8 +228,8 @@ pub struct Friction {
     pub rate_shear: Option<RateShear>,
 }
 
-/// Shear strength that depends on the speed: A τ_f(v) = A τ_f0 exp(-c [log10(v/v_0)]²) of one mass in contact, held at
-/// A τ_f(v_c) below the creep speed v_c.
+/// Shear strength that depends on the speed: A τ_f(v) = A τ_f0 exp(-c [log10(v/v_0)]²) of one mass in contact, constant
+/// at A τ_f(v_c) below the creep speed v_c.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RateShear {
     /// The largest force A τ_f0, of one mass in contact at the reference speed, N; in the direct form alone, see
@@ -180,6 +245,16 @@ pub struct RateShear {
     pub creep_speed: Option<f64>,
 }
 
+/// The creep speed over the reference speed where the scene does not give it.
+const CREEP: f64 = 1e-6;
+
+impl RateShear {
+    /// The creep speed, m/s: as it was set, or a millionth of the reference speed, but at least [`SMALLEST`].
+    pub fn creep_speed(&self) -> f64 {
+        self.creep_speed.unwrap_or_else(|| (CREEP * self.reference_speed).max(SMALLEST))
+    }
+}
+
 /// The integrator's settings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Solver {
@@ -189,10 +264,23 @@ pub struct Solver {
     pub relative_tolerance: f64,
     /// Absolute tolerance, m; `None` follows the relative tolerance and the scene's height.
     pub absolute_tolerance: Option<f64>,
-    /// Steps that one communication step or one phase may take.
+    /// The most steps of one communication step or one phase.
     pub max_steps: u64,
     /// Bound on the error of a link's force for leaving Maxwell elements out, as a share of it; 0 leaves none out.
     pub reduce: f64,
+}
+
+impl Default for Solver {
+    /// The settings of a scene without `[solver]`.
+    fn default() -> Self {
+        Self {
+            method: Method::Event,
+            relative_tolerance: 1.0e-6,
+            absolute_tolerance: None,
+            max_steps: 10_000_000,
+            reduce: 0.0,
+        }
+    }
 }
 
 /// How mode changes are treated.
@@ -201,32 +289,41 @@ pub struct Solver {
 pub enum Method {
     /// Every mode change is located.
     Event,
-    /// Mode changes are put at the ends of the steps.
+    /// Mode changes are taken at the ends of the steps.
     Step,
-    /// Located where they are few, at the ends of the steps where they crowd.
+    /// Located while there are few in a step; taken at the ends of the steps where there are many.
     Auto,
+}
+
+impl Word for Method {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("event", Self::Event), ("step", Self::Step), ("auto", Self::Auto)];
 }
 
 /// How the carrier moves when a master gives values alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Extrapolation {
-    /// On, as it came.
+    /// At the rate of the communication step before.
     #[default]
     Linear,
-    /// To the value given, reached at the end of the step.
+    /// To the value given, reached at the end of the communication step.
     Hold,
+}
+
+impl Word for Extrapolation {
+    const WORDS: &'static [(&'static str, Self)] = &[("linear", Self::Linear), ("hold", Self::Hold)];
 }
 
 impl Extrapolation {
     /// The word for it in a scene file.
     pub fn word(self) -> &'static str {
-        allowed::EXTRAPOLATION.word(self)
+        self.as_word()
     }
 
     /// What a word stands for.
     pub fn of_word(word: &str) -> Option<Self> {
-        allowed::EXTRAPOLATION.find(word, word).ok()
+        Self::of(word)
     }
 }
 
@@ -248,8 +345,21 @@ pub enum OutputGroup {
     Tangent,
     /// Steps, events, estimated error, processor time.
     Solver,
-    /// Place, forces and mode of each mass.
+    /// Position, forces and mode of each mass.
     Elements,
+}
+
+impl Word for OutputGroup {
+    const WORDS: &'static [(&'static str, Self)] = &[
+        ("forces", Self::Forces),
+        ("dissipation", Self::Dissipation),
+        ("friction", Self::Friction),
+        ("contact", Self::Contact),
+        ("energy", Self::Energy),
+        ("tangent", Self::Tangent),
+        ("solver", Self::Solver),
+        ("elements", Self::Elements),
+    ];
 }
 
 impl OutputGroup {
@@ -267,46 +377,50 @@ impl OutputGroup {
 
     /// The group's name in a scene file.
     pub fn name(self) -> &'static str {
-        allowed::OUTPUTS.word(self)
+        self.as_word()
     }
 }
 
 impl Scene {
-    /// How long the excitation takes if no force ends a phase, s.
+    /// The scene's name as a C identifier: letters, digits and underscores, no digit first.
+    pub fn model_identifier(&self) -> String {
+        identifier(&self.name)
+    }
+
+    /// The duration of the excitation if no force ends a phase, s.
     pub fn duration(&self) -> f64 {
         self.excitation.iter().map(|phase| phase.duration).sum()
     }
-}
 
-/// One phase of the carrier's motion.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Phase {
-    /// Duration, s.
-    pub duration: f64,
-    /// Motion along x from the phase's start on.
-    pub u: Path,
-    /// Motion along z from the phase's start on.
-    pub w: Path,
-    /// The phase ends when F_z rises to this force, N; in the direct form alone, see [`Phase::end_force`].
-    pub until_force: Option<f64>,
-    /// The phase ends when F_z over the layer's area rises to this pressure, Pa; in the material form alone.
-    pub until_pressure: Option<f64>,
-}
-
-/// A displacement from where it stood: rate · s + amplitude · sin(2π frequency s), s the time since the start.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Path {
-    /// Constant rate, m/s.
-    pub rate: f64,
-    /// Amplitude of the sine, m.
-    pub amplitude: f64,
-    /// Frequency of the sine, Hz.
-    pub frequency: f64,
-}
-
-impl Numbers for Path {
-    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        let Self { rate, amplitude, frequency } = self;
-        visit_all([rate, amplitude, frequency], visit);
+    /// The bytes of one of the scene's [`files`](Self::files) as an FMU carries them; `folder` is the scene's.
+    ///
+    /// # Errors
+    /// Where the file cannot be read.
+    pub fn carried(&self, folder: &FilePath, file: &FilePath) -> io::Result<Vec<u8>> {
+        match self.extracts.iter().find(|extract| extract.name == file) {
+            Some(extract) => Ok(extract.text.clone().into_bytes()),
+            None => fs::read(folder.join(file)),
+        }
     }
+
+    /// The scene's height, m: the peak-to-valley heights of the profile's data points and of the layer's roughness
+    /// together, the spacing of the masses where both are flat.
+    pub fn height(&self) -> f64 {
+        let height = surface::peak_to_valley(&self.surface.z) + surface::peak_to_valley(&self.layer.roughness);
+        if height > 0.0 { height } else { self.layer.spacing }
+    }
+
+    /// The absolute tolerance, m: as it was set, or the relative one times the [`height`](Self::height), but at least
+    /// [`SMALLEST`].
+    pub fn absolute_tolerance(&self) -> f64 {
+        let default = || (self.solver.relative_tolerance * self.height()).max(SMALLEST);
+        self.solver.absolute_tolerance.unwrap_or_else(default)
+    }
+}
+
+/// A name as a C identifier: letters, digits and underscores, no digit first.
+pub fn identifier(name: &str) -> String {
+    let legal = |letter: char| if letter.is_ascii_alphanumeric() { letter } else { '_' };
+    let identifier: String = name.chars().map(legal).collect();
+    if identifier.starts_with(|first: char| first.is_ascii_digit()) { format!("_{identifier}") } else { identifier }
 }

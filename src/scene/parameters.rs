@@ -1,8 +1,7 @@
 //! The parameters of a scene by name: what an FMU or `--set` may change before a run.
+//!
+//! Units, ranges and descriptions are those of the table of keys.
 
-mod access;
-mod by_name;
-mod material;
 #[cfg(test)]
 mod tests;
 
@@ -10,11 +9,12 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-pub use material::MaterialParameter;
+use super::error::{ParameterError, Problem};
+use super::keys::{self, Allowed, Key};
+use super::values::{Word, words};
+use super::{Link, LinkKind, Scene, Unit};
 
-use super::{Layer, Link, LinkKind, Problem, RateShear, Scene, Unit};
-
-/// One settable number or word of a scene.
+/// One settable number or word of a scene. Elements of lists are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Parameter {
     /// `layer.clearance`
@@ -27,12 +27,30 @@ pub enum Parameter {
     Stiffness(LinkKind),
     /// `layer.vertical.damping` and so on
     Damping(LinkKind),
-    /// `layer.vertical.maxwell[1].stiffness` and so on; the element counted from 0
+    /// `layer.vertical.maxwell[1].stiffness` and so on
     MaxwellStiffness(LinkKind, usize),
-    /// `layer.vertical.maxwell[1].relaxation_time` and so on; the element counted from 0
+    /// `layer.vertical.maxwell[1].relaxation_time` and so on
     RelaxationTime(LinkKind, usize),
-    /// `material.density` and so on
-    Material(MaterialParameter),
+    /// `material.density`
+    Density,
+    /// `material.poisson_ratio`
+    PoissonRatio,
+    /// `material.equilibrium_modulus`
+    EquilibriumModulus,
+    /// `material.viscosity`
+    Viscosity,
+    /// `material.prony[1].modulus` and so on
+    PronyModulus(usize),
+    /// `material.prony[1].relaxation_time` and so on
+    PronyRelaxationTime(usize),
+    /// `material.wlf.c1`
+    WlfC1,
+    /// `material.wlf.c2`
+    WlfC2,
+    /// `material.wlf.reference_temperature`
+    ReferenceTemperature,
+    /// `material.wlf.temperature`
+    Temperature,
     /// `friction.coulomb`
     Coulomb,
     /// `friction.shear_force`
@@ -74,144 +92,6 @@ pub enum Value {
     Text(String),
 }
 
-/// Why a parameter's value, or its name, is refused.
-///
-/// It reads like `layer.mass = -1.0: expected a number from 1e-30 to 1e30`.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{}", problem.about(name))]
-pub struct ParameterError {
-    name: String,
-    problem: Problem,
-}
-
-impl ParameterError {
-    /// The error of the parameter called `name`.
-    pub(crate) fn new(name: impl Into<String>, problem: Problem) -> Self {
-        Self { name: name.into(), problem }
-    }
-
-    /// The name of the parameter, as it was given.
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
-    /// What was given and what is allowed.
-    pub fn problem(&self) -> &Problem {
-        &self.problem
-    }
-}
-
-impl Layer {
-    /// The link of a kind as it is given; in the direct form alone, see [`Scene::link`].
-    pub fn link(&self, kind: LinkKind) -> Option<&Link> {
-        match kind {
-            LinkKind::Vertical => self.vertical.as_ref(),
-            LinkKind::Horizontal => self.horizontal.as_ref(),
-            LinkKind::LateralX => self.lateral_x.as_ref(),
-            LinkKind::LateralZ => self.lateral_z.as_ref(),
-        }
-    }
-
-    fn link_mut(&mut self, kind: LinkKind) -> Option<&mut Link> {
-        match kind {
-            LinkKind::Vertical => self.vertical.as_mut(),
-            LinkKind::Horizontal => self.horizontal.as_mut(),
-            LinkKind::LateralX => self.lateral_x.as_mut(),
-            LinkKind::LateralZ => self.lateral_z.as_mut(),
-        }
-    }
-}
-
-impl Parameter {
-    /// The key's path, elements of lists counted from 1: `layer.vertical.maxwell[1].stiffness`.
-    pub fn name(self) -> String {
-        match self {
-            Self::Clearance => "layer.clearance".into(),
-            Self::Mass => "layer.mass".into(),
-            Self::Initial => "layer.initial".into(),
-            Self::Stiffness(link) => format!("layer.{}.stiffness", link.name()),
-            Self::Damping(link) => format!("layer.{}.damping", link.name()),
-            Self::MaxwellStiffness(link, j) => format!("layer.{}.maxwell[{}].stiffness", link.name(), j + 1),
-            Self::RelaxationTime(link, j) => format!("layer.{}.maxwell[{}].relaxation_time", link.name(), j + 1),
-            Self::Material(parameter) => parameter.name(),
-            Self::Coulomb => "friction.coulomb".into(),
-            Self::ShearForce => "friction.shear_force".into(),
-            Self::ShearStrength => "friction.shear_strength".into(),
-            Self::RateShearForce => "friction.rate_shear.force".into(),
-            Self::RateShearStrength => "friction.rate_shear.strength".into(),
-            Self::ReferenceSpeed => "friction.rate_shear.reference_speed".into(),
-            Self::Sharpness => "friction.rate_shear.sharpness".into(),
-            Self::CreepSpeed => "friction.rate_shear.creep_speed".into(),
-            Self::Method => "solver.method".into(),
-            Self::RelativeTolerance => "solver.relative_tolerance".into(),
-            Self::AbsoluteTolerance => "solver.absolute_tolerance".into(),
-            Self::MaxSteps => "solver.max_steps".into(),
-            Self::Extrapolation => "input.extrapolation".into(),
-            Self::TableExtrapolation => "table.extrapolation".into(),
-        }
-    }
-
-    /// The unit of a Real parameter; 1 for the others.
-    pub fn unit(self) -> Unit {
-        match self {
-            Self::Clearance | Self::AbsoluteTolerance => Unit::Meter,
-            Self::Mass => Unit::Kilogram,
-            Self::Stiffness(_) | Self::MaxwellStiffness(..) => Unit::NewtonPerMeter,
-            Self::Damping(_) => Unit::NewtonSecondPerMeter,
-            Self::RelaxationTime(..) => Unit::Second,
-            Self::Material(parameter) => parameter.unit(),
-            Self::ShearForce | Self::RateShearForce => Unit::Newton,
-            Self::ShearStrength | Self::RateShearStrength => Unit::Pascal,
-            Self::ReferenceSpeed | Self::CreepSpeed => Unit::MeterPerSecond,
-            Self::Coulomb | Self::Sharpness | Self::RelativeTolerance => Unit::One,
-            Self::Initial | Self::Method | Self::MaxSteps | Self::Extrapolation => Unit::One,
-            Self::TableExtrapolation => Unit::One,
-        }
-    }
-
-    /// What it is, in a few words.
-    pub fn description(self) -> String {
-        match self {
-            Self::Clearance => "Rest height of the layer above the profile's datum at w = 0".into(),
-            Self::Mass => "Mass of one point mass".into(),
-            Self::Initial => "How the dashpots start: relaxed or undeformed".into(),
-            Self::Stiffness(link) => format!("Stiffness of the {}", link.description()),
-            Self::Damping(link) => format!("Damping of the {}", link.description()),
-            Self::MaxwellStiffness(link, j) => {
-                format!("Stiffness of Maxwell element {} of the {}", j + 1, link.description())
-            }
-            Self::RelaxationTime(link, j) => {
-                format!("Relaxation time of Maxwell element {} of the {}", j + 1, link.description())
-            }
-            Self::Material(parameter) => parameter.description(),
-            Self::Coulomb => "Coulomb's friction coefficient".into(),
-            Self::ShearForce => "Adhesive shear force of one mass in contact".into(),
-            Self::ShearStrength => "Adhesive shear strength of the contact".into(),
-            Self::RateShearForce => "Largest rate-dependent shear force of one mass in contact".into(),
-            Self::RateShearStrength => "Largest rate-dependent shear strength of the contact".into(),
-            Self::ReferenceSpeed => "Speed at which the rate-dependent shear force is largest".into(),
-            Self::Sharpness => "How sharply the rate-dependent shear force falls about its largest, with the squared decades of \
-                 the speed"
-                .into(),
-            Self::CreepSpeed => "Speed below which the rate-dependent shear force is held; follows the reference speed until it \
-                 is set itself"
-                .into(),
-            Self::Method => "How mode changes are treated: event locates every one, step puts them at the ends of its steps, auto takes step \
-                 where they crowd"
-                .into(),
-            Self::RelativeTolerance => "Relative tolerance of the local error".into(),
-            Self::AbsoluteTolerance => {
-                "Absolute tolerance of places; follows the relative one until it is set itself".into()
-            }
-            Self::MaxSteps => "Steps that one communication step or one phase may take".into(),
-            Self::Extrapolation => "How the carrier moves when no rates are given: linear or hold".into(),
-            Self::TableExtrapolation => "What happens beyond the table's pressures and speeds: refuse, or hold its ends' \
-                 friction coefficients and stiffnesses"
-                .into(),
-        }
-    }
-}
-
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -222,41 +102,259 @@ impl fmt::Display for Value {
     }
 }
 
+impl Parameter {
+    /// The key's path, elements of lists counted from 1: `layer.vertical.maxwell[1].stiffness`.
+    pub fn name(self) -> String {
+        let name = match self {
+            Self::Clearance => "layer.clearance",
+            Self::Mass => "layer.mass",
+            Self::Initial => "layer.initial",
+            Self::Stiffness(link) => return format!("layer.{}.stiffness", link.name()),
+            Self::Damping(link) => return format!("layer.{}.damping", link.name()),
+            Self::MaxwellStiffness(link, j) => return format!("layer.{}.maxwell[{}].stiffness", link.name(), j + 1),
+            Self::RelaxationTime(link, j) => {
+                return format!("layer.{}.maxwell[{}].relaxation_time", link.name(), j + 1);
+            }
+            Self::Density => "material.density",
+            Self::PoissonRatio => "material.poisson_ratio",
+            Self::EquilibriumModulus => "material.equilibrium_modulus",
+            Self::Viscosity => "material.viscosity",
+            Self::PronyModulus(j) => return format!("material.prony[{}].modulus", j + 1),
+            Self::PronyRelaxationTime(j) => return format!("material.prony[{}].relaxation_time", j + 1),
+            Self::WlfC1 => "material.wlf.c1",
+            Self::WlfC2 => "material.wlf.c2",
+            Self::ReferenceTemperature => "material.wlf.reference_temperature",
+            Self::Temperature => "material.wlf.temperature",
+            Self::Coulomb => "friction.coulomb",
+            Self::ShearForce => "friction.shear_force",
+            Self::ShearStrength => "friction.shear_strength",
+            Self::RateShearForce => "friction.rate_shear.force",
+            Self::RateShearStrength => "friction.rate_shear.strength",
+            Self::ReferenceSpeed => "friction.rate_shear.reference_speed",
+            Self::Sharpness => "friction.rate_shear.sharpness",
+            Self::CreepSpeed => "friction.rate_shear.creep_speed",
+            Self::Method => "solver.method",
+            Self::RelativeTolerance => "solver.relative_tolerance",
+            Self::AbsoluteTolerance => "solver.absolute_tolerance",
+            Self::MaxSteps => "solver.max_steps",
+            Self::Extrapolation => "input.extrapolation",
+            Self::TableExtrapolation => "table.extrapolation",
+        };
+        name.to_owned()
+    }
+
+    fn key(self) -> &'static Key {
+        match self {
+            Self::TableExtrapolation => &keys::TABLE_EXTRAPOLATION,
+            _ => keys::at(&self.name()).unwrap_or(&keys::NONE),
+        }
+    }
+
+    /// The unit of a Real parameter; 1 for the others.
+    pub fn unit(self) -> Unit {
+        self.key().unit
+    }
+
+    /// What it is, in a few words.
+    pub fn description(self) -> String {
+        let meaning = self.key().meaning;
+        match self {
+            Self::Stiffness(link) | Self::Damping(link) => format!("{meaning} of the {}", link.description()),
+            Self::MaxwellStiffness(link, j) | Self::RelaxationTime(link, j) => {
+                format!("{meaning} of Maxwell element {} of the {}", j + 1, link.description())
+            }
+            Self::PronyModulus(j) => format!("{meaning} of term {} of the Prony series", j + 1),
+            Self::PronyRelaxationTime(j) => {
+                format!("{meaning} of term {} of the Prony series at the reference temperature", j + 1)
+            }
+            _ => meaning.to_owned(),
+        }
+    }
+
+    fn refuse(self, given: impl ToString) -> ParameterError {
+        ParameterError::new(self.name(), Problem::value(given, self.key().allowed))
+    }
+
+    /// The choice that `word` stands for.
+    fn choice<T: Word>(self, word: &str) -> Result<T, ParameterError> {
+        let error = || ParameterError::new(self.name(), Problem::value(format_args!("{word:?}"), words::<T>()));
+        T::of(word).ok_or_else(error)
+    }
+}
+
+/// Where a Real parameter is in a scene, `None` where the scene does not have it: to be read (`field!(scene, parameter,
+/// as_ref, get, link)`) or changed (`field!(scene, parameter, as_mut, get_mut, link_mut, mut)`).
+macro_rules! field {
+    ($scene:expr, $parameter:expr, $as_ref:ident, $get:ident, $link:ident $(, $mut:tt)?) => {{
+        use Parameter::*;
+        let scene = $scene;
+        match $parameter {
+            Clearance => Some(&$($mut)? scene.layer.clearance),
+            Mass => scene.layer.mass.$as_ref(),
+            Stiffness(kind) => scene.layer.$link(kind)?.stiffness.$as_ref(),
+            Damping(kind) => scene.layer.$link(kind)?.damping.$as_ref(),
+            MaxwellStiffness(kind, j) => Some(&$($mut)? scene.layer.$link(kind)?.maxwell.$get(j)?.stiffness),
+            RelaxationTime(kind, j) => Some(&$($mut)? scene.layer.$link(kind)?.maxwell.$get(j)?.relaxation_time),
+            Density => Some(&$($mut)? scene.material.$as_ref()?.density),
+            PoissonRatio => Some(&$($mut)? scene.material.$as_ref()?.poisson_ratio),
+            EquilibriumModulus => Some(&$($mut)? scene.material.$as_ref()?.equilibrium_modulus),
+            Viscosity => scene.material.$as_ref()?.viscosity.$as_ref(),
+            PronyModulus(j) => Some(&$($mut)? scene.material.$as_ref()?.prony.$get(j)?.modulus),
+            PronyRelaxationTime(j) => Some(&$($mut)? scene.material.$as_ref()?.prony.$get(j)?.relaxation_time),
+            WlfC1 => Some(&$($mut)? scene.material.$as_ref()?.wlf.$as_ref()?.c1),
+            WlfC2 => Some(&$($mut)? scene.material.$as_ref()?.wlf.$as_ref()?.c2),
+            ReferenceTemperature => Some(&$($mut)? scene.material.$as_ref()?.wlf.$as_ref()?.reference_temperature),
+            Temperature => Some(&$($mut)? scene.material.$as_ref()?.wlf.$as_ref()?.temperature),
+            Coulomb => scene.friction.$as_ref()?.coulomb.$as_ref(),
+            ShearForce => scene.friction.$as_ref()?.shear_force.$as_ref(),
+            ShearStrength => scene.friction.$as_ref()?.shear_strength.$as_ref(),
+            RateShearForce => scene.friction.$as_ref()?.rate_shear.$as_ref()?.force.$as_ref(),
+            RateShearStrength => scene.friction.$as_ref()?.rate_shear.$as_ref()?.strength.$as_ref(),
+            ReferenceSpeed => Some(&$($mut)? scene.friction.$as_ref()?.rate_shear.$as_ref()?.reference_speed),
+            Sharpness => Some(&$($mut)? scene.friction.$as_ref()?.rate_shear.$as_ref()?.sharpness),
+            RelativeTolerance => Some(&$($mut)? scene.solver.relative_tolerance),
+            // They follow others until they are set: see `real` and `write_real`.
+            CreepSpeed | AbsoluteTolerance => None,
+            Initial | Method | MaxSteps | Extrapolation | TableExtrapolation => None,
+        }
+    }};
+}
+
 impl Scene {
     /// The parameters that this scene has, in the order of the scene's keys.
     pub fn parameters(&self) -> Vec<Parameter> {
-        use Parameter::{AbsoluteTolerance, Extrapolation, MaxSteps, Method, RelativeTolerance};
-        let mut parameters = vec![Parameter::Clearance];
-        parameters.extend(self.layer.mass.map(|_| Parameter::Mass));
-        parameters.push(Parameter::Initial);
-        for kind in LinkKind::ALL {
-            parameters.extend(self.layer.link(kind).into_iter().flat_map(|link| link_parameters(kind, link)));
-        }
-        let of_material = self.material.as_ref().map_or_else(Vec::new, MaterialParameter::of);
-        parameters.extend(of_material.into_iter().map(Parameter::Material));
-        let friction = self.friction.clone().unwrap_or_default();
-        parameters.extend(friction.coulomb.map(|_| Parameter::Coulomb));
-        parameters.extend(friction.shear_force.map(|_| Parameter::ShearForce));
-        parameters.extend(friction.shear_strength.map(|_| Parameter::ShearStrength));
-        parameters.extend(friction.rate_shear.iter().flat_map(rate_shear_parameters));
+        use Parameter::*;
+        let link = |kind: LinkKind| {
+            let elements = self.layer.link(kind).map_or(0, |link: &Link| link.maxwell.len());
+            let of_element = move |j| [MaxwellStiffness(kind, j), RelaxationTime(kind, j)];
+            [Stiffness(kind), Damping(kind)].into_iter().chain((0..elements).flat_map(of_element))
+        };
+        let terms = self.material.as_ref().map_or(0, |material| material.prony.len());
+        let mut parameters = vec![Clearance, Mass, Initial];
+        parameters.extend(LinkKind::ALL.into_iter().flat_map(link));
+        parameters.extend([Density, PoissonRatio, EquilibriumModulus, Viscosity]);
+        parameters.extend((0..terms).flat_map(|j| [PronyModulus(j), PronyRelaxationTime(j)]));
+        parameters.extend([WlfC1, WlfC2, ReferenceTemperature, Temperature]);
+        parameters.extend([Coulomb, ShearForce, ShearStrength, RateShearForce, RateShearStrength]);
+        parameters.extend([ReferenceSpeed, Sharpness, CreepSpeed]);
         parameters.extend([Method, RelativeTolerance, AbsoluteTolerance, MaxSteps, Extrapolation]);
+        let is_real = |parameter: Parameter| matches!(parameter.key().allowed, Allowed::Number(_));
+        parameters.retain(|&parameter| !is_real(parameter) || self.real(parameter).is_some());
         parameters
     }
-}
 
-fn rate_shear_parameters(law: &RateShear) -> Vec<Parameter> {
-    let force = law.force.map(|_| Parameter::RateShearForce);
-    let strength = law.strength.map(|_| Parameter::RateShearStrength);
-    let others = [Parameter::ReferenceSpeed, Parameter::Sharpness, Parameter::CreepSpeed];
-    force.into_iter().chain(strength).chain(others).collect()
-}
-
-fn link_parameters(kind: LinkKind, link: &Link) -> Vec<Parameter> {
-    let mut parameters = Vec::new();
-    parameters.extend(link.stiffness.map(|_| Parameter::Stiffness(kind)));
-    parameters.extend(link.damping.map(|_| Parameter::Damping(kind)));
-    for j in 0..link.maxwell.len() {
-        parameters.extend([Parameter::MaxwellStiffness(kind, j), Parameter::RelaxationTime(kind, j)]);
+    /// The parameter called `name`.
+    pub fn parameter_named(&self, name: &str) -> Option<Parameter> {
+        self.parameters().into_iter().find(|parameter| parameter.name() == name)
     }
-    parameters
+
+    /// The value of `parameter`; a Real one that the scene does not have is 0.
+    pub fn parameter(&self, parameter: Parameter) -> Value {
+        match parameter {
+            Parameter::Initial => Value::Text(self.layer.initial.as_word().into()),
+            Parameter::Method => Value::Text(self.solver.method.as_word().into()),
+            Parameter::Extrapolation => Value::Text(self.extrapolation.as_word().into()),
+            Parameter::MaxSteps => Value::Integer(i32::try_from(self.solver.max_steps).unwrap_or(i32::MAX)),
+            _ => Value::Real(self.real(parameter).unwrap_or(0.0)),
+        }
+    }
+
+    fn real(&self, parameter: Parameter) -> Option<f64> {
+        match parameter {
+            Parameter::CreepSpeed => Some(self.friction.as_ref()?.rate_shear?.creep_speed()),
+            Parameter::AbsoluteTolerance => Some(self.absolute_tolerance()),
+            _ => field!(self, parameter, as_ref, get, link).copied(),
+        }
+    }
+
+    /// Gives `parameter` a value. [`check`](Self::check) tells afterwards whether the values agree with each other.
+    ///
+    /// # Errors
+    /// [`ParameterError`] where the value is of the wrong type or out of range, or where the scene has no such
+    /// parameter; the scene is then unchanged.
+    pub fn set_parameter(&mut self, parameter: Parameter, value: Value) -> Result<(), ParameterError> {
+        match (parameter, &value) {
+            (_, Value::Real(number)) => return self.set_real(parameter, *number),
+            (Parameter::MaxSteps, Value::Integer(number)) => return self.set_max_steps(*number),
+            (Parameter::Initial, Value::Text(word)) => self.layer.initial = parameter.choice(word)?,
+            (Parameter::Method, Value::Text(word)) => self.solver.method = parameter.choice(word)?,
+            (Parameter::Extrapolation, Value::Text(word)) => self.extrapolation = parameter.choice(word)?,
+            _ => return Err(parameter.refuse(value)),
+        }
+        Ok(())
+    }
+
+    fn set_real(&mut self, parameter: Parameter, number: f64) -> Result<(), ParameterError> {
+        if !parameter.key().range().is_some_and(|range| range.holds(number)) {
+            return Err(parameter.refuse(Value::Real(number)));
+        }
+        if self.real(parameter).is_none() {
+            return Err(self.unknown(&parameter.name()));
+        }
+        self.write_real(parameter, number);
+        Ok(())
+    }
+
+    /// Sets a Real parameter that the scene has; `None` where it has not.
+    fn write_real(&mut self, parameter: Parameter, number: f64) -> Option<()> {
+        match parameter {
+            // These follow others until they are set themselves.
+            Parameter::CreepSpeed => self.friction.as_mut()?.rate_shear.as_mut()?.creep_speed = Some(number),
+            Parameter::AbsoluteTolerance => self.solver.absolute_tolerance = Some(number),
+            _ => *field!(self, parameter, as_mut, get_mut, link_mut, mut)? = number,
+        }
+        Some(())
+    }
+
+    fn set_max_steps(&mut self, number: i32) -> Result<(), ParameterError> {
+        let Allowed::Whole(range) = Parameter::MaxSteps.key().allowed else { return Ok(()) };
+        if !range.holds(number.into()) {
+            return Err(Parameter::MaxSteps.refuse(number));
+        }
+        self.solver.max_steps = number.unsigned_abs().into();
+        Ok(())
+    }
+
+    /// Gives the parameter called `name` the value that `text` writes.
+    ///
+    /// # Errors
+    /// [`ParameterError`] as for [`set_parameter`](Self::set_parameter), and for an unknown name, with the parameters
+    /// whose names are similar or, failing these, all that the scene has.
+    pub fn set_by_name(&mut self, name: &str, text: &str) -> Result<(), ParameterError> {
+        let parameter = self.parameter_named(name).ok_or_else(|| self.unknown(name))?;
+        let value = match self.parameter(parameter) {
+            Value::Real(_) => text.trim().parse().map(Value::Real).map_err(|_| parameter.refuse(text))?,
+            Value::Integer(_) => text.trim().parse().map(Value::Integer).map_err(|_| parameter.refuse(text))?,
+            Value::Text(_) => Value::Text(text.trim().to_owned()),
+        };
+        self.set_parameter(parameter, value)
+    }
+
+    fn unknown(&self, name: &str) -> ParameterError {
+        let names: Vec<String> = self.parameters().into_iter().map(Parameter::name).collect();
+        let similar: Vec<String> = names.iter().filter(|other| is_similar(name, other)).cloned().collect();
+        let allowed = if similar.is_empty() { names } else { similar };
+        ParameterError::new(name, Problem::Unknown { allowed })
+    }
+}
+
+/// Whether a few letters differ, or only the end of the path is given.
+fn is_similar(given: &str, name: &str) -> bool {
+    let end_of_path = name.strip_suffix(given).is_some_and(|start| start.ends_with('.'));
+    end_of_path || edits(given, name) <= 1 + given.chars().count() / 8
+}
+
+/// Letters to insert, leave out or change (Levenshtein).
+fn edits(from: &str, to: &str) -> usize {
+    let to: Vec<char> = to.chars().collect();
+    let mut row: Vec<usize> = (0..=to.len()).collect();
+    for (i, letter) in from.chars().enumerate() {
+        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
+        for j in 0..to.len() {
+            let changed = diagonal + usize::from(letter != to[j]);
+            diagonal = row[j + 1];
+            row[j + 1] = changed.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[to.len()]
 }

@@ -1,161 +1,355 @@
-//! Reading of `[surface]` and of what else is given like one.
+//! The rigid surface: the data points of its profile, what they must satisfy, the lines through them; and random
+//! surfaces with a given power spectrum.
 
-use std::f64::consts::TAU;
-use std::path::{Component, Path, PathBuf};
+use std::f64::consts::{SQRT_2, TAU};
 
-use super::allowed::{self, SurfaceKind};
-use super::points::{self, Axis};
-use super::profile::{self, Extract, Failure, ProfileOptions, Tilt};
-use super::table::{Entry, TableReader, read_table};
-use super::{Problem, SceneError, Surface, self_affine};
-use crate::math::Spline;
+use nalgebra::Complex;
+use serde::Serialize;
 
-/// The key that says where the heights come from.
-pub(super) const KIND: &str = "kind";
+use crate::math::{Direction, Spline, SplitMix64, fourier};
+
+/// Periodic ends may differ by rounding: by this part of the peak-to-valley height.
+const ROUNDING: f64 = 1.0e-12;
+
+/// The data points of the rigid profile; the model puts a spline through them.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Surface {
+    /// Positions of the data points, m, strictly rising; at least two.
+    pub x: Vec<f64>,
+    /// Heights of the data points, m. Periodic: the last equals the first.
+    pub z: Vec<f64>,
+    /// Whether the profile is repeated without end, or else continued along its end tangents.
+    pub periodic: bool,
+}
 
 impl Surface {
+    /// A level profile.
+    pub(super) fn flat() -> Self {
+        Self { x: vec![0.0, 1.0], z: vec![0.0, 0.0], periodic: false }
+    }
+
+    /// One wavelength of a sine, by `points` intervals.
+    pub(super) fn sinusoid(amplitude: f64, wavelength: f64, points: i64) -> Self {
+        let phase = |i| i as f64 / points as f64;
+        let x = (0..=points).map(|i| wavelength * phase(i)).collect();
+        // The last point is the first one again: without the rounding of sin 2π.
+        let z = (0..=points).map(|i| amplitude * (TAU * phase(i % points)).sin()).collect();
+        Self { x, z, periodic: true }
+    }
+
     /// The cubic spline through the data points.
     pub fn spline(&self) -> Spline {
         if self.periodic { Spline::periodic(&self.x, &self.z) } else { Spline::natural(&self.x, &self.z) }
     }
-}
 
-/// What comes up on the way through a scene.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Found {
-    pub(super) files: Vec<PathBuf>,
-    pub(super) extracts: Vec<Extract>,
-    pub(super) warnings: Vec<String>,
-}
-
-impl Found {
-    /// Notes a file that the scene reads, each once.
-    pub(super) fn add_file(&mut self, path: PathBuf) {
-        if !self.files.contains(&path) {
-            self.files.push(path);
-        }
+    /// The least squares line through the profile's data points.
+    pub fn line(&self) -> Line {
+        Line::through(&self.x, &self.z)
     }
 }
 
-/// The surface given by the table `entry`; the file that it names, if any, is added to those `found`.
-pub(super) fn read_surface(entry: &Entry<'_>, found: &mut Found) -> Result<Surface, SceneError> {
-    let surface =
-        read_table(entry, |table| match table.required(KIND, allowed::SURFACE)?.choice(&allowed::SURFACE)? {
-            SurfaceKind::Flat => read_flat(table),
-            SurfaceKind::Sinusoid => read_sinusoid(table),
-            SurfaceKind::SelfAffine => self_affine::read(table),
-            SurfaceKind::Points => read_points(table),
-            SurfaceKind::File => read_file(table, found),
-        })?;
-    let spline = surface.spline();
-    let bounds = spline.bounds();
-    let finite = surface.x.iter().all(|&x| spline.evaluate(x).2.is_finite());
-    if finite && bounds.slope_max_abs <= STEEPEST && bounds.curvature_max_abs <= allowed::LARGEST {
-        Ok(surface)
+/// The least squares line of a profile as a curve: the weight of a point is the width of the intervals beside it, so
+/// that uneven spacing does not matter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Line {
+    /// The middle of the profile, m.
+    pub x: f64,
+    /// The mean height, m.
+    pub z: f64,
+    /// The tilt, 1.
+    pub slope: f64,
+}
+
+impl Line {
+    /// The line through points; about their means, so that no digits are lost far from x = 0.
+    fn through(x: &[f64], z: &[f64]) -> Self {
+        let step = |i: usize| x[i + 1] - x[i];
+        let weight = |i: usize| if i == 0 { 0.0 } else { step(i - 1) } + if i + 1 < x.len() { step(i) } else { 0.0 };
+        let sum = |term: &dyn Fn(usize) -> f64| (0..x.len()).map(|i| weight(i) * term(i)).sum::<f64>();
+        let whole = sum(&|_| 1.0);
+        let (x_mean, z_mean) = (sum(&|i| x[i]) / whole, sum(&|i| z[i]) / whole);
+        let covariance = sum(&|i| (x[i] - x_mean) * (z[i] - z_mean));
+        let variance = sum(&|i| (x[i] - x_mean) * (x[i] - x_mean));
+        Self { x: x_mean, z: z_mean, slope: covariance / variance }
+    }
+
+    /// The line's height at `x`, m.
+    pub fn at(&self, x: f64) -> f64 {
+        self.z + self.slope * (x - self.x)
+    }
+}
+
+/// Subtracts the least squares line from the heights.
+pub(super) fn remove_tilt(x: &[f64], z: &mut [f64]) {
+    let line = Line::through(x, z);
+    z.iter_mut().zip(x).for_each(|(z, x)| *z = (*z - line.z) - line.slope * (x - line.x));
+}
+
+/// Highest minus lowest, m; 0 of nothing.
+pub(super) fn peak_to_valley(heights: &[f64]) -> f64 {
+    let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);
+    (highest - lowest).max(0.0)
+}
+
+/// A coordinate of a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Coordinate {
+    X,
+    Z,
+}
+
+/// Why points are not a profile.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct PointsError {
+    pub(super) coordinate: Coordinate,
+    /// The wrong point, from 0; `None` where their number is wrong.
+    pub(super) index: Option<usize>,
+    pub(super) expected: String,
+}
+
+/// Checks that there are enough points, that x rises and that periodic ends meet, and makes these ends exactly equal.
+pub(super) fn check_points(x: &[f64], z: &mut [f64], periodic: bool) -> Result<(), PointsError> {
+    check_count(x.len(), periodic)?;
+    check_order(x)?;
+    if periodic { close(z) } else { Ok(()) }
+}
+
+fn check_count(count: usize, periodic: bool) -> Result<(), PointsError> {
+    let (least, what) = if periodic { (3, "a periodic profile") } else { (2, "a profile") };
+    let expected = format!("at least {least} points for {what}");
+    if count >= least { Ok(()) } else { Err(PointsError { coordinate: Coordinate::X, index: None, expected }) }
+}
+
+fn check_order(x: &[f64]) -> Result<(), PointsError> {
+    let Some(before) = x.windows(2).position(|pair| pair[1] <= pair[0]) else { return Ok(()) };
+    let (previous, here) = (x[before], x[before + 1]);
+    let expected = if previous == here {
+        format!("each x once, but the point before has x = {previous:?} too")
     } else {
-        let limits = format!("slopes up to {STEEPEST:e} and curvatures up to {:e} 1/m", allowed::LARGEST);
-        Err(entry.refuse(format_args!("points with a spline of {limits}")))
-    }
-}
-
-/// The largest slope of a profile: a step of a metre from one atom to the next has less, and its square times that of
-/// the largest speed is a number.
-const STEEPEST: f64 = 1e12;
-
-fn read_flat(table: &TableReader<'_>) -> Result<Surface, SceneError> {
-    table.allow(&[KIND])?;
-    Ok(Surface { x: vec![0.0, 1.0], z: vec![0.0, 0.0], periodic: false })
-}
-
-fn read_sinusoid(table: &mut TableReader<'_>) -> Result<Surface, SceneError> {
-    table.allow(&[KIND, "amplitude", "wavelength", "points_per_wavelength"])?;
-    let amplitude = table.number("amplitude", &allowed::AMPLITUDE)?;
-    let wavelength = table.number("wavelength", &allowed::WAVELENGTH)?;
-    let points = table.optional_whole("points_per_wavelength", &allowed::POINTS_PER_WAVELENGTH)?.unwrap_or(64);
-    Ok(sinusoid(amplitude, wavelength, points))
-}
-
-fn sinusoid(amplitude: f64, wavelength: f64, points: i64) -> Surface {
-    let phase = |i| i as f64 / points as f64;
-    let x = (0..=points).map(|i| wavelength * phase(i)).collect();
-    // The last point is the first one again: without the rounding of sin 2π.
-    let z = (0..=points).map(|i| amplitude * (TAU * phase(i % points)).sin()).collect();
-    Surface { x, z, periodic: true }
-}
-
-fn read_points(table: &mut TableReader<'_>) -> Result<Surface, SceneError> {
-    table.allow(&[KIND, "x", "z", "periodic"])?;
-    let periodic = table.optional_flag("periodic")?.unwrap_or(false);
-    let x_entry = table.required("x", "an array of places")?;
-    let z_entry = table.required("z", "an array of heights")?;
-    let (x, mut z) = (x_entry.numbers(&allowed::PLACE)?, z_entry.numbers(&allowed::HEIGHT)?);
-    if z.len() != x.len() {
-        return Err(z_entry.refuse_count(z.len(), &format!("{} heights, as many as places in x", x.len())));
-    }
-    points::check(&x, &mut z, periodic).map_err(|refusal| {
-        let entry = if refusal.axis == Axis::X { &x_entry } else { &z_entry };
-        let element = refusal.index.and_then(|i| entry.element(i));
-        match element {
-            Some(element) => element.refuse(refusal.expected),
-            None => entry.refuse_count(x.len(), &refusal.expected),
-        }
-    })?;
-    Ok(Surface { x, z, periodic })
-}
-
-fn read_file(table: &mut TableReader<'_>, found: &mut Found) -> Result<Surface, SceneError> {
-    let keys = ["path", "periodic", "unit", "x_unit", "z_unit", "missing", "tilt", "third_column", "line"];
-    table.allow(&[&[KIND][..], &keys].concat())?;
-    let options = read_options(table)?;
-    let entry = table.required("path", PATH_EXPECTED)?;
-    let path = read_path(&entry)?;
-    let profile = profile::read(entry.source().folder(), &path, &options).map_err(|failure| match failure {
-        Failure::Unreadable(error) => {
-            entry.problem(Problem::Unreadable { given: entry.given(), reason: error.to_string() })
-        }
-        Failure::Refused(error) => error.named_by(entry.place(), entry.key()),
-    })?;
-    let told = profile.warnings.iter().map(|warning| format!("{}: {warning}", path.display()));
-    found.warnings.extend(told);
-    if !found.files.contains(&profile.file) {
-        let name = profile.file.clone();
-        found.extracts.extend(profile.extract.map(|text| Extract { source: path, name, text }));
-    }
-    found.add_file(profile.file);
-    Ok(profile.surface)
-}
-
-fn read_options(table: &mut TableReader<'_>) -> Result<ProfileOptions, SceneError> {
-    let unit = table.optional_choice("unit", &allowed::LENGTH_UNIT)?;
-    let options = ProfileOptions {
-        x_unit: table.optional_choice("x_unit", &allowed::LENGTH_UNIT)?.or(unit),
-        z_unit: table.optional_choice("z_unit", &allowed::LENGTH_UNIT)?.or(unit),
-        missing: table.optional_choice("missing", &allowed::MISSING)?.unwrap_or_default(),
-        tilt: table.optional_choice("tilt", &allowed::TILT)?.unwrap_or_default(),
-        third_column: table.optional_choice("third_column", &allowed::THIRD_COLUMN)?,
-        line: table.optional_whole("line", &allowed::LINE)?.and_then(|line| usize::try_from(line).ok()),
-        periodic: table.optional_flag("periodic")?.unwrap_or(false),
+        format!("a number > {previous:?}, the x of the point before, for x must rise")
     };
-    match table.entry("tilt").filter(|_| options.periodic && options.tilt == Tilt::Remove) {
-        Some(entry) => Err(entry.refuse("\"keep\" for a periodic profile, whose ends meet as they are")),
-        None => Ok(options),
+    Err(PointsError { coordinate: Coordinate::X, index: Some(before + 1), expected })
+}
+
+fn close(z: &mut [f64]) -> Result<(), PointsError> {
+    let height = peak_to_valley(z);
+    let [first, .., last] = z else { return Ok(()) };
+    if (*last - *first).abs() > ROUNDING * height {
+        let expected = format!("{first:?}, the first height, for a periodic profile ends at the height it starts from");
+        return Err(PointsError { coordinate: Coordinate::Z, index: Some(z.len() - 1), expected });
+    }
+    *last = *first;
+    Ok(())
+}
+
+/// A number of modes that is whole but for rounding is that number.
+const WHOLE: f64 = 1.0e-9;
+
+/// A periodic profile whose one-sided power spectrum is constant up to q_r = 2π/roll-off, falls as q^(-1-2H) up to
+/// q_c = 2π/cut-off and is 0 beyond.
+///
+/// It is a sum over the modes m = 1, 2, … of the wave numbers q = 2πm/length,
+///
+/// z(x) = Σ a_m cos(q x + φ_m),   a_m² ∝ the spectrum at q,   φ_m = 2π · the m-th number of [`SplitMix64`] from the
+/// seed,
+///
+/// at even points, scaled to the root mean square height. So every mode has exactly its share of the power, the same
+/// seed gives the same bits everywhere, and more points the same profile with more points; a shorter cut-off adds modes
+/// and leaves the phases of the others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct SelfAffine {
+    /// Period, m.
+    pub(super) length: f64,
+    /// Even intervals of a period.
+    pub(super) points: usize,
+    /// Hurst exponent H, 1.
+    pub(super) hurst: f64,
+    /// Root mean square height over one period, about a mean of 0, m.
+    pub(super) rms: f64,
+    /// Wavelength above which the spectrum is constant, m.
+    pub(super) roll_off: f64,
+    /// The shortest wavelength, m.
+    pub(super) cut_off: f64,
+    /// Seed of the phases.
+    pub(super) seed: u64,
+}
+
+impl SelfAffine {
+    /// One period of the profile.
+    pub(super) fn surface(&self) -> Surface {
+        let share = |i| i as f64 / self.points as f64;
+        let x = (0..=self.points).map(|i| self.length * share(i)).collect();
+        let mut z = self.heights();
+        z.push(z[0]);
+        Surface { x, z, periodic: true }
+    }
+
+    /// The heights at the points of one period, m.
+    fn heights(&self) -> Vec<f64> {
+        let sums = fourier(&self.coefficients(), Direction::Backward);
+        let mean = sums.iter().map(|sum| sum.re).sum::<f64>() / self.points as f64;
+        let mut z: Vec<f64> = sums.iter().map(|sum| sum.re - mean).collect();
+        let scale = self.rms / (z.iter().map(|z| z * z).sum::<f64>() / self.points as f64).sqrt();
+        z.iter_mut().for_each(|z| *z *= scale);
+        z
+    }
+
+    /// The coefficients of e^(2πi nm/points), but for a common factor.
+    fn coefficients(&self) -> Vec<Complex<f64>> {
+        let mut coefficients = vec![Complex::from(0.0); self.points];
+        let mut random = SplitMix64::new(self.seed);
+        for m in 1..=self.modes() {
+            let (sine, cosine) = libm::sincos(TAU * random.unit());
+            let amplitude = self.power(m).sqrt();
+            if 2 * m < self.points {
+                coefficients[m] = Complex::new(amplitude * cosine, amplitude * sine);
+                coefficients[self.points - m] = coefficients[m].conj();
+            } else {
+                // With two points a wavelength the phase is not resolved: the amplitude has the mean power of all phases.
+                coefficients[m] = Complex::from(SQRT_2 * amplitude.copysign(cosine));
+            }
+        }
+        coefficients
+    }
+
+    /// The last mode below the cut-off.
+    fn modes(&self) -> usize {
+        let modes = self.length / self.cut_off * (1.0 + WHOLE);
+        (modes as usize).min(self.points / 2)
+    }
+
+    /// The power of mode m over that of a mode below the roll-off.
+    fn power(&self, m: usize) -> f64 {
+        let ratio = m as f64 * self.roll_off / self.length;
+        if ratio > 1.0 { libm::pow(ratio, -1.0 - 2.0 * self.hurst) } else { 1.0 }
     }
 }
 
-const PATH_EXPECTED: &str = "a relative path of a file beside or below the scene file, without `..` and backslashes";
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// Only files beside or below the scene can go into the archive with it.
-pub(super) fn read_path(entry: &Entry<'_>) -> Result<PathBuf, SceneError> {
-    let path = entry.text(PATH_EXPECTED)?;
-    let below = |part: &Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
-    let normal: PathBuf = Path::new(path).components().filter(|part| matches!(part, Component::Normal(_))).collect();
-    let legal = Path::new(path).components().all(|part| below(&part)) && !path.contains(['\\', '\0']);
-    if legal && normal.file_name().is_some() { Ok(normal) } else { Err(entry.refuse(PATH_EXPECTED)) }
-}
+    const ROUGH: SelfAffine =
+        SelfAffine { length: 0.1, points: 4000, hurst: 0.8, rms: 2e-5, roll_off: 5e-3, cut_off: 1e-4, seed: 7 };
 
-impl Entry<'_> {
-    /// Refuses an array for its number of elements.
-    pub(super) fn refuse_count(&self, count: usize, expected: &str) -> SceneError {
-        self.problem(Problem::Value { given: format!("[{count} numbers]"), expected: expected.to_owned() })
+    /// The mean square heights of the modes, from the heights at the points.
+    fn powers(profile: &SelfAffine) -> Vec<f64> {
+        let heights: Vec<_> = profile.heights().into_iter().map(Complex::from).collect();
+        let n = profile.points as f64;
+        let sums = fourier(&heights, Direction::Forward);
+        let power = |m: usize| if 2 * m == profile.points { 1.0 } else { 2.0 } * (sums[m] / n).norm_sqr();
+        (0..=profile.points / 2).map(power).collect()
     }
+
+    fn rms(heights: &[f64]) -> f64 {
+        (heights.iter().map(|z| z * z).sum::<f64>() / heights.len() as f64).sqrt()
+    }
+
+    /// Every mode has the power that the spectrum says: 20 modes on the plateau, then as q^(-2.6) to mode 1000, none
+    /// beyond.
+    #[test]
+    fn the_spectrum_is_what_was_asked() {
+        let powers = powers(&ROUGH);
+        let formula = |m: usize| match m {
+            0 => 0.0,
+            1..=20 => 1.0,
+            21..=1000 => (m as f64 / 20.0).powf(-2.6),
+            _ => 0.0,
+        };
+        let whole: f64 = (0..=2000).map(formula).sum();
+        for (m, power) in powers.iter().enumerate() {
+            let asked = 2e-5_f64.powi(2) * formula(m) / whole;
+            // Roundings of a transform of 4000 heights, whose power is 4e-10.
+            assert!((power - asked).abs() < 1e-12 * asked + 1e-34, "{m}: {power:e} for {asked:e}");
+        }
+    }
+
+    /// The periodogram in bands, as an instrument's software would take it: within the 2 % that were asked for.
+    #[test]
+    fn bands_of_the_spectrum_have_their_power() {
+        let powers = powers(&SelfAffine { points: 1 << 14, ..ROUGH });
+        let band = |from: usize, to: usize| powers[from..to].iter().sum::<f64>() / (to - from) as f64;
+        let plateau = band(1, 21);
+        for (from, to) in [(40, 44), (100, 110), (400, 440), (900, 990)] {
+            let middle = ((from * (to - 1)) as f64).sqrt();
+            let asked = plateau * (middle / 20.0).powf(-2.6);
+            assert!((band(from, to) / asked - 1.0).abs() < 0.02, "{from} to {to}");
+        }
+    }
+
+    #[test]
+    fn the_heights_have_their_root_mean_square_about_0_and_the_ends_meet() {
+        for points in [2000, 2001, 4096, 7919] {
+            let surface = SelfAffine { points, ..ROUGH }.surface();
+            assert_eq!((surface.x.len(), surface.x[0], surface.x[points]), (points + 1, 0.0, 0.1));
+            assert!(surface.periodic && surface.z[0] == surface.z[points]);
+            let heights = &surface.z[..points];
+            // Roundings of sums of some thousand heights.
+            assert!((rms(heights) / 2e-5 - 1.0).abs() < 1e-13, "{points}");
+            assert!((heights.iter().sum::<f64>() / points as f64).abs() < 1e-18, "{points}");
+        }
+    }
+
+    /// The slope of the spline through 10 points a shortest wavelength is that of the sum of cosines.
+    #[test]
+    fn the_slope_is_that_of_the_spectrum() {
+        let profile = SelfAffine { points: 10_000, ..ROUGH };
+        let (powers, q) = (powers(&profile), |m: usize| TAU * m as f64 / 0.1);
+        let formula = powers.iter().enumerate().map(|(m, power)| power * q(m) * q(m)).sum::<f64>().sqrt();
+        let spline = profile.surface().spline();
+        let slopes: Vec<f64> = (0..40_000).map(|i| spline.evaluate(0.1 * i as f64 / 40_000.0).1).collect();
+        // A cubic spline is wrong by (q h)⁴/120, that is 1e-3, at the shortest wavelength.
+        assert!((rms(&slopes) / formula - 1.0).abs() < 1e-3, "{} {formula}", rms(&slopes));
+    }
+
+    /// More points are the same profile; a seed is a profile.
+    #[test]
+    fn a_seed_is_one_profile() {
+        let coarse = ROUGH.heights();
+        let fine = SelfAffine { points: 12_000, ..ROUGH }.heights();
+        let largest = coarse.iter().zip(fine.iter().step_by(3)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        // Roundings of sums of 1000 cosines.
+        assert!(largest < 1e-17, "{largest}");
+        let other = SelfAffine { seed: 8, ..ROUGH }.heights();
+        let alike: f64 = coarse.iter().zip(&other).map(|(a, b)| a * b).sum::<f64>() / (4000.0 * 4e-10);
+        // Of two profiles with independent phases; with 20 modes of most power 0.2 would be usual.
+        assert!(alike.abs() < 0.7, "{alike}");
+    }
+
+    /// Two points a wavelength are enough.
+    #[test]
+    fn the_cut_off_may_lie_where_two_points_see_it() {
+        for points in [2000, 2001] {
+            let profile = SelfAffine { points, ..ROUGH };
+            assert_eq!(profile.modes(), 1000);
+            let powers = powers(&profile);
+            let asked = powers[500] * 2_f64.powf(-2.6);
+            assert!((powers[1000] / asked - 1.0).abs() < 1e-10, "{points}");
+        }
+    }
+
+    /// The bits of a few heights and of their sum, as they come out on every platform.
+    ///
+    /// The values are those of a program of its own in Python, which sums the cosines one by one with 40 digits: this one
+    /// is right to its last digits, and the bits say that the next platform, compiler or change gives the same.
+    #[test]
+    fn a_seed_gives_the_same_bits_everywhere() {
+        let profile = SelfAffine { points: 300, length: 0.03, roll_off: 1e-2, cut_off: 3e-4, ..ROUGH };
+        let heights = profile.heights();
+        for (i, value) in PYTHON {
+            // Roundings of a transform of 300 values of size 2e-5.
+            assert!((heights[i] - value).abs() < 3e-20, "{i}: {:e} for {value:e}", heights[i]);
+        }
+        let digest = heights.iter().fold(0_u64, |digest, z| digest.rotate_left(5) ^ z.to_bits());
+        assert_eq!(digest, DIGEST, "{digest:#x}");
+    }
+
+    const PYTHON: [(usize, f64); 4] = [
+        (0, -5.518007025855965e-07),
+        (1, -1.9030598303507189e-06),
+        (150, 6.461100995468687e-06),
+        (299, 1.2072049374252627e-06),
+    ];
+    const DIGEST: u64 = 0x4ab4_bc22_f39d_1d48;
 }

@@ -1,4 +1,4 @@
-//! What is worth telling about a scene though it is valid.
+//! Warnings: what is probably not meant though the scene is valid.
 
 use std::fmt;
 
@@ -7,27 +7,26 @@ use super::{Layer, Material, Path, Phase, Scene, Surface, Wlf};
 /// A layer may reach over the end by rounding: by this part of the profile's length.
 const ROUNDING: f64 = 1.0e-9;
 
-/// From the lowest to the highest place that something can have, m.
+/// From the lowest to the highest position that something can have, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Reach {
     low: f64,
     high: f64,
 }
 
-/// A natural profile that ends below the layer on its way.
+/// A natural profile that ends below the layer on its travel.
 pub(super) fn short_profile(layer: &Layer, surface: &Surface, excitation: &[Phase]) -> Option<String> {
-    let way = layer.reach().plus(carrier_reach(excitation));
+    let travel = layer.reach().plus(carrier_reach(excitation));
     surface
-        .too_short_for(way)
-        .then(|| format!("the profile reaches {}, but the layer moves {way}: {PROFILE_ENDS}", surface.reach()))
+        .too_short_for(travel)
+        .then(|| format!("the profile reaches {}, but the layer moves {travel}: {PROFILE_ENDS}", surface.reach()))
 }
 
-/// What a natural profile is beyond its ends.
 const PROFILE_ENDS: &str = "beyond its ends the profile goes on straight, along its end tangents";
+const ROUGHNESS_ENDS: &str = "beyond its ends the roughness goes on straight, along its end tangents";
 
 impl Scene {
-    /// What is worth telling where the carrier, moved by `u` (m), has brought the layer over the end of a natural
-    /// profile.
+    /// The warning where the carrier, moved by `u` (m), has brought the layer over the end of a natural profile.
     pub fn off_profile(&self, u: f64) -> Option<String> {
         let Reach { low, high } = self.layer.reach().plus(Reach { low: u, high: u });
         let surface = &self.surface;
@@ -41,13 +40,12 @@ impl Scene {
 /// A roughness, sampled from a natural profile that ends before the layer does.
 pub(super) fn short_roughness(layer: &Layer, roughness: &Surface) -> Option<String> {
     roughness.too_short_for(layer.reach()).then(|| {
-        let (profile, end) =
-            (roughness.reach(), "beyond its ends the roughness goes on straight, along its end tangents");
-        format!("the roughness reaches {profile}, but the layer {}: {end}", layer.reach())
+        let (profile, layer) = (roughness.reach(), layer.reach());
+        format!("the roughness reaches {profile}, but the layer {layer}: {ROUGHNESS_ENDS}")
     })
 }
 
-/// Temperatures that are meant in °C, most likely.
+/// Temperatures that are probably meant in °C.
 pub(super) fn cold_temperatures(material: &Material) -> Option<String> {
     let wlf = material.wlf?;
     let named = [("reference_temperature", wlf.reference_temperature), ("temperature", wlf.temperature)];
@@ -63,19 +61,19 @@ impl Surface {
         Reach { low: end(self.x.first()), high: end(self.x.last()) }
     }
 
-    /// A level profile goes on as it is, and ends nowhere.
-    fn too_short_for(&self, way: Reach) -> bool {
+    /// A level profile is continued as it is, and is never too short.
+    fn too_short_for(&self, travel: Reach) -> bool {
         let reach = self.reach();
         let rounding = ROUNDING * (reach.high - reach.low);
         let level = || self.z.windows(2).all(|pair| pair[0] == pair[1]);
-        !self.periodic && (way.low < reach.low - rounding || reach.high + rounding < way.high) && !level()
+        !self.periodic && (travel.low < reach.low - rounding || reach.high + rounding < travel.high) && !level()
     }
 }
 
 impl Layer {
-    /// The places of the masses at rest.
+    /// The positions of the masses at rest.
     fn reach(&self) -> Reach {
-        Reach { low: self.place(0), high: self.place(self.masses.saturating_sub(1)) }
+        Reach { low: self.rest_position(0), high: self.rest_position(self.masses.saturating_sub(1)) }
     }
 }
 
@@ -87,7 +85,7 @@ fn carrier_reach(excitation: &[Phase]) -> Reach {
         let during = start.plus(phase.u.reach(phase.duration));
         whole = Reach { low: whole.low.min(during.low), high: whole.high.max(during.high) };
         let end = phase.u.at(phase.duration);
-        // A phase that a force ends can end anywhere on its way.
+        // A phase that a force ends can end anywhere on its travel.
         start = if phase.until_force.or(phase.until_pressure).is_some() {
             during
         } else {
@@ -115,5 +113,85 @@ impl Path {
         let drift = self.rate * duration;
         let swing = if self.frequency == 0.0 { 0.0 } else { self.amplitude.abs() };
         Reach { low: drift.min(0.0) - swing, high: drift.max(0.0) + swing }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path as FilePath;
+
+    use super::*;
+
+    fn warnings_of(text: &str) -> Vec<String> {
+        Scene::parse(text, FilePath::new("scene.toml")).unwrap_or_else(|error| unreachable!("{error}")).warnings
+    }
+
+    fn warnings(layer: &str, phases: &str) -> Vec<String> {
+        let layer = format!("[layer]\nmasses = 4\nspacing = 0.25\nmass = 1\n{layer}");
+        warnings_of(&format!("name = 'w'\n{phases}\n{layer}\n[surface]\nkind = 'points'\nx = [0, 1]\nz = [0, 1]"))
+    }
+
+    #[test]
+    fn a_profile_shorter_than_the_travel_is_a_warning() {
+        assert_eq!(warnings("", "").len(), 0);
+        assert_eq!(warnings("origin = 0.25000000001", "").len(), 0);
+        assert_eq!(warnings("", "excitation = [{ duration = 1, u_rate = 0.25 }]").len(), 0);
+        let found = [
+            warnings("origin = -0.5", ""),
+            warnings("origin = 0.5", ""),
+            warnings("", "excitation = [{ duration = 2, u_rate = -0.125 }]"),
+            warnings("", "excitation = [{ duration = 1, u_sine = { amplitude = -0.3, frequency = 1 } }]"),
+            warnings("", "excitation = [{ duration = 2, u_rate = 0.125 }, { duration = 1, u_rate = 0.125 }]"),
+            warnings(
+                "",
+                "excitation = [{ duration = 2, u_rate = -0.1, until_force = 1 }, { duration = 1, u_rate = 0.3 }]",
+            ),
+        ];
+        assert!(found.iter().all(|warnings| warnings.len() == 1), "{found:?}");
+        let text = "the profile reaches from 0.0 m to 1.0 m, but the layer moves from -0.5 m to 0.25 m: \
+                    beyond its ends the profile goes on straight, along its end tangents";
+        assert_eq!(found[0], [text]);
+    }
+
+    #[test]
+    fn a_roughness_shorter_than_the_layer_is_a_warning() {
+        let roughness = |x: &str| {
+            let layer =
+                format!("masses = 4\nspacing = 0.25\nmass = 1\nroughness = {{ kind = 'points', x = {x}, z = [0, 1] }}");
+            warnings_of(&format!("name = 'r'\n[layer]\n{layer}\n[surface]\nkind = 'flat'"))
+        };
+        assert!(roughness("[0, 0.75]").is_empty());
+        let text = "the roughness reaches from 0.0 m to 0.5 m, but the layer from 0.0 m to 0.75 m: \
+                    beyond its ends the roughness goes on straight, along its end tangents";
+        assert_eq!(roughness("[0, 0.5]"), [text]);
+    }
+
+    #[test]
+    fn temperatures_in_degrees_celsius_are_a_warning() {
+        let warnings = |reference: f64, temperature: f64| {
+            warnings_of(&format!(
+                "name = 't'\nlayer = {{ masses = 4, spacing = 1e-4, thickness = 1e-3, width = 1e-2 }}\nsurface = {{ kind = 'flat' }}
+                [material]\ndensity = 1100\npoisson_ratio = 0.49\nequilibrium_modulus = 1e6\nprony = []
+                wlf = {{ c1 = 7.52, c2 = 119.75, reference_temperature = {reference}, temperature = {temperature} }}"
+            ))
+        };
+        let meant = |name: &str| {
+            [format!("material.wlf.{name} K is too cold for rubber: temperatures are in K, 20 °C being 293.15 K")]
+        };
+        assert!(warnings(293.15, 313.15).is_empty());
+        assert_eq!(warnings(20.0, 40.0), meant("reference_temperature = 20.0"));
+        assert_eq!(warnings(200.0, 99.0), meant("temperature = 99.0"));
+    }
+
+    #[test]
+    fn a_periodic_or_a_level_profile_is_never_too_short() {
+        let far = "excitation = [{ duration = 1, u_rate = 1e3 }]";
+        let periodic = "surface = { kind = 'sinusoid', amplitude = 1, wavelength = 1 }";
+        for surface in
+            ["surface = { kind = 'flat' }", "surface = { kind = 'points', x = [0, 1], z = [2, 2] }", periodic]
+        {
+            let text = format!("name = 'n'\nlayer = {{ masses = 9, spacing = 1, mass = 1 }}\n{surface}\n{far}");
+            assert!(warnings_of(&text).is_empty());
+        }
     }
 }

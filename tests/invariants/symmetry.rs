@@ -14,7 +14,7 @@ use crate::trust::{Compared, Series, Trusted};
 fn mirrored(case: &Case) -> Case {
     let mut mirror = case.clone();
     let (layer, surface) = (&mut mirror.scene.layer, &mut mirror.scene.surface);
-    layer.origin = 0.0 - layer.place(layer.masses - 1);
+    layer.origin = 0.0 - layer.rest_position(layer.masses - 1);
     layer.roughness.reverse();
     surface.x = surface.x.iter().rev().map(|x| 0.0 - x).collect();
     surface.z.reverse();

@@ -100,7 +100,7 @@ impl Series {
             (0..case.scene.layer.masses).map(of).collect::<Vec<Vec<f64>>>()
         };
         let layer = &case.scene.layer;
-        let along_x = elongations(Output::ElementX, &|i| layer.place(i), |carrier| carrier.0);
+        let along_x = elongations(Output::ElementX, &|i| layer.rest_position(i), |carrier| carrier.0);
         let height = |i: usize| layer.clearance + layer.roughness.get(i).copied().unwrap_or(0.0);
         let along_z = elongations(Output::ElementZ, &height, |carrier| carrier.1);
         let most = |columns: &[Vec<f64>]| columns.iter().map(|column| largest(column)).fold(0.0, f64::max);

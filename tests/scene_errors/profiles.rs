@@ -133,7 +133,7 @@ fn profiles_that_are_none() {
             "x,z\n0,1\n1,2,3\n",
             false,
             "3: columns = 3 in `1,2,3`: expected two, x and z, separated by comma, semicolon, tab or blanks; \
-             third_column tells what a third one says",
+             third_column says what a third one means",
         ),
         (
             "0;1\r\n2;2\r\n1;3\r\n",

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use asperity::element::{Element, Load, OperatingPoint, PointContact, SweepGrid};
 use asperity::outputs::{Output, Variable, variable};
-use asperity::scene::{Initial, MaterialParameter, OutputGroup, Parameter, Path as Displacement, Scene, Value};
+use asperity::scene::{Initial, OutputGroup, Parameter, Path as Displacement, Scene, Value};
 use asperity::simulation::{Motion, Simulation, Start};
 use rayon::prelude::*;
 
@@ -117,7 +117,7 @@ fn selected(points: &[OperatingPoint], count: usize) -> Vec<OperatingPoint> {
 fn element_at(contact: &PointContact, point: &OperatingPoint, start: &Start) -> Result<Element, String> {
     let mut contact = contact.clone();
     if let (Some(kelvin), true) = (point.temperature, contact.table().grid.temperatures.len() > 1) {
-        let parameter = Parameter::Material(MaterialParameter::Temperature);
+        let parameter = Parameter::Temperature;
         contact.set_parameter(parameter, Value::Real(kelvin)).map_err(|error| error.to_string())?;
     }
     Element::new(&contact, start).map_err(|error| error.to_string())
@@ -325,7 +325,7 @@ fn relaxed(scene: &Scene, temperature: Option<f64>) -> Result<Scene, String> {
     let mut scene = Scene { outputs, excitation: Vec::new(), ..scene.clone() };
     scene.layer.initial = Initial::Relaxed;
     if let Some(kelvin) = temperature {
-        let parameter = Parameter::Material(MaterialParameter::Temperature);
+        let parameter = Parameter::Temperature;
         scene.set_parameter(parameter, Value::Real(kelvin)).map_err(|error| error.to_string())?;
     }
     Ok(scene)

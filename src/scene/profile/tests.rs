@@ -9,7 +9,7 @@ fn filled() -> ProfileOptions {
 }
 
 fn points_of(bytes: &[u8], options: &ProfileOptions) -> Vec<(f64, f64)> {
-    let (surface, ..) = parse(bytes, options, false).unwrap_or_else(|error| unreachable!("{error:?}"));
+    let surface = parse(bytes, options, false).unwrap_or_else(|error| unreachable!("{error:?}")).surface;
     surface.x.into_iter().zip(surface.z).collect()
 }
 
@@ -20,7 +20,7 @@ fn points(text: &str) -> Vec<(f64, f64)> {
 fn refused(bytes: &[u8], options: &ProfileOptions) -> (usize, String) {
     match parse(bytes, options, false) {
         Err(error) => (error.line.unwrap_or(0), error.problem.about(&error.key)),
-        Ok((surface, ..)) => unreachable!("accepted as {surface:?}"),
+        Ok(parsed) => unreachable!("accepted as {parsed:?}"),
     }
 }
 
@@ -82,7 +82,7 @@ fn refuses_what_is_no_profile() {
             "0,1\n1,2,3",
             2,
             "columns = 3 in `1,2,3`: expected two, x and z, separated by comma, semicolon, tab or blanks; third_column \
-             tells what a third one says",
+             says what a third one means",
         ),
         ("0\n1", 1, "columns = 1 in `0`: expected two, x and z, separated by comma, semicolon, tab or blanks"),
         ("# x falls\n0 1\n2 1\n1 1", 4, "x = 1.0: expected a number > 2.0, the x of the point before, for x must rise"),
@@ -143,7 +143,7 @@ fn units_are_read_from_the_header() {
     }
     let given = ProfileOptions { z_unit: Some(LengthUnit::Nanometre), ..options() };
     assert_eq!(points_of(b"x [mm];z [mm]\n0;1\n1;2\n", &given), [(0.0, 1e-9), (1e-3, 2e-9)]);
-    let warnings = |text: &str| parse(text.as_bytes(), &options(), false).map_or(9, |(_, warnings, _)| warnings.len());
+    let warnings = |text: &str| parse(text.as_bytes(), &options(), false).map_or(9, |parsed| parsed.warnings.len());
     assert_eq!((warnings("X_(microns),y1\n0,1\n1,2"), warnings("x [mm],z [mm]\n0,1\n1,2")), (1, 0));
 }
 
@@ -218,7 +218,7 @@ fn a_line_is_of_areal_measurements_alone() {
 fn what_is_written_is_read_again() {
     let x: Vec<f64> = (0..500).map(|i| f64::from(i) * 1.0e-7 / 3.0).collect();
     let z: Vec<f64> = x.iter().map(|x| (x * 1e6).sin() * 1e-6).collect();
-    assert_eq!(points(&table::write(&x, &z)), x.into_iter().zip(z).collect::<Vec<_>>());
+    assert_eq!(points(&text::write(&x, &z)), x.into_iter().zip(z).collect::<Vec<_>>());
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! What is scaled, and where a cell lies.
 
-use asperity::scene::{MaterialParameter, Parameter, ParameterError, Path, Phase, Scene, Value};
+use asperity::scene::{Parameter, ParameterError, Path, Phase, Scene, Value};
 
 use super::drive::Course;
 
@@ -55,13 +55,13 @@ impl Quantity {
                 parameter,
                 Parameter::Stiffness(_)
                     | Parameter::MaxwellStiffness(..)
-                    | Parameter::Material(MaterialParameter::EquilibriumModulus | MaterialParameter::Modulus(_))
+                    | Parameter::EquilibriumModulus
+                    | Parameter::PronyModulus(_)
             ),
-            Self::Mass => matches!(parameter, Parameter::Mass | Parameter::Material(MaterialParameter::Density)),
-            Self::RelaxationTimes => matches!(
-                parameter,
-                Parameter::RelaxationTime(..) | Parameter::Material(MaterialParameter::RelaxationTime(_))
-            ),
+            Self::Mass => matches!(parameter, Parameter::Mass | Parameter::Density),
+            Self::RelaxationTimes => {
+                matches!(parameter, Parameter::RelaxationTime(..) | Parameter::PronyRelaxationTime(_))
+            }
             Self::Speed | Self::CommunicationStep => false,
         }
     }

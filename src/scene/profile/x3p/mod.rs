@@ -5,32 +5,34 @@
 //! stored, and value · increment + offset on an absolute one; of a point's coordinates x, y, z the absolute ones stand
 //! one after the other, little endian, x runs fastest. Sizes are bounded before anything is kept.
 
-mod archive;
 mod document;
-mod points;
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests;
 
-use super::{Missing, ProfileError, ProfileOptions, Raw, refuse};
-use archive::Archive;
-use document::Document;
+use std::io::Read;
+use std::ops::Range;
 
-/// The most points of a measurement: more than 16 000 by 16 000.
-const MOST_POINTS: usize = 1 << 28;
-/// The most points of a line.
-const MOST_COLUMNS: usize = 1 << 24;
+use md5::{Digest, Md5};
+
+use super::options::{Missing, ProfileOptions, Raw};
+use crate::scene::error::ContentError;
+use crate::scene::values::ANY;
+use document::{Archive, Document, Grid, missing, unreadable};
+
+/// Bytes that are unpacked at once.
+const CHUNK: usize = 1 << 16;
 
 /// Reads the line that `options` choose.
-pub(super) fn read(bytes: &[u8], options: &ProfileOptions) -> Result<Raw, ProfileError> {
+pub(super) fn read(bytes: &[u8], options: &ProfileOptions) -> Result<Raw, ContentError> {
     let mut archive = Archive::open(bytes)?;
     let document = Document::parse(&archive.main()?)?;
     let grid = Grid::of(&document)?;
     let line = grid.choose(options.line)?;
     let [x, z] = if document.is_inline() {
-        points::inline(&document, &grid, line)?
+        inline(&document, &grid, line)?
     } else {
-        points::binary(&document, &grid, line, &mut archive)?
+        binary(&document, &grid, line, &mut archive)?
     };
     let raw = Raw { x, z, ..Raw::default() };
     match raw.z.iter().position(|z| z.is_nan()).filter(|_| options.missing == Missing::Refuse) {
@@ -39,67 +41,233 @@ pub(super) fn read(bytes: &[u8], options: &ProfileOptions) -> Result<Raw, Profil
     }
 }
 
-/// How many points there are.
+/// An axis: a coordinate from its index or from a value of some type.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Grid {
-    /// Points of a line.
-    columns: usize,
-    /// Lines.
-    rows: usize,
+struct Axis {
+    /// The type of the values; none where they follow from the index.
+    values: Option<Values>,
+    increment: f64,
+    offset: f64,
 }
 
-impl Grid {
-    fn of(document: &Document) -> Result<Self, ProfileError> {
-        let feature = document.text("Record1.FeatureType").unwrap_or("SUR");
-        if !["PRF", "SUR"].contains(&feature) {
-            return Err(refuse(None, "FeatureType", feature, "PRF or SUR, a profile or an areal measurement"));
+/// The type of a value in a binary file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Values {
+    /// 16 bits with a sign.
+    Short,
+    /// 32 bits with a sign.
+    Long,
+    Float,
+    Double,
+}
+
+/// The axes x, y, z.
+struct Axes([Axis; 3]);
+
+/// The x and the heights of a line whose points stand in the document; a missing height is NaN.
+fn inline(document: &Document, grid: &Grid, line: usize) -> Result<[Vec<f64>; 2], ContentError> {
+    let axes = Axes::read(document)?;
+    let found = document.points().count();
+    if found != grid.count() {
+        let expected = format!("{}, as many as MatrixDimension says", grid.count());
+        return Err(ContentError::value(None, "DataList", &format!("{found} points"), &expected));
+    }
+    let points = document.points().skip(line * grid.columns).take(grid.columns);
+    axes.line(points.enumerate().map(|(i, point)| axes.written(i, point)))
+}
+
+/// As [`inline`], from the binary file of an archive.
+fn binary(
+    document: &Document,
+    grid: &Grid,
+    line: usize,
+    archive: &mut Archive<'_>,
+) -> Result<[Vec<f64>; 2], ContentError> {
+    let axes = Axes::read(document)?;
+    let bytes = axes.bytes();
+    let part = File { link: "PointDataLink", checksum: "MD5ChecksumPointData", length: grid.count() * bytes };
+    let kept = line * grid.columns * bytes..(line + 1) * grid.columns * bytes;
+    let data = part.read(document, archive, kept)?.ok_or_else(|| missing("DataLink.PointDataLink"))?;
+    let part = File { link: "ValidPointsLink", checksum: "MD5ChecksumValidPoints", length: grid.count().div_ceil(8) };
+    let mask = part.read(document, archive, 0..part.length)?;
+    // The first point is the lowest bit of the first byte.
+    let bit = |i: usize| mask.as_ref().is_none_or(|mask| mask[i / 8] >> (i % 8) & 1 == 1);
+    axes.line(data.chunks_exact(bytes).enumerate().map(|(i, point)| {
+        let (x, z) = axes.stored(i, point);
+        Ok((x, if bit(line * grid.columns + i) { z } else { f64::NAN }))
+    }))
+}
+
+impl Axes {
+    fn read(document: &Document) -> Result<Self, ContentError> {
+        let [x, y, z] = ["CX", "CY", "CZ"].map(|name| Axis::read(document, name));
+        let (x, y, z) = (x?, y?, z?);
+        if z.values.is_none() {
+            return Err(ContentError::value(None, "CZ.AxisType", "I", "A: absolute heights"));
         }
-        let grid = match document.whole("Record3.ListDimension")? {
-            Some(columns) => Self { columns, rows: 1 },
-            None => {
-                let size = |key: &str| document.whole(key)?.ok_or_else(|| missing(key));
-                let layers = size("MatrixDimension.SizeZ")?;
-                if layers != 1 {
-                    return Err(refuse(None, "MatrixDimension.SizeZ", &layers.to_string(), "1: one height a place"));
-                }
-                Self { columns: size("MatrixDimension.SizeX")?, rows: size("MatrixDimension.SizeY")? }
+        Ok(Self([x, y, z]))
+    }
+
+    /// Bytes of a point.
+    fn bytes(&self) -> usize {
+        self.0.iter().filter_map(|axis| axis.values).map(Values::bytes).sum()
+    }
+
+    /// x and height of point `i` of a line, from its bytes.
+    fn stored(&self, i: usize, point: &[u8]) -> (f64, f64) {
+        let mut at = 0;
+        let [x, _, z] = self.0.map(|axis| match axis.values {
+            None => axis.coordinate(i as f64),
+            Some(values) => {
+                at += values.bytes();
+                axis.coordinate(values.value(&point[at - values.bytes()..at]))
             }
+        });
+        (x, z)
+    }
+
+    /// The same from text: `x;y;z`, or the absolute coordinates alone. An empty text is a missing height.
+    fn written(&self, i: usize, point: &str) -> Result<(f64, f64), ContentError> {
+        let wrong = || {
+            ContentError::value(None, &format!("DataList[{}]", i + 1), point, "coordinates, separated by semicolons")
         };
-        let count = grid.columns.checked_mul(grid.rows);
-        if grid.columns <= MOST_COLUMNS && count.is_some_and(|count| (1..=MOST_POINTS).contains(&count)) {
-            return Ok(grid);
+        let number = |text: Option<&str>| match text.map(str::trim) {
+            None | Some("") => Ok(f64::NAN),
+            Some(text) => text.parse::<f64>().map_err(|_| wrong()),
+        };
+        let [x, _, z] = self.0;
+        let height = z.coordinate(number(point.rsplit(';').next())?);
+        let place = if x.values.is_some() { number(point.split(';').next())? } else { i as f64 };
+        Ok((x.coordinate(place), height))
+    }
+
+    /// Collects a line; x must be a number, a height that is none or out of range is missing.
+    fn line(
+        &self,
+        points: impl Iterator<Item = Result<(f64, f64), ContentError>>,
+    ) -> Result<[Vec<f64>; 2], ContentError> {
+        let (mut places, mut heights) = (Vec::new(), Vec::new());
+        for point in points {
+            let (x, z) = point?;
+            if !ANY.holds(x) {
+                let key = format!("x[{}]", places.len() + 1);
+                return Err(ContentError::value(None, &key, &format!("{x:?}"), &ANY.to_string()));
+            }
+            places.push(x);
+            heights.push(if ANY.holds(z) { z } else { f64::NAN });
         }
-        let given = format!("{} by {} points", grid.columns, grid.rows);
-        let expected = format!("1 to {MOST_POINTS} points, at most {MOST_COLUMNS} of them in a line");
-        Err(refuse(None, "MatrixDimension", &given, &expected))
+        Ok([places, heights])
+    }
+}
+
+impl Axis {
+    fn read(document: &Document, name: &str) -> Result<Self, ContentError> {
+        let key = |field: &str| format!("{name}.{field}");
+        let axis_type = document.required(&key("AxisType"))?;
+        let incremental = match axis_type {
+            "I" => true,
+            "A" => false,
+            other => return Err(ContentError::value(None, &key("AxisType"), other, "I or A, incremental or absolute")),
+        };
+        let values = if incremental { None } else { Some(Values::read(document, &key("DataType"))?) };
+        // On an absolute axis an increment of 0 says as little as none.
+        let increment = document.number(&key("Increment"))?.filter(|increment| incremental || *increment != 0.0);
+        let offset = document.number(&key("Offset"))?.unwrap_or(0.0);
+        match increment {
+            Some(increment) => Ok(Self { values, increment, offset }),
+            None if incremental => Err(missing(&key("Increment"))),
+            None => Ok(Self { values, increment: 1.0, offset }),
+        }
     }
 
-    fn count(&self) -> usize {
-        self.columns * self.rows
+    fn coordinate(&self, value: f64) -> f64 {
+        self.offset + self.increment * value
+    }
+}
+
+impl Values {
+    fn read(document: &Document, key: &str) -> Result<Self, ContentError> {
+        Ok(match document.required(key)? {
+            "I" => Self::Short,
+            "L" => Self::Long,
+            "F" => Self::Float,
+            "D" => Self::Double,
+            other => return Err(ContentError::value(None, key, other, "one of I, L, F, D")),
+        })
     }
 
-    /// The line, from 0, that was asked for by a number from 1; none is needed where there is but one.
-    fn choose(&self, line: Option<usize>) -> Result<usize, ProfileError> {
-        let rows = self.rows;
-        match line {
-            None if rows == 1 => Ok(0),
-            None => Err(refuse(
-                None,
-                "line",
-                "not given",
-                &format!("a whole number from 1 to {rows}: there are {rows} lines"),
-            )),
-            Some(line) if line <= rows => Ok(line - 1),
-            Some(line) => Err(refuse(
-                None,
-                "line",
-                &line.to_string(),
-                &format!("a whole number from 1 to {rows}, the lines that there are"),
-            )),
+    fn bytes(self) -> usize {
+        match self {
+            Self::Short => 2,
+            Self::Long | Self::Float => 4,
+            Self::Double => 8,
+        }
+    }
+
+    fn value(self, bytes: &[u8]) -> f64 {
+        match (self, bytes) {
+            (Self::Short, &[a, b]) => i16::from_le_bytes([a, b]).into(),
+            (Self::Long, &[a, b, c, d]) => i32::from_le_bytes([a, b, c, d]).into(),
+            (Self::Float, &[a, b, c, d]) => f32::from_le_bytes([a, b, c, d]).into(),
+            (Self::Double, &[a, b, c, d, e, f, g, h]) => f64::from_le_bytes([a, b, c, d, e, f, g, h]),
+            _ => f64::NAN,
         }
     }
 }
 
-fn missing(key: &str) -> ProfileError {
-    refuse(None, key, "not there", "an element of main.xml")
+/// A file that the document links to.
+struct File {
+    link: &'static str,
+    checksum: &'static str,
+    /// The bytes that it must have.
+    length: usize,
+}
+
+impl File {
+    /// The bytes of a range, where the document names the file. All are looked at for the checksum, but not kept.
+    fn read(
+        &self,
+        document: &Document,
+        archive: &mut Archive<'_>,
+        kept: Range<usize>,
+    ) -> Result<Option<Vec<u8>>, ContentError> {
+        let Some(link) = document.text(&format!("DataLink.{}", self.link)) else { return Ok(None) };
+        let mut file = archive.linked(link)?;
+        let mut chunk = vec![0; CHUNK];
+        let (mut digest, mut data, mut start) = (Md5::new(), Vec::new(), 0);
+        loop {
+            let count = file.read(&mut chunk).map_err(|error| unreadable(link, &error))?;
+            let end = start + count;
+            if count == 0 || end > self.length {
+                self.check_length(end)?;
+                break;
+            }
+            digest.update(&chunk[..count]);
+            let within = |place: usize| place.clamp(start, end) - start;
+            data.extend_from_slice(&chunk[within(kept.start)..within(kept.end)]);
+            start = end;
+        }
+        self.check_sum(document, &digest.finalize())?;
+        Ok(Some(data))
+    }
+
+    fn check_length(&self, found: usize) -> Result<(), ContentError> {
+        let given = if found > self.length { "more bytes".into() } else { format!("{found} bytes") };
+        let expected = format!("{} bytes, as MatrixDimension and Axes say", self.length);
+        if found == self.length { Ok(()) } else { Err(ContentError::value(None, self.link, &given, &expected)) }
+    }
+
+    /// A checksum that is there must be right: the file is damaged, or its data are no longer what they were.
+    fn check_sum(&self, document: &Document, digest: &[u8]) -> Result<(), ContentError> {
+        let found: String = digest.iter().map(|byte| format!("{byte:02x}")).collect();
+        match document.text(&format!("DataLink.{}", self.checksum)) {
+            Some(given) if !given.eq_ignore_ascii_case(&found) => Err(ContentError::value(
+                None,
+                self.checksum,
+                given,
+                &format!("{found}, the checksum of the data that are there"),
+            )),
+            _ => Ok(()),
+        }
+    }
 }

@@ -1,0 +1,365 @@
+//! The keys of a scene file: the one table of their names, of what they may hold and of what they mean. The reader
+//! checks scenes against it, and the parameters of an FMU take their ranges, units and descriptions from it.
+
+use std::fmt;
+
+use super::values::{ANY, NOT_NEGATIVE, POSITIVE, Range, WholeRange, Word, words};
+use super::{Extrapolation, Initial, LengthUnit, Method, Missing, OutputGroup, ThirdColumn, Tilt, Unit};
+
+/// A key of a table.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Key {
+    pub(super) name: &'static str,
+    /// What it may hold.
+    pub(super) allowed: Allowed,
+    /// The unit of a number; 1 for everything else.
+    pub(super) unit: Unit,
+    /// What it means, in a few words: the description of a parameter.
+    pub(super) meaning: &'static str,
+    /// The form of a scene that it belongs to; `None`: both.
+    pub(super) form: Option<Form>,
+}
+
+/// What a key may hold.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Allowed {
+    Number(Range),
+    /// An array of numbers, and what it is.
+    Numbers(Range, &'static str),
+    Whole(WholeRange),
+    Flag,
+    /// A text, and what it is.
+    Text(&'static str),
+    /// A word; the words to choose from.
+    Word(fn() -> String),
+    /// An array of words.
+    Words(fn() -> String),
+    Table(&'static [Key]),
+    /// An array of tables, and what it is.
+    Tables(&'static [Key], &'static str),
+    /// A table whose keys depend on its `kind`.
+    Surface,
+}
+
+/// The two forms of a scene, of which it has exactly one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Form {
+    /// By the mass and the constants of the links.
+    Direct,
+    /// By `[material]`, thickness and width.
+    Material,
+}
+
+const fn key(name: &'static str, allowed: Allowed, meaning: &'static str) -> Key {
+    Key { name, allowed, unit: Unit::One, meaning, form: None }
+}
+
+const fn number(name: &'static str, range: Range, unit: Unit, meaning: &'static str) -> Key {
+    Key { unit, ..key(name, Allowed::Number(range), meaning) }
+}
+
+const fn whole(name: &'static str, low: i64, high: i64, meaning: &'static str) -> Key {
+    key(name, Allowed::Whole(WholeRange { low, high }), meaning)
+}
+
+const fn word<T: Word>(name: &'static str, meaning: &'static str) -> Key {
+    key(name, Allowed::Word(words::<T>), meaning)
+}
+
+const fn table(name: &'static str, keys: &'static [Key]) -> Key {
+    key(name, Allowed::Table(keys), "")
+}
+
+impl Key {
+    const fn direct(self) -> Self {
+        Self { form: Some(Form::Direct), ..self }
+    }
+
+    const fn material(self) -> Self {
+        Self { form: Some(Form::Material), ..self }
+    }
+
+    /// The range of a number; `None` for everything else.
+    pub(super) fn range(&self) -> Option<Range> {
+        if let Allowed::Number(range) = self.allowed { Some(range) } else { None }
+    }
+
+    /// The keys of the table, or of the tables, that it holds.
+    pub(super) fn keys(&self) -> &'static [Self] {
+        match self.allowed {
+            Allowed::Table(keys) | Allowed::Tables(keys, _) => keys,
+            Allowed::Surface => SURFACE,
+            _ => &[],
+        }
+    }
+}
+
+pub(super) const ROOT: &[Key] = &[
+    key("name", Allowed::Text("a text"), "Name of the scene"),
+    key(
+        "description",
+        Allowed::Text("a text without control characters but line breaks and tabs"),
+        "What the scene is",
+    ),
+    table("layer", LAYER),
+    table("material", MATERIAL),
+    key("surface", Allowed::Surface, "Rigid surface below the layer"),
+    table("friction", FRICTION),
+    table("solver", SOLVER),
+    table("input", INPUT),
+    table("fmu", FMU),
+    key("excitation", Allowed::Tables(PHASE, TABLES), "Motion of the carrier in runs without a master"),
+];
+
+const TABLES: &str = "an array of tables";
+
+const LAYER: &[Key] = &[
+    whole("masses", 1, 10_000_000, "Number of point masses"),
+    number("spacing", POSITIVE, Unit::Meter, "Distance of the masses at rest"),
+    number("origin", ANY, Unit::Meter, "Position of the first mass at rest"),
+    number("clearance", ANY, Unit::Meter, "Rest height of the layer above the profile's datum at w = 0"),
+    word::<Initial>("initial", "How the dashpots start: relaxed or undeformed"),
+    key("roughness", Allowed::Surface, "Roughness of the layer"),
+    number("mass", POSITIVE, Unit::Kilogram, "Mass of one point mass").direct(),
+    table("vertical", LINK).direct(),
+    table("horizontal", LINK).direct(),
+    table("lateral_x", LINK).direct(),
+    table("lateral_z", LINK).direct(),
+    number("thickness", POSITIVE, Unit::Meter, "Thickness of the layer").material(),
+    number("width", POSITIVE, Unit::Meter, "Width of the layer").material(),
+];
+
+const LINK: &[Key] = &[
+    number("stiffness", NOT_NEGATIVE, Unit::NewtonPerMeter, "Stiffness"),
+    number("damping", NOT_NEGATIVE, Unit::NewtonSecondPerMeter, "Damping"),
+    key("maxwell", Allowed::Tables(MAXWELL, TABLES), "Maxwell elements"),
+];
+
+const MAXWELL: &[Key] = &[
+    number("stiffness", NOT_NEGATIVE, Unit::NewtonPerMeter, "Stiffness"),
+    number("relaxation_time", POSITIVE, Unit::Second, "Relaxation time"),
+];
+
+const MATERIAL: &[Key] = &[
+    number("density", POSITIVE, Unit::KilogramPerCubicMeter, "Density of the layer's material"),
+    number("poisson_ratio", NOT_NEGATIVE.up_to(0.5), Unit::One, "Poisson's ratio of the layer's material"),
+    number("equilibrium_modulus", NOT_NEGATIVE, Unit::Pascal, "Modulus of the layer's material after all relaxation"),
+    number(
+        "viscosity",
+        NOT_NEGATIVE,
+        Unit::PascalSecond,
+        "Kelvin-Voigt viscosity of the layer's material at the reference temperature",
+    ),
+    key(
+        "prony",
+        Allowed::Tables(
+            PRONY_TERM,
+            "an array of tables, or the path of a CSV file beside the scene with relaxation_time (s) and modulus (Pa)",
+        ),
+        "Prony series",
+    ),
+    table("wlf", WLF),
+];
+
+pub(super) const PRONY_TERM: &[Key] = &[
+    number("modulus", NOT_NEGATIVE, Unit::Pascal, "Modulus"),
+    number("relaxation_time", POSITIVE, Unit::Second, "Relaxation time"),
+];
+
+const WLF: &[Key] = &[
+    number("c1", NOT_NEGATIVE, Unit::One, "C_1 of Williams, Landel and Ferry"),
+    number("c2", POSITIVE, Unit::Kelvin, "C_2 of Williams, Landel and Ferry"),
+    number("reference_temperature", POSITIVE, Unit::Kelvin, "Temperature at which the material's times are given"),
+    number("temperature", POSITIVE, Unit::Kelvin, "Temperature of the layer"),
+];
+
+/// Where the heights of a surface come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum SurfaceKind {
+    Flat,
+    Sinusoid,
+    SelfAffine,
+    Points,
+    File,
+}
+
+impl Word for SurfaceKind {
+    const WORDS: &'static [(&'static str, Self)] = &[
+        ("flat", Self::Flat),
+        ("sinusoid", Self::Sinusoid),
+        ("self_affine", Self::SelfAffine),
+        ("points", Self::Points),
+        ("file", Self::File),
+    ];
+}
+
+impl SurfaceKind {
+    /// The keys of a surface of this kind.
+    pub(super) fn keys(self) -> &'static [Key] {
+        match self {
+            Self::Flat => SURFACE,
+            Self::Sinusoid => SINUSOID,
+            Self::SelfAffine => SELF_AFFINE,
+            Self::Points => POINTS,
+            Self::File => FILE,
+        }
+    }
+}
+
+const KIND: Key = word::<SurfaceKind>("kind", "Where the heights come from");
+
+/// The key that every surface has.
+const SURFACE: &[Key] = &[KIND];
+
+const SINUSOID: &[Key] = &[
+    KIND,
+    number("amplitude", ANY, Unit::Meter, "Amplitude"),
+    number("wavelength", POSITIVE, Unit::Meter, "Wavelength"),
+    whole("points_per_wavelength", 4, 10_000_000, "Data points of one wavelength"),
+];
+
+const SELF_AFFINE: &[Key] = &[
+    KIND,
+    number("length", POSITIVE, Unit::Meter, "Period"),
+    whole("points", 4, 4_000_000, "Data points of one period"),
+    number("hurst", POSITIVE.up_to(1.0), Unit::One, "Hurst exponent"),
+    number("rms", POSITIVE, Unit::Meter, "Root mean square height"),
+    number("roll_off_wavelength", POSITIVE, Unit::Meter, "Wavelength above which the spectrum is constant"),
+    number("cut_off_wavelength", POSITIVE, Unit::Meter, "Shortest wavelength"),
+    whole("seed", 0, i64::MAX, "Seed of the random phases"),
+];
+
+const POINTS: &[Key] = &[
+    KIND,
+    key("x", Allowed::Numbers(ANY, "an array of places"), "Positions of the data points, m"),
+    key("z", Allowed::Numbers(ANY, "an array of heights"), "Heights of the data points, m"),
+    PERIODIC,
+];
+
+const PERIODIC: Key = key("periodic", Allowed::Flag, "Whether the profile is repeated without end");
+
+const FILE: &[Key] = &[
+    KIND,
+    key("path", Allowed::Text(PATH), "File of the profile"),
+    PERIODIC,
+    word::<LengthUnit>("unit", "Unit of both columns"),
+    word::<LengthUnit>("x_unit", "Unit of x"),
+    word::<LengthUnit>("z_unit", "Unit of z"),
+    word::<Missing>("missing", "What becomes of points without a height"),
+    word::<Tilt>("tilt", "What becomes of the profile's tilt"),
+    word::<ThirdColumn>("third_column", "What a third column means"),
+    whole("line", 1, 1_000_000_000, "Line of an areal measurement"),
+];
+
+/// The path of a file that can go into the FMU with the scene.
+pub(super) const PATH: &str = "a relative path of a file beside or below the scene file, without `..` and backslashes";
+
+const FRICTION: &[Key] = &[
+    number("coulomb", NOT_NEGATIVE, Unit::One, "Coulomb's friction coefficient"),
+    table("rate_shear", RATE_SHEAR),
+    number("shear_force", NOT_NEGATIVE, Unit::Newton, "Adhesive shear force of one mass in contact").direct(),
+    number("shear_strength", NOT_NEGATIVE, Unit::Pascal, "Adhesive shear strength of the contact").material(),
+];
+
+const RATE_SHEAR: &[Key] = &[
+    number(
+        "reference_speed",
+        POSITIVE,
+        Unit::MeterPerSecond,
+        "Speed at which the rate-dependent shear force is largest",
+    ),
+    number(
+        "sharpness",
+        NOT_NEGATIVE,
+        Unit::One,
+        "How sharply the rate-dependent shear force falls about its largest, with the squared decades of the speed",
+    ),
+    number(
+        "creep_speed",
+        POSITIVE,
+        Unit::MeterPerSecond,
+        "Speed below which the rate-dependent shear force is held; follows the reference speed until it is set itself",
+    ),
+    number("force", NOT_NEGATIVE, Unit::Newton, "Largest rate-dependent shear force of one mass in contact").direct(),
+    number("strength", NOT_NEGATIVE, Unit::Pascal, "Largest rate-dependent shear strength of the contact").material(),
+];
+
+const SOLVER: &[Key] = &[
+    word::<Method>(
+        "method",
+        "How mode changes are treated: event locates every one, step puts them at the ends of its steps, auto takes step \
+         where they crowd",
+    ),
+    number("relative_tolerance", POSITIVE.up_to(0.1), Unit::One, "Relative tolerance of the local error"),
+    number(
+        "absolute_tolerance",
+        POSITIVE,
+        Unit::Meter,
+        "Absolute tolerance of places; follows the relative one until it is set itself",
+    ),
+    // An Integer of FMI has 32 bits.
+    whole("max_steps", 1, i32::MAX as i64, "Steps that one communication step or one phase may take"),
+    number("reduce", NOT_NEGATIVE.up_to(0.1), Unit::One, "Error bound for leaving Maxwell elements out"),
+];
+
+const INPUT: &[Key] =
+    &[word::<Extrapolation>("extrapolation", "How the carrier moves when no rates are given: linear or hold")];
+
+const FMU: &[Key] = &[key("outputs", Allowed::Words(words::<OutputGroup>), "Groups of output variables")];
+
+const PHASE: &[Key] = &[
+    number("duration", POSITIVE, Unit::Second, "Duration"),
+    number("u_rate", ANY, Unit::MeterPerSecond, "Rate of u"),
+    number("w_rate", ANY, Unit::MeterPerSecond, "Rate of w"),
+    table("u_sine", SINE),
+    table("w_sine", SINE),
+    number("until_force", ANY, Unit::Newton, "F_z that ends the phase").direct(),
+    number("until_pressure", ANY, Unit::Pascal, "Mean pressure that ends the phase").material(),
+];
+
+// A frequency is in Hz, which no parameter has.
+const SINE: &[Key] = &[
+    number("amplitude", ANY, Unit::Meter, "Amplitude"),
+    key("frequency", Allowed::Number(NOT_NEGATIVE), "Frequency, Hz"),
+];
+
+/// The parameter that an element from a table has beside those of a scene.
+pub(super) const TABLE_EXTRAPOLATION: Key = key(
+    "extrapolation",
+    Allowed::Text("one of \"refuse\", \"hold\""),
+    "What happens beyond the table's pressures and speeds: refuse, or hold its ends' friction coefficients and stiffnesses",
+);
+
+/// Stands for a key that is not in the table, which the reader never asks for.
+pub(super) const NONE: Key = key("", Allowed::Text("nothing: there is no such key"), "");
+
+/// The key at the end of a path such as `layer.vertical.maxwell[1].stiffness`.
+pub(super) fn at(path: &str) -> Option<&'static Key> {
+    let (mut keys, mut found) = (ROOT, None);
+    for part in path.split('.') {
+        let name = part.split_once('[').map_or(part, |(name, _)| name);
+        let key = keys.iter().find(|key| key.name == name)?;
+        (keys, found) = (key.keys(), Some(key));
+    }
+    found
+}
+
+/// The range of the number at a path; positive numbers where there is none.
+pub(super) fn range_of(path: &str) -> Range {
+    at(path).and_then(Key::range).unwrap_or(POSITIVE)
+}
+
+impl fmt::Display for Allowed {
+    /// What a missing key, or one with another type of value, should hold.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(range) => range.fmt(f),
+            Self::Whole(range) => range.fmt(f),
+            Self::Flag => f.write_str("true or false"),
+            Self::Numbers(_, expected) | Self::Text(expected) | Self::Tables(_, expected) => f.write_str(expected),
+            Self::Word(words) => f.write_str(&words()),
+            Self::Words(words) => write!(f, "an array, each {}", words()),
+            Self::Table(_) | Self::Surface => f.write_str("a table"),
+        }
+    }
+}

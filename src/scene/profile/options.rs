@@ -1,0 +1,133 @@
+//! How a profile file is to be read, and the points that come out of it.
+
+use std::str::FromStr;
+
+use crate::scene::error::ContentError;
+use crate::scene::values::{Word, words};
+
+/// How a file is to be read. What is not given is as the file says, or else as the defaults are.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ProfileOptions {
+    /// Unit of x; `None`: the one in the file, or else the metre.
+    pub x_unit: Option<LengthUnit>,
+    /// Unit of z; as for x.
+    pub z_unit: Option<LengthUnit>,
+    /// What becomes of points without a height.
+    pub missing: Missing,
+    /// What becomes of the profile's tilt.
+    pub tilt: Tilt,
+    /// What a third column means; `None`: what its name in the header says.
+    pub third_column: Option<ThirdColumn>,
+    /// The line of an areal measurement, from 1; `None` where there is but one.
+    pub line: Option<usize>,
+    /// Whether the profile is repeated without end.
+    pub periodic: bool,
+}
+
+/// A unit of length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LengthUnit {
+    /// m
+    Metre,
+    /// mm
+    Millimetre,
+    /// µm
+    Micrometre,
+    /// nm
+    Nanometre,
+}
+
+/// What becomes of points without a height.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Missing {
+    /// The file is refused.
+    #[default]
+    Refuse,
+    /// They lie on the straight line between their neighbours; at the ends, which have but one, they are left out.
+    Fill,
+}
+
+/// What becomes of the profile's tilt.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Tilt {
+    /// It stays, and so does the mean height.
+    #[default]
+    Keep,
+    /// The least squares line is subtracted: it becomes z = 0.
+    Remove,
+}
+
+/// What a third column means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ThirdColumn {
+    /// It marks the points whose height is not valid.
+    Invalid,
+    /// It marks those whose height is valid.
+    Valid,
+    /// Nothing, like the columns to the right of it.
+    Ignore,
+}
+
+/// A word that is none of those allowed.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("expected {expected}")]
+pub struct UnknownWord {
+    expected: String,
+}
+
+/// The words for an option, on a command line as in a scene.
+macro_rules! option_words {
+    ($option:ident: $($word:literal $variant:ident),+) => {
+        impl Word for $option {
+            const WORDS: &'static [(&'static str, Self)] = &[$(($word, Self::$variant)),+];
+        }
+
+        impl FromStr for $option {
+            type Err = UnknownWord;
+
+            fn from_str(word: &str) -> Result<Self, UnknownWord> {
+                Self::of(word).ok_or_else(|| UnknownWord { expected: words::<Self>() })
+            }
+        }
+    };
+}
+
+option_words!(LengthUnit: "m" Metre, "mm" Millimetre, "um" Micrometre, "nm" Nanometre);
+option_words!(Missing: "refuse" Refuse, "fill" Fill);
+option_words!(Tilt: "keep" Keep, "remove" Remove);
+option_words!(ThirdColumn: "invalid" Invalid, "valid" Valid, "ignore" Ignore);
+
+impl LengthUnit {
+    /// How many of it are a metre.
+    pub(super) fn per_metre(self) -> f64 {
+        match self {
+            Self::Metre => 1.0,
+            Self::Millimetre => 1e3,
+            Self::Micrometre => 1e6,
+            Self::Nanometre => 1e9,
+        }
+    }
+}
+
+/// Points as they stand in a file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Raw {
+    pub(super) x: Vec<f64>,
+    /// NaN where it is missing.
+    pub(super) z: Vec<f64>,
+    /// The lines of the points in the file; none where it has no lines.
+    pub(super) lines: Vec<usize>,
+    /// The units of x and z that the file names.
+    pub(super) units: [Option<LengthUnit>; 2],
+    pub(super) warnings: Vec<String>,
+}
+
+impl Raw {
+    /// Refuses point `i`, by its line or else by its number from 1.
+    pub(super) fn refuse(&self, i: usize, axis: &str, given: &str, expected: &str) -> ContentError {
+        match self.lines.get(i) {
+            Some(&line) => ContentError::value(Some(line), axis, given, expected),
+            None => ContentError::value(None, &format!("{axis}[{}]", i + 1), given, expected),
+        }
+    }
+}

@@ -1,0 +1,263 @@
+//! From TOML text to a [`Scene`].
+
+mod surface;
+mod table;
+
+use std::fs;
+use std::path::{Path as FilePath, PathBuf};
+
+use super::keys::Form;
+use super::profile::Extract;
+use super::{
+    Extrapolation, Friction, Initial, Layer, Link, Material, MaxwellElement, OutputGroup, Path, Phase, PronyTerm,
+    RateShear, Scene, SceneError, Solver, Wlf, warnings,
+};
+use table::{Entry, Source, TableReader};
+
+type Result<T> = std::result::Result<T, SceneError>;
+
+/// The most letters of a scene's name.
+const LONGEST_NAME: usize = 200;
+
+/// What is found on the way beside the values of the scene.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Found {
+    files: Vec<PathBuf>,
+    extracts: Vec<Extract>,
+    warnings: Vec<String>,
+}
+
+impl Found {
+    /// Adds a file that the scene reads, each once.
+    fn add_file(&mut self, path: PathBuf) {
+        if !self.files.contains(&path) {
+            self.files.push(path);
+        }
+    }
+}
+
+impl Scene {
+    /// Reads the scene file at `path` and the files that it names.
+    ///
+    /// # Errors
+    /// [`SceneError`] with the file, the line, the key, what was given and what is allowed.
+    pub fn load(path: &FilePath) -> Result<Self> {
+        let text = fs::read_to_string(path).map_err(|error| SceneError::unreadable(path, &error))?;
+        Self::parse(&text, path)
+    }
+
+    /// Reads a scene from `text` as if it stood in `file`; the files that it names are looked for beside that.
+    ///
+    /// # Errors
+    /// As for [`load`](Self::load).
+    pub fn parse(text: &str, file: &FilePath) -> Result<Self> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let source = Source { file, text, form: Form::Direct };
+        let document = source.parse()?;
+        let document = document.get_ref();
+        let form = if document.contains_key("material") { Form::Material } else { Form::Direct };
+        read_scene(TableReader::root(Source { form, ..source }, document))
+    }
+}
+
+fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
+    root.check_keys()?;
+    let mut found = Found::default();
+    let name = read_name(&root.required("name")?)?;
+    let description = root.entry("description").map(|entry| read_description(&entry)).transpose()?;
+    let layer = root.required("layer")?.table(|table| read_layer(table, &mut found))?;
+    let material_entry = root.entry("material");
+    let read_material = |entry: &Entry<'_>| entry.table(|table| read_material(table, &mut found));
+    let material = material_entry.as_ref().map(read_material).transpose()?;
+    let surface = surface::read(&root.required("surface")?, &mut found)?;
+    let friction = root.optional_table("friction", read_friction)?;
+    let solver = root.optional_table("solver", read_solver)?.unwrap_or_default();
+    let extrapolation = root.optional_table("input", read_input)?.unwrap_or_default();
+    let outputs = root.optional_table("fmu", read_fmu)?.unwrap_or_else(default_outputs);
+    let excitation = root.tables("excitation", read_phase)?;
+    root.finish()?;
+    let Found { files, extracts, mut warnings } = found;
+    warnings.extend(warnings::short_profile(&layer, &surface, &excitation));
+    warnings.extend(material.as_ref().and_then(warnings::cold_temperatures));
+    let scene = Scene {
+        name,
+        description,
+        layer,
+        material,
+        surface,
+        friction,
+        solver,
+        extrapolation,
+        outputs,
+        excitation,
+        files,
+        extracts,
+        warnings,
+    };
+    match (scene.check(), material_entry) {
+        (Err(error), Some(entry)) => Err(SceneError::new(entry.location(), error.name(), error.problem().clone())),
+        _ => Ok(scene),
+    }
+}
+
+/// The name goes into XML attributes and, changed into an identifier, into file names, which hold 255 letters.
+fn read_name(entry: &Entry<'_>) -> Result<String> {
+    let expected = format!("a text, not empty, without control characters and of at most {LONGEST_NAME} letters");
+    let legal = |name: &&str| {
+        let short = name.chars().nth(LONGEST_NAME).is_none();
+        short && !name.trim().is_empty() && !name.contains(char::is_control)
+    };
+    let name = entry.text().ok().filter(legal);
+    name.map(str::to_owned).ok_or_else(|| entry.refuse(expected))
+}
+
+fn read_description(entry: &Entry<'_>) -> Result<String> {
+    let description = entry.text()?;
+    let illegal = |letter: char| letter.is_control() && !"\n\r\t".contains(letter);
+    if description.contains(illegal) { Err(entry.refuse_type()) } else { Ok(description.to_owned()) }
+}
+
+fn read_layer(table: &mut TableReader<'_>, found: &mut Found) -> Result<Layer> {
+    let mut layer = Layer {
+        masses: usize::try_from(table.whole("masses")?).unwrap_or(usize::MAX),
+        spacing: table.number("spacing")?,
+        origin: table.optional_number("origin")?.unwrap_or(0.0),
+        clearance: table.optional_number("clearance")?.unwrap_or(0.0),
+        mass: table.number_of_form("mass")?,
+        thickness: table.number_of_form("thickness")?,
+        width: table.number_of_form("width")?,
+        initial: table.optional_choice("initial")?.unwrap_or(Initial::Relaxed),
+        roughness: Vec::new(),
+        vertical: table.optional_table("vertical", read_link)?,
+        horizontal: table.optional_table("horizontal", read_link)?,
+        lateral_x: table.optional_table("lateral_x", read_link)?,
+        lateral_z: table.optional_table("lateral_z", read_link)?,
+    };
+    if let Some(entry) = table.entry("roughness") {
+        layer.roughness = surface::read_roughness(&entry, &layer, found)?;
+    }
+    Ok(layer)
+}
+
+fn read_link(table: &mut TableReader<'_>) -> Result<Link> {
+    Ok(Link {
+        stiffness: table.optional_number("stiffness")?,
+        damping: table.optional_number("damping")?,
+        maxwell: table.tables("maxwell", |table| {
+            Ok(MaxwellElement {
+                stiffness: table.number("stiffness")?,
+                relaxation_time: table.number("relaxation_time")?,
+            })
+        })?,
+    })
+}
+
+fn read_material(table: &mut TableReader<'_>, found: &mut Found) -> Result<Material> {
+    Ok(Material {
+        density: table.number("density")?,
+        poisson_ratio: table.number("poisson_ratio")?,
+        equilibrium_modulus: table.number("equilibrium_modulus")?,
+        viscosity: table.optional_number("viscosity")?,
+        prony: read_prony(&table.required("prony")?, found)?,
+        wlf: table.optional_table("wlf", read_wlf)?,
+    })
+}
+
+/// The Prony series, in the scene or in a file.
+fn read_prony(entry: &Entry<'_>, found: &mut Found) -> Result<Vec<PronyTerm>> {
+    if !entry.is_text() {
+        return entry.tables(|table| {
+            Ok(PronyTerm { modulus: table.number("modulus")?, relaxation_time: table.number("relaxation_time")? })
+        });
+    }
+    let path = surface::read_path(entry)?;
+    let file = entry.source().folder().join(&path);
+    let bytes = fs::read(&file).map_err(|error| entry.unreadable(&error))?;
+    let terms =
+        PronyTerm::parse(&bytes).map_err(|error| error.in_file(file).named_by(entry.location(), entry.path()))?;
+    found.add_file(path);
+    Ok(terms)
+}
+
+fn read_wlf(table: &mut TableReader<'_>) -> Result<Wlf> {
+    let temperature = table.required("temperature")?;
+    let wlf = Wlf {
+        c1: table.number("c1")?,
+        c2: table.number("c2")?,
+        reference_temperature: table.number("reference_temperature")?,
+        temperature: temperature.number()?,
+    };
+    wlf.check().map_err(|error| temperature.error(error.problem().clone()))?;
+    Ok(wlf)
+}
+
+fn read_friction(table: &mut TableReader<'_>) -> Result<Friction> {
+    Ok(Friction {
+        coulomb: table.optional_number("coulomb")?,
+        shear_force: table.optional_number("shear_force")?,
+        shear_strength: table.optional_number("shear_strength")?,
+        rate_shear: table.optional_table("rate_shear", read_rate_shear)?,
+    })
+}
+
+fn read_rate_shear(table: &mut TableReader<'_>) -> Result<RateShear> {
+    Ok(RateShear {
+        force: table.number_of_form("force")?,
+        strength: table.number_of_form("strength")?,
+        reference_speed: table.number("reference_speed")?,
+        sharpness: table.number("sharpness")?,
+        creep_speed: table.optional_number("creep_speed")?,
+    })
+}
+
+fn read_solver(table: &mut TableReader<'_>) -> Result<Solver> {
+    let defaults = Solver::default();
+    Ok(Solver {
+        method: table.optional_choice("method")?.unwrap_or(defaults.method),
+        relative_tolerance: table.optional_number("relative_tolerance")?.unwrap_or(defaults.relative_tolerance),
+        absolute_tolerance: table.optional_number("absolute_tolerance")?,
+        max_steps: table.optional_whole("max_steps")?.map_or(defaults.max_steps, i64::unsigned_abs),
+        reduce: table.optional_number("reduce")?.unwrap_or(defaults.reduce),
+    })
+}
+
+fn read_input(table: &mut TableReader<'_>) -> Result<Extrapolation> {
+    Ok(table.optional_choice("extrapolation")?.unwrap_or_default())
+}
+
+fn default_outputs() -> Vec<OutputGroup> {
+    vec![OutputGroup::Forces, OutputGroup::Dissipation]
+}
+
+/// The groups in the order of the variables, whatever their order in the scene.
+fn read_fmu(table: &mut TableReader<'_>) -> Result<Vec<OutputGroup>> {
+    let Some(entry) = table.entry("outputs") else { return Ok(default_outputs()) };
+    let mut groups: Vec<OutputGroup> = Vec::new();
+    for element in entry.elements()? {
+        let group = element.choice()?;
+        if groups.contains(&group) {
+            return Err(element.refuse("each group once"));
+        }
+        groups.push(group);
+    }
+    groups.sort_unstable();
+    Ok(groups)
+}
+
+fn read_phase(table: &mut TableReader<'_>) -> Result<Phase> {
+    Ok(Phase {
+        duration: table.number("duration")?,
+        u: read_motion(table, "u_rate", "u_sine")?,
+        w: read_motion(table, "w_rate", "w_sine")?,
+        until_force: table.optional_number("until_force")?,
+        until_pressure: table.optional_number("until_pressure")?,
+    })
+}
+
+fn read_motion(table: &mut TableReader<'_>, rate: &'static str, sine: &'static str) -> Result<Path> {
+    let rate = table.optional_number(rate)?.unwrap_or(0.0);
+    let sine = table.optional_table(sine, |table| {
+        Ok(Path { rate, amplitude: table.number("amplitude")?, frequency: table.number("frequency")? })
+    })?;
+    Ok(sine.unwrap_or(Path { rate, ..Path::default() }))
+}

@@ -1,0 +1,166 @@
+//! Reading of surfaces: `[surface]` and the layer's roughness, in the scene or from a file.
+
+use std::path::{Component, Path as FilePath, PathBuf};
+
+use super::table::{Entry, TableReader};
+use super::{Found, Result};
+use crate::scene::keys::{PATH, SurfaceKind};
+use crate::scene::profile::{self, Extract, Failure, ProfileOptions, Tilt};
+use crate::scene::surface::{Coordinate, SelfAffine, check_points};
+use crate::scene::values::LARGEST;
+use crate::scene::{Layer, Surface, warnings};
+
+/// The largest slope of a profile: a step of a metre from one atom to the next has less, and its square times that of
+/// the largest speed does not overflow.
+const STEEPEST: f64 = 1e12;
+
+/// A number of points that is whole but for rounding is that number.
+const ROUNDING: f64 = 1.0e-9;
+
+/// The surface given by the table `entry`; the file that it names, if any, is added to those `found`.
+pub(super) fn read(entry: &Entry<'_>, found: &mut Found) -> Result<Surface> {
+    let mut table = entry.open()?;
+    let kind = table.required("kind")?.choice::<SurfaceKind>()?;
+    table.use_keys(kind.keys())?;
+    let surface = match kind {
+        SurfaceKind::Flat => Surface::flat(),
+        SurfaceKind::Sinusoid => read_sinusoid(&mut table)?,
+        SurfaceKind::SelfAffine => read_self_affine(&mut table)?,
+        SurfaceKind::Points => read_points(&mut table)?,
+        SurfaceKind::File => read_file(&mut table, found)?,
+    };
+    table.finish()?;
+    let spline = surface.spline();
+    let bounds = spline.bounds();
+    let finite = surface.x.iter().all(|&x| spline.evaluate(x).2.is_finite());
+    if finite && bounds.slope_max_abs <= STEEPEST && bounds.curvature_max_abs <= LARGEST {
+        return Ok(surface);
+    }
+    let limits = format!("slopes up to {STEEPEST:e} and curvatures up to {LARGEST:e} 1/m");
+    Err(entry.refuse(format_args!("points with a spline of {limits}")))
+}
+
+fn read_sinusoid(table: &mut TableReader<'_>) -> Result<Surface> {
+    let amplitude = table.number("amplitude")?;
+    let wavelength = table.number("wavelength")?;
+    let points = table.optional_whole("points_per_wavelength")?.unwrap_or(64);
+    Ok(Surface::sinusoid(amplitude, wavelength, points))
+}
+
+fn read_self_affine(table: &mut TableReader<'_>) -> Result<Surface> {
+    let length = table.number("length")?;
+    let points = table.required("points")?;
+    let count = points.whole()?;
+    let (hurst, rms) = (table.number("hurst")?, table.number("rms")?);
+    let roll_off_entry = table.required("roll_off_wavelength")?;
+    let roll_off = roll_off_entry.number()?;
+    let cut_off_entry = table.required("cut_off_wavelength")?;
+    let cut_off = cut_off_entry.number()?;
+    let seed = table.whole("seed")?;
+    if roll_off > length {
+        return Err(roll_off_entry.refuse(format_args!("a number up to {length:?}, the length")));
+    }
+    if cut_off >= roll_off {
+        return Err(cut_off_entry.refuse(format_args!("a number < {roll_off:?}, the roll_off_wavelength")));
+    }
+    let least = (2.0 * length / cut_off * (1.0 - ROUNDING)).ceil();
+    if (count as f64) < least {
+        return Err(points.refuse(format_args!("at least {least}: two points a cut_off_wavelength")));
+    }
+    let points = usize::try_from(count).unwrap_or(usize::MAX);
+    Ok(SelfAffine { length, points, hurst, rms, roll_off, cut_off, seed: seed.unsigned_abs() }.surface())
+}
+
+fn read_points(table: &mut TableReader<'_>) -> Result<Surface> {
+    let periodic = table.flag("periodic")?;
+    let (x_entry, z_entry) = (table.required("x")?, table.required("z")?);
+    let (x, mut z) = (x_entry.numbers()?, z_entry.numbers()?);
+    if z.len() != x.len() {
+        return Err(z_entry.refuse_count(z.len(), &format!("{} heights, as many as places in x", x.len())));
+    }
+    check_points(&x, &mut z, periodic).map_err(|error| {
+        let entry = if error.coordinate == Coordinate::X { &x_entry } else { &z_entry };
+        match error.index.and_then(|i| entry.element(i)) {
+            Some(element) => element.refuse(error.expected),
+            None => entry.refuse_count(x.len(), &error.expected),
+        }
+    })?;
+    Ok(Surface { x, z, periodic })
+}
+
+fn read_file(table: &mut TableReader<'_>, found: &mut Found) -> Result<Surface> {
+    let options = read_options(table)?;
+    let entry = table.required("path")?;
+    let path = read_path(&entry)?;
+    let profile = profile::read(entry.source().folder(), &path, &options).map_err(|failure| match failure {
+        Failure::Unreadable(error) => entry.unreadable(&error),
+        Failure::Refused(error) => error.named_by(entry.location(), entry.path()),
+    })?;
+    let warnings = profile.warnings.iter().map(|warning| format!("{}: {warning}", path.display()));
+    found.warnings.extend(warnings);
+    if !found.files.contains(&profile.file) {
+        let name = profile.file.clone();
+        found.extracts.extend(profile.extract.map(|text| Extract { source: path, name, text }));
+    }
+    found.add_file(profile.file);
+    Ok(profile.surface)
+}
+
+fn read_options(table: &mut TableReader<'_>) -> Result<ProfileOptions> {
+    let unit = table.optional_choice("unit")?;
+    let options = ProfileOptions {
+        x_unit: table.optional_choice("x_unit")?.or(unit),
+        z_unit: table.optional_choice("z_unit")?.or(unit),
+        missing: table.optional_choice("missing")?.unwrap_or_default(),
+        tilt: table.optional_choice("tilt")?.unwrap_or_default(),
+        third_column: table.optional_choice("third_column")?,
+        line: table.optional_whole("line")?.and_then(|line| usize::try_from(line).ok()),
+        periodic: table.flag("periodic")?,
+    };
+    match table.entry("tilt").filter(|_| options.periodic && options.tilt == Tilt::Remove) {
+        Some(entry) => Err(entry.refuse("\"keep\" for a periodic profile, whose ends meet as they are")),
+        None => Ok(options),
+    }
+}
+
+/// Only files beside or below the scene can go into the FMU with it.
+pub(super) fn read_path(entry: &Entry<'_>) -> Result<PathBuf> {
+    let text = entry.text().map_err(|_| entry.refuse(PATH))?;
+    let path = FilePath::new(text);
+    let below = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
+    let normal: PathBuf = path.components().filter(|part| matches!(part, Component::Normal(_))).collect();
+    let legal = path.components().all(below) && !text.contains(['\\', '\0']);
+    if legal && normal.file_name().is_some() { Ok(normal) } else { Err(entry.refuse(PATH)) }
+}
+
+/// The roughness at the masses: given there, or a surface sampled at the masses' positions. A flat one is none.
+pub(super) fn read_roughness(entry: &Entry<'_>, layer: &Layer, found: &mut Found) -> Result<Vec<f64>> {
+    let mut table = entry.open()?;
+    let kind = table.required("kind")?.choice::<SurfaceKind>()?;
+    match (kind, table.has("x")) {
+        (SurfaceKind::Flat, _) => read(entry, found).map(|_| Vec::new()),
+        (SurfaceKind::Points, false) => read_heights(&mut table, layer.masses),
+        _ => sample(entry, layer, found),
+    }
+}
+
+/// `z` without `x`: one height for each mass.
+fn read_heights(table: &mut TableReader<'_>, masses: usize) -> Result<Vec<f64>> {
+    table.use_keys(SurfaceKind::Points.keys())?;
+    if let Some(entry) = table.entry("periodic") {
+        return Err(entry.refuse("no such key for heights at the masses, which have no x"));
+    }
+    let expected = format!("{masses} heights, one a mass (layer.masses)");
+    let entry = table.entry("z").ok_or_else(|| table.missing("z", &expected))?;
+    let heights = entry.numbers()?;
+    if heights.len() == masses { Ok(heights) } else { Err(entry.refuse_count(heights.len(), &expected)) }
+}
+
+fn sample(entry: &Entry<'_>, layer: &Layer, found: &mut Found) -> Result<Vec<f64>> {
+    let surface = read(entry, found)?;
+    found.warnings.extend(warnings::short_roughness(layer, &surface));
+    let spline = surface.spline();
+    let heights: Vec<f64> = (0..layer.masses).map(|i| spline.evaluate(layer.rest_position(i)).0).collect();
+    let finite = heights.iter().all(|height| height.is_finite());
+    if finite { Ok(heights) } else { Err(entry.refuse("finite heights at the masses")) }
+}

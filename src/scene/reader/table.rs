@@ -1,0 +1,329 @@
+//! Typed reading of TOML tables, checked against the table of keys; every value knows where it stands in the file.
+
+use std::ops;
+use std::path::Path;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::scene::error::{Location, Problem, SceneError};
+use crate::scene::keys::{self, Allowed, Form, Key};
+use crate::scene::values::{Word, words};
+
+type Result<T> = std::result::Result<T, SceneError>;
+
+/// Longer values are cut in messages.
+const GIVEN_LENGTH: usize = 60;
+
+/// The scene file: its name for messages, its text and its form.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Source<'a> {
+    pub(super) file: &'a Path,
+    pub(super) text: &'a str,
+    pub(super) form: Form,
+}
+
+/// A value, its key and the key's full path.
+#[derive(Clone, Debug)]
+pub(super) struct Entry<'a> {
+    source: Source<'a>,
+    path: String,
+    key: &'static Key,
+    value: &'a DeValue<'a>,
+    /// Where the value stands in the text.
+    span: ops::Range<usize>,
+    /// Where to look for it: the start of the value, or of a table's name.
+    offset: usize,
+}
+
+/// A table that hands out its values and remembers which keys were asked for.
+#[derive(Debug)]
+pub(super) struct TableReader<'a> {
+    source: Source<'a>,
+    path: String,
+    offset: usize,
+    table: &'a DeTable<'a>,
+    keys: &'static [Key],
+    asked: Vec<&'static str>,
+}
+
+impl<'a> Source<'a> {
+    fn location(&self, offset: usize) -> Location {
+        let before = self.text.as_bytes().iter().take(offset);
+        Location { file: self.file.to_owned(), line: Some(1 + before.filter(|&&byte| byte == b'\n').count()) }
+    }
+
+    /// The document's syntax tree.
+    pub(super) fn parse(&self) -> Result<Spanned<DeTable<'a>>> {
+        DeTable::parse(self.text).map_err(|error| {
+            let location = self.location(error.span().map_or(0, |span| span.start));
+            SceneError::new(location, "", Problem::Syntax { reason: error.message().trim().replace('\n', "; ") })
+        })
+    }
+
+    /// The folder of the scene file.
+    pub(super) fn folder(&self) -> &'a Path {
+        self.file.parent().unwrap_or(Path::new(""))
+    }
+}
+
+impl<'a> Entry<'a> {
+    /// The full path of its key.
+    pub(super) fn path(&self) -> &str {
+        &self.path
+    }
+
+    pub(super) fn location(&self) -> Location {
+        self.source.location(self.offset)
+    }
+
+    pub(super) fn source(&self) -> Source<'a> {
+        self.source
+    }
+
+    /// The value as it stands in the file, on one line and cut where it is long.
+    pub(super) fn given(&self) -> String {
+        let text = self.source.text.get(self.span.clone()).unwrap_or_default();
+        let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        match line.char_indices().nth(GIVEN_LENGTH) {
+            Some((end, _)) => format!("{}...", &line[..end]),
+            None => line,
+        }
+    }
+
+    pub(super) fn error(&self, problem: Problem) -> SceneError {
+        SceneError::new(self.location(), &self.path, problem)
+    }
+
+    /// Refuses the value for not being what was `expected`.
+    pub(super) fn refuse(&self, expected: impl ToString) -> SceneError {
+        self.error(Problem::value(self.given(), expected))
+    }
+
+    /// Refuses an array for its number of elements.
+    pub(super) fn refuse_count(&self, count: usize, expected: &str) -> SceneError {
+        self.error(Problem::value(format_args!("[{count} numbers]"), expected))
+    }
+
+    /// Refuses the value for not being what its key may hold.
+    pub(super) fn refuse_type(&self) -> SceneError {
+        self.refuse(self.key.allowed)
+    }
+
+    /// The file that it names cannot be read.
+    pub(super) fn unreadable(&self, error: &std::io::Error) -> SceneError {
+        self.error(Problem::Unreadable { given: self.given(), reason: error.to_string() })
+    }
+
+    pub(super) fn number(&self) -> Result<f64> {
+        let Allowed::Number(range) = self.key.allowed else { return Err(self.refuse_type()) };
+        number(self.value).filter(|&number| range.holds(number)).ok_or_else(|| self.refuse(range))
+    }
+
+    pub(super) fn whole(&self) -> Result<i64> {
+        let Allowed::Whole(range) = self.key.allowed else { return Err(self.refuse_type()) };
+        whole(self.value).filter(|&number| range.holds(number)).ok_or_else(|| self.refuse(range))
+    }
+
+    pub(super) fn flag(&self) -> Result<bool> {
+        self.value.as_bool().ok_or_else(|| self.refuse_type())
+    }
+
+    pub(super) fn text(&self) -> Result<&'a str> {
+        self.value.as_str().ok_or_else(|| self.refuse_type())
+    }
+
+    pub(super) fn is_text(&self) -> bool {
+        self.value.is_str()
+    }
+
+    pub(super) fn choice<T: Word>(&self) -> Result<T> {
+        self.value.as_str().and_then(T::of).ok_or_else(|| self.refuse(words::<T>()))
+    }
+
+    pub(super) fn numbers(&self) -> Result<Vec<f64>> {
+        let Allowed::Numbers(range, _) = self.key.allowed else { return Err(self.refuse_type()) };
+        let values = self.value.as_array().ok_or_else(|| self.refuse(format_args!("an array, each {range}")))?;
+        let read = |(i, value): (usize, &Spanned<DeValue<'_>>)| {
+            number(value.get_ref()).filter(|&number| range.holds(number)).ok_or(i)
+        };
+        let numbers: std::result::Result<_, usize> = values.iter().enumerate().map(read).collect();
+        numbers.map_err(|i| self.element(i).unwrap_or_else(|| self.clone()).refuse(range))
+    }
+
+    /// The elements of an array, their keys counted from 1.
+    pub(super) fn elements(&self) -> Result<Vec<Self>> {
+        let count = self.value.as_array().ok_or_else(|| self.refuse_type())?.len();
+        Ok((0..count).filter_map(|i| self.element(i)).collect())
+    }
+
+    /// Element `i` of an array, counted from 0.
+    pub(super) fn element(&self, i: usize) -> Option<Self> {
+        let value = self.value.get(i)?;
+        let path = format!("{}[{}]", self.path, i + 1);
+        let span = value.span();
+        Some(Self { path, value: value.get_ref(), offset: span.start, span, ..*self })
+    }
+
+    /// The table that it is; its keys are not checked before [`check_keys`](TableReader::check_keys).
+    pub(super) fn open(&self) -> Result<TableReader<'a>> {
+        let table = self.value.as_table().ok_or_else(|| self.refuse("a table"))?;
+        let (source, path, keys) = (self.source, self.path.clone(), self.key.keys());
+        Ok(TableReader { source, path, offset: self.offset, table, keys, asked: Vec::new() })
+    }
+
+    /// What `read` makes of the table, all of whose keys are allowed and asked for.
+    pub(super) fn table<T>(&self, read: impl FnOnce(&mut TableReader<'a>) -> Result<T>) -> Result<T> {
+        let mut table = self.open()?;
+        table.check_keys()?;
+        let value = read(&mut table)?;
+        table.finish()?;
+        Ok(value)
+    }
+
+    /// What `read` makes of each table of the array.
+    pub(super) fn tables<T>(&self, read: impl Fn(&mut TableReader<'a>) -> Result<T>) -> Result<Vec<T>> {
+        self.elements()?.iter().map(|entry| entry.table(&read)).collect()
+    }
+}
+
+fn number(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::Float(float) => float.as_str().parse().ok(),
+        _ => whole(value).map(|number| number as f64),
+    }
+}
+
+fn whole(value: &DeValue<'_>) -> Option<i64> {
+    let integer = value.as_integer()?;
+    i64::from_str_radix(integer.as_str(), integer.radix()).ok()
+}
+
+impl<'a> TableReader<'a> {
+    pub(super) fn root(source: Source<'a>, table: &'a DeTable<'a>) -> Self {
+        Self { source, path: String::new(), offset: 0, table, keys: keys::ROOT, asked: Vec::new() }
+    }
+
+    /// From now on the table has these keys; they are checked.
+    pub(super) fn use_keys(&mut self, keys: &'static [Key]) -> Result<()> {
+        self.keys = keys;
+        self.check_keys()
+    }
+
+    /// Refuses a key of the other form of a scene, then any unknown key, naming the first one in the file.
+    ///
+    /// Done before the values are read: a misspelt key is a clearer message than the missing one that it causes.
+    pub(super) fn check_keys(&self) -> Result<()> {
+        let form = self.source.form;
+        let foreign = self.keys.iter().filter(|key| key.form.is_some_and(|other| other != form));
+        if let Some(entry) = foreign.into_iter().find_map(|key| self.find(key)) {
+            let own: Vec<&str> = self.keys.iter().filter(|key| key.form == Some(form)).map(|key| key.name).collect();
+            let instead = if own.is_empty() { String::new() } else { format!("; instead: {}", own.join(", ")) };
+            let with = if form == Form::Direct { "without" } else { "beside" };
+            return Err(entry.refuse(format_args!("no such key {with} [material]{instead}")));
+        }
+        let own = self.keys.iter().filter(|key| key.form.is_none_or(|own| own == form));
+        self.allow(&own.map(|key| key.name).collect::<Vec<_>>())
+    }
+
+    /// Refuses the keys that the reader did not ask for: what is not read must not stand in a scene.
+    pub(super) fn finish(self) -> Result<()> {
+        self.allow(&self.asked)
+    }
+
+    fn allow(&self, allowed: &[&'static str]) -> Result<()> {
+        let names = self.table.keys().map(|key| (key.get_ref().as_ref(), key.span().start));
+        match names.filter(|(name, _)| !allowed.contains(name)).min_by_key(|(_, offset)| *offset) {
+            Some((name, offset)) => {
+                let problem = Problem::Unknown { allowed: allowed.iter().copied().map(String::from).collect() };
+                Err(SceneError::new(self.source.location(offset), self.full(name), problem))
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn full(&self, name: &str) -> String {
+        if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
+    }
+
+    fn key(&self, name: &str) -> &'static Key {
+        self.keys.iter().find(|key| key.name == name).unwrap_or(&keys::NONE)
+    }
+
+    fn find(&self, key: &'static Key) -> Option<Entry<'a>> {
+        let (found, value) = self.table.get_key_value(key.name)?;
+        let span = value.span();
+        let offset = if value.get_ref().is_table() { found.span().start } else { span.start };
+        Some(Entry { source: self.source, path: self.full(key.name), key, value: value.get_ref(), span, offset })
+    }
+
+    /// The entry of a key, if the table has it.
+    pub(super) fn entry(&mut self, name: &'static str) -> Option<Entry<'a>> {
+        self.asked.push(name);
+        self.find(self.key(name))
+    }
+
+    /// Whether the table has a key, known or not.
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.table.contains_key(name)
+    }
+
+    /// The entry of a key that must be there.
+    pub(super) fn required(&mut self, name: &'static str) -> Result<Entry<'a>> {
+        let expected = self.key(name).allowed;
+        self.entry(name).ok_or_else(|| self.missing(name, expected))
+    }
+
+    pub(super) fn missing(&self, name: &str, expected: impl ToString) -> SceneError {
+        let problem = Problem::Missing { expected: expected.to_string() };
+        SceneError::new(self.source.location(self.offset), self.full(name), problem)
+    }
+
+    pub(super) fn number(&mut self, name: &'static str) -> Result<f64> {
+        self.required(name)?.number()
+    }
+
+    pub(super) fn optional_number(&mut self, name: &'static str) -> Result<Option<f64>> {
+        self.entry(name).map(|entry| entry.number()).transpose()
+    }
+
+    /// The number of a key that a scene of the key's form must have, and no other has.
+    pub(super) fn number_of_form(&mut self, name: &'static str) -> Result<Option<f64>> {
+        if self.key(name).form == Some(self.source.form) { self.number(name).map(Some) } else { Ok(None) }
+    }
+
+    pub(super) fn whole(&mut self, name: &'static str) -> Result<i64> {
+        self.required(name)?.whole()
+    }
+
+    pub(super) fn optional_whole(&mut self, name: &'static str) -> Result<Option<i64>> {
+        self.entry(name).map(|entry| entry.whole()).transpose()
+    }
+
+    /// A flag; `false` where it is not given.
+    pub(super) fn flag(&mut self, name: &'static str) -> Result<bool> {
+        self.entry(name).map_or(Ok(false), |entry| entry.flag())
+    }
+
+    pub(super) fn optional_choice<T: Word>(&mut self, name: &'static str) -> Result<Option<T>> {
+        self.entry(name).map(|entry| entry.choice()).transpose()
+    }
+
+    /// What `read` makes of the table `name`, if it is there.
+    pub(super) fn optional_table<T>(
+        &mut self,
+        name: &'static str,
+        read: impl FnOnce(&mut TableReader<'a>) -> Result<T>,
+    ) -> Result<Option<T>> {
+        self.entry(name).map(|entry| entry.table(read)).transpose()
+    }
+
+    /// What `read` makes of each table of the array `name`; nothing where it is left out.
+    pub(super) fn tables<T>(
+        &mut self,
+        name: &'static str,
+        read: impl Fn(&mut TableReader<'a>) -> Result<T>,
+    ) -> Result<Vec<T>> {
+        self.entry(name).map_or_else(|| Ok(Vec::new()), |entry| entry.tables(read))
+    }
+}

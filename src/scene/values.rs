@@ -1,0 +1,163 @@
+//! Values of keys and parameters: ranges of numbers, words to choose from, units.
+
+use std::fmt;
+
+/// The largest size of a number in SI units that a scene, a carrier or a master may give: m, s, N/m, whatever it is.
+///
+/// Beyond all physics, and still so small that no product of the model overflows: c e², m κ ẋ² and the like have a
+/// handful of factors, and 1e30 to the tenth power is a number.
+pub const LARGEST: f64 = 1e30;
+
+/// The smallest size of a number that is divided by, or whose square must not be rounded to 0.
+pub const SMALLEST: f64 = 1e-30;
+
+/// Whether a carrier or a master may give `number`: it is one, and of a size up to [`LARGEST`].
+pub fn is_possible(number: f64) -> bool {
+    number.abs() <= LARGEST
+}
+
+/// Numbers whose size lies between two bounds, both included; 0 and negative numbers where they are allowed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Range {
+    smallest: f64,
+    largest: f64,
+    zero: bool,
+    negative: bool,
+}
+
+/// From [`SMALLEST`] to [`LARGEST`].
+pub(super) const POSITIVE: Range = Range { smallest: SMALLEST, largest: LARGEST, zero: false, negative: false };
+/// The same, and 0.
+pub(super) const NOT_NEGATIVE: Range = Range { zero: true, ..POSITIVE };
+/// Up to [`LARGEST`] in size.
+pub(super) const ANY: Range = Range { smallest: 0.0, negative: true, ..NOT_NEGATIVE };
+
+impl Range {
+    /// The same with another upper bound.
+    pub(super) const fn up_to(self, largest: f64) -> Self {
+        Self { largest, ..self }
+    }
+
+    pub(super) fn holds(&self, number: f64) -> bool {
+        let size = number.abs();
+        let in_range = self.smallest <= size && size <= self.largest && (self.negative || number > 0.0);
+        in_range || (self.zero && number == 0.0)
+    }
+}
+
+/// Whole numbers from `low` to `high`, both included.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct WholeRange {
+    pub(super) low: i64,
+    pub(super) high: i64,
+}
+
+impl WholeRange {
+    pub(super) fn holds(&self, number: i64) -> bool {
+        (self.low..=self.high).contains(&number)
+    }
+}
+
+/// A choice that a scene makes by a word.
+pub(super) trait Word: Copy + PartialEq + 'static {
+    /// The words, and what each stands for.
+    const WORDS: &'static [(&'static str, Self)];
+
+    /// What `word` stands for.
+    fn of(word: &str) -> Option<Self> {
+        Self::WORDS.iter().find(|(name, _)| *name == word).map(|(_, choice)| *choice)
+    }
+
+    /// The word for it.
+    fn as_word(self) -> &'static str {
+        Self::WORDS.iter().find(|(_, other)| *other == self).map_or("", |(word, _)| word)
+    }
+}
+
+/// The words to choose from: `one of "a", "b"`.
+pub(super) fn words<T: Word>() -> String {
+    let quoted: Vec<String> = T::WORDS.iter().map(|(word, _)| format!("\"{word}\"")).collect();
+    format!("one of {}", quoted.join(", "))
+}
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let low = if self.negative { -self.largest } else { self.smallest };
+        let zero = if self.zero && !self.negative { "0 or " } else { "" };
+        write!(f, "{zero}a number from {low:?} to {:?}", self.largest)
+    }
+}
+
+impl fmt::Display for WholeRange {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "a whole number from {} to {}", self.low, self.high)
+    }
+}
+
+/// An SI unit of a variable or a parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Unit {
+    /// 1, a plain number.
+    One,
+    /// m.
+    Meter,
+    /// s.
+    Second,
+    /// m/s.
+    MeterPerSecond,
+    /// kg.
+    Kilogram,
+    /// N.
+    Newton,
+    /// N/m.
+    NewtonPerMeter,
+    /// N s/m.
+    NewtonSecondPerMeter,
+    /// K.
+    Kelvin,
+    /// m².
+    SquareMeter,
+    /// kg/m³.
+    KilogramPerCubicMeter,
+    /// Pa.
+    Pascal,
+    /// Pa s.
+    PascalSecond,
+    /// J.
+    Joule,
+    /// W.
+    Watt,
+}
+
+impl Unit {
+    /// The unit's name in the model description.
+    pub fn name(self) -> &'static str {
+        self.definition().0
+    }
+
+    /// The exponents of kg, m, s and K in the unit.
+    pub fn exponents(self) -> [i32; 4] {
+        self.definition().1
+    }
+
+    /// The name, and the exponents of kg, m, s and K.
+    fn definition(self) -> (&'static str, [i32; 4]) {
+        match self {
+            Self::One => ("1", [0, 0, 0, 0]),
+            Self::Meter => ("m", [0, 1, 0, 0]),
+            Self::Second => ("s", [0, 0, 1, 0]),
+            Self::MeterPerSecond => ("m/s", [0, 1, -1, 0]),
+            Self::Kilogram => ("kg", [1, 0, 0, 0]),
+            Self::Newton => ("N", [1, 1, -2, 0]),
+            Self::NewtonPerMeter => ("N/m", [1, 0, -2, 0]),
+            Self::NewtonSecondPerMeter => ("N.s/m", [1, 0, -1, 0]),
+            Self::Kelvin => ("K", [0, 0, 0, 1]),
+            Self::SquareMeter => ("m2", [0, 2, 0, 0]),
+            Self::KilogramPerCubicMeter => ("kg/m3", [1, -3, 0, 0]),
+            Self::Pascal => ("Pa", [1, -1, -2, 0]),
+            Self::PascalSecond => ("Pa.s", [1, -1, -1, 0]),
+            Self::Joule => ("J", [1, 2, -2, 0]),
+            Self::Watt => ("W", [1, 2, -3, 0]),
+        }
+    }
+}
