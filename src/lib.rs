@@ -13,6 +13,7 @@
 //! ```
 //!
 //! An [`element`] stands beside the simulation: it looks the forces of a layer up in a table that was swept of it.
+//! `robustness` perturbs scenes and judges their runs, for the program's report and the tests.
 //!
 //! Each module looks only to its left; [`math`] looks nowhere.
 //!
@@ -90,5 +91,7 @@ pub mod integrator;
 pub mod math;
 pub mod model;
 pub mod outputs;
+#[cfg(feature = "program")]
+pub mod robustness;
 pub mod scene;
 pub mod simulation;

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms of the library in their order, and where each may look: to the left only, and there not everywhere.
-const ROOMS: [(&str, &[&str]); 9] = [
+const ROOMS: [(&str, &[&str]); 10] = [
     ("math", &[]),
     ("scene", &["math"]),
     ("model", &["math", "scene"]),
@@ -14,6 +14,7 @@ const ROOMS: [(&str, &[&str]); 9] = [
     ("contact", &["math", "scene", "model", "integrator"]),
     ("outputs", &["math", "scene", "model"]),
     ("simulation", &["math", "scene", "model", "integrator", "contact", "outputs"]),
+    ("robustness", &["scene", "simulation"]),
     ("element", &["math", "scene", "model", "outputs", "simulation"]),
     ("fmi", &["math", "scene", "model", "integrator", "contact", "outputs", "simulation", "element"]),
 ];

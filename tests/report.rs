@@ -377,7 +377,7 @@ fn a_scene_under_stress_has_a_cell_for_each_pair_of_factors() {
     for row in &cells {
         assert!(page.contains(&row["reason"]), "{row:?}");
     }
-    assert!(page.contains("<h2>Under stress</h2>") && page.contains("<h3>In pairs</h3>"));
+    assert!(page.contains("<h2>Robustness</h2>") && page.contains("<h3>In pairs</h3>"));
     assert!(page.contains("title=\"stiffness × 10, mass × 10⁻¹: error "));
     assert!(page.contains("stiffness, mass, relaxation times, speed and communication step scaled"));
 }
@@ -421,7 +421,7 @@ fn what_a_scene_does_not_have_is_not_stressed() {
     assert!(page.contains("stiffness, mass, speed and communication step scaled"));
     report(&scene, &folder.join("none"), &["--repeat", "1", "--tolerances", "1e-6..1e-6"]);
     assert!(!folder.join("none/stress.csv").exists());
-    assert!(!fs::read_to_string(folder.join("none/index.html")).unwrap().contains("Under stress"));
+    assert!(!fs::read_to_string(folder.join("none/index.html")).unwrap().contains("Robustness"));
 }
 
 /// Ten times the largest number that a scene may have is none.
@@ -433,7 +433,7 @@ fn a_cell_that_cannot_be_run_says_why() {
     let refused = cell(&cells, &[("relaxation_times", "10")]);
     assert_eq!((refused["status"].as_str(), refused["steps"].as_str()), ("stopped", ""));
     assert!(refused["reason"].contains("layer.vertical.maxwell[1].relaxation_time = 1e31: expected"), "{refused:?}");
-    assert!(page.contains("<h3>What stops or is wrong</h3>") && page.contains("relaxation times × 10</td>"));
+    assert!(page.contains("<h3>Failures and wrong results</h3>") && page.contains("relaxation times × 10</td>"));
     // Without time, no pair is tried, and it says so.
     let pair = cell(&cells, &[("stiffness", "10"), ("mass", "10")]);
     assert!(pair["status"] == "left out" && page.contains("were not tried: <code>--stress-time</code>"), "{pair:?}");

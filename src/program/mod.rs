@@ -2,7 +2,6 @@
 
 mod cli;
 mod describe;
-mod error;
 mod figure;
 mod files;
 mod fit;
@@ -19,19 +18,8 @@ mod terminal;
 
 use std::error::Error;
 
-use cli as arguments;
 pub(crate) use cli::Arguments;
 use cli::Command;
-use files::{check_output, load, set_parameters, sources};
-use terminal::warn;
-
-mod excitation {
-    pub(crate) use super::runner::{CarrierSample as Carrier, Rows, start};
-}
-
-mod progress {
-    pub(crate) use super::terminal::bar;
-}
 
 /// Executes the command of the command line.
 pub(crate) fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {

@@ -1,164 +1,151 @@
-//! `asperity report`: what a scene's runs cost and how right they are, as tables, pictures and one page.
-//!
-//! Each part of the report has its data, its pictures and tables, and its section of the page.
+//! `asperity report`: what the runs of a scene cost and how accurate they are, as tables, pictures and one page.
 
-mod communication;
-mod ladder;
+mod convergence;
 mod page;
-mod peers;
-mod pictures;
-mod progress;
 mod reference;
-mod runs;
-mod stress;
-mod table;
+mod robustness;
+mod run;
+mod tables;
 mod trace;
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
+use asperity::robustness::Failure;
 use asperity::scene::Scene;
 
-use super::arguments::Report;
-use super::error::ProgramError;
+use super::cli::Report;
 use super::figure::{Figure as _, Ladders};
-use ladder::Ladder;
-use peers::Peers;
-use progress::Progress;
-use stress::Stress;
+use super::files::{FileError, check_output, load, set_parameters, sources, write};
+use super::result_file::ResultFileError;
+use super::terminal::warn;
+use convergence::{CommunicationRow, CommunicationSteps, Ladder, ToleranceRow};
+use reference::Reference;
+use robustness::Robustness;
+use run::Progress;
+use tables::Peers;
 
-/// The page.
+/// `asperity report` failed.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum ReportError {
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error(transparent)]
+    Peers(#[from] ResultFileError),
+    #[error("the scene {0}")]
+    NoRun(&'static str),
+    #[error("no reference: not even the loosest tolerance comes to its end: {0}")]
+    Reference(Failure),
+}
+
 const PAGE: &str = "index.html";
 /// The table and the pictures of errors and run times, without their endings.
 const ERRORS: &str = "error-run-time";
-/// The table of the scene under stress.
-const STRESS: &str = "stress";
 /// Those of errors and communication steps.
 const COMMUNICATION: &str = "error-communication-step";
+/// The table of the perturbed runs.
+const STRESS: &str = "stress";
 
-/// Runs the scene in every way and writes what came of it.
-pub(crate) fn report(command: &Report) -> Result<(), ProgramError> {
-    let mut scene = super::load(&command.scene)?;
-    super::set_parameters(&mut scene, &command.set)?;
+/// Runs the scene in every way and writes the results.
+pub(crate) fn report(command: &Report) -> Result<(), ReportError> {
+    let mut scene = load(&command.scene)?;
+    set_parameters(&mut scene, &command.set)?;
     if scene.excitation.is_empty() {
-        return Err(ProgramError::NoRun("has no [[excitation]]: the carrier rests, and there is no run to report on"));
+        return Err(ReportError::NoRun("has no [[excitation]]: the carrier rests, and there is no run to report on"));
     }
     let folder = Folder::new(command, &scene)?;
     let peers = read_peers(command, &scene)?;
-    let parts = run(command, &scene, peers)?;
-    folder.create()?;
-    table::write_errors(&folder.file(ERRORS, "csv"), &scene.name, &parts.reference, &parts.rows)?;
-    table::write_communication(
-        &folder.file(COMMUNICATION, "csv"),
-        &scene.name,
-        &parts.reference,
-        &parts.communication,
-    )?;
-    if let Some(stress) = &parts.stress {
-        table::write_stress(&folder.file(STRESS, "csv"), &scene.name, stress)?;
+    let parts = Parts::run(command, &scene, peers)?;
+    fs::create_dir_all(&folder.path).map_err(FileError::io("create", &folder.path))?;
+    let errors = folder.file(ERRORS, "csv");
+    tables::write_errors(&errors, &scene.name, &parts.reference, &parts.rows)?;
+    let communication = folder.file(COMMUNICATION, "csv");
+    tables::write_communication(&communication, &scene.name, &parts.reference, &parts.communication)?;
+    if let Some(robustness) = &parts.robustness {
+        tables::write_robustness(&folder.file(STRESS, "csv"), &scene.name, robustness)?;
     }
-    let errors = folder.draw(ERRORS, &pictures::errors(&parts.reference, &parts.rows))?;
-    let communication = pictures::communication(&parts.reference, &parts.communication);
+    let errors = folder.draw(ERRORS, &page::tolerance_picture(&parts.reference, &parts.rows))?;
+    let communication = page::communication_picture(&parts.reference, &parts.communication);
     let communication = folder.draw(COMMUNICATION, &communication)?;
-    let page_file = folder.path.join(PAGE);
-    write_page(&page_file, command, &scene, &parts, [&errors, &communication])
-        .map_err(|source| ProgramError::file("write", &page_file)(source))
+    let file = folder.path.join(PAGE);
+    let page = page::page(command, &scene, &parts, &errors, &communication).map_err(FileError::io("write", &file))?;
+    Ok(write(&file, page)?)
 }
 
-/// Writes the page; `pictures` are those of its sections, in their order.
-fn write_page(
-    path: &Path,
-    command: &Report,
-    scene: &Scene,
-    parts: &Parts,
-    [errors, communication]: [&str; 2],
-) -> std::io::Result<()> {
-    let mut sections = vec![page::accuracy(command, parts, errors)?, page::communication(scene, parts, communication)?];
-    if let Some(stress) = &parts.stress {
-        sections.push(page::stress(scene, stress)?);
-    }
-    fs::write(path, page::page(scene, &sections)?)
-}
-
-/// What the report's parts show.
+/// The results.
 #[derive(Debug)]
 struct Parts {
-    reference: reference::Reference,
-    /// This program's rungs, then the peers'.
-    rows: Vec<ladder::Row>,
-    communication: Vec<communication::Row>,
-    /// The scene under stress, where that was asked for.
-    stress: Option<Stress>,
+    reference: Reference,
+    /// This program's runs, then the peers'.
+    rows: Vec<ToleranceRow>,
+    communication: Vec<CommunicationRow>,
+    /// Where it was asked for.
+    robustness: Option<Robustness>,
 }
 
-fn run(command: &Report, scene: &Scene, peers: Peers) -> Result<Parts, ProgramError> {
-    let scene = runs::watched(scene);
-    let tolerances = &command.tolerances.0;
-    let ladder = Ladder { tolerances, points: command.points, repeat: command.repeat };
-    let tightest = tolerances.last().copied().unwrap_or_default();
-    let by_steps = communication::ladder_weight(tightest / 10.0, scene.solver.relative_tolerance);
-    let progress = Progress::new(reference::search_weight(tightest) + ladder.weight() + by_steps);
-    let reference = reference::find(&scene, tolerances, command.points, &progress);
-    let reference = reference.inspect_err(|_| progress.finish()).map_err(ProgramError::Reference)?;
-    if reference.scene.excitation.iter().all(|phase| phase.duration <= 0.0) {
-        progress.finish();
-        return Err(ProgramError::NoRun("takes no time: every phase of its [[excitation]] ends at once"));
+impl Parts {
+    fn run(command: &Report, scene: &Scene, peers: Peers) -> Result<Self, ReportError> {
+        let scene = run::watched(scene);
+        let tolerances = &command.tolerances.0;
+        let ladder = Ladder { tolerances, points: command.points, repeat: command.repeat };
+        let tightest = tolerances.last().copied().unwrap_or_default();
+        let by_steps = CommunicationSteps::weight(tightest / 10.0, scene.solver.relative_tolerance);
+        let progress = Progress::new(Reference::weight(tightest) + ladder.weight() + by_steps);
+        let reference = Reference::find(&scene, tolerances, command.points, &progress);
+        let reference = reference.map_err(ReportError::Reference)?;
+        if reference.scene.excitation.iter().all(|phase| phase.duration <= 0.0) {
+            return Err(ReportError::NoRun("takes no time: every phase of its [[excitation]] ends at once"));
+        }
+        let mut rows = ladder.run(&reference, &progress);
+        rows.extend(peers.rows);
+        let communication = CommunicationSteps::new(&reference, &progress).run();
+        drop(progress);
+        let robustness = (command.stress > 0)
+            .then(|| Robustness::run(&reference, command.stress, command.points, command.stress_time));
+        Ok(Self { reference, rows, communication, robustness })
     }
-    let mut rows = ladder.run(&reference, &progress);
-    let communication = communication::climb(&reference, &progress);
-    progress.finish();
-    rows.extend(peers.rows);
-    let stress =
-        (command.stress > 0).then(|| stress::run(&reference, command.stress, command.points, command.stress_time));
-    Ok(Parts { reference, rows, communication, stress })
 }
 
-/// The peers' rows of this scene; a file that has none of it is worth a warning.
-fn read_peers(command: &Report, scene: &Scene) -> Result<Peers, ProgramError> {
+/// The peers' rows of this scene; warns where the file has none.
+fn read_peers(command: &Report, scene: &Scene) -> Result<Peers, ReportError> {
     let Some(path) = &command.peers else { return Ok(Peers::default()) };
     let stem = command.scene.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-    let peers = peers::read(path, &[&scene.name, &stem])?;
+    let peers = tables::read_peers(path, &[&scene.name, &stem])?;
     if peers.rows.is_empty() {
         let there = peers.scenes.join(", ");
-        super::warn(&format!("{}: no lines of the scene {}; there are {there}", path.display(), scene.name));
+        warn(&format!("{}: no lines of the scene {}; there are {there}", path.display(), scene.name));
     }
     Ok(peers)
 }
 
-/// Where the report goes.
+/// The folder that the report is written to.
 #[derive(Debug)]
 struct Folder {
     path: PathBuf,
 }
 
 impl Folder {
-    /// The folder that the command names; none of the files to come takes the place of one that is read.
-    fn new(command: &Report, scene: &Scene) -> Result<Self, ProgramError> {
+    /// Checks that no file written takes the place of one that is read.
+    fn new(command: &Report, scene: &Scene) -> Result<Self, FileError> {
         let folder = Self { path: command.output.clone() };
-        let taken: Vec<PathBuf> =
-            super::sources(&command.scene, scene).into_iter().chain(command.peers.clone()).collect();
-        let files = [ERRORS, COMMUNICATION].into_iter().flat_map(|name| ["csv", "svg", "png"].map(|end| (name, end)));
+        let taken: Vec<PathBuf> = sources(&command.scene, scene).into_iter().chain(command.peers.clone()).collect();
+        let drawn = [ERRORS, COMMUNICATION].into_iter().flat_map(|name| ["csv", "svg", "png"].map(|end| (name, end)));
         let others = [folder.file(STRESS, "csv"), folder.path.join(PAGE)];
-        for file in files.map(|(name, end)| folder.file(name, end)).chain(others) {
-            super::check_output(&file, &taken)?;
-        }
+        let mut files = drawn.map(|(name, end)| folder.file(name, end)).chain(others);
+        files.try_for_each(|file| check_output(&file, &taken))?;
         Ok(folder)
-    }
-
-    fn create(&self) -> Result<(), ProgramError> {
-        fs::create_dir_all(&self.path).map_err(ProgramError::file("create", &self.path))
     }
 
     fn file(&self, name: &str, ending: &str) -> PathBuf {
         self.path.join(format!("{name}.{ending}"))
     }
 
-    /// Draws a picture as SVG and PNG and returns the text of the SVG.
-    fn draw(&self, name: &str, picture: &Ladders) -> Result<String, ProgramError> {
+    /// Draws a picture as SVG and PNG. Returns the text of the SVG.
+    fn draw(&self, name: &str, picture: &Ladders) -> Result<String, FileError> {
         let [svg_file, png_file] = ["svg", "png"].map(|ending| self.file(name, ending));
+        let svg = picture.svg().map_err(|error| FileError::picture(&svg_file, &*error))?;
+        write(&svg_file, &svg)?;
         picture.write(&png_file)?;
-        let svg = picture.svg().map_err(|error| ProgramError::picture(&svg_file, &*error))?;
-        fs::write(&svg_file, &svg).map_err(ProgramError::file("write", &svg_file))?;
         Ok(svg)
     }
 }

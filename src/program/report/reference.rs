@@ -1,52 +1,40 @@
-//! The run that all others are compared with, its own error, and whether runs can be compared point by point at all.
+//! The run that all others are compared with, its own error, and whether runs can be compared row by row at all.
 
+use asperity::robustness::{Budget, DISPLACEMENT, Failure, at_tolerance, divergence, exact};
 use asperity::scene::Scene;
-use asperity::simulation::SimulationError;
 
-use super::progress::{Progress, weight};
-use super::runs::{Counts, Measured, at_tolerance, exact, run, with_durations};
+use super::run::{Counts, Figures, Measured, Progress, UNLIMITED, follow, weight, with_durations};
 use super::trace::{Errors, Trace, WINDOWS};
-use crate::program::arguments::tenth;
-use crate::program::excitation::Rows;
+use crate::program::cli::tenth;
+use crate::program::runner::Rows;
 
-/// How far the start is moved to see whether the motion is sensitive, m: far below what any scene resolves.
-pub(super) const DISPLACEMENT: f64 = 1e-12;
-/// Runs have parted where the moved start changes a force by more than this share of its largest value: where it does
-/// not spread, it changes some 1e-8, and up to 1e-4 where the layer is stiff against the force.
-const PARTED: f64 = 1e-3;
-/// On a profile so fine that the displacement is no small part of its height, so many times that part.
-const OF_HEIGHT: f64 = 100.0;
-/// A run that is ten times as tight may take so many times the steps. It is far more than any method needs: where it is
+/// A run at a tenth of the tolerance may take so many times the steps, far more than any method needs: where they are
 /// used up, rounding has taken over.
 const WORK: u64 = 10;
 /// Rows of a phase from which means are taken.
 const SAMPLES: u32 = 50 * WINDOWS;
 
-/// The run that all others are compared with.
 #[derive(Debug)]
 pub(super) struct Reference {
     /// Its relative tolerance.
     pub(super) tolerance: f64,
-    /// The relative tolerance of the run that tells its error; `None` where no other run came to its end.
+    /// The relative tolerance of the run that gives its error; `None` where no other run came to its end.
     pub(super) check: Option<f64>,
-    /// The run.
     pub(super) measured: Measured,
-    /// Its own error; errors below say no more.
+    /// Its own error; errors below it are not significant.
     pub(super) own: Errors,
-    /// What a moved start changes.
     pub(super) sensitivity: Sensitivity,
-    /// How runs are compared with it.
     pub(super) comparison: Comparison,
     /// The scene with its motion fixed: phases that a force ends take the time that they took once.
     pub(super) scene: Scene,
 }
 
-/// What a start moved by [`DISPLACEMENT`] changes, point by point.
+/// What a start moved by [`DISPLACEMENT`] changes, row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Sensitivity {
     /// The largest differences.
     pub(super) differences: Errors,
-    /// The difference above which the runs have parted.
+    /// The difference above which the runs have diverged.
     pub(super) limit: f64,
 }
 
@@ -60,19 +48,9 @@ pub(super) enum Comparison {
 }
 
 impl Sensitivity {
-    fn new(scene: &Scene, differences: Errors) -> Self {
-        Self { differences, limit: parting(scene) }
-    }
-
-    /// Whether the two runs went apart.
-    pub(super) fn parted(&self) -> bool {
+    fn diverged(&self) -> bool {
         self.differences[..2].iter().flatten().any(|&difference| difference > self.limit)
     }
-}
-
-/// The difference above which two runs have parted whose starts differ by [`DISPLACEMENT`].
-pub(super) fn parting(scene: &Scene) -> f64 {
-    (OF_HEIGHT * DISPLACEMENT / scene.height()).max(PARTED)
 }
 
 impl Comparison {
@@ -83,12 +61,10 @@ impl Comparison {
         }
     }
 
-    /// Whether means are compared.
     pub(super) fn is_of_means(self) -> bool {
         matches!(self, Self::Means(_))
     }
 
-    /// The errors of a run.
     pub(super) fn errors(self, trace: &Trace, reference: &Trace) -> Errors {
         match self {
             Self::Pointwise(_) => trace.largest(reference),
@@ -97,60 +73,50 @@ impl Comparison {
     }
 }
 
-/// What the search for a reference weighs, for a ladder down to `tightest`.
-pub(super) fn search_weight(tightest: f64) -> f64 {
-    weight(tightest) + 2.0 * weight(tightest / 10.0) + weight(tightest / 100.0)
-}
+impl Reference {
+    /// Finds the reference for a ladder of tolerances, from loose to tight: by the method "event" at a tenth of the
+    /// tightest, its error by a run at a tenth of that. Where such a run gives up, the tightest of the ladder that do
+    /// not.
+    pub(super) fn find(scene: &Scene, ladder: &[f64], points: u32, progress: &Progress) -> Result<Self, Failure> {
+        let rows = Rows::PerPhase(points);
+        let (rung, base) = Search { scene: &exact(scene), rows, progress }.tightest(ladder)?;
+        let scene = with_durations(scene, &base.durations);
+        let search = Search { scene: &exact(&scene), rows, progress };
+        let (run, check) = match search.tighter(ladder[rung], &base.counts) {
+            None => ((ladder[rung], base), search.looser(&ladder[..rung])),
+            Some((tolerance, run)) => {
+                let check = search.tighter(tolerance, &run.counts);
+                ((tolerance, run), check.or(Some((ladder[rung], base))))
+            }
+        };
+        let (tolerance, measured) = run;
+        let moved = search.run(tolerance, rows, DISPLACEMENT, UNLIMITED)?;
+        let differences = moved.trace.largest(&measured.trace);
+        let sensitivity = Sensitivity { differences, limit: divergence(&scene) };
+        let comparison = Comparison::Pointwise(rows);
+        let unknown = [Some(f64::INFINITY); 3];
+        let own = check.as_ref().map_or(unknown, |(_, check)| comparison.errors(&check.trace, &measured.trace));
+        let check = check.map(|(tolerance, _)| tolerance);
+        let found = Self { tolerance, check, measured, own, sensitivity, comparison, scene: scene.clone() };
+        if found.sensitivity.diverged() { search.by_means(found) } else { Ok(found) }
+    }
 
-/// Finds the reference for a ladder of tolerances, from loose to tight: by the method "event" ten times as tight as the
-/// ladder, its error by a run ten times tighter still. Where such a run gives up, the tightest rungs that do not.
-pub(super) fn find(
-    scene: &Scene,
-    ladder: &[f64],
-    points: u32,
-    progress: &Progress,
-) -> Result<Reference, SimulationError> {
-    let rows = Rows::PerPhase(points);
-    let (rung, base) = tightest(&exact(scene), ladder, rows, progress)?;
-    let scene = with_durations(scene, &base.durations);
-    let search = Search { scene: &exact(&scene), rows, progress };
-    let (run, check) = match search.tighter(ladder[rung], &base.counts) {
-        None => ((ladder[rung], base), search.looser(&ladder[..rung])),
-        Some((tolerance, run)) => {
-            let check = search.tighter(tolerance, &run.counts);
-            ((tolerance, run), check.or(Some((ladder[rung], base))))
-        }
-    };
-    let (tolerance, measured) = run;
-    let moved = search.run(tolerance, rows, DISPLACEMENT, None)?;
-    let sensitivity = Sensitivity::new(&scene, moved.trace.largest(&measured.trace));
-    let pointwise = Comparison::Pointwise(rows);
-    let own =
-        check.as_ref().map_or([Some(f64::INFINITY); 3], |check| pointwise.errors(&check.1.trace, &measured.trace));
-    let check = check.map(|check| check.0);
-    let found = Reference { tolerance, check, measured, own, sensitivity, comparison: pointwise, scene: scene.clone() };
-    if found.sensitivity.parted() { search.by_means(found) } else { Ok(found) }
-}
+    /// What the search weighs, for a ladder down to `tightest`.
+    pub(super) fn weight(tightest: f64) -> f64 {
+        weight(tightest) + 2.0 * weight(tightest / 10.0) + weight(tightest / 100.0)
+    }
 
-/// The tightest rung whose run does not give up, and that run; `ladder` is not empty.
-fn tightest(
-    scene: &Scene,
-    ladder: &[f64],
-    rows: Rows,
-    progress: &Progress,
-) -> Result<(usize, Measured), SimulationError> {
-    let search = Search { scene, rows, progress };
-    let mut rung = ladder.len() - 1;
-    loop {
-        match search.run(ladder[rung], rows, 0.0, None) {
-            Ok(measured) => return Ok((rung, measured)),
-            Err(error) if rung == 0 => return Err(error),
-            Err(_) => rung -= 1,
-        }
+    /// The figures of the reference itself; its errors are its own.
+    pub(super) fn figures(&self) -> Figures {
+        self.measured.figures(self.own)
+    }
+
+    /// Which errors are below the reference's own.
+    pub(super) fn below(&self, errors: &Errors) -> [bool; 3] {
+        [0, 1, 2].map(|i| errors[i].zip(self.own[i]).is_some_and(|(error, own)| error < own))
     }
 }
 
-/// What the runs of the search share.
 struct Search<'a> {
     scene: &'a Scene,
     rows: Rows,
@@ -158,31 +124,41 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// A run at `tolerance` from the carrier at `u` (m), with so many steps at most where a limit is given.
-    fn run(&self, tolerance: f64, rows: Rows, u: f64, limit: Option<u64>) -> Result<Measured, SimulationError> {
-        let mut scene = at_tolerance(self.scene, tolerance);
-        scene.solver.max_steps = limit.unwrap_or(u64::MAX).min(scene.solver.max_steps);
+    fn run(&self, tolerance: f64, rows: Rows, u: f64, budget: Budget) -> Result<Measured, Failure> {
+        let scene = at_tolerance(self.scene, tolerance);
         let message = format!("reference, tolerance {tolerance:e}");
-        self.progress.during(&message, weight(tolerance), |tick| run(&scene, rows, u, tick))
+        self.progress.during(&message, weight(tolerance), |tick| follow(&scene, rows, u, budget, tick))
     }
 
-    /// A run ten times as tight as `tolerance`, where one took `counts`; `None` where it gives up.
+    /// The tightest rung whose run does not fail, and that run; `ladder` is not empty.
+    fn tightest(&self, ladder: &[f64]) -> Result<(usize, Measured), Failure> {
+        let mut rung = ladder.len() - 1;
+        loop {
+            match self.run(ladder[rung], self.rows, 0.0, UNLIMITED) {
+                Ok(measured) => return Ok((rung, measured)),
+                Err(error) if rung == 0 => return Err(error),
+                Err(_) => rung -= 1,
+            }
+        }
+    }
+
+    /// A run at a tenth of `tolerance`, where one took `counts`; `None` where it fails.
     fn tighter(&self, tolerance: f64, counts: &Counts) -> Option<(f64, Measured)> {
-        let limit = WORK * (counts.steps + counts.rejected + counts.events) + 1000;
+        let budget = Budget(WORK * (counts.work() + counts.events) + 1000);
         let tolerance = tenth(tolerance);
-        self.run(tolerance, self.rows, 0.0, Some(limit)).ok().map(|run| (tolerance, run))
+        self.run(tolerance, self.rows, 0.0, budget).ok().map(|run| (tolerance, run))
     }
 
-    /// The tightest of the `rungs` whose run does not give up.
+    /// The tightest of the `rungs` whose run does not fail.
     fn looser(&self, rungs: &[f64]) -> Option<(f64, Measured)> {
-        rungs.iter().rev().find_map(|&rung| self.run(rung, self.rows, 0.0, None).ok().map(|run| (rung, run)))
+        rungs.iter().rev().find_map(|&rung| self.run(rung, self.rows, 0.0, UNLIMITED).ok().map(|run| (rung, run)))
     }
 
-    /// The reference with means in place of rows. What a moved start changes in them counts as its error, too: no run
+    /// The reference with means in place of rows. What a moved start changes in them counts as its error too: no run
     /// can know better.
-    fn by_means(&self, pointwise: Reference) -> Result<Reference, SimulationError> {
+    fn by_means(&self, pointwise: Reference) -> Result<Reference, Failure> {
         let comparison = Comparison::Means(Rows::PerPhase(SAMPLES));
-        let run = |tolerance: f64, u: f64| self.run(tolerance, comparison.rows(), u, None);
+        let run = |tolerance: f64, u: f64| self.run(tolerance, comparison.rows(), u, UNLIMITED);
         let measured = run(pointwise.tolerance, 0.0)?;
         let mut own = comparison.errors(&run(pointwise.tolerance, DISPLACEMENT)?.trace, &measured.trace);
         if let Some(check) = pointwise.check {

@@ -1,6 +1,6 @@
 //! What runs are compared by: the forces on the carrier and the energy lost, row by row.
 
-use crate::program::excitation::Rows;
+use asperity::robustness::ForceHistory;
 
 /// The quantities whose errors are shown, by the names of their variables.
 pub(super) const QUANTITIES: [&str; 3] = ["F_x", "F_z", "E_diss"];
@@ -17,21 +17,37 @@ const ROUNDING: f64 = 1e-12;
 /// F_x, F_z (N) and E_diss (J) at the rows of a run: the start, and even intervals of each phase.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Trace {
+    times: Vec<f64>,
     rows: Vec<[f64; 3]>,
-    /// How many intervals each phase has; those that took no time have none.
+    /// The number of intervals of each phase that took time.
     intervals: Vec<usize>,
 }
 
 impl Trace {
-    /// The rows of a run whose phases took `durations` (s).
-    pub(super) fn new(values: Vec<[f64; 3]>, durations: &[f64], rows: Rows) -> Self {
-        let intervals = durations.iter().map(|&duration| rows.of(duration) as usize).filter(|&count| count > 0);
-        Self { rows: values, intervals: intervals.collect() }
+    pub(super) fn push(&mut self, time: f64, row: [f64; 3]) {
+        self.times.push(time);
+        self.rows.push(row);
     }
 
-    /// Every `step`th row, a divisor of every phase's.
+    /// The phase under way ends with the last row; a phase without rows took no time.
+    pub(super) fn end_phase(&mut self) {
+        let count = self.rows.len() - 1 - self.intervals.iter().sum::<usize>();
+        self.intervals.extend((count > 0).then_some(count));
+    }
+
+    /// Time of the last row, s.
+    pub(super) fn end(&self) -> f64 {
+        self.times.last().copied().unwrap_or_default()
+    }
+
+    pub(super) fn forces(&self) -> ForceHistory {
+        ForceHistory { times: self.times.clone(), rows: self.rows.iter().map(|&[x, z, _]| [x, z]).collect() }
+    }
+
+    /// Every `step`th row, a divisor of every phase's intervals.
     pub(super) fn every(&self, step: usize) -> Self {
         Self {
+            times: self.times.iter().copied().step_by(step).collect(),
             rows: self.rows.iter().copied().step_by(step).collect(),
             intervals: self.intervals.iter().map(|count| count / step).collect(),
         }
@@ -70,7 +86,7 @@ impl Trace {
         })
     }
 
-    /// The means over the windows of each phase, in their order; of the energy lost, what it has come to at their ends.
+    /// The means over the windows of each phase; of the energy lost, its value at their ends.
     fn window_means(&self) -> Vec<[f64; 3]> {
         let mut start = 0;
         let mut means = Vec::new();
@@ -89,7 +105,7 @@ impl Trace {
         means
     }
 
-    /// The largest values; `None` for what is not there but for rounding.
+    /// The largest values; `None` for a force that is rounding alone.
     fn scales(&self) -> Errors {
         let largest = |i: usize| self.rows.iter().fold(0.0, |largest, row| larger(largest, row[i].abs()));
         let [x, z, lost] = [0, 1, 2].map(largest);
@@ -98,7 +114,7 @@ impl Trace {
     }
 }
 
-/// What is not a number counts as infinite.
+/// The larger; NaN counts as infinite.
 fn larger(a: f64, b: f64) -> f64 {
     if b.is_nan() { f64::INFINITY } else { a.max(b) }
 }
@@ -112,22 +128,22 @@ fn running_sums(rows: &[[f64; 3]]) -> Vec<[f64; 3]> {
     sums
 }
 
-/// The integral from the first row to `place`, which counts rows.
-fn sum_to(rows: &[[f64; 3]], sums: &[[f64; 3]], place: f64) -> [f64; 3] {
-    let (i, part) = interval(rows, place);
-    let here = value_at(rows, place);
+/// The integral from the first row to `position`, which counts rows.
+fn sum_to(rows: &[[f64; 3]], sums: &[[f64; 3]], position: f64) -> [f64; 3] {
+    let (i, part) = interval(rows, position);
+    let here = value_at(rows, position);
     [0, 1, 2].map(|j| sums[i][j] + 0.5 * part * (rows[i][j] + here[j]))
 }
 
-fn value_at(rows: &[[f64; 3]], place: f64) -> [f64; 3] {
-    let (i, part) = interval(rows, place);
+fn value_at(rows: &[[f64; 3]], position: f64) -> [f64; 3] {
+    let (i, part) = interval(rows, position);
     [0, 1, 2].map(|j| rows[i][j] + part * (rows[i + 1][j] - rows[i][j]))
 }
 
-/// The interval that `place` lies in and its part before it.
-fn interval(rows: &[[f64; 3]], place: f64) -> (usize, f64) {
-    let i = (place as usize).min(rows.len() - 2);
-    (i, place - i as f64)
+/// The interval in which `position` lies, and the part of it before `position`.
+fn interval(rows: &[[f64; 3]], position: f64) -> (usize, f64) {
+    let i = (position as usize).min(rows.len() - 2);
+    (i, position - i as f64)
 }
 
 #[cfg(test)]
@@ -136,7 +152,11 @@ mod tests {
 
     /// Two phases, of 4 and of 2 intervals.
     fn trace(values: [f64; 7]) -> Trace {
-        Trace { rows: values.map(|value| [value, 2.0 * value, 0.0]).into(), intervals: vec![4, 2] }
+        of(values.map(|value| [value, 2.0 * value, 0.0]).into(), &[4, 2])
+    }
+
+    fn of(rows: Vec<[f64; 3]>, intervals: &[usize]) -> Trace {
+        Trace { times: (0..rows.len()).map(|i| i as f64).collect(), rows, intervals: intervals.to_vec() }
     }
 
     #[test]
@@ -152,7 +172,7 @@ mod tests {
     #[test]
     fn rounding_is_no_force() {
         let rows = vec![[1e-13, 1.0, 0.0], [0.0, 1.0, 0.0]];
-        let trace = Trace { rows, intervals: vec![1] };
+        let trace = of(rows, &[1]);
         assert_eq!(trace.largest(&trace), [None, Some(0.0), None]);
     }
 
@@ -161,7 +181,7 @@ mod tests {
     fn means_do_not_depend_on_how_fine_the_rows_are() {
         let line = |count: usize| {
             let rows = (0..=count).map(|i| [i as f64 / count as f64; 3]).collect();
-            Trace { rows, intervals: vec![count] }
+            of(rows, &[count])
         };
         let means = line(3).window_means();
         assert_eq!(means.len(), WINDOWS as usize);
@@ -175,10 +195,8 @@ mod tests {
 
     #[test]
     fn a_difference_that_comes_and_goes_within_a_window_is_none_of_the_means() {
-        let wave = |sign: f64| Trace {
-            rows: (0..=80).map(|i| [1.0 + sign * f64::from([0, 1, 0, -1][i % 4]), 1.0, 1.0]).collect(),
-            intervals: vec![80],
-        };
+        let wave =
+            |sign: f64| of((0..=80).map(|i| [1.0 + sign * f64::from([0, 1, 0, -1][i % 4]), 1.0, 1.0]).collect(), &[80]);
         assert_eq!(wave(1.0).means(&wave(-1.0)), [Some(0.0); 3]);
         assert_eq!(wave(1.0).largest(&wave(-1.0))[0], Some(1.0));
     }
@@ -186,6 +204,18 @@ mod tests {
     #[test]
     fn fewer_rows_are_every_so_many() {
         let reference = trace([0.0, 1.0, 2.0, 3.0, 4.0, 2.0, 0.0]).every(2);
-        assert_eq!((reference.rows.len(), reference.intervals), (4, vec![2, 1]));
+        assert_eq!((reference.times, reference.intervals), (vec![0.0, 2.0, 4.0, 6.0], vec![2, 1]));
+    }
+
+    #[test]
+    fn a_phase_without_rows_has_no_intervals() {
+        let mut trace = Trace::default();
+        trace.push(0.0, [0.0; 3]);
+        trace.end_phase();
+        trace.push(1.0, [0.0; 3]);
+        trace.push(2.0, [0.0; 3]);
+        trace.end_phase();
+        trace.end_phase();
+        assert_eq!(trace.intervals, [2]);
     }
 }

@@ -1,37 +1,50 @@
-//! The page: one file, nothing from elsewhere. Each part of the report has its section.
+//! The page: one file that loads nothing from elsewhere, a section for each part of the report.
 
-mod accuracy;
-mod communication;
-mod stress;
+mod convergence;
+mod robustness;
 
 use std::io;
 
-use asperity::scene::Scene;
+use asperity::scene::{Parameter, Scene};
 use quick_xml::escape::escape;
 
+use super::Parts;
 use super::trace::Errors;
+use crate::program::cli::Report;
 use crate::program::describe;
 use crate::program::html::{Cell, fill, table};
 
-pub(super) use accuracy::section as accuracy;
-pub(super) use communication::section as communication;
-pub(super) use stress::section as stress;
+pub(super) use convergence::{communication_picture, tolerance_picture};
 
 const TEMPLATE: &str = include_str!("page.html");
-/// Stands where there is nothing to tell.
+/// Stands where there is no number.
 const NOTHING: &str = "–";
 
-/// The whole page.
-pub(super) fn page(scene: &Scene, sections: &[String]) -> io::Result<String> {
+/// The page; `errors` and `communication` are the pictures of these sections as SVG.
+pub(super) fn page(
+    command: &Report,
+    scene: &Scene,
+    parts: &Parts,
+    errors: &str,
+    communication: &str,
+) -> io::Result<String> {
+    let tolerances = convergence::tolerances(command, parts, errors)?;
+    let communication = convergence::communication(scene, parts, communication)?;
+    let robustness = parts.robustness.as_ref().map(|robustness| robustness::section(scene, robustness)).transpose()?;
     let rows = describe::rows(scene).into_iter().map(|(name, text)| vec![name.into(), text.into()]);
     let fields = [
         ("name", escape(&scene.name).into_owned()),
         ("description", escape(scene.description.as_deref().unwrap_or_default()).into_owned()),
         ("version", env!("CARGO_PKG_VERSION").into()),
         ("scene", table(&["", "What is there"].map(Cell::from), &rows.collect::<Vec<_>>())?),
-        ("sections", sections.concat()),
+        ("sections", [tolerances, communication, robustness.unwrap_or_default()].concat()),
     ];
     Ok(fill(TEMPLATE, &fields))
+}
+
+/// The method in a word of the scene file.
+fn method(scene: &Scene) -> String {
+    scene.parameter(Parameter::Method).to_string().replace('"', "")
 }
 
 /// The head of a table: names of text columns, then of columns of numbers.
@@ -40,7 +53,6 @@ fn head(texts: &[&str], numbers: &[&str]) -> Vec<Cell> {
     texts.chain(numbers.iter().map(|&name| number(name))).collect()
 }
 
-/// A cell of a column of numbers.
 fn number(text: impl Into<String>) -> Cell {
     Cell { class: "number".into(), ..Cell::from(text) }
 }

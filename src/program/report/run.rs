@@ -1,0 +1,391 @@
+//! One run of a scene for a report: along the excitation or driven by a master, within a budget; and what is recorded.
+
+use std::cell::Cell;
+
+use asperity::fmi::{Carrier as Inputs, Input, InputOutOfRange};
+use asperity::outputs::{Output, Variable, variables};
+use asperity::robustness::{Budget, Failure};
+use asperity::scene::{OutputGroup, Phase, Scene};
+use asperity::simulation::{Simulation, SimulationError};
+use cpu_time::ThreadTime;
+use indicatif::ProgressBar;
+
+use super::trace::{Errors, Trace};
+use crate::program::runner::{CarrierSample, Rows, Runner};
+use crate::program::terminal::bar;
+
+/// No limit but the scene's own.
+pub(super) const UNLIMITED: Budget = Budget(u64::MAX);
+
+/// A run that came to its end.
+#[derive(Clone, Debug)]
+pub(super) struct Measured {
+    pub(super) trace: Trace,
+    pub(super) counts: Counts,
+    /// Processor time, s.
+    pub(super) time: f64,
+    /// Of each phase, s.
+    pub(super) durations: Vec<f64>,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Counts {
+    /// Accepted steps.
+    pub(super) steps: u64,
+    /// Rejected steps.
+    pub(super) rejected: u64,
+    /// Mode changes.
+    pub(super) events: u64,
+    /// Newton's iterations.
+    pub(super) iterations: u64,
+    /// The largest residual of the energy balance over the largest of its energies.
+    pub(super) residual: f64,
+}
+
+/// The figures of a run; `None` where they are not known.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Figures {
+    /// Against the reference.
+    pub(super) errors: Errors,
+    /// Processor time, s.
+    pub(super) time: Option<f64>,
+    pub(super) steps: Option<u64>,
+    pub(super) rejected: Option<u64>,
+    pub(super) events: Option<u64>,
+    pub(super) iterations: Option<u64>,
+    pub(super) residual: Option<f64>,
+}
+
+impl Counts {
+    /// Steps, accepted and rejected.
+    pub(super) fn work(&self) -> u64 {
+        self.steps + self.rejected
+    }
+}
+
+impl Measured {
+    pub(super) fn figures(&self, errors: Errors) -> Figures {
+        let Counts { steps, rejected, events, iterations, residual } = self.counts;
+        Figures {
+            errors,
+            time: Some(self.time),
+            steps: Some(steps),
+            rejected: Some(rejected),
+            events: Some(events),
+            iterations: Some(iterations),
+            residual: Some(residual),
+        }
+    }
+}
+
+impl Figures {
+    /// The largest of the errors.
+    pub(super) fn error(&self) -> Option<f64> {
+        self.errors.into_iter().flatten().reduce(f64::max)
+    }
+}
+
+/// The scene with the output groups that a report needs and no others, so that all runs cost the same: none estimates
+/// its error.
+pub(super) fn watched(scene: &Scene) -> Scene {
+    use OutputGroup::{Dissipation, Energy, Forces};
+    Scene { outputs: vec![Forces, Dissipation, Energy], ..scene.clone() }
+}
+
+/// The scene with phases of these durations (s), whatever F_z does: the same motion for all runs.
+pub(super) fn with_durations(scene: &Scene, durations: &[f64]) -> Scene {
+    let phases = scene.excitation.iter().zip(durations);
+    let fixed =
+        phases.map(|(phase, &duration)| Phase { duration, until_force: None, until_pressure: None, ..phase.clone() });
+    Scene { excitation: fixed.collect(), ..scene.clone() }
+}
+
+/// Runs `scene` along its excitation from the carrier at `u` (m); `tick` gets the share of the excitation that is done.
+pub(super) fn follow(
+    scene: &Scene,
+    rows: Rows,
+    u: f64,
+    budget: Budget,
+    tick: &dyn Fn(f64),
+) -> Result<Measured, Failure> {
+    let failed = |error: SimulationError| budget.failure(scene, &error);
+    let duration = scene.duration();
+    let mut recorder = Recorder::new(scene);
+    let mut runner = Runner::new(&budget.limit(scene), rows, u).map_err(failed)?;
+    let clock = ThreadTime::now();
+    runner.observe_now(|_, simulation| recorder.row(simulation));
+    let mut durations = Vec::new();
+    for phase in &scene.excitation {
+        let observe = |carrier: CarrierSample, simulation: &mut Simulation| {
+            recorder.row(simulation);
+            tick(carrier.time / duration);
+        };
+        durations.push(runner.run_phase(phase, observe).map_err(failed)?);
+        recorder.end_phase();
+        recorder.check(budget)?;
+    }
+    Ok(recorder.finish(runner.simulation(), clock.elapsed().as_secs_f64(), durations))
+}
+
+/// What a master gives at a communication point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Given {
+    /// Values and rates.
+    Rates,
+    /// Values alone.
+    Values,
+    /// Nothing: there is no master, the program follows the excitation itself.
+    Motion,
+}
+
+impl Given {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Rates => "values and rates",
+            Self::Values => "values alone",
+            Self::Motion => "no master",
+        }
+    }
+}
+
+/// Drives `scene` as a master drives the FMU, from the carrier at `u` (m). `points` are the communication points of each
+/// phase that is run, s after it begins.
+pub(super) fn drive(
+    scene: &Scene,
+    given: Given,
+    points: &[Vec<f64>],
+    u: f64,
+    budget: Budget,
+    tick: &dyn Fn(f64),
+) -> Result<Measured, Failure> {
+    let failed = |error: StepError| match error {
+        StepError::Run(error) => budget.failure(scene, &error),
+        StepError::Input(error) => Failure::Stopped(error.to_string()),
+    };
+    let limited = budget.limit(scene);
+    let duration = scene.duration();
+    let mut master = Master::new(&limited, given, u).map_err(|error| failed(error.into()))?;
+    let clock = ThreadTime::now();
+    for (phase, points) in scene.excitation.iter().zip(points) {
+        let start = master.carrier;
+        let mut from = 0.0;
+        for &to in points {
+            master.step(phase, start, from, to).map_err(failed)?;
+            master.recorder.check(budget)?;
+            from = to;
+            tick(master.carrier.time / duration);
+        }
+        master.recorder.end_phase();
+    }
+    let durations = scene.excitation.iter().map(|phase| phase.duration).collect();
+    Ok(master.recorder.finish(&master.simulation, clock.elapsed().as_secs_f64(), durations))
+}
+
+#[derive(Debug, thiserror::Error)]
+#[error(transparent)]
+enum StepError {
+    Input(#[from] InputOutOfRange),
+    Run(#[from] SimulationError),
+}
+
+/// A master with the unit that it drives; how inputs become a motion is the FMU's own.
+#[derive(Debug)]
+struct Master<'a> {
+    scene: &'a Scene,
+    given: Given,
+    inputs: Inputs,
+    simulation: Simulation,
+    recorder: Recorder,
+    /// On the excitation, at the communication point.
+    carrier: CarrierSample,
+}
+
+impl<'a> Master<'a> {
+    fn new(scene: &'a Scene, given: Given, u: f64) -> Result<Self, SimulationError> {
+        let mut inputs = Inputs::default();
+        inputs.set_input(Input::U, u);
+        if let Some(phase) = scene.excitation.first().filter(|_| given == Given::Rates) {
+            set_rates(&mut inputs, phase, 0.0);
+        }
+        let mut simulation = Simulation::new(scene, &inputs.start(0.0))?;
+        let mut recorder = Recorder::new(scene);
+        recorder.row(&mut simulation);
+        let carrier = CarrierSample { time: 0.0, u, w: 0.0 };
+        Ok(Self { scene, given, inputs, simulation, recorder, carrier })
+    }
+
+    /// Does the communication step between two times (s) of the phase that began at `start`.
+    fn step(&mut self, phase: &Phase, start: CarrierSample, from: f64, to: f64) -> Result<(), StepError> {
+        self.inputs.set_input(Input::U, self.carrier.u);
+        self.inputs.set_input(Input::W, self.carrier.w);
+        if self.given == Given::Rates {
+            set_rates(&mut self.inputs, phase, from);
+        }
+        let (stands, h) = (self.simulation.carrier(), to - from);
+        let motion = self.inputs.motion(stands, self.carrier.time, h, self.scene.extrapolation)?;
+        self.simulation.advance(&motion)?;
+        self.inputs.count_step(h);
+        self.recorder.row(&mut self.simulation);
+        self.carrier = start.moved(phase, to);
+        Ok(())
+    }
+}
+
+fn set_rates(inputs: &mut Inputs, phase: &Phase, s: f64) {
+    inputs.set_rate(Input::U, phase.u.velocity(s));
+    inputs.set_rate(Input::W, phase.w.velocity(s));
+}
+
+/// What is read at every row, in this order.
+const WATCHED: [Output; 10] = [
+    Output::ForceX,
+    Output::ForceZ,
+    Output::DissipatedEnergy,
+    Output::InputEnergy,
+    Output::KineticEnergy,
+    Output::ElasticEnergy,
+    Output::EnergyResidual,
+    Output::Steps,
+    Output::Rejected,
+    Output::Events,
+];
+
+/// Records the rows of a run.
+#[derive(Debug)]
+struct Recorder {
+    variables: Vec<Variable>,
+    values: [f64; WATCHED.len()],
+    trace: Trace,
+    counts: Counts,
+    /// The largest of the energies so far, J.
+    energy: f64,
+    /// The largest residual so far, J.
+    residual: f64,
+}
+
+impl Recorder {
+    /// For a run of `scene`, which is [`watched`].
+    fn new(scene: &Scene) -> Self {
+        let mut outputs = scene.outputs.clone();
+        outputs.push(OutputGroup::Solver);
+        let all = variables(&Scene { outputs, ..scene.clone() });
+        let find = |output: &Output| all.iter().find(|variable| variable.output == *output).cloned();
+        Self {
+            variables: WATCHED.iter().filter_map(find).collect(),
+            values: [0.0; WATCHED.len()],
+            trace: Trace::default(),
+            counts: Counts::default(),
+            energy: 0.0,
+            residual: 0.0,
+        }
+    }
+
+    fn row(&mut self, simulation: &mut Simulation) {
+        simulation.evaluate(&self.variables, &mut self.values);
+        let [x, z, lost, input, kinetic, elastic, residual, steps, rejected, events] = self.values;
+        self.trace.push(simulation.time(), [x, z, lost]);
+        self.energy = [input, kinetic, elastic, lost].iter().fold(self.energy, |most, energy| most.max(energy.abs()));
+        self.residual = self.residual.max(residual.abs());
+        let [steps, rejected, events] = [steps, rejected, events].map(|count| count as u64);
+        self.counts = Counts { steps, rejected, events, ..self.counts };
+    }
+
+    fn end_phase(&mut self) {
+        self.trace.end_phase();
+    }
+
+    fn check(&self, budget: Budget) -> Result<(), Failure> {
+        let used_up = self.counts.work() > budget.0;
+        if used_up { Err(Failure::OverBudget { time: self.trace.end() }) } else { Ok(()) }
+    }
+
+    fn finish(self, simulation: &Simulation, time: f64, durations: Vec<f64>) -> Measured {
+        let residual = if self.energy > 0.0 { self.residual / self.energy } else { 0.0 };
+        let counts = Counts { iterations: simulation.newton_iterations(), residual, ..self.counts };
+        Measured { trace: self.trace, counts, time, durations }
+    }
+}
+
+/// The progress bar over the runs of a report, weighed by what they are likely to take.
+#[derive(Debug)]
+pub(super) struct Progress {
+    bar: ProgressBar,
+    total: f64,
+    done: Cell<f64>,
+}
+
+impl Progress {
+    const POSITIONS: f64 = 1000.0;
+
+    /// For runs that weigh `total`.
+    pub(super) fn new(total: f64) -> Self {
+        Self { bar: bar(Self::POSITIONS as u64), total, done: Cell::new(0.0) }
+    }
+
+    /// Does a run of this weight; it gets what to call with the share that is done.
+    pub(super) fn during<T>(&self, message: &str, weight: f64, run: impl FnOnce(&dyn Fn(f64)) -> T) -> T {
+        self.bar.set_message(message.to_owned());
+        let done = self.done.get();
+        let show = |share: f64| self.bar.set_position((Self::POSITIONS * (done + weight * share) / self.total) as u64);
+        let result = run(&show);
+        show(1.0);
+        self.done.set(done + weight);
+        result
+    }
+}
+
+impl Drop for Progress {
+    /// Takes the bar off the terminal.
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// What a run at this tolerance is likely to take, over one at 1: the step of a method of order 5 follows the fifth
+/// root.
+pub(super) fn weight(tolerance: f64) -> f64 {
+    tolerance.powf(-0.2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "
+name = 'pressed'
+[layer]
+masses = 2
+spacing = 1e-4
+mass = 1e-7
+[layer.vertical]
+stiffness = 1e3
+[surface]
+kind = 'flat'
+[fmu]
+outputs = ['forces', 'dissipation', 'energy', 'solver']
+[[excitation]]
+duration = 1e-3
+w_rate = -0.01
+[[excitation]]
+duration = 1e-3
+u_rate = 0.01
+";
+
+    #[test]
+    fn a_run_ends_at_its_budget_or_stops_at_the_scenes_own_limit() {
+        let mut scene = Scene::parse(TEXT, "scene.toml".as_ref()).unwrap();
+        let along = |scene: &Scene, budget| follow(scene, Rows::PerPhase(4), 0.0, Budget(budget), &|_| ());
+        let points = vec![(1..=10).map(|i| 1e-4 * f64::from(i)).collect::<Vec<_>>(); 2];
+        let driven = |scene: &Scene, budget| drive(scene, Given::Rates, &points, 0.0, Budget(budget), &|_| ());
+        for (run, rows) in [(&along as &dyn Fn(&Scene, u64) -> _, 9), (&driven, 21)] {
+            let measured = run(&scene, 10_000).unwrap();
+            assert_eq!(measured.trace.forces().rows.len(), rows);
+            assert!((measured.trace.end() - 2e-3).abs() < 1e-15, "{:e}", measured.trace.end());
+            let failure = run(&scene, measured.counts.work() - 1).unwrap_err();
+            assert!(matches!(failure, Failure::OverBudget { time } if time > 1e-3), "{failure:?}");
+        }
+        scene.solver.max_steps = 2;
+        let failure = along(&scene, 10_000).unwrap_err();
+        assert!(matches!(&failure, Failure::Stopped(reason) if reason.contains("solver.max_steps")), "{failure:?}");
+    }
+}

@@ -1,0 +1,186 @@
+//! The tables as CSV files: those that a report writes, and that of other programs, which it reads.
+
+use std::path::Path;
+
+use asperity::robustness::Quantity;
+
+use super::convergence::{CommunicationRow, PROGRAM, ToleranceRow};
+use super::reference::Reference;
+use super::robustness::Robustness;
+use super::run::Figures;
+use super::trace::{Errors, QUANTITIES};
+use crate::program::files::FileError;
+use crate::program::result_file::{CsvFile, CsvWriter, ResultFileError};
+use crate::program::terminal::real;
+
+/// Of errors and run times: errors over the largest value, processor time in s. Tables of other programs have these
+/// columns.
+const MEASURED: [&str; 10] = [
+    "scene",
+    "program",
+    "method",
+    "tolerance",
+    "error_F_x",
+    "error_F_z",
+    "error_E_diss",
+    "run_time",
+    "steps",
+    "events",
+];
+
+/// What this program adds to them.
+const ADDED: &str = "rejected,newton_iterations,energy_residual,below_reference,failure";
+
+const COMMUNICATION: &str = "scene,given,communication_step,error_F_x,error_F_z,error_E_diss,mean_square_error_F_x,\
+    mean_square_error_F_z,mean_square_error_E_diss,run_time,steps,events,below_reference,failure";
+
+const ROBUSTNESS: &str = "scene,stiffness,mass,relaxation_times,speed,communication_step,status,reason,error,\
+    moved_start_changes,energy_residual,steps,times_the_steps,rejected,events,newton_iterations";
+
+/// Writes errors and run times, the reference first.
+pub(super) fn write_errors(
+    path: &Path,
+    scene: &str,
+    reference: &Reference,
+    rows: &[ToleranceRow],
+) -> Result<(), FileError> {
+    let own = ToleranceRow::of_reference(reference);
+    let records = std::iter::once(&own).chain(rows).map(|row| {
+        let figures = row.result.as_ref().copied().unwrap_or_default();
+        let mut fields = vec![scene.to_owned(), row.program.clone(), row.method.clone(), real(row.tolerance)];
+        fields.extend(figures.errors.map(optional));
+        fields.push(optional(figures.time));
+        fields.extend([figures.steps, figures.events, figures.rejected, figures.iterations].map(count));
+        fields.extend([optional(figures.residual), below(reference, &figures.errors)]);
+        fields.push(row.result.as_ref().err().cloned().unwrap_or_default());
+        fields
+    });
+    write(path, MEASURED.into_iter().chain(ADDED.split(',')), records)
+}
+
+/// Writes errors and communication steps.
+pub(super) fn write_communication(
+    path: &Path,
+    scene: &str,
+    reference: &Reference,
+    rows: &[CommunicationRow],
+) -> Result<(), FileError> {
+    let records = rows.iter().map(|row| {
+        let (figures, mean_square) = row.result.clone().unwrap_or_default();
+        let mut fields = vec![scene.to_owned(), row.given.name().to_owned(), optional(row.step)];
+        fields.extend(figures.errors.map(optional));
+        fields.extend(mean_square.unwrap_or_default().map(optional));
+        fields.push(optional(figures.time));
+        fields.extend([figures.steps, figures.events].map(count));
+        fields.push(below(reference, &figures.errors));
+        fields.push(row.result.as_ref().err().cloned().unwrap_or_default());
+        fields
+    });
+    write(path, COMMUNICATION.split(','), records)
+}
+
+/// Writes the perturbed runs: the factors of what is scaled, and the outcome.
+pub(super) fn write_robustness(path: &Path, scene: &str, robustness: &Robustness) -> Result<(), FileError> {
+    let records = robustness.trials().map(|(perturbation, trial)| {
+        let mut fields = vec![scene.to_owned()];
+        fields.extend(Quantity::ALL.map(|quantity| optional(perturbation.factor(quantity))));
+        fields.extend([robustness.verdict(trial).name().to_owned(), robustness.reason(trial)]);
+        let (accuracy, counts) = (trial.accuracy(), trial.counts());
+        let error = accuracy.and_then(|accuracy| Some(accuracy.error()?.share));
+        let moved = accuracy.and_then(|accuracy| accuracy.moved());
+        fields.extend([error, moved, counts.map(|counts| counts.residual)].map(optional));
+        fields.push(count(counts.map(|counts| counts.steps)));
+        fields.push(optional(robustness.times_the_steps(trial).map(short)));
+        let rest = counts.map(|counts| [counts.rejected, counts.events, counts.iterations]);
+        fields.extend([0, 1, 2].map(|i| count(rest.map(|rest| rest[i]))));
+        fields
+    });
+    write(path, ROBUSTNESS.split(','), records)
+}
+
+/// As many digits as a ratio of counts is worth.
+fn short(ratio: f64) -> f64 {
+    const DIGITS: f64 = 1e4;
+    (ratio * DIGITS).round() / DIGITS
+}
+
+fn write<'a>(
+    path: &Path,
+    head: impl IntoIterator<Item = &'a str>,
+    mut records: impl Iterator<Item = Vec<String>>,
+) -> Result<(), FileError> {
+    let mut file = CsvWriter::create(path, head)?;
+    records.try_for_each(|record| file.write(record))?;
+    file.finish()
+}
+
+fn optional(value: Option<f64>) -> String {
+    value.map_or_else(String::new, real)
+}
+
+fn count(value: Option<u64>) -> String {
+    value.map_or_else(String::new, |count| count.to_string())
+}
+
+/// The quantities whose errors are below the reference's own.
+fn below(reference: &Reference, errors: &Errors) -> String {
+    let flags = reference.below(errors);
+    let names = QUANTITIES.iter().zip(flags).filter(|(_, below)| *below).map(|(name, _)| *name);
+    names.collect::<Vec<_>>().join(" ")
+}
+
+/// Runs of other programs, measured elsewhere.
+#[derive(Debug, Default)]
+pub(super) struct Peers {
+    /// Of the scene asked for.
+    pub(super) rows: Vec<ToleranceRow>,
+    /// All scenes of the file, each once.
+    pub(super) scenes: Vec<String>,
+}
+
+/// Reads the rows of the scene with one of these `names`, without those of this program. The file has the columns of
+/// [`MEASURED`]; others are ignored.
+pub(super) fn read_peers(path: &Path, names: &[&str]) -> Result<Peers, ResultFileError> {
+    let file = CsvFile::read(path)?;
+    let mut columns = [0; MEASURED.len()];
+    for (column, name) in columns.iter_mut().zip(MEASURED) {
+        *column = file.column(name)?;
+    }
+    let mut peers = Peers::default();
+    for record in file.records() {
+        let fields = columns.map(|column| record.fields[column].as_str());
+        if !peers.scenes.iter().any(|scene| scene == fields[0]) {
+            peers.scenes.push(fields[0].to_owned());
+        }
+        if names.contains(&fields[0]) && fields[1] != PROGRAM {
+            peers.rows.push(row(fields).map_err(|message| file.error(record, message))?);
+        }
+    }
+    Ok(peers)
+}
+
+/// A row without a time is that of a run that did not come to its end.
+fn row(
+    [_, program, method, tolerance, x, z, lost, time, steps, events]: [&str; MEASURED.len()],
+) -> Result<ToleranceRow, String> {
+    let tolerance = number(tolerance)?.ok_or("expected a tolerance, found none")?;
+    let time = number(time)?;
+    let figures = Figures {
+        errors: [number(x)?, number(z)?, number(lost)?],
+        time,
+        steps: number(steps)?.map(|count| count as u64),
+        events: number(events)?.map(|count| count as u64),
+        ..Figures::default()
+    };
+    let result = if time.is_some() { Ok(figures) } else { Err("no run time".into()) };
+    Ok(ToleranceRow { program: program.into(), method: method.into(), tolerance, result })
+}
+
+/// A number; `None` where the field is empty or NaN.
+fn number(text: &str) -> Result<Option<f64>, String> {
+    if text.is_empty() {
+        return Ok(None);
+    }
+    let number: f64 = text.parse().map_err(|_| format!("expected a number, found {text:?}"))?;
+    Ok(Some(number).filter(|number| !number.is_nan()))
+}
