@@ -1,4 +1,4 @@
-//! Numerical tools that know nothing of the model.
+//! Numerical methods, independent of the model.
 
 mod fourier;
 mod monotone;

@@ -1,7 +1,7 @@
 //! Exponential relaxation driven by a polynomial.
 
 /// Weights of the exact solution of da/dθ = ṗ(θ) - z a: a(θ) = `decay` a(0) + Σ_m `driven[m]` p_m for
-/// ṗ = Σ p_m θ^m, m = 0 … 4. Bounded for every z ≥ 0, so it serves a relaxation of any speed.
+/// ṗ = Σ p_m θ^m, m = 0 … 4. Bounded for every z ≥ 0, however fast the relaxation is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Relaxation {
     /// e^{-zθ}.

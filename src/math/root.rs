@@ -26,7 +26,7 @@ pub fn bracketed_root(mut f: impl FnMut(f64) -> f64, (a, b): (f64, f64), toleran
 /// Bisection alone would need some 60 steps from 1 to the last digit; interpolation never more than three times that.
 const MOST_STEPS: usize = 180;
 
-/// Where inverse quadratic interpolation through three points puts the root, as a fraction of the way from a to b;
+/// Where inverse quadratic interpolation through three points puts the root, as a fraction of the interval from a to b;
 /// one half where the interpolation cannot be trusted.
 fn interpolated_fraction((a, fa): (f64, f64), (b, fb): (f64, f64), (c, fc): (f64, f64)) -> f64 {
     let xi = (a - b) / (c - b);

@@ -24,8 +24,8 @@ pub(super) struct Key {
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Allowed {
     Number(Range),
-    /// An array of numbers, and what it is.
-    Numbers(Range, &'static str),
+    /// An array of numbers.
+    Numbers(Range),
     Whole(WholeRange),
     Flag,
     /// A text, and what it is.
@@ -231,8 +231,8 @@ const SELF_AFFINE: &[Key] = &[
 
 const POINTS: &[Key] = &[
     KIND,
-    key("x", Allowed::Numbers(ANY, "an array of places"), "Positions of the data points, m"),
-    key("z", Allowed::Numbers(ANY, "an array of heights"), "Heights of the data points, m"),
+    key("x", Allowed::Numbers(ANY), "Positions of the data points, m"),
+    key("z", Allowed::Numbers(ANY), "Heights of the data points, m"),
     PERIODIC,
 ];
 
@@ -278,7 +278,7 @@ const RATE_SHEAR: &[Key] = &[
         "creep_speed",
         POSITIVE,
         Unit::MeterPerSecond,
-        "Speed below which the rate-dependent shear force is held; follows the reference speed until it is set itself",
+        "Speed below which the rate-dependent shear force is constant; follows the reference speed until it is set itself",
     ),
     number("force", NOT_NEGATIVE, Unit::Newton, "Largest rate-dependent shear force of one mass in contact").direct(),
     number("strength", NOT_NEGATIVE, Unit::Pascal, "Largest rate-dependent shear strength of the contact").material(),
@@ -287,15 +287,15 @@ const RATE_SHEAR: &[Key] = &[
 const SOLVER: &[Key] = &[
     word::<Method>(
         "method",
-        "How mode changes are treated: event locates every one, step puts them at the ends of its steps, auto takes step \
-         where they crowd",
+        "How mode changes are treated: event locates every one, step takes them at the ends of its steps, auto changes \
+         to step where they are many",
     ),
     number("relative_tolerance", POSITIVE.up_to(0.1), Unit::One, "Relative tolerance of the local error"),
     number(
         "absolute_tolerance",
         POSITIVE,
         Unit::Meter,
-        "Absolute tolerance of places; follows the relative one until it is set itself",
+        "Absolute tolerance of positions; follows the relative one until it is set itself",
     ),
     // An Integer of FMI has 32 bits.
     whole("max_steps", 1, i32::MAX as i64, "Steps that one communication step or one phase may take"),
@@ -330,8 +330,8 @@ pub(super) const TABLE_EXTRAPOLATION: Key = key(
     "What happens beyond the table's pressures and speeds: refuse, or hold its ends' friction coefficients and stiffnesses",
 );
 
-/// Stands for a key that is not in the table, which the reader never asks for.
-pub(super) const NONE: Key = key("", Allowed::Text("nothing: there is no such key"), "");
+/// What the reader gets for a key that is not in the table; it accepts no value.
+pub(super) const NONE: Key = key("", Allowed::Text("no such key"), "");
 
 /// The key at the end of a path such as `layer.vertical.maxwell[1].stiffness`.
 pub(super) fn at(path: &str) -> Option<&'static Key> {
@@ -356,7 +356,8 @@ impl fmt::Display for Allowed {
             Self::Number(range) => range.fmt(f),
             Self::Whole(range) => range.fmt(f),
             Self::Flag => f.write_str("true or false"),
-            Self::Numbers(_, expected) | Self::Text(expected) | Self::Tables(_, expected) => f.write_str(expected),
+            Self::Numbers(range) => write!(f, "an array, each {range}"),
+            Self::Text(expected) | Self::Tables(_, expected) => f.write_str(expected),
             Self::Word(words) => f.write_str(&words()),
             Self::Words(words) => write!(f, "an array, each {}", words()),
             Self::Table(_) | Self::Surface => f.write_str("a table"),

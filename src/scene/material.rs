@@ -306,7 +306,7 @@ impl PronyTerm {
     }
 }
 
-/// A header that names the columns the other way round: its numbers would be taken for each other.
+/// A header that names the columns in the other order: the numbers would be mixed up.
 fn swapped_header(text: &str) -> Option<(usize, &str)> {
     let header = filled_lines(text).next()?;
     let names = header.1.to_lowercase();

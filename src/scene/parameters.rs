@@ -267,7 +267,7 @@ impl Scene {
         }
     }
 
-    /// Gives `parameter` a value. [`check`](Self::check) tells afterwards whether the values agree with each other.
+    /// Gives `parameter` a value. Call [`check`](Self::check) once all are set: some values must agree with others.
     ///
     /// # Errors
     /// [`ParameterError`] where the value is of the wrong type or out of range, or where the scene has no such

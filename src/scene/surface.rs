@@ -85,7 +85,7 @@ pub(super) fn remove_tilt(x: &[f64], z: &mut [f64]) {
     z.iter_mut().zip(x).for_each(|(z, x)| *z = (*z - line.z) - line.slope * (x - line.x));
 }
 
-/// Highest minus lowest, m; 0 of nothing.
+/// Highest minus lowest, m; 0 for no heights.
 pub(super) fn peak_to_valley(heights: &[f64]) -> f64 {
     let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);

@@ -96,7 +96,7 @@ pub fn fields(line: &str, separator: char) -> impl Iterator<Item = Cow<'_, str>>
     })
 }
 
-/// The place of the first separator that is not in quotation marks.
+/// The index of the first separator that is not in quotation marks.
 fn field_end(text: &str, separator: char) -> Option<usize> {
     let mut quoted = false;
     for (i, letter) in text.char_indices() {

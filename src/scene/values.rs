@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// The largest size of a number in SI units that a scene, a carrier or a master may give: m, s, N/m, whatever it is.
+/// The largest size of a number in SI units that a scene, a carrier or a master may give: m, s, N/m or any other.
 ///
 /// Beyond all physics, and still so small that no product of the model overflows: c e², m κ ẋ² and the like have a
 /// handful of factors, and 1e30 to the tenth power is a number.

@@ -96,8 +96,18 @@ fn missing_keys() {
                 14,
                 "surface.wavelength: missing; expected a number from 1e-30 to 1e30",
             ),
-            (15, "kind = 'points'\nz = [1, 2]", 14, "surface.x: missing; expected an array of places"),
-            (15, "kind = 'points'\nx = [1, 2]", 14, "surface.z: missing; expected an array of heights"),
+            (
+                15,
+                "kind = 'points'\nz = [1, 2]",
+                14,
+                "surface.x: missing; expected an array, each a number from -1e30 to 1e30",
+            ),
+            (
+                15,
+                "kind = 'points'\nx = [1, 2]",
+                14,
+                "surface.z: missing; expected an array, each a number from -1e30 to 1e30",
+            ),
             (15, "kind = 'file'", 14, &format!("surface.path: missing; expected {PATH}")),
             (
                 18,

@@ -17,7 +17,7 @@ fn points_that_are_no_profile() {
                 15,
                 "kind = 'points'\nx = [0, 1]\nz = [0]",
                 17,
-                "surface.z = [1 numbers]: expected 2 heights, as many as places in x",
+                "surface.z = [1 numbers]: expected 2 heights, as many as numbers in x",
             ),
             (
                 15,
@@ -69,13 +69,13 @@ fn roughness_that_does_not_fit_the_masses() {
                 7,
                 "roughness = { kind = 'points', z = [0, 1] }",
                 7,
-                "layer.roughness.z = [2 numbers]: expected 3 heights, one a mass (layer.masses)",
+                "layer.roughness.z = [2 numbers]: expected 3 heights, one for each mass (layer.masses)",
             ),
             (
                 7,
                 "roughness = { kind = 'points' }",
                 7,
-                "layer.roughness.z: missing; expected 3 heights, one a mass (layer.masses)",
+                "layer.roughness.z: missing; expected 3 heights, one for each mass (layer.masses)",
             ),
             (
                 7,
@@ -178,7 +178,7 @@ fn self_affine_surfaces_that_cannot_be() {
     let cases = [
         ("length", "0", "16: surface.length = 0: expected a number from 1e-30 to 1e30"),
         ("points", "3", "17: surface.points = 3: expected a whole number from 4 to 4000000"),
-        ("points", "1999", "17: surface.points = 1999: expected at least 2000: two points a cut_off_wavelength"),
+        ("points", "1999", "17: surface.points = 1999: expected at least 2000: two points for each cut_off_wavelength"),
         ("hurst", "0", "18: surface.hurst = 0: expected a number from 1e-30 to 1.0"),
         ("hurst", "1.1", "18: surface.hurst = 1.1: expected a number from 1e-30 to 1.0"),
         ("rms", "-1e-6", "19: surface.rms = -1e-6: expected a number from 1e-30 to 1e30"),

@@ -51,7 +51,7 @@ fn is_comment(line: &str) -> bool {
     line.starts_with('#')
 }
 
-/// The line of the first point: below it goes on with numbers, or ends.
+/// The line of the first point: the next line has numbers too, or there is none.
 fn first_point<'a>(lines: impl Iterator<Item = (usize, &'a str)>) -> Option<usize> {
     let mut lines = lines.filter(|(_, line)| !is_comment(line)).peekable();
     while let Some((number, line)) = lines.next() {
@@ -69,8 +69,8 @@ fn first_point<'a>(lines: impl Iterator<Item = (usize, &'a str)>) -> Option<usiz
     None
 }
 
-/// A single line above the data holds names; a word among numbers there is a mistake. Longer headers hold what they
-/// like.
+/// A single line above the data holds names; a word among numbers there is a mistake. Longer headers may hold
+/// anything.
 fn check_header(above: &[(usize, &str)]) -> Result<(), ContentError> {
     let mut lines = above.iter().filter(|(_, line)| !is_comment(line));
     let (Some((number, line)), None) = (lines.next(), lines.next()) else { return Ok(()) };
@@ -118,7 +118,7 @@ fn cut(text: &str) -> String {
     text.chars().take(60).collect()
 }
 
-/// Takes line by line.
+/// Collects the points, line by line.
 struct Reader {
     raw: Raw,
     third_column: Option<ThirdColumn>,
@@ -153,7 +153,7 @@ impl Reader {
         Ok(())
     }
 
-    /// Whether the third column takes the height away.
+    /// Whether the third column marks the height as not valid.
     fn is_invalid(&self, row: &Columns<'_>) -> bool {
         match self.third_column {
             Some(ThirdColumn::Invalid) => row.is_marked(2),

@@ -19,7 +19,7 @@ type Result<T> = std::result::Result<T, SceneError>;
 /// The most letters of a scene's name.
 const LONGEST_NAME: usize = 200;
 
-/// What is found on the way beside the values of the scene.
+/// What reading finds beside the values of the scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Found {
     files: Vec<PathBuf>,
@@ -46,7 +46,8 @@ impl Scene {
         Self::parse(&text, path)
     }
 
-    /// Reads a scene from `text` as if it stood in `file`; the files that it names are looked for beside that.
+    /// Reads a scene from `text` as if it were the content of `file`; the files that it names are looked for in the same
+    /// folder.
     ///
     /// # Errors
     /// As for [`load`](Self::load).

@@ -65,7 +65,7 @@ fn read_self_affine(table: &mut TableReader<'_>) -> Result<Surface> {
     }
     let least = (2.0 * length / cut_off * (1.0 - ROUNDING)).ceil();
     if (count as f64) < least {
-        return Err(points.refuse(format_args!("at least {least}: two points a cut_off_wavelength")));
+        return Err(points.refuse(format_args!("at least {least}: two points for each cut_off_wavelength")));
     }
     let points = usize::try_from(count).unwrap_or(usize::MAX);
     Ok(SelfAffine { length, points, hurst, rms, roll_off, cut_off, seed: seed.unsigned_abs() }.surface())
@@ -76,7 +76,7 @@ fn read_points(table: &mut TableReader<'_>) -> Result<Surface> {
     let (x_entry, z_entry) = (table.required("x")?, table.required("z")?);
     let (x, mut z) = (x_entry.numbers()?, z_entry.numbers()?);
     if z.len() != x.len() {
-        return Err(z_entry.refuse_count(z.len(), &format!("{} heights, as many as places in x", x.len())));
+        return Err(z_entry.refuse_count(z.len(), &format!("{} heights, as many as numbers in x", x.len())));
     }
     check_points(&x, &mut z, periodic).map_err(|error| {
         let entry = if error.coordinate == Coordinate::X { &x_entry } else { &z_entry };
@@ -150,7 +150,7 @@ fn read_heights(table: &mut TableReader<'_>, masses: usize) -> Result<Vec<f64>> 
     if let Some(entry) = table.entry("periodic") {
         return Err(entry.refuse("no such key for heights at the masses, which have no x"));
     }
-    let expected = format!("{masses} heights, one a mass (layer.masses)");
+    let expected = format!("{masses} heights, one for each mass (layer.masses)");
     let entry = table.entry("z").ok_or_else(|| table.missing("z", &expected))?;
     let heights = entry.numbers()?;
     if heights.len() == masses { Ok(heights) } else { Err(entry.refuse_count(heights.len(), &expected)) }

@@ -142,8 +142,8 @@ impl<'a> Entry<'a> {
     }
 
     pub(super) fn numbers(&self) -> Result<Vec<f64>> {
-        let Allowed::Numbers(range, _) = self.key.allowed else { return Err(self.refuse_type()) };
-        let values = self.value.as_array().ok_or_else(|| self.refuse(format_args!("an array, each {range}")))?;
+        let Allowed::Numbers(range) = self.key.allowed else { return Err(self.refuse_type()) };
+        let values = self.value.as_array().ok_or_else(|| self.refuse_type())?;
         let read = |(i, value): (usize, &Spanned<DeValue<'_>>)| {
             number(value.get_ref()).filter(|&number| range.holds(number)).ok_or(i)
         };

@@ -161,7 +161,7 @@ impl Document {
     }
 }
 
-/// The way through a document.
+/// The position in a document that is being read.
 #[derive(Default)]
 struct Walk {
     document: Document,
@@ -236,7 +236,7 @@ impl Grid {
                         None,
                         "MatrixDimension.SizeZ",
                         &layers.to_string(),
-                        "1: one height a place",
+                        "1: one height for each point",
                     ));
                 }
                 Self { columns: size("MatrixDimension.SizeX")?, rows: size("MatrixDimension.SizeY")? }

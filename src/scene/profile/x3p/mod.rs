@@ -137,8 +137,8 @@ impl Axes {
         };
         let [x, _, z] = self.0;
         let height = z.coordinate(number(point.rsplit(';').next())?);
-        let place = if x.values.is_some() { number(point.split(';').next())? } else { i as f64 };
-        Ok((x.coordinate(place), height))
+        let x_value = if x.values.is_some() { number(point.split(';').next())? } else { i as f64 };
+        Ok((x.coordinate(x_value), height))
     }
 
     /// Collects a line; x must be a number, a height that is none or out of range is missing.
@@ -146,17 +146,17 @@ impl Axes {
         &self,
         points: impl Iterator<Item = Result<(f64, f64), ContentError>>,
     ) -> Result<[Vec<f64>; 2], ContentError> {
-        let (mut places, mut heights) = (Vec::new(), Vec::new());
+        let (mut positions, mut heights) = (Vec::new(), Vec::new());
         for point in points {
             let (x, z) = point?;
             if !ANY.holds(x) {
-                let key = format!("x[{}]", places.len() + 1);
+                let key = format!("x[{}]", positions.len() + 1);
                 return Err(ContentError::value(None, &key, &format!("{x:?}"), &ANY.to_string()));
             }
-            places.push(x);
+            positions.push(x);
             heights.push(if ANY.holds(z) { z } else { f64::NAN });
         }
-        Ok([places, heights])
+        Ok([positions, heights])
     }
 }
 
@@ -243,8 +243,8 @@ impl File {
                 break;
             }
             digest.update(&chunk[..count]);
-            let within = |place: usize| place.clamp(start, end) - start;
-            data.extend_from_slice(&chunk[within(kept.start)..within(kept.end)]);
+            let inside = |offset: usize| offset.clamp(start, end) - start;
+            data.extend_from_slice(&chunk[inside(kept.start)..inside(kept.end)]);
             start = end;
         }
         self.check_sum(document, &digest.finalize())?;
