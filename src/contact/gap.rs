@@ -111,12 +111,12 @@ impl Search<'_> {
     }
 
     fn gap(&self, part: &Part, theta: f64) -> f64 {
-        part.height.evaluate(theta).place - self.profile.evaluate(part.position.evaluate(theta).place).0
+        part.height.evaluate(theta).position - self.profile.evaluate(part.position.evaluate(theta).position).0
     }
 
     fn gap_rate(&self, part: &Part, theta: f64) -> f64 {
         let position = part.position.evaluate(theta);
-        part.height.evaluate(theta).speed - self.profile.evaluate(position.place).1 * position.speed
+        part.height.evaluate(theta).speed - self.profile.evaluate(position.position).1 * position.speed
     }
 }
 
@@ -138,13 +138,13 @@ mod tests {
     use crate::math::Jet;
 
     fn straight(from: f64, to: f64) -> Quintic {
-        let at = |place| Jet { place, speed: to - from, acceleration: 0.0 };
+        let at = |position| Jet { position, speed: to - from, acceleration: 0.0 };
         Quintic::hermite(at(from), at(to), 1.0)
     }
 
     /// A fall and rise: height h0 at both ends, `depth` lower in the middle.
     fn dip(top: f64, depth: f64) -> Quintic {
-        let end = |place, speed| Jet { place, speed, acceleration: 8.0 * depth };
+        let end = |position, speed| Jet { position, speed, acceleration: 8.0 * depth };
         Quintic::hermite(end(top, -4.0 * depth), end(top, 4.0 * depth), 1.0)
     }
 
@@ -206,7 +206,7 @@ mod tests {
         let flat = Spline::natural(&[0.0, 1.0], &[0.0, 0.0]);
         // A lift: the gap opens with the third power of time.
         let still = Jet::default();
-        let lifted = Jet { place: 1e-9, speed: 3e-9, acceleration: 6e-9 };
+        let lifted = Jet { position: 1e-9, speed: 3e-9, acceleration: 6e-9 };
         assert_eq!(first_touch(&flat, || straight(0.0, 0.1), Quintic::hermite(still, lifted, 1.0), 1e-13), None);
     }
 }

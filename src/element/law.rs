@@ -38,8 +38,7 @@ impl Series {
 
     /// The value at `at`, between two of `x`, and how it changes there.
     fn at(&self, x: &[f64], i: usize, at: f64) -> Expansion {
-        let point = |i: usize| (x[i], self.values[i], self.slopes[i]);
-        cubic(point(i), point(i + 1), at)
+        cubic(x, &self.values, &self.slopes, i, at)
     }
 }
 
@@ -244,8 +243,7 @@ impl Curve {
 
     fn inside(&self, approach: f64) -> Contact {
         let i = interval_of(&self.approaches, approach);
-        let point = |i: usize| (self.approaches[i], self.pressures[i], self.slopes[i]);
-        let y = cubic(point(i), point(i + 1), approach);
+        let y = cubic(&self.approaches, &self.pressures, &self.slopes, i, approach);
         let friction = self.along_pressure(Quantity::Friction, i, y.value).of(y);
         let normal = y.exp().times(Expansion::constant(self.nominal_area));
         Contact {

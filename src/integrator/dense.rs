@@ -38,7 +38,7 @@ impl DenseOutput<'_> {
     /// The place of mass `i` on the profile through the step, m.
     pub fn place(&self, i: usize) -> Quintic {
         let at = |(state, rates): (&State, &Rates), carrier: &CarrierPoint| Jet {
-            place: self.model.rest_x[i] + (self.carrier.profile_position + (carrier.du + state.elongation_x[i])),
+            position: self.model.rest_x[i] + (self.carrier.profile_position + (carrier.du + state.elongation_x[i])),
             speed: rates.velocity_x[i],
             acceleration: rates.acceleration_x[i],
         };
@@ -48,7 +48,7 @@ impl DenseOutput<'_> {
     /// The height of mass `i` above the profile's datum through the step, m.
     pub fn height(&self, i: usize) -> Quintic {
         let at = |(state, rates): (&State, &Rates), carrier: &CarrierPoint| Jet {
-            place: self.model.rest_z[i] + (self.carrier.w + (carrier.dw + state.elongation_z[i])),
+            position: self.model.rest_z[i] + (self.carrier.w + (carrier.dw + state.elongation_z[i])),
             speed: rates.velocity_z[i],
             acceleration: rates.acceleration_z[i],
         };
@@ -129,16 +129,17 @@ impl DenseOutput<'_> {
         if self.start.0.mode[i] == Mode::Free {
             let z = motion[1].evaluate(theta);
             return MassPoint {
-                elongation: (x.place, z.place),
+                elongation: (x.position, z.position),
                 velocity: (v_x, z.speed / self.h + carrier.w_rate),
                 bend: (x.acceleration, z.acceleration),
                 surface,
             };
         }
         let place = if self.start.0.mode[i].slips() {
-            surface =
-                self.model.surface_at(self.model.rest_x[i] + (self.carrier.profile_position + (carrier.du + x.place)));
-            x.place
+            surface = self
+                .model
+                .surface_at(self.model.rest_x[i] + (self.carrier.profile_position + (carrier.du + x.position)));
+            x.position
         } else {
             // What the polynomial misses of the carrier's swing would move a mass that stands still.
             self.start.0.elongation_x[i] - self.carrier.moved(self.s, theta * self.h).0
@@ -212,12 +213,12 @@ impl DenseOutput<'_> {
     fn elongation(&self, axis: Axis, i: usize) -> Quintic {
         let at = |(state, rates): (&State, &Rates), carrier: &CarrierPoint| match axis {
             Axis::X => Jet {
-                place: state.elongation_x[i],
+                position: state.elongation_x[i],
                 speed: rates.velocity_x[i] - carrier.u_rate,
                 acceleration: rates.acceleration_x[i] - carrier.u_acceleration,
             },
             Axis::Z => Jet {
-                place: state.elongation_z[i],
+                position: state.elongation_z[i],
                 speed: rates.velocity_z[i] - carrier.w_rate,
                 acceleration: rates.acceleration_z[i] - carrier.w_acceleration,
             },

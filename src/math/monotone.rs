@@ -93,8 +93,10 @@ pub fn interval_of(x: &[f64], at: f64) -> usize {
     x.partition_point(|&x| x <= at).clamp(1, x.len().max(2) - 1) - 1
 }
 
-/// The cubic between two points (x, y, slope), at `at`.
-pub fn cubic((x0, y0, d0): (f64, f64, f64), (x1, y1, d1): (f64, f64, f64), at: f64) -> Expansion {
+/// The cubic in interval `i` of the points (`x`, `y`) with these `slopes`, at `at`.
+pub fn cubic(x: &[f64], y: &[f64], slopes: &[f64], i: usize, at: f64) -> Expansion {
+    let (x0, y0, d0) = (x[i], y[i], slopes[i]);
+    let (x1, y1, d1) = (x[i + 1], y[i + 1], slopes[i + 1]);
     let h = x1 - x0;
     let secant = (y1 - y0) / h;
     let (quadratic, cubic) = ((3.0 * secant - 2.0 * d0 - d1) / h, (d0 + d1 - 2.0 * secant) / (h * h));
@@ -121,7 +123,7 @@ mod tests {
         let mut slopes = vec![0.0; x.len()];
         monotone_slopes(x, y, &mut slopes);
         let i = interval_of(x, at);
-        cubic((x[i], y[i], slopes[i]), (x[i + 1], y[i + 1], slopes[i + 1]), at)
+        cubic(x, y, &slopes, i, at)
     }
 
     #[test]

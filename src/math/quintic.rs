@@ -6,11 +6,11 @@ pub struct Quintic {
     coefficients: [f64; 6],
 }
 
-/// Place, speed and acceleration at one instant.
+/// Position, speed and acceleration at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Jet {
-    /// Place.
-    pub place: f64,
+    /// Position.
+    pub position: f64,
     /// Its first derivative.
     pub speed: f64,
     /// Its second derivative.
@@ -18,11 +18,11 @@ pub struct Jet {
 }
 
 impl Quintic {
-    /// The Hermite interpolant over a step of length `h`: error O(h⁶) of the place.
+    /// The Hermite interpolant over a step of length `h`: error O(h⁶) of the position.
     pub fn hermite(start: Jet, end: Jet, h: f64) -> Self {
         let (v0, v1) = (h / 5.0 * start.speed, h / 5.0 * end.speed);
         let (a0, a1) = (h * h / 20.0 * start.acceleration, h * h / 20.0 * end.acceleration);
-        let (p0, p1) = (start.place, end.place);
+        let (p0, p1) = (start.position, end.position);
         Self { coefficients: [p0, p0 + v0, p0 + 2.0 * v0 + a0, p1 - 2.0 * v1 + a1, p1 - v1, p1] }
     }
 
@@ -31,7 +31,7 @@ impl Quintic {
         Self { coefficients: std::array::from_fn(|i| sign * (self.coefficients[i] - other.coefficients[i])) }
     }
 
-    /// Place, and its derivatives with respect to the fraction, at the fraction `theta` of the step.
+    /// Position, and its derivatives with respect to the fraction, at the fraction `theta` of the step.
     pub fn evaluate(&self, theta: f64) -> Jet {
         let mut b = self.coefficients;
         let complement = 1.0 - theta;
@@ -42,13 +42,13 @@ impl Quintic {
         }
         let (d0, d1) = (b[1] - b[0], b[2] - b[1]);
         Jet {
-            place: complement * (complement * b[0] + theta * b[1]) + theta * (complement * b[1] + theta * b[2]),
+            position: complement * (complement * b[0] + theta * b[1]) + theta * (complement * b[1] + theta * b[2]),
             speed: 5.0 * (complement * d0 + theta * d1),
             acceleration: 20.0 * (d1 - d0),
         }
     }
 
-    /// The places at the start and at the end.
+    /// The positions at the start and at the end.
     pub fn ends(&self) -> (f64, f64) {
         (self.coefficients[0], self.coefficients[5])
     }
@@ -110,7 +110,7 @@ mod tests {
     use super::*;
 
     fn jet(f: impl Fn(f64) -> f64, f1: impl Fn(f64) -> f64, f2: impl Fn(f64) -> f64, t: f64) -> Jet {
-        Jet { place: f(t), speed: f1(t), acceleration: f2(t) }
+        Jet { position: f(t), speed: f1(t), acceleration: f2(t) }
     }
 
     fn sine(h: f64) -> Quintic {
@@ -126,14 +126,14 @@ mod tests {
         let exact = at(t0 + 0.3 * h);
         let found = q.evaluate(0.3);
         // Exact but for roundings of numbers of size 1 to 20.
-        assert!((found.place - exact.place).abs() < 1e-14);
+        assert!((found.position - exact.position).abs() < 1e-14);
         assert!((found.speed / h - exact.speed).abs() < 1e-13);
         assert!((found.acceleration / (h * h) - exact.acceleration).abs() < 1e-12);
     }
 
     #[test]
     fn converges_with_order_six() {
-        let error = |h: f64| (sine(h).evaluate(0.5).place - (0.3 + 0.5 * h).sin()).abs();
+        let error = |h: f64| (sine(h).evaluate(0.5).position - (0.3 + 0.5 * h).sin()).abs();
         let order = (error(0.4) / error(0.2)).log2();
         assert!((5.7..6.3).contains(&order), "{order}");
     }
@@ -143,8 +143,8 @@ mod tests {
         let q = sine(1.3);
         let (left, right) = q.halves();
         for theta in [0.0, 0.2, 0.9, 1.0] {
-            assert!((left.evaluate(theta).place - q.evaluate(theta / 2.0).place).abs() < 1e-15);
-            assert!((right.evaluate(theta).place - q.evaluate(0.5 + theta / 2.0).place).abs() < 1e-15);
+            assert!((left.evaluate(theta).position - q.evaluate(theta / 2.0).position).abs() < 1e-15);
+            assert!((right.evaluate(theta).position - q.evaluate(0.5 + theta / 2.0).position).abs() < 1e-15);
         }
     }
 
@@ -157,7 +157,7 @@ mod tests {
         for i in 0..=50 {
             let theta = f64::from(i) / 50.0;
             let p = q.evaluate(theta);
-            assert!(low <= p.place && p.place <= high);
+            assert!(low <= p.position && p.position <= high);
             assert!(p.speed.abs() <= first && p.acceleration.abs() <= second);
             let speed = m.iter().rev().fold(0.0, |sum, c| sum * theta + c);
             assert!((speed - p.speed).abs() < 1e-12, "{speed} {}", p.speed);
