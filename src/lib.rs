@@ -4,18 +4,23 @@
 //! The model is that of F. Schulte, J. Neuhaus and W. Sextro, *A mechanical model for the dynamical contact of elastic
 //! rough bodies with viscoelastic properties*; equation numbers, as in (7), are that paper's.
 //!
-//! # One way through
+//! # Modules
 //!
-//! ```text
-//! scene ──► model ──► integrator ──► contact ──► outputs ──► simulation ──► fmi (the C interface) and the program
-//! TOML      links,    one implicit   modes and   forces,     step, event,
-//! checked   forces    stage kernel   events      energy      new modes
-//! ```
+//! Each module uses only those before it in this table.
 //!
-//! An [`element`] stands beside the simulation: it looks the forces of a layer up in a table that was swept of it.
-//! `robustness` perturbs scenes and judges their runs, for the program's report and the tests.
-//!
-//! Each module looks only to its left; [`math`] looks nowhere.
+//! | module | contents |
+//! |---|---|
+//! | [`math`] | splines, tridiagonal systems, roots, Fourier sums and other numerical methods |
+//! | [`scene`] | a scene as data: reading TOML, profiles and materials; parameters; checks and warnings |
+//! | [`model`] | the mechanical model: links and their forces, contact laws, state, energies, stiffness scales, reduction |
+//! | [`integrator`] | implicit Runge-Kutta steps with fixed contact modes: stages, dense output, error, sensitivities |
+//! | [`contact`] | the rules of mode changes and the impact, event location, the end-of-step correction |
+//! | [`outputs`] | the table of the outputs: names, units, values, derivatives, dependencies |
+//! | [`simulation`] | a run: its state, the event-driven and the time-stepping driver, error-estimation run |
+//! | [`element`] | a point-contact element: the forces of a layer, looked up in a table of a sweep |
+//! | [`fmi`] | the FMI 2.0 co-simulation interface |
+//! | `robustness` | catalogue of perturbations of a scene and the judge of their runs, for reports and tests |
+//! | program | the command line program: simulate, sweep, fit, pack, report, plot |
 //!
 //! ```
 //! use asperity::outputs::variables;
@@ -56,12 +61,13 @@
 //! |---|---|---|---|
 //! | u, w | `Carrier::u`, `w` | m | displacement of the carrier along x and z; w < 0 presses |
 //! | k, Δx | `Layer::masses`, `spacing` | 1, m | number and distance of the masses |
-//! | X_i, Z_i | `Model::rest_x`, `rest_z` | m | places of the masses at rest |
+//! | X_i, Z_i | `Model::rest_x`, `rest_z` | m | positions of the masses at rest |
 //! | m | `Model::mass` | kg | one point mass |
 //! | ξ_i - u, ζ_i - w | `State::elongation_x`, `elongation_z` | m | elongation of the links to the carrier |
 //! | ẋ_i, ż_i | `State::velocity_x`, `velocity_z` | m/s | velocity of mass i |
 //! | c, d | `LinkLaw::stiffness`, `damping` | N/m, N s/m | spring and damper of a link |
 //! | c_j, τ_j | `MaxwellRow::stiffness`, `relaxation_time` | N/m, s | Maxwell element, d_j = c_j τ_j |
+//! | K', K'' | `Link::complex_stiffness()` | N/m | storage and loss stiffness of a link |
 //! | a_j = e - y_j | `State::maxwell` | m | elongation of a Maxwell element's spring; rows 21, 22 of (13)-(15) |
 //! | E_∞, E_j, η | `Material::equilibrium_modulus`, `prony`, `viscosity` | Pa, Pa, Pa s | material form |
 //! | ν, ρ | `Material::poisson_ratio`, `density` | 1, kg/m³ | material form |
@@ -77,12 +83,16 @@
 //! | T(v_t) | `ContactForces::friction()` | N | friction force in slip, μ F_N + A τ_0 + A τ_f(v_t) |
 //! | T(0) | `ContactForces::limit` | N | largest friction force at rest, μ F_N + A τ_0 + A τ_f(v_c) |
 //! | μ, A τ_0 + A τ_f(v_c) | `Model::friction_coefficient`, `shear_force` | 1, N | friction law at rest |
-//! | A τ_f(v) - A τ_f(v_c) | `RateShear::beyond()` | N | shear strength of rubber, what of it depends on the speed |
+//! | A τ_f(v_c) | `RateShear::plateau()` | N | shear strength of rubber up to the creep speed v_c |
+//! | A τ_f(v) - A τ_f(v_c) | `RateShear::excess()` | N | excess of the shear strength in slip over its plateau |
 //! | σ | `Mode::direction()` | 1 | direction of slip along t |
 //! | h, γ, β | `h`, `Tableau::gamma()`, `beta` | s, 1, s | step, coefficient of a stage, γh |
 //! | G, K | `Jenkins::force`, `stiffness` | N, N/m | spring of a point-contact element, G = -F_x |
 //! | a, y | `Contact` over the approach | m, 1 | minus the separation of an element's carrier; ln of its pressure |
-//! | E_in, T, V | `ChannelEnergies::input`, `kinetic_energy`, `elastic_energy` | J | energy balance |
+//! | P_damper, P_maxwell, P_friction, P_in | `Powers::damper`, … | W | powers of the channels and of the carrier |
+//! | E_damper, E_maxwell, E_friction, E_in | `ChannelEnergies::damper`, … | J | their integrals over time |
+//! | E_impact | `Energies::impact` | J | energy lost in impacts |
+//! | T, V | `kinetic_energy()`, `elastic_energy()` | J | energy balance E_in = Δ(T + V) + E_damper + E_maxwell + E_friction + E_impact |
 
 pub mod contact;
 pub mod element;
