@@ -5,6 +5,11 @@ use crate::math::{Bounds, Quintic, Spline};
 /// A part over which the gap bends by less than this share of the tolerance is decided by its ends: a deeper dip between
 /// them does not matter. So the search ends even where a mass moves along the limit.
 const NEGLIGIBLE_BEND: f64 = 0.01;
+/// Parts of a step after which a part is also decided by its ends where the gap bends by no more than rounding. Metres
+/// away from the origin, the rounding of a position exceeds the tolerance.
+const FEW_PARTS: u32 = 200;
+/// Rounding errors of a position that a bound on its second derivative may contain: 20 times a second difference.
+const ROUNDINGS: f64 = 64.0;
 /// Halvings of a step after which a part is decided by its ends: a step over 2⁴⁰ is below the resolution of time.
 const MOST_HALVINGS: u32 = 40;
 
@@ -78,7 +83,8 @@ impl Search<'_> {
             return None;
         }
         let monotone = self.gap_rate(part, 0.5).abs() > 0.5 * bend;
-        if monotone || bend <= NEGLIGIBLE_BEND * self.tolerance || halvings == MOST_HALVINGS {
+        let negligible = (NEGLIGIBLE_BEND * self.tolerance).max(self.rounding(part, &profile));
+        if monotone || bend <= negligible || halvings == MOST_HALVINGS {
             let crosses = start >= -self.tolerance && end < -self.tolerance;
             return crosses.then(|| self.locate(part));
         }
@@ -96,6 +102,15 @@ impl Search<'_> {
         let gap = |(x, z): (f64, f64)| z - self.profile.evaluate(x).0;
         let (x, z) = (part.position.ends(), part.height.ends());
         Ends { start: gap((x.0, z.0)), end: gap((x.1, z.1)), bend }
+    }
+
+    /// The part of the bend that rounding of the position can make, m; 0 as long as the search is short.
+    fn rounding(&self, part: &Part, profile: &Bounds) -> f64 {
+        if self.parts <= FEW_PARTS {
+            return 0.0;
+        }
+        let (x_low, x_high) = part.position.range();
+        ROUNDINGS * f64::EPSILON * x_low.abs().max(x_high.abs()) * profile.slope_max_abs
     }
 
     fn stays_above(&self, start: f64, end: f64, bend: f64) -> bool {
@@ -199,6 +214,23 @@ mod tests {
         assert!((2e-7..3e-7).contains(&theta), "{theta}");
         let known = over(f64::MAX).unwrap();
         assert!(known < 1e-6, "{known}");
+    }
+
+    /// Metres away from the origin, where the rounding of a position exceeds the tolerance, the search still ends.
+    #[test]
+    fn a_mass_may_glide_far_away() {
+        let wave = Spline::periodic(&[0.0, 1e-4, 2e-4], &[0.0, 1e-6, 0.0]);
+        let at = |x: f64, dx: f64| Jet { position: x, speed: dx, acceleration: 0.0 };
+        for i in 0..100 {
+            let (x, dx) = (50.0 + 1.7e-6 * f64::from(i), 1e-8);
+            let (z, slope, ..) = wave.evaluate(x);
+            let (end, end_slope, ..) = wave.evaluate(x + dx);
+            let position = Quintic::hermite(at(x, dx), at(x + dx, dx), 1.0);
+            let height = Quintic::hermite(at(z - 1e-14, slope * dx), at(end - 1e-14, end_slope * dx), 1.0);
+            let mut search = Search { profile: &wave, tolerance: 3e-16, parts: 0 };
+            search.first_touch(&Part { position, height, start: 0.0, length: 1.0 }, 0);
+            assert!(search.parts < 2 * FEW_PARTS, "{} parts at {x}", search.parts);
+        }
     }
 
     #[test]

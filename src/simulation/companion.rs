@@ -21,8 +21,11 @@ const SHOWN: f64 = 1.0 - FINER;
 /// The finer run's steps are at most this share of the run's. Where steps only grow, both would take the same, and the
 /// same error.
 const SHORTER: f64 = 0.7;
-/// The finer run's work in one motion may be so many times that of the run.
+/// Limit of the finer run's work in one motion, as a multiple of the run's, in addition to [`LEAST_WORK`]. Beyond it the
+/// error is not estimated: the two runs differ in kind then, as where one mass slips along what it flies over in the other.
 const MORE_WORK: u64 = 4;
+/// Number of steps that the finer run may try in any motion, however few the run itself takes.
+const LEAST_WORK: u64 = 10_000;
 
 /// A finer run that follows another one: never behind it when it is asked for F_z.
 #[derive(Clone, Debug)]
@@ -32,6 +35,8 @@ pub(super) struct Companion {
     duration: f64,
     /// Steps tried in it.
     work: u64,
+    /// Steps that the run beside it has tried in it.
+    run_work: u64,
     /// The step tried last, of which only a part may have been asked for.
     stride: Option<Stride>,
     /// Whether it could not go on in this motion.
@@ -40,7 +45,7 @@ pub(super) struct Companion {
 
 impl Companion {
     pub(super) fn new(finer: Simulation) -> Self {
-        Self { finer: Box::new(finer), duration: 0.0, work: 0, stride: None, lost: false }
+        Self { finer: Box::new(finer), duration: 0.0, work: 0, run_work: 0, stride: None, lost: false }
     }
 
     pub(super) fn finer(&self) -> &Simulation {
@@ -62,12 +67,13 @@ impl Companion {
 
     /// Begins `motion`.
     pub(super) fn enter(&mut self, motion: &Motion) {
-        (self.duration, self.work, self.lost) = (motion.duration, 0, false);
+        (self.duration, self.work, self.run_work, self.lost) = (motion.duration, 0, 0, false);
         self.finer.enter(motion);
     }
 
-    /// The run goes on by a step of length `h` (s).
-    pub(super) fn note_step(&mut self, h: f64) {
+    /// The run takes a step of length `h` (s); it has tried `work` steps in this motion.
+    pub(super) fn note_step(&mut self, h: f64, work: u64) {
+        self.run_work = work;
         let run = &mut self.finer.run;
         run.step_size = run.step_size.min(SHORTER * h);
     }
@@ -86,6 +92,9 @@ impl Companion {
     /// F_z at the time `s`; the finer run stands there if it `ends` there, or within a step that goes beyond it.
     fn go_to(&mut self, s: f64, ends: bool) -> Result<f64, SimulationError> {
         while self.finer.run.s < s {
+            if self.work > LEAST_WORK + MORE_WORK.saturating_mul(self.run_work) {
+                return Err(SimulationError::TooManySteps { time: self.finer.time(), steps: self.work });
+            }
             let stride = match self.stride.take() {
                 Some(stride) => stride,
                 None => self.finer.next_step(self.duration, &mut self.work)?,

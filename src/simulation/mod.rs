@@ -23,6 +23,7 @@ use companion::Companion;
 pub use handover::Handover;
 use run::{Checkpoint, Run};
 pub use saved::{RestoreError, Saved};
+use stepping::Crawl;
 
 /// The carrier at the start of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -119,6 +120,8 @@ pub struct Simulation {
     dense_workspace: DenseWorkspace,
     /// Mode changes at the end of a time step.
     step_end: EndCorrection,
+    /// Steps of the motion under way that make no progress.
+    crawl: Crawl,
     mode_changes: Option<Vec<ModeChange>>,
     handovers: Option<Vec<Handover>>,
     /// A finer run beside this one, where its error is asked for.
@@ -184,6 +187,7 @@ impl Simulation {
         let forces = Forces::new(&model);
         let dense_workspace = DenseWorkspace::new(&model);
         let step_end = EndCorrection::new(&model);
+        let crawl = Crawl::new(&model);
         let mut simulation = Self {
             model,
             settings,
@@ -199,6 +203,7 @@ impl Simulation {
             within_at: None,
             dense_workspace,
             step_end,
+            crawl,
             mode_changes: None,
             handovers: None,
             companion: None,

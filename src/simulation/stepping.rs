@@ -7,7 +7,7 @@ use crate::contact::{
     decide_modes, first_event, free_unloaded, impacts_due, is_due, longest_unstable, place_layer, stop_reversed,
 };
 use crate::integrator::{Attempt, METHOD};
-use crate::model::{Carrier, CarrierPoint, elastic_energy, kinetic_energy};
+use crate::model::{Carrier, CarrierPoint, Model, elastic_energy, kinetic_energy};
 
 /// A new step is this share of what the error estimate allows, so that few are rejected.
 const SAFETY: f64 = 0.9;
@@ -34,6 +34,58 @@ pub(super) const AFTER_FAILURE: f64 = 0.25;
 
 /// The least share of the length asked for at which a shorter step is given up.
 const SHORTEST_CUT: f64 = 1e-12;
+
+/// Cuts of one step at events after which each further cut leaves at most half of it. By rounding, an event can be found
+/// at the very end of the shortened step again and again.
+const MOST_CUTS: u32 = 50;
+
+/// Steps that make no progress because rounding makes events.
+///
+/// Where a mass is so fast that the rounding of its velocity, divided by the length of a short step, is an inertia force
+/// larger than the tolerance of events, an event is found at the start of each such step but is not due at its end. The
+/// run would cut every step to the resolution of time. After some of these steps in a row, the shortest length that a
+/// step is cut to therefore doubles with each, until a mode changes or no event is found.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Crawl {
+    /// Steps cut to this length, s, or less are suspected.
+    length: f64,
+    /// Number of steps cut so short after which no mode changed, less the number of other steps since.
+    steps: u32,
+    /// Number of mode changes before the last step, if it was cut so short.
+    events_before: Option<u64>,
+}
+
+/// Length of a step below which a cut is suspected of a [`Crawl`], divided by the stiffest period over 2π.
+const CRAWLING: f64 = 1e-9;
+/// Number of such steps after which the shortest cut doubles. Simultaneous events of many masses also take many of them,
+/// but modes change at those.
+const MOST_CRAWLING: u32 = 100;
+
+impl Crawl {
+    pub(super) fn new(model: &Model) -> Self {
+        Self { length: CRAWLING / model.stiffest_frequency(), ..Self::default() }
+    }
+
+    fn reset(&mut self) {
+        (self.steps, self.events_before) = (0, None);
+    }
+
+    /// The shortest length, s, that the next step may be cut to; `shortest` (s) is the resolution of time, `events` the
+    /// number of mode changes so far.
+    fn shortest_cut(&mut self, shortest: f64, events: u64) -> f64 {
+        if self.events_before.take() == Some(events) {
+            self.steps += 1;
+        } else {
+            self.steps = self.steps.saturating_sub(1);
+        }
+        shortest * f64::from(self.steps.saturating_sub(MOST_CRAWLING)).exp2()
+    }
+
+    /// Records a step that is about to be taken; `events` is the number of mode changes before it.
+    fn note_step(&mut self, cut_short: bool, events: u64) {
+        self.events_before = cut_short.then_some(events);
+    }
+}
 
 /// A step that was tried with the length `h` (s) and is taken up to its fraction `share`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,7 +143,7 @@ impl Simulation {
                 risen = stride.h == h;
             }
             if let Some(companion) = &mut self.companion {
-                companion.note_step(stride.h);
+                companion.note_step(stride.h, work);
             }
             let mut end = self.end_of(&stride, motion.duration);
             while let Some(time) = rows.peek().copied().filter(|&time| time < end) {
@@ -185,6 +237,7 @@ impl Simulation {
         let before = rates(&run.carrier, run.s);
         run.carrier = Carrier::new(run.time(), run.displacement(), (motion.u, motion.w), &self.model.profile);
         run.s = 0.0;
+        self.crawl.reset();
         self.integrator.begin_tangents(motion.duration);
         if !run.rates_hold || rates(&run.carrier, 0.0) != before {
             self.change_modes(0.0);
@@ -251,7 +304,9 @@ impl Simulation {
             return Err(SimulationError::StepTooSmall { time: self.run.time(), step: longest });
         }
         let limit = longest.min(OF_SPACING * self.run.event_spacing);
+        let shortest_cut = self.crawl.shortest_cut(shortest, self.run.counters.events);
         let mut h = fitted(self.run.step_size.min(limit), remaining);
+        let mut cuts = 0;
         // The step that an event cuts short says how long the next may be; the shorter ones need no test of their
         // error.
         let mut proposal = None;
@@ -268,12 +323,14 @@ impl Simulation {
                 self.proposal(h, remaining.min(limit), attempt.error).min(self.longest_unstable())
             });
             let event = self.first_event(h);
-            let share = event.filter(|_| h > shortest).map_or(1.0, |theta| theta.max(shortest / h));
+            let share = event.filter(|_| h > shortest_cut).map_or(1.0, |theta| theta.max(shortest_cut / h));
             if share >= 1.0 || (share >= LEAST_SHARE && self.is_good_within(h, share)) {
                 self.run.step_size = proposed;
+                self.crawl.note_step(cuts > 0 && share * h <= self.crawl.length, self.run.counters.events);
                 return Ok(Stride { h, share });
             }
-            h *= share;
+            cuts += 1;
+            h *= if cuts > MOST_CUTS { share.min(0.5) } else { share };
         }
     }
 

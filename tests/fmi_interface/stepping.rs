@@ -2,7 +2,7 @@
 
 use asperity::fmi::bindings::fmi2StatusKind_fmi2LastSuccessfulTime;
 
-use asperity::outputs::variables;
+use asperity::outputs::{Output, variables};
 use asperity::scene::{Path, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
 
@@ -206,6 +206,42 @@ fn every_method_is_that_of_the_library() {
             let bits = fmu.bits();
             fmu.thaw(&fmu.frozen());
             assert_eq!(fmu.bits(), bits);
+        }
+    }
+}
+
+/// A pseudorandom number from 0 to 1 (Marsaglia, Xorshift RNGs, 2003).
+fn random(state: &mut u64) -> f64 {
+    *state ^= *state << 13;
+    *state ^= *state >> 7;
+    *state ^= *state << 17;
+    (*state >> 11) as f64 / (1u64 << 53) as f64
+}
+
+/// Inputs that jump at up to 3e6 m/s leave masses so fast that the rounding of their velocities and positions exceeds the
+/// tolerances of events. The number of steps tried in one communication step is limited all the same.
+#[test]
+fn inputs_that_jump_wildly_cost_limited_work() {
+    let mut scene = Scene::load(std::path::Path::new("tests/reference/rough-coulomb.toml")).unwrap();
+    scene.solver.relative_tolerance = 1e-9;
+    let wanted = [Output::Steps, Output::Rejected];
+    let counts: Vec<_> = variables(&scene).into_iter().filter(|one| wanted.contains(&one.output)).collect();
+    for seed in [5_u64, 15, 21, 39, 82] {
+        let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
+        let mut simulation = Simulation::new(&scene, &Start::default()).unwrap();
+        let mut before = 0.0;
+        for _ in 0..50 {
+            let duration = 1e-8 * 3e3_f64.powf(random(&mut state));
+            let fastest = 3e6 * 1e-6_f64.powf(random(&mut state));
+            let mut path =
+                |share: f64| Path { rate: fastest * share * (2.0 * random(&mut state) - 1.0), ..Path::default() };
+            let motion = Motion { duration, u: path(1.0), w: path(1e-4) };
+            simulation.advance(&motion).unwrap();
+            let mut values = [0.0; 2];
+            simulation.evaluate(&counts, &mut values);
+            let tried = values[0] + values[1];
+            assert!(tried - before < 2_000.0, "{} steps tried in {motion:?} of seed {seed}", tried - before);
+            before = tried;
         }
     }
 }
