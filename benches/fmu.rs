@@ -79,12 +79,12 @@ fn save_and_restore(criterion: &mut Criterion) {
         let scene: Scene = parse(&text(masses));
         let mut simulation = pressed(&scene, -5e-6);
         simulation.advance(&slide(1e-6)).unwrap();
-        let saved = simulation.save();
+        let saved = simulation.state();
         let mut run = |name: &str, work: &mut dyn FnMut()| {
             group.bench_function(BenchmarkId::new(name, masses), |bencher| bencher.iter(&mut *work));
         };
         run("clone", &mut || drop(black_box(simulation.clone())));
-        run("save", &mut || drop(black_box(simulation.save())));
+        run("save", &mut || drop(black_box(simulation.state())));
         run("restore", &mut || drop(black_box(Simulation::restore(&scene, &saved).unwrap())));
     }
     group.finish();

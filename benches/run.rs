@@ -65,7 +65,7 @@ fn print_table(name: &str, masses: &[usize], w: f64) {
         let start = pressed(&scene, w);
         let [time] = side_by_side([&mut || drop(go(start.clone()))], Duration::from_millis(500)).shortest;
         let mut end = go(start);
-        let [steps, events] = ["solver.steps", "solver.events"].map(|name| output(&scene, &mut end, name));
+        let [steps, events] = ["solver.steps", "solver.events"].map(|name| output(&scene, &end.snapshot(), name));
         let each = 1e6 * time / (steps * masses as f64);
         println!("{masses:>8} {:>10.3} {steps:>8} {events:>8} {each:>18.3}", 1e3 * time);
     }

@@ -11,7 +11,7 @@ mod floor;
 
 use std::time::Duration;
 
-use asperity::integrator::{Integrator, STAGES, Steps, Tolerance, Tracked};
+use asperity::integrator::{Integrator, STAGES, StepStart, Steps, Tolerance, Tracked};
 use asperity::model::{Carrier, Forces, Mode, Model, State};
 use asperity::scene::Path;
 use common::{layer, parse, prints_tables, side_by_side};
@@ -36,7 +36,7 @@ fn main() {
 /// A layer and the room to try steps of it.
 struct Stages {
     model: Model,
-    state: State,
+    start: StepStart,
     carrier: Carrier,
     integrator: Integrator,
     tolerance: Tolerance,
@@ -62,16 +62,17 @@ impl Stages {
         let carrier = Carrier::new(0.0, (0.0, 0.0), still, &model.profile);
         let mut forces = Forces::new(&model);
         forces.evaluate(&model, &state, &carrier.at(0.0));
-        let mut integrator = Integrator::new(&model, Tracked::default(), Steps::Accurate);
-        integrator.begin(&model, &state, &carrier.at(0.0), &forces);
+        let integrator = Integrator::new(&model, Tracked::default(), Steps::Accurate);
+        let mut start = StepStart { state, ..StepStart::new(&model) };
+        integrator.evaluate_start(&model, &mut start, &carrier.at(0.0), &forces);
         let tolerance = Tolerance::new(&model, 1e-6, 1e-11);
-        Self { model, state, carrier, integrator, tolerance }
+        Self { model, start, carrier, integrator, tolerance }
     }
 
     /// All stages of a step, and its error estimate.
     fn run(&mut self) {
-        let Self { model, state, carrier, integrator, tolerance } = self;
-        std::hint::black_box(integrator.attempt(model, state, carrier, (0.0, STEP), tolerance).unwrap());
+        let Self { model, start, carrier, integrator, tolerance } = self;
+        std::hint::black_box(integrator.attempt(model, start, carrier, (0.0, STEP), tolerance).unwrap());
     }
 }
 

@@ -5,7 +5,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::path::Path as FilePath;
 
-use asperity::outputs::{Variable, variables};
+use asperity::outputs::{Snapshot, Variable, variables};
 use asperity::scene::{Path, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
 
@@ -112,8 +112,8 @@ fn other_methods_allocate_nothing() {
         let times: [f64; 11] = std::array::from_fn(|i| 1e-5 * i as f64);
         let count = allocations(|| {
             for _ in 0..40 {
-                let row = |_: f64, now: &mut Simulation| now.evaluate(&variables, &mut values);
-                simulation.advance_observed(&SWING, &times, row).unwrap();
+                let row = |_: f64, now: &Snapshot<'_>| now.evaluate(&variables, &mut values);
+                simulation.advance_observed(&SWING, None, &times, row).unwrap();
             }
         });
         simulation.evaluate(&variables, &mut values);
@@ -152,11 +152,11 @@ fn rows_within_steps_allocate_nothing() {
     let mut rows = 0;
     let count = allocations(|| {
         for _ in 0..4 {
-            let row = |_: f64, now: &mut Simulation| {
+            let row = |_: f64, now: &Snapshot<'_>| {
                 now.evaluate(&variables, &mut values);
                 rows += 1;
             };
-            simulation.advance_observed(&SWING, &times, row).unwrap();
+            simulation.advance_observed(&SWING, None, &times, row).unwrap();
         }
     });
     assert_eq!((count, rows), (0, 404));

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use std::path::Path as FilePath;
 
 use asperity::model::{LinkKind, Model, Reduction, Replacement};
-use asperity::outputs::variables;
+use asperity::outputs::{Snapshot, variables};
 use asperity::scene::{Path, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
 
@@ -60,12 +60,12 @@ fn rows(scene: &Scene, start: &Start, motion: &Motion, pieces: u32) -> Vec<Vec<f
     let variables = variables(scene);
     let mut simulation = Simulation::new(scene, start).unwrap();
     let mut rows = Vec::new();
-    let row = |_: f64, now: &mut Simulation| {
+    let row = |_: f64, now: &Snapshot<'_>| {
         let mut values = vec![0.0; variables.len()];
         now.evaluate(&variables, &mut values);
         rows.push(values);
     };
-    simulation.advance_observed(motion, &times, row).unwrap();
+    simulation.advance_observed(motion, None, &times, row).unwrap();
     rows
 }
 
@@ -274,7 +274,7 @@ fn a_saved_run_goes_on_bit_for_bit() {
     let mut first = Simulation::new(&reduced, &Start { u: 1.3e-4, w: -8e-6, ..SLIDE_START }).unwrap();
     let half = Motion { duration: 2e-4, ..slide() };
     first.advance(&half).unwrap();
-    let mut second = Simulation::restore(&reduced, &first.save()).unwrap();
+    let mut second = Simulation::restore(&reduced, &first.state()).unwrap();
     assert_eq!((first.advance(&half), second.advance(&half)), (Ok(()), Ok(())));
     let variables = variables(&reduced);
     let bits = [&mut first, &mut second].map(|simulation| {

@@ -8,7 +8,7 @@ mod common;
 
 use std::path::Path as FilePath;
 
-use asperity::outputs::variables;
+use asperity::outputs::{Snapshot, variables};
 use asperity::scene::{Path, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
 use common::{Table, difference, largest, root};
@@ -46,16 +46,16 @@ impl Run {
         let start = Start { u_rate: first.u.velocity(0.0), w_rate: first.w.velocity(0.0), ..Start::default() };
         let mut simulation = Simulation::new(scene, &start).unwrap();
         let variables = variables(scene);
-        let values = |simulation: &mut Simulation| {
+        let values = |snapshot: &Snapshot<'_>| {
             let mut values = vec![0.0; variables.len()];
-            simulation.evaluate(&variables, &mut values);
+            snapshot.evaluate(&variables, &mut values);
             values
         };
-        let mut rows = vec![values(&mut simulation)];
+        let mut rows = vec![values(&simulation.snapshot())];
         for phase in &scene.excitation {
             let motion = Motion { duration: phase.duration, u: phase.u, w: phase.w };
             let times: Vec<f64> = (1..=50).map(|i| phase.duration * f64::from(i) / 50.0).collect();
-            simulation.advance_observed(&motion, &times, |_, now| rows.push(values(now))).unwrap();
+            simulation.advance_observed(&motion, None, &times, |_, now| rows.push(values(now))).unwrap();
         }
         Self { names: variables.iter().map(|variable| variable.name.clone()).collect(), rows }
     }
@@ -177,16 +177,16 @@ fn pressed(scene: &Scene) -> Simulation {
     simulation
 }
 
-fn values(scene: &Scene, simulation: &mut Simulation) -> Vec<(String, f64)> {
+fn values(scene: &Scene, snapshot: &Snapshot<'_>) -> Vec<(String, f64)> {
     let variables = variables(scene);
     let mut values = vec![0.0; variables.len()];
-    simulation.evaluate(&variables, &mut values);
+    snapshot.evaluate(&variables, &mut values);
     let named = variables.into_iter().map(|variable| variable.name).zip(values);
     named.filter(|(name, _)| name != "solver.run_time").collect()
 }
 
-fn value(scene: &Scene, simulation: &mut Simulation, name: &str) -> f64 {
-    values(scene, simulation).into_iter().find(|(other, _)| other == name).unwrap().1
+fn value(scene: &Scene, snapshot: &Snapshot<'_>, name: &str) -> f64 {
+    values(scene, snapshot).into_iter().find(|(other, _)| other == name).unwrap().1
 }
 
 /// Many more mode changes than steps, and each step has its end in order: every mass in contact pressed on the profile,
@@ -199,7 +199,7 @@ fn the_end_of_every_step_is_consistent_however_many_modes_change() {
     // Steps as long as the motions: their ends are those of steps.
     for _ in 0..60 {
         simulation.advance(&straight(5e-6, 1.0, 0.0)).unwrap();
-        let values = values(&scene, &mut simulation);
+        let values = values(&scene, &simulation.snapshot());
         let get = |name: String| values.iter().find(|(other, _)| *other == name).unwrap().1;
         for i in 1..=300 {
             let of = |part: &str| get(format!("element[{i}].{part}"));
@@ -216,8 +216,9 @@ fn the_end_of_every_step_is_consistent_however_many_modes_change() {
         }
     }
     let (events, steps) = (
-        value(&scene, &mut simulation, "solver.events"),
-        value(&scene, &mut simulation, "solver.steps") + value(&scene, &mut simulation, "solver.rejected"),
+        value(&scene, &simulation.snapshot(), "solver.events"),
+        value(&scene, &simulation.snapshot(), "solver.steps")
+            + value(&scene, &simulation.snapshot(), "solver.rejected"),
     );
     assert!(events > 1000.0 && events > 10.0 * steps, "{events} mode changes in {steps} steps");
 }
@@ -228,24 +229,27 @@ fn a_run_goes_on_bit_for_bit_wherever_it_is_taken_up() {
     for method in ["step", "auto"] {
         let scene = rough(40, method, "");
         let mut first = pressed(&scene);
-        let mut to_stepping = first.is_stepping();
+        let mut to_time_stepping = first.is_time_stepping();
         for i in 0..40 {
             let motion = straight(3e-6, if i < 30 { 1.0 } else { 0.0 }, 0.0);
-            let (mut clone, mut restored) = (first.clone(), Simulation::restore(&scene, &first.save()).unwrap());
-            assert_eq!(restored.is_stepping(), first.is_stepping());
+            let (mut clone, mut restored) = (first.clone(), Simulation::restore(&scene, &first.state()).unwrap());
+            assert_eq!(restored.is_time_stepping(), first.is_time_stepping());
             for simulation in [&mut first, &mut clone, &mut restored] {
                 simulation.advance(&motion).unwrap();
             }
-            let bits = |simulation: &mut Simulation| -> Vec<u64> {
-                values(&scene, simulation).into_iter().map(|(_, value)| value.to_bits()).collect()
+            let bits = |snapshot: &Snapshot<'_>| -> Vec<u64> {
+                values(&scene, snapshot).into_iter().map(|(_, value)| value.to_bits()).collect()
             };
-            let expected = bits(&mut first);
-            assert!(bits(&mut clone) == expected && bits(&mut restored) == expected, "{method}, motion {i}");
-            assert_eq!(clone.save(), first.save());
+            let expected = bits(&first.snapshot());
+            assert!(
+                bits(&clone.snapshot()) == expected && bits(&restored.snapshot()) == expected,
+                "{method}, motion {i}"
+            );
+            assert_eq!(clone.state(), first.state());
             assert_eq!(restored.force_rates(), first.force_rates());
-            to_stepping |= first.is_stepping();
+            to_time_stepping |= first.is_time_stepping();
         }
-        assert!(to_stepping);
+        assert!(to_time_stepping);
     }
 }
 
@@ -260,7 +264,7 @@ fn neither_rows_nor_failures_leave_a_trace() {
     let mut rows = 0;
     assert!(observed.advance(&straight(1.0, 1.0, 0.0)).is_err());
     observed
-        .advance_observed(&motion, &times, |_, now| {
+        .advance_observed(&motion, None, &times, |_, now| {
             let residual = value(&scene, now, "energy.residual");
             assert!(residual.is_finite());
             rows += 1;
@@ -268,12 +272,12 @@ fn neither_rows_nor_failures_leave_a_trace() {
         .unwrap();
     plain.advance(&motion).unwrap();
     // The error is that of the rows, as many as there are.
-    let lasting = |simulation: &mut Simulation| {
-        let mut values = values(&scene, simulation);
+    let lasting = |snapshot: &Snapshot<'_>| {
+        let mut values = values(&scene, snapshot);
         values.retain(|(name, _)| name != "solver.error");
         values
     };
-    assert_eq!((rows, lasting(&mut plain)), (101, lasting(&mut observed)));
+    assert_eq!((rows, lasting(&plain.snapshot())), (101, lasting(&observed.snapshot())));
 }
 
 /// F_z reaches the force asked for, at a time that the event-driven run agrees with.
@@ -282,8 +286,9 @@ fn a_motion_ends_where_the_force_is_reached() {
     let reached = ["step", "auto", "event"].map(|method| {
         let scene = rough(40, method, "absolute_tolerance = 1e-9");
         let mut simulation = Simulation::new(&scene, &Start::default()).unwrap();
-        let time = simulation.advance_until_force(&straight(1e-3, 0.0, -0.01), 0.2, &[], |_, _| ()).unwrap().unwrap();
-        let force = value(&scene, &mut simulation, "F_z");
+        let time =
+            simulation.advance_observed(&straight(1e-3, 0.0, -0.01), Some(0.2), &[], |_, _| ()).unwrap().unwrap();
+        let force = value(&scene, &simulation.snapshot(), "F_z");
         // A percent is the tolerance.
         assert!((force - 0.2).abs() < 2e-3, "{method}: {force}");
         assert_eq!(simulation.time(), time);
@@ -297,23 +302,26 @@ fn a_motion_ends_where_the_force_is_reached() {
 fn auto_hands_over_where_mode_changes_crowd_and_back() {
     let scene = rough(100, "auto", "");
     let mut simulation = Simulation::new(&scene, &Start::default()).unwrap();
-    simulation.record_handovers(true);
+    simulation.record_method_switches(true);
     // At rest steps grow long: the pieces of the motion keep them short.
     let slide = [straight(2e-4, 0.0, -0.01), straight(3e-4, 1.0, 0.0)];
     for motion in slide.into_iter().chain([straight(1e-5, 0.0, 0.0); 200]) {
         simulation.advance(&motion).unwrap();
     }
-    let handovers = simulation.take_handovers();
-    let to_and_fro: Vec<bool> = handovers.iter().map(|handover| handover.to_stepping).collect();
-    assert!(to_and_fro.len() >= 2 && to_and_fro.len().is_multiple_of(2), "{handovers:?}");
-    assert!(to_and_fro.iter().enumerate().all(|(i, to_stepping)| *to_stepping == (i % 2 == 0)), "{handovers:?}");
-    assert!(!simulation.is_stepping() && handovers[1].time > 5e-4, "{handovers:?}");
-    assert!(handovers[0].to_string().contains("time-stepping from here on"));
+    let switches = simulation.take_method_switches();
+    let to_and_fro: Vec<bool> = switches.iter().map(|switch| switch.to_time_stepping).collect();
+    assert!(to_and_fro.len() >= 2 && to_and_fro.len().is_multiple_of(2), "{switches:?}");
+    assert!(
+        to_and_fro.iter().enumerate().all(|(i, to_time_stepping)| *to_time_stepping == (i % 2 == 0)),
+        "{switches:?}"
+    );
+    assert!(!simulation.is_time_stepping() && switches[1].time > 5e-4, "{switches:?}");
+    assert!(switches[0].to_string().contains("time-stepping from here on"));
     let lively = |method: &str| {
         let mut simulation = pressed(&rough(100, method, ""));
-        simulation.record_handovers(true);
+        simulation.record_method_switches(true);
         simulation.advance(&straight(3e-4, 1.0, 0.0)).unwrap();
-        simulation.take_handovers().len()
+        simulation.take_method_switches().len()
     };
     assert_eq!((lively("step"), lively("event")), (0, 0));
 }
@@ -328,7 +336,7 @@ fn tangents_are_those_of_a_difference_quotient() {
         let duration = 1e-6;
         simulation.advance(&straight(duration, 0.5 + u / duration, w / duration)).unwrap();
         ["F_x", "F_z", "solver.events", "tangent.dF_x_du", "tangent.dF_z_du", "tangent.dF_x_dw", "tangent.dF_z_dw"]
-            .map(|name| value(&scene, &mut simulation, name))
+            .map(|name| value(&scene, &simulation.snapshot(), name))
     };
     let tangents = after(0.0, 0.0);
     let moved = 1e-11;
@@ -357,10 +365,10 @@ fn a_mass_that_touches_on_a_bend_keeps_its_speed() {
         // Nothing holds the mass along x, so it flies at the speed that it started with.
         let start = Start { u: 4e-6 * f64::from(i), w: 6e-6, u_rate: 5.0, w_rate: -1.0, ..Start::default() };
         let mut simulation = Simulation::new(&scene, &start).unwrap();
-        let kinetic = value(&scene, &mut simulation, "energy.kinetic");
+        let kinetic = value(&scene, &simulation.snapshot(), "energy.kinetic");
         simulation.advance(&straight(2e-4, 0.0, 0.0)).unwrap();
-        assert!(value(&scene, &mut simulation, "dissipation.E_impact") > 0.0, "it touches");
-        let residual = value(&scene, &mut simulation, "energy.residual");
+        assert!(value(&scene, &simulation.snapshot(), "dissipation.E_impact") > 0.0, "it touches");
+        let residual = value(&scene, &simulation.snapshot(), "energy.residual");
         // The tolerance.
         assert!(residual.abs() <= 1e-4 * kinetic, "start {i}: {residual:e} J of {kinetic:e} J");
     }
@@ -389,7 +397,7 @@ fn extremes_are_stepped_over() {
         let mut simulation = Simulation::new(&scene, &Start::default()).unwrap();
         for motion in [straight(4e-4, 0.0, -0.02), straight(1e-3, 0.3, 0.0), straight(1e-3, -0.3, 0.0)] {
             simulation.advance(&motion).unwrap_or_else(|error| panic!("{vertical}, {horizontal}: {error}"));
-            let found = values(&scene, &mut simulation);
+            let found = values(&scene, &simulation.snapshot());
             let get = |name: &str| found.iter().find(|(other, _)| other == name).unwrap().1;
             let largest = ["energy.input", "E_diss", "energy.elastic"].map(|name| get(name).abs());
             let largest = largest.into_iter().fold(0.0, f64::max);

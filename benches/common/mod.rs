@@ -5,7 +5,7 @@ use std::path::Path as FilePath;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use asperity::outputs::variables;
+use asperity::outputs::{Snapshot, variables};
 use asperity::scene::{Path, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
 use criterion::Criterion;
@@ -123,9 +123,9 @@ pub fn pressed(scene: &Scene, w: f64) -> Simulation {
 }
 
 /// The value of the output `name` of `simulation`, a run of `scene`.
-pub fn output(scene: &Scene, simulation: &mut Simulation, name: &str) -> f64 {
+pub fn output(scene: &Scene, snapshot: &Snapshot<'_>, name: &str) -> f64 {
     let variables: Vec<_> = variables(scene).into_iter().filter(|variable| variable.name == name).collect();
     let mut value = [f64::NAN];
-    simulation.evaluate(&variables, &mut value);
+    snapshot.evaluate(&variables, &mut value);
     black_box(value[0])
 }

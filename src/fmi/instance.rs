@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::outputs::{self, Output};
 use crate::scene::{Parameter, Value};
-use crate::simulation::{Handover, ModeChange};
+use crate::simulation::{MethodSwitch, ModeChange};
 
 use super::beyond::Beyond;
 use super::catalogue::Catalogue;
@@ -211,7 +211,7 @@ impl Instance {
         }
     }
 
-    fn take_records(&mut self) -> (Vec<ModeChange>, Vec<Handover>) {
+    fn take_records(&mut self) -> (Vec<ModeChange>, Vec<MethodSwitch>) {
         self.run.plant().map(Plant::take_records).unwrap_or_default()
     }
 
@@ -230,7 +230,7 @@ impl Instance {
         }
     }
 
-    fn tell_work(&mut self, handovers: &[Handover]) {
+    fn tell_work(&mut self, handovers: &[MethodSwitch]) {
         for text in handovers.iter().map(ToString::to_string) {
             self.log.add(Message { status: Status::Ok, category: Category::Solver, text });
         }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::fault::Fault;
 use crate::element::{self, Element};
 use crate::outputs::Variable;
-use crate::simulation::{self, Handover, ModeChange, Motion, Simulation};
+use crate::simulation::{self, MethodSwitch, ModeChange, Motion, Simulation};
 
 /// A run of a layer or of an element.
 #[derive(Clone, Debug)]
@@ -17,7 +17,7 @@ pub(super) enum Plant {
 /// A run as it is written down.
 #[derive(Serialize, Deserialize)]
 pub(super) enum Saved {
-    Layer(simulation::Saved),
+    Layer(simulation::SimulationState),
     Element(element::ElementState),
 }
 
@@ -66,7 +66,7 @@ impl Plant {
     /// Everything that the run has become.
     pub(super) fn save(&self) -> Saved {
         match self {
-            Self::Layer(simulation) => Saved::Layer(simulation.save()),
+            Self::Layer(simulation) => Saved::Layer(simulation.state()),
             Self::Element(element) => Saved::Element(element.save()),
         }
     }
@@ -83,16 +83,16 @@ impl Plant {
         match self {
             Self::Layer(simulation) => {
                 simulation.record_mode_changes(events);
-                simulation.record_handovers(handovers);
+                simulation.record_method_switches(handovers);
             }
             Self::Element(element) => element.record_mode_changes(events),
         }
     }
 
     /// What was recorded since the last call.
-    pub(super) fn take_records(&mut self) -> (Vec<ModeChange>, Vec<Handover>) {
+    pub(super) fn take_records(&mut self) -> (Vec<ModeChange>, Vec<MethodSwitch>) {
         match self {
-            Self::Layer(simulation) => (simulation.take_mode_changes(), simulation.take_handovers()),
+            Self::Layer(simulation) => (simulation.take_mode_changes(), simulation.take_method_switches()),
             Self::Element(element) => (element.take_mode_changes(), Vec::new()),
         }
     }

@@ -28,7 +28,7 @@ use super::run::Run;
 const MARK: [u8; 8] = *b"asperity";
 
 /// The version of the format: to be raised whenever what is written changes.
-const FORMAT: u32 = 4;
+const FORMAT: u32 = 5;
 
 /// Bytes of the checksum.
 const CHECKSUM: usize = 16;

@@ -20,6 +20,8 @@ pub use tableau::{ESDIRK5, Tableau, WeightsWithin};
 pub use tolerance::Tolerance;
 pub use within::TwoStageDense;
 
+use serde::{Deserialize, Serialize};
+
 use crate::math::weighted_sum;
 use crate::model::{Carrier, CarrierPoint, ChannelEnergies, Exchange, Forces, Model, State};
 use error::{ErrorTest, ErrorWorkspace};
@@ -53,6 +55,32 @@ pub struct Integrator {
     accounts_energy: bool,
     /// How the run follows the targets of u and w; empty where nobody asks.
     tangents: Vec<Tangent>,
+}
+
+/// The layer at the start of a step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StepStart {
+    /// The state.
+    pub state: State,
+    /// The rates there.
+    pub rates: Rates,
+    /// The powers through the surface and the carrier there, W: 0 where no energy is accounted for.
+    pub exchange: Exchange,
+}
+
+impl StepStart {
+    /// A layer of `model` at rest and free.
+    pub fn new(model: &Model) -> Self {
+        let state = State::new(model.masses(), model.maxwell_variables());
+        Self { state, rates: Rates::new(model), exchange: Exchange::default() }
+    }
+
+    /// Copies `other`, of the same model, without allocating.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.state.copy_from(&other.state);
+        self.rates.copy_from(&other.rates);
+        self.exchange = other.exchange;
+    }
 }
 
 /// What the steps follow beside the state.
@@ -119,49 +147,41 @@ impl Integrator {
         }
     }
 
-    /// The rates at the start of the step.
-    pub fn start_rates(&self) -> &Rates {
-        &self.stages[0]
-    }
-
-    /// Puts back the rates at the start of a step.
-    pub fn restore(&mut self, rates: &Rates, exchange: Exchange) {
-        self.stages[0].copy_from(rates);
-        self.exchange[0] = exchange;
-    }
-
-    /// The powers through the surface and the carrier at the start of the step.
-    pub fn start_exchange(&self) -> Exchange {
-        self.exchange[0]
-    }
-
     /// Newton's iterations since the start.
     pub fn iterations(&self) -> u64 {
         self.solver.iterations
     }
 
-    /// Computes the rates at the start of a step afresh, from the forces in `state`: needed at the start, after an
-    /// event and at a kink.
-    pub fn begin(&mut self, model: &Model, state: &State, carrier: &CarrierPoint, forces: &Forces) {
-        self.stages[0].evaluate(model, state, forces);
+    /// Evaluates the rates and the powers at the start of a step from the `forces` in its state: needed at the start of
+    /// a run, after an event and at a kink.
+    pub fn evaluate_start(&self, model: &Model, start: &mut StepStart, carrier: &CarrierPoint, forces: &Forces) {
+        start.rates.evaluate(model, &start.state, forces);
         if self.accounts_energy {
-            self.exchange[0] = Exchange::evaluate(model, state, carrier, forces);
+            start.exchange = Exchange::evaluate(model, &start.state, carrier, forces);
         }
     }
 
-    /// Tries a step of length `h` from `state`, `s` seconds after the start of the carrier's piece.
+    /// Makes the start of a step its first stage.
+    fn begin_step(&mut self, start: &StepStart) {
+        self.stages[0].copy_from(&start.rates);
+        self.exchange[0] = start.exchange;
+    }
+
+    /// Tries a step of length `h` from `start`, `s` seconds after the start of the carrier's piece.
     ///
     /// # Errors
     /// [`NoConvergence`] where a stage could not be solved.
     pub fn attempt(
         &mut self,
         model: &Model,
-        state: &State,
+        start: &StepStart,
         carrier: &Carrier,
         (s, h): (f64, f64),
         tolerance: &Tolerance,
     ) -> Result<Attempt, NoConvergence> {
         let beta = METHOD.gamma() * h;
+        let state = &start.state;
+        self.begin_step(start);
         self.carrier[0] = carrier.at(s);
         self.solver.begin(model, state, beta);
         self.maxwell.begin(model, &METHOD, &state.maxwell, h);
@@ -254,9 +274,9 @@ impl Integrator {
     }
 
     /// Computes the tangents' rates at the start of a step afresh, `s` seconds after the start of the carrier's motion.
-    pub fn refresh_tangents(&mut self, model: &Model, state: &State, forces: &Forces, s: f64) {
+    pub fn refresh_tangents(&mut self, model: &Model, start: &StepStart, forces: &Forces, s: f64) {
         for tangent in &mut self.tangents {
-            tangent.evaluate_rates(model, state, forces, &self.stages[0].acceleration_x, s);
+            tangent.evaluate_rates(model, &start.state, forces, &start.rates.acceleration_x, s);
         }
     }
 
@@ -301,12 +321,12 @@ impl Integrator {
         &'a self,
         model: &'a Model,
         carrier: &'a Carrier,
-        start: &'a State,
+        start: &'a StepStart,
         (s, h): (f64, f64),
     ) -> DenseOutput<'a> {
         let carriers = [self.carrier[0], self.carrier[STAGES - 1]];
         let end = (self.end(), &self.stages[STAGES - 1]);
-        DenseOutput { model, carrier, s, h, carriers, start: (start, &self.stages[0]), end }
+        DenseOutput { model, carrier, s, h, carriers, start: (&start.state, &start.rates), end }
     }
 
     /// Energies through the channels over the step of length `h` from `start` tried last, up to its fraction `theta`.
@@ -316,16 +336,16 @@ impl Integrator {
         energy::through(model, &self.maxwell, &start.maxwell, stages, (h, weights), self.error_workspace.any())
     }
 
-    /// Takes the step tried last: `state` becomes its end, and the rates there those at the start of the next step.
-    pub fn accept(&mut self, state: &mut State) {
-        self.accept_stage(state, STAGES - 1);
+    /// Accepts the step tried last: its end becomes the start of the next one.
+    pub fn accept(&mut self, start: &mut StepStart) {
+        self.accept_stage(start, STAGES - 1);
     }
 
     /// Takes the step tried last, which ended with stage `last`.
-    fn accept_stage(&mut self, state: &mut State, last: usize) {
-        std::mem::swap(state, &mut self.solver.state);
-        self.stages.swap(0, last);
-        self.exchange.swap(0, last);
+    fn accept_stage(&mut self, start: &mut StepStart, last: usize) {
+        std::mem::swap(&mut start.state, &mut self.solver.state);
+        std::mem::swap(&mut start.rates, &mut self.stages[last]);
+        start.exchange = self.exchange[last];
         for tangent in &mut self.tangents {
             tangent.accept(last);
         }

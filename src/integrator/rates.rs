@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::math::{Numbers, visit_all};
 use crate::model::{CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint};
 
 /// What is left of a quantity that has no limit.
@@ -157,14 +156,5 @@ impl Rates {
             of(LinkKind::Horizontal, &self.acceleration_x, carrier.u_acceleration),
             of(LinkKind::Vertical, &self.acceleration_z, carrier.w_acceleration),
         )
-    }
-}
-
-impl Numbers for Rates {
-    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        let Self { velocity_x, velocity_z, acceleration_x, acceleration_z, elongation_rate, normal, margin } = self;
-        visit_all([velocity_x, velocity_z, acceleration_x, acceleration_z], visit);
-        elongation_rate.visit(visit);
-        visit_all([normal, margin], visit);
     }
 }

@@ -4,7 +4,7 @@
 use super::error::ErrorTest;
 use super::maxwell::Maxwell;
 use super::stage::{Accuracy, NoConvergence};
-use super::{Attempt, Integrator, Rates, STAGES, Tableau, Tolerance, WeightsWithin, energy};
+use super::{Attempt, Integrator, Rates, STAGES, StepStart, Tableau, Tolerance, WeightsWithin, energy};
 use crate::model::{Carrier, CarrierPoint, ChannelEnergies, Forces, Mode, Model, State};
 
 /// The two stages, and before them the start of the step: the method needs its rates for a guess alone.
@@ -70,19 +70,21 @@ impl TwoStages {
 }
 
 impl Integrator {
-    /// Tries a step of two stages of length `h` from `state`, `s` seconds after the start of the carrier's piece.
+    /// Tries a step of two stages of length `h` from `start`, `s` seconds after the start of the carrier's piece.
     ///
     /// # Errors
     /// [`NoConvergence`] where a stage could not be solved.
     pub fn attempt_two_stages(
         &mut self,
         model: &Model,
-        state: &State,
+        start: &StepStart,
         carrier: &Carrier,
         (s, h): (f64, f64),
         tolerance: &Tolerance,
     ) -> Result<Attempt, NoConvergence> {
         let beta = GAMMA * h;
+        let state = &start.state;
+        self.begin_step(start);
         let slack = if model.rate_shear.is_some() { STEEP_SLACK } else { NEWTON_SLACK };
         self.carrier[0] = carrier.at(s);
         self.solver.begin(model, state, beta);
@@ -160,17 +162,16 @@ impl Integrator {
         (&mut self.solver.state, &mut self.solver.forces, &mut last[0], &earlier[1])
     }
 
-    /// Takes the step of two stages tried last: `state` becomes its end, and the rates there those at the start of the
-    /// next.
-    pub fn accept_two_stages(&mut self, state: &mut State) {
-        self.accept_stage(state, TWO_STAGES - 1);
+    /// Accepts the step of two stages tried last: its end becomes the start of the next one.
+    pub fn accept_two_stages(&mut self, start: &mut StepStart) {
+        self.accept_stage(start, TWO_STAGES - 1);
     }
 
     /// Puts the modes' constraints, after changes at the end of a step just taken, into the tangents.
-    pub fn refresh_tangents_after(&mut self, model: &Model, state: &State, s: f64) {
+    pub fn refresh_tangents_after(&mut self, model: &Model, start: &StepStart, s: f64) {
         let forces = &self.solver.forces;
         for tangent in &mut self.tangents {
-            tangent.evaluate_rates(model, state, forces, &self.stages[0].acceleration_x, s);
+            tangent.evaluate_rates(model, &start.state, forces, &start.rates.acceleration_x, s);
         }
     }
 }

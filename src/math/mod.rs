@@ -2,7 +2,6 @@
 
 mod fourier;
 mod monotone;
-mod numbers;
 mod quintic;
 mod random;
 mod relaxation;
@@ -13,7 +12,6 @@ mod tridiagonal;
 
 pub use fourier::{Direction, fourier};
 pub use monotone::{Expansion, cubic, interval_of, monotone_slopes};
-pub use numbers::{Numbers, visit_all};
 pub use quintic::{Jet, Quintic};
 pub use random::SplitMix64;
 pub use relaxation::Relaxation;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::math::{Numbers, Spline, visit_all};
+use crate::math::Spline;
 use crate::scene::Path;
 
 /// The carrier on a smooth piece of its motion. Displacements are counted from the start of the piece, so that a carrier
@@ -76,12 +76,12 @@ impl Carrier {
         let start = self.at(0.0);
         (start.u_rate, start.w_rate)
     }
-}
 
-/// All but the position on the profile, which follows from u.
-impl Numbers for Carrier {
-    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        let Self { time, u, w, profile_position: _, u_path, w_path } = self;
-        visit_all([time, u, w, u_path, w_path], visit);
+    /// All numbers of the piece, to be checked.
+    pub fn numbers(&self) -> [f64; 10] {
+        let Self { time, u, w, profile_position, u_path, w_path } = *self;
+        let [u_path, w_path] = [u_path, w_path].map(|path| [path.rate, path.amplitude, path.frequency]);
+        let ([a, b, c], [d, e, f]) = (u_path, w_path);
+        [time, u, w, profile_position, a, b, c, d, e, f]
     }
 }

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::math::{Numbers, dot, visit_all};
+use crate::math::dot;
 
 use super::{CarrierPoint, Forces, LinkKind, Model, State};
 
@@ -78,20 +78,6 @@ impl Exchange {
     /// The powers in `state` with the forces there.
     pub fn evaluate(model: &Model, state: &State, carrier: &CarrierPoint, forces: &Forces) -> Self {
         Self { friction: friction(model, state, forces), input: input(forces, carrier) }
-    }
-}
-
-impl Numbers for Exchange {
-    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        let Self { friction, input } = self;
-        visit_all([friction, input], visit);
-    }
-}
-
-impl Numbers for ChannelEnergies {
-    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        let Self { damper, maxwell, friction, input } = self;
-        visit_all([damper, maxwell, friction, input], visit);
     }
 }
 

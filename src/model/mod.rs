@@ -19,7 +19,7 @@ pub use state::{Mode, State};
 
 use serde::{Deserialize, Serialize};
 
-use crate::math::{Numbers, Spline, visit_all};
+use crate::math::Spline;
 pub use crate::scene::LinkKind;
 use crate::scene::{Initial, Scene};
 
@@ -34,13 +34,6 @@ pub struct SurfacePoint {
     pub curvature: f64,
     /// z_r''', 1/m²: constant between two data points.
     pub third: f64,
-}
-
-impl Numbers for SurfacePoint {
-    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        let Self { height, slope, curvature, third } = self;
-        visit_all([height, slope, curvature, third], visit);
-    }
 }
 
 /// A scene as numbers to compute with. It does not change through a run.

@@ -3,7 +3,6 @@
 use serde::{Deserialize, Serialize};
 
 use super::SurfacePoint;
-use crate::math::{Numbers, visit_all};
 
 /// The contact mode of a mass, with the conditions that hold in it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -112,13 +111,5 @@ impl State {
         self.maxwell.copy_from_slice(&other.maxwell);
         self.mode.copy_from_slice(&other.mode);
         self.surface.copy_from_slice(&other.surface);
-    }
-}
-
-/// All but the modes, which are no numbers.
-impl Numbers for State {
-    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        let Self { elongation_x, elongation_z, velocity_x, velocity_z, maxwell, mode: _, surface } = self;
-        visit_all([elongation_x, elongation_z, velocity_x, velocity_z, maxwell, surface], visit);
     }
 }

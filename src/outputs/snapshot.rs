@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 
 use super::Variable;
 use super::derivative::CarrierShift;
-use crate::math::{Numbers, visit_all};
 use crate::model::{
     CarrierPoint, ChannelEnergies, ContactForces, Forces, Mode, Model, Powers, State, elastic_energy, kinetic_energy,
 };
@@ -51,12 +50,11 @@ impl Energies {
     pub fn dissipated(&self) -> f64 {
         self.channels.dissipated() + self.impact
     }
-}
 
-impl Numbers for Energies {
-    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        let Self { channels, impact, initial } = self;
-        visit_all([channels, impact, initial], visit);
+    /// All of them, to be checked.
+    pub fn numbers(&self) -> [f64; 6] {
+        let Self { channels: ChannelEnergies { damper, maxwell, friction, input }, impact, initial } = *self;
+        [damper, maxwell, friction, input, impact, initial]
     }
 }
 
@@ -69,9 +67,6 @@ pub struct Counters {
     pub rejected: u64,
     /// Mode changes.
     pub events: u64,
-    /// Processor time, s: not a part of the run's state, so it is not serialised.
-    #[serde(skip)]
-    pub run_time: f64,
     /// By how much F_z was off that of a finer run at most, N.
     largest_error: f64,
     /// The largest |F_z| of the finer run so far, N.
@@ -79,6 +74,11 @@ pub struct Counters {
 }
 
 impl Counters {
+    /// Its numbers that are no counts, to be checked.
+    pub fn numbers(&self) -> [f64; 2] {
+        [self.largest_error, self.largest_force]
+    }
+
     /// Compares F_z with that of a finer run at the same time, N. `share` of the error shows in the difference.
     pub fn note_error(&mut self, force: f64, finer: f64, share: f64) {
         self.largest_error = self.largest_error.max((force - finer).abs() / share);
@@ -100,33 +100,29 @@ impl Counters {
     }
 }
 
-/// All but the whole numbers and the processor time, which is no part of a run's state.
-impl Numbers for Counters {
-    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        let Self { steps: _, rejected: _, events: _, run_time: _, largest_error, largest_force } = self;
-        visit_all([largest_error, largest_force], visit);
-    }
-}
-
 /// A run at one instant.
 #[derive(Clone, Copy, Debug)]
 pub struct Snapshot<'a> {
     /// The model.
     pub model: &'a Model,
+    /// The time, s.
+    pub time: f64,
     /// The layer's state.
     pub state: &'a State,
     /// The forces in that state.
     pub forces: &'a Forces,
     /// The carrier's rates.
-    pub carrier: &'a CarrierPoint,
-    /// Where the carrier stands: u and w, m.
+    pub carrier: CarrierPoint,
+    /// Displacement of the carrier: u and w, m.
     pub displacement: (f64, f64),
     /// Energies since the start.
-    pub energies: &'a Energies,
+    pub energies: Energies,
     /// ∂F_x/∂u, ∂F_x/∂w, ∂F_z/∂u, ∂F_z/∂w by the targets of the last motion, N/m.
     pub tangents: [f64; 4],
     /// The solver's counters.
-    pub counters: &'a Counters,
+    pub counters: Counters,
+    /// Processor time since the start, s.
+    pub run_time: f64,
 }
 
 /// A snapshot with the sums that several outputs need: each is evaluated once, when it is first asked for.
@@ -194,7 +190,7 @@ impl Snapshot<'_> {
     }
 
     pub(super) fn powers(&self) -> Powers {
-        Powers::evaluate(self.model, self.state, self.carrier, self.forces)
+        Powers::evaluate(self.model, self.state, &self.carrier, self.forces)
     }
 
     /// |F_x|/F_z, 0 where F_z ≤ 0; at most the largest number where F_z is next to nothing.

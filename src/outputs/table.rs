@@ -248,7 +248,7 @@ pub(super) static TABLE: [OutputRow; 35] = {
         layer(Output::EstimatedError, Solver, "solver.error", Real, One, "Estimated accumulated error of F_z over its largest value so far",
             |now| now.at.counters.estimated_error()),
         layer(Output::RunTime, Solver, "solver.run_time", Real, Second, "Processor time since the start",
-            |now| now.at.counters.run_time),
+            |now| now.at.run_time),
         mass(Output::ElementX, "x", Real, Meter, "Position along x of mass",
             |now, i| now.at.position(i).0),
         mass(Output::ElementZ, "z", Real, Meter, "Height of mass",

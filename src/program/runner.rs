@@ -1,7 +1,8 @@
 //! Runs a scene along its excitation, phase by phase, with rows at even intervals of each phase.
 
+use asperity::outputs::Snapshot;
 use asperity::scene::{Phase, Scene};
-use asperity::simulation::{Handover, Motion, Simulation, SimulationError, Start};
+use asperity::simulation::{MethodSwitch, Motion, Simulation, SimulationError, Start};
 
 use super::terminal::warn;
 
@@ -81,7 +82,7 @@ impl Runner {
         let start = start(scene, u);
         let carrier = CarrierSample { time: start.time, u: start.u, w: start.w };
         let mut simulation = Simulation::new(scene, &start)?;
-        simulation.record_handovers(true);
+        simulation.record_method_switches(true);
         Ok(Self { simulation, carrier, rows, phases: 0, area: scene.layer.area() })
     }
 
@@ -90,8 +91,8 @@ impl Runner {
     }
 
     /// The changes between event-driven and time-stepping driver since the last call; only method *auto* has any.
-    pub(crate) fn take_handovers(&mut self) -> Vec<Handover> {
-        self.simulation.take_handovers()
+    pub(crate) fn take_method_switches(&mut self) -> Vec<MethodSwitch> {
+        self.simulation.take_method_switches()
     }
 
     /// Calls `observe` at the current time, then follows `phases` and calls it at their rows. Returns the actual
@@ -99,22 +100,22 @@ impl Runner {
     pub(crate) fn run(
         &mut self,
         phases: &[Phase],
-        mut observe: impl FnMut(CarrierSample, &mut Simulation),
+        mut observe: impl FnMut(CarrierSample, &Snapshot<'_>),
     ) -> Result<Vec<f64>, SimulationError> {
         self.observe_now(&mut observe);
         phases.iter().map(|phase| self.run_phase(phase, &mut observe)).collect()
     }
 
     /// Calls `observe` at the current time.
-    pub(crate) fn observe_now(&mut self, mut observe: impl FnMut(CarrierSample, &mut Simulation)) {
-        observe(self.carrier, &mut self.simulation);
+    pub(crate) fn observe_now(&mut self, mut observe: impl FnMut(CarrierSample, &Snapshot<'_>)) {
+        observe(self.carrier, &self.simulation.snapshot());
     }
 
     /// Follows one phase and calls `observe` at its rows. Returns the actual duration, s.
     pub(crate) fn run_phase(
         &mut self,
         phase: &Phase,
-        mut observe: impl FnMut(CarrierSample, &mut Simulation),
+        mut observe: impl FnMut(CarrierSample, &Snapshot<'_>),
     ) -> Result<f64, SimulationError> {
         let motion = Motion { duration: phase.duration, u: phase.u, w: phase.w };
         let force = phase.end_force(self.area);
@@ -129,8 +130,8 @@ impl Runner {
         }
         let times: Vec<f64> = self.rows.times(duration).collect();
         let start = self.carrier;
-        let observe = |s: f64, simulation: &mut Simulation| observe(start.moved(phase, s), simulation);
-        self.simulation.advance_observed(&Motion { duration, ..motion }, &times, observe)?;
+        let observe = |s: f64, snapshot: &Snapshot<'_>| observe(start.moved(phase, s), snapshot);
+        self.simulation.advance_observed(&Motion { duration, ..motion }, None, &times, observe)?;
         self.carrier = CarrierSample { time: self.simulation.time(), ..start.moved(phase, duration) };
         Ok(duration)
     }
@@ -138,7 +139,7 @@ impl Runner {
     /// The time at which F_z rises to `force` (N), in s from the start of the motion. A copy of the simulation finds
     /// it, so that rows can divide the phase evenly.
     fn time_of_force(&self, motion: &Motion, force: Option<f64>) -> Result<Option<f64>, SimulationError> {
-        force.map_or(Ok(None), |force| self.simulation.clone().advance_until_force(motion, force, &[], |_, _| ()))
+        force.map_or(Ok(None), |force| self.simulation.clone().advance_observed(motion, Some(force), &[], |_, _| ()))
     }
 }
 

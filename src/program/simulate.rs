@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
+use asperity::outputs::Snapshot;
 use asperity::outputs::{Variable, variables};
 use asperity::scene::Scene;
-use asperity::simulation::{Handover, Simulation, SimulationError};
+use asperity::simulation::{MethodSwitch, SimulationError};
 use indicatif::ProgressBar;
 
 use super::cli::Simulate;
@@ -46,15 +47,15 @@ pub(crate) fn simulate(command: &Simulate) -> Result<(), SimulateError> {
 fn run(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<(), SimulateError> {
     let shown = recorder.history.as_ref().map_or_else(|| scene.clone(), |history| history.scene().clone());
     let mut runner = Runner::new(&shown, Rows::PerPhase(command.points), 0.0).map_err(SimulateError::Start)?;
-    let result = runner.run(&scene.excitation, |carrier, simulation| recorder.row(carrier, simulation));
-    print_handovers(&runner.take_handovers());
+    let result = runner.run(&scene.excitation, |carrier, snapshot| recorder.row(carrier, snapshot));
+    print_handovers(&runner.take_method_switches());
     match result {
         Ok(_) => Ok(()),
         Err(source) => Err(SimulateError::Run { source, time: recorder.time, output: command.output.clone() }),
     }
 }
 
-fn print_handovers(handovers: &[Handover]) {
+fn print_handovers(handovers: &[MethodSwitch]) {
     const MOST: usize = 10;
     for handover in handovers.iter().take(MOST) {
         note(&handover.to_string());
@@ -95,14 +96,14 @@ impl Recorder {
         })
     }
 
-    fn row(&mut self, carrier: CarrierSample, simulation: &mut Simulation) {
+    fn row(&mut self, carrier: CarrierSample, snapshot: &Snapshot<'_>) {
         if self.failure.is_some() {
             return;
         }
-        simulation.evaluate(&self.variables, &mut self.values);
+        snapshot.evaluate(&self.variables, &mut self.values);
         self.failure = self.writer.write(carrier, &self.values).err();
         if let Some(history) = &mut self.history {
-            history.add(carrier.time, simulation);
+            history.add(carrier.time, snapshot);
         }
         self.time = carrier.time;
         if self.duration > 0.0 {

@@ -4,8 +4,6 @@ use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
-use crate::math::{Numbers, visit_all};
-
 /// One phase of the carrier's motion.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Phase {
@@ -37,13 +35,6 @@ pub struct Path {
     pub amplitude: f64,
     /// Frequency of the sine, Hz.
     pub frequency: f64,
-}
-
-impl Numbers for Path {
-    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        let Self { rate, amplitude, frequency } = self;
-        visit_all([rate, amplitude, frequency], visit);
-    }
 }
 
 impl Path {

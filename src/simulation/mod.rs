@@ -1,29 +1,36 @@
-//! The conductor: joins the integrator and the contact rules into a run.
+//! A simulation: joins the integrator and the contact laws into a run that follows the carrier's motion.
+//!
+//! - [`Simulation`] is the public face: a [run](run) and, where the group `solver` asks for its error, an
+//!   error-estimation run beside it.
+//! - `run` holds all that changes in a run (`RunState`), apart from its workspace.
+//! - `driver` is the skeleton of both methods: step, mode changes, step; `event` and `time_stepping` are where they
+//!   differ, `method_switch` decides between them (method *auto*).
+//! - `snapshot` shows the run at an instant, at the end of a step or within it.
+//! - `error_run` estimates the run's error, `state` saves and restores.
 
-mod companion;
-mod derivatives;
-mod handover;
-mod relaxation;
+mod driver;
+mod error_run;
+mod event;
+mod method_switch;
 mod run;
-mod saved;
-mod stepping;
+mod snapshot;
+mod state;
 #[cfg(test)]
 pub(crate) mod tests;
 mod time_stepping;
-mod within;
 
 use std::sync::Arc;
 
-use crate::contact::{EndCorrection, EventTolerance};
-use crate::integrator::{DenseWorkspace, Integrator, Steps, Tolerance, Tracked};
-use crate::model::{Forces, Model, State};
-use crate::outputs::{self, Accounts, Variable};
-use crate::scene::{LARGEST, Method, ParameterError, Path, Scene};
-use companion::Companion;
-pub use handover::Handover;
-use run::{Checkpoint, Run};
-pub use saved::{RestoreError, Saved};
-use stepping::Crawl;
+use cpu_time::ThreadTime;
+
+use crate::model::Model;
+use crate::outputs::{Snapshot, Variable};
+use crate::scene::{LARGEST, ParameterError, Path, Scene, is_possible};
+use driver::{TrialStep, WorkLimit};
+use error_run::ErrorRun;
+pub use method_switch::MethodSwitch;
+use run::{Run, Settings};
+pub use state::{RestoreError, SimulationState};
 
 /// The carrier at the start of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -67,7 +74,7 @@ pub enum SimulationError {
     /// The steps allowed were used up.
     #[error("gave up at t = {time} s after {steps} steps, the limit solver.max_steps")]
     TooManySteps {
-        /// Where the run stood, s.
+        /// The time reached, s.
         time: f64,
         /// The limit.
         steps: u64,
@@ -75,7 +82,7 @@ pub enum SimulationError {
     /// The step size fell to the resolution of time.
     #[error("the step size fell to {step} s at t = {time} s")]
     StepTooSmall {
-        /// Where the run stood, s.
+        /// The time reached, s.
         time: f64,
         /// The step size, s.
         step: f64,
@@ -88,7 +95,7 @@ pub enum SimulationError {
     Scene(#[from] ParameterError),
 }
 
-/// What happened to one mass at one instant.
+/// A mode change of one mass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModeChange {
     /// When, s.
@@ -103,57 +110,20 @@ pub struct ModeChange {
 
 /// A run of a scene.
 ///
-/// A clone is the whole of it: both go on alike, bit for bit.
+/// A clone goes on exactly as the original, bit for bit.
 #[derive(Clone, Debug)]
 pub struct Simulation {
-    model: Arc<Model>,
-    settings: Settings,
     run: Run,
-    /// The run as it was before the motion under way.
-    before: Checkpoint,
-    integrator: Integrator,
-    forces: Forces,
-    /// The state within a step, shown to observers.
-    within: State,
-    /// Of which step and fraction that is, where it is known.
-    within_at: Option<(f64, f64)>,
-    dense_workspace: DenseWorkspace,
-    /// Mode changes at the end of a time step.
-    step_end: EndCorrection,
-    /// Steps of the motion under way that make no progress.
-    crawl: Crawl,
-    mode_changes: Option<Vec<ModeChange>>,
-    handovers: Option<Vec<Handover>>,
-    /// A finer run beside this one, where its error is asked for.
-    companion: Option<Companion>,
-}
-
-/// What of a scene the conductor needs beside the model.
-#[derive(Clone, Debug)]
-struct Settings {
-    tolerance: Tolerance,
-    events: EventTolerance,
-    max_steps: u64,
-    accounts: Accounts,
-    method: Method,
-}
-
-impl Settings {
-    fn new(scene: &Scene, model: &Model) -> Self {
-        let tolerance = Tolerance::new(model, scene.solver.relative_tolerance, scene.absolute_tolerance());
-        let events = EventTolerance::new(model, &tolerance);
-        Self {
-            tolerance,
-            events,
-            max_steps: scene.solver.max_steps,
-            accounts: Accounts::new(scene),
-            method: scene.solver.method,
-        }
-    }
+    /// A more accurate run beside it, where its error is asked for.
+    error_run: Option<ErrorRun>,
+    /// Processor time since the start, s. It is not part of the run's state: a run restored from another's state keeps
+    /// its own.
+    run_time: f64,
 }
 
 impl Simulation {
-    /// Puts the layer under the carrier at rest or in motion; what lies under the profile is lifted onto it.
+    /// Starts a run of `scene`: the layer hangs under the carrier, at rest or moving with it, and masses that would lie
+    /// under the profile are lifted onto it (model.md, section 5).
     ///
     /// # Errors
     /// [`SimulationError::OutOfRange`] where `start` is not finite, [`SimulationError::Scene`] where parameters set one
@@ -169,71 +139,23 @@ impl Simulation {
         model.freeze_dashpots(model.profile.reduce(start.u), start.w);
         let model = Arc::new(model);
         let settings = Settings::new(scene, &model);
-        let finer = settings.accounts.solver.then(|| settings.finer(&model));
-        let companion = finer.map(|finer| Companion::new(Self::with(Arc::clone(&model), finer, start)));
-        Self { companion, ..Self::with(model, settings, start) }
-    }
-
-    fn with(model: Arc<Model>, settings: Settings, start: &Start) -> Self {
-        let followed = Tracked { energy: settings.accounts.energy, tangents: settings.accounts.tangents };
-        let steps = match settings.method {
-            Method::Event => Steps::Accurate,
-            Method::Step => Steps::TwoStages,
-            Method::Auto => Steps::Both,
-        };
-        let integrator = Integrator::new(&model, followed, steps);
-        let state = State::new(model.masses(), model.maxwell_variables());
-        let run = Run::new(&model, state.clone(), start, settings.method == Method::Step);
-        let forces = Forces::new(&model);
-        let dense_workspace = DenseWorkspace::new(&model);
-        let step_end = EndCorrection::new(&model);
-        let crawl = Crawl::new(&model);
-        let mut simulation = Self {
-            model,
-            settings,
-            before: Checkpoint {
-                run: run.clone(),
-                rates: integrator.start_rates().clone(),
-                exchange: integrator.start_exchange(),
-            },
-            run,
-            integrator,
-            forces,
-            within: state,
-            within_at: None,
-            dense_workspace,
-            step_end,
-            crawl,
-            mode_changes: None,
-            handovers: None,
-            companion: None,
-        };
-        simulation.place_layer();
-        simulation
+        let error_run = settings.accounts.solver.then(|| ErrorRun::new(&model, &settings, start));
+        Self { run: Run::new(model, settings, start), error_run, run_time: 0.0 }
     }
 
     /// The time reached, s.
     pub fn time(&self) -> f64 {
-        self.run.time()
+        self.run.state.time()
     }
 
-    /// Where the carrier stands: u and w, m.
+    /// Displacement of the carrier: u and w, m.
     pub fn carrier(&self) -> (f64, f64) {
-        self.run.displacement()
+        self.run.state.displacement()
     }
 
-    /// Bytes that the run holds, but for some hundreds that do not grow with the layer.
+    /// Memory of the simulation in bytes, without some hundreds that do not grow with the layer.
     pub fn bytes(&self) -> usize {
-        let masses = self.run.state.mode.len();
-        let maxwell = self.run.state.maxwell.len();
-        // The run, the one to go back to, the one within a step and the stage's.
-        let states = 4 * (masses * (4 * size_of::<f64>() + size_of_val(&self.run.state.surface[0]) + 1));
-        states
-            + 4 * maxwell * size_of::<f64>()
-            + self.integrator.bytes()
-            + 2 * self.forces.bytes()
-            + self.dense_workspace.bytes()
-            + self.companion.as_ref().map_or(0, |companion| companion.finer().bytes())
+        self.run.bytes() + self.error_run.as_ref().map_or(0, ErrorRun::bytes)
     }
 
     /// Follows `motion` to its end.
@@ -241,126 +163,281 @@ impl Simulation {
     /// # Errors
     /// [`SimulationError`]; the simulation is then as it was before the call.
     pub fn advance(&mut self, motion: &Motion) -> Result<(), SimulationError> {
-        self.advance_observed(motion, &[], |_, _| ())
+        self.advance_observed(motion, None, &[], |_, _| ()).map(|_| ())
     }
 
-    /// Follows `motion` to its end and calls `observe` at each of `times`, which rise from 0 to at most the duration:
-    /// with the time since the start of the motion (s) and the simulation as it stood then.
+    /// Follows `motion` to its end or, with `until_force`, until F_z rises to that force (N).
+    ///
+    /// Calls `observe` at each of `times`, which rise from 0 to at most the duration, with the time since the start of
+    /// the motion (s) and the run at that instant. Returns when the force was reached, s after the start of the motion:
+    /// 0 if F_z is there already, `None` without a force or if it is not reached within the motion.
     ///
     /// # Errors
     /// [`SimulationError`]; the simulation is then as it was before the call.
     pub fn advance_observed(
         &mut self,
         motion: &Motion,
+        until_force: Option<f64>,
         times: &[f64],
-        observe: impl FnMut(f64, &mut Self),
-    ) -> Result<(), SimulationError> {
-        self.follow_or_go_back(motion, None, times, observe).map(|_| ())
-    }
-
-    /// As [`advance_observed`](Self::advance_observed), but only until F_z rises to `force` (N). Returns when that was,
-    /// s after the start of the motion: 0 if it was there already, `None` if it is not reached within the motion.
-    ///
-    /// # Errors
-    /// [`SimulationError`]; the simulation is then as it was before the call.
-    pub fn advance_until_force(
-        &mut self,
-        motion: &Motion,
-        force: f64,
-        times: &[f64],
-        observe: impl FnMut(f64, &mut Self),
-    ) -> Result<Option<f64>, SimulationError> {
-        self.follow_or_go_back(motion, Some(force), times, observe)
-    }
-
-    fn follow_or_go_back(
-        &mut self,
-        motion: &Motion,
-        until: Option<f64>,
-        times: &[f64],
-        observe: impl FnMut(f64, &mut Self),
+        observe: impl FnMut(f64, &Snapshot<'_>),
     ) -> Result<Option<f64>, SimulationError> {
         motion.check()?;
-        self.keep_checkpoint();
-        let recorded = (self.mode_changes.as_ref().map_or(0, Vec::len), self.handovers.as_ref().map_or(0, Vec::len));
-        let result = self.follow(motion, until, times, observe);
+        self.run.keep_checkpoint();
+        if let Some(error_run) = &mut self.error_run {
+            error_run.keep_checkpoint();
+        }
+        let run_time = self.run_time;
+        let result = self.follow(motion, until_force, times, observe);
         if result.is_err() {
-            if let Some(record) = &mut self.mode_changes {
-                record.truncate(recorded.0);
+            self.run_time = run_time;
+            self.run.roll_back();
+            if let Some(error_run) = &mut self.error_run {
+                error_run.roll_back();
             }
-            if let Some(record) = &mut self.handovers {
-                record.truncate(recorded.1);
-            }
-            self.go_back();
         }
         result
     }
 
-    fn go_back(&mut self) {
-        self.run.copy_from(&self.before.run);
-        self.integrator.restore(&self.before.rates, self.before.exchange);
-        if let Some(companion) = &mut self.companion {
-            companion.go_back();
+    /// [`advance_observed`](Self::advance_observed), but for the way back: on an error the run stands anywhere within
+    /// the motion.
+    fn follow(
+        &mut self,
+        motion: &Motion,
+        until_force: Option<f64>,
+        times: &[f64],
+        observe: impl FnMut(f64, &Snapshot<'_>),
+    ) -> Result<Option<f64>, SimulationError> {
+        let clock = self.run.settings.accounts.solver.then(ThreadTime::now);
+        let mut observer = Observer { times, clock, run_time: self.run_time, observe };
+        self.show_rows(0.0, &mut observer);
+        if self.run.has_risen(until_force) {
+            return Ok(Some(0.0));
+        }
+        self.run.enter(motion);
+        if let Some(error_run) = &mut self.error_run {
+            error_run.enter(motion);
+        }
+        let mut work = WorkLimit::new(self.run.settings.max_steps);
+        let mut risen = self.run.has_risen(until_force);
+        while self.run.state.s < motion.duration && !risen {
+            let mut step = self.run.next_step(motion.duration, &mut work)?;
+            if let Some(share) = self.run.rises_within(&step, until_force) {
+                let h = share * step.h;
+                step = self.run.cut_step(h, &mut work)?;
+                risen = step.h == h;
+            }
+            if let Some(error_run) = &mut self.error_run {
+                error_run.note_step(step.h, work.tried());
+            }
+            let mut end = self.run.end_of(&step, motion.duration);
+            while let Some(time) = observer.next_before(end) {
+                let theta = (time - self.run.state.s) / step.h;
+                if self.run.can_show_within(step.h, theta) {
+                    self.show_within(&step, theta, &mut observer);
+                } else {
+                    (step, end) = self.run.cut_step_at(time, motion.duration, &mut work)?;
+                    risen = false;
+                }
+            }
+            self.run.take_step(&step, end);
+            risen = risen || self.run.has_risen(until_force);
+            if risen || end >= motion.duration {
+                self.run.find_tangents();
+            }
+            self.show_rows(end, &mut observer);
+        }
+        self.end_error_run();
+        self.run_time = observer.run_time_now();
+        Ok(risen.then_some(self.run.state.s))
+    }
+
+    /// Shows the rows up to the time `end` of the motion, where the run stands.
+    fn show_rows(&mut self, end: f64, observer: &mut Observer<'_, impl FnMut(f64, &Snapshot<'_>)>) {
+        while let Some(time) = observer.next_up_to(end) {
+            self.estimate_error();
+            self.run_time = observer.run_time_now();
+            (observer.observe)(time, &self.run.snapshot(self.run_time));
         }
     }
 
-    /// Goes on from where `other`, a run of the same scene, stands.
-    fn take_over(&mut self, other: &Self) {
-        self.run.copy_from(&other.run);
-        self.integrator.restore(other.integrator.start_rates(), other.integrator.start_exchange());
+    /// Shows the next row, which lies at the fraction `theta` of `step`.
+    fn show_within(
+        &mut self,
+        step: &TrialStep,
+        theta: f64,
+        observer: &mut Observer<'_, impl FnMut(f64, &Snapshot<'_>)>,
+    ) {
+        let Some(time) = observer.next() else { return };
+        let s = self.run.state.s + theta * step.h;
+        if let Some(error_run) = &mut self.error_run {
+            let force = self.run.force_z_within(step.h, theta);
+            error_run.compare(s, force, &mut self.run.state.counters);
+        }
+        self.run_time = observer.run_time_now();
+        let energies = self.run.energies_within(step.h, theta);
+        (observer.observe)(time, &self.run.snapshot_within(step.h, theta, &energies, self.run_time));
     }
 
-    fn keep_checkpoint(&mut self) {
-        self.before.run.copy_from(&self.run);
-        self.before.rates.copy_from(self.integrator.start_rates());
-        self.before.exchange = self.integrator.start_exchange();
-        if let Some(companion) = &mut self.companion {
-            companion.keep_checkpoint();
+    /// Compares F_z with that of the error-estimation run at the same time.
+    fn estimate_error(&mut self) {
+        if let Some(error_run) = &mut self.error_run {
+            let force = self.run.force_z();
+            error_run.compare(self.run.state.s, force, &mut self.run.state.counters);
         }
+    }
+
+    /// Ends the motion of the error-estimation run where the run stands.
+    fn end_error_run(&mut self) {
+        self.estimate_error();
+        if let Some(error_run) = &mut self.error_run {
+            error_run.end_motion(&self.run.state);
+        }
+    }
+
+    /// The run as it stands.
+    pub fn snapshot(&mut self) -> Snapshot<'_> {
+        self.run.snapshot(self.run_time)
     }
 
     /// Writes the values of `variables`, in their order, into `values`; Integers as whole numbers.
     pub fn evaluate(&mut self, variables: &[Variable], values: &mut [f64]) {
-        self.with_snapshot(|snapshot| snapshot.evaluate(variables, values));
+        self.snapshot().evaluate(variables, values);
     }
 
-    fn with_snapshot(&mut self, body: impl FnOnce(&outputs::Snapshot<'_>)) {
-        let carrier = self.evaluate_forces();
-        body(&outputs::Snapshot {
-            model: &self.model,
-            state: &self.run.state,
-            forces: &self.forces,
-            carrier: &carrier,
-            displacement: self.run.displacement(),
-            energies: &self.run.energies,
-            tangents: self.run.tangents,
-            counters: &self.run.counters,
-        });
+    /// Writes into `values` the derivatives of `variables` with respect to the carrier's displacement along `direction`
+    /// (x and z, m per unit), all states held: positions, velocities, dashpots, modes.
+    pub fn directional_derivative(&mut self, variables: &[Variable], direction: (f64, f64), values: &mut [f64]) {
+        self.snapshot().differentiate(variables, direction, values);
     }
 
-    /// Processor time since the start, s. It is no part of a run's state: one that is taken up where another stood goes
-    /// on from its own.
+    /// Ḟ_x and Ḟ_z, N/s, from the left; at the start, from the right.
+    pub fn force_rates(&mut self) -> (f64, f64) {
+        self.run.force_rates()
+    }
+
+    /// a_j = e - y_j of every Maxwell element, m, in the order of [`State::maxwell`](crate::model::State::maxwell).
+    pub fn maxwell_elongations(&self) -> &[f64] {
+        &self.run.state.layer.state.maxwell
+    }
+
+    /// Takes off the elements of the links along z what they miss of steady motion: `means` are those of
+    /// [`maxwell_elongations`](Self::maxwell_elongations) over the last `time` s, whole periods of the motion. Returns
+    /// what the vertical elements bore in that mean, N: 0 in steady motion.
+    ///
+    /// In steady motion ẏ = a/τ is 0 in the mean, and so is a = e - y of every Maxwell element. Elements that relax in
+    /// minutes take minutes to reach it, a waste where only the steady state is asked for. Where the elongation e is
+    /// forced on a link, as by the profile along z, the deviation of an element from its steady motion decays as
+    /// D e^{-t/τ}: in the mean over a time T of whole periods it is ā = D (τ/T)(1 - e^{-T/τ}), and at their end
+    /// ā x/(eˣ - 1) of it are left, x = T/τ. So much is taken off: all of ā for an element slower than T, nothing for a
+    /// fast one. Where masses touch and lift, e follows the dashpots a little, and a second time is needed.
+    ///
+    /// The energies since the start no longer balance.
+    pub fn relax_dashpots(&mut self, means: &[f64], time: f64) -> f64 {
+        self.run.relax_dashpots(means, time)
+    }
+
+    /// Processor time since the start, s; measured where the group `solver` is asked for.
     pub fn run_time(&self) -> f64 {
-        self.run.counters.run_time
+        self.run_time
     }
 
-    /// Takes over the processor time spent so far.
+    /// Sets the processor time since the start, s.
     pub fn set_run_time(&mut self, time: f64) {
-        self.run.counters.run_time = time;
+        self.run_time = time;
     }
 
-    /// Newton's iterations since the start, those of steps rejected and of motions gone back on included.
+    /// Newton's iterations since the start, those of rejected steps and of motions rolled back included.
     pub fn newton_iterations(&self) -> u64 {
-        self.integrator.iterations()
+        self.run.newton_iterations()
+    }
+
+    /// Whether the time-stepping method has the run now, or the event-driven one.
+    pub fn is_time_stepping(&self) -> bool {
+        self.run.state.time_stepping
     }
 
     /// Keeps a record of mode changes from now on, or stops keeping it.
     pub fn record_mode_changes(&mut self, on: bool) {
-        self.mode_changes = on.then(Vec::new);
+        self.run.mode_changes = on.then(Vec::new);
     }
 
     /// The mode changes recorded since the last call.
     pub fn take_mode_changes(&mut self) -> Vec<ModeChange> {
-        self.mode_changes.as_mut().map(std::mem::take).unwrap_or_default()
+        self.run.mode_changes.as_mut().map(std::mem::take).unwrap_or_default()
+    }
+
+    /// Keeps a record of switches between the methods from now on, or stops keeping it.
+    pub fn record_method_switches(&mut self, on: bool) {
+        self.run.method_switches = on.then(Vec::new);
+    }
+
+    /// The switches recorded since the last call.
+    pub fn take_method_switches(&mut self) -> Vec<MethodSwitch> {
+        self.run.method_switches.as_mut().map(std::mem::take).unwrap_or_default()
+    }
+}
+
+/// The rows still to be shown of a motion, and the processor time.
+struct Observer<'a, F> {
+    times: &'a [f64],
+    /// Runs where the processor time is asked for.
+    clock: Option<ThreadTime>,
+    /// Processor time before the motion, s.
+    run_time: f64,
+    observe: F,
+}
+
+impl<F> Observer<'_, F> {
+    fn next(&mut self) -> Option<f64> {
+        let (&time, rest) = self.times.split_first()?;
+        self.times = rest;
+        Some(time)
+    }
+
+    fn next_up_to(&mut self, end: f64) -> Option<f64> {
+        if self.times.first().is_some_and(|&time| time <= end) { self.next() } else { None }
+    }
+
+    /// The time of the next row if it lies before `end`, s; it stays the next one.
+    fn next_before(&self, end: f64) -> Option<f64> {
+        self.times.first().copied().filter(|&time| time < end)
+    }
+
+    fn run_time_now(&self) -> f64 {
+        self.run_time + self.clock.as_ref().map_or(0.0, |clock| clock.elapsed().as_secs_f64())
+    }
+}
+
+impl Start {
+    /// Refuses a start that is not finite, or too large.
+    pub(crate) fn check(&self) -> Result<(), OutOfRange> {
+        check_size(&[
+            ("time", self.time),
+            ("u", self.u),
+            ("w", self.w),
+            ("rate of u", self.u_rate),
+            ("rate of w", self.w_rate),
+        ])
+    }
+}
+
+impl Motion {
+    fn check(&self) -> Result<(), OutOfRange> {
+        check_size(&[
+            ("duration", self.duration),
+            ("rate of u", self.u.rate),
+            ("amplitude of u", self.u.amplitude),
+            ("frequency of u", self.u.frequency),
+            ("rate of w", self.w.rate),
+            ("amplitude of w", self.w.amplitude),
+            ("frequency of w", self.w.frequency),
+        ])
+    }
+}
+
+fn check_size(quantities: &[(&'static str, f64)]) -> Result<(), OutOfRange> {
+    match quantities.iter().find(|(_, value)| !is_possible(*value)) {
+        Some(&(what, value)) => Err(OutOfRange { what, value }),
+        None => Ok(()),
     }
 }

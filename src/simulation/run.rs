@@ -1,87 +1,128 @@
-//! Everything of a run that changes.
+//! A run of a layer: its state, which is all that changes in it, and the workspace of its steps.
 
-use super::{Motion, OutOfRange, Start};
-use crate::contact::CarrierPosition;
-use crate::integrator::Rates;
-use crate::math::{Numbers, visit_all};
-use crate::model::{Carrier, Exchange, Model, State};
-use crate::outputs::{Counters, Energies};
-use crate::scene::{Path, is_possible};
+use std::sync::Arc;
 
-/// The run: where it stands and what it has added up.
-#[derive(Clone, Debug)]
-pub(super) struct Run {
-    pub(super) carrier: Carrier,
-    /// Time since the start of the carrier's piece, s.
-    pub(super) s: f64,
-    pub(super) state: State,
-    pub(super) energies: Energies,
-    pub(super) counters: Counters,
+use serde::{Deserialize, Serialize};
+
+use super::event::Stall;
+use super::{MethodSwitch, ModeChange, Motion, Start};
+use crate::contact::{
+    CarrierPosition, EndCorrection, EventTolerance, decide_modes, free_unloaded, impacts_due, place_layer,
+    stop_reversed,
+};
+use crate::integrator::{DenseWorkspace, Integrator, StepStart, Steps, Tolerance, Tracked};
+use crate::model::{Carrier, CarrierPoint, Forces, LinkKind, Mode, Model, State, elastic_energy, kinetic_energy};
+use crate::outputs::{Accounts, Counters, Energies};
+use crate::scene::{Method, Path, Scene};
+
+/// The first step to try, as a share of the stiffest period over 2π; the error test corrects it at once.
+const FIRST_STEP: f64 = 0.1;
+/// The weight of the latest in the mean time between events.
+const SPACING_GAIN: f64 = 0.3;
+/// The least that this mean falls to, as a share of the step that the error allows: many events at one instant say
+/// nothing of later ones.
+const LEAST_SPACING: f64 = 0.01;
+
+/// All that changes in a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct RunState {
+    /// The smooth piece of motion that the carrier is on.
+    pub carrier: Carrier,
+    /// Time since the start of that piece, s.
+    pub s: f64,
+    /// The layer, with the rates at the start of the next step.
+    pub layer: StepStart,
+    /// Whether these rates are valid: not before the first motion, nor where the forces were changed from outside.
+    pub rates_valid: bool,
+    /// Energies since the start.
+    pub energies: Energies,
+    /// What the solver counts.
+    pub counters: Counters,
     /// The length of the next step to try, s.
-    pub(super) step_size: f64,
-    /// The mean time between the events of late, s; the largest number where there was none.
-    pub(super) event_spacing: f64,
+    pub step_size: f64,
+    /// The running mean of the time between events, s; the largest number where there was none.
+    pub event_spacing: f64,
     /// Time since the last event, s.
-    pub(super) since_event: f64,
-    /// ∂F_x/∂u, ∂F_x/∂w, ∂F_z/∂u, ∂F_z/∂w by the targets of the last motion, N/m; 0 before the first.
-    pub(super) tangents: [f64; 4],
-    /// Whether the integrator's rates at the start of the next step hold.
-    pub(super) rates_hold: bool,
+    pub since_event: f64,
+    /// ∂F_x/∂u, ∂F_x/∂w, ∂F_z/∂u, ∂F_z/∂w with respect to the targets of the last motion, N/m; 0 before the first.
+    pub tangents: [f64; 4],
     /// u and w at the start of the run, m.
-    pub(super) start: [f64; 2],
-    /// Whether the time-stepping driver has the run, or the event-driven one.
-    pub(super) stepping: bool,
-    /// Mode changes on one time step, in the mean of the last ones; of the method *auto* alone.
-    pub(super) crowding: f64,
+    pub start: [f64; 2],
+    /// Whether the time-stepping method has the run, or the event-driven one.
+    pub time_stepping: bool,
+    /// The running mean of the mode changes per time step; of the method *auto* alone.
+    pub mode_changes_per_step: f64,
 }
 
-impl Run {
-    pub(super) fn new(model: &Model, state: State, start: &Start, stepping: bool) -> Self {
+impl RunState {
+    fn new(model: &Model, start: &Start, time_stepping: bool) -> Self {
         let path = |rate| Path { rate, ..Path::default() };
         let paths = (path(start.u_rate), path(start.w_rate));
         Self {
             carrier: Carrier::new(start.time, (start.u, start.w), paths, &model.profile),
             s: 0.0,
-            state,
+            layer: StepStart::new(model),
+            rates_valid: false,
             energies: Energies::default(),
             counters: Counters::default(),
             step_size: FIRST_STEP / model.stiffest_frequency(),
             event_spacing: f64::MAX,
             since_event: 0.0,
             tangents: [0.0; 4],
-            rates_hold: false,
             start: [start.u, start.w],
-            stepping,
-            crowding: 0.0,
+            time_stepping,
+            mode_changes_per_step: 0.0,
         }
     }
 
-    /// Takes over `other`, a run of the same scene, without allocating.
+    /// Copies `other`, of the same scene, without allocating.
     pub(super) fn copy_from(&mut self, other: &Self) {
         let Self {
             carrier,
             s,
-            state,
+            layer,
+            rates_valid,
             energies,
             counters,
             step_size,
             event_spacing,
             since_event,
             tangents,
-            rates_hold,
             start,
-            stepping,
-            crowding,
+            time_stepping,
+            mode_changes_per_step,
         } = self;
         (*carrier, *s, *energies, *counters) = (other.carrier, other.s, other.energies, other.counters);
         (*event_spacing, *since_event) = (other.event_spacing, other.since_event);
-        (*step_size, *tangents, *rates_hold) = (other.step_size, other.tangents, other.rates_hold);
-        *start = other.start;
-        (*stepping, *crowding) = (other.stepping, other.crowding);
-        state.copy_from(&other.state);
+        (*step_size, *tangents, *rates_valid) = (other.step_size, other.tangents, other.rates_valid);
+        (*start, *time_stepping) = (other.start, other.time_stepping);
+        *mode_changes_per_step = other.mode_changes_per_step;
+        layer.copy_from(&other.layer);
     }
 
-    /// Notes that an event has come.
+    /// The time reached, s.
+    pub(super) fn time(&self) -> f64 {
+        self.carrier.time + self.s
+    }
+
+    /// u and w, m.
+    pub(super) fn displacement(&self) -> (f64, f64) {
+        self.displacement_at(self.s)
+    }
+
+    /// u and w `s` seconds after the start of the carrier's piece, m.
+    pub(super) fn displacement_at(&self, s: f64) -> (f64, f64) {
+        let point = self.carrier.at(s);
+        (self.carrier.u + point.du, self.carrier.w + point.dw)
+    }
+
+    /// Where the carrier stands over the profile.
+    pub(super) fn carrier_position(&self) -> CarrierPosition {
+        let point = self.carrier.at(self.s);
+        CarrierPosition { profile_position: self.carrier.profile_position + point.du, w: self.carrier.w + point.dw }
+    }
+
+    /// Includes the event that has just come in the mean time between events.
     pub(super) fn note_event(&mut self) {
         // A mean from long ago counts no more than the latest.
         let mean = self.event_spacing.min(self.since_event / SPACING_GAIN);
@@ -89,98 +130,248 @@ impl Run {
         self.event_spacing = latest.max(LEAST_SPACING * self.step_size);
         self.since_event = 0.0;
     }
-
-    pub(super) fn time(&self) -> f64 {
-        self.carrier.time + self.s
-    }
-
-    /// u and w, m.
-    pub(super) fn displacement(&self) -> (f64, f64) {
-        let point = self.carrier.at(self.s);
-        (self.carrier.u + point.du, self.carrier.w + point.dw)
-    }
-
-    pub(super) fn carrier_position(&self) -> CarrierPosition {
-        let point = self.carrier.at(self.s);
-        CarrierPosition { profile_position: self.carrier.profile_position + point.du, w: self.carrier.w + point.dw }
-    }
 }
 
-/// The first step to try, as a share of the stiffest period over 2π; the error test corrects it at once.
-const FIRST_STEP: f64 = 0.1;
-
-/// The weight of the latest in the mean time between events.
-const SPACING_GAIN: f64 = 0.3;
-
-/// The least that this mean falls to, as a share of the step that the error allows: many events at one instant say
-/// nothing of what comes.
-const LEAST_SPACING: f64 = 0.01;
-
-/// The run as it was before the motion under way.
+/// What of a scene a run needs beside the model.
 #[derive(Clone, Debug)]
-pub(super) struct Checkpoint {
-    pub(super) run: Run,
-    pub(super) rates: Rates,
-    pub(super) exchange: Exchange,
+pub(super) struct Settings {
+    pub tolerance: Tolerance,
+    pub events: EventTolerance,
+    pub max_steps: u64,
+    pub accounts: Accounts,
+    pub method: Method,
 }
 
-/// All but the modes, the counts, whether the rates hold and which driver has the run.
-impl Numbers for Run {
-    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        let Self {
-            carrier,
-            s,
-            state,
-            energies,
-            counters,
-            step_size,
-            event_spacing,
-            since_event,
-            tangents,
-            rates_hold: _,
-            start,
-            stepping: _,
-            crowding,
-        } = self;
-        visit_all([carrier, s, state, energies, counters], visit);
-        visit_all([step_size, event_spacing, since_event, tangents, start, crowding], visit);
+impl Settings {
+    pub(super) fn new(scene: &Scene, model: &Model) -> Self {
+        let tolerance = Tolerance::new(model, scene.solver.relative_tolerance, scene.absolute_tolerance());
+        let events = EventTolerance::new(model, &tolerance);
+        Self {
+            tolerance,
+            events,
+            max_steps: scene.solver.max_steps,
+            accounts: Accounts::new(scene),
+            method: scene.solver.method,
+        }
     }
 }
 
-impl Numbers for Checkpoint {
-    fn visit(&mut self, visit: &mut dyn FnMut(&mut f64)) {
-        let Self { run, rates, exchange } = self;
-        visit_all([run, rates, exchange], visit);
-    }
+/// A run of a layer. Everything but `state` can be made anew from the model and the settings.
+#[derive(Clone, Debug)]
+pub(super) struct Run {
+    pub(super) model: Arc<Model>,
+    pub(super) settings: Settings,
+    pub(super) state: RunState,
+    pub(super) workspace: Workspace,
+    /// The record of mode changes, where one is kept.
+    pub(super) mode_changes: Option<Vec<ModeChange>>,
+    /// The record of switches between the methods, where one is kept.
+    pub(super) method_switches: Option<Vec<MethodSwitch>>,
 }
 
-impl Start {
-    /// Refuses where no run can be.
-    pub(crate) fn check(&self) -> Result<(), OutOfRange> {
-        let quantities =
-            [("time", self.time), ("u", self.u), ("w", self.w), ("rate of u", self.u_rate), ("rate of w", self.w_rate)];
-        check_size(&quantities)
-    }
+/// Workspace of the steps of one run: nothing in it outlives a motion.
+#[derive(Clone, Debug)]
+pub(super) struct Workspace {
+    /// Forces in the state evaluated last.
+    pub forces: Forces,
+    pub integrator: Integrator,
+    /// The state within the step tried last.
+    pub interpolated: State,
+    /// At which step length and fraction that is; `None` where it is not of the step tried last.
+    pub interpolated_at: Option<(f64, f64)>,
+    pub dense: DenseWorkspace,
+    pub end_correction: EndCorrection,
+    /// The steps of the motion under way that make no progress.
+    pub stall: Stall,
+    /// The modes before the mode changes under way.
+    pub modes_before: Vec<Mode>,
+    /// The run before the motion under way, and how long its records were.
+    checkpoint: RunState,
+    recorded: [usize; 2],
 }
 
-impl Motion {
-    pub(super) fn check(&self) -> Result<(), OutOfRange> {
-        let quantities = [
-            ("duration", self.duration),
-            ("rate of u", self.u.rate),
-            ("amplitude of u", self.u.amplitude),
-            ("frequency of u", self.u.frequency),
-            ("rate of w", self.w.rate),
-            ("amplitude of w", self.w.amplitude),
-            ("frequency of w", self.w.frequency),
-        ];
-        check_size(&quantities)
+impl Run {
+    /// A run with the layer placed under the carrier at `start`.
+    pub(super) fn new(model: Arc<Model>, settings: Settings, start: &Start) -> Self {
+        let tracked = Tracked { energy: settings.accounts.energy, tangents: settings.accounts.tangents };
+        let steps = match settings.method {
+            Method::Event => Steps::Accurate,
+            Method::Step => Steps::TwoStages,
+            Method::Auto => Steps::Both,
+        };
+        let state = RunState::new(&model, start, settings.method == Method::Step);
+        let workspace = Workspace {
+            forces: Forces::new(&model),
+            integrator: Integrator::new(&model, tracked, steps),
+            interpolated: state.layer.state.clone(),
+            interpolated_at: None,
+            dense: DenseWorkspace::new(&model),
+            end_correction: EndCorrection::new(&model),
+            stall: Stall::new(&model),
+            modes_before: state.layer.state.mode.clone(),
+            checkpoint: state.clone(),
+            recorded: [0; 2],
+        };
+        let mut run = Self { model, settings, state, workspace, mode_changes: None, method_switches: None };
+        run.place_layer();
+        run
     }
-}
 
-fn check_size(quantities: &[(&'static str, f64)]) -> Result<(), OutOfRange> {
-    match quantities.iter().find(|(_, value)| !is_possible(*value)) {
-        Some(&(what, value)) => Err(OutOfRange { what, value }),
-        None => Ok(()),
+    /// Puts the masses at their rest positions, or on the profile, and decides the first modes.
+    fn place_layer(&mut self) {
+        let at = self.state.carrier_position();
+        let carrier = self.state.carrier.at(0.0);
+        let (model, layer, forces) = (&*self.model, &mut self.state.layer.state, &mut self.workspace.forces);
+        place_layer(model, layer, at, &carrier);
+        forces.evaluate(model, layer, &carrier);
+        free_unloaded(model, layer, at, forces);
+        decide_modes(model, layer, forces);
+        self.state.energies.initial = kinetic_energy(model, layer) + elastic_energy(model, layer);
+    }
+
+    /// Memory in bytes, without some hundreds that do not grow with the layer.
+    pub(super) fn bytes(&self) -> usize {
+        let layer = &self.state.layer.state;
+        let (masses, maxwell) = (layer.mode.len(), layer.maxwell.len());
+        // The state, its checkpoint, the one within a step and the stage's.
+        let states = 4 * (masses * (4 * size_of::<f64>() + size_of_val(&layer.surface[0]) + 1));
+        states
+            + 4 * maxwell * size_of::<f64>()
+            + self.workspace.integrator.bytes()
+            + 2 * self.workspace.forces.bytes()
+            + self.workspace.dense.bytes()
+    }
+
+    /// Newton's iterations since the start.
+    pub(super) fn newton_iterations(&self) -> u64 {
+        self.workspace.integrator.iterations()
+    }
+
+    /// Keeps the run as it stands, to roll back to.
+    pub(super) fn keep_checkpoint(&mut self) {
+        self.workspace.checkpoint.copy_from(&self.state);
+        let lengths = (self.mode_changes.as_ref().map(Vec::len), self.method_switches.as_ref().map(Vec::len));
+        self.workspace.recorded = [lengths.0.unwrap_or(0), lengths.1.unwrap_or(0)];
+    }
+
+    /// Goes back to the checkpoint.
+    pub(super) fn roll_back(&mut self) {
+        let [mode_changes, method_switches] = self.workspace.recorded;
+        self.state.copy_from(&self.workspace.checkpoint);
+        if let Some(record) = &mut self.mode_changes {
+            record.truncate(mode_changes);
+        }
+        if let Some(record) = &mut self.method_switches {
+            record.truncate(method_switches);
+        }
+    }
+
+    /// Begins a smooth piece of the carrier's motion. At a kink the damper forces jump, so all modes are decided anew.
+    pub(super) fn enter(&mut self, motion: &Motion) {
+        let state = &mut self.state;
+        let rates = |carrier: &Carrier, s: f64| (carrier.at(s).u_rate, carrier.at(s).w_rate);
+        let before = rates(&state.carrier, state.s);
+        let paths = (motion.u, motion.w);
+        state.carrier = Carrier::new(state.time(), state.displacement(), paths, &self.model.profile);
+        state.s = 0.0;
+        self.workspace.stall.reset();
+        self.workspace.integrator.begin_tangents(motion.duration);
+        if !self.state.rates_valid || rates(&self.state.carrier, 0.0) != before {
+            self.change_modes(0.0);
+        } else if self.workspace.integrator.has_tangents() {
+            self.evaluate_forces();
+            self.refresh_tangents();
+        }
+    }
+
+    /// The impacts due, stops, then every contact decided anew from the forces, which have jumped; and the rates after
+    /// that. Masses within `reach` (m) of the profile count as touching.
+    pub(super) fn change_modes(&mut self, reach: f64) {
+        let carrier = self.state.carrier.at(self.state.s);
+        let at = self.state.carrier_position();
+        let Self { model, state: run, workspace, .. } = self;
+        let (layer, forces) = (&mut run.layer.state, &mut workspace.forces);
+        workspace.modes_before.copy_from_slice(&layer.mode);
+        run.energies.impact += impacts_due(model, layer, at, reach);
+        run.energies.channels.friction += stop_reversed(model, layer);
+        forces.evaluate(model, layer, &carrier);
+        decide_modes(model, layer, forces);
+        workspace.integrator.evaluate_start(model, &mut run.layer, &carrier, forces);
+        run.rates_valid = true;
+        self.refresh_tangents();
+        self.count_mode_changes();
+    }
+
+    /// Counts and records what has changed since the modes before.
+    pub(super) fn count_mode_changes(&mut self) {
+        let time = self.state.time();
+        let modes = self.workspace.modes_before.iter().zip(&self.state.layer.state.mode).enumerate();
+        for (mass, (from, to)) in modes.filter(|(_, (from, to))| from != to) {
+            self.state.counters.events += 1;
+            if let Some(record) = &mut self.mode_changes {
+                record.push(ModeChange { time, mass, from: from.number(), to: to.number() });
+            }
+        }
+    }
+
+    /// Evaluates the forces as the run stands; the carrier.
+    pub(super) fn evaluate_forces(&mut self) -> CarrierPoint {
+        let carrier = self.state.carrier.at(self.state.s);
+        self.workspace.forces.evaluate(&self.model, &self.state.layer.state, &carrier);
+        carrier
+    }
+
+    /// F_z now, N.
+    pub(super) fn force_z(&mut self) -> f64 {
+        self.evaluate_forces();
+        self.workspace.forces.on_carrier_z()
+    }
+
+    /// Whether F_z has reached the force `until`, N.
+    pub(super) fn has_risen(&mut self, until: Option<f64>) -> bool {
+        until.is_some_and(|force| self.force_z() >= force)
+    }
+
+    /// Ḟ_x and Ḟ_z, N/s, from the left; at the start, from the right.
+    pub(super) fn force_rates(&mut self) -> (f64, f64) {
+        if !self.state.rates_valid {
+            let carrier = self.evaluate_forces();
+            let Self { model, state, workspace, .. } = self;
+            workspace.integrator.evaluate_start(model, &mut state.layer, &carrier, &workspace.forces);
+        }
+        let (layer, carrier) = (&self.state.layer, self.state.carrier.at(self.state.s));
+        layer.rates.on_carrier(&self.model, &layer.state.maxwell, &carrier)
+    }
+
+    /// Finds the tangents of the motion that ends here.
+    pub(super) fn find_tangents(&mut self) {
+        if self.workspace.integrator.has_tangents() {
+            self.state.tangents = self.workspace.integrator.tangents(&self.model, self.state.s);
+        }
+    }
+
+    /// The tangents' rates from the forces evaluated last.
+    fn refresh_tangents(&mut self) {
+        let Self { model, state, workspace, .. } = self;
+        workspace.integrator.refresh_tangents(model, &state.layer, &workspace.forces, state.s);
+    }
+
+    /// See [`Simulation::relax_dashpots`](super::Simulation::relax_dashpots).
+    pub(super) fn relax_dashpots(&mut self, means: &[f64], time: f64) -> f64 {
+        let mut borne = 0.0;
+        for row in self.model.rows.iter().filter(|row| !row.kind.is_along_x()) {
+            let x = time / row.relaxation_time;
+            let left = if x > 0.0 { x / x.exp_m1() } else { 1.0 };
+            let elements = &mut self.state.layer.state.maxwell[row.range.clone()];
+            for (a, mean) in elements.iter_mut().zip(&means[row.range.clone()]) {
+                *a -= left * mean;
+            }
+            if row.kind == LinkKind::Vertical {
+                borne += row.stiffness * means[row.range.clone()].iter().sum::<f64>();
+            }
+        }
+        // The forces have jumped: the next motion decides all contacts anew.
+        self.state.rates_valid = false;
+        borne
     }
 }

@@ -1,118 +1,106 @@
-//! The time-stepping driver: steps with their modes held, mode changes settled at their ends.
+//! The time-stepping method: steps of two stages with their modes held, any number of mode changes corrected at the end
+//! of each.
 
+use super::SimulationError;
+use super::driver::{AFTER_FAILURE, StepBounds, TrialStep, WorkLimit};
 use super::run::Run;
-use super::stepping::{AFTER_FAILURE, OF_PERIOD, Stride, fitted};
-use super::{Simulation, SimulationError};
 use crate::contact::{End, FixedModeStep, longest_weakening};
-use crate::integrator::{Attempt, Integrator, TWO_STAGES, TwoStageDense};
-use crate::model::{ChannelEnergies, Model};
+use crate::integrator::{Attempt, TWO_STAGES, TwoStageDense};
+use crate::model::ChannelEnergies;
 
 /// A new step is this share of what the error allows. Mode changes come unforeseen, so it is less than in smooth
 /// motion.
 const SAFETY: f64 = 0.8;
-/// The least and the most by which one step differs from the one before. A step that grows slowly runs into fewer
-/// changes that are too late.
+/// The least and the most by which one step differs from the one before. A step that grows slowly meets fewer changes
+/// that are too late.
 const GROWTH: (f64, f64) = (0.2, 2.0);
 
-impl Simulation {
-    /// The next step, by the driver whose turn it is.
-    pub(super) fn next_step(&mut self, duration: f64, work: &mut u64) -> Result<Stride, SimulationError> {
-        if self.run.stepping { self.time_step(duration, work) } else { self.step(duration, work) }
-    }
-
-    /// Tries steps until one is good. The shortest is taken whatever its error: the changes at its end are
-    /// settled as those of any other.
-    fn time_step(&mut self, duration: f64, work: &mut u64) -> Result<Stride, SimulationError> {
-        let remaining = duration - self.run.s;
-        let shortest = 4.0 * f64::EPSILON * (self.run.s + 1e-3 * duration);
-        let longest = OF_PERIOD * self.run.carrier.shortest_period();
-        if longest <= shortest {
-            return Err(SimulationError::StepTooSmall { time: self.run.time(), step: longest });
-        }
-        let mut h = fitted(self.run.step_size.min(longest), remaining);
+impl Run {
+    /// Tries steps until one is good. The shortest is accepted whatever its error: its mode changes are corrected as
+    /// those of any other.
+    pub(super) fn next_time_step(
+        &mut self,
+        bounds: &StepBounds,
+        work: &mut WorkLimit,
+    ) -> Result<TrialStep, SimulationError> {
+        let mut h = bounds.fit(self.state.step_size.min(bounds.longest));
         loop {
             self.count_work(work)?;
-            if let Some(attempt) = self.try_time_step(h, h <= shortest) {
+            if let Some(attempt) = self.try_time_step(h, h <= bounds.shortest) {
                 let grown = h * growth(attempt.error);
-                let next = if h < remaining { grown } else { grown.max(self.run.step_size) };
-                self.run.step_size = next.min(self.longest_weakening());
-                return Ok(Stride { h, share: 1.0 });
+                let next = if h < bounds.remaining { grown } else { grown.max(self.state.step_size) };
+                self.state.step_size = next.min(self.longest_weakening());
+                return Ok(TrialStep { h, share: 1.0 });
             }
-            if h <= shortest {
-                return Err(SimulationError::StepTooSmall { time: self.run.time(), step: h });
+            if h <= bounds.shortest {
+                return Err(self.step_too_small(h));
             }
-            h = self.run.step_size.max(shortest);
+            h = self.state.step_size.max(bounds.shortest);
         }
     }
 
-    /// The longest step, s, that lets contacts swing up whose friction falls with the speed they have at the end of the
-    /// step tried last.
+    /// The longest step, s, that resolves the instability of contacts whose friction falls with the speed that they
+    /// have at the end of the step tried last.
     fn longest_weakening(&self) -> f64 {
-        longest_weakening(&self.model, self.integrator.end())
+        longest_weakening(&self.model, self.workspace.integrator.end())
     }
 
-    /// Tries a step of length `h`; `None` where it is no good, and the run's step size is then a better one.
+    /// Tries a step of length `h`; `None` where it is rejected: the run's step size is then a better length.
     pub(super) fn try_time_step(&mut self, h: f64, any_error: bool) -> Option<Attempt> {
-        self.within_at = None;
-        let (run, tolerance) = (&self.run, &self.settings.tolerance);
-        let attempt = self.integrator.attempt_two_stages(&self.model, &run.state, &run.carrier, (run.s, h), tolerance);
+        let Self { model, settings, state, workspace, .. } = self;
+        workspace.interpolated_at = None;
+        let span = (state.s, h);
+        let attempt =
+            workspace.integrator.attempt_two_stages(model, &state.layer, &state.carrier, span, &settings.tolerance);
         let attempt = attempt.ok().map(|attempt| self.with_lateness(h, attempt));
         let error = attempt.map_or(f64::NAN, |attempt| attempt.error);
         if error <= 1.0 || (any_error && error.is_finite()) {
             return attempt;
         }
-        self.run.counters.rejected += 1;
-        self.run.step_size = h * if error.is_finite() { growth(error).min(SAFETY) } else { AFTER_FAILURE };
+        self.state.counters.rejected += 1;
+        self.state.step_size = h * if error.is_finite() { growth(error).min(SAFETY) } else { AFTER_FAILURE };
         None
     }
 
-    /// The step of length `h` tried last with what the lateness of its mode changes adds to its error.
+    /// The attempt of length `h` with the error that the lateness of its mode changes adds.
     fn with_lateness(&mut self, h: f64, attempt: Attempt) -> Attempt {
-        let step = within(&self.model, &self.run, &self.integrator, h);
-        let late = self.step_end.find(&step, &self.settings.tolerance);
+        let Self { model, settings, state, workspace, .. } = self;
+        let (stages, end) = (workspace.integrator.stages(), workspace.integrator.end());
+        let (start, end) = ((&state.layer.state, &stages[1]), (end, &stages[TWO_STAGES - 1]));
+        let step = TwoStageDense::new(model, &state.carrier, (state.s, h), start, end);
+        let late = workspace.end_correction.find(&step, &settings.tolerance);
         Attempt { error: attempt.error.hypot(late), ..attempt }
     }
 
-    /// Settles the mode changes of the step of length `h` tried last, and takes it.
+    /// Accepts the step of length `h` tried last, which ends at the time `end` of the piece, with its mode changes
+    /// corrected.
     pub(super) fn accept_time_step(&mut self, h: f64, end: f64) {
-        let accounts = self.settings.accounts.energy;
-        let gain = accounts.then(|| self.integrator.two_stage_energies(&self.model, &self.run.state, h, 1.0));
-        let run = &mut self.run;
-        self.within_at = None;
-        self.within.mode.copy_from_slice(&run.state.mode);
-        let (state, forces, rates, first) = self.integrator.open_end();
-        let span = (run.s, h);
-        let step = FixedModeStep { model: &self.model, carrier: &run.carrier, span, start: &run.state, first };
-        let settled = self.step_end.settle(step, End { state, forces, rates });
+        let Self { model, settings, state, workspace, .. } = self;
+        let integrator = &mut workspace.integrator;
+        let start = &state.layer.state;
+        let gain = settings.accounts.energy.then(|| integrator.two_stage_energies(model, start, h, 1.0));
+        workspace.interpolated_at = None;
+        workspace.modes_before.copy_from_slice(&start.mode);
+        let (end_state, forces, rates, first) = integrator.open_end();
+        let step = FixedModeStep { model, carrier: &state.carrier, span: (state.s, h), start, first };
+        let corrected = workspace.end_correction.settle(step, End { state: end_state, forces, rates });
         if let Some(gain) = gain {
-            let energies = &mut run.energies;
+            let energies = &mut state.energies;
             energies.channels.add(&gain);
-            energies.channels.add(&settled.map_or_else(ChannelEnergies::default, |settled| settled.channels));
-            energies.impact += settled.map_or(0.0, |settled| settled.impact);
+            energies.channels.add(&corrected.map_or_else(ChannelEnergies::default, |corrected| corrected.channels));
+            energies.impact += corrected.map_or(0.0, |corrected| corrected.impact);
         }
-        self.integrator.accept_two_stages(&mut run.state);
-        run.counters.steps += 1;
-        run.s = end;
-        if settled.is_some() {
-            self.integrator.refresh_tangents_after(&self.model, &run.state, end);
+        integrator.accept_two_stages(&mut state.layer);
+        state.counters.steps += 1;
+        state.s = end;
+        if corrected.is_some() {
+            integrator.refresh_tangents_after(model, &state.layer, end);
             self.count_mode_changes();
         }
     }
-
-    /// The state at the fraction `theta` of the time step of length `h` tried last, into `within`.
-    pub(super) fn look_within_time_step(&mut self, h: f64, theta: f64) {
-        self.integrator.first_stage_maxwell(&self.model, &self.run.state, &mut self.within.maxwell);
-        within(&self.model, &self.run, &self.integrator, h).state_at(theta, &mut self.within);
-    }
 }
 
-fn within<'a>(model: &'a Model, run: &'a Run, integrator: &'a Integrator, h: f64) -> TwoStageDense<'a> {
-    let stages = integrator.stages();
-    let (start, end) = ((&run.state, &stages[1]), (integrator.end(), &stages[TWO_STAGES - 1]));
-    TwoStageDense::new(model, &run.carrier, (run.s, h), start, end)
-}
-
-/// How much longer or shorter a step may be than one with this error over the tolerance.
+/// The ratio of the next step to one with this error over the tolerance.
 fn growth(error: f64) -> f64 {
     (SAFETY / error.sqrt()).clamp(GROWTH.0, GROWTH.1)
 }

@@ -22,10 +22,10 @@ fn slide(tolerance: &str, rows: u32) -> Result<usize, SimulationError> {
     }
     let press = Motion { duration: 4.0e-3, u: STILL, w: Path { rate: -0.025, ..STILL } };
     let mut simulation = Simulation::new(&scene, &Start { w_rate: press.w.rate, ..Start::default() })?;
-    simulation.advance_until_force(&press, PRESSED, &[], |_, _| ())?;
+    simulation.advance_observed(&press, Some(PRESSED), &[], |_, _| ())?;
     let times: Vec<f64> = (1..=rows).map(|i| SLIDE.duration * f64::from(i) / f64::from(rows)).collect();
     let mut seen = 0;
-    simulation.advance_observed(&SLIDE, &times, |_, _| seen += 1)?;
+    simulation.advance_observed(&SLIDE, None, &times, |_, _| seen += 1)?;
     Ok(seen)
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path as FilePath;
 
-use asperity::outputs::{self, Variable};
+use asperity::outputs::{self, Snapshot, Variable};
 use asperity::scene::{Path, Scene};
 use asperity::simulation::{ModeChange, Motion, Simulation, Start};
 
@@ -60,13 +60,13 @@ impl Run {
         let indices: Vec<usize> = names.iter().map(|name| self.index(name)).collect();
         let mut columns = vec![Vec::with_capacity(times.len()); names.len()];
         let (variables, values) = (&self.variables, &mut self.values);
-        let observe = |_: f64, simulation: &mut Simulation| {
-            simulation.evaluate(variables, values);
+        let observe = |_: f64, snapshot: &Snapshot<'_>| {
+            snapshot.evaluate(variables, values);
             for (column, &index) in columns.iter_mut().zip(&indices) {
                 column.push(values[index]);
             }
         };
-        self.simulation.advance_observed(motion, times, observe).unwrap();
+        self.simulation.advance_observed(motion, None, times, observe).unwrap();
         columns
     }
 

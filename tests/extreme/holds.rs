@@ -3,7 +3,7 @@
 use asperity::model::Model;
 use asperity::outputs::{Output, Variable};
 use asperity::scene::{RateShear, Scene};
-use asperity::simulation::Saved;
+use asperity::simulation::SimulationState;
 
 use crate::run::{MOST_STEPS, Outcome};
 
@@ -142,7 +142,12 @@ impl Limits {
     }
 
     /// A run that stopped left everything as it was.
-    pub fn kept(&self, before: &(Vec<f64>, Saved), after: &(Vec<f64>, Saved), findings: &mut Vec<Finding>) {
+    pub fn kept(
+        &self,
+        before: &(Vec<f64>, SimulationState),
+        after: &(Vec<f64>, SimulationState),
+        findings: &mut Vec<Finding>,
+    ) {
         let same = before.0.iter().zip(&after.0).all(|(a, b)| a.to_bits() == b.to_bits());
         if !same || before.1 != after.1 {
             findings

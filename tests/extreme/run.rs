@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use asperity::outputs::{self, Variable};
+use asperity::outputs::{self, Snapshot, Variable};
 use asperity::scene::Scene;
 use asperity::simulation::{Motion, Simulation, SimulationError, Start};
 use toml::{Table, Value};
@@ -121,15 +121,15 @@ pub fn by_library(case: &Case, method: &str, tight: f64) -> Outcome {
         Ok(simulation) => simulation,
         Err(error) => return watch.end(Some(error.into())),
     };
-    watch.look(&mut simulation);
+    watch.look(&simulation.snapshot());
     for phase in &scene.excitation {
         let motion = Motion { duration: phase.duration, u: phase.u, w: phase.w };
         let rows: Vec<f64> = (1..=case.rows)
             .map(|i| if i == case.rows { phase.duration } else { phase.duration * f64::from(i) / f64::from(case.rows) })
             .collect();
-        let before = (watch.values_of(&mut simulation), simulation.save());
-        if let Err(error) = simulation.advance_observed(&motion, &rows, |_, simulation| watch.look(simulation)) {
-            let after = (watch.values_of(&mut simulation), simulation.save());
+        let before = (watch.values_of(&simulation.snapshot()), simulation.state());
+        if let Err(error) = simulation.advance_observed(&motion, None, &rows, |_, snapshot| watch.look(snapshot)) {
+            let after = (watch.values_of(&simulation.snapshot()), simulation.state());
             watch.limits.kept(&before, &after, &mut watch.outcome.findings);
             return watch.end(Some(error.into()));
         }
@@ -165,10 +165,10 @@ impl Watch {
         }
     }
 
-    fn look(&mut self, simulation: &mut Simulation) {
-        simulation.evaluate(&self.variables, &mut self.values);
-        let (u, w) = simulation.carrier();
-        self.note(simulation.time(), [u, w]);
+    fn look(&mut self, snapshot: &Snapshot<'_>) {
+        snapshot.evaluate(&self.variables, &mut self.values);
+        let (u, w) = snapshot.displacement;
+        self.note(snapshot.time, [u, w]);
     }
 
     /// Takes `values` as the row at `time`, with the carrier at u and w.
@@ -182,8 +182,8 @@ impl Watch {
     }
 
     /// All values but the processor time.
-    pub fn values_of(&mut self, simulation: &mut Simulation) -> Vec<f64> {
-        simulation.evaluate(&self.variables, &mut self.values);
+    pub fn values_of(&mut self, snapshot: &Snapshot<'_>) -> Vec<f64> {
+        snapshot.evaluate(&self.variables, &mut self.values);
         let counts = self.variables.iter().zip(&self.values);
         counts.filter(|(variable, _)| variable.name != "solver.run_time").map(|(_, value)| *value).collect()
     }

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::Path as FilePath;
 
-use asperity::outputs::{Output, Variable, variables};
+use asperity::outputs::{Output, Snapshot, Variable, variables};
 use asperity::scene::{Friction, LinkKind, OutputGroup, Path, RateShear, Scene};
 use asperity::simulation::{Motion, Simulation, SimulationError, Start};
 
@@ -80,11 +80,11 @@ impl Case {
     pub(crate) fn run(&self, rows: usize) -> Result<Record, SimulationError> {
         let mut record = Record::new(self.variables());
         let mut simulation = self.started();
-        record.note(&mut simulation);
+        record.note(&simulation.snapshot());
         for motion in &self.motions {
             let time = |i: usize| if i == rows { motion.duration } else { motion.duration * i as f64 / rows as f64 };
             let times: Vec<f64> = (1..=rows).map(time).collect();
-            simulation.advance_observed(motion, &times, |_, now| record.note(now))?;
+            simulation.advance_observed(motion, None, &times, |_, now| record.note(now))?;
         }
         Ok(record)
     }
@@ -206,11 +206,11 @@ impl Record {
         Self { variables, rows: Vec::new(), carrier: Vec::new() }
     }
 
-    pub(crate) fn note(&mut self, simulation: &mut Simulation) {
+    pub(crate) fn note(&mut self, snapshot: &Snapshot<'_>) {
         let mut values = vec![0.0; self.variables.len()];
-        simulation.evaluate(&self.variables, &mut values);
+        snapshot.evaluate(&self.variables, &mut values);
         self.rows.push(values);
-        self.carrier.push(simulation.carrier());
+        self.carrier.push(snapshot.displacement);
     }
 
     /// The column of an output that the scene has; `None` where it has not.

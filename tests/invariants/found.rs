@@ -79,9 +79,9 @@ fn a_restored_run_is_saved_as_the_one_that_went_on() {
     let case = Case::of_text(text, start);
     let mut run = case.started();
     for motion in &case.motions {
-        let mut restored = Simulation::restore(&case.scene, &run.save()).unwrap();
+        let mut restored = Simulation::restore(&case.scene, &run.state()).unwrap();
         run.advance(motion).unwrap();
         restored.advance(motion).unwrap();
-        assert_eq!(run.save(), restored.save());
+        assert_eq!(run.state(), restored.state());
     }
 }

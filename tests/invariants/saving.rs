@@ -1,7 +1,7 @@
 //! A run taken up elsewhere, or watched, is the same run.
 
 use asperity::scene::OutputGroup;
-use asperity::simulation::{Motion, Saved, Simulation, SimulationError};
+use asperity::simulation::{Motion, Simulation, SimulationError, SimulationState};
 use proptest::prelude::*;
 
 use crate::case::{Case, Record};
@@ -14,9 +14,9 @@ use crate::trust::{Compared, Trusted};
 enum Interruption {
     None,
     Clone,
-    /// Saved, and restored at once.
+    /// SimulationState, and restored at once.
     Restore,
-    /// Saved as bytes, as the FMU's serialised state holds them.
+    /// SimulationState as bytes, as the FMU's serialised state holds them.
     Bytes,
     /// Tried with another motion first, and taken back to where it was.
     Rollback,
@@ -26,7 +26,11 @@ const INTERRUPTIONS: [Interruption; 4] =
     [Interruption::Clone, Interruption::Restore, Interruption::Bytes, Interruption::Rollback];
 
 /// Bits of all outputs after each piece, and what is saved in the end: motion `at` is cut at `share` of its duration.
-fn run(case: &Case, (at, share): (usize, f64), interruption: Interruption) -> Result<(Record, Saved), TestCaseError> {
+fn run(
+    case: &Case,
+    (at, share): (usize, f64),
+    interruption: Interruption,
+) -> Result<(Record, SimulationState), TestCaseError> {
     let fail = |error| TestCaseError::fail(format!("{error}"));
     let mut record = Record::new(case.variables());
     let mut simulation = case.started();
@@ -35,25 +39,25 @@ fn run(case: &Case, (at, share): (usize, f64), interruption: Interruption) -> Re
         for piece in pieces {
             simulation = interrupted(case, simulation, interruption)?;
             simulation.advance(&Motion { duration: motion.duration * piece, ..*motion }).map_err(fail)?;
-            record.note(&mut simulation);
+            record.note(&simulation.snapshot());
         }
     }
-    Ok((record, simulation.save()))
+    Ok((record, simulation.state()))
 }
 
 fn interrupted(case: &Case, simulation: Simulation, interruption: Interruption) -> Result<Simulation, TestCaseError> {
-    let restored = |saved: &Saved| Simulation::restore(&case.scene, saved);
-    let restored = |saved: &Saved| restored(saved).map_err(|error| TestCaseError::fail(format!("{error}")));
+    let restored = |saved: &SimulationState| Simulation::restore(&case.scene, saved);
+    let restored = |saved: &SimulationState| restored(saved).map_err(|error| TestCaseError::fail(format!("{error}")));
     match interruption {
         Interruption::None => Ok(simulation),
         Interruption::Clone => Ok(simulation.clone()),
-        Interruption::Restore => restored(&simulation.save()),
+        Interruption::Restore => restored(&simulation.state()),
         Interruption::Bytes => {
-            let bytes = postcard::to_stdvec(&simulation.save()).unwrap();
+            let bytes = postcard::to_stdvec(&simulation.state()).unwrap();
             restored(&postcard::from_bytes(&bytes).unwrap())
         }
         Interruption::Rollback => {
-            let saved = simulation.save();
+            let saved = simulation.state();
             let mut tried = simulation;
             let Motion { duration, u, w } = case.motions[0];
             tried.advance(&Motion { duration, u: w, w: u }).map_err(|error| TestCaseError::fail(format!("{error}")))?;

@@ -24,13 +24,13 @@ pub(crate) fn straight(case: &Case) -> Case {
 fn in_pieces(case: &Case, shares: &[f64]) -> Result<Record, SimulationError> {
     let mut record = Record::new(case.variables());
     let mut simulation = case.started();
-    record.note(&mut simulation);
+    record.note(&simulation.snapshot());
     let sum: f64 = shares.iter().sum();
     for motion in &case.motions {
         for share in shares {
             simulation.advance(&Motion { duration: motion.duration * share / sum, ..*motion })?;
         }
-        record.note(&mut simulation);
+        record.note(&simulation.snapshot());
     }
     Ok(record)
 }

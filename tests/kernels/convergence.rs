@@ -129,7 +129,7 @@ fn a_free_chain_converges_with_order_five() {
     let errors = [20, 40, 80].map(|steps| {
         let mut stepper = Stepper::new(layer.model(), PATHS, start.clone(), 1e-12);
         stepper.run(1.0, steps);
-        differences(&stepper.state, &expected)
+        differences(&stepper.start.state, &expected)
     });
     for part in 0..3 {
         let order = last_order(&errors.map(|error| error[part]));
@@ -210,7 +210,7 @@ pub fn slipping_errors<const N: usize>(
             let paths = (at_rate(1.5 * velocity), at_rate(0.0));
             let mut stepper = method(Stepper::new(layer.model(), paths, start.clone(), tolerance));
             stepper.run(0.4, steps);
-            let state = &stepper.state;
+            let state = &stepper.start.state;
             let xi = 1.5 * velocity * 0.4 + state.elongation_x[0];
             let a = DVector::from_column_slice(&state.maxwell);
             [(xi - place).abs(), (state.velocity_x[0] - speed).abs(), (a - &maxwell).amax()]

@@ -47,7 +47,7 @@ fn the_inside_of_a_slipping_step_has_its_order() {
         if time > 0.0 {
             fine.run(time, 40);
         }
-        fine.state
+        fine.start.state
     };
     let mut stepper = Stepper::new(layer.model(), paths, start.clone(), 1e-14);
     let errors = [1e-1, 5e-2, 2.5e-2].map(|h| worst(&mut stepper, h, exact));
@@ -64,7 +64,7 @@ fn the_ends_of_a_step_are_the_states_there() {
         let start = if layer.masses == 1 { sliding(&layer.model(), 2.0, 0.0) } else { displaced(&layer.model()) };
         let mut stepper = Stepper::new(layer.model(), paths, start, 1e-13);
         stepper.attempt(0.01);
-        for (theta, expected) in [(0.0, &stepper.state), (1.0, stepper.integrator.end())] {
+        for (theta, expected) in [(0.0, &stepper.start.state), (1.0, stepper.integrator.end())] {
             // Roundings of places up to 0.3 m, over the step's length where a velocity is their difference.
             let [place, velocity, maxwell] = differences(&stepper.within(0.01, theta), expected);
             assert!(place < 2e-16 && velocity < 1e-13 && maxwell < 1e-15, "{place:e} {velocity:e} {maxwell:e}");

@@ -3,11 +3,11 @@
 use std::path::Path as FilePath;
 
 use asperity::integrator::{
-    Attempt, DenseOutput, DenseWorkspace, Integrator, Steps, TWO_STAGES, Tolerance, Tracked, TwoStageDense,
+    Attempt, DenseOutput, DenseWorkspace, Integrator, StepStart, Steps, TWO_STAGES, Tolerance, Tracked, TwoStageDense,
 };
 use asperity::model::{Carrier, Forces, LinkKind, Model, State};
+use asperity::outputs::Snapshot;
 use asperity::scene::{Path, RateShear, Scene};
-use asperity::simulation::Simulation;
 
 /// A spring, a damper and Maxwell elements (c_j, τ_j).
 #[derive(Clone, Debug, Default)]
@@ -111,7 +111,7 @@ pub fn points(x: &[f64], z: &[f64], periodic: bool) -> String {
 pub struct Stepper {
     pub model: Model,
     pub carrier: Carrier,
-    pub state: State,
+    pub start: StepStart,
     pub integrator: Integrator,
     pub tolerance: Tolerance,
     pub s: f64,
@@ -132,10 +132,11 @@ impl Stepper {
         let carrier = Carrier::new(0.0, (0.0, 0.0), (u, w), &model.profile);
         let tolerance = Tolerance::new(&model, tolerance, tolerance);
         let mut forces = Forces::new(&model);
-        let mut integrator = Integrator::new(&model, Tracked::default(), Steps::Both);
+        let integrator = Integrator::new(&model, Tracked::default(), Steps::Both);
         forces.evaluate(&model, &state, &carrier.at(0.0));
-        integrator.begin(&model, &state, &carrier.at(0.0), &forces);
-        Self { model, carrier, state, integrator, tolerance, s: 0.0, two_stages: false }
+        let mut start = StepStart { state, ..StepStart::new(&model) };
+        integrator.evaluate_start(&model, &mut start, &carrier.at(0.0), &forces);
+        Self { model, carrier, start, integrator, tolerance, s: 0.0, two_stages: false }
     }
 
     /// The same by the method of two stages.
@@ -147,9 +148,9 @@ impl Stepper {
     pub fn attempt(&mut self, h: f64) -> Attempt {
         let (integrator, span) = (&mut self.integrator, (self.s, h));
         if self.two_stages {
-            integrator.attempt_two_stages(&self.model, &self.state, &self.carrier, span, &self.tolerance).unwrap()
+            integrator.attempt_two_stages(&self.model, &self.start, &self.carrier, span, &self.tolerance).unwrap()
         } else {
-            integrator.attempt(&self.model, &self.state, &self.carrier, span, &self.tolerance).unwrap()
+            integrator.attempt(&self.model, &self.start, &self.carrier, span, &self.tolerance).unwrap()
         }
     }
 
@@ -157,9 +158,9 @@ impl Stepper {
     pub fn step(&mut self, h: f64) {
         self.attempt(h);
         if self.two_stages {
-            self.integrator.accept_two_stages(&mut self.state);
+            self.integrator.accept_two_stages(&mut self.start);
         } else {
-            self.integrator.accept(&mut self.state);
+            self.integrator.accept(&mut self.start);
         }
         self.s += h;
     }
@@ -172,12 +173,12 @@ impl Stepper {
 
     /// The step of length `h` tried last, seen from within.
     pub fn dense(&self, h: f64) -> DenseOutput<'_> {
-        self.integrator.dense(&self.model, &self.carrier, &self.state, (self.s, h))
+        self.integrator.dense(&self.model, &self.carrier, &self.start, (self.s, h))
     }
 
     /// The state at the fraction `theta` of the step of length `h` tried last.
     pub fn within(&self, h: f64, theta: f64) -> State {
-        let mut state = self.state.clone();
+        let mut state = self.start.state.clone();
         self.dense(h).state_at(theta, &mut DenseWorkspace::new(&self.model), &mut state);
         state
     }
@@ -186,10 +187,10 @@ impl Stepper {
 impl Stepper {
     /// The state at the fraction `theta` of the step of two stages of length `h` tried last.
     pub fn within_two_stages(&self, h: f64, theta: f64) -> State {
-        let mut state = self.state.clone();
+        let mut state = self.start.state.clone();
         let stages = self.integrator.stages();
-        let (start, end) = ((&self.state, &stages[1]), (self.integrator.end(), &stages[TWO_STAGES - 1]));
-        self.integrator.first_stage_maxwell(&self.model, &self.state, &mut state.maxwell);
+        let (start, end) = ((&self.start.state, &stages[1]), (self.integrator.end(), &stages[TWO_STAGES - 1]));
+        self.integrator.first_stage_maxwell(&self.model, &self.start.state, &mut state.maxwell);
         TwoStageDense::new(&self.model, &self.carrier, (self.s, h), start, end).state_at(theta, &mut state);
         state
     }
@@ -218,17 +219,17 @@ pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
 }
 
 /// Every output of a run but the processor time, as bits.
-pub fn outputs(scene: &Scene, simulation: &mut Simulation) -> Vec<(String, u64)> {
+pub fn outputs(scene: &Scene, snapshot: &Snapshot<'_>) -> Vec<(String, u64)> {
     let variables = asperity::outputs::variables(scene);
     let mut values = vec![0.0; variables.len()];
-    simulation.evaluate(&variables, &mut values);
+    snapshot.evaluate(&variables, &mut values);
     let named = variables.into_iter().zip(values);
     named.filter(|(v, _)| v.name != "solver.run_time").map(|(v, value)| (v.name, value.to_bits())).collect()
 }
 
 /// The value of one output.
-pub fn output(scene: &Scene, simulation: &mut Simulation, name: &str) -> f64 {
-    let outputs = outputs(scene, simulation);
+pub fn output(scene: &Scene, snapshot: &Snapshot<'_>, name: &str) -> f64 {
+    let outputs = outputs(scene, snapshot);
     f64::from_bits(outputs.iter().find(|(other, _)| other == name).unwrap_or_else(|| panic!("no {name}")).1)
 }
 

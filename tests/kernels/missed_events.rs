@@ -1,5 +1,6 @@
 //! Touches a thousandth of a step long and a nanometre deep, in whole runs.
 
+use asperity::outputs::Snapshot;
 use asperity::scene::{Path, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
 
@@ -14,9 +15,9 @@ fn fly(layer: &Layer, u_rate: f64) -> (f64, f64, usize) {
     let mut simulation = Simulation::new(&scene, &start).unwrap();
     simulation.record_mode_changes(true);
     simulation.advance(&Motion { duration: 2.0, u: at_rate(u_rate), w: Path::default() }).unwrap();
-    let steps = output(&scene, &mut simulation, "solver.steps");
+    let steps = output(&scene, &simulation.snapshot(), "solver.steps");
     let changes = simulation.take_mode_changes().len();
-    (output(&scene, &mut simulation, "dissipation.E_impact"), 2.0 / steps, changes)
+    (output(&scene, &simulation.snapshot(), "dissipation.E_impact"), 2.0 / steps, changes)
 }
 
 /// A free mass without links flies straight at 1 m/s through the crest of `surface` at a height above it, m.
@@ -69,13 +70,13 @@ fn throw(scene: &Scene) -> (f64, f64, f64, usize) {
     let motion = Motion { duration: 3.0, u: Path::default(), w: Path::default() };
     let times: Vec<f64> = (0..5000).map(|i| 1.52 + 2e-5 * f64::from(i)).collect();
     let mut lowest = f64::INFINITY;
-    let observe = |_: f64, simulation: &mut Simulation| {
-        lowest = lowest.min(output(scene, simulation, "element[1].z"));
+    let observe = |_: f64, snapshot: &Snapshot<'_>| {
+        lowest = lowest.min(output(scene, snapshot, "element[1].z"));
     };
-    simulation.advance_observed(&motion, &times, observe).unwrap();
-    let steps = output(scene, &mut simulation, "solver.steps");
+    simulation.advance_observed(&motion, None, &times, observe).unwrap();
+    let steps = output(scene, &simulation.snapshot(), "solver.steps");
     let changes = simulation.take_mode_changes().len();
-    (output(scene, &mut simulation, "dissipation.E_impact"), lowest, steps, changes)
+    (output(scene, &simulation.snapshot(), "dissipation.E_impact"), lowest, steps, changes)
 }
 
 /// A throw that ends a nanometre below a flat surface, for 3e-4 s: the touch is found in steps of a third of a second.

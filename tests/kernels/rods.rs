@@ -46,7 +46,7 @@ fn run(scene: &Scene) -> Result<Shown, SimulationError> {
     for phase in &scene.excitation {
         let motion = Motion { duration: phase.duration, u: phase.u, w: phase.w };
         let times: Vec<f64> = (1..=100).map(|i| phase.duration * f64::from(i) / 100.0).collect();
-        simulation.advance_observed(&motion, &times, |_, now| {
+        simulation.advance_observed(&motion, None, &times, |_, now| {
             now.evaluate(&variables, &mut values);
             for (_, value) in variables.iter().zip(&values).filter(|(one, _)| one.name.ends_with("F_N")) {
                 least_normal = least_normal.min(*value);

@@ -32,7 +32,7 @@ fn the_error_of_a_step_does_not_depend_on_short_relaxation_times() {
     let error = |layer: &Layer, start: &State, reference: &State| {
         let mut stepper = Stepper::new(layer.model(), PATHS, start.clone(), 1e-12);
         stepper.step(h);
-        differences(&stepper.state, reference)
+        differences(&stepper.start.state, reference)
     };
     let free = State { maxwell: Vec::new(), ..on_slow_manifold(0.0) };
     let unforced = Exact::new(&plain).at(&free, h);
@@ -74,8 +74,9 @@ pub fn falls_onto_its_slow_manifold(method: Method, most: f64) {
         let mut stepper = method(Stepper::new(oscillator(tau).model(), PATHS, state, 1e-12));
         stepper.step(h);
         let carrier = stepper.carrier.at(h);
-        let rates = [stepper.state.velocity_z[0] - carrier.w_rate, stepper.state.velocity_x[0] - carrier.u_rate];
-        for (a, rate) in stepper.state.maxwell.iter().zip(rates) {
+        let rates =
+            [stepper.start.state.velocity_z[0] - carrier.w_rate, stepper.start.state.velocity_x[0] - carrier.u_rate];
+        for (a, rate) in stepper.start.state.maxwell.iter().zip(rates) {
             let off = (a - tau * rate).abs();
             assert!(off < most * tau / h, "{tau:e}: {off:e}");
         }
@@ -106,8 +107,8 @@ pub fn stops_within_a_step(method: Method, most: f64, rounding: impl Fn(f64, f64
             let paths = (at_rate(0.0), at_rate(0.0));
             let mut stepper = method(Stepper::new(layer.model(), paths, start.clone(), 1e-12));
             stepper.step(h);
-            let moved = differences(&stepper.state, &start)[0];
-            let speed = stepper.state.velocity_x[0].abs().max(stepper.state.velocity_z[0].abs());
+            let moved = differences(&stepper.start.state, &start)[0];
+            let speed = stepper.start.state.velocity_x[0].abs().max(stepper.start.state.velocity_z[0].abs());
             // m = 1 kg at most.
             assert!(speed < most / (h * damping), "{damping:e}: {speed:e}");
             assert!(moved < 1.1 / damping + rounding(h * h, damping), "{damping:e}: {moved:e}");
@@ -140,5 +141,5 @@ pub fn never_gains_energy(method: Method) {
 }
 
 fn energy(stepper: &Stepper) -> f64 {
-    kinetic_energy(&stepper.model, &stepper.state) + elastic_energy(&stepper.model, &stepper.state)
+    kinetic_energy(&stepper.model, &stepper.start.state) + elastic_energy(&stepper.model, &stepper.start.state)
 }

@@ -39,7 +39,7 @@ fn a_free_chain_converges_with_order_two() {
     let errors = [100, 200, 400].map(|steps| {
         let mut stepper = stepper(&layer, &start);
         stepper.run(1.0, steps);
-        differences(&stepper.state, &expected)
+        differences(&stepper.start.state, &expected)
     });
     for part in 0..3 {
         let order = last_order(&errors.map(|error| error[part]));

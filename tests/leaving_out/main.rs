@@ -8,9 +8,8 @@ mod pairs;
 use std::collections::BTreeSet;
 
 use asperity::fmi::Catalogue;
-use asperity::outputs::{Variable, variables};
+use asperity::outputs::{Snapshot, Variable, variables};
 use asperity::scene::Scene;
-use asperity::simulation::Simulation;
 use pairs::{PIECES, Pair, pairs, piece, started};
 
 const MASSES: usize = 12;
@@ -25,9 +24,9 @@ fn common_variables(pair: &Pair) -> [Vec<Variable>; 2] {
     })
 }
 
-fn row(simulation: &mut Simulation, variables: &[Variable]) -> Vec<f64> {
+fn row(snapshot: &Snapshot<'_>, variables: &[Variable]) -> Vec<f64> {
     let mut values = vec![f64::NAN; variables.len()];
-    simulation.evaluate(variables, &mut values);
+    snapshot.evaluate(variables, &mut values);
     values
 }
 
@@ -38,7 +37,7 @@ fn rows(scene: &Scene, variables: &[Variable]) -> Vec<Vec<f64>> {
         if i > 0 {
             simulation.advance(&piece()).unwrap();
         }
-        row(&mut simulation, variables)
+        row(&simulation.snapshot(), variables)
     };
     (0..=PIECES).map(&mut next).collect()
 }

@@ -1,8 +1,7 @@
 //! Figures of several charts: a run over time, a profile and its spectrum, curves over a logarithmic axis.
 
-use asperity::outputs::{Output, Variable, variables};
+use asperity::outputs::{Output, Snapshot, Variable, variables};
 use asperity::scene::{OutputGroup, Scene};
-use asperity::simulation::Simulation;
 
 use super::axis::{Axis, Fit, is_loggable};
 use super::chart::{Chart, Curve, Legend, Stroke, Symbol};
@@ -140,9 +139,9 @@ impl History {
     }
 
     /// Adds a row.
-    pub(crate) fn add(&mut self, time: f64, simulation: &mut Simulation) {
+    pub(crate) fn add(&mut self, time: f64, snapshot: &Snapshot<'_>) {
         let mut values = vec![0.0; self.variables.len()];
-        simulation.evaluate(&self.variables, &mut values);
+        snapshot.evaluate(&self.variables, &mut values);
         self.times.push(time);
         self.rows.push(values);
     }

@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use asperity::fmi::{Carrier as Inputs, Input, InputOutOfRange};
-use asperity::outputs::{Output, Variable, variables};
+use asperity::outputs::{Output, Snapshot, Variable, variables};
 use asperity::robustness::{Budget, Failure};
 use asperity::scene::{OutputGroup, Phase, Scene};
 use asperity::simulation::{Simulation, SimulationError};
@@ -113,11 +113,11 @@ pub(super) fn follow(
     let mut recorder = Recorder::new(scene);
     let mut runner = Runner::new(&budget.limit(scene), rows, u).map_err(failed)?;
     let clock = ThreadTime::now();
-    runner.observe_now(|_, simulation| recorder.row(simulation));
+    runner.observe_now(|_, snapshot| recorder.row(snapshot));
     let mut durations = Vec::new();
     for phase in &scene.excitation {
-        let observe = |carrier: CarrierSample, simulation: &mut Simulation| {
-            recorder.row(simulation);
+        let observe = |carrier: CarrierSample, snapshot: &Snapshot<'_>| {
+            recorder.row(snapshot);
             tick(carrier.time / duration);
         };
         durations.push(runner.run_phase(phase, observe).map_err(failed)?);
@@ -209,7 +209,7 @@ impl<'a> Master<'a> {
         }
         let mut simulation = Simulation::new(scene, &inputs.start(0.0))?;
         let mut recorder = Recorder::new(scene);
-        recorder.row(&mut simulation);
+        recorder.row(&simulation.snapshot());
         let carrier = CarrierSample { time: 0.0, u, w: 0.0 };
         Ok(Self { scene, given, inputs, simulation, recorder, carrier })
     }
@@ -225,7 +225,7 @@ impl<'a> Master<'a> {
         let motion = self.inputs.motion(stands, self.carrier.time, h, self.scene.extrapolation)?;
         self.simulation.advance(&motion)?;
         self.inputs.count_step(h);
-        self.recorder.row(&mut self.simulation);
+        self.recorder.row(&self.simulation.snapshot());
         self.carrier = start.moved(phase, to);
         Ok(())
     }
@@ -280,10 +280,10 @@ impl Recorder {
         }
     }
 
-    fn row(&mut self, simulation: &mut Simulation) {
-        simulation.evaluate(&self.variables, &mut self.values);
+    fn row(&mut self, snapshot: &Snapshot<'_>) {
+        snapshot.evaluate(&self.variables, &mut self.values);
         let [x, z, lost, input, kinetic, elastic, residual, steps, rejected, events] = self.values;
-        self.trace.push(simulation.time(), [x, z, lost]);
+        self.trace.push(snapshot.time, [x, z, lost]);
         self.energy = [input, kinetic, elastic, lost].iter().fold(self.energy, |most, energy| most.max(energy.abs()));
         self.residual = self.residual.max(residual.abs());
         let [steps, rejected, events] = [steps, rejected, events].map(|count| count as u64);

@@ -162,10 +162,10 @@ impl Slide {
         self.elongations.fill(0.0);
         let before = self.energies();
         let (sampled, elongations) = (&self.sampled, &mut self.elongations);
-        self.simulation.advance_observed(&motion, &self.times, |_, now| {
-            now.evaluate(sampled, &mut values);
+        self.simulation.advance_observed(&motion, None, &self.times, |_, snapshot| {
+            snapshot.evaluate(sampled, &mut values);
             add(&mut sums, &values);
-            add(elongations, now.maxwell_elongations());
+            add(elongations, &snapshot.state.maxwell);
         })?;
         self.slid += 1.0;
         let share = 1.0 / f64::from(self.blocks.samples);
@@ -255,7 +255,7 @@ fn slope(
     let times: Vec<f64> = (1..=samples).map(|i| duration * share(i)).collect();
     let (mut products, mut squares, mut values) = (0.0, 0.0, [0.0; 2]);
     let motion = Motion { duration, u: rate(blocks.speed), w: Path::default() };
-    simulation.advance_observed(&motion, &times, |time, now| {
+    simulation.advance_observed(&motion, None, &times, |time, now| {
         now.evaluate(forces, &mut values);
         let u = blocks.speed * time;
         products += u * (before - values[0]);

@@ -1,0 +1,148 @@
+//! The skeleton of both methods: try steps until one is good, cut it where a row or an event asks for it, accept it.
+
+use super::SimulationError;
+use super::run::Run;
+use crate::integrator::Attempt;
+
+/// The longest step, as a share of the period of the carrier's sine: a longer one could alias the excitation, all
+/// stages seeing the same and the error estimate nothing.
+const OF_PERIOD: f64 = 0.25;
+/// The least share of the length asked for at which a shorter step is given up.
+const SHORTEST_CUT: f64 = 1e-12;
+
+/// What is left of the length of a step whose stages could not be solved.
+pub(super) const AFTER_FAILURE: f64 = 0.25;
+
+/// A good step of length `h` (s) that is to be accepted up to its fraction `share`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct TrialStep {
+    pub h: f64,
+    pub share: f64,
+}
+
+/// The steps that one motion may try.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct WorkLimit {
+    tried: u64,
+    limit: u64,
+}
+
+impl WorkLimit {
+    pub(super) fn new(limit: u64) -> Self {
+        Self { tried: 0, limit }
+    }
+
+    /// Number of steps tried.
+    pub(super) fn tried(&self) -> u64 {
+        self.tried
+    }
+}
+
+/// Bounds of the next step's length, s.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct StepBounds {
+    /// Where the clock's resolution ends.
+    pub shortest: f64,
+    /// By the carrier's period.
+    pub longest: f64,
+    /// What remains of the motion.
+    pub remaining: f64,
+}
+
+impl StepBounds {
+    /// `step_size`, but so that no tiny step is left before the end of the motion.
+    pub(super) fn fit(&self, step_size: f64) -> f64 {
+        if step_size >= self.remaining {
+            self.remaining
+        } else if step_size > 0.5 * self.remaining {
+            0.5 * self.remaining
+        } else {
+            step_size
+        }
+    }
+}
+
+impl Run {
+    /// The next good step of a motion of `duration` (s), up to its first event where events are located.
+    ///
+    /// # Errors
+    /// [`SimulationError::TooManySteps`], [`SimulationError::StepTooSmall`].
+    pub(super) fn next_step(&mut self, duration: f64, work: &mut WorkLimit) -> Result<TrialStep, SimulationError> {
+        let bounds = StepBounds {
+            shortest: 4.0 * f64::EPSILON * (self.state.s + 1e-3 * duration),
+            longest: OF_PERIOD * self.state.carrier.shortest_period(),
+            remaining: duration - self.state.s,
+        };
+        if bounds.longest <= bounds.shortest {
+            return Err(self.step_too_small(bounds.longest));
+        }
+        if self.state.time_stepping {
+            self.next_time_step(&bounds, work)
+        } else {
+            self.next_event_driven_step(&bounds, work)
+        }
+    }
+
+    /// Tries a step of length `h`; `None` where it is rejected: the run's step size is then a better length.
+    fn try_step(&mut self, h: f64, any_error: bool) -> Option<Attempt> {
+        if self.state.time_stepping {
+            self.try_time_step(h, any_error)
+        } else {
+            self.try_event_driven_step(h, any_error)
+        }
+    }
+
+    /// A step up to the time `s` of the piece in place of a good one that goes beyond it, and its end: before that time
+    /// where a step of that length is rejected.
+    pub(super) fn cut_step_at(
+        &mut self,
+        s: f64,
+        duration: f64,
+        work: &mut WorkLimit,
+    ) -> Result<(TrialStep, f64), SimulationError> {
+        let h = s - self.state.s;
+        let step = self.cut_step(h, work)?;
+        Ok((step, if step.h == h { s } else { self.end_of(&step, duration) }))
+    }
+
+    /// A step of length `h` in place of a longer, good one: no worse, and without events, or with fewer. A shorter one
+    /// where its stages cannot be solved, though those of the longer one could, or have another solution.
+    pub(super) fn cut_step(&mut self, h: f64, work: &mut WorkLimit) -> Result<TrialStep, SimulationError> {
+        let (mut length, any_error) = (h, self.shorter_is_no_worse());
+        loop {
+            if self.try_step(length, any_error).is_some() {
+                return Ok(TrialStep { h: length, share: 1.0 });
+            }
+            self.count_work(work)?;
+            if length <= SHORTEST_CUT * h {
+                return Err(self.step_too_small(length));
+            }
+            length = self.state.step_size;
+        }
+    }
+
+    /// Whether a step shorter than a good one needs no error test. Where friction falls with the speed the stages may
+    /// have several solutions, and the two need not find the same.
+    pub(super) fn shorter_is_no_worse(&self) -> bool {
+        self.model.rate_shear.is_none()
+    }
+
+    /// Counts one more step tried.
+    pub(super) fn count_work(&self, work: &mut WorkLimit) -> Result<(), SimulationError> {
+        if work.tried >= work.limit {
+            return Err(SimulationError::TooManySteps { time: self.state.time(), steps: work.limit });
+        }
+        work.tried += 1;
+        Ok(())
+    }
+
+    pub(super) fn step_too_small(&self, step: f64) -> SimulationError {
+        SimulationError::StepTooSmall { time: self.state.time(), step }
+    }
+
+    /// The end of a step, s after the start of the piece: exactly that of the motion where it is the last.
+    pub(super) fn end_of(&self, step: &TrialStep, duration: f64) -> f64 {
+        let whole = step.share >= 1.0 && step.h >= duration - self.state.s;
+        if whole { duration } else { self.state.s + step.share * step.h }
+    }
+}

@@ -1,0 +1,243 @@
+//! The error of a run, estimated by a second run of the same layer at a tighter tolerance.
+//!
+//! Errors of single steps say little about the error of a run: damped motion forgets them, impacts and stick-slip
+//! multiply them, and where a touch was missed there is none to add up. A more accurate run beside it sees all of that.
+//! Where errors fall with the tolerance, the two differ by 1 - [`TIGHTER`] of the less accurate one's error.
+
+use std::sync::Arc;
+
+use super::driver::{TrialStep, WorkLimit};
+use super::run::{Run, RunState, Settings};
+use super::{Motion, SimulationError, Start};
+use crate::contact::EventTolerance;
+use crate::integrator::Tolerance;
+use crate::model::Model;
+use crate::outputs::{Accounts, Counters};
+
+/// The error-estimation run's tolerance, as a share of the run's.
+///
+/// Recommended 0.1 to 0.5. Smaller sees more where errors do not fall evenly, but costs more: with 0.2 this run takes
+/// 1.4 times the run's steps where events are located, 2.2 times with time-stepping.
+const TIGHTER: f64 = 0.2;
+/// The share of the error that shows in the difference of the two runs, where errors fall with the tolerance.
+const SHOWN: f64 = 1.0 - TIGHTER;
+/// Its steps are at most this share of the run's. Where steps only grow, both would take the same, with the same error.
+const SHORTER: f64 = 0.7;
+/// Limit of its work in one motion, as a multiple of the run's, in addition to [`LEAST_WORK`]. Beyond it the error is not
+/// estimated: the two runs differ in kind then, as where one mass slips along what it flies over in the other.
+const MORE_WORK: u64 = 4;
+/// Number of steps that it may try in any motion, however few the run itself takes.
+const LEAST_WORK: u64 = 10_000;
+
+/// A more accurate run that follows another one: never behind it when it is asked for F_z.
+#[derive(Clone, Debug)]
+pub(super) struct ErrorRun {
+    pub(super) run: Run,
+    /// The duration of the motion under way, s.
+    duration: f64,
+    work: WorkLimit,
+    /// Steps that the run beside it has tried in this motion.
+    steps_beside: u64,
+    /// The step tried last, of which only a part may have been asked for.
+    pending: Option<TrialStep>,
+    /// Whether it could not go on in this motion.
+    failed: bool,
+}
+
+impl ErrorRun {
+    /// The error-estimation run of one with these `settings`.
+    pub(super) fn new(model: &Arc<Model>, settings: &Settings, start: &Start) -> Self {
+        let run = Run::new(Arc::clone(model), settings.tighter(model), start);
+        let work = WorkLimit::new(run.settings.max_steps);
+        Self { run, duration: 0.0, work, steps_beside: 0, pending: None, failed: false }
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        self.run.bytes()
+    }
+
+    pub(super) fn keep_checkpoint(&mut self) {
+        self.run.keep_checkpoint();
+    }
+
+    pub(super) fn roll_back(&mut self) {
+        self.pending = None;
+        self.run.roll_back();
+    }
+
+    /// Begins `motion`.
+    pub(super) fn enter(&mut self, motion: &Motion) {
+        (self.duration, self.steps_beside, self.failed) = (motion.duration, 0, false);
+        self.work = WorkLimit::new(self.run.settings.max_steps);
+        self.run.enter(motion);
+    }
+
+    /// The run beside takes a step of length `h` (s), and has tried `steps` in this motion: the next step here is no
+    /// longer than a share of it.
+    pub(super) fn note_step(&mut self, h: f64, steps: u64) {
+        self.steps_beside = steps;
+        self.run.state.step_size = self.run.state.step_size.min(SHORTER * h);
+    }
+
+    /// Includes in `counters` by how much the run beside, with F_z = `force` (N) at the time `s` of the motion, is off.
+    /// Where this run could not go on, the error is unknown and counts as the whole force.
+    pub(super) fn compare(&mut self, s: f64, force: f64, counters: &mut Counters) {
+        match self.force_z_at(s) {
+            Some(reference) => counters.note_error(force, reference, SHOWN),
+            None => counters.note_unknown(force),
+        }
+    }
+
+    /// F_z at the time `s` since the start of the motion, which does not fall from call to call, N; `None` where the
+    /// run could not go on.
+    fn force_z_at(&mut self, s: f64) -> Option<f64> {
+        if self.failed {
+            return None;
+        }
+        let force = self.follow_to(s, false);
+        self.failed = force.is_err();
+        force.ok()
+    }
+
+    /// F_z at the time `s`; the run stands there if it `ends` there, or before a step that goes beyond it.
+    fn follow_to(&mut self, s: f64, ends: bool) -> Result<f64, SimulationError> {
+        while self.run.state.s < s {
+            let steps = self.work.tried();
+            if steps > LEAST_WORK + MORE_WORK.saturating_mul(self.steps_beside) {
+                return Err(SimulationError::TooManySteps { time: self.run.state.time(), steps });
+            }
+            let step = match self.pending.take() {
+                Some(step) => step,
+                None => self.run.next_step(self.duration, &mut self.work)?,
+            };
+            let end = self.run.end_of(&step, self.duration);
+            let theta = (s - self.run.state.s) / step.h;
+            if !ends && s < end && self.run.can_show_within(step.h, theta) {
+                self.pending = Some(step);
+                return Ok(self.run.force_z_within(step.h, theta));
+            }
+            let (step, end) =
+                if s < end { self.run.cut_step_at(s, self.duration, &mut self.work)? } else { (step, end) };
+            self.run.take_step(&step, end);
+        }
+        Ok(self.run.force_z())
+    }
+
+    /// Ends the motion where the run beside it stands, in `state`. If this run could not go on, it continues from there.
+    pub(super) fn end_motion(&mut self, state: &RunState) {
+        self.failed = self.failed || self.follow_to(state.s, true).is_err();
+        if self.failed {
+            self.pending = None;
+            self.run.state.copy_from(state);
+        }
+    }
+}
+
+impl Settings {
+    /// The settings of the error-estimation run of one with these.
+    fn tighter(&self, model: &Model) -> Self {
+        let tolerance = Tolerance::new(model, TIGHTER * self.tolerance.relative, TIGHTER * self.tolerance.position);
+        Self {
+            events: EventTolerance::new(model, &tolerance),
+            tolerance,
+            max_steps: self.max_steps.saturating_mul(MORE_WORK),
+            accounts: Accounts::default(),
+            method: self.method,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{WAVE, scene};
+    use super::*;
+    use crate::outputs::{Output, Snapshot, variables};
+    use crate::scene::{Path, Scene};
+    use crate::simulation::{Simulation, Start};
+
+    fn coarse() -> Scene {
+        let mut scene = scene();
+        scene.solver.relative_tolerance = 1e-4;
+        scene
+    }
+
+    fn started(scene: &Scene) -> Simulation {
+        Simulation::new(scene, &Start { w: -2e-6, ..Start::default() }).unwrap()
+    }
+
+    fn value(scene: &Scene, simulation: &mut Simulation, output: Output) -> f64 {
+        let variable = variables(scene).into_iter().find(|variable| variable.output == output).unwrap();
+        let mut values = [f64::NAN];
+        simulation.evaluate(&[variable], &mut values);
+        values[0]
+    }
+
+    fn stands_beside(simulation: &Simulation) -> bool {
+        let (run, beside) = (&simulation.run.state, &simulation.error_run.as_ref().unwrap().run.state);
+        beside.s == run.s && beside.displacement() == run.displacement()
+    }
+
+    /// The difference to a run at a far tighter tolerance, by rows as the estimate goes by them.
+    #[test]
+    fn the_estimate_is_the_error() {
+        let scene = coarse();
+        let times: Vec<f64> = (0..=20).map(|i| f64::from(i) * WAVE.duration / 20.0).collect();
+        let forces = |simulation: &mut Simulation| {
+            let mut forces = Vec::new();
+            let observe = |_, snapshot: &Snapshot<'_>| forces.push(snapshot.forces.on_carrier_z());
+            simulation.advance_observed(&WAVE, None, &times, observe).unwrap();
+            forces
+        };
+        let (mut coarse, mut tight) = (started(&scene), started(&super::super::tests::scene()));
+        let (found, wanted) = (forces(&mut coarse), forces(&mut tight));
+        let error = found.iter().zip(&wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let error = error / wanted.iter().map(|force| force.abs()).fold(0.0, f64::max);
+        let ratio = value(&scene, &mut coarse, Output::EstimatedError) / error;
+        assert!(error > 1e-7 && (0.3..3.0).contains(&ratio), "{ratio} times {error:e}");
+    }
+
+    #[test]
+    fn both_end_together_wherever_that_is() {
+        let scene = coarse();
+        let mut simulation = started(&scene);
+        let press = Motion { duration: 1e-3, u: Path::default(), w: Path { rate: -0.01, ..Path::default() } };
+        let force = 2.0 * simulation.snapshot().forces.on_carrier_z();
+        let risen = simulation.advance_observed(&press, Some(force), &[1e-5, 2e-5], |_, _| ()).unwrap();
+        assert!(risen.is_some_and(|s| s > 0.0 && s < press.duration), "{risen:?}");
+        assert!(stands_beside(&simulation));
+        simulation.advance(&WAVE).unwrap();
+        assert!(stands_beside(&simulation));
+    }
+
+    #[test]
+    fn what_is_not_known_counts_as_the_whole_force() {
+        let scene = coarse();
+        let mut simulation = started(&scene);
+        simulation.error_run.as_mut().unwrap().run.settings.max_steps = 3;
+        simulation.advance(&WAVE).unwrap();
+        assert_eq!(value(&scene, &mut simulation, Output::EstimatedError), 1.0);
+        assert!(stands_beside(&simulation));
+        let reference = simulation.error_run.as_mut().unwrap().run.force_z();
+        assert_eq!(reference, simulation.run.force_z());
+    }
+
+    /// A motion that fails leaves both runs as they were.
+    #[test]
+    fn both_go_back() {
+        let scene = coarse();
+        let mut simulation = started(&scene);
+        let allowed = std::mem::replace(&mut simulation.run.settings.max_steps, 3);
+        let before = simulation.state();
+        assert!(simulation.advance(&WAVE).is_err());
+        assert_eq!(simulation.state(), before);
+        simulation.run.settings.max_steps = allowed;
+        simulation.advance(&WAVE).unwrap();
+    }
+
+    #[test]
+    fn no_error_run_unless_it_is_asked_for() {
+        let mut scene = coarse();
+        scene.outputs.retain(|group| *group != crate::scene::OutputGroup::Solver);
+        assert!(started(&scene).error_run.is_none());
+    }
+}

@@ -1,0 +1,215 @@
+//! The event-driven method: the modes are held through a step, the first mode change is located on the dense output, and
+//! the step ends there.
+
+use super::SimulationError;
+use super::driver::{AFTER_FAILURE, StepBounds, TrialStep, WorkLimit};
+use super::run::Run;
+use crate::contact::{first_event, is_due, longest_unstable};
+use crate::integrator::{Attempt, DenseOutput, METHOD};
+use crate::model::Model;
+
+/// A new step is this share of what the error estimate allows, so that few are rejected.
+const SAFETY: f64 = 0.9;
+/// The least and the most by which one step differs from the one before.
+const GROWTH: (f64, f64) = (0.2, 5.0);
+/// The least share of a step at which it is cut at an event; where there is less, the step is tried again, shorter.
+///
+/// A mass that a large friction stops in so small a share is thrown back that many times as fast by the rest of the
+/// step, and the energies up to the event would be the difference of powers as many times squared: with 1e-6 they keep
+/// some digits.
+const LEAST_SHARE: f64 = 1e-6;
+/// The longest step, as a multiple of the mean time between events: a longer one would be cut.
+///
+/// Recommended 1.5 to 3: shorter ones end before there is an event, longer ones are less accurate where they are cut.
+const OF_SPACING: f64 = 2.0;
+/// Share of a sine's amplitude by which the quintic of the dense output may be off it: (ωh)⁶/46080 with h a quarter of
+/// the period at most.
+const UNSEEN: f64 = 5e-4;
+/// Cuts of one step at events after which each further cut leaves at most half of it. By rounding, an event can be found
+/// at the very end of the shortened step again and again.
+const MOST_CUTS: u32 = 50;
+/// Length of a step below which a cut is suspected of a [`Stall`], divided by the stiffest period over 2π.
+const STALLED: f64 = 1e-9;
+/// Number of such steps after which the shortest cut doubles. Simultaneous events of many masses also take many of them,
+/// but modes change at those.
+const MOST_STALLED: u32 = 100;
+
+/// Steps that make no progress because rounding makes events.
+///
+/// Where a mass is so fast that the rounding of its velocity, divided by the length of a short step, is an inertia force
+/// larger than the tolerance of events, an event is found at the start of each such step but is not due at its end. The
+/// run would cut every step to the resolution of time. After some of these steps in a row, the shortest length that a
+/// step is cut to therefore doubles with each, until a mode changes or no event is found.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Stall {
+    /// Steps cut to this length, s, or less are suspected.
+    length: f64,
+    /// Number of steps cut so short after which no mode changed, less the number of other steps since.
+    steps: u32,
+    /// Number of mode changes before the last step, if it was cut so short.
+    events_before: Option<u64>,
+}
+
+impl Stall {
+    pub(super) fn new(model: &Model) -> Self {
+        Self { length: STALLED / model.stiffest_frequency(), ..Self::default() }
+    }
+
+    pub(super) fn reset(&mut self) {
+        (self.steps, self.events_before) = (0, None);
+    }
+
+    /// The shortest length, s, that the next step may be cut to; `shortest` (s) is the resolution of time, `events` the
+    /// number of mode changes so far.
+    fn shortest_cut(&mut self, shortest: f64, events: u64) -> f64 {
+        if self.events_before.take() == Some(events) {
+            self.steps += 1;
+        } else {
+            self.steps = self.steps.saturating_sub(1);
+        }
+        shortest * f64::from(self.steps.saturating_sub(MOST_STALLED)).exp2()
+    }
+
+    /// Records a step that is about to be accepted; `events` is the number of mode changes before it.
+    fn note_step(&mut self, cut_short: bool, events: u64) {
+        self.events_before = cut_short.then_some(events);
+    }
+}
+
+impl Run {
+    /// Tries steps until one is good up to its first event.
+    pub(super) fn next_event_driven_step(
+        &mut self,
+        bounds: &StepBounds,
+        work: &mut WorkLimit,
+    ) -> Result<TrialStep, SimulationError> {
+        let limit = bounds.longest.min(OF_SPACING * self.state.event_spacing);
+        let shortest_cut = self.workspace.stall.shortest_cut(bounds.shortest, self.state.counters.events);
+        let mut h = bounds.fit(self.state.step_size.min(limit));
+        let mut cuts = 0;
+        // The step that an event cuts short says how long the next may be; the shorter ones need no error test.
+        let mut proposal = None;
+        loop {
+            self.count_work(work)?;
+            let any_error = proposal.is_some() && self.shorter_is_no_worse();
+            let Some(attempt) = self.try_event_driven_step(h, any_error) else {
+                if h <= bounds.shortest {
+                    return Err(self.step_too_small(h));
+                }
+                h = self.state.step_size;
+                continue;
+            };
+            let proposed = *proposal.get_or_insert_with(|| {
+                self.proposal(h, bounds.remaining.min(limit), attempt.error).min(self.longest_unstable())
+            });
+            let event = self.first_event(h);
+            let share = event.filter(|_| h > shortest_cut).map_or(1.0, |theta| theta.max(shortest_cut / h));
+            if share >= 1.0 || (share >= LEAST_SHARE && self.can_resume_within(h, share)) {
+                self.state.step_size = proposed;
+                let stall = &mut self.workspace.stall;
+                stall.note_step(cuts > 0 && share * h <= stall.length, self.state.counters.events);
+                return Ok(TrialStep { h, share });
+            }
+            cuts += 1;
+            h *= if cuts > MOST_CUTS { share.min(0.5) } else { share };
+        }
+    }
+
+    /// Tries a step of length `h`; `None` where it is rejected: the run's step size is then a better length.
+    pub(super) fn try_event_driven_step(&mut self, h: f64, any_error: bool) -> Option<Attempt> {
+        let Self { model, settings, state, workspace, .. } = self;
+        workspace.interpolated_at = None;
+        let span = (state.s, h);
+        let attempt = workspace.integrator.attempt(model, &state.layer, &state.carrier, span, &settings.tolerance);
+        let mut error = attempt.map_or(f64::NAN, |attempt| attempt.error);
+        if attempt.is_ok_and(|attempt| attempt.unseen > error.max(1.0)) && self.may_touch(h) {
+            error = attempt.map_or(error, |attempt| attempt.unseen);
+        }
+        if any_error && error.is_finite() {
+            return attempt.ok();
+        }
+        let longest = self.longest_unstable();
+        if error <= 1.0 && h <= longest {
+            return attempt.ok();
+        }
+        self.state.counters.rejected += 1;
+        let shorter = h * if error.is_finite() { growth(error).min(SAFETY) } else { AFTER_FAILURE };
+        self.state.step_size = shorter.min(longest);
+        None
+    }
+
+    /// The length of the next step after a good one of length `h`. One that was cut short to `limit` by the end of a
+    /// piece or by the events says nothing.
+    fn proposal(&self, h: f64, limit: f64, error: f64) -> f64 {
+        let grown = h * growth(error);
+        if h < limit { grown } else { grown.max(self.state.step_size) }
+    }
+
+    /// The longest step, s, that lets unstable contacts move away, as they are at the end of the step tried last.
+    fn longest_unstable(&self) -> f64 {
+        let integrator = &self.workspace.integrator;
+        longest_unstable(&self.model, integrator.end(), integrator.end_forces())
+    }
+
+    /// Whether a free mass may have reached the profile in the step of length `h` tried last, which did not see all of
+    /// the carrier's motion.
+    fn may_touch(&self, h: f64) -> bool {
+        let dense = self.dense_output(h);
+        let reach = self.model.profile.bounds().z_max + UNSEEN * self.state.carrier.swing();
+        let modes = self.state.layer.state.mode.iter().enumerate();
+        modes.into_iter().any(|(i, mode)| !mode.in_contact() && dense.height(i).range().0 <= reach)
+    }
+
+    /// The fraction of the step of length `h` tried last at which a mode change is due.
+    fn first_event(&mut self, h: f64) -> Option<f64> {
+        let Self { model, settings, state, workspace, .. } = self;
+        let integrator = &workspace.integrator;
+        let dense = integrator.dense(model, &state.carrier, &state.layer, (state.s, h));
+        first_event(&dense, integrator.stages(), &settings.events, &mut workspace.dense)
+    }
+
+    /// The dense output of the step of length `h` tried last.
+    pub(super) fn dense_output(&self, h: f64) -> DenseOutput<'_> {
+        let state = &self.state;
+        self.workspace.integrator.dense(&self.model, &state.carrier, &state.layer, (state.s, h))
+    }
+
+    /// Accepts a step, which ends at the time `end` of the piece, and changes the modes if that is due.
+    pub(super) fn accept_event_driven_step(&mut self, step: &TrialStep, end: f64) {
+        let TrialStep { h, share } = *step;
+        if self.settings.accounts.energy {
+            let Self { model, state, workspace, .. } = self;
+            let gain = workspace.integrator.energies(model, &state.layer.state, h, share);
+            state.energies.channels.add(&gain);
+        }
+        self.state.counters.steps += 1;
+        self.state.since_event += share * h;
+        if share < 1.0 {
+            self.state.note_event();
+            self.interpolate(h, share);
+            std::mem::swap(&mut self.state.layer.state, &mut self.workspace.interpolated);
+            self.workspace.interpolated_at = None;
+            self.state.s = end;
+            self.change_modes(self.settings.events.gap);
+        } else {
+            self.state.event_spacing = self.state.event_spacing.max(self.state.since_event);
+            self.workspace.integrator.accept(&mut self.state.layer);
+            self.state.s = end;
+            self.change_modes_if_due();
+        }
+    }
+
+    fn change_modes_if_due(&mut self) {
+        let (layer, at) = (&self.state.layer, self.state.carrier_position());
+        let position = (at.profile_position, at.w);
+        if is_due(&self.model, &layer.state, &layer.rates, position, &self.settings.events) {
+            self.change_modes(self.settings.events.gap);
+        }
+    }
+}
+
+/// The ratio of the next step to one with this error over the tolerance.
+fn growth(error: f64) -> f64 {
+    let order = f64::from(METHOD.embedded_order + 1);
+    (SAFETY * error.powf(-1.0 / order)).clamp(GROWTH.0, GROWTH.1)
+}

@@ -1,0 +1,286 @@
+//! The run at an instant: as it stands, or within the step tried last.
+
+use super::driver::TrialStep;
+use super::run::Run;
+use crate::integrator::TWO_STAGES;
+use crate::integrator::TwoStageDense;
+use crate::math::bracketed_root;
+use crate::outputs::{Energies, Snapshot};
+
+/// The largest residual of the equations of motion that the dense output may have where a step is cut at an event, as a
+/// velocity gained over the step, against the tolerance.
+///
+/// Recommended 1 to 5: the residual oscillates about 0 through the step, so less of it is left in the velocity; with 5
+/// the errors of whole runs are those of 1, and fewer steps are repeated.
+const LARGEST_DEFECT: f64 = 5.0;
+/// The largest where a row is shown within a step, from which the run does not go on. In smooth motion it is some tens;
+/// where a step passes over a fast transient after an event, thousands and more.
+const LARGEST_DEFECT_SHOWN: f64 = 100.0;
+/// The most that mode changes not yet corrected may change F_z where a row is shown within a time step, as a multiple of
+/// the relative tolerance. That bounds all of them together at the step's end; the error of a row is a third of it, and
+/// less.
+const MOST_UNCORRECTED: f64 = 3.0;
+
+impl Run {
+    /// The run as it stands.
+    pub(super) fn snapshot(&mut self, run_time: f64) -> Snapshot<'_> {
+        let carrier = self.evaluate_forces();
+        Snapshot {
+            model: &self.model,
+            time: self.state.time(),
+            state: &self.state.layer.state,
+            forces: &self.workspace.forces,
+            carrier,
+            displacement: self.state.displacement(),
+            energies: self.state.energies,
+            tangents: self.state.tangents,
+            counters: self.state.counters,
+            run_time,
+        }
+    }
+
+    /// The run at the fraction `theta` of the step of length `h` tried last, with the `energies` there.
+    pub(super) fn snapshot_within(&mut self, h: f64, theta: f64, energies: &Energies, run_time: f64) -> Snapshot<'_> {
+        self.evaluate_within(h, theta);
+        let s = self.state.s + theta * h;
+        Snapshot {
+            model: &self.model,
+            time: self.state.carrier.time + s,
+            state: &self.workspace.interpolated,
+            forces: &self.workspace.forces,
+            carrier: self.state.carrier.at(s),
+            displacement: self.state.displacement_at(s),
+            energies: *energies,
+            tangents: self.state.tangents,
+            counters: self.state.counters,
+            run_time,
+        }
+    }
+
+    /// Energies since the start at the fraction `theta` of the step of length `h` tried last.
+    pub(super) fn energies_within(&mut self, h: f64, theta: f64) -> Energies {
+        let mut energies = self.state.energies;
+        if self.settings.accounts.energy {
+            let Self { model, state, workspace, .. } = self;
+            let (integrator, start) = (&mut workspace.integrator, &state.layer.state);
+            let gain = if state.time_stepping {
+                integrator.two_stage_energies(model, start, h, theta)
+            } else {
+                integrator.energies(model, start, h, theta)
+            };
+            energies.channels.add(&gain);
+        }
+        energies
+    }
+
+    /// The share of the step after which F_z is the force `until`, N; `None` where `step` ends below.
+    pub(super) fn rises_within(&mut self, step: &TrialStep, until: Option<f64>) -> Option<f64> {
+        let TrialStep { h, share } = *step;
+        let force = until.filter(|&force| self.force_z_within(h, share) >= force)?;
+        Some(bracketed_root(|theta| self.force_z_within(h, theta) - force, (0.0, share), 1e-14))
+    }
+
+    /// F_z at the fraction `theta` of the step of length `h` tried last, N.
+    pub(super) fn force_z_within(&mut self, h: f64, theta: f64) -> f64 {
+        self.evaluate_within(h, theta);
+        self.workspace.forces.on_carrier_z()
+    }
+
+    /// Whether the dense output of the step of length `h` tried last is good enough to be shown at its fraction
+    /// `theta`. A time step's mode changes are corrected at its end, and its dense output is not: it is shown where
+    /// that changes F_z little.
+    pub(super) fn can_show_within(&mut self, h: f64, theta: f64) -> bool {
+        if self.state.time_stepping {
+            let force = self.workspace.integrator.end_forces().on_carrier_z().abs();
+            let allowed = MOST_UNCORRECTED * self.settings.tolerance.relative * force;
+            self.workspace.end_correction.unsettled_force() <= allowed
+        } else {
+            self.defect_within(h, theta) <= LARGEST_DEFECT_SHOWN
+        }
+    }
+
+    /// Whether the run can go on from the fraction `share` of the step of length `h` tried last.
+    pub(super) fn can_resume_within(&mut self, h: f64, share: f64) -> bool {
+        !self.workspace.integrator.has_tangents() && self.defect_within(h, share) <= LARGEST_DEFECT
+    }
+
+    /// The residual of the equations of motion in the dense output of the step of length `h` tried last at its fraction
+    /// `share`, in the tolerance's norm.
+    fn defect_within(&mut self, h: f64, share: f64) -> f64 {
+        self.evaluate_within(h, share);
+        let workspace = &self.workspace;
+        let at = (&workspace.interpolated, &workspace.forces);
+        self.dense_output(h).defect(share, at, &workspace.dense, &self.settings.tolerance)
+    }
+
+    /// The state at the fraction `theta` of the step of length `h` tried last, into `interpolated`.
+    pub(super) fn interpolate(&mut self, h: f64, theta: f64) {
+        let Self { model, state, workspace, .. } = self;
+        if workspace.interpolated_at == Some((h, theta)) {
+            return;
+        }
+        workspace.interpolated_at = Some((h, theta));
+        let (integrator, start) = (&workspace.integrator, &state.layer);
+        let interpolated = &mut workspace.interpolated;
+        if state.time_stepping {
+            integrator.first_stage_maxwell(model, &start.state, &mut interpolated.maxwell);
+            let stages = integrator.stages();
+            let (start, end) = ((&start.state, &stages[1]), (integrator.end(), &stages[TWO_STAGES - 1]));
+            TwoStageDense::new(model, &state.carrier, (state.s, h), start, end).state_at(theta, interpolated);
+        } else {
+            let dense = integrator.dense(model, &state.carrier, start, (state.s, h));
+            dense.state_at(theta, &mut workspace.dense, interpolated);
+        }
+    }
+
+    /// The state and the forces at the fraction `theta` of the step of length `h` tried last.
+    fn evaluate_within(&mut self, h: f64, theta: f64) {
+        self.interpolate(h, theta);
+        let carrier = self.state.carrier.at(self.state.s + theta * h);
+        self.workspace.forces.evaluate(&self.model, &self.workspace.interpolated, &carrier);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::super::tests::{WAVE, scene, scene_with_rate_shear};
+    use super::*;
+    use crate::model::Mode;
+    use crate::outputs::{Output, dependencies, variables};
+    use crate::scene::{LinkKind, Path, Scene};
+    use crate::simulation::{Motion, Simulation, Start};
+
+    /// Runs of `scene` at rest, and with masses free, slipping and sticking, relaxed or not.
+    fn runs(scene: &Scene) -> Vec<Simulation> {
+        let mut started = Simulation::new(scene, &Start { w: -2e-6, u_rate: 0.1, ..Start::default() }).unwrap();
+        let rest = started.clone();
+        started.advance(&WAVE).unwrap();
+        let wave = started.clone();
+        let drag = Motion { duration: 1e-4, u: Path { rate: -0.3, ..Path::default() }, w: Path::default() };
+        started.advance(&drag).unwrap();
+        let dragged = started.clone();
+        let still = Motion { duration: 2e-4, u: Path::default(), w: Path { rate: 1e-4, ..Path::default() } };
+        started.advance(&still).unwrap();
+        let pressed = Simulation::new(scene, &Start { w: -8e-6, u_rate: 0.1, ..Start::default() }).unwrap();
+        let runs = vec![rest, wave, dragged, started, pressed];
+        let modes: Vec<Mode> = runs.iter().flat_map(|run| run.run.state.layer.state.mode.clone()).collect();
+        for mode in [Mode::Free, Mode::Forward, Mode::Backward, Mode::Stick] {
+            assert!(modes.contains(&mode), "{mode:?} in {modes:?}");
+        }
+        runs
+    }
+
+    /// The same run with the carrier moved and every state held.
+    fn moved(simulation: &Simulation, (du, dw): (f64, f64)) -> Simulation {
+        let mut simulation = simulation.clone();
+        let Run { model, state, .. } = &mut simulation.run;
+        (state.carrier.u, state.carrier.w) = (state.carrier.u + du, state.carrier.w + dw);
+        let layer = &mut state.layer.state;
+        layer.elongation_x.iter_mut().for_each(|e| *e -= du);
+        layer.elongation_z.iter_mut().for_each(|e| *e -= dw);
+        for row in &model.rows {
+            let by = match row.kind {
+                LinkKind::Horizontal => du,
+                LinkKind::Vertical => dw,
+                LinkKind::LateralX | LinkKind::LateralZ => 0.0,
+            };
+            layer.maxwell[row.range.clone()].iter_mut().for_each(|a| *a -= by);
+        }
+        simulation
+    }
+
+    /// Central: exact for all but the friction coefficient, being squares at most. That one has a kink at F_x = 0.
+    #[test]
+    fn directional_derivatives_are_those_of_a_difference_quotient() {
+        [scene(), scene_with_rate_shear()].iter().for_each(directional_derivatives_are_quotients);
+    }
+
+    fn directional_derivatives_are_quotients(scene: &Scene) {
+        let variables = variables(scene);
+        let values = |mut simulation: Simulation| {
+            let mut values = vec![0.0; variables.len()];
+            simulation.evaluate(&variables, &mut values);
+            values
+        };
+        for mut simulation in runs(scene) {
+            for direction in [(1.0, 0.0), (0.0, 1.0), (-0.6, 0.8)] {
+                let mut found = vec![f64::NAN; variables.len()];
+                simulation.directional_derivative(&variables, direction, &mut found);
+                let step = 1e-10;
+                let by = |sign: f64| moved(&simulation, (sign * step * direction.0, sign * step * direction.1));
+                let (up, down) = (values(by(1.0)), values(by(-1.0)));
+                for (i, variable) in variables.iter().enumerate() {
+                    let quotient = (up[i] - down[i]) / (2.0 * step);
+                    if variable.output == Output::FrictionCoefficient && up[0] * down[0] <= 0.0 {
+                        continue;
+                    }
+                    // Roundings of values of the size of these, over the step.
+                    let allowed = 1e-6 * quotient.abs() + 1e-15 * (up[i].abs() + 1e-9) / step;
+                    let error = (found[i] - quotient).abs();
+                    assert!(error <= allowed, "{} {direction:?}: {} {quotient}", variable.name, found[i]);
+                }
+            }
+        }
+    }
+
+    /// The table of dependencies says exactly which derivatives there are.
+    #[test]
+    fn there_is_a_derivative_where_there_is_a_dependency_and_nowhere_else() {
+        let scene = scene();
+        let variables = variables(&scene);
+        for (name, direction) in [("u", (1.0, 0.0)), ("w", (0.0, 1.0))] {
+            let mut found = BTreeSet::new();
+            for mut simulation in runs(&scene) {
+                let mut values = vec![0.0; variables.len()];
+                simulation.directional_derivative(&variables, direction, &mut values);
+                let with = variables.iter().zip(values).filter(|(_, value)| *value != 0.0);
+                found.extend(with.map(|(variable, _)| variable.name.clone()));
+            }
+            let listed = variables.iter().filter(|variable| {
+                let (on_u, on_w) = dependencies(&scene, variable.output).part_of(direction);
+                on_u + on_w != 0.0
+            });
+            assert_eq!(found, listed.map(|variable| variable.name.clone()).collect(), "on {name}");
+        }
+    }
+
+    /// Against the backward quotient of second order at the end of a motion, straight or not.
+    #[test]
+    fn force_rates_are_those_of_a_difference_quotient() {
+        let scene = scene();
+        let straight = Motion { duration: 4e-5, u: Path { rate: 0.3, ..Path::default() }, w: WAVE.w };
+        for start in runs(&scene) {
+            for motion in [WAVE, straight] {
+                let after = |by: f64| {
+                    let mut simulation = start.clone();
+                    simulation.advance(&Motion { duration: motion.duration - by, ..motion }).unwrap();
+                    simulation
+                };
+                let force = |by: f64| {
+                    let mut values = [0.0; 2];
+                    after(by).evaluate(&variables(&scene)[..2], &mut values);
+                    values
+                };
+                let found = after(0.0).force_rates();
+                let h = 2e-9;
+                let (now, before, earlier) = (force(0.0), force(h), force(2.0 * h));
+                for (i, found) in [found.0, found.1].into_iter().enumerate() {
+                    let quotient = (3.0 * now[i] - 4.0 * before[i] + earlier[i]) / (2.0 * h);
+                    assert!((found - quotient).abs() < 1e-4 * quotient.abs() + 1e-2, "{i}: {found} {quotient}");
+                }
+            }
+        }
+    }
+
+    /// Before the first motion: ė = -ẇ of masses on a flat surface that the carrier comes down on, and a relaxed layer.
+    #[test]
+    fn force_rates_at_the_start_are_those_of_the_starting_velocity() {
+        let text = "name = 'a'\nlayer = { masses = 2, spacing = 1.0, mass = 1.0, vertical = { stiffness = 3.0, \
+                    maxwell = [{ stiffness = 2.0, relaxation_time = 1.0 }] } }\nsurface = { kind = 'flat' }";
+        let scene = Scene::parse(text, std::path::Path::new("a.toml")).unwrap();
+        let mut simulation = Simulation::new(&scene, &Start { w: -0.1, w_rate: -0.5, ..Start::default() }).unwrap();
+        assert_eq!(simulation.force_rates(), (0.0, 2.0 * (3.0 + 2.0) * 0.5));
+    }
+}
