@@ -21,7 +21,6 @@ pub struct Spline {
     inside: Bounds,
 }
 
-/// What lies outside the data points.
 #[derive(Clone, Debug)]
 enum Ends {
     Periodic { period: f64 },

@@ -48,7 +48,6 @@ fn sum_up<const ADD: bool>(out: &mut [f64], terms: &[(f64, &[f64])]) {
     }
 }
 
-/// One pass over the memory.
 fn pass<const ADD: bool, const N: usize>(out: &mut [f64], terms: [(f64, &[f64]); N]) {
     let weights = terms.map(|(weight, _)| weight);
     let terms = terms.map(|(_, term)| &term[..out.len()]);

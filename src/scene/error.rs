@@ -128,7 +128,6 @@ impl ContentError {
         Self::new(line, key, Problem::value(given, expected))
     }
 
-    /// The error of that `file`.
     pub(super) fn in_file(self, file: PathBuf) -> SceneError {
         SceneError::new(Location { file, line: self.line }, self.key, self.problem)
     }

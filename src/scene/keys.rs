@@ -6,11 +6,9 @@ use std::fmt;
 use super::values::{ANY, NOT_NEGATIVE, POSITIVE, Range, WholeRange, Word, words};
 use super::{Extrapolation, Initial, LengthUnit, Method, Missing, OutputGroup, ThirdColumn, Tilt, Unit};
 
-/// A key of a table.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Key {
     pub(super) name: &'static str,
-    /// What it may hold.
     pub(super) allowed: Allowed,
     /// The unit of a number; 1 for everything else.
     pub(super) unit: Unit,
@@ -20,11 +18,9 @@ pub(super) struct Key {
     pub(super) form: Option<Form>,
 }
 
-/// What a key may hold.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Allowed {
     Number(Range),
-    /// An array of numbers.
     Numbers(Range),
     Whole(WholeRange),
     Flag,
@@ -32,7 +28,6 @@ pub(super) enum Allowed {
     Text(&'static str),
     /// A word; the words to choose from.
     Word(fn() -> String),
-    /// An array of words.
     Words(fn() -> String),
     Table(&'static [Key]),
     /// An array of tables, and what it is.
@@ -208,7 +203,6 @@ impl SurfaceKind {
 
 const KIND: Key = word::<SurfaceKind>("kind", "Where the heights come from");
 
-/// The key that every surface has.
 const SURFACE: &[Key] = &[KIND];
 
 const SINUSOID: &[Key] = &[

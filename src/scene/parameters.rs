@@ -175,7 +175,6 @@ impl Parameter {
         ParameterError::new(self.name(), Problem::value(given, self.key().allowed))
     }
 
-    /// The choice that `word` stands for.
     fn choice<T: Word>(self, word: &str) -> Result<T, ParameterError> {
         let error = || ParameterError::new(self.name(), Problem::value(format_args!("{word:?}"), words::<T>()));
         T::of(word).ok_or_else(error)

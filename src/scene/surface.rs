@@ -23,7 +23,6 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// A level profile.
     pub(super) fn flat() -> Self {
         Self { x: vec![0.0, 1.0], z: vec![0.0, 0.0], periodic: false }
     }
@@ -92,14 +91,12 @@ pub(super) fn peak_to_valley(heights: &[f64]) -> f64 {
     (highest - lowest).max(0.0)
 }
 
-/// A coordinate of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Coordinate {
     X,
     Z,
 }
 
-/// Why points are not a profile.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct PointsError {
     pub(super) coordinate: Coordinate,
@@ -171,12 +168,10 @@ pub(super) struct SelfAffine {
     pub(super) roll_off: f64,
     /// The shortest wavelength, m.
     pub(super) cut_off: f64,
-    /// Seed of the phases.
     pub(super) seed: u64,
 }
 
 impl SelfAffine {
-    /// One period of the profile.
     pub(super) fn surface(&self) -> Surface {
         let share = |i| i as f64 / self.points as f64;
         let x = (0..=self.points).map(|i| self.length * share(i)).collect();

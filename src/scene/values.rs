@@ -63,12 +63,10 @@ pub(super) trait Word: Copy + PartialEq + 'static {
     /// The words, and what each stands for.
     const WORDS: &'static [(&'static str, Self)];
 
-    /// What `word` stands for.
     fn of(word: &str) -> Option<Self> {
         Self::WORDS.iter().find(|(name, _)| *name == word).map(|(_, choice)| *choice)
     }
 
-    /// The word for it.
     fn as_word(self) -> &'static str {
         Self::WORDS.iter().find(|(_, other)| *other == self).map_or("", |(word, _)| word)
     }

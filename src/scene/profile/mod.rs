@@ -42,12 +42,9 @@ pub(super) struct Profile {
     pub(super) extract: Option<String>,
 }
 
-/// Why no profile was read.
 #[derive(Debug)]
 pub(super) enum Failure {
-    /// The file cannot be read.
     Unreadable(io::Error),
-    /// Its content is not a profile.
     Refused(SceneError),
 }
 
@@ -88,7 +85,6 @@ fn extract_name(path: &Path, options: &ProfileOptions) -> PathBuf {
     name.into()
 }
 
-/// The content of a file.
 #[derive(Debug)]
 struct Parsed {
     surface: Surface,

@@ -172,10 +172,8 @@ fn refuse_invalid(row: &Columns<'_>, number: usize) -> ContentError {
     ContentError::value(Some(number), "third column", &given, "valid points alone, or missing = \"fill\"")
 }
 
-/// What the header says.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Header {
-    /// The units of x and z.
     units: [Option<LengthUnit>; 2],
     /// Whether a unit stands beside one of the two columns alone: it is taken for both, which may be wrong.
     is_one_sided: bool,

@@ -4,37 +4,18 @@ mod surface;
 mod table;
 
 use std::fs;
-use std::path::{Path as FilePath, PathBuf};
+use std::path::Path as FilePath;
 
 use super::keys::Form;
-use super::profile::Extract;
 use super::{
     Extrapolation, Friction, Initial, Layer, Link, Material, MaxwellElement, OutputGroup, Path, Phase, PronyTerm,
     RateShear, Scene, SceneError, Solver, Wlf, warnings,
 };
-use table::{Entry, Source, TableReader};
-
-type Result<T> = std::result::Result<T, SceneError>;
+use surface::Found;
+use table::{Entry, Result, Source, TableReader};
 
 /// The most letters of a scene's name.
 const LONGEST_NAME: usize = 200;
-
-/// What reading finds beside the values of the scene.
-#[derive(Clone, Debug, Default, PartialEq)]
-struct Found {
-    files: Vec<PathBuf>,
-    extracts: Vec<Extract>,
-    warnings: Vec<String>,
-}
-
-impl Found {
-    /// Adds a file that the scene reads, each once.
-    fn add_file(&mut self, path: PathBuf) {
-        if !self.files.contains(&path) {
-            self.files.push(path);
-        }
-    }
-}
 
 impl Scene {
     /// Reads the scene file at `path` and the files that it names.

@@ -2,8 +2,7 @@
 
 use std::path::{Component, Path as FilePath, PathBuf};
 
-use super::table::{Entry, TableReader};
-use super::{Found, Result};
+use super::table::{Entry, Result, TableReader};
 use crate::scene::keys::{PATH, SurfaceKind};
 use crate::scene::profile::{self, Extract, Failure, ProfileOptions, Tilt};
 use crate::scene::surface::{Coordinate, SelfAffine, check_points};
@@ -16,6 +15,23 @@ const STEEPEST: f64 = 1e12;
 
 /// A number of points that is whole but for rounding is that number.
 const ROUNDING: f64 = 1.0e-9;
+
+/// What reading finds beside the values of the scene.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Found {
+    pub(super) files: Vec<PathBuf>,
+    pub(super) extracts: Vec<Extract>,
+    pub(super) warnings: Vec<String>,
+}
+
+impl Found {
+    /// Adds a file that the scene reads, each once.
+    pub(super) fn add_file(&mut self, path: PathBuf) {
+        if !self.files.contains(&path) {
+            self.files.push(path);
+        }
+    }
+}
 
 /// The surface given by the table `entry`; the file that it names, if any, is added to those `found`.
 pub(super) fn read(entry: &Entry<'_>, found: &mut Found) -> Result<Surface> {

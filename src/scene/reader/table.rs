@@ -10,7 +10,7 @@ use crate::scene::error::{Location, Problem, SceneError};
 use crate::scene::keys::{self, Allowed, Form, Key};
 use crate::scene::values::{Word, words};
 
-type Result<T> = std::result::Result<T, SceneError>;
+pub(super) type Result<T> = std::result::Result<T, SceneError>;
 
 /// Longer values are cut in messages.
 const GIVEN_LENGTH: usize = 60;
@@ -30,7 +30,6 @@ pub(super) struct Entry<'a> {
     path: String,
     key: &'static Key,
     value: &'a DeValue<'a>,
-    /// Where the value stands in the text.
     span: ops::Range<usize>,
     /// Where to look for it: the start of the value, or of a table's name.
     offset: usize,
@@ -53,7 +52,6 @@ impl<'a> Source<'a> {
         Location { file: self.file.to_owned(), line: Some(1 + before.filter(|&&byte| byte == b'\n').count()) }
     }
 
-    /// The document's syntax tree.
     pub(super) fn parse(&self) -> Result<Spanned<DeTable<'a>>> {
         DeTable::parse(self.text).map_err(|error| {
             let location = self.location(error.span().map_or(0, |span| span.start));
@@ -61,14 +59,12 @@ impl<'a> Source<'a> {
         })
     }
 
-    /// The folder of the scene file.
     pub(super) fn folder(&self) -> &'a Path {
         self.file.parent().unwrap_or(Path::new(""))
     }
 }
 
 impl<'a> Entry<'a> {
-    /// The full path of its key.
     pub(super) fn path(&self) -> &str {
         &self.path
     }
@@ -100,7 +96,6 @@ impl<'a> Entry<'a> {
         self.error(Problem::value(self.given(), expected))
     }
 
-    /// Refuses an array for its number of elements.
     pub(super) fn refuse_count(&self, count: usize, expected: &str) -> SceneError {
         self.error(Problem::value(format_args!("[{count} numbers]"), expected))
     }

@@ -16,7 +16,6 @@ use crate::scene::values::ANY;
 /// The longest document, bytes: heights inline of some million points.
 const LONGEST_MAIN: u64 = 1 << 27;
 
-/// An opened archive.
 pub(super) struct Archive<'a> {
     zip: ZipArchive<Cursor<&'a [u8]>>,
     /// The paths of the entries with forward slashes; empty where one is none.
@@ -40,7 +39,6 @@ impl<'a> Archive<'a> {
         Ok(Self { zip, names, main })
     }
 
-    /// The document's text.
     pub(super) fn main(&mut self) -> Result<String, ContentError> {
         let file = self.zip.by_index(self.main).map_err(|error| unreadable("main.xml", &error))?;
         let mut bytes = Vec::new();
@@ -69,7 +67,6 @@ impl<'a> Archive<'a> {
     }
 }
 
-/// For what cannot be unpacked.
 pub(super) fn unreadable(what: &str, error: &dyn std::error::Error) -> ContentError {
     let reason = error.to_string().replace(['\n', '\r'], " ");
     ContentError::value(None, what, &reason, "an archive that can be unpacked")
@@ -81,7 +78,6 @@ fn plain(path: &str) -> String {
     path.split('/').filter(|part| !["", "."].contains(part)).collect::<Vec<_>>().join("/")
 }
 
-/// The last part of a path.
 fn base(path: &str) -> &str {
     path.rsplit('/').next().unwrap_or(path)
 }
@@ -165,7 +161,6 @@ impl Document {
 #[derive(Default)]
 struct Walk {
     document: Document,
-    /// The elements that are open.
     names: Vec<String>,
     text: String,
 }

@@ -20,7 +20,6 @@ use crate::scene::error::ContentError;
 use crate::scene::values::ANY;
 use document::{Archive, Document, Grid, missing, unreadable};
 
-/// Bytes that are unpacked at once.
 const CHUNK: usize = 1 << 16;
 
 /// Reads the line that `options` choose.
@@ -61,7 +60,6 @@ enum Values {
     Double,
 }
 
-/// The axes x, y, z.
 struct Axes([Axis; 3]);
 
 /// The x and the heights of a line whose points stand in the document; a missing height is NaN.
