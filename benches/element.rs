@@ -51,14 +51,14 @@ fn slide() -> Motion {
     Motion { duration: STEP, u, w: scene::Path::default() }
 }
 
-/// What the element costs does not depend on what is in its table, only on how many pressures there are: 4.
+/// The cost of an element depends only on the number of pressures in its table: 4.
 fn element() -> Element {
     let table = Table::parse(&Grid::plain().text(), Path::new("table.csv")).unwrap();
     let w = separation(SPEED, 2e5, WARM) - REST;
     Element::new(&PointContact::new(table), &Start { w, u_rate: SPEED, ..Start::default() }).unwrap()
 }
 
-/// The element's speeds and heights change from step to step, so that its law is looked up anew in each.
+/// Speed and height change in each step, so that the law is evaluated anew.
 fn step_element(element: &mut Element, i: u32) {
     let sign = f64::from(i % 2) - 0.5;
     element.advance(STEP, SPEED + 0.01 * sign, 1e-3 * sign).unwrap();

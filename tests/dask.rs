@@ -85,5 +85,5 @@ fn a_sweep_over_fmus_is_the_programs() {
         assert!((parts / value(found, "friction") - 1.0).abs() < 1e-12);
         assert!((value(found, "mean_pressure") / value(found, "pressure") - 1.0).abs() <= 1e-3);
     }
-    assert!(sweep(&fmu, &table).is_empty(), "what is done is not done again");
+    assert!(sweep(&fmu, &table).is_empty(), "points done are not computed again");
 }

@@ -1,4 +1,4 @@
-//! A point-contact element from a sweep's table: packed, validated and driven in fmpy, held against the layer that was
+//! A point-contact element from a sweep's table: packed, validated and driven in fmpy, compared with the layer that was
 //! swept.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests may fail")]
 
@@ -54,7 +54,7 @@ fn a_packed_element_is_valid() {
     }
 }
 
-/// A motion that presses, slips, lifts a little and turns, with rates given: in fmpy what the library gives.
+/// A motion that presses, slips, lifts a little and turns, with rates given: fmpy and the library give the same.
 #[test]
 fn driven_in_fmpy_it_gives_what_the_library_gives() {
     let folder = scratch("element-fmpy");
@@ -87,7 +87,7 @@ fn driven_in_fmpy_it_gives_what_the_library_gives() {
     }
     for (column, variable) in variables.iter().enumerate() {
         let (found, own) = (driven.column(&variable.name), own.iter().map(|row| row[column]).collect::<Vec<_>>());
-        // The rates are found from differences of places, so roundings of a speed decide on the last digits of the law.
+        // The rates come from differences of positions, so their rounding changes the last digits.
         let error = found.iter().zip(&own).fold(0.0_f64, |error, (a, b)| error.max((a - b).abs()));
         assert!(error <= 1e-8 * largest(&own), "{}: {error:e} of {:e}", variable.name, largest(&own));
     }
@@ -95,7 +95,7 @@ fn driven_in_fmpy_it_gives_what_the_library_gives() {
 }
 
 #[test]
-fn a_table_that_is_not_full_is_refused_by_name() {
+fn an_incomplete_table_is_refused() {
     let folder = scratch("element-refused");
     let path = folder.join("known.csv");
     fs::write(&path, Grid::plain().text().replacen("steady", "not steady after 0.1 m", 1)).unwrap();
@@ -106,7 +106,7 @@ fn a_table_that_is_not_full_is_refused_by_name() {
     assert!(!folder.join("x.fmu").exists());
 }
 
-/// Three masses on a wave that stick and slip: swept, packed and held against themselves.
+/// Three masses on a wave that stick and slip.
 const SCENE: &str = r#"
 name = "wave"
 [layer]
@@ -130,8 +130,7 @@ coulomb = 0.4
 relative_tolerance = 1.0e-4
 "#;
 
-/// The whole way: sweep, pack, check. In the middle of the cells of so coarse a table the element is within some per
-/// cent.
+/// Sweep, pack, check. In the middle of the cells of so coarse a table the element is within some per cent.
 #[test]
 fn swept_packed_and_checked_it_is_near_the_layer() {
     let folder = scratch("element-check");

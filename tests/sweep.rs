@@ -1,4 +1,4 @@
-//! `asperity sweep`: tables against exact results, taken up again, in shards, and what is refused.
+//! `asperity sweep`: tables against exact results, continued, in shards, and what is refused.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests may fail")]
 
 #[allow(dead_code, unreachable_pub, reason = "shared by several tests")]
@@ -45,7 +45,7 @@ fn sweep(scene: &Path, table: &Path, options: &[&str]) {
     run(asperity().arg("sweep").arg(scene).arg("-o").arg(table).args(options));
 }
 
-/// What a sweep that fails says.
+/// The message of a sweep that fails.
 fn refused(arguments: &[&Path], options: &[&str]) -> String {
     let output = asperity().arg("sweep").args(arguments).args(options).output().unwrap();
     assert!(!output.status.success(), "{arguments:?} {options:?} should fail");
@@ -89,8 +89,7 @@ fn full_slip_on_a_plane() {
         assert_eq!(rows.text(row, "status"), "steady");
         let [speed, force, friction] = ["speed", "mean_force", "friction"].map(|name| rows.number(row, name));
         assert!((force / rows.number(row, "force") - 1.0).abs() <= 1e-3, "{force} N");
-        // Masses that have come to rest in the carrier's frame: what rings is gone, so rounding and F_z's samples are
-        // left.
+        // The masses are at rest in the carrier's frame, so only rounding and the sampling of F_z are left.
         let expected = 0.3 + 4e-3 / force;
         assert!((friction - expected).abs() <= 1e-6 * expected, "{friction}, expected {expected}");
         assert_eq!((rows.number(row, "friction_hysteresis"), rows.number(row, "friction_adhesion")), (0.0, friction));
@@ -145,9 +144,9 @@ fn hysteresis_on_a_sinusoid() {
 
 const POINTS: [&str; 4] = ["--speeds", "0.1..1/3", "--forces", "0.5,2"];
 
-/// Cut off after any byte, a table is made whole again, the same to the last byte; points done are kept to the letter.
+/// Cut off after any byte, a table is completed, the same to the last byte; points done are kept to the letter.
 #[test]
-fn a_table_cut_off_anywhere_is_made_whole() {
+fn a_table_cut_off_anywhere_is_completed() {
     let folder = scratch("sweep-resume");
     let (scene, table) = scene(&folder, FLAT);
     sweep(&scene, &table, &POINTS);
@@ -157,7 +156,7 @@ fn a_table_cut_off_anywhere_is_made_whole() {
         sweep(&scene, &table, &POINTS);
         assert!(fs::read(&table).unwrap() == whole, "cut off after {cut} bytes");
     }
-    // What is there is not done again: a number changed by hand stays.
+    // Points done are not computed again: what is changed by hand stays.
     let text = String::from_utf8(whole.clone()).unwrap().replace(",steady,", ",by hand,");
     fs::write(&table, &text).unwrap();
     let message = refused(&[&scene, Path::new("-o"), &table], &POINTS);
@@ -171,9 +170,9 @@ fn a_table_cut_off_anywhere_is_made_whole() {
     assert!(table.with_extension("svg").exists());
 }
 
-/// Shards joined are the whole, byte for byte; what is missing or twice is named.
+/// Merged shards are the whole, byte for byte; points that are missing or differ are named.
 #[test]
-fn shards_joined_are_the_whole() {
+fn merged_shards_are_the_whole() {
     let folder = scratch("sweep-shards");
     let (scene, table) = scene(&folder, FLAT);
     sweep(&scene, &table, &POINTS);
@@ -190,7 +189,7 @@ fn shards_joined_are_the_whole() {
     let output = join(&[&shards[0], &shards[2]]);
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(message.contains("2 of 6 points are missing: 0.316228 m/s, 0.5 N; 0.316228 m/s, 2 N"), "{message}");
-    // Which the sweep then makes whole.
+    // The sweep then completes it.
     sweep(&scene, &joined, &POINTS);
     assert!(fs::read(&joined).unwrap() == fs::read(&table).unwrap());
     let other = folder.join("other.csv");
@@ -203,7 +202,7 @@ fn shards_joined_are_the_whole() {
 }
 
 #[test]
-fn what_cannot_be_is_refused() {
+fn invalid_commands_are_refused() {
     let folder = scratch("sweep-refused");
     let (scene, table) = scene(&folder, FLAT);
     let asked = |options: &[&str]| refused(&[&scene, Path::new("-o"), &table], options);
@@ -213,7 +212,7 @@ fn what_cannot_be_is_refused() {
     assert!(asked(&["--speeds", "2..1/3", "--forces", "1"]).contains("a < b"));
     assert!(asked(&["--speeds", "1", "--forces", "1", "--shard", "3/2"]).contains("I from 1 to N"));
     assert!(!table.exists());
-    // Another file, another sweep, a table of more points: none is replaced unless it is asked for.
+    // Another file, another sweep, a table of more points: none is replaced without --force.
     fs::write(&table, "time,u,w\n0,0,0\n").unwrap();
     assert!(asked(&["--speeds", "1", "--forces", "1"]).contains("not the table of a sweep: expected the line"));
     sweep(&scene, &table, &["--speeds", "1,2", "--forces", "1", "--force"]);
@@ -231,7 +230,7 @@ fn what_cannot_be_is_refused() {
     );
 }
 
-/// A point that fails has a row that says why, the others have theirs, and the exit code tells.
+/// A point that fails has a row with its reason, and the exit code is an error.
 #[test]
 fn points_that_fail_are_rows() {
     let folder = scratch("sweep-failed");

@@ -2,14 +2,14 @@
 //!
 //! G = -F_x is the force in the spring, K the tangential stiffness, L = μ F_z the limit, σ the direction of slip.
 //!
-//! - *Stick*, |G| ≤ L: Ġ = K u̇ while K grows, as what comes newly into contact bears nothing yet; where K falls, what
-//!   leaves the contact takes its share along: the elongation G/K grows by u̇.
-//! - *Slip*: G = σL, for as long as a sticking spring would go beyond it.
+//! - *Stick*, |G| ≤ L: while K grows, Ġ = K u̇, as contacts that are made carry no force yet; while K falls, contacts
+//!   that are lost take their share of the force along: the elongation G/K grows by u̇.
+//! - *Slip*: G = σL, as long as the force of a sticking spring would exceed the limit.
 //!
-//! So a growing and a falling stiffness both cost energy and give none: what the spring holds is V = G²/(2K), and
-//! ∫ G du = V + E_diss with E_diss never falling. All is followed exactly along straight motions of the carrier: the
-//! switches are roots, the integrals Gauss's formula of six points over pieces in which the integrand is a polynomial
-//! of degree 11 at most (stick) or next to one (slip).
+//! So a growing and a falling stiffness both dissipate energy: the spring stores V = G²/(2K), and ∫ G du = V + E_diss
+//! with E_diss never falling. Straight motions of the carrier are followed exactly: changes between stick and slip are
+//! roots, integrals are by Gauss's formula of six points over pieces in which the integrand is a polynomial of degree 11
+//! at most (stick) or close to one (slip).
 
 use super::law::{Contact, Curve};
 use crate::math::bracketed_root;
@@ -19,7 +19,7 @@ use crate::model::Mode;
 const MOST_TURNS: usize = 6;
 /// Share of the limit that counts as the limit.
 const AT_LIMIT: f64 = 1.0 - 1e-12;
-/// Share of a piece to which a switch is located.
+/// Share of a piece to which a change is located.
 const ROOT: f64 = 1e-14;
 
 /// The rates of a straight motion, m/s.
@@ -50,7 +50,7 @@ pub(super) struct Jenkins {
     pub(super) mode: Mode,
 }
 
-/// A phase of stick or slip while the approach changes, from where it begins.
+/// A phase of stick or slip while the approach changes.
 struct Phase<'a> {
     curve: &'a Curve,
     rates: Rates,

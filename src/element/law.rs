@@ -1,15 +1,15 @@
-//! The table at one temperature, and at one speed: what the contact does as the carrier comes closer.
+//! The contact law of an element: the table interpolated over temperature, speed and the carrier's approach.
 //!
-//! Along temperature and the logarithm of speed the quantities are interpolated as they are, but the separation by its
-//! differences from one pressure to the next: these are positive and stay so, so that at every speed and temperature
-//! the carrier is closer where it presses harder. Along the load everything follows its logarithm y = ln p, and y
-//! follows the approach a = -separation. Beyond the pressures of the table, with A the nominal area and p_1 and p_n the
-//! least and the largest pressure:
+//! Along temperature and the logarithm of speed, the separation is interpolated by its differences from one pressure to
+//! the next: these stay positive, so that at every speed and temperature the carrier is closer where it presses harder.
+//! All other quantities are interpolated directly. Along the pressure p, everything is a function of its logarithm y =
+//! ln p, and y of the approach a = -separation. Beyond the pressures of the table, p_1 to p_n:
 //!
-//! - Below p_1 the pressure falls as a parabola, p = p_1 ((a - a_0)/(a_1 - a_0))², with the slope that it has at p_1,
-//!   so to 0 at a_0 = a_1 - 2 p_1/p_1'; there the contact ends. Tangential stiffness and contact ratio fall with the
-//!   pressure, the friction coefficient stays.
-//! - Above p_n it goes on along its tangent; the coefficients, the tangential stiffness and the contact ratio stay.
+//! - Below p_1 the pressure is a parabola, p = p_1 ((a - a_0)/(a_1 - a_0))², with the slope that it has at p_1; it is 0
+//!   at a_0 = a_1 - 2 p_1/p_1', where the contact ends. Tangential stiffness and contact ratio are proportional to the
+//!   pressure, the friction coefficient is constant.
+//! - Above p_n the pressure follows its tangent; the coefficients, the tangential stiffness and the contact ratio are
+//!   constant.
 //!
 //! Below the least speed of the table everything is as at the least, above the largest as at the largest.
 
@@ -18,7 +18,7 @@ use super::table::{Node, Table, TableAxis};
 use super::table_format::Quantity;
 use crate::math::{Expansion, cubic, interval_of, monotone_slopes};
 
-/// The most that y changes over one piece of the approach. Over it the limit of the friction force is so near to a
+/// Largest change of y over one piece of the approach: over it the limit of the friction force is so close to a
 /// polynomial that Gauss's formula of six points gives its integral to rounding.
 const LONGEST_PIECE: f64 = 0.25;
 
@@ -47,15 +47,14 @@ impl Series {
 pub(super) struct Law {
     /// A, m².
     pub(super) nominal_area: f64,
-    /// m
+    /// Separation at w = 0, m.
     pub(super) rest_separation: f64,
-    /// The speeds' logarithms.
+    /// Logarithms of the speeds.
     speeds: Vec<f64>,
     /// The least and the largest speed, m/s.
     pub(super) speed_range: (f64, f64),
-    /// The pressures' logarithms.
+    /// Logarithms of the pressures.
     pressures: Vec<f64>,
-    /// What the loads are.
     pub(super) load: Load,
     /// The largest pressure, Pa, or force, N.
     pub(super) largest_pressure: f64,
@@ -98,7 +97,7 @@ impl Law {
     }
 }
 
-/// What is interpolated of a quantity: of the separation its difference to the next pressure.
+/// What is interpolated: the value of a quantity; for the separation, its difference to the next pressure.
 fn interpolated(table: &Table, quantity: Quantity, node: Node) -> f64 {
     let here = table.value(quantity, node);
     if quantity == Quantity::Separation && node.load + 1 < table.grid.loads.len() {
@@ -134,7 +133,7 @@ pub(super) struct Curve {
     pub(super) touch: f64,
     /// Along y, where the table has the quantity.
     columns: [Option<Series>; Quantity::ALL.len()],
-    /// The ends of the pieces that the approach is taken in, m, rising.
+    /// The ends of the pieces into which the approach is divided, m, rising.
     ends: Vec<f64>,
     nominal_area: f64,
 }
@@ -159,7 +158,7 @@ impl Curve {
         curve
     }
 
-    /// Goes over to another speed, m/s.
+    /// Changes the speed, m/s.
     pub(super) fn set_speed(&mut self, law: &Law, speed: f64) {
         let speed = speed.abs().clamp(law.speed_range.0, law.speed_range.1);
         if speed == self.speed {
@@ -175,7 +174,6 @@ impl Curve {
         self.divide();
     }
 
-    /// From the separations' differences.
     fn find_approaches(&mut self) {
         let Some(differences) = &self.columns[Quantity::Separation as usize] else { return };
         let mut separation = 0.0;
@@ -184,7 +182,7 @@ impl Curve {
             *approach = -separation;
         }
         monotone_slopes(&self.approaches, &self.pressures, &mut self.slopes);
-        // The force goes on from the ends with these, so they may not vanish.
+        // The force is extrapolated with the slopes at the ends, so they may not vanish.
         let last = self.slopes.len() - 1;
         let secant =
             |i: usize| (self.pressures[i + 1] - self.pressures[i]) / (self.approaches[i + 1] - self.approaches[i]);
@@ -193,7 +191,7 @@ impl Curve {
         self.touch = self.approaches[0] - 2.0 / self.slopes[0];
     }
 
-    /// Between two pressures into even pieces: the same wherever a step begins.
+    /// Divides the approaches between two pressures into even pieces, the same wherever a step begins.
     fn divide(&mut self) {
         self.ends.clear();
         self.ends.push(self.touch);
@@ -204,8 +202,8 @@ impl Curve {
         self.ends.push(self.approaches[self.approaches.len() - 1]);
     }
 
-    /// The end of the piece that the carrier goes through as it leaves `approach` to come closer, or to go; infinite
-    /// where there is none.
+    /// The end of the piece that the carrier enters as it leaves `approach` (m), closer or farther; infinite where there
+    /// is none.
     pub(super) fn end_of_piece(&self, approach: f64, closer: bool) -> f64 {
         if closer {
             let next = self.ends.partition_point(|&end| end <= approach);
@@ -221,7 +219,7 @@ impl Curve {
         self.approaches[self.approaches.len() - 1]
     }
 
-    /// The speed as far as the table goes, m/s.
+    /// The speed, limited to those of the table, m/s.
     pub(super) fn speed(&self) -> f64 {
         self.speed
     }
@@ -294,14 +292,14 @@ impl Curve {
         self.columns[quantity as usize].as_ref().map_or(0.0, |column| column.values[i])
     }
 
-    /// A quantity at a pressure, Pa, as far as the table goes.
+    /// A quantity at a pressure (Pa), limited to those of the table.
     pub(super) fn at_pressure(&self, quantity: Quantity, pressure: f64) -> f64 {
         let last = self.pressures.len() - 1;
         let y = pressure.ln().clamp(self.pressures[0], self.pressures[last]);
         self.along_pressure(quantity, interval_of(&self.pressures, y), y).value
     }
 
-    /// The pressure over the least of the table, at most 1: what else falls with it below.
+    /// The pressure over the least of the table, at most 1.
     pub(super) fn share_of_least(&self, contact: &Contact) -> Expansion {
         let force = self.nominal_area * self.pressures[0].exp();
         if contact.normal.value >= force {
@@ -310,25 +308,25 @@ impl Curve {
         contact.normal.times(Expansion::constant(1.0 / force))
     }
 
-    /// Another quantity where the contact is `contact`, along the approach; 0 where the table does not know it.
+    /// A quantity at `contact`, along the approach; 0 where the table does not have it.
     pub(super) fn other(&self, quantity: Quantity, contact: &Contact) -> Expansion {
         let i = interval_of(&self.pressures, contact.y.value);
         self.along_pressure(quantity, i, contact.y.value).of(contact.y)
     }
 }
 
-/// The least slope of y at the ends, as a share of the secant beside them.
+/// Least slope of y at the ends, as a share of the secant beside them.
 const LEAST_END_SLOPE: f64 = 0.5;
 
-/// Into how many pieces the approaches between two pressures are divided.
+/// Number of pieces between two pressures, given by their logarithms.
 fn pieces(from: f64, to: f64) -> usize {
     ((to - from) / LONGEST_PIECE).ceil().max(1.0) as usize
 }
 
-/// What the contact bears at one approach and speed, along the approach a.
+/// The contact at one approach and speed, and its derivatives with respect to the approach.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Contact {
-    /// y = ln p as far as the table goes.
+    /// y = ln p, limited to the pressures of the table.
     y: Expansion,
     /// F_z = A p, N.
     pub(super) normal: Expansion,

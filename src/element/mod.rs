@@ -21,7 +21,7 @@ use std::sync::Arc;
 use crate::outputs::Variable;
 use crate::scene::{Extrapolation, Parameter, ParameterError, Problem, Value};
 
-pub use error::{ElementError, RestoreError, TableError, TableProblem};
+pub use error::{ElementError, RestoreError, TableError};
 pub use grid::{Load, OperatingPoint, SweepGrid};
 pub use law::{LeftOut, left_out};
 pub use outputs::{dependencies, variables};

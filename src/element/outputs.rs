@@ -2,115 +2,128 @@
 
 use super::jenkins::Rates;
 use super::law::Contact;
-use super::run::Element;
+use super::run::{Element, ElementState};
 use super::table::Table;
 use super::table_format::Quantity;
 use crate::math::Expansion;
 use crate::outputs::{Dependencies, Output, Variable, variable};
 
-/// The variables of an element, named as a layer's, in the order of the result files.
-pub fn variables(table: &Table) -> Vec<Variable> {
-    let outputs = [
-        (Output::ForceX, None),
-        (Output::ForceZ, None),
-        (Output::DissipatedPower, None),
-        (Output::DissipatedEnergy, None),
-        (Output::DamperEnergy, Some(Quantity::DamperPower)),
-        (Output::MaxwellEnergy, Some(Quantity::MaxwellPower)),
-        (Output::FrictionEnergy, Some(Quantity::FrictionPower)),
-        (Output::ImpactEnergy, Some(Quantity::ImpactPower)),
-        (Output::Hysteresis, Some(Quantity::Hysteresis)),
-        (Output::Adhesion, Some(Quantity::Hysteresis)),
-        (Output::FrictionCoefficient, None),
-        (Output::ContactRatio, Some(Quantity::ContactRatio)),
-    ];
-    let known = outputs.into_iter().filter(|(_, needs)| needs.is_none_or(|quantity| table.has(quantity)));
-    known.filter_map(|(output, _)| variable(output)).collect()
-}
-
-/// What an output depends on directly, the slider's position held while the contact sticks: F_x on u through the
-/// spring, everything that depends on the pressure on w.
-pub fn dependencies(output: Output) -> Dependencies {
-    match output {
-        Output::ForceZ | Output::ContactRatio => Dependencies { on_u: false, on_w: true },
-        Output::ForceX
-        | Output::DissipatedPower
-        | Output::Hysteresis
-        | Output::Adhesion
-        | Output::FrictionCoefficient => Dependencies { on_u: true, on_w: true },
-        _ => Dependencies::default(),
-    }
-}
-
 /// What the outputs are computed from, or how it changes.
 #[derive(Clone, Copy, Debug, Default)]
-struct Snapshot {
+struct Terms {
     /// G = -F_x, N.
     force: f64,
     /// F_z, N.
     normal: f64,
-    /// W
+    /// Power lost, W.
     power: f64,
-    /// The share of hysteresis in the friction coefficient.
+    /// Share of hysteresis in the friction coefficient, 1.
     hysteresis: f64,
-    ratio: f64,
+    /// Masses in contact over all masses, 1.
+    contact_ratio: f64,
+}
+
+/// All about one output of an element.
+struct Row {
+    output: Output,
+    /// The quantity that the table must have.
+    needs: Option<Quantity>,
+    /// With the slider's position held while the contact sticks: on u through the spring, on w through the pressure.
+    dependencies: Dependencies,
+    value: fn(Terms, &ElementState) -> f64,
+    /// Change where the terms have the second value and change by the first.
+    change: fn(Terms, Terms) -> f64,
+}
+
+const NONE: Dependencies = Dependencies { on_u: false, on_w: false };
+const ON_W: Dependencies = Dependencies { on_u: false, on_w: true };
+const ON_BOTH: Dependencies = Dependencies { on_u: true, on_w: true };
+
+/// In the order of the result files.
+#[rustfmt::skip]
+const ROWS: [Row; 12] = [
+    Row { output: Output::ForceX, needs: None, dependencies: ON_BOTH,
+          value: |now, _| -now.force, change: |change, _| -change.force },
+    Row { output: Output::ForceZ, needs: None, dependencies: ON_W,
+          value: |now, _| now.normal, change: |change, _| change.normal },
+    Row { output: Output::DissipatedPower, needs: None, dependencies: ON_BOTH,
+          value: |now, _| now.power, change: |change, _| change.power },
+    Row { output: Output::DissipatedEnergy, needs: None, dependencies: NONE,
+          value: |_, state| state.lost, change: |_, _| 0.0 },
+    Row { output: Output::DamperEnergy, needs: Some(Quantity::DamperPower), dependencies: NONE,
+          value: |_, state| state.lost_by_channel[0], change: |_, _| 0.0 },
+    Row { output: Output::MaxwellEnergy, needs: Some(Quantity::MaxwellPower), dependencies: NONE,
+          value: |_, state| state.lost_by_channel[1], change: |_, _| 0.0 },
+    Row { output: Output::FrictionEnergy, needs: Some(Quantity::FrictionPower), dependencies: NONE,
+          value: |_, state| state.lost_by_channel[2], change: |_, _| 0.0 },
+    Row { output: Output::ImpactEnergy, needs: Some(Quantity::ImpactPower), dependencies: NONE,
+          value: |_, state| state.lost_by_channel[3], change: |_, _| 0.0 },
+    Row { output: Output::Hysteresis, needs: Some(Quantity::Hysteresis), dependencies: ON_BOTH,
+          value: |now, _| -now.force * now.hysteresis,
+          change: |change, now| -change.force * now.hysteresis - now.force * change.hysteresis },
+    Row { output: Output::Adhesion, needs: Some(Quantity::Hysteresis), dependencies: ON_BOTH,
+          value: |now, _| -now.force * (1.0 - now.hysteresis),
+          change: |change, now| -change.force * (1.0 - now.hysteresis) + now.force * change.hysteresis },
+    Row { output: Output::FrictionCoefficient, needs: None, dependencies: ON_BOTH,
+          value: |now, _| if now.normal > 0.0 { now.force.abs() / now.normal } else { 0.0 },
+          change: change_of_coefficient },
+    Row { output: Output::ContactRatio, needs: Some(Quantity::ContactRatio), dependencies: ON_W,
+          value: |now, _| now.contact_ratio, change: |change, _| change.contact_ratio },
+];
+
+fn change_of_coefficient(change: Terms, now: Terms) -> f64 {
+    if now.normal > 0.0 {
+        let along = if now.force == 0.0 { 0.0 } else { now.force.signum() * change.force };
+        (along - now.force.abs() * change.normal / now.normal) / now.normal
+    } else {
+        0.0
+    }
+}
+
+fn row(output: Output) -> Option<&'static Row> {
+    ROWS.iter().find(|row| row.output == output)
+}
+
+/// The variables of an element, named as a layer's, in the order of the result files.
+pub fn variables(table: &Table) -> Vec<Variable> {
+    let known = ROWS.iter().filter(|row| row.needs.is_none_or(|quantity| table.has(quantity)));
+    known.filter_map(|row| variable(row.output)).collect()
+}
+
+/// What an output depends on directly.
+pub fn dependencies(output: Output) -> Dependencies {
+    row(output).map_or(NONE, |row| row.dependencies)
 }
 
 impl Element {
-    /// Writes the values of `variables`, in their order, into `values`.
+    /// Writes the values of `variables`, in their order, into `values`; 0 for one that an element does not have.
     pub fn evaluate(&self, variables: &[Variable], values: &mut [f64]) {
-        let (now, state) = (self.snapshot(&self.contact()), &self.state);
+        let now = self.terms(&self.contact());
         for (variable, value) in variables.iter().zip(values) {
-            *value = match variable.output {
-                Output::ForceX => -now.force,
-                Output::ForceZ => now.normal,
-                Output::DissipatedPower => now.power,
-                Output::DissipatedEnergy => state.lost,
-                Output::DamperEnergy => state.lost_by_channel[0],
-                Output::MaxwellEnergy => state.lost_by_channel[1],
-                Output::FrictionEnergy => state.lost_by_channel[2],
-                Output::ImpactEnergy => state.lost_by_channel[3],
-                Output::Hysteresis => -now.force * now.hysteresis,
-                Output::Adhesion => -now.force * (1.0 - now.hysteresis),
-                Output::FrictionCoefficient if now.normal > 0.0 => now.force.abs() / now.normal,
-                Output::ContactRatio => now.ratio,
-                _ => 0.0,
-            };
+            *value = row(variable.output).map_or(0.0, |row| (row.value)(now, &self.state));
         }
     }
 
-    fn snapshot(&self, contact: &Contact) -> Snapshot {
-        Snapshot {
+    fn terms(&self, contact: &Contact) -> Terms {
+        Terms {
             force: self.spring.force,
             normal: contact.normal.value,
             power: self.power(contact),
             hysteresis: self.hysteresis_share(contact).value,
-            ratio: self.contact_ratio(contact).value,
+            contact_ratio: self.contact_ratio(contact).value,
         }
     }
 
     /// Writes into `values` how `variables` change as the carrier moves along x and z by `direction` (m per unit), the
     /// modes held.
     ///
-    /// A sticking spring follows u with its stiffness; where w lets the stiffness fall, its force falls alike, else it
-    /// stays.
+    /// The force of a sticking spring follows u with the stiffness. Where w decreases the stiffness, the force decreases
+    /// in proportion, else it stays.
     pub fn directional_derivative(&self, variables: &[Variable], direction: (f64, f64), values: &mut [f64]) {
         let contact = self.contact();
-        let (now, change) = (self.snapshot(&contact), self.change(&contact, direction.0, direction.1));
+        let (now, change) = (self.terms(&contact), self.change(&contact, direction.0, direction.1));
         for (variable, value) in variables.iter().zip(values) {
-            *value = match variable.output {
-                Output::ForceX => -change.force,
-                Output::ForceZ => change.normal,
-                Output::DissipatedPower => change.power,
-                Output::Hysteresis => -change.force * now.hysteresis - now.force * change.hysteresis,
-                Output::Adhesion => -change.force * (1.0 - now.hysteresis) + now.force * change.hysteresis,
-                Output::FrictionCoefficient if now.normal > 0.0 => {
-                    let along = if now.force == 0.0 { 0.0 } else { now.force.signum() * change.force };
-                    (along - now.force.abs() * change.normal / now.normal) / now.normal
-                }
-                Output::ContactRatio => change.ratio,
-                _ => 0.0,
-            };
+            *value = row(variable.output).map_or(0.0, |row| (row.change)(change, now));
         }
     }
 
@@ -121,15 +134,15 @@ impl Element {
         (-change.force, change.normal)
     }
 
-    fn change(&self, contact: &Contact, du: f64, dw: f64) -> Snapshot {
+    fn change(&self, contact: &Contact, du: f64, dw: f64) -> Terms {
         let da = -dw;
         let force = self.force_change(contact, du, da);
-        Snapshot {
+        Terms {
             force,
             normal: contact.normal.slope * da,
             power: self.power_change(contact, force, da),
             hysteresis: self.hysteresis_share(contact).slope * da,
-            ratio: self.contact_ratio(contact).slope * da,
+            contact_ratio: self.contact_ratio(contact).slope * da,
         }
     }
 

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use super::error::{TableError, TableProblem};
+use super::error::TableError;
 use super::grid::{Load, OperatingPoint, SweepGrid};
 use super::table_format::{Quantity, STEADY, TableRow, TableText};
 
@@ -65,8 +65,7 @@ impl Table {
     /// # Errors
     /// [`TableError`] where the file is not the table of a sweep or its grid is not full.
     pub fn load(path: &Path) -> Result<Self, TableError> {
-        let unreadable =
-            |error: std::io::Error| TableError::new(path, None, TableProblem::Unreadable(error.to_string()));
+        let unreadable = |error: std::io::Error| TableError::new(path, None, format!("cannot be read: {error}"));
         Self::parse(&fs::read_to_string(path).map_err(unreadable)?, path)
     }
 
@@ -85,8 +84,11 @@ impl Table {
             temperatures: axis(rows.iter().filter_map(|row| row.point.temperature)),
         };
         if grid.loads.len() < 2 {
-            let problem = TableProblem::Loads { load: load.name(), found: grid.loads.len() };
-            return Err(text.error(None, problem));
+            return Err(text.error(format!(
+                "{} values of the {}, expected at least two: the normal stiffness is the slope between them",
+                grid.loads.len(),
+                load.name()
+            )));
         }
         let order = rows_of_points(&text, &grid, load, &rows)?;
         check_steady(&text, load, &rows, &order)?;
@@ -95,7 +97,7 @@ impl Table {
             values[quantity as usize] = text.values(load, quantity, &order)?;
         }
         let table = Self { scene: text.scene(), load, rest_separation, grid, values };
-        table.check_separations().map_err(|problem| text.error(None, problem))?;
+        table.check_separations().map_err(|problem| text.error(problem))?;
         Ok(table)
     }
 
@@ -141,13 +143,15 @@ impl Table {
     }
 
     /// Pressed harder, the carrier is closer: the separations have an inverse.
-    fn check_separations(&self) -> Result<(), TableProblem> {
+    fn check_separations(&self) -> Result<(), String> {
         let separation = |node| self.value(Quantity::Separation, node);
         for node in self.nodes().filter(|node| node.load > 0) {
             let (here, before) = (separation(node), separation(Node { load: node.load - 1, ..node }));
             if here >= before {
                 let (load, point) = (self.load.name(), self.point(node).describe(self.load));
-                return Err(TableProblem::Separation { point, load, here, before });
+                return Err(format!(
+                    "separation = {here} m at {point}, but {before} m at the {load} below: expected a smaller one"
+                ));
             }
         }
         Ok(())
@@ -167,7 +171,7 @@ fn rows_of_points(text: &TableText, grid: &SweepGrid, load: Load, rows: &[TableR
     let mut found: Vec<Option<usize>> = vec![None; grid.count()];
     for (row, TableRow { point, .. }) in rows.iter().enumerate() {
         if grid.index(point).is_some_and(|index| found[index].replace(row).is_some()) {
-            return Err(text.error(Some(text.line_number(row)), TableProblem::Twice(point.describe(load))));
+            return Err(text.error_in(row, format!("a second row of {}", point.describe(load))));
         }
     }
     let missing = |(point, row): (OperatingPoint, &Option<usize>)| row.is_none().then(|| point.describe(load));
@@ -175,7 +179,7 @@ fn rows_of_points(text: &TableText, grid: &SweepGrid, load: Load, rows: &[TableR
     if missing.is_empty() {
         Ok(found.into_iter().flatten().collect())
     } else {
-        Err(text.error(None, TableProblem::Missing(missing)))
+        Err(text.error(format!("no row of {}; an element needs every point of the table", some_of(&missing))))
     }
 }
 
@@ -183,5 +187,21 @@ fn check_steady(text: &TableText, load: Load, rows: &[TableRow], order: &[usize]
     let failed = order.iter().map(|&row| &rows[row]).filter(|row| row.status != STEADY);
     let failed = failed.map(|row| format!("{} is not steady: {}", row.point.describe(load), row.status));
     let failed: Vec<String> = failed.collect();
-    if failed.is_empty() { Ok(()) } else { Err(text.error(None, TableProblem::NotSteady(failed))) }
+    if failed.is_empty() {
+        return Ok(());
+    }
+    Err(text.error(format!(
+        "{}; an element needs every point of the table: sweep them again, or leave a speed, a pressure or a temperature out",
+        some_of(&failed)
+    )))
+}
+
+/// The first of `texts`, and how many more there are.
+fn some_of(texts: &[String]) -> String {
+    const SHOWN: usize = 6;
+    let shown = texts.iter().take(SHOWN).map(String::as_str).collect::<Vec<_>>().join("; ");
+    match texts.len().saturating_sub(SHOWN) {
+        0 => shown,
+        more => format!("{shown}; {more} more"),
+    }
 }

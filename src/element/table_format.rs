@@ -7,7 +7,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use super::error::{TableError, TableProblem};
+use super::error::TableError;
 use super::grid::{Load, OperatingPoint, SweepGrid};
 use crate::scene::{SMALLEST, is_possible, text_table};
 
@@ -266,19 +266,28 @@ impl TableText {
         // Key and value of `FORMAT`.
         match self.header.get("asperity sweep").map(String::as_str) {
             Some("1") => (),
-            found => return Err(self.error(None, TableProblem::Format(found.unwrap_or("none").to_owned()))),
+            found => {
+                let found = found.unwrap_or("none");
+                return Err(
+                    self.error(format!("not the table of a sweep: expected the line `{FORMAT}`, found {found}"))
+                );
+            }
         }
         let expected = self.columns.len();
-        match self.lines.iter().find(|line| line.fields.len() != expected) {
-            Some(line) => {
-                Err(self.error(Some(line.number), TableProblem::Fields { found: line.fields.len(), expected }))
+        match self.lines.iter().position(|line| line.fields.len() != expected) {
+            Some(row) => {
+                Err(self.error_in(row, format!("{} fields, expected {expected}", self.lines[row].fields.len())))
             }
             None => Ok(()),
         }
     }
 
-    pub(super) fn error(&self, line: Option<usize>, problem: TableProblem) -> TableError {
-        TableError::new(&self.file, line, problem)
+    pub(super) fn error(&self, problem: String) -> TableError {
+        TableError::new(&self.file, None, problem)
+    }
+
+    pub(super) fn error_in(&self, row: usize, problem: String) -> TableError {
+        TableError::new(&self.file, Some(self.lines[row].number), problem)
     }
 
     /// The name of the scene that was swept.
@@ -294,8 +303,8 @@ impl TableText {
         if self.column(&column_name(POINT_COLUMNS[1], Load::Force)).is_ok() {
             return Ok(Load::Force);
         }
-        let area = self.header_number("nominal_area", "m2", "an area above 0 in m2", |area| area > 0.0)?;
-        Ok(Load::Pressure { area })
+        let area = |text: &str| quantity(text, "m2").filter(|&area| area > 0.0);
+        Ok(Load::Pressure { area: self.header_value("nominal_area", "an area above 0 in m2", area)? })
     }
 
     /// Separation at w = 0, m.
@@ -303,7 +312,7 @@ impl TableText {
     /// # Errors
     /// [`TableError`] where the header does not give it.
     pub fn rest_separation(&self) -> Result<f64, TableError> {
-        self.header_number("rest_separation", "m", "a length in m", |_| true)
+        self.header_value("rest_separation", "a length in m", |text| quantity(text, "m"))
     }
 
     /// The header of a table as a sweep writes it.
@@ -314,52 +323,38 @@ impl TableText {
         let load = self.load()?;
         let expected = columns(load);
         if self.columns != expected {
-            return Err(self.error(None, TableProblem::Columns(expected.join(","))));
+            return Err(self.error(format!("expected the columns {}", expected.join(","))));
         }
-        let loads = match load {
-            Load::Pressure { .. } => self.header_numbers("pressures", "Pa"),
-            Load::Force => self.header_numbers("forces", "N"),
-        };
         let has_temperatures = self.header.contains_key("temperatures");
         Ok(TableHeader {
             scene: self.scene(),
-            fingerprint: self.header_text("fingerprint")?.to_owned(),
+            fingerprint: self.header_value("fingerprint", "such a line", |text| Some(text.to_owned()))?,
             load,
             rest_separation: self.rest_separation()?,
             grid: SweepGrid {
                 speeds: self.header_numbers("speeds", "m/s")?,
-                loads: loads?,
+                loads: self.header_numbers(&format!("{}s", load.name()), load.unit())?,
                 temperatures: if has_temperatures { self.header_numbers("temperatures", "K")? } else { Vec::new() },
             },
         })
     }
 
-    fn header_text(&self, key: &'static str) -> Result<&str, TableError> {
-        self.header.get(key).map(String::as_str).ok_or_else(|| self.header_error(key, "such a line"))
-    }
-
-    fn header_error(&self, key: &'static str, expected: &'static str) -> TableError {
-        let found = self.header.get(key).cloned().unwrap_or_default();
-        self.error(None, TableProblem::Header { key, found, expected })
-    }
-
-    fn header_number(
+    fn header_value<T>(
         &self,
-        key: &'static str,
-        unit: &str,
-        expected: &'static str,
-        allowed: fn(f64) -> bool,
-    ) -> Result<f64, TableError> {
-        let text = self.header.get(key).and_then(|text| text.strip_suffix(unit));
-        let number = text.and_then(|number| number.trim().parse().ok());
-        let number = number.filter(|&number| is_possible(number) && allowed(number));
-        number.ok_or_else(|| self.header_error(key, expected))
+        key: &str,
+        expected: &str,
+        read: impl FnOnce(&str) -> Option<T>,
+    ) -> Result<T, TableError> {
+        let found = self.header.get(key).map(String::as_str);
+        found
+            .and_then(read)
+            .ok_or_else(|| self.error(format!("`# {key} = {}`: expected {expected}", found.unwrap_or_default())))
     }
 
-    fn header_numbers(&self, key: &'static str, unit: &str) -> Result<Vec<f64>, TableError> {
-        let text = self.header_text(key)?;
-        let numbers = text.strip_suffix(unit).and_then(|list| list.split(',').map(|n| n.trim().parse().ok()).collect());
-        numbers.ok_or_else(|| self.header_error(key, "numbers with their unit"))
+    fn header_numbers(&self, key: &str, unit: &str) -> Result<Vec<f64>, TableError> {
+        let numbers =
+            |text: &str| text.strip_suffix(unit)?.split(',').map(|number| number.trim().parse().ok()).collect();
+        self.header_value(key, &format!("numbers in {unit}"), numbers)
     }
 
     /// The rows, their points checked; fields that are no numbers have no value.
@@ -382,11 +377,11 @@ impl TableText {
         let names = POINT_COLUMNS.map(|name| column_name(name, load));
         let (speed, pressed) = (self.column(&names[0])?, self.column(&names[1])?);
         let temperature = self.column(&names[2])?;
-        let point = |line: &TableLine| {
+        let point = |(row, line): (usize, &TableLine)| {
             let positive = |column: usize| {
                 let number = line.fields[column].parse().ok();
                 let number = number.filter(|&number: &f64| number >= SMALLEST && is_possible(number));
-                number.ok_or_else(|| self.field_error(line, column, "a number above 0"))
+                number.ok_or_else(|| self.field_error(row, column, "a number above 0"))
             };
             let has_temperature = !line.fields[temperature].is_empty();
             Ok(OperatingPoint {
@@ -395,10 +390,11 @@ impl TableText {
                 temperature: if has_temperature { Some(positive(temperature)?) } else { None },
             })
         };
-        let points: Vec<OperatingPoint> = self.lines.iter().map(point).collect::<Result<_, TableError>>()?;
+        let points: Vec<OperatingPoint> =
+            self.lines.iter().enumerate().map(point).collect::<Result<_, TableError>>()?;
         match points.iter().position(|point| point.temperature.is_none()) {
             Some(row) if points.iter().any(|point| point.temperature.is_some()) => {
-                Err(self.field_error(&self.lines[row], temperature, "a number, as in other rows"))
+                Err(self.field_error(row, temperature, "a number, as in other rows"))
             }
             _ => Ok(points),
         }
@@ -422,27 +418,26 @@ impl TableText {
             return Ok(None);
         }
         let value = |&row: &usize| {
-            let line = &self.lines[row];
-            let number = line.fields[column].parse().ok().filter(|&number| quantity.allows(number));
-            number.ok_or_else(|| self.field_error(line, column, quantity.expected()))
+            let number = self.lines[row].fields[column].parse().ok().filter(|&number| quantity.allows(number));
+            number.ok_or_else(|| self.field_error(row, column, quantity.expected()))
         };
         rows.iter().map(value).collect::<Result<_, _>>().map(Some)
     }
 
-    /// The number in the file of the line of a row.
-    pub(super) fn line_number(&self, row: usize) -> usize {
-        self.lines[row].number
-    }
-
     fn column(&self, name: &str) -> Result<usize, TableError> {
         let index = self.columns.iter().position(|column| column == name);
-        index.ok_or_else(|| self.error(None, TableProblem::NoColumn(name.into())))
+        index.ok_or_else(|| self.error(format!("no column `{name}`")))
     }
 
-    fn field_error(&self, line: &TableLine, column: usize, expected: &'static str) -> TableError {
-        let (column, found) = (self.columns[column].clone(), line.fields[column].clone());
-        self.error(Some(line.number), TableProblem::Field { column, found, expected })
+    fn field_error(&self, row: usize, column: usize, expected: &str) -> TableError {
+        let (name, found) = (&self.columns[column], &self.lines[row].fields[column]);
+        self.error_in(row, format!("{name} = \"{found}\": expected {expected}"))
     }
+}
+
+/// A number with its unit.
+fn quantity(text: &str, unit: &str) -> Option<f64> {
+    text.strip_suffix(unit)?.trim().parse().ok().filter(|&number| is_possible(number))
 }
 
 fn key_and_value(comment: &str) -> Option<(String, String)> {

@@ -119,7 +119,7 @@ fn between_temperatures_it_is_the_law_in_between() {
 
 /// At every speed the force rises as the carrier comes down, from nothing on, without a jump.
 #[test]
-fn pressed_harder_it_bears_more() {
+fn the_force_rises_as_the_carrier_comes_down() {
     for v in logarithmic(1e-5, 10.0, 37) {
         let curve_of = |w: f64| {
             Element::new(&contact(), &Start { w, u_rate: v, ..Start::default() }).map(|element| forces(&element).1)
@@ -136,7 +136,7 @@ fn pressed_harder_it_bears_more() {
 
 /// Dragged to and fro at a constant height: slope K after each reversal, plateaus at ±μF_z, the area lost.
 #[test]
-fn a_hysteresis_loop_is_the_jenkins_elements() {
+fn a_hysteresis_loop_is_that_of_a_jenkins_element() {
     let (v, amplitude, p) = (1e-3, 2e-3, 2e5);
     let mut element = at_w(&contact(), separation(v, p, WARM) - REST);
     let (k, limit) = (stiffness(p), friction(v, p, WARM) * p * AREA);
@@ -177,7 +177,7 @@ fn go(element: &mut Element, (duration, u_rate, w_rate): (f64, f64, f64), parts:
     parts.iter().for_each(|part| element.advance(duration * part / sum, u_rate, w_rate).unwrap());
 }
 
-/// However a motion is cut into steps, it ends at the same.
+/// The end of a motion does not depend on its division into steps.
 #[test]
 fn steps_may_be_split() {
     let (mut whole, mut split) = (pressed(2e5), pressed(2e5));
@@ -199,13 +199,13 @@ fn steps_may_be_split() {
 
 /// ∫ -F_x du = V + E_diss, with the work summed up from the forces in many small steps.
 #[test]
-fn the_work_along_x_is_held_or_lost() {
+fn the_work_along_x_is_stored_or_lost() {
     const PARTS: usize = 4000;
     let mut element = pressed(2e5);
     let mut modes = Vec::new();
     for motion in MOTIONS {
         let (before, lost) = (stored(&element), get(&element, Output::DissipatedEnergy));
-        // The law changes with the speed at once; from there on the force has no leap.
+        // The law changes with the speed at once; after that the force has no jump.
         go(&mut element, (0.0, motion.1, motion.2), &[1.0]);
         let mut work = 0.0;
         for _ in 0..PARTS {
@@ -264,7 +264,7 @@ fn derivatives_are_those_of_difference_quotients() {
 }
 
 #[test]
-fn the_ends_of_the_table_refuse_or_hold() {
+fn beyond_the_table_motions_are_refused_or_extrapolated() {
     let mut contact = contact();
     let mut element = at_w(&contact, separation(1e-4, 1e5, WARM) - REST);
     let before = element.save();
@@ -294,9 +294,9 @@ fn the_ends_of_the_table_refuse_or_hold() {
     close(held.spring.stiffness, stiffness(8e5), 1e-9);
 }
 
-/// Through standstill the law is that of the least speed: nothing leaps there.
+/// Through standstill the law is that of the least speed, without a jump.
 #[test]
-fn below_the_least_speed_it_is_as_at_the_least() {
+fn below_the_least_speed_the_law_is_that_of_the_least() {
     let element = |v: f64| {
         let w = separation(1e-4, 3e5, WARM) - REST;
         let mut element = Element::new(&contact(), &Start { w, u_rate: v, ..Start::default() }).unwrap();
@@ -309,7 +309,7 @@ fn below_the_least_speed_it_is_as_at_the_least() {
 }
 
 #[test]
-fn lifted_it_bears_nothing() {
+fn a_lifted_element_has_no_forces() {
     let mut element = pressed(1e5);
     element.advance(1e-3, 0.1, 0.0).unwrap();
     element.advance(1.0, 0.0, 3e-5).unwrap();
@@ -320,7 +320,7 @@ fn lifted_it_bears_nothing() {
 }
 
 #[test]
-fn a_saved_run_goes_on_bit_for_bit() {
+fn a_saved_run_continues_bit_for_bit() {
     let mut first = pressed(2e5);
     first.record_mode_changes(true);
     for motion in MOTIONS {
@@ -366,7 +366,7 @@ fn left_out_points_show_the_interpolation_error() {
 }
 
 #[test]
-fn a_table_that_is_not_full_is_refused_with_what_is_missing() {
+fn an_incomplete_table_is_refused_with_what_is_missing() {
     let text = Grid::plain().text();
     let refused = |text: &str| Table::parse(text, Path::new("t.csv")).unwrap_err().to_string();
     let lines: Vec<&str> = text.lines().collect();

@@ -18,7 +18,7 @@ fn pressed(pressure: f64) -> Fmu {
     fmu
 }
 
-/// A step from `time` over `h` at the rates u̇ and ẇ from where the carrier stands.
+/// A step of `h` from `time` at the rates u̇ and ẇ, the carrier being at u and w.
 fn step(fmu: &Fmu, (time, h): (f64, f64), (u, w): (f64, f64), (u_rate, w_rate): (f64, f64)) -> i32 {
     assert_eq!((fmu.set_real("u", u), fmu.set_real("w", w)), (OK, OK));
     assert_eq!((fmu.set_rate("u", u_rate), fmu.set_rate("w", w_rate)), (OK, OK));
@@ -30,7 +30,7 @@ fn close(found: f64, expected: f64, share: f64) {
 }
 
 #[test]
-fn its_variables_are_named_as_a_layers() {
+fn its_variables_have_the_names_of_a_layers() {
     let fmu = pressed(2e5);
     let names: Vec<String> = fmu.catalogue.entries().map(|(_, entry)| entry.name()).collect();
     let expected = [
@@ -90,7 +90,7 @@ fn a_hysteresis_loop() {
 }
 
 #[test]
-fn the_ends_of_the_table_are_told_and_leave_it_as_it_was() {
+fn motions_beyond_the_table_are_refused_and_leave_it_unchanged() {
     let fmu = pressed(4e5);
     let here = w(1e-4, 4e5);
     assert_eq!(step(&fmu, (0.0, 1e-3), (0.0, here), (0.01, 0.0)), 0);
@@ -108,7 +108,7 @@ fn the_ends_of_the_table_are_told_and_leave_it_as_it_was() {
 }
 
 #[test]
-fn held_it_goes_on_beyond() {
+fn an_extrapolated_table_allows_motions_beyond_it() {
     let fmu = Fmu::of_table(&Grid::plain().text(), false);
     let reference = fmu.reference("table.extrapolation");
     assert_eq!((fmu.set_text(reference, "stop"), fmu.set_text(reference, "hold")), (ERROR, OK));
@@ -128,17 +128,17 @@ fn a_start_beyond_the_table_is_an_error() {
 }
 
 #[test]
-fn a_tolerance_is_not_its_business() {
+fn a_tolerance_is_accepted_and_ignored() {
     let fmu = Fmu::of_table(&Grid::plain().text(), false);
     assert_eq!((fmu.setup_all(Some(1e-5), 0.0, None), fmu.enter(), fmu.exit()), (OK, OK, OK));
 }
 
 #[test]
-fn states_are_gone_back_to_and_written_down_bit_for_bit() {
+fn states_are_restored_and_serialised_bit_for_bit() {
     let (fmu, other) = (pressed(2e5), Fmu::of_table(&Grid::plain().text(), false));
     assert_eq!(step(&fmu, (0.0, 1e-5), (0.0, w(1e-4, 2e5)), (0.1, -0.01)), 0);
     let (state, bytes) = (fmu.state(), fmu.frozen());
-    // What these steps set is far above: lifted.
+    // These steps lift the carrier far above the profile.
     let first = states::three_steps(&fmu, 1e-5);
     assert_eq!(fmu.set_state(state), OK);
     assert_eq!(states::three_steps(&fmu, 1e-5), first);
@@ -182,7 +182,7 @@ fn directional_and_output_derivatives() {
 }
 
 #[test]
-fn its_turns_are_logged() {
+fn its_mode_changes_are_logged() {
     let fmu = Fmu::of_table(&Grid::plain().text(), true);
     assert_eq!((fmu.setup(0.0), fmu.enter(), fmu.set_real("w", w(1e-4, 2e5)), fmu.exit()), (OK, OK, OK, OK));
     fmu.messages();
@@ -194,7 +194,7 @@ fn its_turns_are_logged() {
 
 /// Values alone: the first step stays at 0, the second goes 2e-5 m, the others 1e-5 m each.
 #[test]
-fn values_without_rates_go_on_as_they_came() {
+fn values_without_rates_are_extrapolated() {
     let fmu = pressed(2e5);
     let (here, h) = (w(1e-4, 2e5), 1e-3);
     let mut force = 0.0;
