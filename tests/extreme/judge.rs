@@ -1,8 +1,10 @@
-//! The runs of a case, held against each other: method against method, and both against a tight run.
+//! Judges the runs of a case: method against method, and both against a tight run.
+
+use asperity::robustness::{Accuracy, Force, Perturbation, Verdict};
 
 use crate::catalogue::{Case, number};
-use crate::device::by_device;
-use crate::holds::{ENERGY, Finding, energy_scale};
+use crate::fmu::by_fmu;
+use crate::rules::{ENERGY, Finding, energy_scale};
 use crate::run::{Outcome, Stop, by_library};
 
 /// Which run.
@@ -33,13 +35,13 @@ impl Way {
     }
 
     fn run(self, case: &Case, tight: f64) -> Outcome {
-        if self.is_fmu() { by_device(case, self.method(), tight) } else { by_library(case, self.method(), tight) }
+        if self.is_fmu() { by_fmu(case, self.method(), tight) } else { by_library(case, self.method(), tight) }
     }
 }
 
-/// What the table says of one run.
+/// A run, judged.
 #[derive(Clone, Debug)]
-pub struct Verdict {
+pub struct Judged {
     pub case: String,
     pub phrase: String,
     pub item: String,
@@ -53,6 +55,8 @@ pub struct Verdict {
     pub rejected: f64,
     /// The largest residual of the energies over the largest energy.
     pub residual: f64,
+    /// As `asperity report` gives it; `None` where there is no tight run.
+    pub verdict: Option<Verdict>,
     /// The largest error of F_z against the tight run over the largest |F_z|; NaN where there is no tight run.
     pub true_error: f64,
     /// `solver.error` at the end.
@@ -64,45 +68,33 @@ pub struct Verdict {
     pub time: f64,
 }
 
-impl Verdict {
+impl Judged {
     /// Estimated over true error. Below the floor nothing is known of either: forces are sums with roundings, and the
-    /// tight run's places too are right within an absolute tolerance, which is a force.
+    /// positions of the tight run too are right within an absolute tolerance, which is a force.
     pub fn ratio(&self) -> f64 {
         let [estimate, right] = [self.estimate, self.true_error].map(|error| error.max(self.floor));
         if estimate == right { 1.0 } else { estimate / right }
     }
 
     /// The estimate is below the true error by more than it may ever be.
-    fn lies(&self) -> Option<Finding> {
-        let lies = !self.way.is_fmu() && self.ratio() < 1.0 / BELOW;
+    fn underestimate(&self) -> Option<Finding> {
+        let found = !self.way.is_fmu() && self.ratio() < 1.0 / BELOW;
         let text = format!("solver.error is {:.1e}, the error {:.1e}", self.estimate, self.true_error);
-        lies.then_some(Finding { rule: "estimate", text })
+        found.then_some(Finding { rule: "estimate", text })
     }
 
     /// A run that panicked.
     pub fn panicked(case: &Case, text: String) -> Self {
-        Self {
-            case: case.name.clone(),
-            phrase: case.phrase.clone(),
-            item: case.item.clone(),
-            way: Way::Event,
-            error: None,
-            reason: String::new(),
-            findings: vec![Finding { rule: "panic", text }],
-            steps: 0.0,
-            events: 0.0,
-            rejected: 0.0,
-            residual: 0.0,
-            true_error: f64::NAN,
-            estimate: 0.0,
-            floor: FLOOR,
-            time: 0.0,
-        }
+        let stop = Stop { name: "panic", text: text.clone() };
+        let run = Outcome { error: Some(stop), ..Outcome::default() };
+        let mut judged = judge_run(case, Way::Event, run, Way::Event, &Outcome::default());
+        judged.findings = vec![Finding { rule: "panic", text }];
+        judged
     }
 }
 
 /// All runs of a case.
-pub fn judge(case: &Case) -> Vec<Verdict> {
+pub fn judge(case: &Case) -> Vec<Judged> {
     let mut ways = Vec::new();
     if case.script.is_none() {
         ways.extend([Way::Event, Way::Step]);
@@ -119,10 +111,11 @@ pub fn judge(case: &Case) -> Vec<Verdict> {
     let straight = *straight;
     // Where the run stops, a tight one does.
     let tight = if first.error.is_some() { Outcome::default() } else { straight.run(case, case.tight) };
-    outcomes.into_iter().map(|(way, outcome)| verdict(case, way, outcome, (straight, &tight))).collect()
+    outcomes.into_iter().map(|(way, outcome)| judge_run(case, way, outcome, straight, &tight)).collect()
 }
 
-fn verdict(case: &Case, way: Way, mut outcome: Outcome, (straight, tight): (Way, &Outcome)) -> Verdict {
+/// Judges one run by the tight one, which was run the way `straight`.
+fn judge_run(case: &Case, way: Way, mut outcome: Outcome, straight: Way, tight: &Outcome) -> Judged {
     let expected = if way.method() == "event" { &case.ends.event } else { &case.ends.step };
     match (&outcome.error, expected) {
         (Some(error), Some(expected)) if error.name == expected => {}
@@ -132,7 +125,7 @@ fn verdict(case: &Case, way: Way, mut outcome: Outcome, (straight, tight): (Way,
         }
         (None, None) => {}
     }
-    if case.free_of_work {
+    if case.free_of_work && !outcome.rows.is_empty() {
         outcome.findings.extend(energy_grows(case, &outcome));
     }
     let stopped = outcome.error.is_some() || tight.error.is_some() || tight.rows.is_empty();
@@ -142,12 +135,15 @@ fn verdict(case: &Case, way: Way, mut outcome: Outcome, (straight, tight): (Way,
         let text = tight.error.as_ref().map_or("", |error| error.text.as_str());
         outcome.findings.push(Finding { rule: "tight", text: format!("the tight run: {text}") });
     }
+    let accuracy = comparable.then(|| accuracy(case, &outcome, tight));
+    outcome.findings.extend(accuracy.as_ref().and_then(|accuracy| wrong(case, accuracy)));
     let scale = energy_scale(&outcome).max(f64::MIN_POSITIVE);
-    let mut verdict = Verdict {
+    let mut judged = Judged {
         case: case.name.clone(),
         phrase: case.phrase.clone(),
         item: case.item.clone(),
         way,
+        verdict: accuracy.map(|accuracy| accuracy.verdict(relative_tolerance(case))),
         floor: floor(outcome.known, tight.largest("F_z")),
         steps: outcome.last("solver.steps"),
         events: outcome.last("solver.events"),
@@ -160,30 +156,37 @@ fn verdict(case: &Case, way: Way, mut outcome: Outcome, (straight, tight): (Way,
         error: outcome.error,
         findings: outcome.findings,
     };
-    verdict.findings.extend(verdict.lies());
-    verdict
+    judged.findings.extend(judged.underestimate());
+    judged
+}
+
+/// Whether a motion is sensitive, the catalogue says.
+fn accuracy(case: &Case, outcome: &Outcome, tight: &Outcome) -> Accuracy {
+    let error = outcome.forces().difference(&tight.forces(), &Force::BOTH);
+    if case.sensitive.is_some() { Accuracy::Sensitive { error, moved: error.share } } else { Accuracy::Error(error) }
+}
+
+/// Perturbed runs keep their tolerance; other extremes are accepted where their estimate shows the error.
+fn wrong(case: &Case, accuracy: &Accuracy) -> Option<Finding> {
+    let kept = accuracy.verdict(relative_tolerance(case)) == Verdict::Kept;
+    let found = case.perturbation != Perturbation::default() && !kept;
+    found.then(|| Finding { rule: "accuracy", text: format!("{accuracy:?}") })
 }
 
 /// The largest difference of F_z over the largest |F_z|, as `solver.error` means it.
 fn error_against(outcome: &Outcome, tight: &Outcome) -> f64 {
-    let (difference, largest) = (difference(outcome, tight, "F_z"), tight.largest("F_z"));
-    if largest > 0.0 { difference / largest } else { difference }
+    outcome.forces().difference(&tight.forces(), &[Force::Z]).share
 }
 
-/// The largest difference of a column in two runs.
-fn difference(one: &Outcome, other: &Outcome, name: &str) -> f64 {
-    let (one, other) = (one.column(name), other.column(name));
-    one.iter().zip(&other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
-}
-
-/// No estimate is below the true error by more than this factor.
-const BELOW: f64 = 100.0;
+/// No estimate is below the true error by more than this factor: the worst is 33, by the method "step" that passes a
+/// crest a hair deep, and any other is under 16.
+const BELOW: f64 = 50.0;
 /// How many times their estimates two methods may differ: each is to be within a factor of ten of the truth.
 const OF_ESTIMATES: f64 = 10.0;
 /// How many relative tolerances they may differ by where nothing is estimated.
 const OF_TOLERANCE: f64 = 100.0;
 /// Below this share of the largest force, differences are roundings.
-pub const FLOOR: f64 = 1e-9;
+const FLOOR: f64 = 1e-9;
 /// The means and losses of a sensitive motion may differ by this share of the largest.
 const SENSITIVE: f64 = 0.1;
 
@@ -202,20 +205,25 @@ fn disagreement(case: &Case, event: &Outcome, step: &Outcome) -> Option<String> 
         return sensitive_disagreement(event, step);
     }
     let [one, other] = [event, step].map(|outcome| outcome.last("solver.error"));
-    let largest_z = event.largest("F_z");
-    let largest = [largest_z, largest_z.max(event.largest("F_x"))];
-    let more = [0.0, OF_TOLERANCE * relative_tolerance(case)];
+    let [largest_x, largest_z] = ["F_x", "F_z"].map(|name| event.largest(name));
     // The force of every mass is known within the tolerance alone.
     let known = event.known * event.masses;
-    let allowed = |i: usize| (OF_ESTIMATES * (one + other) + FLOOR + more[i]) * largest[i] + known;
-    let of = |(i, name): (usize, &str)| {
-        let difference = difference(step, event, name);
-        (difference > allowed(i)).then(|| {
-            let share = difference / largest[i];
-            format!("{name} differs by {share:.1e} of {:.1e} N, estimates {one:.1e} and {other:.1e}", largest[i])
+    let of = |force: Force, largest: f64, more: f64| {
+        let difference = largest_difference(step, event, force);
+        let allowed = (OF_ESTIMATES * (one + other) + FLOOR + more) * largest + known;
+        (difference > allowed).then(|| {
+            let (name, share) = (force.name(), difference / largest);
+            format!("{name} differs by {share:.1e} of {largest:.1e} N, estimates {one:.1e} and {other:.1e}")
         })
     };
-    ["F_z", "F_x"].into_iter().enumerate().find_map(of)
+    let more = OF_TOLERANCE * relative_tolerance(case);
+    of(Force::Z, largest_z, 0.0).or_else(|| of(Force::X, largest_z.max(largest_x), more))
+}
+
+/// The largest difference of a force between two runs, N.
+fn largest_difference(one: &Outcome, other: &Outcome, force: Force) -> f64 {
+    let (one, other) = (one.column(force.name()), other.column(force.name()));
+    one.iter().zip(&other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
 }
 
 /// Means are of the rows: where these show instants alone, what is a mean of one draw of a sensitive motion is known as

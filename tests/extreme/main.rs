@@ -6,9 +6,7 @@ mod catalogue;
 #[allow(dead_code, reason = "shared by several tests")]
 #[path = "../common/mod.rs"]
 mod common;
-mod device;
-mod generated;
-mod holds;
+mod fmu;
 #[allow(dead_code, reason = "the program's own")]
 #[path = "../../src/program/html.rs"]
 mod html;
@@ -17,137 +15,75 @@ mod judge;
 #[path = "../fmi_interface/master.rs"]
 mod master;
 mod report;
+mod rules;
 mod run;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use catalogue::Case;
-use judge::{Verdict, Way, judge};
+use judge::{Judged, Way, judge};
+use rules::Finding;
 
-/// The cases named by an environment variable while one is looked for; all otherwise.
+/// All cases, or those whose names contain the environment variable EXTREME.
 fn asked() -> Vec<Case> {
     let cases = catalogue::read();
     let part = std::env::var("EXTREME").unwrap_or_default();
     cases.into_iter().filter(|case| case.name.contains(&part)).collect()
 }
 
-/// Every case, the cores sharing them: the verdicts in the catalogue's order.
-fn judge_all(cases: &[Case]) -> Vec<Verdict> {
+/// Judges all cases on all cores. The runs are in the order of the catalogue.
+fn judge_all(cases: &[Case]) -> Vec<Judged> {
     let next = AtomicUsize::new(0);
-    let verdicts = Mutex::new(BTreeMap::new());
+    let runs = Mutex::new(BTreeMap::new());
     let workers = std::thread::available_parallelism().map_or(1, usize::from);
     std::thread::scope(|scope| {
         for _ in 0..workers {
             scope.spawn(|| {
                 let take = || {
-                    let place = next.fetch_add(1, Ordering::Relaxed);
-                    Some((place, cases.get(place)?))
+                    let index = next.fetch_add(1, Ordering::Relaxed);
+                    Some((index, cases.get(index)?))
                 };
-                while let Some((place, case)) = take() {
+                while let Some((index, case)) = take() {
                     let found = judge_or_panic(case);
-                    verdicts.lock().unwrap().insert(place, found);
+                    runs.lock().unwrap().insert(index, found);
                 }
             });
         }
     });
-    verdicts.into_inner().unwrap().into_values().flatten().collect()
+    runs.into_inner().unwrap().into_values().flatten().collect()
 }
 
 /// A run that panics is a finding like any other.
-fn judge_or_panic(case: &Case) -> Vec<Verdict> {
+fn judge_or_panic(case: &Case) -> Vec<Judged> {
     let result = std::panic::catch_unwind(|| judge(case));
     result.unwrap_or_else(|panic| {
         let text = panic
             .downcast_ref::<String>()
             .cloned()
             .or_else(|| panic.downcast_ref::<&str>().map(|text| (*text).to_owned()));
-        vec![Verdict::panicked(case, text.unwrap_or_default())]
+        vec![Judged::panicked(case, text.unwrap_or_default())]
     })
-}
-
-/// Findings that are known, rule by rule.
-fn known() -> Known {
-    let file = catalogue::table(&common::root().join("tests/extreme/data/known.toml"));
-    let entries = file.get("finding").and_then(|list| list.as_array()).cloned().unwrap_or_default();
-    let text = |entry: &toml::Value, key: &str| entry[key].as_str().unwrap().to_owned();
-    let rules = |entry: &toml::Value| {
-        let (case, way, rules) = (text(entry, "scene"), text(entry, "way"), text(entry, "rules"));
-        rules.split(' ').map(|rule| (case.clone(), way.clone(), rule.to_owned())).collect::<Vec<_>>()
-    };
-    entries.iter().flat_map(rules).collect()
-}
-
-/// What a run is listed with as known not to hold: case, way, rule.
-type Known = BTreeSet<(String, String, String)>;
-
-/// What does not hold and is not listed, and what is listed and holds.
-fn compare(verdicts: &[Verdict], known: &Known) -> Vec<String> {
-    let (mut unknown, mut seen) = (Vec::new(), Known::new());
-    for verdict in verdicts {
-        for finding in &verdict.findings {
-            let line = format!("{} [{}]: {}: {}", verdict.case, verdict.way.name(), finding.rule, finding.text);
-            let key = (verdict.case.clone(), verdict.way.name().to_owned(), finding.rule.to_owned());
-            if known.contains(&key) {
-                println!("known: {line}")
-            } else {
-                unknown.push(line)
-            }
-            seen.insert(key);
-        }
-    }
-    let run: BTreeSet<&str> = verdicts.iter().map(|verdict| verdict.case.as_str()).collect();
-    let all = std::env::var_os("EXTREME").is_none();
-    let stale = known.difference(&seen).filter(|(case, ..)| all || run.contains(case.as_str()));
-    let stale = stale.map(|(case, way, rule)| format!("{case} [{way}]: {rule} is listed as known and holds"));
-    unknown.extend(stale);
-    unknown
 }
 
 #[test]
 fn every_scene_keeps_what_must_hold() {
     let cases = asked();
-    let verdicts = judge_all(&cases);
-    report::write(&verdicts);
-    report::write_scenes(&cases, &verdicts);
-    report::write_findings(&verdicts);
-    report::print_counts(&cases, &verdicts);
-    report::print_ratios(&verdicts);
-    let wrong = compare(&verdicts, &known());
-    assert!(wrong.is_empty(), "{} findings:\n{}", wrong.len(), wrong.join("\n"));
-    let chatter = verdicts.iter().filter(|verdict| verdict.item == "10⁴ changes" && verdict.way == Way::Event);
-    chatter.for_each(|verdict| assert!(verdict.events >= 1e4, "{}: {} mode changes", verdict.case, verdict.events));
-    if std::env::var_os("EXTREME").is_none() {
-        report::check_honesty(&verdicts);
-    }
-}
-
-/// The scenes that the catalogue has to hold at least, and of each phrase and of each item in it.
-const LEAST: [usize; 3] = [200, 5, 3];
-
-#[test]
-fn the_catalogue_has_enough_of_everything() {
-    let cases = catalogue::read();
-    let file = catalogue::table(&common::root().join("tests/extreme/data/phrases.toml"));
-    let phrases = file["phrase"].as_array().unwrap();
-    let names = |phrase: &toml::Value| {
-        let name = phrase["name"].as_str().unwrap().to_owned();
-        let items = phrase["items"].as_array().unwrap().iter();
-        items.map(|item| (name.clone(), item.as_str().unwrap().to_owned())).collect::<Vec<_>>()
+    let runs = judge_all(&cases);
+    report::write(&runs);
+    report::write_scenes(&cases, &runs);
+    report::print_counts(&cases, &runs);
+    report::print_ratios(&runs);
+    let line = |run: &Judged, finding: &Finding| {
+        format!("{} [{}]: {}: {}", run.case, run.way.name(), finding.rule, finding.text)
     };
-    let wanted: BTreeSet<(String, String)> = phrases.iter().flat_map(names).collect();
-    let found: BTreeSet<_> = cases.iter().map(|case| (case.phrase.clone(), case.item.clone())).collect();
-    assert_eq!(found, wanted);
-    let [all, of_phrase, of_item] = LEAST;
-    assert!(cases.len() >= all, "{} scenes", cases.len());
-    for (phrase, item) in &wanted {
-        let count = |of: &dyn Fn(&Case) -> bool| cases.iter().filter(|case| case.phrase == *phrase && of(case)).count();
-        assert!(count(&|_| true) >= of_phrase, "{} scenes of {phrase}", count(&|_| true));
-        let of = |case: &Case| case.item == *item;
-        assert!(count(&of) >= of_item, "{} scenes of {phrase}: {item}", count(&of));
+    let findings = runs.iter().flat_map(|run| run.findings.iter().map(move |finding| line(run, finding)));
+    let findings: Vec<String> = findings.collect();
+    assert!(findings.is_empty(), "{} findings:\n{}", findings.len(), findings.join("\n"));
+    let chatter = runs.iter().filter(|run| run.item == "10⁴ changes" && run.way == Way::Event);
+    chatter.for_each(|run| assert!(run.events >= 1e4, "{}: {} mode changes", run.case, run.events));
+    if std::env::var_os("EXTREME").is_none() {
+        report::check_estimates(&runs);
     }
-    let library = cases.iter().filter(|case| case.script.is_none());
-    let (fmu, all) = library.fold((0, 0), |(fmu, all), case| (fmu + usize::from(case.fmu_steps.is_some()), all + 1));
-    assert!(10 * fmu >= all, "{fmu} of {all} scenes are run through the C interface too");
 }

@@ -4,13 +4,13 @@ use std::path::Path;
 use std::sync::Arc;
 
 use asperity::outputs::{self, Snapshot, Variable};
+use asperity::robustness::ForceHistory;
 use asperity::scene::Scene;
 use asperity::simulation::{Motion, Simulation, SimulationError, Start};
 use toml::{Table, Value};
 
-use crate::catalogue::Case;
-use crate::generated;
-use crate::holds::{Finding, Limits};
+use crate::catalogue::{self, Case};
+use crate::rules::{Finding, Limits};
 
 /// Steps tried that a run may take, whatever its scene: 10⁴ periods take tens of steps each with any method.
 pub const MOST_STEPS: u64 = 1_000_000;
@@ -28,7 +28,7 @@ pub struct Outcome {
     pub path: f64,
     /// What it ended with before its end.
     pub error: Option<Stop>,
-    /// The absolute tolerance of a place as a force on one mass, N: no force is known better.
+    /// The absolute tolerance of a index as a force on one mass, N: no force is known better.
     pub known: f64,
     /// Number of masses.
     pub masses: f64,
@@ -39,8 +39,14 @@ pub struct Outcome {
 impl Outcome {
     /// A column by its name; empty where the scene has no such variable.
     pub fn column(&self, name: &str) -> Vec<f64> {
-        let place = self.names.iter().position(|other| other == name);
-        place.map_or_else(Vec::new, |place| self.rows.iter().map(|(_, values)| values[place]).collect())
+        let index = self.names.iter().position(|other| other == name);
+        index.map_or_else(Vec::new, |index| self.rows.iter().map(|(_, values)| values[index]).collect())
+    }
+
+    pub fn forces(&self) -> ForceHistory {
+        let [x, z] = ["F_x", "F_z"].map(|name| self.column(name));
+        let times = self.rows.iter().map(|(time, _)| *time).collect();
+        ForceHistory { times, rows: x.into_iter().zip(z).map(|(x, z)| [x, z]).collect() }
     }
 
     /// The last value, 0 where there is none.
@@ -85,26 +91,27 @@ const OUTPUTS: [&str; 7] = ["forces", "dissipation", "friction", "contact", "ene
 pub fn scene_text(case: &Case, method: &str, tight: f64) -> String {
     let mut table = case.scene.clone();
     table.insert("name".into(), Value::String("extreme".into()));
-    // Nobody asks for the error of a tight run, which would take a finer one beside it.
+    // A tight run needs no estimate of its error, which would take an even tighter one.
     let asked = OUTPUTS.iter().filter(|group| tight == 1.0 || **group != "solver");
     let outputs: Vec<_> = asked.map(|group| Value::String((*group).into())).collect();
     table.entry("fmu").or_insert(Value::Table(Table::from_iter([("outputs".into(), Value::Array(outputs))])));
     let solver = table.entry("solver").or_insert(Value::Table(Table::new())).as_table_mut().unwrap();
-    let relative = solver.get("relative_tolerance").map_or(1e-6, crate::catalogue::number);
+    let relative = solver.get("relative_tolerance").map_or(1e-6, catalogue::number);
     solver.insert("relative_tolerance".into(), Value::Float(relative * tight));
-    if let Some(absolute) = solver.get("absolute_tolerance").map(crate::catalogue::number) {
+    if let Some(absolute) = solver.get("absolute_tolerance").map(catalogue::number) {
         solver.insert("absolute_tolerance".into(), Value::Float(absolute * tight));
     }
     solver.insert("method".into(), Value::String(method.into()));
     let most = if tight < 1.0 { OF_TIGHT * MOST_STEPS } else { MOST_STEPS };
     solver.entry("max_steps").or_insert(Value::Integer(most as i64));
-    generated::text(&table)
+    catalogue::text(&table)
 }
 
 /// The scene with this method, the tolerance times `tight`.
 pub fn scene(case: &Case, method: &str, tight: f64) -> Scene {
     let text = scene_text(case, method, tight);
-    Scene::parse(&text, Path::new("extreme.toml")).unwrap_or_else(|error| panic!("{}: {error}", case.name))
+    let scene = Scene::parse(&text, Path::new("extreme.toml")).unwrap_or_else(|error| panic!("{}: {error}", case.name));
+    case.perturbation.apply(&scene).unwrap_or_else(|error| panic!("{}: {error}", case.name))
 }
 
 /// Follows the excitation by the library.

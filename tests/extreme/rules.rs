@@ -22,8 +22,8 @@ pub struct Limits {
     relative: f64,
     /// m.
     absolute: f64,
-    /// What the absolute tolerance of places is as a force of the softest link between carrier and mass, N: as far may
-    /// a limit of a force be passed. An event is located within a tenth of it, on places that are themselves known
+    /// What the absolute tolerance of positions is as a force of the softest link between carrier and mass, N: as far may
+    /// a limit of a force be passed. An event is located within a tenth of it, on positions that are themselves known
     /// within it. Of a stiff link the elongation is known far better than within that tolerance.
     pub force: f64,
     /// The largest |X_i|, m.
@@ -95,7 +95,7 @@ impl Limits {
         (normal < -self.force).then(|| format!("F_N = {normal:.1e} below -{:.1e}, mode {mode}", self.force))
     }
 
-    /// g ≥ -tolerance, and no worse than the roundings of the place, of u and X_i that it is the sum of, and of the
+    /// g ≥ -tolerance, and no worse than the roundings of the position, of u and X_i that it is the sum of, and of the
     /// height.
     fn gap(&self, u: f64, x: f64, z: f64) -> Option<String> {
         let point = self.model.surface_at(x);

@@ -4,12 +4,12 @@ use asperity::scene::{Path, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
 
 use crate::catalogue::{Answer, Case, Steps};
-use crate::holds::Finding;
 use crate::master::{DISCARD, ERROR, Fmu, OK};
+use crate::rules::Finding;
 use crate::run::{self, Outcome, Stop, Watch};
 
 /// Follows the script, or the excitation in even communication steps with the rates given.
-pub fn by_device(case: &Case, method: &str, tight: f64) -> Outcome {
+pub fn by_fmu(case: &Case, method: &str, tight: f64) -> Outcome {
     let text = run::scene_text(case, method, tight);
     let scene = run::scene(case, method, tight);
     let mut drive = Drive::new(case, &text, &scene);
@@ -25,7 +25,7 @@ struct Drive {
     watch: Watch,
     time: f64,
     /// u and w as they are given, m.
-    place: [f64; 2],
+    position: [f64; 2],
     reals: (Vec<u32>, Vec<usize>),
     integers: (Vec<u32>, Vec<usize>),
     /// The library along the same pieces, as long as every rate is given.
@@ -42,8 +42,8 @@ impl Drive {
             let of_kind = move |(_, variable): &(usize, &asperity::outputs::Variable)| {
                 (variable.kind == asperity::outputs::Kind::Real) == real
             };
-            let places: Vec<usize> = watch.variables.iter().enumerate().filter(of_kind).map(|(i, _)| i).collect();
-            (places.iter().map(|&i| i as u32 + 2).collect(), places)
+            let indices: Vec<usize> = watch.variables.iter().enumerate().filter(of_kind).map(|(i, _)| i).collect();
+            (indices.iter().map(|&i| i as u32 + 2).collect(), indices)
         };
         let (reals, integers) = (numbered(true), numbered(false));
         let start = case.start;
@@ -53,14 +53,14 @@ impl Drive {
             first.map_or(start.u_rate, |phase| phase.u.velocity(0.0)),
             first.map_or(start.w_rate, |phase| phase.w.velocity(0.0)),
         ];
-        let place = [start.u, start.w];
-        for (name, (value, rate)) in ["u", "w"].into_iter().zip(place.into_iter().zip(rates)) {
+        let position = [start.u, start.w];
+        for (name, (value, rate)) in ["u", "w"].into_iter().zip(position.into_iter().zip(rates)) {
             assert_eq!((fmu.set_real(name, value), fmu.set_rate(name, rate)), (OK, OK), "{}", case.name);
         }
         assert_eq!(fmu.exit(), OK, "{}: {:?}", case.name, fmu.messages());
         let from = Start { u_rate: rates[0], w_rate: rates[1], ..start };
         let twin = Simulation::new(scene, &from).ok().map(|simulation| (simulation, beside));
-        let mut drive = Self { fmu, watch, time: start.time, place, reals, integers, twin };
+        let mut drive = Self { fmu, watch, time: start.time, position, reals, integers, twin };
         drive.look();
         drive.compare();
         drive
@@ -90,7 +90,7 @@ impl Drive {
         };
         let (u, w) = simulation.carrier();
         let path = |stands: f64, value: f64, rate: f64| {
-            // A place that is given but for its rounding is where the carrier stands.
+            // A position that is given but for its rounding is where the carrier stands.
             let same = (stands - value).abs() <= 4.0 * f64::EPSILON * stands.abs().max(value.abs());
             Path { rate: if same { rate } else { (value + h * rate - stands) / h }, ..Path::default() }
         };
@@ -117,8 +117,8 @@ impl Drive {
     }
 
     fn follow(&mut self, steps: &Steps) -> Result<(), Stop> {
-        for (place, jump) in self.place.iter_mut().zip(steps.jump) {
-            *place = jump.unwrap_or(*place);
+        for (position, jump) in self.position.iter_mut().zip(steps.jump) {
+            *position = jump.unwrap_or(*position);
         }
         for i in 0..steps.count {
             self.step(steps.h[i % steps.h.len()], steps.rate, steps.expect)?;
@@ -128,15 +128,15 @@ impl Drive {
 
     fn follow_excitation(&mut self, scene: &Scene, count: usize) -> Result<(), Stop> {
         for phase in &scene.excitation {
-            let start = self.place;
+            let start = self.position;
             let at = |i: usize| phase.duration * i as f64 / count as f64;
             for i in 0..count {
                 let h = at(i + 1) - at(i);
                 let rates = [phase.u.change(at(i), h) / h, phase.w.change(at(i), h) / h];
-                self.place = [start[0] + phase.u.at(at(i)), start[1] + phase.w.at(at(i))];
+                self.position = [start[0] + phase.u.at(at(i)), start[1] + phase.w.at(at(i))];
                 self.step(h, rates.map(Some), Answer::Ok)?;
             }
-            self.place = [start[0] + phase.u.at(phase.duration), start[1] + phase.w.at(phase.duration)];
+            self.position = [start[0] + phase.u.at(phase.duration), start[1] + phase.w.at(phase.duration)];
         }
         Ok(())
     }
@@ -145,7 +145,7 @@ impl Drive {
     fn step(&mut self, h: f64, rates: [Option<f64>; 2], expect: Answer) -> Result<(), Stop> {
         let before = (self.fmu.bits(), self.fmu.last_successful_time());
         let mut state = self.fmu.state();
-        let given = self.place;
+        let given = self.position;
         self.give(given, rates);
         let status = self.fmu.step(self.time, h);
         let answer = match status {
@@ -156,8 +156,8 @@ impl Drive {
         };
         if answer == Answer::Ok {
             self.time = self.fmu.last_successful_time();
-            for (place, rate) in self.place.iter_mut().zip(rates) {
-                *place += rate.unwrap_or_default() * h;
+            for (position, rate) in self.position.iter_mut().zip(rates) {
+                *position += rate.unwrap_or_default() * h;
             }
             self.look();
             self.take_along(h, given, rates);
@@ -184,18 +184,18 @@ impl Drive {
                 self.note("reason", format!("{answer:?} without a reason"));
             }
             // What was given goes back to where the carrier stands.
-            let bad = |place: f64| !place.is_finite();
+            let bad = |position: f64| !position.is_finite();
             let [u, w] = ["u", "w"].map(|name| self.fmu.real(name));
-            self.place = [
-                if bad(self.place[0]) { u } else { self.place[0] },
-                if bad(self.place[1]) { w } else { self.place[1] },
+            self.position = [
+                if bad(self.position[0]) { u } else { self.position[0] },
+                if bad(self.position[1]) { w } else { self.position[1] },
             ];
         }
         Ok(())
     }
 
-    fn give(&mut self, place: [f64; 2], rates: [Option<f64>; 2]) {
-        for (name, (value, rate)) in ["u", "w"].into_iter().zip(place.into_iter().zip(rates)) {
+    fn give(&mut self, position: [f64; 2], rates: [Option<f64>; 2]) {
+        for (name, (value, rate)) in ["u", "w"].into_iter().zip(position.into_iter().zip(rates)) {
             assert_eq!(self.fmu.set_real(name, value), OK);
             if let Some(rate) = rate {
                 assert_eq!(self.fmu.set_rate(name, rate), OK);
