@@ -8,8 +8,8 @@ mod run;
 mod tables;
 mod trace;
 
-use std::fs;
 use std::path::PathBuf;
+use std::{fs, io};
 
 use asperity::robustness::Failure;
 use asperity::scene::Scene;
@@ -68,7 +68,7 @@ pub(crate) fn report(command: &Report) -> Result<(), ReportError> {
     let communication = page::communication_picture(&parts.reference, &parts.communication);
     let communication = folder.draw(COMMUNICATION, &communication)?;
     let file = folder.path.join(PAGE);
-    let page = page::page(command, &scene, &parts, &errors, &communication).map_err(FileError::io("write", &file))?;
+    let page = parts.page(command, &scene, &errors, &communication).map_err(FileError::io("write", &file))?;
     Ok(write(&file, page)?)
 }
 
@@ -103,6 +103,18 @@ impl Parts {
         let robustness = (command.stress > 0)
             .then(|| Robustness::run(&reference, command.stress, command.points, command.stress_time));
         Ok(Self { reference, rows, communication, robustness })
+    }
+
+    /// The page, with the pictures of errors and communication steps as SVG.
+    fn page(&self, command: &Report, scene: &Scene, errors: &str, communication: &str) -> io::Result<String> {
+        let mut sections = vec![
+            page::tolerances(command, &self.reference, &self.rows, errors)?,
+            page::communication(scene, &self.reference, &self.communication, communication)?,
+        ];
+        if let Some(robustness) = &self.robustness {
+            sections.push(page::robustness(scene, robustness)?);
+        }
+        page::page(scene, &sections)
     }
 }
 

@@ -10,7 +10,6 @@ use super::{NOTHING, begin_group, count, errors, head, method, number, reason, s
 use crate::program::cli::Report;
 use crate::program::figure::{Ladder, LadderPanel, Ladders, Rung};
 use crate::program::html::{Cell, fill, table};
-use crate::program::report::Parts;
 use crate::program::report::convergence::{CommunicationRow, PATIENCE, PROGRAM, ToleranceRow};
 use crate::program::report::reference::Reference;
 use crate::program::report::run::{Figures, Given};
@@ -21,22 +20,27 @@ const TOLERANCES: &str = include_str!("tolerances.html");
 const BOUNDS: [f64; 6] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
 
 /// The section on tolerances, with its picture as SVG.
-pub(super) fn tolerances(command: &Report, parts: &Parts, picture: &str) -> io::Result<String> {
+pub(in crate::program::report) fn tolerances(
+    command: &Report,
+    reference: &Reference,
+    rows: &[ToleranceRow],
+    picture: &str,
+) -> io::Result<String> {
     let tolerances = &command.tolerances.0;
     let tolerance = |place: Option<&f64>| place.map_or_else(String::new, |tolerance| format!("{tolerance:e}"));
     let fields = [
         ("loosest", tolerance(tolerances.first())),
         ("tightest", tolerance(tolerances.last())),
-        ("comparison", comparison(&parts.reference)),
+        ("comparison", comparison(reference)),
         ("repeat", if command.repeat == 1 { "one run".into() } else { format!("{} runs", command.repeat) }),
         ("build", build().into()),
         ("picture", picture.into()),
         ("peers", peers(command)),
         ("patience", PATIENCE.to_string()),
-        ("choices", choices(&parts.rows)?),
-        ("table", runs(parts)?),
-        ("reference", reference(&parts.reference)),
-        ("sensitivity", sensitivity(&parts.reference)),
+        ("choices", choices(rows)?),
+        ("table", runs(reference, rows)?),
+        ("reference", of_reference(reference)),
+        ("sensitivity", sensitivity(reference)),
     ];
     Ok(fill(TOLERANCES, &fields))
 }
@@ -125,11 +129,11 @@ const TOLERANCE_FIGURES: [&str; 9] = [
 ];
 
 /// The reference comes last.
-fn runs(parts: &Parts) -> io::Result<String> {
-    let reference = ToleranceRow::of_reference(&parts.reference);
-    let rows: Vec<&ToleranceRow> = parts.rows.iter().chain([&reference]).collect();
+fn runs(reference: &Reference, rows: &[ToleranceRow]) -> io::Result<String> {
+    let own = ToleranceRow::of_reference(reference);
+    let rows: Vec<&ToleranceRow> = rows.iter().chain([&own]).collect();
     let cells = rows.iter().enumerate().map(|(i, row)| {
-        let below = |figures: &Figures| parts.reference.below(&figures.errors);
+        let below = |figures: &Figures| reference.below(&figures.errors);
         let mut cells = vec![row.name().into(), number(format!("{:e}", row.tolerance))];
         match &row.result {
             Ok(figures) => cells.extend(figure_cells(figures, below(figures))),
@@ -149,7 +153,7 @@ fn figure_cells(figures: &Figures, below: [bool; 3]) -> Vec<Cell> {
     cells.chain([short(figures.residual)]).collect()
 }
 
-fn reference(reference: &Reference) -> String {
+fn of_reference(reference: &Reference) -> String {
     let reduced = if reference.scene.solver.reduce > 0.0 { ", with all Maxwell elements" } else { "" };
     let run =
         format!("A run by the method <code>event</code> at the relative tolerance {:e}{reduced}.", reference.tolerance);
@@ -196,12 +200,17 @@ const COMMUNICATION_FIGURES: [&str; 9] =
     ["error of F_x", "F_z", "E_diss", "root mean square, F_x", "F_z", "E_diss", "run time in s", "steps", "events"];
 
 /// The section on communication steps, with its picture as SVG.
-pub(super) fn communication(scene: &Scene, parts: &Parts, picture: &str) -> io::Result<String> {
+pub(in crate::program::report) fn communication(
+    scene: &Scene,
+    reference: &Reference,
+    rows: &[CommunicationRow],
+    picture: &str,
+) -> io::Result<String> {
     let extrapolation = match scene.extrapolation {
         Extrapolation::Linear => "with the rate of the step before",
         Extrapolation::Hold => "to the value given, which it reaches at the end of the step",
     };
-    let kinds = if parts.reference.comparison.is_of_means() {
+    let kinds = if reference.comparison.is_of_means() {
         ""
     } else {
         " Solid: the largest difference over the largest value; it does not fall where values alone show a kink too late. \
@@ -213,15 +222,14 @@ pub(super) fn communication(scene: &Scene, parts: &Parts, picture: &str) -> io::
         ("method", method(scene)),
         ("picture", picture.into()),
         ("kinds", kinds.into()),
-        ("table", communication_table(parts)?),
+        ("table", communication_table(reference, rows)?),
     ];
     Ok(fill(COMMUNICATION, &fields))
 }
 
-fn communication_table(parts: &Parts) -> io::Result<String> {
-    let rows = &parts.communication;
+fn communication_table(reference: &Reference, rows: &[CommunicationRow]) -> io::Result<String> {
     let cells = rows.iter().enumerate().map(|(i, row)| {
-        let mut cells = communication_cells(row, &parts.reference);
+        let mut cells = communication_cells(row, reference);
         if i > 0 && row.given != rows[i - 1].given {
             begin_group(&mut cells);
         }

@@ -8,36 +8,26 @@ use std::io;
 use asperity::scene::{Parameter, Scene};
 use quick_xml::escape::escape;
 
-use super::Parts;
 use super::trace::Errors;
-use crate::program::cli::Report;
 use crate::program::describe;
 use crate::program::html::{Cell, fill, table};
 
-pub(super) use convergence::{communication_picture, tolerance_picture};
+pub(super) use convergence::{communication, communication_picture, tolerance_picture, tolerances};
+pub(super) use robustness::robustness;
 
 const TEMPLATE: &str = include_str!("page.html");
 /// Stands where there is no number.
 const NOTHING: &str = "–";
 
-/// The page; `errors` and `communication` are the pictures of these sections as SVG.
-pub(super) fn page(
-    command: &Report,
-    scene: &Scene,
-    parts: &Parts,
-    errors: &str,
-    communication: &str,
-) -> io::Result<String> {
-    let tolerances = convergence::tolerances(command, parts, errors)?;
-    let communication = convergence::communication(scene, parts, communication)?;
-    let robustness = parts.robustness.as_ref().map(|robustness| robustness::section(scene, robustness)).transpose()?;
+/// The page of these sections.
+pub(super) fn page(scene: &Scene, sections: &[String]) -> io::Result<String> {
     let rows = describe::rows(scene).into_iter().map(|(name, text)| vec![name.into(), text.into()]);
     let fields = [
         ("name", escape(&scene.name).into_owned()),
         ("description", escape(scene.description.as_deref().unwrap_or_default()).into_owned()),
         ("version", env!("CARGO_PKG_VERSION").into()),
         ("scene", table(&["", "What is there"].map(Cell::from), &rows.collect::<Vec<_>>())?),
-        ("sections", [tolerances, communication, robustness.unwrap_or_default()].concat()),
+        ("sections", sections.concat()),
     ];
     Ok(fill(TEMPLATE, &fields))
 }

@@ -22,7 +22,8 @@ const CHEAP: f64 = 2.0;
 /// Bounds of the steps over those of the scene as it is, with their classes in the style sheet.
 const WORK: [(f64, &str); 5] = [(1.0, "less"), (CHEAP, "twice"), (5.0, "five"), (10.0, "ten"), (f64::INFINITY, "more")];
 
-pub(super) fn section(scene: &Scene, robustness: &Robustness) -> io::Result<String> {
+/// The section on robustness.
+pub(in crate::program::report) fn robustness(scene: &Scene, robustness: &Robustness) -> io::Result<String> {
     let names: Vec<&str> = robustness.quantities.iter().map(|quantity| quantity.name()).collect();
     let steps = robustness.unperturbed().counts().map_or(0, Counts::work);
     let fields = [
