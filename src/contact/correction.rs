@@ -56,7 +56,7 @@ pub struct FixedModeStep<'a> {
 
 /// The end of that step, to be corrected.
 #[derive(Debug)]
-pub struct End<'a> {
+pub struct StepEnd<'a> {
     /// The state.
     pub state: &'a mut State,
     /// The forces in it.
@@ -107,7 +107,7 @@ impl EndCorrection {
 
     /// Finds the masses whose modes were violated in `step`. Returns the error of their lateness over the tolerance, as
     /// a mean over all masses.
-    pub fn find(&mut self, step: &TwoStageDense<'_>, tolerance: &Tolerance) -> f64 {
+    pub fn detect(&mut self, step: &TwoStageDense<'_>, tolerance: &Tolerance) -> f64 {
         self.touches.clear();
         self.contacts.clear();
         self.force = 0.0;
@@ -127,9 +127,9 @@ impl EndCorrection {
         (sum / step.model.masses() as f64).sqrt()
     }
 
-    /// Bound of the change that the correction of what [`find`](Self::find) found makes in the forces on the carrier, N:
+    /// Bound of the change that the correction of what [`detect`](Self::detect) found makes in the forces on the carrier, N:
     /// the forces of springs and dampers by the penetrations, and those past the limits.
-    pub fn unsettled_force(&self) -> f64 {
+    pub fn uncorrected_force(&self) -> f64 {
         self.force
     }
 
@@ -184,8 +184,8 @@ impl EndCorrection {
         Some(late)
     }
 
-    /// Corrects the masses that [`find`](Self::find) found; `None` where there are none.
-    pub fn settle(&mut self, step: FixedModeStep<'_>, end: End<'_>) -> Option<CorrectionEnergies> {
+    /// Corrects the masses that [`detect`](Self::detect) found; `None` where there are none.
+    pub fn apply(&mut self, step: FixedModeStep<'_>, end: StepEnd<'_>) -> Option<CorrectionEnergies> {
         if self.touches.is_empty() && self.contacts.is_empty() {
             return None;
         }
@@ -229,7 +229,7 @@ struct Correction<'a> {
     step: FixedModeStep<'a>,
     /// The carrier at the end.
     carrier: CarrierPoint,
-    end: End<'a>,
+    end: StepEnd<'a>,
     energies: CorrectionEnergies,
 }
 
@@ -253,7 +253,7 @@ struct Speed {
 }
 
 impl<'a> Correction<'a> {
-    fn new(step: FixedModeStep<'a>, end: End<'a>) -> Self {
+    fn new(step: FixedModeStep<'a>, end: StepEnd<'a>) -> Self {
         let (s, h) = step.span;
         Self { carrier: step.carrier.at(s + h), step, end, energies: CorrectionEnergies::default() }
     }

@@ -1,6 +1,7 @@
 //! The first mode change within a step: touch, lift, stop or break.
 
 use super::gap::first_touch;
+use super::laws::CarrierPosition;
 use crate::integrator::{DenseOutput, DenseWorkspace, METHOD, Rates, STAGES, Tolerance};
 use crate::math::bracketed_root;
 use crate::model::{Mode, Model, State};
@@ -172,19 +173,12 @@ const fn in_time() -> [usize; STAGES] {
 /// Share of an event tolerance by which a limit must be passed at the end of a step for an event to be due.
 const PASSED: f64 = 0.05;
 
-/// Whether an event is due at the end of a step with `state` and `rates`, where the carrier is at `position` on the
-/// profile and at `w`, m.
-pub fn is_due(
-    model: &Model,
-    state: &State,
-    rates: &Rates,
-    (position, w): (f64, f64),
-    tolerance: &EventTolerance,
-) -> bool {
+/// Whether an event is due at the end of a step: `state`, `rates` and the carrier's position `at` are those there.
+pub fn is_due(model: &Model, state: &State, rates: &Rates, at: CarrierPosition, tolerance: &EventTolerance) -> bool {
     (0..model.masses()).any(|i| match state.mode[i] {
         Mode::Free => {
-            let surface = model.surface_at(model.rest_x[i] + (position + state.elongation_x[i]));
-            let gap = model.rest_z[i] + (w + state.elongation_z[i]) - surface.height;
+            let surface = model.surface_at(model.rest_x[i] + (at.profile_position + state.elongation_x[i]));
+            let gap = model.rest_z[i] + (at.w + state.elongation_z[i]) - surface.height;
             gap < -PASSED * tolerance.gap && state.velocity_z[i] < surface.slope * state.velocity_x[i]
         }
         mode => {

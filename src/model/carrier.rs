@@ -67,14 +67,8 @@ impl Carrier {
     }
 
     /// The amplitude of the sine of w, m.
-    pub fn swing(&self) -> f64 {
+    pub fn amplitude_w(&self) -> f64 {
         self.w_path.amplitude.abs()
-    }
-
-    /// The rates u̇, ẇ just after the start of the piece, m/s.
-    pub fn initial_rates(&self) -> (f64, f64) {
-        let start = self.at(0.0);
-        (start.u_rate, start.w_rate)
     }
 
     /// All numbers of the piece, to be checked.

@@ -1,11 +1,13 @@
 //! The outputs of a run: which variables a scene has (`Variable`), and their values, directional derivatives and direct
 //! dependencies at one instant of the run (`Snapshot`). All that differs from output to output stands in one table.
 
+mod accounts;
 mod derivative;
 mod snapshot;
 mod table;
 
-pub use snapshot::{Accounts, Counters, Energies, Snapshot};
+pub use accounts::{Accounts, Counters, Energies};
+pub use snapshot::Snapshot;
 
 use crate::scene::{OutputGroup, Scene, Unit};
 use table::{OutputRow, TABLE};

@@ -1,104 +1,10 @@
-//! The values of output variables at one instant.
+//! A run at one instant, and the values of the output variables there.
 
 use std::cell::OnceCell;
 
-use serde::{Deserialize, Serialize};
-
-use super::Variable;
 use super::derivative::CarrierShift;
-use crate::model::{
-    CarrierPoint, ChannelEnergies, ContactForces, Forces, Mode, Model, Powers, State, elastic_energy, kinetic_energy,
-};
-use crate::scene::{OutputGroup, Scene};
-
-/// What a scene asks to be added up along the way.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Accounts {
-    /// Energies: the groups `dissipation` and `energy`.
-    pub energy: bool,
-    /// The error estimate of F_z and the processor time: the group `solver`.
-    pub solver: bool,
-    /// The forces' sensitivities to the carrier's targets: the group `tangent`.
-    pub tangents: bool,
-}
-
-impl Accounts {
-    /// What the output groups of `scene` need.
-    pub fn new(scene: &Scene) -> Self {
-        let asked = |group| scene.outputs.contains(&group);
-        Self {
-            energy: asked(OutputGroup::Dissipation) || asked(OutputGroup::Energy),
-            solver: asked(OutputGroup::Solver),
-            tangents: asked(OutputGroup::Tangent),
-        }
-    }
-}
-
-/// Energies added up since the start, J.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Energies {
-    /// Through the channels that take time.
-    pub channels: ChannelEnergies,
-    /// Lost in impacts.
-    pub impact: f64,
-    /// T + V at the start.
-    pub initial: f64,
-}
-
-impl Energies {
-    /// Energy lost through all channels, J.
-    pub fn dissipated(&self) -> f64 {
-        self.channels.dissipated() + self.impact
-    }
-
-    /// All of them, to be checked.
-    pub fn numbers(&self) -> [f64; 6] {
-        let Self { channels: ChannelEnergies { damper, maxwell, friction, input }, impact, initial } = *self;
-        [damper, maxwell, friction, input, impact, initial]
-    }
-}
-
-/// What the solver counts since the start.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Counters {
-    /// Accepted steps.
-    pub steps: u64,
-    /// Rejected steps.
-    pub rejected: u64,
-    /// Mode changes.
-    pub events: u64,
-    /// By how much F_z was off that of a finer run at most, N.
-    largest_error: f64,
-    /// The largest |F_z| of the finer run so far, N.
-    largest_force: f64,
-}
-
-impl Counters {
-    /// Its numbers that are no counts, to be checked.
-    pub fn numbers(&self) -> [f64; 2] {
-        [self.largest_error, self.largest_force]
-    }
-
-    /// Compares F_z with that of a finer run at the same time, N. `share` of the error shows in the difference.
-    pub fn note_error(&mut self, force: f64, finer: f64, share: f64) {
-        self.largest_error = self.largest_error.max((force - finer).abs() / share);
-        self.largest_force = self.largest_force.max(finer.abs());
-    }
-
-    /// F_z is `force` (N), and nothing is known of its error: it counts as large as the force.
-    pub fn note_unknown(&mut self, force: f64) {
-        self.note_error(2.0 * force, force, 1.0);
-    }
-
-    /// Estimated error of F_z over its largest value so far: 0 until there is one.
-    pub fn estimated_error(&self) -> f64 {
-        match (self.largest_error, self.largest_force) {
-            (0.0, _) => 0.0,
-            (_, 0.0) => 1.0,
-            (error, force) => (error / force).min(f64::MAX),
-        }
-    }
-}
+use super::{Counters, Energies, Variable};
+use crate::model::{CarrierPoint, ContactForces, Forces, Mode, Model, Powers, State, elastic_energy, kinetic_energy};
 
 /// A run at one instant.
 #[derive(Clone, Copy, Debug)]

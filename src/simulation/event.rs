@@ -155,7 +155,7 @@ impl Run {
     /// the carrier's motion.
     fn may_touch(&self, h: f64) -> bool {
         let dense = self.dense_output(h);
-        let reach = self.model.profile.bounds().z_max + UNSEEN * self.state.carrier.swing();
+        let reach = self.model.profile.bounds().z_max + UNSEEN * self.state.carrier.amplitude_w();
         let modes = self.state.layer.state.mode.iter().enumerate();
         modes.into_iter().any(|(i, mode)| !mode.in_contact() && dense.height(i).range().0 <= reach)
     }
@@ -201,8 +201,7 @@ impl Run {
 
     fn change_modes_if_due(&mut self) {
         let (layer, at) = (&self.state.layer, self.state.carrier_position());
-        let position = (at.profile_position, at.w);
-        if is_due(&self.model, &layer.state, &layer.rates, position, &self.settings.events) {
+        if is_due(&self.model, &layer.state, &layer.rates, at, &self.settings.events) {
             self.change_modes(self.settings.events.gap);
         }
     }

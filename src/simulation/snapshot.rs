@@ -93,7 +93,7 @@ impl Run {
         if self.state.time_stepping {
             let force = self.workspace.integrator.end_forces().on_carrier_z().abs();
             let allowed = MOST_UNCORRECTED * self.settings.tolerance.relative * force;
-            self.workspace.end_correction.unsettled_force() <= allowed
+            self.workspace.end_correction.uncorrected_force() <= allowed
         } else {
             self.defect_within(h, theta) <= LARGEST_DEFECT_SHOWN
         }

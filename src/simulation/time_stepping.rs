@@ -4,7 +4,7 @@
 use super::SimulationError;
 use super::driver::{AFTER_FAILURE, StepBounds, TrialStep, WorkLimit};
 use super::run::Run;
-use crate::contact::{End, FixedModeStep, longest_weakening};
+use crate::contact::{FixedModeStep, StepEnd, longest_weakening};
 use crate::integrator::{Attempt, TWO_STAGES, TwoStageDense};
 use crate::model::ChannelEnergies;
 
@@ -68,7 +68,7 @@ impl Run {
         let (stages, end) = (workspace.integrator.stages(), workspace.integrator.end());
         let (start, end) = ((&state.layer.state, &stages[1]), (end, &stages[TWO_STAGES - 1]));
         let step = TwoStageDense::new(model, &state.carrier, (state.s, h), start, end);
-        let late = workspace.end_correction.find(&step, &settings.tolerance);
+        let late = workspace.end_correction.detect(&step, &settings.tolerance);
         Attempt { error: attempt.error.hypot(late), ..attempt }
     }
 
@@ -83,7 +83,7 @@ impl Run {
         workspace.modes_before.copy_from_slice(&start.mode);
         let (end_state, forces, rates, first) = integrator.open_end();
         let step = FixedModeStep { model, carrier: &state.carrier, span: (state.s, h), start, first };
-        let corrected = workspace.end_correction.settle(step, End { state: end_state, forces, rates });
+        let corrected = workspace.end_correction.apply(step, StepEnd { state: end_state, forces, rates });
         if let Some(gain) = gain {
             let energies = &mut state.energies;
             energies.channels.add(&gain);
