@@ -1,21 +1,86 @@
-//! A run of an element.
+//! A run of an element: its state, its motion, its outputs.
 
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::PointContact;
-use super::error::{ElementError, RestoreError};
+use super::grid::Load;
 use super::jenkins::{Jenkins, Listener, Rates};
 use super::law::{Contact, Curve, Law};
+use super::point_contact::{PointContact, Terms, element_output};
 use super::table_format::Quantity;
+use crate::math::Expansion;
 use crate::model::Mode;
+use crate::outputs::Variable;
 use crate::scene::is_possible;
-use crate::simulation::{ModeChange, Start};
+use crate::simulation::{ModeChange, OutOfRange, Start};
 
 /// Share of the speeds and separations of the table by which the carrier may exceed them: rounding of a master that goes
 /// to the very end.
 const ROUNDING: f64 = 1e-9;
+
+/// Why a motion of an element is refused; the element is then as it was.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ElementError {
+    /// The carrier's motion is out of range, whatever the table.
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
+    /// The carrier comes closer than the table goes.
+    #[error(
+        "w = {w} m at t = {time} s is a separation of {separation} m, a {} above {largest} {}, where the table ends: at {speed} m/s its \
+         separations go down to {least} m (table.extrapolation = \"hold\" goes on beyond)",
+        .load.name(), .load.unit()
+    )]
+    Pressure {
+        /// When, s.
+        time: f64,
+        /// Where the carrier would be, m.
+        w: f64,
+        /// The separation there, m.
+        separation: f64,
+        /// The least separation of the table at this speed, m.
+        least: f64,
+        /// What the table's loads are.
+        load: Load,
+        /// The largest load of the table, Pa or N.
+        largest: f64,
+        /// The speed, m/s.
+        speed: f64,
+        /// Whether the carrier comes there within the step: a shorter one may end before.
+        within: bool,
+    },
+    /// The carrier is faster than the table goes.
+    #[error(
+        "the speed is {speed} m/s at t = {time} s: the table goes from {least} to {largest} m/s (table.extrapolation = \"hold\" goes \
+         on beyond)"
+    )]
+    Speed {
+        /// When, s.
+        time: f64,
+        /// The speed, m/s.
+        speed: f64,
+        /// The least speed of the table, m/s.
+        least: f64,
+        /// The largest speed of the table, m/s.
+        largest: f64,
+    },
+}
+
+/// Why a run cannot be continued from a saved state.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RestoreError {
+    /// A number that is not valid in any run.
+    #[error("{what} = {value} is not a valid state")]
+    Invalid {
+        /// Which number.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// The carrier is beyond the table.
+    #[error(transparent)]
+    BeyondTable(#[from] ElementError),
+}
 
 /// All that changes in a run, SI units.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -30,9 +95,9 @@ pub struct ElementState {
     /// As [`Mode::number`] gives it.
     mode: i8,
     /// Lost since the start, J.
-    pub(super) lost: f64,
+    lost: f64,
     /// Of that, through the channels, J.
-    pub(super) lost_by_channel: [f64; 4],
+    lost_by_channel: [f64; 4],
 }
 
 /// A run of an element, as a [`Simulation`](crate::simulation::Simulation) is that of a layer.
@@ -178,6 +243,117 @@ impl Element {
             speed: speed.abs(),
             within,
         })
+    }
+
+    /// Writes the values of `variables`, in their order, into `values`; 0 for one that an element does not have.
+    pub fn evaluate(&self, variables: &[Variable], values: &mut [f64]) {
+        let now = self.terms(&self.contact());
+        for (variable, value) in variables.iter().zip(values) {
+            *value = element_output(variable.output).map_or(0.0, |output| (output.value)(now));
+        }
+    }
+
+    fn terms(&self, contact: &Contact) -> Terms {
+        Terms {
+            force: self.spring.force,
+            normal: contact.normal.value,
+            power: self.power(contact),
+            hysteresis: self.hysteresis_share(contact).value,
+            contact_ratio: self.contact_ratio(contact).value,
+            lost: self.state.lost,
+            lost_by_channel: self.state.lost_by_channel,
+        }
+    }
+
+    /// Writes into `values` how `variables` change as the carrier moves along x and z by `direction` (m per unit), the
+    /// modes held.
+    ///
+    /// The force of a sticking spring follows u with the stiffness. Where w decreases the stiffness, the force decreases
+    /// in proportion, else it stays.
+    pub fn directional_derivative(&self, variables: &[Variable], direction: (f64, f64), values: &mut [f64]) {
+        let contact = self.contact();
+        let (now, change) = (self.terms(&contact), self.change(&contact, direction.0, direction.1));
+        for (variable, value) in variables.iter().zip(values) {
+            *value = element_output(variable.output).map_or(0.0, |output| (output.change)(change, now));
+        }
+    }
+
+    /// Ḟ_x and Ḟ_z, N/s, at the rates of the last motion.
+    pub fn force_rates(&self) -> (f64, f64) {
+        let Rates { u, approach } = self.rates();
+        let change = self.change(&self.contact(), u, -approach);
+        (-change.force, change.normal)
+    }
+
+    fn change(&self, contact: &Contact, du: f64, dw: f64) -> Terms {
+        let da = -dw;
+        let force = self.force_change(contact, du, da);
+        Terms {
+            force,
+            normal: contact.normal.slope * da,
+            power: self.power_change(contact, force, da),
+            hysteresis: self.hysteresis_share(contact).slope * da,
+            contact_ratio: self.contact_ratio(contact).slope * da,
+            ..Terms::default()
+        }
+    }
+
+    fn force_change(&self, contact: &Contact, du: f64, da: f64) -> f64 {
+        let k = contact.stiffness;
+        if k.value <= 0.0 {
+            0.0
+        } else if self.spring.mode.slips() {
+            self.spring.mode.direction() * contact.limit.slope * da
+        } else {
+            k.value * du + self.spring.force * (k.slope * da / k.value).min(0.0)
+        }
+    }
+
+    /// Power lost, W: G u̇ - V̇ with V = G²/(2K), so ½ (G/K)² |K̇| while the spring sticks.
+    fn power(&self, contact: &Contact) -> f64 {
+        let (k, l, rates, force) = (contact.stiffness, contact.limit, self.rates(), self.spring.force);
+        if k.value <= 0.0 {
+            0.0
+        } else if self.spring.mode.slips() {
+            let stored = (l.slope - l.value * k.slope / (2.0 * k.value)) * l.value / k.value;
+            force.signum() * l.value * rates.u - stored * rates.approach
+        } else {
+            (force / k.value).powi(2) / 2.0 * (k.slope * rates.approach).abs()
+        }
+    }
+
+    fn power_change(&self, contact: &Contact, force_change: f64, da: f64) -> f64 {
+        let (k, l, rates, force) = (contact.stiffness, contact.limit, self.rates(), self.spring.force);
+        if k.value <= 0.0 {
+            0.0
+        } else if self.spring.mode.slips() {
+            let (share, k_share) = (l.value / k.value, k.slope / k.value);
+            let stored = (l.slope * l.slope + l.value * l.curvature) / k.value - 2.0 * share * l.slope * k_share
+                + share * share * (k_share * k.slope - k.curvature / 2.0);
+            (force.signum() * l.slope * rates.u - stored * rates.approach) * da
+        } else {
+            let q = force / k.value;
+            let speed = rates.approach.abs();
+            let by_force = q / k.value * force_change * k.slope.abs();
+            let by_stiffness = k.slope.signum() * k.curvature / 2.0 - k.slope.abs() * k.slope / k.value;
+            speed * (by_force + q * q * by_stiffness * da)
+        }
+    }
+
+    /// Hysteresis over friction coefficient; 0 where there is no friction.
+    fn hysteresis_share(&self, contact: &Contact) -> Expansion {
+        let [part, whole] =
+            [Quantity::Hysteresis, Quantity::Friction].map(|quantity| self.curve.other(quantity, contact));
+        if whole.value <= 0.0 {
+            return Expansion::default();
+        }
+        let value = part.value / whole.value;
+        Expansion { value, slope: (part.slope - value * whole.slope) / whole.value, curvature: 0.0 }
+    }
+
+    fn contact_ratio(&self, contact: &Contact) -> Expansion {
+        let at_table = self.curve.other(Quantity::ContactRatio, contact);
+        at_table.times(self.curve.share_of_least(contact))
     }
 
     /// All that changes in the run.

@@ -3,9 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use super::error::TableError;
 use super::grid::{Load, OperatingPoint, SweepGrid};
-use super::table_format::{Quantity, STEADY, TableRow, TableText};
+use super::table_format::{Quantity, STEADY, TableError, TableRow, TableText};
 
 /// A table, checked: every point of the grid has a row and was steady.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,7 +7,6 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use super::error::TableError;
 use super::grid::{Load, OperatingPoint, SweepGrid};
 use crate::scene::{SMALLEST, is_possible, text_table};
 
@@ -225,6 +224,23 @@ fn one_line(text: &str) -> String {
     text.replace(['\n', '\r'], " ")
 }
 
+/// Why a table is refused: where, what was expected and what was found.
+///
+/// It reads like `table.csv:12: speed [m/s] = "fast": expected a number above 0`.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}{}: {problem}", file.display(), line.map_or_else(String::new, |line| format!(":{line}")))]
+pub struct TableError {
+    file: PathBuf,
+    line: Option<usize>,
+    problem: String,
+}
+
+impl TableError {
+    pub(super) fn new(file: &Path, line: Option<usize>, problem: String) -> Self {
+        Self { file: file.to_owned(), line, problem }
+    }
+}
+
 /// A table's text, divided into its fields.
 #[derive(Debug)]
 pub struct TableText {
@@ -290,16 +306,12 @@ impl TableText {
         TableError::new(&self.file, Some(self.lines[row].number), problem)
     }
 
-    /// The name of the scene that was swept.
-    pub fn scene(&self) -> String {
+    pub(super) fn scene(&self) -> String {
         self.header.get("scene").cloned().unwrap_or_else(|| "contact".into())
     }
 
-    /// What the loads are.
-    ///
-    /// # Errors
-    /// [`TableError`] where they are pressures and the header does not give the area.
-    pub fn load(&self) -> Result<Load, TableError> {
+    /// What the loads are: pressures need the area of the header.
+    pub(super) fn load(&self) -> Result<Load, TableError> {
         if self.column(&column_name(POINT_COLUMNS[1], Load::Force)).is_ok() {
             return Ok(Load::Force);
         }
@@ -308,10 +320,7 @@ impl TableText {
     }
 
     /// Separation at w = 0, m.
-    ///
-    /// # Errors
-    /// [`TableError`] where the header does not give it.
-    pub fn rest_separation(&self) -> Result<f64, TableError> {
+    pub(super) fn rest_separation(&self) -> Result<f64, TableError> {
         self.header_value("rest_separation", "a length in m", |text| quantity(text, "m"))
     }
 

@@ -1,0 +1,211 @@
+//! The definition of an element: its table, its parameters and its outputs.
+
+use std::sync::Arc;
+
+use super::table::Table;
+use super::table_format::Quantity;
+use crate::outputs::{Dependencies, Output, Variable, variable};
+use crate::scene::{Extrapolation, Parameter, ParameterError, Problem, Value};
+
+/// What an element does where its table ends, and whether it then goes on.
+const TABLE_EXTRAPOLATIONS: [(&str, bool); 2] = [("refuse", false), ("hold", true)];
+
+/// The definition of an element, as a [`Scene`](crate::scene::Scene) is that of a layer: a table and the parameters that
+/// a master may set.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PointContact {
+    table: Arc<Table>,
+    /// K; 0 where the table has none.
+    temperature: f64,
+    extrapolates_table: bool,
+    /// How the carrier moves on when a master gives no rates.
+    pub extrapolation: Extrapolation,
+}
+
+impl PointContact {
+    /// An element of `table` at the middle one of its temperatures; motions beyond the table are refused.
+    pub fn new(table: Table) -> Self {
+        let temperatures = &table.grid.temperatures;
+        let temperature = temperatures.get(temperatures.len() / 2).copied().unwrap_or(0.0);
+        Self { temperature, table: Arc::new(table), extrapolates_table: false, extrapolation: Extrapolation::default() }
+    }
+
+    /// The table.
+    pub fn table(&self) -> &Table {
+        &self.table
+    }
+
+    /// The temperature, K; 0 where the table has none.
+    pub fn temperature(&self) -> f64 {
+        self.temperature
+    }
+
+    /// Whether the table is extrapolated; if not, a motion beyond it is refused.
+    pub fn extrapolates_table(&self) -> bool {
+        self.extrapolates_table
+    }
+
+    /// The model's name.
+    pub fn name(&self) -> String {
+        format!("{} element", self.table.scene)
+    }
+
+    /// What it is, in a sentence.
+    pub fn description(&self) -> String {
+        format!("Point-contact element from {} points swept of {}", self.table.grid.count(), self.table.scene)
+    }
+
+    /// Its output variables.
+    pub fn variables(&self) -> Vec<Variable> {
+        variables(&self.table)
+    }
+
+    /// Its parameters.
+    pub fn parameters(&self) -> Vec<Parameter> {
+        let temperature = (self.table.grid.temperatures.len() > 1).then_some(Parameter::Temperature);
+        temperature.into_iter().chain([Parameter::TableExtrapolation, Parameter::Extrapolation]).collect()
+    }
+
+    /// The value of a parameter.
+    pub fn parameter(&self, parameter: Parameter) -> Value {
+        match parameter {
+            Parameter::Temperature => Value::Real(self.temperature),
+            Parameter::TableExtrapolation => {
+                let word =
+                    TABLE_EXTRAPOLATIONS.iter().find(|(_, extrapolates)| *extrapolates == self.extrapolates_table);
+                Value::Text(word.map_or("", |(word, _)| word).into())
+            }
+            _ => Value::Text(self.extrapolation.word().into()),
+        }
+    }
+
+    /// Gives a parameter a value.
+    ///
+    /// # Errors
+    /// [`ParameterError`] where the value is none of those allowed; the element is then as it was.
+    pub fn set_parameter(&mut self, parameter: Parameter, value: Value) -> Result<(), ParameterError> {
+        let refuse = |expected: String| {
+            Err(ParameterError::new(parameter.name(), Problem::Value { given: value.to_string(), expected }))
+        };
+        match (parameter, &value) {
+            (Parameter::Temperature, &Value::Real(temperature)) => {
+                let temperatures = &self.table.grid.temperatures;
+                let (low, high) = (temperatures.first(), temperatures.last());
+                match (low, high) {
+                    (Some(low), Some(high)) if (low..=high).contains(&&temperature) => self.temperature = temperature,
+                    (Some(low), Some(high)) => {
+                        return refuse(format!("a number from {low:?} to {high:?}, the temperatures of the table"));
+                    }
+                    _ => return refuse("none: the table has no temperatures".into()),
+                }
+            }
+            (Parameter::TableExtrapolation, Value::Text(word)) => {
+                match TABLE_EXTRAPOLATIONS.iter().find(|(name, _)| name == word) {
+                    Some((_, extrapolates)) => self.extrapolates_table = *extrapolates,
+                    None => return refuse("one of \"refuse\", \"hold\"".into()),
+                }
+            }
+            (Parameter::Extrapolation, Value::Text(word)) => match Extrapolation::of_word(word) {
+                Some(extrapolation) => self.extrapolation = extrapolation,
+                None => return refuse("one of \"linear\", \"hold\"".into()),
+            },
+            _ => return refuse(format!("a parameter of the element: {}", self.names().join(", "))),
+        }
+        Ok(())
+    }
+
+    fn names(&self) -> Vec<String> {
+        self.parameters().into_iter().map(Parameter::name).collect()
+    }
+}
+
+/// What the outputs are computed from, or how it changes.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Terms {
+    /// G = -F_x, N.
+    pub(super) force: f64,
+    /// F_z, N.
+    pub(super) normal: f64,
+    /// Power lost, W.
+    pub(super) power: f64,
+    /// Share of hysteresis in the friction coefficient, 1.
+    pub(super) hysteresis: f64,
+    /// Masses in contact over all masses, 1.
+    pub(super) contact_ratio: f64,
+    /// Energy lost since the start, J.
+    pub(super) lost: f64,
+    /// Of that, through the channels, J.
+    pub(super) lost_by_channel: [f64; 4],
+}
+
+/// All about an output of an element.
+pub(super) struct ElementOutput {
+    output: Output,
+    /// The quantity that the table must have.
+    needs: Option<Quantity>,
+    /// With the slider's position held while the contact sticks: on u through the spring, on w through the pressure.
+    dependencies: Dependencies,
+    pub(super) value: fn(Terms) -> f64,
+    /// From the change of the terms and their values.
+    pub(super) change: fn(Terms, Terms) -> f64,
+}
+
+const NONE: Dependencies = Dependencies { on_u: false, on_w: false };
+const ON_W: Dependencies = Dependencies { on_u: false, on_w: true };
+const ON_BOTH: Dependencies = Dependencies { on_u: true, on_w: true };
+
+/// In the order of the result files.
+#[rustfmt::skip]
+const OUTPUTS: [ElementOutput; 12] = [
+    ElementOutput { output: Output::ForceX, needs: None, dependencies: ON_BOTH,
+          value: |now| -now.force, change: |change, _| -change.force },
+    ElementOutput { output: Output::ForceZ, needs: None, dependencies: ON_W,
+          value: |now| now.normal, change: |change, _| change.normal },
+    ElementOutput { output: Output::DissipatedPower, needs: None, dependencies: ON_BOTH,
+          value: |now| now.power, change: |change, _| change.power },
+    ElementOutput { output: Output::DissipatedEnergy, needs: None, dependencies: NONE,
+          value: |now| now.lost, change: |change, _| change.lost },
+    ElementOutput { output: Output::DamperEnergy, needs: Some(Quantity::DamperPower), dependencies: NONE,
+          value: |now| now.lost_by_channel[0], change: |change, _| change.lost_by_channel[0] },
+    ElementOutput { output: Output::MaxwellEnergy, needs: Some(Quantity::MaxwellPower), dependencies: NONE,
+          value: |now| now.lost_by_channel[1], change: |change, _| change.lost_by_channel[1] },
+    ElementOutput { output: Output::FrictionEnergy, needs: Some(Quantity::FrictionPower), dependencies: NONE,
+          value: |now| now.lost_by_channel[2], change: |change, _| change.lost_by_channel[2] },
+    ElementOutput { output: Output::ImpactEnergy, needs: Some(Quantity::ImpactPower), dependencies: NONE,
+          value: |now| now.lost_by_channel[3], change: |change, _| change.lost_by_channel[3] },
+    ElementOutput { output: Output::Hysteresis, needs: Some(Quantity::Hysteresis), dependencies: ON_BOTH,
+          value: |now| -now.force * now.hysteresis,
+          change: |change, now| -change.force * now.hysteresis - now.force * change.hysteresis },
+    ElementOutput { output: Output::Adhesion, needs: Some(Quantity::Hysteresis), dependencies: ON_BOTH,
+          value: |now| -now.force * (1.0 - now.hysteresis),
+          change: |change, now| -change.force * (1.0 - now.hysteresis) + now.force * change.hysteresis },
+    ElementOutput { output: Output::FrictionCoefficient, needs: None, dependencies: ON_BOTH,
+          value: |now| if now.normal > 0.0 { now.force.abs() / now.normal } else { 0.0 },
+          change: change_of_coefficient },
+    ElementOutput { output: Output::ContactRatio, needs: Some(Quantity::ContactRatio), dependencies: ON_W,
+          value: |now| now.contact_ratio, change: |change, _| change.contact_ratio },
+];
+
+fn change_of_coefficient(change: Terms, now: Terms) -> f64 {
+    if now.normal > 0.0 {
+        let along = if now.force == 0.0 { 0.0 } else { now.force.signum() * change.force };
+        (along - now.force.abs() * change.normal / now.normal) / now.normal
+    } else {
+        0.0
+    }
+}
+
+pub(super) fn element_output(output: Output) -> Option<&'static ElementOutput> {
+    OUTPUTS.iter().find(|row| row.output == output)
+}
+
+/// The variables of an element, named as a layer's, in the order of the result files.
+pub fn variables(table: &Table) -> Vec<Variable> {
+    let known = OUTPUTS.iter().filter(|row| row.needs.is_none_or(|quantity| table.has(quantity)));
+    known.filter_map(|row| variable(row.output)).collect()
+}
+
+/// What an output depends on directly.
+pub fn dependencies(output: Output) -> Dependencies {
+    element_output(output).map_or(NONE, |row| row.dependencies)
+}
