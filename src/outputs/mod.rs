@@ -2,7 +2,6 @@
 //! dependencies at one instant of the run (`Snapshot`). All that differs from output to output stands in one table.
 
 mod accounts;
-mod derivative;
 mod snapshot;
 mod table;
 

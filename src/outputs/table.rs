@@ -22,8 +22,7 @@
 
 use std::mem::discriminant;
 
-use super::derivative::{CarrierShift, ContactChange};
-use super::snapshot::Evaluation;
+use super::snapshot::{CarrierShift, ContactChange, Evaluation};
 use super::{Dependencies, Kind, Output};
 use crate::model::Mode;
 use crate::scene::{Link, LinkKind, OutputGroup, Scene, Unit};
