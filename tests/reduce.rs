@@ -24,13 +24,13 @@ fn link(name: &str, geometry: f64) -> String {
     format!("{name} = {{ stiffness = {:?}, maxwell = [{}] }}\n", 1e6 * geometry * EQUILIBRIUM, elements.join(", "))
 }
 
-/// What a scene is made of beside the compound.
+/// The parts of a scene besides the compound.
 #[derive(Clone, Copy)]
 struct Case {
     initial: &'static str,
     surface: &'static str,
     friction: &'static str,
-    /// Phases as the scene has them: what the carrier does is up to the test.
+    /// Phases of the scene; the test moves the carrier by itself.
     excitation: &'static str,
 }
 
@@ -106,7 +106,7 @@ fn few_of_sixteen_elements_stay() {
     let bytes = [&whole, &reduced].map(|scene| Simulation::new(scene, &SLIDE_START).unwrap().bytes());
     // Ten of sixteen elements less in each of four states; the rest does not depend on their number.
     assert!(4 * bytes[1] < 3 * bytes[0], "{bytes:?}");
-    // The long ones become springs, the short ones dampers, and what the run can see stays.
+    // The long ones become springs, the short ones dampers; those on the run's time scales stay.
     for one in Reduction::new(&reduced).unwrap().replaced {
         let tau = one.element.relaxation_time;
         let expected = if tau > 1e-2 { Replacement::Spring } else { Replacement::Damper };
@@ -114,7 +114,7 @@ fn few_of_sixteen_elements_stay() {
     }
 }
 
-/// What an undeformed element holds at the start a damper has not.
+/// An undeformed element has a force at the start; a damper has none.
 #[test]
 fn no_undeformed_element_becomes_a_damper() {
     let case = Case { initial: "undeformed", ..SLIDING };
@@ -137,7 +137,7 @@ fn the_bounds_of_a_link_add_up_to_no_more_than_its_share() {
     }
 }
 
-/// Nothing is known of an FMU's run but what the scene tells.
+/// The scene is all that is known of an FMU's run.
 #[test]
 fn without_an_excitation_no_element_is_long() {
     let case = Case { excitation: "", ..SLIDING };
@@ -146,7 +146,7 @@ fn without_an_excitation_no_element_is_long() {
     assert!(reduction.replaced.iter().all(|one| one.by == Replacement::Damper), "{:?}", reduction.replaced);
 }
 
-/// A sine of the profile has its wave, a sine of the carrier its frequency; a fast layer its own.
+/// The frequency is that of the profile's wave, of the carrier's sine, or the layer's own.
 #[test]
 fn the_frequency_is_the_largest_of_three() {
     let frequency = |mass: &str, excitation: &str| {
@@ -172,8 +172,8 @@ fn the_frequency_is_the_largest_of_three() {
     close(frequency("1e-2", "[[excitation]]\nduration = 1.0\nu_rate = -0.5"), TAU * 0.5 / 1e-3, 2e-3);
 }
 
-/// Every mass sticks on a flat profile from the start on, so that the links' motion is the carrier's: the bound is then
-/// one of the force itself. Pressed from the start, so that relaxed dashpots stand off their zero.
+/// Every mass sticks on a flat profile from the start on, so that the links' motion is the carrier's, and the bound is one
+/// of the force itself. The layer is pressed from the start, so that relaxed dashpots are elongated.
 #[test]
 fn the_force_of_a_known_motion_is_within_the_bound() {
     const DURATION: f64 = 4e-3;
@@ -205,14 +205,14 @@ fn the_force_of_a_known_motion_is_within_the_bound() {
             // And the tolerance of the runs.
             let allowed = 10.0 * bound * elongation + 1e-7 * size;
             assert!(error <= allowed, "{initial}, {reduce}: {error} N, {allowed} N allowed");
-            // A test of the test: something is left out, and it shows.
+            // The test is sensitive: elements are replaced, and the force changes.
             assert!(bound > 0.0 && error > 0.0, "{initial}, {reduce}: {error} N");
             assert!(largest(column(&whole, &exact, "contact.sticking").into_iter().map(|count| count - 10.0)) == 0.0);
         }
     }
 }
 
-/// Sliding, sticking, lifting and touching: the layer makes of the links' error one of the same size.
+/// With sliding, sticking, lifting and touching the error of the layer is of the size of the links' error.
 #[test]
 fn the_forces_of_runs_in_contact_change_by_the_share_allowed() {
     let cases = [
@@ -237,7 +237,7 @@ fn the_forces_of_runs_in_contact_change_by_the_share_allowed() {
     }
 }
 
-/// The springs that hang on dashpots standing still have their energy: the balance holds as without them.
+/// The springs with frozen dashpots have their energy: the balance holds as without them.
 #[test]
 fn the_energy_balance_holds() {
     let reduced = scene(&SLIDING, ", reduce = 1e-2");
@@ -251,7 +251,7 @@ fn the_energy_balance_holds() {
     assert!(residual < 1e-6 * size, "{residual} J of {size} J");
 }
 
-/// At rest F_z is all of springs, and moving the carrier with the states held costs its work.
+/// At rest F_z is a force of springs alone, and moving the carrier with frozen states takes its work.
 #[test]
 fn the_energys_derivative_is_the_force() {
     let reduced = scene(&SLIDING, ", reduce = 1e-2");
@@ -267,7 +267,7 @@ fn the_energys_derivative_is_the_force() {
     assert!((change + force).abs() < 1e-12 * force.abs() && force > 0.0, "{change} {force}");
 }
 
-/// Where the dashpots stand goes with a run that is saved.
+/// A saved run contains the elongations of the frozen dashpots.
 #[test]
 fn a_saved_run_goes_on_bit_for_bit() {
     let reduced = scene(&SLIDING, ", reduce = 1e-2");

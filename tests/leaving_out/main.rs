@@ -1,5 +1,5 @@
-//! What a scene does not name costs nothing and changes nothing: pairs of scenes, one without a feature, one with it at
-//! zero. Their times are compared by `cargo bench --bench leaving_out`.
+//! A feature that a scene does not have costs nothing and changes nothing: pairs of scenes, one without the feature, one
+//! with it at zero. `cargo bench --bench leaving_out` compares their times.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic, reason = "tests may fail")]
 
 #[allow(dead_code, unreachable_pub, reason = "shared with the benchmark")]
@@ -42,11 +42,11 @@ fn rows(scene: &Scene, variables: &[Variable]) -> Vec<Vec<f64>> {
     (0..=PIECES).map(&mut next).collect()
 }
 
-/// The sums of a stage hold zeros more, which changes no digit or the last one; a run multiplies that by its events,
-/// but not to more than this.
+/// The sums of a stage have more terms that are zero, which changes at most the last digit; the events of a run amplify
+/// that, but not to more than this.
 const ROUNDING: f64 = 1e-9;
-/// Steps that are followed by tangents end at their events, the others may go on from within: alike within the
-/// tolerance of a step, 1e-6, times the steps' number.
+/// With tangents steps end at their events, without they may continue from within: equal up to the tolerance of a step,
+/// 1e-6, times the number of steps.
 const OTHER_STEPS: f64 = 1e-4;
 
 #[test]
@@ -66,7 +66,7 @@ fn a_feature_at_zero_gives_what_the_scene_without_it_gives() {
     }
 }
 
-/// The pairs would be alike if nothing ever happened: the carrier's forces come and go, and masses change their modes.
+/// The comparison is sensitive: masses change their modes.
 #[test]
 fn the_runs_are_lively() {
     for pair in pairs(MASSES) {
