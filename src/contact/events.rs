@@ -1,10 +1,9 @@
 //! The first mode change within a step: touch, lift, stop or break.
 
 use super::gap::first_touch;
-use super::laws::CarrierPosition;
 use crate::integrator::{DenseOutput, DenseWorkspace, METHOD, Rates, STAGES, Tolerance};
 use crate::math::bracketed_root;
-use crate::model::{Mode, Model, State};
+use crate::model::{CarrierPosition, Mode, Model, State};
 
 /// How far a quantity may pass its limit before the mode changes. An event is located where the quantity is half as far
 /// past it, so that the limit has been passed for certain.

@@ -1,17 +1,8 @@
 //! The rules of mode changes, at the start and during a run: impact, lift, stop, stick, break. They are those of
 //! model.md.
 
-use crate::model::{CarrierPoint, Forces, Mode, Model, State, SurfacePoint};
+use crate::model::{CarrierPoint, CarrierPosition, Forces, Mode, Model, State, SurfacePoint};
 use crate::scene::Initial;
-
-/// Position of the carrier.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CarrierPosition {
-    /// u as a position on the profile, reduced to its period, m.
-    pub profile_position: f64,
-    /// w, m.
-    pub w: f64,
-}
 
 /// Places every mass at its rest position, moving with the carrier. A mass that would lie under the profile is lifted
 /// onto it and keeps its velocity along t. [`decide_modes`] then decides which contacts remain and which stick.

@@ -11,5 +11,5 @@ mod stability;
 pub use correction::{CorrectionEnergies, EndCorrection, FixedModeStep, StepEnd};
 pub use events::{EventTolerance, first_event, is_due};
 pub use gap::first_touch;
-pub use laws::{CarrierPosition, decide_modes, free_unloaded, impacts_due, place_layer, stop_reversed};
+pub use laws::{decide_modes, free_unloaded, impacts_due, place_layer, stop_reversed};
 pub use stability::{longest_unstable, longest_weakening};

@@ -38,6 +38,15 @@ pub struct CarrierPoint {
     pub w_acceleration: f64,
 }
 
+/// Position of the carrier.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CarrierPosition {
+    /// u as a position on the profile, reduced to its period, m.
+    pub profile_position: f64,
+    /// w, m.
+    pub w: f64,
+}
+
 impl Carrier {
     /// A piece that starts at `time` (s) from `u`, `w` (m) over `profile`.
     pub fn new(time: f64, (u, w): (f64, f64), (u_path, w_path): (Path, Path), profile: &Spline) -> Self {
@@ -49,6 +58,12 @@ impl Carrier {
         let [du, u_rate, u_acceleration] = self.u_path.motion(s);
         let [dw, w_rate, w_acceleration] = self.w_path.motion(s);
         CarrierPoint { du, dw, u_rate, w_rate, u_acceleration, w_acceleration }
+    }
+
+    /// The carrier's position at the time `s` after the start of the piece, s.
+    pub fn position(&self, s: f64) -> CarrierPosition {
+        let point = self.at(s);
+        CarrierPosition { profile_position: self.profile_position + point.du, w: self.w + point.dw }
     }
 
     /// Computes the position on the profile anew from u.

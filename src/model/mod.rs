@@ -10,7 +10,7 @@ mod reduction;
 mod scales;
 mod state;
 
-pub use carrier::{Carrier, CarrierPoint};
+pub use carrier::{Carrier, CarrierPoint, CarrierPosition};
 pub use energy::{ChannelEnergies, Exchange, Powers, elastic_energy, kinetic_energy};
 pub use forces::{Forces, LinkLaw, LinkMotion, MaxwellRow};
 pub use friction::{ContactForces, RateShear};

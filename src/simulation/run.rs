@@ -7,11 +7,12 @@ use serde::{Deserialize, Serialize};
 use super::event::Stall;
 use super::{MethodSwitch, ModeChange, Motion, Start};
 use crate::contact::{
-    CarrierPosition, EndCorrection, EventTolerance, decide_modes, free_unloaded, impacts_due, place_layer,
-    stop_reversed,
+    EndCorrection, EventTolerance, decide_modes, free_unloaded, impacts_due, place_layer, stop_reversed,
 };
 use crate::integrator::{DenseWorkspace, Integrator, StepStart, Steps, Tolerance, Tracked};
-use crate::model::{Carrier, CarrierPoint, Forces, LinkKind, Mode, Model, State, elastic_energy, kinetic_energy};
+use crate::model::{
+    Carrier, CarrierPoint, CarrierPosition, Forces, LinkKind, Mode, Model, State, elastic_energy, kinetic_energy,
+};
 use crate::outputs::{Accounts, Counters, Energies};
 use crate::scene::{Method, Path, Scene};
 
@@ -116,10 +117,9 @@ impl RunState {
         (self.carrier.u + point.du, self.carrier.w + point.dw)
     }
 
-    /// Where the carrier stands over the profile.
+    /// The carrier's position over the profile.
     pub(super) fn carrier_position(&self) -> CarrierPosition {
-        let point = self.carrier.at(self.s);
-        CarrierPosition { profile_position: self.carrier.profile_position + point.du, w: self.carrier.w + point.dw }
+        self.carrier.position(self.s)
     }
 
     /// Includes the event that has just come in the mean time between events.
