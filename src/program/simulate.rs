@@ -2,8 +2,7 @@
 
 use std::path::PathBuf;
 
-use asperity::outputs::Snapshot;
-use asperity::outputs::{Variable, variables};
+use asperity::outputs::{Snapshot, Variable, variables};
 use asperity::scene::Scene;
 use asperity::simulation::{MethodSwitch, SimulationError};
 use indicatif::ProgressBar;
@@ -48,20 +47,20 @@ fn run(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<(),
     let shown = recorder.history.as_ref().map_or_else(|| scene.clone(), |history| history.scene().clone());
     let mut runner = Runner::new(&shown, Rows::PerPhase(command.points), 0.0).map_err(SimulateError::Start)?;
     let result = runner.run(&scene.excitation, |carrier, snapshot| recorder.row(carrier, snapshot));
-    print_handovers(&runner.take_method_switches());
+    print_method_switches(&runner.take_method_switches());
     match result {
         Ok(_) => Ok(()),
         Err(source) => Err(SimulateError::Run { source, time: recorder.time, output: command.output.clone() }),
     }
 }
 
-fn print_handovers(handovers: &[MethodSwitch]) {
+fn print_method_switches(switches: &[MethodSwitch]) {
     const MOST: usize = 10;
-    for handover in handovers.iter().take(MOST) {
-        note(&handover.to_string());
+    for switch in switches.iter().take(MOST) {
+        note(&switch.to_string());
     }
-    if handovers.len() > MOST {
-        note(&format!("and {} more handovers", handovers.len() - MOST));
+    if switches.len() > MOST {
+        note(&format!("and {} more method switches", switches.len() - MOST));
     }
 }
 
