@@ -35,11 +35,8 @@ pub struct Node {
 /// An axis of a table's grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum TableAxis {
-    /// Sliding speed.
     Speed,
-    /// Pressure or force.
     Load,
-    /// Temperature.
     Temperature,
 }
 
@@ -52,7 +49,6 @@ impl TableAxis {
         [node.speed, node.load, node.temperature][self as usize]
     }
 
-    /// The values of the axis.
     pub(super) fn values(self, grid: &SweepGrid) -> &Vec<f64> {
         [&grid.speeds, &grid.loads, &grid.temperatures][self as usize]
     }
@@ -110,7 +106,6 @@ impl Table {
         self.values[quantity as usize].as_ref().map_or(0.0, |values| values[self.index(node)])
     }
 
-    /// The point of a node.
     pub(super) fn point(&self, node: Node) -> OperatingPoint {
         self.grid.point(self.index(node))
     }

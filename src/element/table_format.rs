@@ -33,7 +33,6 @@ enum Need {
     Ignored,
 }
 
-/// A column of numbers.
 struct Column {
     name: &'static str,
     range: Range,
@@ -444,7 +443,6 @@ impl TableText {
     }
 }
 
-/// A number with its unit.
 fn quantity(text: &str, unit: &str) -> Option<f64> {
     text.strip_suffix(unit)?.trim().parse().ok().filter(|&number| is_possible(number))
 }

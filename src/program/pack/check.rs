@@ -77,7 +77,6 @@ struct PointCheck {
     element: Option<Result<[f64; 3], String>>,
 }
 
-/// Checks `count` points, evenly selected.
 fn check_points(contact: &PointContact, scene: &Scene, count: usize) -> Vec<PointCheck> {
     let table = contact.table();
     let points = selected(&centres(&table.grid), count);

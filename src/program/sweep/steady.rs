@@ -23,7 +23,6 @@ const CORRELATED: f64 = 0.95;
 /// A quantity over the blocks of a window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Window {
-    /// The mean.
     pub(super) mean: f64,
     /// Its standard error.
     pub(super) error: f64,
