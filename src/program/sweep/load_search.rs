@@ -38,7 +38,7 @@ struct Known {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LoadSearch {
     /// F_z, N.
-    pub(super) load: f64,
+    pub(super) target: f64,
     /// Present w, m.
     pub(super) w: f64,
     /// w of the first run, m.
@@ -60,8 +60,14 @@ impl LoadSearch {
 
     /// From `w` (m), where F_z grows by about `stiffness` (N/m) as w falls.
     fn new(load: f64, w: f64, stiffness: f64) -> Self {
-        let mut search =
-            Self { load, w, first: w, unit: load / stiffness, matrix: Matrix3::zeros(), right: Vector3::zeros() };
+        let mut search = Self {
+            target: load,
+            w,
+            first: w,
+            unit: load / stiffness,
+            matrix: Matrix3::zeros(),
+            right: Vector3::zeros(),
+        };
         search.add(Vector3::new(0.0, 1.0, 0.0), STIFFNESS);
         search.add(Vector3::new(0.0, 0.0, 1.0), KAPPA);
         search
@@ -77,7 +83,7 @@ impl LoadSearch {
     /// Moves w after a run in which F_z was `force`, of which the Maxwell elements bore `maxwell` (N). Returns the
     /// change of w, m.
     pub(super) fn change(&mut self, force: f64, maxwell: f64) -> f64 {
-        let (x, force, maxwell) = ((self.w - self.first) / self.unit, force / self.load, maxwell / self.load);
+        let (x, force, maxwell) = ((self.w - self.first) / self.unit, force / self.target, maxwell / self.target);
         let error = SCATTER + CURVATURE * ((force - 1.0).abs() + maxwell.abs());
         self.add(Vector3::new(1.0, -x, maxwell), Known { value: force, error });
         let Some(law) = self.matrix.cholesky().map(|matrix| matrix.solve(&self.right)) else { return 0.0 };

@@ -191,7 +191,7 @@ impl<'a> Search<'a> {
                 let status = format!("not steady: no room for {FEWEST} blocks of {} m", self.blocks.length);
                 return Ok(PointResult::failed(status));
             };
-            let deviation = average.load.mean / self.load.load - 1.0;
+            let deviation = average.load.mean / self.load.target - 1.0;
             let pressed = average.steady && deviation.abs() <= LOAD;
             if pressed || !self.has_room(RAMP + CALM + FEWEST as f64) {
                 return Ok(self.result(&average));
@@ -209,8 +209,8 @@ impl<'a> Search<'a> {
             }
             let means = self.slide.block()?;
             let maxwell = self.slide.relax();
-            let near = |force: f64| force.abs() <= NEAR * self.load.load;
-            if near(means.load - self.load.load) && near(maxwell) {
+            let near = |force: f64| force.abs() <= NEAR * self.load.target;
+            if near(means.load - self.load.target) && near(maxwell) {
                 return Ok(Some(means));
             }
             self.correct(means.load, maxwell)?;
@@ -266,8 +266,8 @@ impl<'a> Search<'a> {
         let of = |value: fn(&BlockMeans) -> f64| Window::new(&used.iter().map(value).collect::<Vec<_>>());
         let (friction, load) = (of(|means| means.drag / means.load), of(|means| means.load));
         let steady = friction.is_steady(self.error * friction.mean.abs().max(SMALL))
-            && load.is_steady(LOAD_ERROR * self.load.load);
-        let drifts = load.has_trend(LOAD_ERROR * self.load.load);
+            && load.is_steady(LOAD_ERROR * self.load.target);
+        let drifts = load.has_trend(LOAD_ERROR * self.load.target);
         Average { means: BlockMeans::mean(used), friction, load, steady, drifts }
     }
 
@@ -288,7 +288,7 @@ impl<'a> Search<'a> {
     }
 
     fn status(&self, average: &Average) -> String {
-        let deviation = average.load.mean / self.load.load - 1.0;
+        let deviation = average.load.mean / self.load.target - 1.0;
         let distance = self.distance_before + self.slide.distance();
         if !average.steady {
             let error = average.friction.error / average.friction.mean.abs().max(SMALL);

@@ -222,7 +222,7 @@ pub(super) fn tangential_stiffness(
         let mut values = [0.0; 2];
         simulation.evaluate(&forces, &mut values);
         let [before, load] = values;
-        if (load / search.load - 1.0).abs() <= LOAD_AT_REST {
+        if (load / search.target - 1.0).abs() <= LOAD_AT_REST {
             return slope(&mut simulation, blocks, &forces, before).map(Some);
         }
         let _ = search.change(load, 0.0);
