@@ -33,7 +33,7 @@ fn main() {
     }
 }
 
-/// A layer and the room to try steps of it.
+/// A layer and an integrator that attempts steps of it.
 struct Stages {
     model: Model,
     start: StepStart,
@@ -52,10 +52,10 @@ impl Stages {
             (state.elongation_x[i], state.velocity_x[i]) = (1e-7 * noise(i), 1e-2 * (1.0 + noise(i + 1)));
             (state.elongation_z[i], state.velocity_z[i]) = (1e-7 * noise(i + 2), 1e-2 * noise(i + 3));
             if mode.slips() {
-                let ground = model.surface_at(model.rest_x[i] + state.elongation_x[i]);
-                state.elongation_z[i] = ground.height - model.rest_z[i];
-                state.velocity_z[i] = ground.slope * state.velocity_x[i];
-                (state.mode[i], state.surface[i]) = (mode, ground);
+                let surface = model.surface_at(model.rest_x[i] + state.elongation_x[i]);
+                state.elongation_z[i] = surface.height - model.rest_z[i];
+                state.velocity_z[i] = surface.slope * state.velocity_x[i];
+                (state.mode[i], state.surface[i]) = (mode, surface);
             }
         }
         let still = (Path::default(), Path::default());

@@ -136,10 +136,10 @@ impl EndCorrection {
     /// The lateness of the touch of free mass `i`, if there is one.
     fn detect_touch(&mut self, step: &TwoStageDense<'_>, i: usize) -> Option<Lateness> {
         let height = step.height(i, 1.0);
-        if height.min(step.height(i, TwoStageDense::FIRST)) > self.profile.z_max {
+        if height.min(step.height(i, TwoStageDense::FIRST_STAGE)) > self.profile.z_max {
             return None;
         }
-        let surface = step.model.surface_at(step.place(i, 1.0));
+        let surface = step.model.surface_at(step.position(i, 1.0));
         let gap = height - surface.height;
         if gap >= 0.0 {
             return self.detect_dip(step, i, gap);
@@ -155,12 +155,12 @@ impl EndCorrection {
     /// A mass that is above the profile at the end, by `gap`, and below it at the first stage has passed through an
     /// asperity: the whole penetration is an error.
     fn detect_dip(&self, step: &TwoStageDense<'_>, i: usize, gap: f64) -> Option<Lateness> {
-        let rise = step.height(i, 1.0) - step.height(i, TwoStageDense::FIRST);
-        let distance = (step.place(i, 1.0) - step.place(i, TwoStageDense::FIRST)).abs();
+        let rise = step.height(i, 1.0) - step.height(i, TwoStageDense::FIRST_STAGE);
+        let distance = (step.position(i, 1.0) - step.position(i, TwoStageDense::FIRST_STAGE)).abs();
         if gap > rise + distance * self.profile.slope_max_abs {
             return None;
         }
-        let gap_at_first = step.gap(i, TwoStageDense::FIRST);
+        let gap_at_first = step.gap(i, TwoStageDense::FIRST_STAGE);
         (gap_at_first < 0.0).then_some(Lateness { length: -gap_at_first, time: f64::INFINITY })
     }
 
@@ -268,8 +268,8 @@ impl<'a> Correction<'a> {
     fn touch(&mut self, i: usize) {
         let (model, dense) = (self.step.model, self.dense());
         let theta = instant_of_touch(&dense, i);
-        let (x, velocity, free) = (dense.place(i, theta), dense.velocity(i, theta), dense.velocity(i, 1.0));
-        let from = (dense.place(i, 1.0), dense.height(i, 1.0));
+        let (x, velocity, free) = (dense.position(i, theta), dense.velocity(i, theta), dense.velocity(i, 1.0));
+        let from = (dense.position(i, 1.0), dense.height(i, 1.0));
         let slope = model.surface_at(x).slope;
         if velocity.1 >= slope * velocity.0 {
             return self.lift_onto_profile(i, from);
@@ -503,13 +503,13 @@ fn instant_of_touch(dense: &TwoStageDense<'_>, i: usize) -> f64 {
 impl TwoStageDense<'_> {
     /// The height of mass `i` above the profile at the fraction `theta` of the step, m.
     fn gap(&self, i: usize, theta: f64) -> f64 {
-        self.height(i, theta) - self.model.surface_at(self.place(i, theta)).height
+        self.height(i, theta) - self.model.surface_at(self.position(i, theta)).height
     }
 
     /// For how long a quantity with the values `first` at the first stage and `last` < 0 at the end has been negative,
     /// s, by the line through them.
     fn time_below(&self, first: f64, last: f64) -> f64 {
-        let fall = (first - last) / (1.0 - Self::FIRST);
+        let fall = (first - last) / (1.0 - Self::FIRST_STAGE);
         self.span.1 * if fall > -last { -last / fall } else { 1.0 }
     }
 }

@@ -57,8 +57,9 @@ pub fn first_event(
 ) -> Option<f64> {
     let mut first = Contacts { step, stages, tolerance, workspace }.first_change();
     for i in 0..step.model.masses() {
-        if step.start.0.mode[i] == Mode::Free {
-            first = earlier(first, first_touch(&step.model.profile, || step.place(i), step.height(i), tolerance.gap));
+        if step.start.state.mode[i] == Mode::Free {
+            first =
+                earlier(first, first_touch(&step.model.profile, || step.position(i), step.height(i), tolerance.gap));
         }
     }
     first
@@ -101,7 +102,7 @@ impl Contacts<'_> {
         let margin = self.tolerance.velocity.min(force);
         if self.stages[1..].iter().any(|stage| any_below(&stage.margin, -margin)) {
             for i in 0..self.step.model.masses() {
-                let mode = self.step.start.0.mode[i];
+                let mode = self.step.start.state.mode[i];
                 first = self.fall(i, Limit::Margin, self.tolerance.margin(mode), first);
             }
         }
@@ -135,7 +136,7 @@ impl Contacts<'_> {
 
     /// The quantity at the fraction `theta` of the step.
     fn value(&mut self, i: usize, limit: Limit, theta: f64) -> f64 {
-        let mode = self.step.start.0.mode[i];
+        let mode = self.step.start.state.mode[i];
         if limit == Limit::Margin && mode.slips() {
             return mode.direction() * self.step.velocity_x(i, theta);
         }

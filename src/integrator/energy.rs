@@ -1,8 +1,9 @@
-//! The energies that go through the channels in a step.
+//! The energies through the channels over a step (docs/theory.md, section 7).
 //!
 //! Every channel is a quadrature of its power over the stages, E = h Σ_i b_i P_i. The powers of dampers and Maxwell
 //! elements are quadratic in the rates ė_j and in a_0, from which the elements' elongations at the stages follow
-//! (`maxwell`). So the sums over the layer are taken of their products, once, and not of every element at every stage.
+//! (`maxwell`). So sums over the layer are taken of their products, once per step, and not of every element at every
+//! stage.
 
 use super::maxwell::{Maxwell, StageCoefficients};
 use super::rates::Rates;
@@ -10,64 +11,69 @@ use crate::math::{dot, sum_of_pairs, weighted_sum};
 use crate::model::{ChannelEnergies, Exchange, LinkKind, MaxwellRow, Model};
 
 /// Σ ė_i ė_j over the links of one kind, m²/s², for j ≤ i.
-type Products<const STAGES: usize> = [[f64; STAGES]; STAGES];
+type RateProducts<const STAGES: usize> = [[f64; STAGES]; STAGES];
 
-/// Energies through all channels over a step of length `h` whose stages count with `weights`, as in [`lost`];
-/// `exchange` are the powers through the surface and the carrier at the stages.
-pub(super) fn through<const STAGES: usize>(
-    model: &Model,
-    maxwell: &Maxwell<STAGES>,
-    a: &[f64],
-    (stages, exchange): (&[Rates], &[Exchange]),
-    (h, weights): (f64, &[f64; STAGES]),
-    workspace: &mut [f64],
-) -> ChannelEnergies {
-    let mut energy = lost(model, maxwell, a, stages, (h, weights), workspace);
-    for (weight, exchange) in weights.iter().zip(exchange) {
-        energy.friction += h * weight * exchange.friction;
-        energy.input += h * weight * exchange.input;
-    }
-    energy
+/// A step over which energies are to be integrated.
+#[derive(Clone, Copy)]
+pub(super) struct StepPowers<'a, const STAGES: usize> {
+    pub model: &'a Model,
+    pub maxwell: &'a Maxwell<STAGES>,
+    /// The elongations of the Maxwell elements at the start, m.
+    pub a: &'a [f64],
+    /// The rates at the stages.
+    pub stages: &'a [Rates],
+    /// The powers through the surface and the carrier at the stages.
+    pub exchange: &'a [Exchange],
+    /// The length of the step, s.
+    pub h: f64,
+    /// The weights of the stages; they add up to the fraction of the step that they are for.
+    pub weights: &'a [f64; STAGES],
 }
 
-/// Energies lost in the dampers and Maxwell elements over a step of length `h` whose stages count with `weights`; the
-/// elongations at the start are `a`. `workspace` takes as many numbers as there are masses.
-fn lost<const STAGES: usize>(
-    model: &Model,
-    maxwell: &Maxwell<STAGES>,
-    a: &[f64],
-    stages: &[Rates],
-    (h, weights): (f64, &[f64; STAGES]),
-    workspace: &mut [f64],
-) -> ChannelEnergies {
-    let mut energy = ChannelEnergies::default();
-    let mut products = [[[0.0; STAGES]; STAGES]; 4];
-    let mut changes = [None; 4];
-    for kind in LinkKind::ALL {
-        let damping = model.links[kind as usize].damping;
-        if damping == 0.0 && !maxwell.has(kind) {
-            continue;
+impl<const STAGES: usize> StepPowers<'_, STAGES> {
+    /// Energies through all channels, J. `scratch` has one number per mass.
+    pub(super) fn energies(&self, scratch: &mut [f64]) -> ChannelEnergies {
+        let mut energy = self.lost(scratch);
+        for (weight, exchange) in self.weights.iter().zip(self.exchange) {
+            energy.friction += self.h * weight * exchange.friction;
+            energy.input += self.h * weight * exchange.input;
         }
-        let products = &mut products[kind as usize];
-        *products = products_of(stages, kind, maxwell.has(kind));
-        energy.damper += h * damping * (0..STAGES).map(|i| weights[i] * products[i][i]).sum::<f64>();
+        energy
     }
-    for (index, coefficients) in maxwell.coefficients().iter().enumerate() {
-        let squares = Squares::new(coefficients, h / model.relaxation_times[index], weights);
-        for row in model.rows.iter().filter(|row| row.time_index == index) {
-            let (kind, a) = (row.kind as usize, &a[row.range.clone()]);
-            let mut sum = squares.sum(row, a, stages, &products[kind], workspace);
-            if let Some(late) = &squares.late {
-                let change = *changes[kind].get_or_insert_with(|| largest_change(stages, row.kind));
-                sum += late.sum(row.relaxation_time, a, &stages[0].elongation_rate[kind], change);
+
+    /// Energies lost in the dampers and Maxwell elements, J.
+    fn lost(&self, scratch: &mut [f64]) -> ChannelEnergies {
+        let Self { model, maxwell, a, stages, h, weights, .. } = *self;
+        let mut energy = ChannelEnergies::default();
+        let mut products = [[[0.0; STAGES]; STAGES]; 4];
+        let mut changes = [None; 4];
+        for kind in LinkKind::ALL {
+            let damping = model.links[kind as usize].damping;
+            if damping == 0.0 && !maxwell.has_elements(kind) {
+                continue;
             }
-            energy.maxwell += h * row.stiffness / row.relaxation_time * sum;
+            let products = &mut products[kind as usize];
+            *products = rate_products(stages, kind, maxwell.has_elements(kind));
+            energy.damper += h * damping * (0..STAGES).map(|i| weights[i] * products[i][i]).sum::<f64>();
         }
+        for (index, coefficients) in maxwell.coefficients().iter().enumerate() {
+            let squares = SquareWeights::new(coefficients, h / model.relaxation_times[index], weights);
+            for row in model.rows.iter().filter(|row| row.time_index == index) {
+                let (kind, a) = (row.kind as usize, &a[row.range.clone()]);
+                let mut sum = squares.sum(row, a, stages, &products[kind], scratch);
+                if let Some(unresolved) = &squares.unresolved {
+                    let change = *changes[kind].get_or_insert_with(|| largest_change(stages, row.kind));
+                    sum += unresolved.sum(row.relaxation_time, a, &stages[0].elongation_rate[kind], change);
+                }
+                energy.maxwell += h * row.stiffness / row.relaxation_time * sum;
+            }
+        }
+        energy
     }
-    energy
 }
 
-fn products_of<const STAGES: usize>(stages: &[Rates], kind: LinkKind, all: bool) -> Products<STAGES> {
+/// The products of one kind of link: all of them, or those of each stage with itself alone.
+fn rate_products<const STAGES: usize>(stages: &[Rates], kind: LinkKind, all: bool) -> RateProducts<STAGES> {
     let mut products = [[0.0; STAGES]; STAGES];
     for i in 0..STAGES {
         let rate = &stages[i].elongation_rate[kind as usize];
@@ -78,8 +84,8 @@ fn products_of<const STAGES: usize>(stages: &[Rates], kind: LinkKind, all: bool)
     products
 }
 
-/// The largest Σ (ė_i - ė_0)² of a stage over the links of one kind, m²/s². Not by the products, whose rounding is more
-/// than the change of a steady motion.
+/// The largest Σ (ė_i - ė_0)² of a stage over the links of one kind, m²/s². It does not use the products, whose rounding
+/// errors exceed the change in a steady motion.
 fn largest_change(stages: &[Rates], kind: LinkKind) -> f64 {
     let [start, later @ ..] = stages else { return 0.0 };
     let start = &start.elongation_rate[kind as usize];
@@ -89,39 +95,41 @@ fn largest_change(stages: &[Rates], kind: LinkKind) -> f64 {
     later.iter().map(change).fold(0.0, f64::max)
 }
 
-/// Σ_i weight_i a_i² of an element: a_i = p_i a_0 + h Σ_j q_ij ė_j multiplied out.
+/// The weights of Σ_i weight_i a_i² of an element: a_i = p_i a_0 + h Σ_j q_ij ė_j multiplied out.
 ///
 /// An element that does not yet follow its link, a_0 ≠ τė_0, after a start undeformed or a jump of ė, may relax in a
-/// time far shorter than a step that is good at its end, and no stage sees it. So what belongs to a_0 - τė_0 is put in
-/// as what the sum stands for.
-struct Squares<const STAGES: usize> {
+/// time far shorter than the step, without any stage that resolves it. So the part of the sum that belongs to a_0 - τė_0
+/// is replaced by the integral that the sum stands for.
+struct SquareWeights<const STAGES: usize> {
     /// Of a_0².
     start: f64,
     /// Of a_0 ė_j, s.
     mixed: [f64; STAGES],
     /// Of ė_j ė_l for l ≤ j, s².
     rates: [[f64; STAGES]; STAGES],
-    /// `None` of an element slower than the step, all of which the stages see.
-    late: Option<Late>,
+    /// `None` for an element slower than the step, which the stages resolve.
+    unresolved: Option<UnresolvedRelaxation>,
 }
 
-/// The ratio of step and relaxation time up to which the stages see all of an element; from twice of it on, all that
-/// they miss is put in. In between it grows evenly: a step as long as the relaxation time is usual where a master's is,
-/// and what was lost must not hang on the rounding of its length.
-const SEEN: f64 = 1.0;
+/// The ratio of step and relaxation time up to which the stages resolve an element. From twice this ratio on, all that
+/// they miss is put in; in between it grows linearly. Steps as long as the relaxation time are usual where those of a
+/// co-simulation master are, and the loss must not depend on the rounding of their length.
+const RESOLVED: f64 = 1.0;
 
-/// What the stages miss of l = a_0 - τė_0, which falls as e^(-zθ) beside τė_0.
-struct Late {
+/// The difference between the integral and the quadrature over the stages for l = a_0 - τė_0, which decays as e^(-zθ)
+/// beside τė_0.
+struct UnresolvedRelaxation {
     /// Of l²: ∫ e^(-2zθ) dθ less Σ_i weight_i p_i².
     square: f64,
     /// Of 2 l τė_0: ∫ e^(-zθ) dθ less Σ_i weight_i p_i.
     mixed: f64,
 }
 
-impl<const STAGES: usize> Squares<STAGES> {
-    /// For the ratio `z` of step and relaxation time; the weights add up to the fraction of the step that they are for.
+impl<const STAGES: usize> SquareWeights<STAGES> {
+    /// For the ratio `z` of step and relaxation time.
     fn new(coefficients: &StageCoefficients<STAGES>, z: f64, weights: &[f64; STAGES]) -> Self {
-        let mut squares = Self { start: weights[0], mixed: [0.0; STAGES], rates: [[0.0; STAGES]; STAGES], late: None };
+        let mut squares =
+            Self { start: weights[0], mixed: [0.0; STAGES], rates: [[0.0; STAGES]; STAGES], unresolved: None };
         for i in 1..STAGES {
             let (p, q) = (coefficients.start[i], &coefficients.rate[i]);
             squares.start += weights[i] * p * p;
@@ -134,29 +142,29 @@ impl<const STAGES: usize> Squares<STAGES> {
                 squares.rates[j][j] += weighed * q[j];
             }
         }
-        squares.late = (z > SEEN).then(|| Late::new(z, coefficients, weights, squares.start));
+        squares.unresolved = (z > RESOLVED).then(|| UnresolvedRelaxation::new(z, coefficients, weights, squares.start));
         squares
     }
 
-    /// The sum over the elements of one row, which start with the elongations `a`.
+    /// Σ_i weight_i a_i² over the elements of one row, whose elongations at the start are `a`.
     fn sum(
         &self,
         row: &MaxwellRow,
         a: &[f64],
         stages: &[Rates],
-        products: &Products<STAGES>,
-        workspace: &mut [f64],
+        products: &RateProducts<STAGES>,
+        scratch: &mut [f64],
     ) -> f64 {
         let rates = self.mixed.iter().zip(stages).filter(|(factor, _)| **factor != 0.0);
         let mixed = rates.map(|(&factor, stage)| (factor, &stage.elongation_rate[row.kind as usize][..]));
-        let workspace = &mut workspace[..a.len()];
-        weighted_sum(workspace, std::iter::once((self.start, a)).chain(mixed));
+        let scratch = &mut scratch[..a.len()];
+        weighted_sum(scratch, std::iter::once((self.start, a)).chain(mixed));
         let of_rates = self.rates.iter().flatten().zip(products.iter().flatten());
-        dot(a, workspace) + of_rates.map(|(factor, product)| factor * product).sum::<f64>()
+        dot(a, scratch) + of_rates.map(|(factor, product)| factor * product).sum::<f64>()
     }
 }
 
-impl Late {
+impl UnresolvedRelaxation {
     fn new<const STAGES: usize>(
         z: f64,
         coefficients: &StageCoefficients<STAGES>,
@@ -165,27 +173,27 @@ impl Late {
     ) -> Self {
         let fraction = weights.iter().sum::<f64>();
         let integral = |z: f64| -(-z * fraction).exp_m1() / z;
-        let share = (z / SEEN - 1.0).min(1.0);
+        let share = (z / RESOLVED - 1.0).min(1.0);
         Self {
             square: share * (integral(2.0 * z) - squares),
             mixed: share * (integral(z) - dot(weights, &coefficients.start)),
         }
     }
 
-    /// The sum over elements of relaxation time `tau` with the elongations `a`, whose links start with `rate` and
-    /// change it by [`largest_change`] in the step.
+    /// The sum over elements of relaxation time `tau` (s) with the elongations `a`, whose links start with `rate` and
+    /// change it by `change`, the [`largest_change`].
     ///
-    /// Where they follow their links as nearly as ė changes, l is what ë leaves, which the stages see: then it is 0,
-    /// and it goes there without a jump.
+    /// Where l is no larger than the change of ė in the step explains, the stages resolve it: the sum is 0 then, and goes
+    /// there continuously.
     fn sum(&self, tau: f64, a: &[f64], rate: &[f64], change: f64) -> f64 {
-        let late = |a: f64, rate: f64| a - tau * rate;
-        let square = sum_of_pairs(a, rate, |a, rate| late(a, rate) * late(a, rate));
-        let left = tau * tau * change;
-        if square <= left {
+        let l = |a: f64, rate: f64| a - tau * rate;
+        let square = sum_of_pairs(a, rate, |a, rate| l(a, rate) * l(a, rate));
+        let explained = tau * tau * change;
+        if square <= explained {
             return 0.0;
         }
-        let mixed = tau * sum_of_pairs(a, rate, |a, rate| late(a, rate) * rate);
-        (1.0 - left / square) * (self.square * square + 2.0 * self.mixed * mixed)
+        let mixed = tau * sum_of_pairs(a, rate, |a, rate| l(a, rate) * rate);
+        (1.0 - explained / square) * (self.square * square + 2.0 * self.mixed * mixed)
     }
 }
 
@@ -204,7 +212,7 @@ mod tests {
 
     /// Against the sums over every element at every stage.
     #[test]
-    fn products_give_what_every_element_at_every_stage_does() {
+    fn products_give_the_sum_over_every_element_at_every_stage() {
         let model = Model::of_text(SCENE);
         let mut seed = 1_u32;
         let mut number = || {
@@ -214,14 +222,23 @@ mod tests {
         let h = 0.01;
         let mut stages = vec![Rates::new(&model); STAGES];
         stages.iter_mut().flat_map(|stage| &mut stage.elongation_rate).flatten().for_each(|rate| *rate = number());
-        // An element is as long as its relaxation time lets it be.
+        // An elongation of the order of its relaxation time.
         let start: Vec<f64> =
             model.rows.iter().flat_map(|row| row.range.clone().map(|_| row.relaxation_time)).collect();
         let start: Vec<f64> = start.into_iter().map(|tau| tau.min(1.0) * number()).collect();
-        let mut maxwell = Maxwell::<STAGES>::new(&model);
+        let mut maxwell = Maxwell::<STAGES>::new(&model, true);
         maxwell.begin(&model, &ESDIRK5, &start, h);
         let weights: [f64; STAGES] = std::array::from_fn(|_| number());
-        let found = lost(&model, &maxwell, &start, &stages, (h, &weights), &mut [0.0; 5]);
+        let powers = StepPowers {
+            model: &model,
+            maxwell: &maxwell,
+            a: &start,
+            stages: &stages,
+            exchange: &[],
+            h,
+            weights: &weights,
+        };
+        let found = powers.lost(&mut [0.0; 5]);
 
         let mut expected = ChannelEnergies::default();
         for (i, weight) in weights.iter().enumerate() {

@@ -1,12 +1,138 @@
-//! The embedded error estimate of a step.
+//! The error test of a step: its tolerances and its embedded error estimate (docs/theory.md, section 9).
 
 use super::maxwell::Maxwell;
-use super::tolerance::Rod;
-use super::{Attempt, Rates, Tableau, Tolerance};
+use super::rates::Rates;
+use super::tableau::Tableau;
 use crate::math::{sum_of, sum_of_pairs, weighted_sum};
 use crate::model::{CarrierPoint, LinkKind, Mode, Model, State};
 
-/// The estimated errors of one step, and workspace for them.
+/// The tolerances of the local error of a step. The error of each quantity is divided by absolute + relative · size.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tolerance {
+    /// Relative tolerance, 1.
+    pub relative: f64,
+    /// Absolute tolerance of positions, m.
+    pub position: f64,
+    /// Absolute tolerance of velocities, m/s: that of positions times the highest natural frequency without rods.
+    pub velocity: f64,
+    /// By kind of link, the stiffness that turns the error of a force into one of an elongation, N/m: c + Σ c_j, but
+    /// for a rod the stiffness with which the other links hold a mass.
+    force_scale: [f64; 4],
+    /// The kinds of link that are rods: their errors count as errors of their forces.
+    rods: [Option<Rod>; 4],
+    /// [`Model::long_term_stiffness`], N/m.
+    long_term_stiffness: Option<f64>,
+}
+
+/// A kind of link that is stiff enough to act as a rod.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Rod {
+    /// c, N/m.
+    pub(super) stiffness: f64,
+    /// d, N s/m.
+    pub(super) damping: f64,
+    /// The larger of the natural frequency √(c/m) of a mass on it and of its decay rate d/m, 1/s.
+    rate: f64,
+}
+
+impl Rod {
+    fn new(model: &Model, kind: LinkKind) -> Self {
+        let (stiffness, damping) = (model.links[kind as usize].stiffness, model.links[kind as usize].damping);
+        Self { stiffness, damping, rate: (stiffness / model.mass).sqrt().max(damping / model.mass) }
+    }
+
+    /// Relative error that a step of length `h` (s) may make of its force in addition. Where the steps resolve the
+    /// rod's own motion after a jump, the velocities of the masses decide; a long step forgets the errors of the
+    /// previous one.
+    pub(super) fn transient(&self, h: f64) -> f64 {
+        TRANSIENT / (1.0 + (h * self.rate).powi(2))
+    }
+}
+
+/// Allowed relative error of a rod's force just after a jump.
+///
+/// Recommended 0.01 to 0.3. It dies out together with the force of the jump.
+const TRANSIENT: f64 = 0.1;
+
+/// Newton's iterations end when their error is below this share of the tolerance.
+///
+/// Recommended 0.001 to 0.1. A larger share spoils the error estimate, a smaller one costs iterations.
+pub(super) const NEWTON_SHARE: f64 = 0.05;
+
+impl Tolerance {
+    /// The tolerances of `model` for a `relative` tolerance and an `absolute` one of positions, m.
+    pub fn new(model: &Model, relative: f64, absolute: f64) -> Self {
+        let stiffness = model.mass_stiffness_without_rods();
+        let rod = |kind: LinkKind| (model.is_rod(kind) && stiffness > 0.0).then(|| Rod::new(model, kind));
+        let force_scale = |kind: LinkKind| if rod(kind).is_some() { stiffness } else { model.glassy[kind as usize] };
+        Self {
+            relative,
+            position: absolute,
+            velocity: absolute * model.frequency_without_rods(),
+            force_scale: LinkKind::ALL.map(force_scale),
+            rods: LinkKind::ALL.map(rod),
+            long_term_stiffness: model.long_term_stiffness(),
+        }
+    }
+
+    /// The square of the allowed error of a position of this size, m².
+    #[inline]
+    pub fn of_position(&self, size: f64) -> f64 {
+        square(self.position + self.relative * size.abs())
+    }
+
+    /// The square of the allowed error of a velocity of this size, m²/s².
+    #[inline]
+    pub fn of_velocity(&self, size: f64) -> f64 {
+        square(self.velocity + self.relative * size.abs())
+    }
+
+    /// The factor that turns the error of the force of a link, or of all its Maxwell elements, into one of an elongation,
+    /// m/N.
+    pub(super) fn per_force(&self, kind: LinkKind) -> f64 {
+        let stiffness = self.force_scale[kind as usize];
+        if stiffness > 0.0 { 1.0 / stiffness } else { 0.0 }
+    }
+
+    /// The same for the vertical Maxwell elements of masses in contact, where their stiffness is far above the long-term
+    /// one; `None` otherwise, and for the other links.
+    pub(super) fn per_contact_force(&self, kind: LinkKind) -> Option<f64> {
+        self.long_term_stiffness.filter(|_| kind == LinkKind::Vertical).map(|stiffness| 1.0 / stiffness)
+    }
+
+    pub(super) fn rod(&self, kind: LinkKind) -> Option<Rod> {
+        self.rods[kind as usize]
+    }
+
+    /// The correction of the velocities, m/s, below which Newton's iterations of a stage with β = `beta` (s) end.
+    pub(super) fn newton(&self, beta: f64) -> f64 {
+        NEWTON_SHARE * self.velocity.min(self.position / beta)
+    }
+
+    /// The correction of the velocities, m/s, that changes the forces of the rods by [`NEWTON_SHARE`] of their
+    /// tolerance; infinite without rods.
+    pub(super) fn newton_of_rods(&self, beta: f64) -> f64 {
+        let rods = LinkKind::ALL.into_iter().filter_map(|kind| Some((self.rod(kind)?, self.per_force(kind))));
+        let share = |(rod, per_force): (Rod, f64)| self.position / (per_force * (rod.damping + beta * rod.stiffness));
+        NEWTON_SHARE * rods.map(share).fold(f64::INFINITY, f64::min)
+    }
+}
+
+fn square(x: f64) -> f64 {
+    x * x
+}
+
+/// The outcome of a step attempt.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Attempt {
+    /// The error estimate over the tolerance: at most 1 for a step that passes the error test.
+    pub error: f64,
+    /// The error estimate of the carrier's displacement over the tolerance, taken over the free masses. It counts only
+    /// where one of them may touch.
+    pub unseen: f64,
+}
+
+/// Workspace for the estimated errors of one step.
 #[derive(Clone, Debug)]
 pub(super) struct ErrorWorkspace {
     x: Vec<f64>,
@@ -23,13 +149,13 @@ impl ErrorWorkspace {
         Self { x: zero.clone(), z: zero.clone(), v_x: zero.clone(), v_z: zero.clone(), force: zero }
     }
 
-    /// Room for one number a mass.
-    pub(super) fn any(&mut self) -> &mut [f64] {
+    /// Scratch space, one number per mass.
+    pub(super) fn scratch(&mut self) -> &mut [f64] {
         &mut self.force
     }
 }
 
-/// A step that was tried.
+/// What the error test of an attempted step needs.
 #[derive(Clone, Copy)]
 pub(super) struct ErrorTest<'a, const STAGES: usize> {
     pub tableau: &'a Tableau<STAGES>,
@@ -37,55 +163,50 @@ pub(super) struct ErrorTest<'a, const STAGES: usize> {
     pub stages: &'a [Rates],
     /// The carrier at the stages.
     pub carrier: &'a [CarrierPoint],
+    /// The state at the end.
     pub end: &'a State,
     /// The masses in contact.
     pub contacts: &'a [usize],
 }
 
 impl<const STAGES: usize> ErrorTest<'_, STAGES> {
-    /// The embedded estimate of the step, of length `h`, in the tolerance's norm.
+    /// The embedded error estimate of the step, of length `h` (s), in the tolerance's norm.
     ///
-    /// The carrier's displacement is known, not integrated; yet where masses are in contact a step must be able to see
-    /// it: the dense output, the events between the stages and the energies do. So what the method would miss of it
-    /// counts as an error too: where every mass sticks, there is no other.
-    pub(super) fn error(
-        &self,
-        model: &Model,
-        h: f64,
-        tolerance: &Tolerance,
-        workspace: &mut ErrorWorkspace,
-    ) -> Attempt {
-        let carrier_error = self.carrier_error(h);
+    /// The carrier's displacement is known, not integrated. Yet where masses are in contact the steps must resolve it:
+    /// the dense output, the events between the stages and the energies depend on it. So the error that the method
+    /// would make of it counts too; where every mass sticks there is no other.
+    pub(super) fn run(&self, model: &Model, h: f64, tolerance: &Tolerance, workspace: &mut ErrorWorkspace) -> Attempt {
+        let carrier_error = CarrierError::new(self.carrier, &self.tableau.error, h);
         self.collect(h, &carrier_error, workspace);
         let (end, rates) = (self.end, &self.carrier[STAGES - 1]);
-        let place = |error: &[f64], elongation: &[f64]| {
+        let of_positions = |error: &[f64], elongation: &[f64]| {
             sum_of_pairs(error, elongation, |error, e| error * error / tolerance.of_position(e))
         };
-        let speed = |error: &[f64], velocity: &[f64], carrier_rate: f64| {
+        let of_velocities = |error: &[f64], velocity: &[f64], carrier_rate: f64| {
             sum_of_pairs(error, velocity, |error, v| error * error / tolerance.of_velocity(v - carrier_rate))
         };
-        let (in_contact, unseen) = self.unseen(&carrier_error, tolerance);
-        let mut sum = place(&workspace.x, &end.elongation_x)
-            + place(&workspace.z, &end.elongation_z)
-            + speed(&workspace.v_x, &end.velocity_x, rates.u_rate)
-            + speed(&workspace.v_z, &end.velocity_z, rates.w_rate)
+        let (in_contact, free) = self.carrier_squares(&carrier_error, tolerance);
+        let mut sum = of_positions(&workspace.x, &end.elongation_x)
+            + of_positions(&workspace.z, &end.elongation_z)
+            + of_velocities(&workspace.v_x, &end.velocity_x, rates.u_rate)
+            + of_velocities(&workspace.v_z, &end.velocity_z, rates.w_rate)
             + in_contact;
         for kind in LinkKind::ALL {
             if let Some(rod) = tolerance.rod(kind) {
-                sum += self.rod_error(kind, (rod, h), tolerance, workspace);
+                sum += self.rod_squares(kind, &rod, h, tolerance, workspace);
             }
-            if self.maxwell.has(kind) {
-                sum += self.maxwell_error(model, kind, tolerance, workspace);
+            if self.maxwell.has_elements(kind) {
+                sum += self.maxwell_squares(model, kind, tolerance, workspace);
             }
         }
         let mean = |sum: f64| (sum / model.masses() as f64).sqrt();
-        Attempt { error: mean(sum), unseen: mean(unseen) }
+        Attempt { error: mean(sum), unseen: mean(free) }
     }
 
-    /// The squares of what the method misses of the carrier's displacement, over the masses in contact and over the
-    /// free ones.
-    fn unseen(&self, (position, _): &CarrierErrors, tolerance: &Tolerance) -> (f64, f64) {
+    /// The sums of squares of the error of the carrier's displacement, over the masses in contact and over the free ones.
+    fn carrier_squares(&self, error: &CarrierError, tolerance: &Tolerance) -> (f64, f64) {
         let (mut in_contact, mut free) = (0.0, 0.0);
+        let position = error.position;
         if position.0 == 0.0 && position.1 == 0.0 {
             return (in_contact, free);
         }
@@ -98,9 +219,10 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
         (in_contact, free)
     }
 
-    /// The errors of places and velocities against the carrier. A sticking mass has none, and along z those of a
-    /// contact follow its slope.
-    fn collect(&self, h: f64, (position, velocity): &CarrierErrors, workspace: &mut ErrorWorkspace) {
+    /// Collects the errors of positions and velocities relative to the carrier. A sticking mass has none along x, and
+    /// along z those of a contact follow its slope.
+    fn collect(&self, h: f64, carrier_error: &CarrierError, workspace: &mut ErrorWorkspace) {
+        let CarrierError { position, velocity } = carrier_error;
         let weights = &self.tableau.error;
         let sum = |errors: &mut [f64], rate: fn(&Rates) -> &[f64], of_carrier: f64| {
             let counting = self.stages.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
@@ -121,7 +243,7 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
     }
 
     /// The sum of squares of the errors of the Maxwell elements' forces of the links of `kind`.
-    fn maxwell_error(
+    fn maxwell_squares(
         &self,
         model: &Model,
         kind: LinkKind,
@@ -131,8 +253,8 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
         let e = if kind.is_along_x() { &self.end.elongation_x } else { &self.end.elongation_z };
         let force = &mut workspace.force[..kind.count(e.len())];
         self.maxwell.force_error(kind, self.stages, force);
-        if let Some(per_force) = tolerance.per_pressing_force(kind) {
-            return self.pressing_error(model, per_force, tolerance, force);
+        if let Some(per_force) = tolerance.per_contact_force(kind) {
+            return self.contact_force_squares(model, per_force, tolerance, force);
         }
         let per_force = tolerance.per_force(kind);
         let error = |i: usize| per_force * force[i];
@@ -144,38 +266,33 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
     }
 
     /// The sum of squares of the errors `error` (N) of the vertical Maxwell elements' forces where these are far stiffer
-    /// than what lasts: on a mass in contact, which they press on, against the force itself, and not against the place,
-    /// which is forced on them.
-    fn pressing_error(&self, model: &Model, per_force: f64, tolerance: &Tolerance, error: &[f64]) -> f64 {
+    /// than the link in the long term. On a mass in contact the error counts relative to the elements' force itself, not
+    /// to the elongation, which the surface imposes.
+    fn contact_force_squares(&self, model: &Model, per_force: f64, tolerance: &Tolerance, error: &[f64]) -> f64 {
         let kind = LinkKind::Vertical;
-        let (a, e, per_place) = (&self.end.maxwell, &self.end.elongation_z, tolerance.per_force(kind));
+        let (a, e, per_elongation) = (&self.end.maxwell, &self.end.elongation_z, tolerance.per_force(kind));
         sum_of(error.len(), |i| {
             let force = || model.rows_of(kind).map(|row| row.stiffness * a[row.range.start + i]).sum::<f64>();
             let (per_force, size) =
-                if self.end.mode[i].in_contact() { (per_force, per_force * force()) } else { (per_place, e[i]) };
+                if self.end.mode[i].in_contact() { (per_force, per_force * force()) } else { (per_elongation, e[i]) };
             (per_force * error[i]).powi(2) / tolerance.of_position(size)
         })
     }
 
-    /// The sum of squares of the errors c δe + d δė of the forces of the links of `kind`, which are rods.
-    fn rod_error(
-        &self,
-        kind: LinkKind,
-        (rod, h): (Rod, f64),
-        tolerance: &Tolerance,
-        workspace: &ErrorWorkspace,
-    ) -> f64 {
+    /// The sum of squares of the errors c δe + d δė of the forces of the links of `kind`, which are rods, for a step of
+    /// length `h` (s).
+    fn rod_squares(&self, kind: LinkKind, rod: &Rod, h: f64, tolerance: &Tolerance, workspace: &ErrorWorkspace) -> f64 {
         let (end, carrier) = (self.end, &self.carrier[STAGES - 1]);
         let (errors, e, v, carrier_rate) = if kind.is_along_x() {
             ((&workspace.x, &workspace.v_x), &end.elongation_x, &end.velocity_x, carrier.u_rate)
         } else {
             ((&workspace.z, &workspace.v_z), &end.elongation_z, &end.velocity_z, carrier.w_rate)
         };
-        let force = |places: &[f64], speeds: &[f64], carrier_rate: f64, i: usize| {
+        let force = |elongation: &[f64], velocity: &[f64], carrier_rate: f64, i: usize| {
             if kind.is_lateral() {
-                rod.stiffness * (places[i + 1] - places[i]) + rod.damping * (speeds[i + 1] - speeds[i])
+                rod.stiffness * (elongation[i + 1] - elongation[i]) + rod.damping * (velocity[i + 1] - velocity[i])
             } else {
-                rod.stiffness * places[i] + rod.damping * (speeds[i] - carrier_rate)
+                rod.stiffness * elongation[i] + rod.damping * (velocity[i] - carrier_rate)
             }
         };
         let (per_force, relative) = (tolerance.per_force(kind), tolerance.relative + rod.transient(h));
@@ -185,17 +302,25 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
             error * error / (allowed * allowed)
         })
     }
+}
 
-    fn carrier_error(&self, h: f64) -> CarrierErrors {
+/// The embedded error estimate of the carrier's motion along x and z, as if it were integrated.
+struct CarrierError {
+    /// Of u and w, m.
+    position: (f64, f64),
+    /// Of u̇ and ẇ, m/s.
+    velocity: (f64, f64),
+}
+
+impl CarrierError {
+    /// For a step of length `h` (s) with the carrier at its stages and the weights b_i - b̂_i.
+    fn new(carrier: &[CarrierPoint], weights: &[f64], h: f64) -> Self {
         let (mut position, mut velocity) = ((0.0, 0.0), (0.0, 0.0));
-        for (at, weight) in self.carrier.iter().zip(&self.tableau.error) {
+        for (at, weight) in carrier.iter().zip(weights) {
             let step = h * weight;
             position = (position.0 + step * at.u_rate, position.1 + step * at.w_rate);
             velocity = (velocity.0 + step * at.u_acceleration, velocity.1 + step * at.w_acceleration);
         }
-        (position, velocity)
+        Self { position, velocity }
     }
 }
-
-/// What the method's embedded estimate says of u and w (m), and of u̇ and ẇ (m/s), as if they were integrated.
-type CarrierErrors = ((f64, f64), (f64, f64));

@@ -1,37 +1,38 @@
-//! The Maxwell elements over one step.
+//! The Maxwell elements over one step, condensed (docs/theory.md, section 2).
 //!
-//! An element is linear, ȧ = ė - a/τ, so its elongation at stage i follows from that at the start of the step and the
-//! rates ė at the stages,
+//! An element is linear, ȧ = ė - a/τ, so its elongation at stage i follows from that at the start of the step and from
+//! the rates ė at the stages,
 //!
 //!   a_i = p_i a_0 + h Σ_{j≤i} q_ij ė_j,
 //!
 //! with numbers p, q that depend on h/τ alone. The forces of all elements of one link are then
 //!
-//!   Σ c a_i = P_i + h Σ_{j<i} Q_ij ė_j + h Q_ii ė_i,   P_i = Σ c p_i a_0,   Q_ij = Σ c q_ij:
+//!   Σ c a_i = P_i + h Σ_{j<i} Q_ij ė_j + h Q_ii ė_i,   P_i = Σ c p_i a_0,   Q_ij = Σ c q_ij.
 //!
-//! the elements are visited once a step, not once a stage, and what a stage costs does not depend on their number.
+//! So the elements are visited once per step, not once per stage, and the cost of a stage does not depend on their
+//! number.
 
 use super::Tableau;
 use super::rates::Rates;
 use crate::math::weighted_sum;
 use crate::model::{LinkKind, MaxwellRow, Model};
 
-/// The Maxwell elements of a layer over a step, and workspace for them.
+/// Workspace for the Maxwell elements of a layer over one step.
 #[derive(Clone, Debug)]
 pub(super) struct Maxwell<const STAGES: usize> {
-    /// One for each relaxation time of the model.
+    /// By relaxation time of the model.
     coefficients: Vec<StageCoefficients<STAGES>>,
     kinds: [KindSums<STAGES>; 4],
 }
 
-/// How the elements of one relaxation time follow through a step.
+/// What the elongation of an element at the stages of a step consists of, for one relaxation time.
 #[derive(Clone, Debug)]
 pub(super) struct StageCoefficients<const STAGES: usize> {
     /// p_i.
     pub start: [f64; STAGES],
     /// h q_ij, s.
     pub rate: [[f64; STAGES]; STAGES],
-    /// The embedded estimate of the error of a: its weights of a_0 and of ė_j, the latter in s.
+    /// The embedded error estimate of a: the weights of a_0 and of ė_j, the latter in s.
     error_start: f64,
     error_rate: [f64; STAGES],
 }
@@ -44,29 +45,25 @@ struct KindSums<const STAGES: usize> {
     error_rate: [f64; STAGES],
     /// P_i by stage and link, N; empty where the links have no elements.
     start: [Vec<f64>; STAGES],
-    /// What the embedded estimate takes from a_0, by link, N.
+    /// The part of the embedded error estimate that a_0 makes, by link, N.
     error_start: Vec<f64>,
 }
 
 impl<const STAGES: usize> Maxwell<STAGES> {
-    pub(super) fn new(model: &Model) -> Self {
-        let coefficients = model.relaxation_times.iter().map(|_| StageCoefficients::new()).collect();
+    /// Workspace for the elements of `model`; empty for a method that is not `used`.
+    pub(super) fn new(model: &Model, used: bool) -> Self {
+        let times = if used { model.relaxation_times.len() } else { 0 };
         let kinds = LinkKind::ALL.map(|kind| {
-            let present = model.rows.iter().any(|row| row.kind == kind);
+            let present = used && model.rows.iter().any(|row| row.kind == kind);
             KindSums::new(if present { kind.count(model.masses()) } else { 0 })
         });
-        Self { coefficients, kinds }
+        Self { coefficients: vec![StageCoefficients::new(); times], kinds }
     }
 
-    /// No elements, for a method that is not used.
-    pub(super) fn none() -> Self {
-        Self { coefficients: Vec::new(), kinds: LinkKind::ALL.map(|_| KindSums::new(0)) }
-    }
-
-    /// Begins a step of length `h` from the elongations `a`.
+    /// Begins a step of length `h` (s) from the elongations `a` (m).
     pub(super) fn begin(&mut self, model: &Model, tableau: &Tableau<STAGES>, a: &[f64], h: f64) {
         for (coefficients, relaxation_time) in self.coefficients.iter_mut().zip(&model.relaxation_times) {
-            coefficients.follow(tableau, h / relaxation_time, h);
+            coefficients.set(tableau, h / relaxation_time, h);
         }
         for (kind, sums) in LinkKind::ALL.into_iter().zip(&mut self.kinds) {
             if sums.error_start.is_empty() {
@@ -77,39 +74,35 @@ impl<const STAGES: usize> Maxwell<STAGES> {
         }
     }
 
-    /// Whether the links of `kind` have elements.
-    pub(super) fn has(&self, kind: LinkKind) -> bool {
+    /// Whether the links of `kind` have Maxwell elements.
+    pub(super) fn has_elements(&self, kind: LinkKind) -> bool {
         !self.kinds[kind as usize].error_start.is_empty()
     }
 
-    /// The coefficients, one for each relaxation time of the model.
+    /// The coefficients by relaxation time of the model.
     pub(super) fn coefficients(&self) -> &[StageCoefficients<STAGES>] {
         &self.coefficients
     }
 
-    /// P_i + h Σ_{j<i} Q_ij ė_j by kind of link: what is known of the elements' forces before stage `i`, N.
+    /// Writes P_i + h Σ_{j<i} Q_ij ė_j by kind of link: the part of the elements' forces that is known before stage
+    /// `i`, N.
     pub(super) fn known_forces(&self, i: usize, stages: &[Rates], forces: &mut [Vec<f64>; 4]) {
-        for kind in LinkKind::ALL.into_iter().filter(|&kind| self.has(kind)) {
+        for kind in LinkKind::ALL.into_iter().filter(|&kind| self.has_elements(kind)) {
             let sums = &self.kinds[kind as usize];
             let start = std::iter::once((1.0, &sums.start[i][..]));
             weighted_sum(&mut forces[kind as usize], start.chain(by_rate(kind, &sums.rate[i][..i], stages)));
         }
     }
 
-    /// The embedded estimate of the error of the elements' forces of the links of `kind`, N.
+    /// Writes the embedded error estimate of the elements' forces of the links of `kind`, N.
     pub(super) fn force_error(&self, kind: LinkKind, stages: &[Rates], force: &mut [f64]) {
         let sums = &self.kinds[kind as usize];
         let start = std::iter::once((1.0, &sums.error_start[..]));
         weighted_sum(force, start.chain(by_rate(kind, &sums.error_rate, stages)));
     }
 
-    /// The elongations `end` at the end of a step from `start`.
-    pub(super) fn finish(&self, model: &Model, start: &[f64], stages: &[Rates], end: &mut [f64]) {
-        self.at_stage(model, STAGES - 1, (start, stages), end);
-    }
-
-    /// The elongations `a` at stage `i` of a step from `start`.
-    pub(super) fn at_stage(&self, model: &Model, i: usize, (start, stages): (&[f64], &[Rates]), a: &mut [f64]) {
+    /// Writes the elongations at stage `i` of a step from `start` to `a`, m.
+    pub(super) fn at_stage(&self, model: &Model, i: usize, start: &[f64], stages: &[Rates], a: &mut [f64]) {
         for row in &model.rows {
             let coefficients = &self.coefficients[row.time_index];
             let from = std::iter::once((coefficients.start[i], &start[row.range.clone()]));
@@ -118,13 +111,13 @@ impl<const STAGES: usize> Maxwell<STAGES> {
         }
     }
 
-    /// Numbers that this holds.
+    /// How many numbers this holds.
     pub(super) fn floats(&self) -> usize {
         self.kinds.iter().map(|sums| STAGES * sums.error_start.len()).sum()
     }
 }
 
-/// The elongation rates of the links of `kind` at the stages that count, weighed.
+/// The elongation rates of the links of `kind` at the stages, with their weights; stages of weight 0 are left out.
 fn by_rate<'a>(kind: LinkKind, weights: &'a [f64], stages: &'a [Rates]) -> impl Iterator<Item = (f64, &'a [f64])> {
     let stages = weights.iter().zip(stages).filter(|(weight, _)| **weight != 0.0);
     stages.map(move |(&weight, stage)| (weight, &stage.elongation_rate[kind as usize][..]))
@@ -136,10 +129,10 @@ impl<const STAGES: usize> StageCoefficients<STAGES> {
         Self { start: zero, rate: [zero; STAGES], error_start: 0.0, error_rate: zero }
     }
 
-    /// The numbers for a step of length `h` and its ratio `z` to the relaxation time. A stage gives a_i = g (a*_i +
-    /// γhė_i), g = 1/(1 + γz), from a*_i = a_0 + h Σ_{j<i} a_ij ȧ_j, and hȧ_i = hė_i - z a_i, which is g (hė_i - z
-    /// a*_i): nothing cancels, however large z is.
-    fn follow(&mut self, tableau: &Tableau<STAGES>, z: f64, h: f64) {
+    /// Sets the coefficients for a step of length `h` and its ratio `z` = h/τ. A stage gives a_i = g (a*_i + γhė_i),
+    /// g = 1/(1 + γz), from a*_i = a_0 + h Σ_{j<i} a_ij ȧ_j. Its rate hȧ_i = hė_i - z a_i equals g (hė_i - z a*_i), in
+    /// which nothing cancels, however large z is.
+    fn set(&mut self, tableau: &Tableau<STAGES>, z: f64, h: f64) {
         let gamma = tableau.gamma();
         let g = 1.0 / (1.0 + gamma * z);
         // hȧ_i by a_0 and by hė_j.
@@ -215,12 +208,12 @@ mod tests {
     }
 
     #[test]
-    fn the_numbers_of_a_course_are_those_of_the_stages() {
+    fn coefficients_are_those_of_the_stages() {
         let rates = [0.3, -0.7, 1.1, 0.2, -0.4, 0.9, 0.5];
         for z in [0.0, 1e-8, 0.1, 1.0, 30.0, 1e4] {
             let a = 0.8 / (1.0 + z);
             let mut coefficients = StageCoefficients::<STAGES>::new();
-            coefficients.follow(&METHOD, z, 1.0);
+            coefficients.set(&METHOD, z, 1.0);
             let (expected, expected_error) = stage_by_stage(z, a, &rates);
             for i in 0..STAGES {
                 let driven: f64 = coefficients.rate[i].iter().zip(&rates).map(|(q, rate)| q * rate).sum();
@@ -238,12 +231,12 @@ mod tests {
         }
     }
 
-    /// τ far below the step: at the end of it a = τė, however short τ is.
+    /// τ far below the step length: at its end a = τė, however short τ is.
     #[test]
     fn a_short_element_is_a_damper() {
         for z in [1e9, 1e13, 1e100] {
             let mut coefficients = StageCoefficients::<STAGES>::new();
-            coefficients.follow(&METHOD, z, 1.0);
+            coefficients.set(&METHOD, z, 1.0);
             let a = 1.0 / z;
             let end = coefficients.start[STAGES - 1] * a + coefficients.rate[STAGES - 1].iter().sum::<f64>();
             // R(∞) = 0 within the digits of the printed coefficients; of 1/z a few roundings.

@@ -1,103 +1,64 @@
-//! The implicit Runge-Kutta method: one step of the layer with its modes held, its error, and what lies within it.
+//! The implicit Runge-Kutta methods: attempts and acceptance of single steps of the layer with its contact modes held,
+//! their error tests, dense outputs, energies and sensitivities.
+//!
+//! Two methods share one implementation: [`METHOD`], of order 5 with seven stages, for the event-driven driver, and
+//! [`SDIRK2`], with two implicit stages, for the time-stepping driver.
 
 mod dense;
 mod energy;
 mod error;
 mod maxwell;
+mod method;
 mod rates;
-mod sdirk;
+mod sensitivity;
 mod stage;
 mod tableau;
-mod tangent;
-mod tolerance;
-mod within;
 
-pub use dense::{DenseOutput, DenseWorkspace};
-pub use rates::{NO_LIMIT, Rates};
-pub use sdirk::{SDIRK2, TWO_STAGES};
+pub use dense::{DenseOutput, DenseWorkspace, StepEnd, StepSpan, TwoStageDense};
+pub use error::{Attempt, Tolerance};
+pub use rates::{NO_LIMIT, Rates, StepStart};
 pub use stage::NoConvergence;
-pub use tableau::{ESDIRK5, Tableau, WeightsWithin};
-pub use tolerance::Tolerance;
-pub use within::TwoStageDense;
+pub use tableau::{ContinuousWeights, ESDIRK5, METHOD, SDIRK2, STAGES, TWO_STAGES, Tableau};
 
-use serde::{Deserialize, Serialize};
-
-use crate::math::weighted_sum;
 use crate::model::{Carrier, CarrierPoint, ChannelEnergies, Exchange, Forces, Model, State};
-use error::{ErrorTest, ErrorWorkspace};
+use error::ErrorWorkspace;
 use maxwell::Maxwell;
-use sdirk::TwoStages;
-use stage::{Accuracy, StagePoint, StageSolver};
-use tangent::{Tangent, Target};
+use method::{InitialGuess, Method, Stages, StepInput};
+use sensitivity::{Tangent, Target};
+use stage::{ConvergenceTest, StageSolver};
+use tableau::{GAMMA, SDIRK2_ESTIMATE};
 
-/// The method that the integrator uses.
-pub const METHOD: Tableau<7> = ESDIRK5;
+/// The error tolerance of Newton's iterations in a step of two stages, as a multiple of the one in a step of
+/// [`METHOD`]. Iterations are the cost of such a step, and the error that they leave is known to be smaller than this.
+const NEWTON_SLACK: f64 = 2.0;
+/// The same where friction depends on the speed. Corrections fall slowly there, and the estimate of the step's error
+/// multiplies what they leave by [`SDIRK2_ESTIMATE`] over γ: the step length would follow it and not the motion.
+const STEEP_SLACK: f64 = 0.1;
 
-/// Number of stages, the explicit one included.
-pub const STAGES: usize = METHOD.c.len();
-
-/// The stages of one step, and workspace for them.
+/// Attempts and accepts steps: the values at the stages of the last attempted step, and workspace.
 #[derive(Clone, Debug)]
 pub struct Integrator {
-    /// The rates of the stages; those of the first are the rates at the start of the step.
-    stages: Vec<Rates>,
-    /// The carrier at the stages.
-    carrier: [CarrierPoint; STAGES],
-    /// The powers through the surface and the carrier at the stages.
-    exchange: [Exchange; STAGES],
-    maxwell: Maxwell<STAGES>,
-    solver: StageSolver,
+    seven_stages: Method<STAGES>,
+    two_stages: Method<TWO_STAGES>,
+    stages: Stages,
     error_workspace: ErrorWorkspace,
-    predictor: [[f64; STAGES]; STAGES],
-    weights_within: WeightsWithin<STAGES>,
-    /// The other method, for steps of two stages.
-    two_stages: TwoStages,
-    accounts_energy: bool,
-    /// How the run follows the targets of u and w; empty where nobody asks.
-    tangents: Vec<Tangent>,
 }
 
-/// The layer at the start of a step.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct StepStart {
-    /// The state.
-    pub state: State,
-    /// The rates there.
-    pub rates: Rates,
-    /// The powers through the surface and the carrier there, W: 0 where no energy is accounted for.
-    pub exchange: Exchange,
-}
-
-impl StepStart {
-    /// A layer of `model` at rest and free.
-    pub fn new(model: &Model) -> Self {
-        let state = State::new(model.masses(), model.maxwell_variables());
-        Self { state, rates: Rates::new(model), exchange: Exchange::default() }
-    }
-
-    /// Copies `other`, of the same model, without allocating.
-    pub fn copy_from(&mut self, other: &Self) {
-        self.state.copy_from(&other.state);
-        self.rates.copy_from(&other.rates);
-        self.exchange = other.exchange;
-    }
-}
-
-/// What the steps follow beside the state.
+/// What the steps compute in addition to the state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tracked {
-    /// The powers of the channels.
+    /// The powers through the channels.
     pub energy: bool,
-    /// The forces' sensitivities to the carrier's targets.
+    /// The sensitivities of the forces to the carrier's targets.
     pub tangents: bool,
 }
 
-/// Which steps an integrator has workspace for.
+/// The methods for which an integrator has workspace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Steps {
-    /// Steps of [`METHOD`] alone.
+    /// [`METHOD`] alone.
     Accurate,
-    /// Steps of two stages alone.
+    /// [`SDIRK2`] alone.
     TwoStages,
     /// Both.
     Both,
@@ -112,65 +73,58 @@ impl Steps {
         self != Self::Accurate
     }
 
-    /// Stages, the one at the start included.
     fn stages(self) -> usize {
         if self.accurate() { STAGES } else { TWO_STAGES }
     }
 }
 
-/// A step that was tried.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Attempt {
-    /// The error estimate over the tolerance: at most 1 for a good step.
-    pub error: f64,
-    /// What the step did not see of the carrier's motion over the free masses, against the tolerance: of account only
-    /// where one of them may touch.
-    pub unseen: f64,
-}
-
 impl Integrator {
-    /// Room for steps of `model`.
-    pub fn new(model: &Model, followed: Tracked, steps: Steps) -> Self {
-        let targets: &[Target] = if followed.tangents { &[Target::U, Target::W] } else { &[] };
+    /// An integrator for `model` with workspace for `steps`.
+    pub fn new(model: &Model, tracked: Tracked, steps: Steps) -> Self {
+        let targets: &[Target] = if tracked.tangents { &[Target::U, Target::W] } else { &[] };
         Self {
-            stages: vec![Rates::new(model); steps.stages()],
-            carrier: [CarrierPoint::default(); STAGES],
-            exchange: [Exchange::default(); STAGES],
-            maxwell: if steps.accurate() { Maxwell::new(model) } else { Maxwell::none() },
-            solver: StageSolver::new(model),
+            seven_stages: Method {
+                tableau: &METHOD,
+                continuous_weights: ContinuousWeights::new(&METHOD),
+                initial_guess: InitialGuess::extrapolated(&METHOD.c),
+                maxwell: Maxwell::new(model, steps.accurate()),
+            },
+            two_stages: Method {
+                tableau: &SDIRK2,
+                continuous_weights: ContinuousWeights::sdirk2(),
+                initial_guess: InitialGuess::Limited,
+                maxwell: Maxwell::new(model, steps.two_stages()),
+            },
+            stages: Stages {
+                rates: vec![Rates::new(model); steps.stages()],
+                carrier: [CarrierPoint::default(); STAGES],
+                exchange: [Exchange::default(); STAGES],
+                solver: StageSolver::new(model),
+                tracks_energy: tracked.energy,
+                tangents: targets.iter().map(|&target| Tangent::new(model, target, steps.stages())).collect(),
+            },
             error_workspace: ErrorWorkspace::new(model),
-            predictor: predictor(&METHOD.c),
-            weights_within: WeightsWithin::new(&METHOD),
-            two_stages: TwoStages::new(model, steps.two_stages()),
-            accounts_energy: followed.energy,
-            tangents: targets.iter().map(|&target| Tangent::new(model, target, steps.stages())).collect(),
         }
     }
 
-    /// Newton's iterations since the start.
+    /// Newton iterations since the start.
     pub fn iterations(&self) -> u64 {
-        self.solver.iterations
+        self.stages.solver.iterations
     }
 
     /// Evaluates the rates and the powers at the start of a step from the `forces` in its state: needed at the start of
-    /// a run, after an event and at a kink.
+    /// a run, after an event and at a kink of the carrier's motion.
     pub fn evaluate_start(&self, model: &Model, start: &mut StepStart, carrier: &CarrierPoint, forces: &Forces) {
         start.rates.evaluate(model, &start.state, forces);
-        if self.accounts_energy {
+        if self.stages.tracks_energy {
             start.exchange = Exchange::evaluate(model, &start.state, carrier, forces);
         }
     }
 
-    /// Makes the start of a step its first stage.
-    fn begin_step(&mut self, start: &StepStart) {
-        self.stages[0].copy_from(&start.rates);
-        self.exchange[0] = start.exchange;
-    }
-
-    /// Tries a step of length `h` from `start`, `s` seconds after the start of the carrier's piece.
+    /// Attempts a step of [`METHOD`] of length `h` from `start`, `s` seconds after the start of the carrier's piece.
     ///
     /// # Errors
-    /// [`NoConvergence`] where a stage could not be solved.
+    /// [`NoConvergence`] where Newton's iterations of a stage did not converge.
     pub fn attempt(
         &mut self,
         model: &Model,
@@ -179,144 +133,77 @@ impl Integrator {
         (s, h): (f64, f64),
         tolerance: &Tolerance,
     ) -> Result<Attempt, NoConvergence> {
-        let beta = METHOD.gamma() * h;
-        let state = &start.state;
-        self.begin_step(start);
-        self.carrier[0] = carrier.at(s);
-        self.solver.begin(model, state, beta);
-        self.maxwell.begin(model, &METHOD, &state.maxwell, h);
-        for i in 1..STAGES {
-            let stage = (i, METHOD.c[i], &METHOD.a[i][..]);
-            let point = self.prepare_stage(state, carrier, (s, h), stage, beta);
-            self.maxwell.known_forces(i, &self.stages[..i], &mut self.solver.history.force);
-            self.predict(state, beta, i);
-            self.solve_stage(model, &point, (s, h), stage, Accuracy::new(tolerance, beta, 1.0))?;
-        }
-        self.maxwell.finish(model, &state.maxwell, &self.stages, &mut self.solver.state.maxwell);
-        let test = ErrorTest {
-            tableau: &METHOD,
-            maxwell: &self.maxwell,
-            stages: &self.stages,
-            carrier: &self.carrier,
-            end: &self.solver.state,
-            contacts: self.solver.contacts(),
-        };
-        Ok(test.error(model, h, tolerance, &mut self.error_workspace))
+        let span = StepSpan { start: s, length: h };
+        let step = StepInput { model, start, carrier, span, beta: self.seven_stages.tableau.gamma() * h };
+        let convergence = ConvergenceTest::new(tolerance, step.beta, 1.0);
+        self.seven_stages.attempt(&mut self.stages, &step, convergence)?;
+        Ok(self.seven_stages.test(&self.stages, &step, tolerance, &mut self.error_workspace))
     }
 
-    /// The motion that the earlier stages of a step of length `h` from `state`, `s` seconds after the start of the
-    /// carrier's piece, give to stage `i`, with its place `c` and its weights; and where it stands.
-    fn prepare_stage(
-        &mut self,
-        state: &State,
-        carrier: &Carrier,
-        (s, h): (f64, f64),
-        (i, c, weights): (usize, f64, &[f64]),
-        beta: f64,
-    ) -> StagePoint {
-        let at = carrier.at(s + c * h);
-        self.carrier[i] = at;
-        self.collect_motion(state, (h, &weights[..i]));
-        let driven = self.drive((h, weights), i);
-        let moved = carrier.moved(s, c * h).0;
-        StagePoint {
-            beta,
-            carrier: at,
-            driven,
-            moved,
-            profile_position: carrier.profile_position + at.du,
-            w: carrier.w + at.dw,
-        }
-    }
-
-    /// Solves a stage that is prepared, to `accuracy`, and what follows from it.
-    fn solve_stage(
+    /// Attempts a step of two stages of length `h` from `start`, `s` seconds after the start of the carrier's piece.
+    ///
+    /// # Errors
+    /// [`NoConvergence`] where Newton's iterations of a stage did not converge.
+    pub fn attempt_two_stages(
         &mut self,
         model: &Model,
-        point: &StagePoint,
+        start: &StepStart,
+        carrier: &Carrier,
         (s, h): (f64, f64),
-        (i, c, weights): (usize, f64, &[f64]),
-        accuracy: Accuracy,
-    ) -> Result<(), NoConvergence> {
-        self.solver.solve(model, point, accuracy, &mut self.stages[i])?;
-        if self.accounts_energy {
-            let solver = &self.solver;
-            self.exchange[i] = Exchange::evaluate(model, &solver.state, &point.carrier, &solver.forces);
+        tolerance: &Tolerance,
+    ) -> Result<Attempt, NoConvergence> {
+        let span = StepSpan { start: s, length: h };
+        let step = StepInput { model, start, carrier, span, beta: self.two_stages.tableau.gamma() * h };
+        let slack = if model.rate_shear.is_some() { STEEP_SLACK } else { NEWTON_SLACK };
+        let convergence = ConvergenceTest::new(tolerance, step.beta, slack);
+        self.two_stages.attempt(&mut self.stages, &step, convergence)?;
+        let attempt = self.two_stages.test(&self.stages, &step, tolerance, &mut self.error_workspace);
+        // Touches are looked for at the end of the step alone, so the carrier's motion must be resolved over all masses.
+        Ok(Attempt { error: attempt.error.hypot(attempt.unseen), ..attempt })
+    }
+
+    /// The ratio of the length of a two-stage step with an error of the tolerance to `h`, the length of the last
+    /// attempted step of [`METHOD`], by the changes of velocities and accelerations over that step.
+    pub fn two_stage_share(&self, h: f64, tolerance: &Tolerance) -> f64 {
+        let (first, last, end) = (&self.stages.rates[0], &self.stages.rates[STAGES - 1], self.end());
+        let carrier = &self.stages.carrier[STAGES - 1];
+        let mut sum = 0.0;
+        for i in 0..end.mode.len() {
+            let change = |of: fn(&Rates) -> &[f64]| (SDIRK2_ESTIMATE * h * (of(last)[i] - of(first)[i])).powi(2);
+            sum += change(|rates| &rates.velocity_x) / tolerance.of_position(end.elongation_x[i])
+                + change(|rates| &rates.velocity_z) / tolerance.of_position(end.elongation_z[i])
+                + change(|rates| &rates.acceleration_x) / tolerance.of_velocity(end.velocity_x[i] - carrier.u_rate)
+                + change(|rates| &rates.acceleration_z) / tolerance.of_velocity(end.velocity_z[i] - carrier.w_rate);
         }
-        self.vary(model, point, (s + c * h, h), (i, weights));
-        Ok(())
+        let error = (sum / end.mode.len() as f64).sqrt();
+        // The two stages lie 1 - γ of a step apart, and the error grows with the square of the step length.
+        1.0 / (error * (1.0 - GAMMA)).sqrt()
     }
 
-    /// The tangents at the stage just solved, the `i`-th, at `s` in a step of length `h`; the earlier ones have
-    /// `weights`.
-    fn vary(&mut self, model: &Model, point: &StagePoint, (s, h): (f64, f64), (i, weights): (usize, &[f64])) {
-        if self.tangents.is_empty() {
-            return;
-        }
-        self.solver.factor_at_solution(model, point.beta);
-        for tangent in &mut self.tangents {
-            tangent.collect_history(h, &weights[..i]);
-            let carrier = tangent.carrier(s);
-            self.solver.vary(model, point, &carrier, tangent, (i, &self.stages[i]));
-        }
-    }
-
-    /// Whether anybody asks for tangents.
-    pub fn has_tangents(&self) -> bool {
-        !self.tangents.is_empty()
-    }
-
-    /// Begins the tangents of a motion of the carrier of `duration` (s).
-    pub fn begin_tangents(&mut self, duration: f64) {
-        for tangent in &mut self.tangents {
-            tangent.begin(duration);
-        }
-    }
-
-    /// Computes the tangents' rates at the start of a step afresh, `s` seconds after the start of the carrier's motion.
-    pub fn refresh_tangents(&mut self, model: &Model, start: &StepStart, forces: &Forces, s: f64) {
-        for tangent in &mut self.tangents {
-            tangent.evaluate_rates(model, &start.state, forces, &start.rates.acceleration_x, s);
-        }
-    }
-
-    /// ∂F_x/∂u, ∂F_x/∂w, ∂F_z/∂u, ∂F_z/∂w by the targets of the motion, `s` seconds after its start, N/m.
-    pub fn tangents(&mut self, model: &Model, s: f64) -> [f64; 4] {
-        let mut by_target = self.tangents.iter_mut().map(|tangent| tangent.carrier_forces(model, s));
-        let (u, w) = (by_target.next().unwrap_or_default(), by_target.next().unwrap_or_default());
-        [u.0, w.0, u.1, w.1]
-    }
-
-    /// The state at the end of the step tried last.
+    /// The state at the end of the last attempted step.
     pub fn end(&self) -> &State {
-        &self.solver.state
+        &self.stages.solver.state
     }
 
-    /// The forces at the end of the step tried last.
+    /// The forces at the end of the last attempted step.
     pub fn end_forces(&self) -> &Forces {
-        &self.solver.forces
+        &self.stages.solver.forces
     }
 
-    /// Bytes that the stages hold, those to go back to included.
-    pub fn bytes(&self) -> usize {
-        let rates = &self.stages[0];
-        let masses = rates.velocity_x.len();
-        let links: usize = rates.elongation_rate.iter().map(Vec::len).sum();
-        let stages = self.stages.len() + 1;
-        // By mass: the rates and the starred values; five blocks and a right side; a row, a column and a slip; errors.
-        let by_mass = stages * 6 + 4 + (5 * 4 + 2) + (3 + 3 + 11) + 5;
-        let elements = 2 * (self.maxwell.floats() + self.two_stages.floats());
-        let tangents: usize = self.tangents.iter().map(Tangent::floats).sum();
-        (by_mass * masses + stages * links + elements + tangents) * size_of::<f64>()
-    }
-
-    /// The rates at the stages of the step tried last.
+    /// The rates at the stages of the last attempted step.
     pub fn stages(&self) -> &[Rates] {
-        &self.stages
+        &self.stages.rates
     }
 
-    /// The step of length `h` from `start`, `s` seconds after the start of the carrier's piece, that was tried last,
-    /// seen from within.
+    /// The end of the last attempted two-stage step, open to changes: state, forces and rates; and the rates at its first
+    /// stage.
+    pub fn open_end(&mut self) -> (&mut State, &mut Forces, &mut Rates, &Rates) {
+        let (earlier, last) = self.stages.rates.split_at_mut(TWO_STAGES - 1);
+        (&mut self.stages.solver.state, &mut self.stages.solver.forces, &mut last[0], &earlier[1])
+    }
+
+    /// The dense output of the last attempted step of [`METHOD`], of length `h` from `start`, `s` seconds after the start
+    /// of the carrier's piece.
     pub fn dense<'a>(
         &'a self,
         model: &'a Model,
@@ -324,100 +211,86 @@ impl Integrator {
         start: &'a StepStart,
         (s, h): (f64, f64),
     ) -> DenseOutput<'a> {
-        let carriers = [self.carrier[0], self.carrier[STAGES - 1]];
-        let end = (self.end(), &self.stages[STAGES - 1]);
-        DenseOutput { model, carrier, s, h, carriers, start: (&start.state, &start.rates), end }
+        let carriers = &self.stages.carrier;
+        let first = StepEnd { state: &start.state, rates: &start.rates, carrier: carriers[0] };
+        let last = StepEnd { state: self.end(), rates: &self.stages()[STAGES - 1], carrier: carriers[STAGES - 1] };
+        DenseOutput { model, carrier, span: StepSpan { start: s, length: h }, start: first, end: last }
     }
 
-    /// Energies through the channels over the step of length `h` from `start` tried last, up to its fraction `theta`.
+    /// The Maxwell elements' elongations at the first stage of the last attempted two-stage step from `start`, into `a`,
+    /// m.
+    pub fn first_stage_maxwell(&self, model: &Model, start: &State, a: &mut [f64]) {
+        self.two_stages.maxwell.at_stage(model, 1, &start.maxwell, &self.stages.rates, a);
+    }
+
+    /// Energies through the channels over the last attempted step of [`METHOD`], of length `h` from `start`, up to its
+    /// fraction `theta`, J.
     pub fn energies(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> ChannelEnergies {
-        let weights = if theta < 1.0 { &self.weights_within.at(theta) } else { METHOD.weights() };
-        let stages = (&self.stages[..], &self.exchange[..]);
-        energy::through(model, &self.maxwell, &start.maxwell, stages, (h, weights), self.error_workspace.any())
+        self.seven_stages.energies(&self.stages, model, start, h, theta, &mut self.error_workspace)
     }
 
-    /// Accepts the step tried last: its end becomes the start of the next one.
+    /// Energies through the channels over the last attempted two-stage step, of length `h` from `start`, up to its
+    /// fraction `theta`, J.
+    pub fn two_stage_energies(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> ChannelEnergies {
+        self.two_stages.energies(&self.stages, model, start, h, theta, &mut self.error_workspace)
+    }
+
+    /// Accepts the last attempted step of [`METHOD`]: its end becomes the `start` of the next one.
     pub fn accept(&mut self, start: &mut StepStart) {
-        self.accept_stage(start, STAGES - 1);
+        self.stages.accept(start, STAGES - 1);
     }
 
-    /// Takes the step tried last, which ended with stage `last`.
-    fn accept_stage(&mut self, start: &mut StepStart, last: usize) {
-        std::mem::swap(&mut start.state, &mut self.solver.state);
-        std::mem::swap(&mut start.rates, &mut self.stages[last]);
-        start.exchange = self.exchange[last];
-        for tangent in &mut self.tangents {
-            tangent.accept(last);
+    /// Accepts the last attempted two-stage step: its end becomes the `start` of the next one.
+    pub fn accept_two_stages(&mut self, start: &mut StepStart) {
+        self.stages.accept(start, TWO_STAGES - 1);
+    }
+
+    /// Whether tangents are computed.
+    pub fn has_tangents(&self) -> bool {
+        !self.stages.tangents.is_empty()
+    }
+
+    /// Begins the tangents of a motion of the carrier of `duration` (s).
+    pub fn begin_tangents(&mut self, duration: f64) {
+        for tangent in &mut self.stages.tangents {
+            tangent.begin(duration);
         }
     }
 
-    /// The starred values: what the earlier stages of a step of length `h`, with these weights, give to a stage.
-    fn collect_motion(&mut self, state: &State, (h, weights): (f64, &[f64])) {
-        let history = &mut self.solver.history;
-        let earlier = &self.stages;
-        let sum = |star: &mut [f64], start: &[f64], rate: fn(&Rates) -> &[f64]| {
-            let counting = earlier.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
-            let terms = counting.map(|(stage, weight)| (h * weight, rate(stage)));
-            weighted_sum(star, std::iter::once((1.0, start)).chain(terms));
-        };
-        sum(&mut history.elongation_x, &state.elongation_x, |stage| &stage.velocity_x);
-        sum(&mut history.elongation_z, &state.elongation_z, |stage| &stage.velocity_z);
-        sum(&mut history.velocity_x, &state.velocity_x, |stage| &stage.acceleration_x);
-        sum(&mut history.velocity_z, &state.velocity_z, |stage| &stage.acceleration_z);
+    /// Recomputes the tangents' rates at the start of a step, with the forces there, `s` seconds after the start of the
+    /// carrier's motion.
+    pub fn refresh_tangents(&mut self, model: &Model, start: &StepStart, forces: &Forces, s: f64) {
+        for tangent in &mut self.stages.tangents {
+            tangent.evaluate_rates(model, &start.state, forces, &start.rates.acceleration_x, s);
+        }
     }
 
-    /// How far stage `i` takes the carrier to have moved, along x and z, m: by the method's own quadrature of its rate.
-    ///
-    /// So the elongations are integrated as the differences that they are, ė = ẋ - u̇, and the velocities against the
-    /// carrier's, with -ü as a load: a carrier that swings far leaves no error in a layer that swings with it. The
-    /// starred velocities take over what the quadrature of ü misses of u̇.
-    fn drive(&mut self, (h, weights): (f64, &[f64]), i: usize) -> (f64, f64) {
-        let (mut moved, mut missed) = ((0.0, 0.0), (0.0, 0.0));
-        for (at, weight) in self.carrier[..=i].iter().zip(weights) {
-            let step = h * weight;
-            moved = (moved.0 + step * at.u_rate, moved.1 + step * at.w_rate);
-            missed = (missed.0 + step * at.u_acceleration, missed.1 + step * at.w_acceleration);
+    /// The same after a contact correction at the end of a step just accepted.
+    pub fn refresh_tangents_after(&mut self, model: &Model, start: &StepStart, s: f64) {
+        let Stages { tangents, solver, .. } = &mut self.stages;
+        for tangent in tangents {
+            tangent.evaluate_rates(model, &start.state, &solver.forces, &start.rates.acceleration_x, s);
         }
-        let (start, here) = (&self.carrier[0], &self.carrier[i]);
-        let history = &mut self.solver.history;
-        let by_x = here.u_rate - start.u_rate - missed.0;
-        let by_z = here.w_rate - start.w_rate - missed.1;
-        // Along straight paths there is nothing to take over.
-        for (star, by) in [(&mut history.velocity_x, by_x), (&mut history.velocity_z, by_z)] {
-            if by != 0.0 {
-                star.iter_mut().for_each(|star| *star += by);
-            }
-        }
-        moved
     }
 
-    /// The velocities from which Newton's iterations start. For slipping masses the accelerations of the earlier stages
-    /// are extrapolated; free ones, whose equations are linear, start where they were, since a guess far off costs
-    /// digits.
-    fn predict(&mut self, start: &State, beta: f64, i: usize) {
-        let solver = &mut self.solver;
-        solver.state.velocity_x.copy_from_slice(&start.velocity_x);
-        solver.state.velocity_z.copy_from_slice(&start.velocity_z);
-        let earlier = self.stages[..i].iter().zip(&self.predictor[i]).filter(|(_, weight)| **weight != 0.0);
-        for mass in 0..start.mode.len() {
-            if start.mode[mass].slips() {
-                let acceleration: f64 =
-                    earlier.clone().map(|(stage, weight)| weight * stage.acceleration_x[mass]).sum();
-                solver.state.velocity_x[mass] = solver.history.velocity_x[mass] + beta * acceleration;
-            }
-        }
+    /// ∂F_x/∂u, ∂F_x/∂w, ∂F_z/∂u, ∂F_z/∂w by the targets of the motion, `s` seconds after its start, N/m.
+    pub fn tangents(&mut self, model: &Model, s: f64) -> [f64; 4] {
+        let mut by_target = self.stages.tangents.iter_mut().map(|tangent| tangent.carrier_forces(model, s));
+        let (u, w) = (by_target.next().unwrap_or_default(), by_target.next().unwrap_or_default());
+        [u.0, w.0, u.1, w.1]
     }
-}
 
-/// Weights that extrapolate from the earlier stages to each stage: Lagrange's through the latest three of distinct
-/// place.
-fn predictor(c: &[f64; STAGES]) -> [[f64; STAGES]; STAGES] {
-    let mut weights = [[0.0; STAGES]; STAGES];
-    for i in 1..STAGES {
-        let nodes = i.saturating_sub(3)..i;
-        for j in nodes.clone() {
-            weights[i][j] = nodes.clone().filter(|&m| m != j).map(|m| (c[i] - c[m]) / (c[j] - c[m])).product();
-        }
+    /// Bytes that the stages hold, those of a copy to go back to included.
+    pub fn bytes(&self) -> usize {
+        let rates = &self.stages.rates[0];
+        let masses = rates.velocity_x.len();
+        let links: usize = rates.elongation_rate.iter().map(Vec::len).sum();
+        let stages = self.stages.rates.len() + 1;
+        // Per mass: rates and starred values; five blocks and a right side; row shares, neighbour weights and an equation
+        // of slip; errors.
+        let by_mass = stages * 6 + 4 + (5 * 4 + 2) + (3 + 3 + 11) + 5;
+        let elements = 2 * (self.seven_stages.maxwell.floats() + self.two_stages.maxwell.floats());
+        let tangents: usize = self.stages.tangents.iter().map(Tangent::floats).sum();
+        (by_mass * masses + stages * links + elements + tangents) * size_of::<f64>()
     }
-    weights
 }

@@ -1,10 +1,12 @@
-//! Rates of change at one stage.
+//! Rates of change at one stage, and the start of a step that goes with them.
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::{CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint};
+use crate::model::{
+    CarrierPoint, ContactForces, Exchange, Forces, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint,
+};
 
-/// What is left of a quantity that has no limit.
+/// The margin of a quantity that has no limit.
 pub const NO_LIMIT: f64 = f64::MAX;
 
 /// Velocities, accelerations and contact forces at one stage, which later stages, the error estimate and the search for
@@ -23,13 +25,13 @@ pub struct Rates {
     pub elongation_rate: [Vec<f64>; 4],
     /// F_N of the masses in contact, N; [`NO_LIMIT`] for a free one.
     pub normal: Vec<f64>,
-    /// What is left before a contact changes its mode: σẋ (m/s) of a slipping mass, T - |f·t| (N) of a sticking one;
+    /// Margin to the next mode change along t: σẋ (m/s) of a slipping mass, T - |f·t| (N) of a sticking one;
     /// [`NO_LIMIT`] for a free mass, and where the scene has no friction.
     pub margin: Vec<f64>,
 }
 
 impl Rates {
-    /// Room for the rates of `model`.
+    /// Zero rates for the masses and links of `model`.
     pub fn new(model: &Model) -> Self {
         let k = model.masses();
         let zero = vec![0.0; k];
@@ -44,13 +46,13 @@ impl Rates {
         }
     }
 
-    /// Leaves no mass in contact.
+    /// Sets the contact forces and margins to those of free masses.
     pub fn clear_contacts(&mut self) {
         self.normal.fill(NO_LIMIT);
         self.margin.fill(NO_LIMIT);
     }
 
-    /// Takes over `other`, rates of the same model, without allocating.
+    /// Copies `other`, rates of the same model, without allocating.
     pub fn copy_from(&mut self, other: &Self) {
         let pairs = [
             (&mut self.velocity_x, &other.velocity_x),
@@ -68,7 +70,7 @@ impl Rates {
         }
     }
 
-    /// The rates that the forces give in `state`: the explicit first stage.
+    /// Computes the rates that the forces give in `state`: the explicit first stage.
     pub fn evaluate(&mut self, model: &Model, state: &State, forces: &Forces) {
         self.clear_contacts();
         for i in 0..model.masses() {
@@ -79,8 +81,8 @@ impl Rates {
         }
     }
 
-    /// Velocity, acceleration and what a contact leaves of mass `i`, whose contact was cleared, by the forces in
-    /// `state`.
+    /// Computes the rates of mass `i` from the forces in `state`. Its contact force and margin are those of a free mass
+    /// before.
     #[inline]
     fn evaluate_mass(&mut self, model: &Model, state: &State, forces: &Forces, i: usize) {
         let v = state.velocity_x[i];
@@ -95,11 +97,11 @@ impl Rates {
             let surface = &state.surface[i];
             let contact = ContactForces::new(model, (f_x, f_z), v, surface);
             self.acceleration_x[i] = contact.acceleration(model, mode, v, surface);
-            self.contact(model, i, (mode, v), surface, &contact);
+            self.set_contact(model, i, mode, v, surface, &contact);
         }
     }
 
-    /// Computes the rates of mass `i` and of its links afresh, from the forces in `state` under the carrier.
+    /// Recomputes the rates of mass `i` and of its links from the forces in `state` under the carrier.
     pub fn refresh(&mut self, model: &Model, state: &State, forces: &Forces, i: usize, carrier: &CarrierPoint) {
         (self.normal[i], self.margin[i]) = (NO_LIMIT, NO_LIMIT);
         self.evaluate_mass(model, state, forces, i);
@@ -119,14 +121,14 @@ impl Rates {
         }
     }
 
-    /// What a contact at mass `i` in `mode` at the velocity ẋ leaves: its z̈ along the surface, F_N and the margin of
-    /// its mode.
+    /// Sets z̈ along the surface, F_N and the margin of mass `i`, in contact in `mode` with the velocity ẋ.
     #[inline]
-    pub fn contact(
+    pub(super) fn set_contact(
         &mut self,
         model: &Model,
         i: usize,
-        (mode, velocity_x): (Mode, f64),
+        mode: Mode,
+        velocity_x: f64,
         surface: &SurfacePoint,
         contact: &ContactForces,
     ) {
@@ -139,8 +141,8 @@ impl Rates {
         };
     }
 
-    /// Ḟ_x and Ḟ_z of the layer on the carrier, N/s, where the Maxwell elongations are `maxwell`:
-    /// Ḟ = Σ c ė + d ë + Σ_j c_j (ė - a_j/τ_j) over the links to it.
+    /// Ḟ_x and Ḟ_z of the layer on the carrier, N/s, for the Maxwell elongations `maxwell` (m):
+    /// Ḟ = Σ c ė + d ë + Σ_j c_j (ė - a_j/τ_j) over the links to the carrier.
     pub fn on_carrier(&self, model: &Model, maxwell: &[f64], carrier: &CarrierPoint) -> (f64, f64) {
         let of = |kind: LinkKind, acceleration: &[f64], rate_change: f64| {
             let law = &model.links[kind as usize];
@@ -156,5 +158,31 @@ impl Rates {
             of(LinkKind::Horizontal, &self.acceleration_x, carrier.u_acceleration),
             of(LinkKind::Vertical, &self.acceleration_z, carrier.w_acceleration),
         )
+    }
+}
+
+/// The layer at the start of a step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StepStart {
+    /// The state.
+    pub state: State,
+    /// The rates there.
+    pub rates: Rates,
+    /// The powers through the surface and the carrier there, W; 0 where energies are not computed.
+    pub exchange: Exchange,
+}
+
+impl StepStart {
+    /// A layer of `model` at rest and free.
+    pub fn new(model: &Model) -> Self {
+        let state = State::new(model.masses(), model.maxwell_variables());
+        Self { state, rates: Rates::new(model), exchange: Exchange::default() }
+    }
+
+    /// Copies `other`, of the same model, without allocating.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.state.copy_from(&other.state);
+        self.rates.copy_from(&other.rates);
+        self.exchange = other.exchange;
     }
 }

@@ -1,4 +1,4 @@
-//! Coefficients of the Runge-Kutta method.
+//! The coefficients of the two Runge-Kutta methods and of their continuous extensions.
 
 use nalgebra::{DMatrix, SMatrix, SVector};
 
@@ -8,17 +8,17 @@ use nalgebra::{DMatrix, SMatrix, SVector};
 pub struct Tableau<const STAGES: usize> {
     /// a_ij; the diagonal is γ but for the first stage, where it is 0.
     pub a: [[f64; STAGES]; STAGES],
-    /// c_i, the stages' places in the step.
+    /// c_i: stage i lies at the fraction c_i of the step.
     pub c: [f64; STAGES],
     /// b_i - b̂_i: the weights of the error estimate.
     pub error: [f64; STAGES],
-    /// Order of the embedded method; that of the method itself is one higher.
+    /// Order of the embedded method. That of the method itself is one higher.
     pub embedded_order: i32,
 }
 
 impl<const STAGES: usize> Tableau<STAGES> {
-    /// A method from the part of A from its second column on, c, b̂ and the order of b̂. The first column of A follows
-    /// from Σ_j a_ij = c_i; the last row is b.
+    /// A method from A without its first column, c, b̂ and the order of b̂. The first column of A follows from
+    /// Σ_j a_ij = c_i; the last row is b.
     const fn new(
         mut a: [[f64; STAGES]; STAGES],
         c: [f64; STAGES],
@@ -56,19 +56,20 @@ impl<const STAGES: usize> Tableau<STAGES> {
     }
 }
 
-/// Weights b_i(θ) of the quadrature h Σ_i b_i(θ) P_i over the stages from the start of a step to its fraction θ.
-///
-/// Of all that are exact to the order p of the embedded method, Σ b_i (1, c, c², …)_i = (θ, θ²/2, θ³/3, …), with
-/// Σ b_i (A c²)_i = θ⁴/12 at order 4, these are the smallest for θ → 0; a term in θ^{p+1} brings them to the method's
-/// own weights at θ = 1.
+/// Continuous weights b_i(θ): h Σ_i b_i(θ) P_i over the stages is the integral of P from the start of a step to its
+/// fraction θ.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WeightsWithin<const STAGES: usize> {
+pub struct ContinuousWeights<const STAGES: usize> {
     /// The coefficients of θ, θ², … θ⁵.
     by_power: [SVector<f64, STAGES>; 5],
 }
 
-impl<const STAGES: usize> WeightsWithin<STAGES> {
-    /// The weights of a method.
+impl<const STAGES: usize> ContinuousWeights<STAGES> {
+    /// The continuous weights of a method.
+    ///
+    /// Of all weights that are exact to the order p of the embedded method, Σ b_i (1, c, c², …)_i = (θ, θ²/2, θ³/3, …),
+    /// with Σ b_i (A c²)_i = θ⁴/12 at order 4, these are the smallest for θ → 0. A term in θ^{p+1} brings them to the
+    /// method's own weights at θ = 1.
     pub fn new(tableau: &Tableau<STAGES>) -> Self {
         let order = tableau.embedded_order.clamp(1, 4) as usize;
         let c = SVector::from(tableau.c);
@@ -90,13 +91,6 @@ impl<const STAGES: usize> WeightsWithin<STAGES> {
             by_power[3] += of(4, 1.0 / 12.0);
         }
         by_power[order] = SVector::from(*tableau.weights()) - by_power.iter().sum::<SVector<f64, STAGES>>();
-        Self { by_power }
-    }
-
-    /// Weights of which the coefficients of θ and of θ² are known.
-    pub(super) fn of_powers(first: [f64; STAGES], second: [f64; STAGES]) -> Self {
-        let mut by_power = [SVector::zeros(); 5];
-        (by_power[0], by_power[1]) = (SVector::from(first), SVector::from(second));
         Self { by_power }
     }
 
@@ -179,4 +173,51 @@ const fn complete<const N: usize>(mut weights: [f64; N]) -> [f64; N] {
     }
     weights[0] = 1.0 - sum;
     weights
+}
+
+/// The method of the event-driven driver.
+pub const METHOD: Tableau<7> = ESDIRK5;
+
+/// Number of stages of [`METHOD`], the explicit one included.
+pub const STAGES: usize = METHOD.c.len();
+
+/// Number of stages of [`SDIRK2`]; the first is the start of the step, which serves as a guess alone.
+pub const TWO_STAGES: usize = 3;
+
+/// γ of [`SDIRK2`]: the fraction of the step at which its first implicit stage lies.
+pub(super) const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
+
+/// The error of a step of [`SDIRK2`] is estimated as this multiple of h (k_2 - k_1), with k the rates at the implicit
+/// stages. A multiple of γ would be the difference from y_0 + h k_1, which is of order 1.
+///
+/// Ten times that makes the forces of a rough layer err by about the relative tolerance, as the step length goes with the
+/// square root of this number. A smaller one makes longer steps.
+pub(super) const SDIRK2_ESTIMATE: f64 = 10.0 * GAMMA;
+
+/// SDIRK2 of R. Alexander (SIAM J. Numer. Anal. 14, 1977): γ = 1 - 1/√2, order 2, L-stable and stiffly accurate. The
+/// start of the step counts as a stage without weight.
+pub const SDIRK2: Tableau<TWO_STAGES> = Tableau {
+    a: [[0.0; 3], [0.0, GAMMA, 0.0], [0.0, 1.0 - GAMMA, GAMMA]],
+    c: [0.0, GAMMA, 1.0],
+    error: [0.0, -SDIRK2_ESTIMATE, SDIRK2_ESTIMATE],
+    embedded_order: 1,
+};
+
+/// The continuous weights of the two implicit stages of [`SDIRK2`]: the straight line through their rates, integrated
+/// from the start of the step to its fraction `theta`.
+#[inline]
+pub(super) fn sdirk2_weights(theta: f64) -> (f64, f64) {
+    let last = theta * (0.5 * theta - GAMMA) / (1.0 - GAMMA);
+    (theta - last, last)
+}
+
+impl ContinuousWeights<TWO_STAGES> {
+    /// Those of `sdirk2_weights`, by powers of θ.
+    pub(super) fn sdirk2() -> Self {
+        let bend = 0.5 / (1.0 - GAMMA);
+        let mut by_power = [SVector::zeros(); 5];
+        by_power[0] = SVector::from([0.0, 1.0 + 2.0 * GAMMA * bend, -2.0 * GAMMA * bend]);
+        by_power[1] = SVector::from([0.0, -bend, bend]);
+        Self { by_power }
+    }
 }

@@ -4,7 +4,7 @@ use asperity::model::{Mode, Model, State};
 use asperity::scene::{Path, RateShear};
 use nalgebra::{DMatrix, DVector, Vector2};
 
-use crate::layer::{FIVE_STAGES, Layer, Link, Method, Stepper, at_rate, last_order, points};
+use crate::layer::{Layer, Link, Method, SEVEN_STAGES, Stepper, at_rate, last_order, points};
 use crate::matrices::Matrices;
 
 /// Three masses far above the surface, a different number of Maxwell elements on every kind of link.
@@ -44,7 +44,7 @@ impl Exact {
     pub fn new(layer: &Layer) -> Self {
         let matrices = Matrices::new(layer);
         let (k2, n) = (2 * layer.masses, matrices.relaxation_times.len());
-        let (place, rate) = (displacement(), rates());
+        let (position, rate) = (displacement(), rates());
         let size = 2 * k2 + n + 6;
         let mut a = DMatrix::zeros(size, size);
         a.view_mut((0, k2), (k2, k2)).fill_with_identity();
@@ -52,12 +52,12 @@ impl Exact {
         a.view_mut((k2, 0), (k2, k2)).copy_from(&(-per_mass * &matrices.stiffness));
         a.view_mut((k2, k2), (k2, k2)).copy_from(&(-per_mass * &matrices.damping));
         a.view_mut((k2, 2 * k2), (k2, n)).copy_from(&(per_mass * &matrices.internal));
-        let load = &matrices.carrier_place * &place + &matrices.carrier_rate * &rate;
+        let load = &matrices.carrier_position * &position + &matrices.carrier_rate * &rate;
         a.view_mut((k2, 2 * k2 + n), (k2, 6)).copy_from(&(per_mass * load));
         let per_tau = DMatrix::from_diagonal(&DVector::from_column_slice(&matrices.relaxation_times).map(f64::recip));
         a.view_mut((2 * k2, 0), (n, k2)).copy_from(&(&per_tau * &matrices.elongation));
         a.view_mut((2 * k2, 2 * k2), (n, n)).copy_from(&-&per_tau);
-        a.view_mut((2 * k2, 2 * k2 + n), (n, 6)).copy_from(&(-&per_tau * &matrices.elongation_carrier * &place));
+        a.view_mut((2 * k2, 2 * k2 + n), (n, 6)).copy_from(&(-&per_tau * &matrices.elongation_carrier * &position));
         a.view_mut((2 * k2 + n, 2 * k2 + n), (6, 6)).copy_from(&clockwork());
         Self { matrices, generator: a }
     }
@@ -109,7 +109,7 @@ fn clockwork() -> DMatrix<f64> {
     matrix
 }
 
-/// The largest differences of two states: of places, velocities and Maxwell elongations.
+/// The largest differences of two states: of positions, velocities and Maxwell elongations.
 pub fn differences(a: &State, b: &State) -> [f64; 3] {
     let worst = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     [
@@ -119,7 +119,7 @@ pub fn differences(a: &State, b: &State) -> [f64; 3] {
     ]
 }
 
-/// A free chain under a carrier that oscillates, against the matrix exponential: places, velocities and Maxwell
+/// A free chain under a carrier that oscillates, against the matrix exponential: positions, velocities and Maxwell
 /// elongations converge with order 5.
 #[test]
 fn a_free_chain_converges_with_order_five() {
@@ -152,29 +152,29 @@ pub fn rate_slider(reference_speed: f64) -> Layer {
     Layer { rate_shear: Some(law), ..slider() }
 }
 
-/// The slider at a place and a speed, its dashpots relaxed, the carrier at `w`.
+/// The slider at a position and a speed, its dashpots relaxed, the carrier at `w`.
 pub fn sliding(model: &Model, velocity: f64, w: f64) -> State {
     let mut state = State::new(1, model.maxwell_variables());
-    let ground = model.surface_at(0.0);
+    let surface = model.surface_at(0.0);
     state.mode[0] = Mode::along(velocity);
-    state.surface[0] = ground;
-    state.elongation_z[0] = ground.height - model.rest_z[0] - w;
-    (state.velocity_x[0], state.velocity_z[0]) = (velocity, ground.slope * velocity);
+    state.surface[0] = surface;
+    state.elongation_z[0] = surface.height - model.rest_z[0] - w;
+    (state.velocity_x[0], state.velocity_z[0]) = (velocity, surface.slope * velocity);
     state
 }
 
-/// The slider by the classical Runge-Kutta method on the dense equations of motion: its place ξ and ẋ at `time`.
+/// The slider by the classical Runge-Kutta method on the dense equations of motion: its position ξ and ẋ at `time`.
 pub fn reference(layer: &Layer, start: &State, u_rate: f64, time: f64, steps: u32) -> (f64, f64, DVector<f64>) {
     let (model, matrices) = (layer.model(), Matrices::new(layer));
     let n = matrices.relaxation_times.len();
     let derivative = |t: f64, z: &DVector<f64>| {
-        let ground = model.surface_at(model.rest_x[0] + z[0]);
-        let q = DVector::from_vec(vec![z[0], ground.height - model.rest_z[0]]);
-        let v = DVector::from_vec(vec![z[1], ground.slope * z[1]]);
+        let surface = model.surface_at(model.rest_x[0] + z[0]);
+        let q = DVector::from_vec(vec![z[0], surface.height - model.rest_z[0]]);
+        let v = DVector::from_vec(vec![z[1], surface.slope * z[1]]);
         let y = z.rows(2, n).into_owned();
         let carrier = (Vector2::new(u_rate * t, 0.0), Vector2::new(u_rate, 0.0));
         let f = matrices.forces((&q, &v), &y, carrier);
-        let (acceleration, _) = matrices.accelerations(&f, &v, &start.mode, &[ground]);
+        let (acceleration, _) = matrices.accelerations(&f, &v, &start.mode, &[surface]);
         let internal = matrices.internal_rates(&q, &y, carrier.0);
         DVector::from_iterator(2 + n, [z[1], acceleration[0]].into_iter().chain(internal.iter().copied()))
     };
@@ -195,7 +195,7 @@ pub fn reference(layer: &Layer, start: &State, u_rate: f64, time: f64, steps: u3
 }
 
 /// A mass slipping over a curved profile with friction, centripetal terms and Maxwell elements, either way: the layers
-/// and the errors of place, velocity and Maxwell elongations after so many steps, against an explicit method on the
+/// and the errors of position, velocity and Maxwell elongations after so many steps, against an explicit method on the
 /// dense equations.
 pub fn slipping_errors<const N: usize>(
     steps: [u32; N],
@@ -205,7 +205,7 @@ pub fn slipping_errors<const N: usize>(
     let layers = |velocity: f64| [slider(), rate_slider(4.0), rate_slider(0.7)].map(|layer| (velocity, layer));
     [2.0, -1.2].into_iter().flat_map(layers).map(move |(velocity, layer)| {
         let start = sliding(&layer.model(), velocity, 0.0);
-        let (place, speed, maxwell) = reference(&layer, &start, 1.5 * velocity, 0.4, 4000);
+        let (position, speed, maxwell) = reference(&layer, &start, 1.5 * velocity, 0.4, 4000);
         let errors = steps.map(|steps| {
             let paths = (at_rate(1.5 * velocity), at_rate(0.0));
             let mut stepper = method(Stepper::new(layer.model(), paths, start.clone(), tolerance));
@@ -213,7 +213,7 @@ pub fn slipping_errors<const N: usize>(
             let state = &stepper.start.state;
             let xi = 1.5 * velocity * 0.4 + state.elongation_x[0];
             let a = DVector::from_column_slice(&state.maxwell);
-            [(xi - place).abs(), (state.velocity_x[0] - speed).abs(), (a - &maxwell).amax()]
+            [(xi - position).abs(), (state.velocity_x[0] - speed).abs(), (a - &maxwell).amax()]
         });
         (layer, errors)
     })
@@ -222,10 +222,10 @@ pub fn slipping_errors<const N: usize>(
 /// Order 5, though the problem is one of constrained motion.
 #[test]
 fn a_slipping_mass_converges_with_order_five() {
-    for (layer, errors) in slipping_errors([4, 8, 16, 32], 1e-14, FIVE_STAGES) {
+    for (layer, errors) in slipping_errors([4, 8, 16, 32], 1e-14, SEVEN_STAGES) {
         for part in 0..3 {
             let last = last_order(&errors.map(|error| error[part]));
-            // With a shear strength errors of places pass through 0 on their way: over all three halvings they fall as
+            // With a shear strength errors of positions pass through 0 on their way: over all three halvings they fall as
             // they should.
             let (order, highest) = if layer.rate_shear.is_some() {
                 (last.max((errors[0][part] / errors[3][part]).log2() / 3.0), 6.4)

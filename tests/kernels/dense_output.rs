@@ -1,4 +1,4 @@
-//! What lies within a step, against exact solutions.
+//! The dense output of the method of seven stages, against exact solutions.
 
 use asperity::integrator::DenseWorkspace;
 use asperity::model::{Forces, State};
@@ -10,7 +10,7 @@ use crate::layer::{Layer, Link, Random, Stepper, at_rate, last_order};
 
 const THETAS: [f64; 6] = [0.0, 0.13, 0.37, 0.5, 0.81, 1.0];
 
-/// The largest difference of places, velocities and Maxwell elongations within one step of length `h`.
+/// The largest difference of positions, velocities and Maxwell elongations within one step of length `h`.
 fn worst(stepper: &mut Stepper, h: f64, exact: impl Fn(f64) -> State) -> [f64; 3] {
     stepper.attempt(h);
     let mut worst = [0.0_f64; 3];
@@ -21,7 +21,7 @@ fn worst(stepper: &mut Stepper, h: f64, exact: impl Fn(f64) -> State) -> [f64; 3
     worst
 }
 
-/// TwoStageDense one step of a free chain: places and Maxwell elongations miss O(h⁶), velocities O(h⁵).
+/// The dense output of one step of a free chain: positions and Maxwell elongations miss O(h⁶), velocities O(h⁵).
 #[test]
 fn the_inside_of_a_free_step_has_its_order() {
     let layer = chain();
@@ -35,8 +35,8 @@ fn the_inside_of_a_free_step_has_its_order() {
     }
 }
 
-/// The same of a slipping mass, against steps so short that they leave no error: its height follows the profile at its
-/// place, its z velocity the slope there.
+/// The same for a slipping mass, against steps so short that their error does not count: its height follows the profile
+/// at its position, its z velocity the slope there.
 #[test]
 fn the_inside_of_a_slipping_step_has_its_order() {
     let layer = slider();
@@ -57,7 +57,7 @@ fn the_inside_of_a_slipping_step_has_its_order() {
     }
 }
 
-/// The ends of the step come out as they are.
+/// At its ends the dense output gives the states there.
 #[test]
 fn the_ends_of_a_step_are_the_states_there() {
     for (layer, paths) in [(chain(), PATHS), (slider(), (at_rate(0.5), at_rate(0.0)))] {
@@ -65,9 +65,9 @@ fn the_ends_of_a_step_are_the_states_there() {
         let mut stepper = Stepper::new(layer.model(), paths, start, 1e-13);
         stepper.attempt(0.01);
         for (theta, expected) in [(0.0, &stepper.start.state), (1.0, stepper.integrator.end())] {
-            // Roundings of places up to 0.3 m, over the step's length where a velocity is their difference.
-            let [place, velocity, maxwell] = differences(&stepper.within(0.01, theta), expected);
-            assert!(place < 2e-16 && velocity < 1e-13 && maxwell < 1e-15, "{place:e} {velocity:e} {maxwell:e}");
+            // Roundings of positions up to 0.3 m, over the step's length where a velocity is their difference.
+            let [position, velocity, maxwell] = differences(&stepper.within(0.01, theta), expected);
+            assert!(position < 2e-16 && velocity < 1e-13 && maxwell < 1e-15, "{position:e} {velocity:e} {maxwell:e}");
         }
     }
 }
@@ -112,10 +112,10 @@ fn one_contact_within_a_step_is_that_of_the_whole_state() {
         let within = stepper.within(1e-3, theta);
         let mut forces = Forces::new(&stepper.model);
         forces.evaluate(&stepper.model, &within, &stepper.carrier.at(theta * 1e-3));
-        let mut room = DenseWorkspace::new(&stepper.model);
+        let mut workspace = DenseWorkspace::new(&stepper.model);
         for i in (0..within.mode.len()).filter(|&i| within.mode[i].in_contact()) {
             let expected = forces.contact(&stepper.model, i, within.velocity_x[i], &within.surface[i]);
-            let found = stepper.dense(1e-3).contact(i, theta, &mut room);
+            let found = stepper.dense(1e-3).contact(i, theta, &mut workspace);
             // Sums of some twenty forces up to 1e3 N in another order.
             let error = (found.normal - expected.normal).abs().max((found.tangential - expected.tangential).abs());
             assert!(error < 1e-11, "case {case}, mass {i}: {found:?} {expected:?}");

@@ -31,7 +31,7 @@ fn pressed(scene: &Scene, u_rate: f64) -> Simulation {
     Simulation::new(scene, &Start { w: -0.1, u_rate, ..Start::default() }).unwrap()
 }
 
-/// 100 000 steps along a sinusoid, far away at their end: the height of every mass is the profile's at its place.
+/// 100 000 steps along a sinusoid, far away at their end: the height of every mass is the profile's at its position.
 #[test]
 fn slipping_masses_stay_on_the_profile() {
     let layer = rubber(SINE, (0.3, 0.0));
@@ -64,11 +64,11 @@ fn sticking_masses_do_not_move() {
     let layer = rubber(SINE, (50.0, 0.0));
     let scene = layer.scene();
     let mut simulation = pressed(&scene, 0.0);
-    let places = |simulation: &mut Simulation| -> Vec<f64> {
+    let positions = |simulation: &mut Simulation| -> Vec<f64> {
         let names = (1..=3).flat_map(|mass| ["x", "z"].map(|field| format!("element[{mass}].{field}")));
         names.map(|name| output(&scene, &simulation.snapshot(), &name)).collect()
     };
-    let first = places(&mut simulation);
+    let first = positions(&mut simulation);
     let mut worst = 0.0_f64;
     for i in 0..20_000 {
         // One and a quarter periods, so that each motion ends elsewhere.
@@ -77,7 +77,7 @@ fn sticking_masses_do_not_move() {
         let swing = Path { rate, amplitude, frequency: 1250.0 };
         simulation.advance(&Motion { duration: 1e-3, u: swing, w: Path { rate: 0.0, ..swing } }).unwrap();
         if i % 100 == 99 {
-            let now = places(&mut simulation);
+            let now = positions(&mut simulation);
             worst = now.iter().zip(&first).map(|(a, b)| (a - b).abs()).fold(worst, f64::max);
         }
     }

@@ -35,7 +35,7 @@ pub fn random_layer(random: &mut Random, masses: usize) -> Layer {
 type CarrierMotion = (Vector2<f64>, Vector2<f64>);
 
 /// A state with random modes, on the profile where it is in contact.
-pub fn random_state(random: &mut Random, model: &Model, place: &Vector2<f64>) -> State {
+pub fn random_state(random: &mut Random, model: &Model, position: &Vector2<f64>) -> State {
     let mut state = State::new(model.masses(), model.maxwell_variables());
     state.maxwell.fill_with(|| random.between(-0.05, 0.05));
     for i in 0..model.masses() {
@@ -45,40 +45,50 @@ pub fn random_state(random: &mut Random, model: &Model, place: &Vector2<f64>) ->
         let contact =
             if model.has_friction { [Mode::Forward, Mode::Backward, Mode::Stick] } else { [Mode::Forward; 3] };
         if random.below(3) > 0 {
-            put_on_profile(model, &mut state, i, contact[random.below(3)], place);
+            put_on_profile(model, &mut state, i, contact[random.below(3)], position);
         }
     }
     state
 }
 
-fn put_on_profile(model: &Model, state: &mut State, i: usize, mode: Mode, place: &Vector2<f64>) {
-    let ground = model.surface_at(model.rest_x[i] + (place.x + state.elongation_x[i]));
+fn put_on_profile(model: &Model, state: &mut State, i: usize, mode: Mode, position: &Vector2<f64>) {
+    let surface = model.surface_at(model.rest_x[i] + (position.x + state.elongation_x[i]));
     let speed = state.velocity_x[i].abs();
     let v = if model.has_friction { mode.direction() * speed } else { state.velocity_x[i] };
-    (state.mode[i], state.surface[i]) = (mode, ground);
-    state.elongation_z[i] = ground.height - model.rest_z[i] - place.y;
-    (state.velocity_x[i], state.velocity_z[i]) = (v, ground.slope * v);
+    (state.mode[i], state.surface[i]) = (mode, surface);
+    state.elongation_z[i] = surface.height - model.rest_z[i] - position.y;
+    (state.velocity_x[i], state.velocity_z[i]) = (v, surface.slope * v);
 }
 
 /// The dense form of a state: q, q̇, y.
-fn dense_state(matrices: &Matrices, state: &State, place: Vector2<f64>) -> (DVector<f64>, DVector<f64>, DVector<f64>) {
-    let xi = state.elongation_x.iter().map(|e| e + place.x);
-    let zeta = state.elongation_z.iter().map(|e| e + place.y);
+fn dense_state(
+    matrices: &Matrices,
+    state: &State,
+    position: Vector2<f64>,
+) -> (DVector<f64>, DVector<f64>, DVector<f64>) {
+    let xi = state.elongation_x.iter().map(|e| e + position.x);
+    let zeta = state.elongation_z.iter().map(|e| e + position.y);
     let k = matrices.masses;
     let q = DVector::from_iterator(2 * k, xi.chain(zeta));
     let v = DVector::from_iterator(2 * k, state.velocity_x.iter().chain(&state.velocity_z).copied());
     // a = e - y.
-    let y = matrices.elongations(&q, place) - DVector::from_column_slice(&state.maxwell);
+    let y = matrices.elongations(&q, position) - DVector::from_column_slice(&state.maxwell);
     (q, v, y)
 }
 
 /// Compares `rates` in `state` with the dense equations: accelerations, ė of all links with Maxwell elements, F_N and
 /// the margins of the modes.
 /// Differences count over the largest number that takes part; the largest of them.
-fn difference(matrices: &Matrices, model: &Model, state: &State, rates: &Rates, (place, rate): CarrierMotion) -> f64 {
+fn difference(
+    matrices: &Matrices,
+    model: &Model,
+    state: &State,
+    rates: &Rates,
+    (position, rate): CarrierMotion,
+) -> f64 {
     let k = matrices.masses;
-    let (q, v, y) = dense_state(matrices, state, place);
-    let f = matrices.forces((&q, &v), &y, (place, rate));
+    let (q, v, y) = dense_state(matrices, state, position);
+    let f = matrices.forces((&q, &v), &y, (position, rate));
     let (accelerations, contacts) = matrices.accelerations(&f, &v, &state.mode, &state.surface);
     let found = DVector::from_iterator(2 * k, rates.acceleration_x.iter().chain(&rates.acceleration_z).copied());
     let mut worst = (found - &accelerations).amax() / accelerations.amax().max(1.0);

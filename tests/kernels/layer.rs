@@ -1,4 +1,4 @@
-//! What the tests share: layers given in a few words, fixed steps, random numbers.
+//! Shared by the tests: layers given in a few words, fixed steps, random numbers.
 
 use std::path::Path as FilePath;
 
@@ -122,11 +122,11 @@ pub struct Stepper {
 /// Gives a stepper its method.
 pub type Method = fn(Stepper) -> Stepper;
 
-/// The one that a stepper has.
-pub const FIVE_STAGES: Method = |stepper| stepper;
+/// The method that a stepper has at first.
+pub const SEVEN_STAGES: Method = |stepper| stepper;
 
 impl Stepper {
-    /// From `state` along the carrier's paths, counted from its place 0. Newton's iterations are led to `tolerance`
+    /// From `state` along the carrier's paths, counted from its position 0. Newton's iterations converge to `tolerance`
     /// (m).
     pub fn new(model: Model, (u, w): (Path, Path), state: State, tolerance: f64) -> Self {
         let carrier = Carrier::new(0.0, (0.0, 0.0), (u, w), &model.profile);
@@ -144,7 +144,7 @@ impl Stepper {
         Self { two_stages: true, ..self }
     }
 
-    /// Tries a step without taking it.
+    /// Attempts a step without accepting it.
     pub fn attempt(&mut self, h: f64) -> Attempt {
         let (integrator, span) = (&mut self.integrator, (self.s, h));
         if self.two_stages {
@@ -154,7 +154,7 @@ impl Stepper {
         }
     }
 
-    /// Takes a step of length `h`.
+    /// Attempts and accepts a step of length `h`.
     pub fn step(&mut self, h: f64) {
         self.attempt(h);
         if self.two_stages {
@@ -165,27 +165,25 @@ impl Stepper {
         self.s += h;
     }
 
-    /// Takes `steps` steps to the time `end`.
+    /// Makes `steps` steps to the time `end`.
     pub fn run(&mut self, end: f64, steps: u32) {
         let h = (end - self.s) / f64::from(steps);
         (0..steps).for_each(|_| self.step(h));
     }
 
-    /// The step of length `h` tried last, seen from within.
+    /// The dense output of the last attempted step, of length `h`.
     pub fn dense(&self, h: f64) -> DenseOutput<'_> {
         self.integrator.dense(&self.model, &self.carrier, &self.start, (self.s, h))
     }
 
-    /// The state at the fraction `theta` of the step of length `h` tried last.
+    /// The state at the fraction `theta` of the last attempted step, of length `h`.
     pub fn within(&self, h: f64, theta: f64) -> State {
         let mut state = self.start.state.clone();
         self.dense(h).state_at(theta, &mut DenseWorkspace::new(&self.model), &mut state);
         state
     }
-}
 
-impl Stepper {
-    /// The state at the fraction `theta` of the step of two stages of length `h` tried last.
+    /// The state at the fraction `theta` of the last attempted two-stage step, of length `h`.
     pub fn within_two_stages(&self, h: f64, theta: f64) -> State {
         let mut state = self.start.state.clone();
         let stages = self.integrator.stages();

@@ -26,7 +26,7 @@ pub struct Matrices {
     /// B: what a y_j does to the coordinates.
     pub internal: DMatrix<f64>,
     /// F = (this) (u, w) + (that) (u̇, ẇ).
-    pub carrier_place: DMatrix<f64>,
+    pub carrier_position: DMatrix<f64>,
     pub carrier_rate: DMatrix<f64>,
     /// The elongations of the links with Maxwell elements, e = (this) q - (that) (u, w): a row for each element.
     pub elongation: DMatrix<f64>,
@@ -66,7 +66,7 @@ impl Matrices {
             stiffness: zeros(2 * k, 2 * k),
             damping: zeros(2 * k, 2 * k),
             internal: zeros(2 * k, internals),
-            carrier_place: zeros(2 * k, 2),
+            carrier_position: zeros(2 * k, 2),
             carrier_rate: zeros(2 * k, 2),
             elongation: zeros(internals, 2 * k),
             elongation_carrier: zeros(internals, 2),
@@ -86,7 +86,7 @@ impl Matrices {
         for (g, carrier) in &vectors {
             self.stiffness += glassy * g * g.transpose();
             self.damping += link.damping * g * g.transpose();
-            self.carrier_place += glassy * g * carrier.transpose();
+            self.carrier_position += glassy * g * carrier.transpose();
             self.carrier_rate += link.damping * g * carrier.transpose();
         }
         for &(stiffness, relaxation_time) in &link.maxwell {
@@ -122,9 +122,9 @@ impl Matrices {
         &self,
         (q, v): (&DVector<f64>, &DVector<f64>),
         y: &DVector<f64>,
-        (place, rate): (Vector2<f64>, Vector2<f64>),
+        (position, rate): (Vector2<f64>, Vector2<f64>),
     ) -> DVector<f64> {
-        &self.internal * y + &self.carrier_place * place + &self.carrier_rate * rate
+        &self.internal * y + &self.carrier_position * position + &self.carrier_rate * rate
             - &self.damping * v
             - &self.stiffness * q
     }
@@ -156,15 +156,15 @@ impl Matrices {
         f: &DVector<f64>,
         v: &DVector<f64>,
         modes: &[Mode],
-        grounds: &[SurfacePoint],
+        surfaces: &[SurfacePoint],
     ) -> (DVector<f64>, Vec<(f64, f64)>) {
         let k = self.masses;
         let (mu, _) = self.friction.unwrap_or_default();
         let mut matrix = DMatrix::zeros(4 * k, 4 * k);
         let mut right = DVector::zeros(4 * k);
-        for (i, (mode, ground)) in modes.iter().zip(grounds).enumerate() {
+        for (i, (mode, surface)) in modes.iter().zip(surfaces).enumerate() {
             let (x, z, normal, tangential) = (i, k + i, 2 * k + i, 3 * k + i);
-            let (s, q) = (ground.slope, ground.slope.hypot(1.0));
+            let (s, q) = (surface.slope, surface.slope.hypot(1.0));
             (matrix[(x, x)], matrix[(z, z)]) = (self.mass, self.mass);
             (right[x], right[z]) = (f[x], f[z]);
             (matrix[(x, normal)], matrix[(z, normal)]) = (s / q, -1.0 / q);
@@ -182,7 +182,7 @@ impl Matrices {
                 Mode::Backward => -1.0,
             };
             (matrix[(normal, z)], matrix[(normal, x)]) = (1.0, -s);
-            right[normal] = ground.curvature * v[x] * v[x];
+            right[normal] = surface.curvature * v[x] * v[x];
             (matrix[(tangential, tangential)], matrix[(tangential, normal)]) = (1.0, -sigma * mu);
             right[tangential] = sigma * self.shear(sigma * v[x] * q);
         }

@@ -61,7 +61,7 @@ fn thrown(clearance: f64) -> Layer {
     Layer { clearance, links, surface: FLAT.into(), solver, ..Layer::default() }
 }
 
-/// Throws the mass at 0.1 m/s down and follows it for 3 s, near its lowest place, π/2 s, in steps of 2e-5 s: the energy
+/// Throws the mass at 0.1 m/s down and follows it for 3 s, near its lowest position, π/2 s, in steps of 2e-5 s: the energy
 /// lost in impacts, the lowest height seen, the number of steps, the mode changes.
 fn throw(scene: &Scene) -> (f64, f64, f64, usize) {
     let start = Start { w_rate: -0.1, ..Start::default() };
@@ -94,7 +94,7 @@ fn the_lowest_point_of_a_throw_is_found() {
     assert_eq!((lost, changes), (0.0, 0));
 }
 
-/// A mass flies out of a valley into its flank: the touch is a mode change that is recorded, at its place.
+/// A mass flies out of a valley into its flank: the touch is a mode change that is recorded, at its position.
 #[test]
 fn a_touch_is_recorded_where_it_happens() {
     let surface = points(&[-1.0, 0.0, 1.0], &[0.01, 0.0, 0.01], false);

@@ -3,7 +3,7 @@
 use asperity::model::{State, elastic_energy, kinetic_energy};
 
 use crate::convergence::{Exact, PATHS, differences, slider, sliding};
-use crate::layer::{FIVE_STAGES, Layer, Link, Method, Stepper, at_rate};
+use crate::layer::{Layer, Link, Method, SEVEN_STAGES, Stepper, at_rate};
 
 /// One mass with a spring and one Maxwell element along either axis.
 pub fn oscillator(relaxation_time: f64) -> Layer {
@@ -61,7 +61,7 @@ fn the_error_of_a_step_does_not_depend_on_short_relaxation_times() {
 #[test]
 fn a_maxwell_element_falls_onto_its_slow_manifold() {
     // The factor that the stability function falls with, some tens.
-    falls_onto_its_slow_manifold(FIVE_STAGES, 100.0);
+    falls_onto_its_slow_manifold(SEVEN_STAGES, 100.0);
 }
 
 /// `most` is the share of τ/h that may be left.
@@ -88,7 +88,7 @@ pub fn falls_onto_its_slow_manifold(method: Method, most: f64) {
 #[test]
 fn a_strong_damper_stops_the_mass_within_a_step() {
     // A rounding of h ẍ, some h d/m of v, on which Newton's single iteration starts.
-    stops_within_a_step(FIVE_STAGES, 100.0, |h_squared, damping| 1e-16 * h_squared * damping);
+    stops_within_a_step(SEVEN_STAGES, 100.0, |h_squared, damping| 1e-16 * h_squared * damping);
 }
 
 /// `most` is the share of m/(h d) that may be left of the speed, as for the Maxwell element; `rounding` the way beyond
@@ -119,7 +119,7 @@ pub fn stops_within_a_step(method: Method, most: f64, rounding: impl Fn(f64, f64
 /// The energy of an undamped oscillator never grows through 10 000 steps, however long they are against its period.
 #[test]
 fn an_undamped_oscillator_never_gains_energy() {
-    never_gains_energy(FIVE_STAGES);
+    never_gains_energy(SEVEN_STAGES);
 }
 
 pub fn never_gains_energy(method: Method) {

@@ -1,6 +1,6 @@
 //! The coefficients of the Runge-Kutta methods.
 
-use asperity::integrator::{ESDIRK5, Tableau, WeightsWithin};
+use asperity::integrator::{ContinuousWeights, ESDIRK5, Tableau};
 use nalgebra::Complex;
 
 /// A rooted tree: the trees that hang on its root.
@@ -157,7 +157,7 @@ fn the_methods_are_l_stable() {
 /// nothing at the start.
 #[test]
 fn the_weights_within_a_step_have_order_four() {
-    let within = WeightsWithin::new(&ESDIRK5);
+    let within = ContinuousWeights::new(&ESDIRK5);
     let c = ESDIRK5.c;
     let a_c2 = ESDIRK5.a.map(|row| row.iter().zip(c).map(|(a, c)| a * c * c).sum::<f64>());
     for theta in [0.0, 1e-3, 0.2, 0.7, 1.0] {

@@ -1,4 +1,4 @@
-//! The method of two stages: its coefficients, its order, its estimate, what lies within its steps, and stiffness.
+//! The method of two stages: its coefficients, order, error estimate and dense output, and stiff problems.
 
 use asperity::integrator::SDIRK2;
 use asperity::model::State;
@@ -70,7 +70,8 @@ fn the_error_estimate_falls_with_the_square() {
     assert!((1.9..2.1).contains(&order), "{order}");
 }
 
-/// TwoStageDense a step places miss O(h³), velocities and Maxwell elongations O(h²); its ends come out as they are.
+/// The dense output of a step misses O(h³) of positions and O(h²) of velocities and Maxwell elongations; at its ends it
+/// gives the states there.
 #[test]
 fn the_inside_of_a_step_has_its_order() {
     let layer = chain();

@@ -1,32 +1,31 @@
-//! One implicit stage: the kernel of every integrator.
+//! One implicit stage (docs/theory.md, sections 1 to 4).
 //!
-//! A stage at t_i with β = γh looks for v_i and so for e_i = e* + β ė_i, v_i = v* + β v̇_i, where the starred values
-//! hold what the earlier stages give. The Maxwell elements add H + h Q_ii ė_i to a link's force (see `maxwell`), so a
-//! link weighs
+//! A stage at t_i with β = γh looks for v_i, and so for e_i = e* + β ė_i and v_i = v* + β v̇_i, where the starred values
+//! hold the contributions of the earlier stages. The Maxwell elements add H + h Q_ii ė_i to a link's force (see
+//! `maxwell`), so its force is
 //!
 //!   F = H + c e + D ė,   D = d + h Q_ii.
 //!
-//! What stays is one 2×2 block per mass in the velocities, block tridiagonal along the chain. A contact is the same
-//! block seen through (1, s)ᵀ: its second row is the identity; for a sticking mass both are.
+//! This leaves one 2×2 block per mass in the velocities, block tridiagonal along the chain. A contact is the same block
+//! projected onto (1, s)ᵀ: its second row is the identity; for a sticking mass both are.
 
 mod newton;
-mod rate;
-mod variation;
 
+use super::error::{NEWTON_SHARE, Tolerance};
 use super::rates::Rates;
-use super::tolerance::{NEWTON_SHARE, Tolerance};
 use crate::math::BlockTridiagonal;
 use crate::model::{CarrierPoint, Forces, LinkKind, LinkMotion, Mode, Model, State};
-use newton::{Column, Row, Slip, largest};
-use rate::RateSlip;
+use newton::{NeighbourWeights, RateFriction, RowShares, largest};
 
-/// Newton's iterations did not converge: a smaller step will.
+pub(super) use newton::SlippingMass;
+
+/// Newton's iterations did not converge. They will for a shorter step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NoConvergence;
 
-/// What the earlier stages give to a stage: the starred values and the forces of the Maxwell elements.
+/// Contributions of the earlier stages to a stage: the starred values and the known forces of the Maxwell elements.
 #[derive(Clone, Debug)]
-pub(super) struct History {
+pub(super) struct StageHistory {
     /// e*_x, m: as if the carrier stood where it was at the start of the step.
     pub elongation_x: Vec<f64>,
     /// e*_z, m.
@@ -39,16 +38,15 @@ pub(super) struct History {
     pub force: [Vec<f64>; 4],
 }
 
-/// When and how far the stage reaches.
+/// A stage's time step and the carrier at it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StagePoint {
     /// β = γh, s.
     pub beta: f64,
-    /// The carrier at the stage.
     pub carrier: CarrierPoint,
-    /// How far the stage takes the carrier to have moved since the start of the step, along x and z, m.
-    pub driven: (f64, f64),
-    /// How far it has moved along x, m: what a sticking mass stays behind.
+    /// Displacement of the carrier since the start of the step along x and z by the method's quadrature of its rate, m.
+    pub integrated: (f64, f64),
+    /// Its exact displacement along x, m, by which a sticking mass falls behind.
     pub moved: f64,
     /// u at the stage as a position on the profile, m.
     pub profile_position: f64,
@@ -56,74 +54,75 @@ pub(super) struct StagePoint {
     pub w: f64,
 }
 
-/// To what corrections of the velocities a stage is solved, m/s.
+/// The convergence test of Newton's iterations of a stage, in terms of corrections of the velocities, m/s.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Accuracy {
-    /// Where Newton's iterations end.
-    newton: f64,
-    /// Where they may end if the corrections no longer fall, since roundings are left.
-    roundings: f64,
+pub(super) struct ConvergenceTest {
+    /// The iterations end when the next correction would be below this.
+    converged: f64,
+    /// They may end below this if the corrections no longer fall, since only rounding errors remain.
+    stalled: f64,
 }
 
-impl Accuracy {
-    /// For a stage with β = `beta` (s); `slack` times what the tolerance recommends.
+impl ConvergenceTest {
+    /// For stages with β = `beta` (s), at `slack` times the recommended tolerance.
     pub(super) fn new(tolerance: &Tolerance, beta: f64, slack: f64) -> Self {
         let newton = slack * tolerance.newton(beta);
-        Self { newton: newton.min(tolerance.newton_of_rods(beta)), roundings: newton / NEWTON_SHARE }
+        Self { converged: newton.min(tolerance.newton_of_rods(beta)), stalled: newton / NEWTON_SHARE }
     }
 }
 
 /// c and D of one kind of link.
 #[derive(Clone, Copy, Debug, Default)]
-struct StageLaw {
-    stiffness: f64,
-    damping: f64,
-    /// βc + D: what the velocity of a free mass weighs.
+pub(super) struct StageLaw {
+    pub stiffness: f64,
+    pub damping: f64,
+    /// -∂F/∂v of a link to a free mass: βc + D.
     weight: f64,
 }
 
-/// Room to solve stages of one model.
+/// Solver of the stages of one model.
 #[derive(Clone, Debug)]
 pub(super) struct StageSolver {
     /// To be set before a stage is solved.
-    pub history: History,
-    /// The state at the stage but for its Maxwell elements: at the velocities to start from before, the solution after.
+    pub history: StageHistory,
+    /// The state at the stage without its Maxwell elements. Its velocities are the initial guess before the solution.
     pub state: State,
     /// The forces at the stage.
     pub forces: Forces,
-    laws: [StageLaw; 4],
-    /// The masses in contact.
+    /// By kind of link.
+    pub laws: [StageLaw; 4],
+    /// The masses in contact, in their order.
     contacts: Vec<usize>,
-    /// Those of them that slip, and how; without any the equations are linear.
+    /// Those of them that slip, in their order; without any the equations are linear.
     slips: Vec<usize>,
-    slip: Vec<Slip>,
-    /// What of their friction depends on the speed; empty where nothing does.
-    rate: Vec<RateSlip>,
-    rows: Vec<Row>,
-    columns: Vec<Column>,
-    system: BlockTridiagonal,
-    /// Newton's iterations so far.
+    /// Their equations of motion.
+    slip: Vec<SlippingMass>,
+    /// The rate-dependent part of their friction; empty where the scene has none.
+    rate: Vec<RateFriction>,
+    rows: Vec<RowShares>,
+    columns: Vec<NeighbourWeights>,
+    pub system: BlockTridiagonal,
+    /// Newton iterations since the start of the run.
     pub iterations: u64,
 }
 
-/// Iterations after which Newton's method is given up; converging takes one or two.
-const MOST_ITERATIONS: usize = 10;
+/// Iterations after which Newton's method has failed; one or two are usual.
+const MAX_ITERATIONS: usize = 10;
 
 impl StageSolver {
-    /// Room for stages of `model`.
     pub(super) fn new(model: &Model) -> Self {
         let k = model.masses();
         let zero = vec![0.0; k];
-        let workspace = |kind: LinkKind| {
+        let by_link = |kind: LinkKind| {
             if model.rows.iter().any(|row| row.kind == kind) { vec![0.0; kind.count(k)] } else { Vec::new() }
         };
         Self {
-            history: History {
+            history: StageHistory {
                 elongation_x: zero.clone(),
                 elongation_z: zero.clone(),
                 velocity_x: zero.clone(),
                 velocity_z: zero,
-                force: LinkKind::ALL.map(workspace),
+                force: LinkKind::ALL.map(by_link),
             },
             state: State::new(k, model.maxwell_variables()),
             forces: Forces::new(model),
@@ -132,14 +131,14 @@ impl StageSolver {
             slips: Vec::with_capacity(k),
             slip: Vec::with_capacity(k),
             rate: Vec::with_capacity(if model.rate_shear.is_some() { k } else { 0 }),
-            rows: vec![Row::default(); k],
-            columns: vec![Column::default(); k],
+            rows: vec![RowShares::default(); k],
+            columns: vec![NeighbourWeights::default(); k],
             system: BlockTridiagonal::new(k),
             iterations: 0,
         }
     }
 
-    /// Begins the stages of a step from `state`, whose modes hold through it.
+    /// Prepares the stages of a step from `state`, whose modes are held through the step.
     pub(super) fn begin(&mut self, model: &Model, state: &State, beta: f64) {
         self.state.mode.copy_from_slice(&state.mode);
         self.contacts.clear();
@@ -147,18 +146,18 @@ impl StageSolver {
         self.state.surface.copy_from_slice(&state.surface);
         self.slips.clear();
         self.slips.extend(self.contacts.iter().filter(|&&i| state.mode[i].slips()));
-        self.slip.resize(self.slips.len(), Slip::default());
+        self.slip.resize(self.slips.len(), SlippingMass::default());
         if model.rate_shear.is_some() {
-            self.rate.resize(self.slips.len(), RateSlip::default());
+            self.rate.resize(self.slips.len(), RateFriction::default());
         }
         self.set_laws(model, beta);
-        self.assemble_held(model, beta);
+        self.assemble_constant_rows(model, beta);
         if self.slips.is_empty() {
             self.system.factor();
         }
     }
 
-    /// D = d + Σ_j c_j β τ_j/(τ_j + β) of every kind of link.
+    /// Sets c and D = d + Σ_j c_j β τ_j/(τ_j + β) of every kind of link.
     fn set_laws(&mut self, model: &Model, beta: f64) {
         for (law, link) in self.laws.iter_mut().zip(&model.links) {
             *law = StageLaw { stiffness: link.stiffness, damping: link.damping, weight: 0.0 };
@@ -177,60 +176,61 @@ impl StageSolver {
         &self.contacts
     }
 
-    /// Solves the stage to `accuracy` and writes its rates.
+    /// Solves the stage, whose history is set, and writes its rates.
     ///
     /// # Errors
-    /// [`NoConvergence`] where Newton's iterations do not settle.
+    /// [`NoConvergence`] where Newton's iterations do not converge.
     pub(super) fn solve(
         &mut self,
         model: &Model,
         point: &StagePoint,
-        accuracy: Accuracy,
+        test: ConvergenceTest,
         rates: &mut Rates,
     ) -> Result<(), NoConvergence> {
         self.set_positions(model, point);
-        self.forces(model, point);
+        self.set_forces(model, point);
         if self.slips.is_empty() {
             self.solve_linear(model, point)?;
         } else {
-            self.iterate(model, point, accuracy)?;
+            self.iterate(model, point, test)?;
         }
-        self.finish(model, point, rates);
+        self.write_rates(model, point, rates);
         Ok(())
     }
 
-    /// The equations without slip, which do not depend on where the masses are: one factorisation serves a whole step.
+    /// Solves the equations without slip, which are linear: their matrix is factored once per step.
     fn solve_linear(&mut self, model: &Model, point: &StagePoint) -> Result<(), NoConvergence> {
         self.residuals(model, point.beta);
         self.system.solve();
         let change = self.correct();
         self.set_positions(model, point);
-        self.forces(model, point);
+        self.set_forces(model, point);
         if change.is_finite() { Ok(()) } else { Err(NoConvergence) }
     }
 
-    /// Newton's iterations. What is left after one is known in two ways, both from the residual at the new place: the
-    /// inertia alone would turn it into a velocity at most so large; and as the residual fell, so will the correction.
-    fn iterate(&mut self, model: &Model, point: &StagePoint, accuracy: Accuracy) -> Result<(), NoConvergence> {
+    /// Newton's iterations. The error after an iteration is bounded in two ways by the residual at the new velocities:
+    /// by the velocity that it makes against the inertia alone, and by the correction times the ratio by which the
+    /// residual fell.
+    fn iterate(&mut self, model: &Model, point: &StagePoint, test: ConvergenceTest) -> Result<(), NoConvergence> {
         let mut residual = self.residuals(model, point.beta);
         let mut last = f64::INFINITY;
-        for _ in 0..MOST_ITERATIONS {
+        for _ in 0..MAX_ITERATIONS {
             self.assemble_slips(model, point.beta);
             self.system.factor();
             self.system.solve();
-            let steep = model.rate_shear.as_ref().map_or(0.0, |law| self.bend_corrections(law));
+            let steep = model.rate_shear.as_ref().map_or(0.0, |law| self.correct_along_friction_curve(law));
             let change = self.correct().max(steep);
             self.set_positions(model, point);
-            self.forces(model, point);
+            self.set_forces(model, point);
             let left = self.residuals(model, point.beta);
             let next = change * (left / residual);
-            let settled = left.min(next) <= accuracy.newton;
-            // Roundings alone are left when the corrections no longer fall and are below what the step may err by.
-            let stalled = change >= 0.25 * last && change <= accuracy.roundings;
+            let converged = left.min(next) <= test.converged;
+            // Only rounding errors remain when the corrections no longer fall and are within the step's tolerance.
+            let stalled = change >= 0.25 * last && change <= test.stalled;
             if !(change.is_finite() && left.is_finite()) {
                 return Err(NoConvergence);
             }
-            if settled || stalled || change == 0.0 {
+            if converged || stalled || change == 0.0 {
                 return Ok(());
             }
             (last, residual) = (change, left);
@@ -238,12 +238,12 @@ impl StageSolver {
         Err(NoConvergence)
     }
 
-    /// Positions from the velocities; the constraint put in.
+    /// Computes the positions from the velocities and puts the contact constraint in.
     fn set_positions(&mut self, model: &Model, point: &StagePoint) {
         let beta = point.beta;
         let (state, history) = (&mut self.state, &self.history);
-        carry(&mut state.elongation_x, &history.elongation_x, (beta, &state.velocity_x), point.driven.0);
-        carry(&mut state.elongation_z, &history.elongation_z, (beta, &state.velocity_z), point.driven.1);
+        set_elongations(&mut state.elongation_x, &history.elongation_x, beta, &state.velocity_x, point.integrated.0);
+        set_elongations(&mut state.elongation_z, &history.elongation_z, beta, &state.velocity_z, point.integrated.1);
         for &i in &self.contacts {
             if state.mode[i] == Mode::Stick {
                 state.elongation_x[i] = history.elongation_x[i] - point.moved;
@@ -256,8 +256,8 @@ impl StageSolver {
         }
     }
 
-    /// Forces of the links and on the masses, by the stage's law.
-    fn forces(&mut self, model: &Model, point: &StagePoint) {
+    /// Computes the forces of the links and on the masses by the stage's law.
+    fn set_forces(&mut self, model: &Model, point: &StagePoint) {
         let motion = LinkMotion::of(&self.state, &point.carrier);
         for kind in LinkKind::ALL {
             let law = &self.laws[kind as usize];
@@ -268,7 +268,7 @@ impl StageSolver {
         self.forces.sum_on_masses();
     }
 
-    /// Adds the corrections to the velocities, which is one iteration; the largest, m/s.
+    /// Adds the corrections to the velocities, which ends an iteration, and returns the largest, m/s.
     fn correct(&mut self) -> f64 {
         self.iterations += 1;
         let velocities = self.state.velocity_x.iter_mut().zip(&mut self.state.velocity_z);
@@ -279,8 +279,8 @@ impl StageSolver {
         largest(&self.system.right)
     }
 
-    /// The rates of the solved stage.
-    fn finish(&mut self, model: &Model, point: &StagePoint, rates: &mut Rates) {
+    /// Writes the rates of the solved stage.
+    fn write_rates(&mut self, model: &Model, point: &StagePoint, rates: &mut Rates) {
         let per_beta = 1.0 / point.beta;
         let (state, history) = (&self.state, &self.history);
         rates.velocity_x.copy_from_slice(&state.velocity_x);
@@ -295,13 +295,13 @@ impl StageSolver {
                 rates.acceleration_x[i] = 0.0;
             }
             let contact = self.forces.contact(model, i, v, surface);
-            rates.contact(model, i, (mode, v), surface, &contact);
+            rates.set_contact(model, i, mode, v, surface, &contact);
         }
     }
 }
 
-/// e = e* + β v less what the carrier has moved.
-fn carry(elongation: &mut [f64], star: &[f64], (beta, velocity): (f64, &[f64]), moved: f64) {
+/// e = e* + β v less the carrier's displacement.
+fn set_elongations(elongation: &mut [f64], star: &[f64], beta: f64, velocity: &[f64], moved: f64) {
     for (elongation, (star, velocity)) in elongation.iter_mut().zip(star.iter().zip(velocity)) {
         *elongation = star + beta * velocity - moved;
     }

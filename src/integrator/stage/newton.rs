@@ -1,13 +1,21 @@
-//! Newton's equations of a stage.
+//! Newton's equations of a stage: residuals, Jacobian, and the correction for rate-dependent friction.
 
 use nalgebra::{Matrix2, Vector2};
 
 use super::{StageLaw, StageSolver};
-use crate::model::{Mode, Model, SurfacePoint};
+use crate::model::{Mode, Model, RateShear, State, SurfacePoint};
 
 impl StageSolver {
-    /// What the equations of motion miss at the velocities as they are, into the right sides. Returns how large it is
-    /// as a velocity, m/s, if the inertia alone stood against it.
+    /// Factors the Jacobian at the solution, for the tangents of the stage.
+    pub(in crate::integrator) fn factor_at_solution(&mut self, model: &Model, beta: f64) {
+        if !self.slips.is_empty() {
+            self.assemble_slips(model, beta);
+            self.system.factor();
+        }
+    }
+
+    /// Writes the negative residuals of the equations of motion at the present velocities to the right sides. Returns
+    /// the largest as the velocity, m/s, that it makes against the inertia alone.
     pub(super) fn residuals(&mut self, model: &Model, beta: f64) -> f64 {
         let inertia = model.mass / beta;
         let velocities = self.state.velocity_x.iter().zip(&self.state.velocity_z);
@@ -23,7 +31,7 @@ impl StageSolver {
         for (slip, &i) in self.slip.iter_mut().zip(&self.slips) {
             let v = self.state.velocity_x[i];
             let acceleration = (v - self.history.velocity_x[i]) / beta;
-            *slip = Slip::new(model, self.state.mode[i], &self.state.surface[i], (v, acceleration));
+            *slip = SlippingMass::new(model, self.state.mode[i], &self.state.surface[i], v, acceleration);
             self.system.right[i].x = -slip.residual(model, (self.forces.on_mass_x[i], self.forces.on_mass_z[i]));
         }
         if let Some(law) = &model.rate_shear {
@@ -32,8 +40,9 @@ impl StageSolver {
         largest(&self.system.right) / inertia
     }
 
-    /// What of Newton's matrix holds for the whole step: all but the rows and columns of slipping masses.
-    pub(super) fn assemble_held(&mut self, model: &Model, beta: f64) {
+    /// Assembles the part of the Jacobian that is constant through a step: all but the rows and columns of slipping
+    /// masses.
+    pub(super) fn assemble_constant_rows(&mut self, model: &Model, beta: f64) {
         let k = self.state.mode.len();
         let inertia = model.mass / beta;
         let [vertical, horizontal, lateral_x, lateral_z] = self.laws.map(|law| law.weight);
@@ -42,12 +51,12 @@ impl StageSolver {
                 let neighbours = neighbours(i, k);
                 let weights = (horizontal + neighbours * lateral_x, vertical + neighbours * lateral_z);
                 (
-                    Row { x_by_x: 1.0, x_by_z: 0.0, z_by_z: 1.0 },
-                    Column { x: lateral_x, z_by_x: 0.0, z: lateral_z },
+                    RowShares { x_by_x: 1.0, x_by_z: 0.0, z_by_z: 1.0 },
+                    NeighbourWeights { x: lateral_x, z_by_x: 0.0, z: lateral_z },
                     Matrix2::new(inertia + weights.0, 0.0, 0.0, inertia + weights.1),
                 )
             } else {
-                (Row::default(), Column::default(), Matrix2::identity())
+                (RowShares::default(), NeighbourWeights::default(), Matrix2::identity())
             };
             (self.rows[i], self.columns[i], self.system.diagonal[i]) = (row, column, diagonal);
         }
@@ -56,7 +65,7 @@ impl StageSolver {
         }
     }
 
-    /// The rows and columns of slipping masses at the velocities as they are, of which the residuals are known.
+    /// Assembles the rows and columns of slipping masses at the velocities of the last residuals.
     pub(super) fn assemble_slips(&mut self, model: &Model, beta: f64) {
         let k = self.state.mode.len();
         let [vertical, horizontal, lateral_x, lateral_z] = self.laws;
@@ -70,8 +79,8 @@ impl StageSolver {
             );
             let forces = (self.forces.on_mass_x[i], self.forces.on_mass_z[i]);
             self.system.diagonal[i] = Matrix2::new(slip.derivative(model, beta, forces, weights), 0.0, 0.0, 1.0);
-            self.rows[i] = Row { x_by_x: slip.share_x, x_by_z: slip.share_z, z_by_z: 0.0 };
-            self.columns[i] = Column { x: lateral_x.weight, z_by_x: weight(&lateral_z), z: 0.0 };
+            self.rows[i] = RowShares { x_by_x: slip.share_x, x_by_z: slip.share_z, z_by_z: 0.0 };
+            self.columns[i] = NeighbourWeights { x: lateral_x.weight, z_by_x: weight(&lateral_z), z: 0.0 };
         }
         if model.rate_shear.is_some() {
             self.assemble_rate_shear(beta);
@@ -87,21 +96,21 @@ impl StageSolver {
         }
     }
 
-    /// The blocks between mass `i` and the next.
+    /// Sets the blocks between mass `i` and the next.
     fn couple(&mut self, i: usize) {
         self.system.upper[i] = self.rows[i].coupling(&self.columns[i + 1]);
         self.system.lower[i + 1] = self.rows[i + 1].coupling(&self.columns[i]);
     }
 }
 
-/// How many neighbours mass `i` of `k` has.
+/// The number of neighbours of mass `i` of `k`.
 fn neighbours(i: usize, k: usize) -> f64 {
     f64::from(u8::from(i > 0) + u8::from(i + 1 < k))
 }
 
 /// The largest of all numbers; NaN where one is not finite.
 pub(super) fn largest(values: &[Vector2<f64>]) -> f64 {
-    // Comparisons pass over what is not a number, the sum does not.
+    // A comparison ignores NaN, the sum does not.
     let greater = |a: f64, b: f64| if a > b { a } else { b };
     let (mut largest, mut sum) = (Vector2::zeros(), Vector2::zeros());
     for value in values {
@@ -111,7 +120,7 @@ pub(super) fn largest(values: &[Vector2<f64>]) -> f64 {
     if (sum.x + sum.y).is_finite() { greater(largest.x, largest.y) } else { f64::NAN }
 }
 
-/// How a slipping mass is carried up the profile when its ẋ changes.
+/// How the height of a slipping mass on the profile follows its ẋ.
 struct Climb {
     /// ∂e_z/∂ẋ = βs.
     height: f64,
@@ -119,27 +128,28 @@ struct Climb {
     rate: f64,
 }
 
-/// A slipping mass at the velocity ẋ that a stage has come to.
+/// The equation of motion of a slipping mass, (6)-(9), at given velocity and acceleration: its residual and derivatives.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Slip {
+pub(in crate::integrator) struct SlippingMass {
     s: f64,
     kappa: f64,
     third: f64,
     velocity: f64,
     acceleration: f64,
-    sigma_mu: f64,
+    sigma: f64,
     /// σ (A τ_0 + A τ_f(v_c)).
     sigma_shear: f64,
-    /// 1 - σμs, which f_x counts with.
+    /// 1 - σμs, the factor of f_x.
     share_x: f64,
-    /// s + σμ, which f_z counts with.
+    /// s + σμ, the factor of f_z.
     share_z: f64,
     q: f64,
     q2: f64,
 }
 
-impl Slip {
-    fn new(model: &Model, mode: Mode, surface: &SurfacePoint, (velocity, acceleration): (f64, f64)) -> Self {
+impl SlippingMass {
+    /// A mass that slips in `mode` over `surface`, with ẋ = `velocity` and ẍ = `acceleration`.
+    fn new(model: &Model, mode: Mode, surface: &SurfacePoint, velocity: f64, acceleration: f64) -> Self {
         let s = surface.slope;
         let sigma = mode.direction();
         let sigma_mu = sigma * model.friction_coefficient;
@@ -150,7 +160,7 @@ impl Slip {
             third: surface.third,
             velocity,
             acceleration,
-            sigma_mu,
+            sigma,
             sigma_shear: sigma * model.shear_force,
             share_x: 1.0 - sigma_mu * s,
             share_z: s + sigma_mu,
@@ -159,8 +169,13 @@ impl Slip {
         }
     }
 
-    /// m q² ẍ + m s κ ẋ² - f_x - s f_z + F_T q with F_T = σ (μ F_N + A τ_0) put in, from (6)-(9), where A τ_0 stands
-    /// for the shear force at rest (for what depends on the speed see `rate`):
+    /// Mass `i` of `state`, which slips, with ẍ = `acceleration`.
+    pub(in crate::integrator) fn of(model: &Model, state: &State, i: usize, acceleration: f64) -> Self {
+        Self::new(model, state.mode[i], &state.surface[i], state.velocity_x[i], acceleration)
+    }
+
+    /// m q² ẍ + m s κ ẋ² - f_x - s f_z + F_T q with F_T = σ (μ F_N + A τ_0), from (6)-(9), where A τ_0 stands for the
+    /// shear force at rest (for the rate-dependent part see [`RateFriction`]):
     ///
     ///   m q² ẍ + m κ ẋ² (s + σμ) - (1 - σμs) f_x - (s + σμ) f_z + σ A τ_0 q = 0
     fn residual(&self, model: &Model, (f_x, f_z): (f64, f64)) -> f64 {
@@ -169,10 +184,10 @@ impl Slip {
             + self.sigma_shear * self.q
     }
 
-    /// The derivative of the residual by ẋ, where those of f_x and f_z are minus the weights.
+    /// The derivative of the residual by the stage's ẋ; those of f_x and f_z are minus the weights.
     fn derivative(&self, model: &Model, beta: f64, (f_x, f_z): (f64, f64), (weight_x, weight_z): (f64, f64)) -> f64 {
         let Self { s, kappa, velocity: v, share_z, .. } = *self;
-        // With v the place moves by β, so s by ds = βκ and κ by βz'''.
+        // ∂x/∂ẋ = β, so ∂s/∂ẋ = βκ and ∂κ/∂ẋ = βz'''.
         let ds = beta * kappa;
         let inertia = self.q2 / beta
             + 2.0 * s * ds * self.acceleration
@@ -180,23 +195,50 @@ impl Slip {
         model.mass * inertia
             + self.share_x * weight_x
             + share_z * weight_z
-            + ds * (self.sigma_mu * f_x - f_z)
+            + ds * (self.sigma * model.friction_coefficient * f_x - f_z)
             + self.sigma_shear * s * ds / self.q
     }
 
+    /// m q² δẍ for the variations δx and δẋ (`x`, `v_x`) and those of the links' forces on the mass (`varied`), which
+    /// are (f_x, f_z) themselves: from
+    ///
+    ///   m q² ẍ = (1 - σμs) f_x + (s + σμ) f_z - m κ ẋ² (s + σμ) - σ A τ_0 q - σ q B(σ q ẋ),
+    ///
+    /// with B the rate-dependent friction in excess of that at rest. This is the residual's derivative again, by
+    /// direction and with ẍ as the unknown.
+    pub(in crate::integrator) fn variation(
+        &self,
+        model: &Model,
+        x: f64,
+        v_x: f64,
+        varied: (f64, f64),
+        (f_x, f_z): (f64, f64),
+    ) -> f64 {
+        let Self { s, kappa, velocity: v, share_x, share_z, .. } = *self;
+        let (ds, dkappa) = (kappa * x, self.third * x);
+        let centripetal = dkappa * v * v * share_z + 2.0 * kappa * v * v_x * share_z + kappa * v * v * ds;
+        let rate_shear = model
+            .rate_shear
+            .map_or(0.0, |law| self.rate_variation(law.with_slope(self.sigma * self.speed()), v_x, s * ds));
+        share_x * varied.0 + share_z * varied.1 + ds * (f_z - self.sigma * model.friction_coefficient * f_x)
+            - model.mass * (centripetal + 2.0 * s * ds * self.acceleration)
+            - self.sigma_shear * s * ds / self.q
+            - rate_shear
+    }
+
     /// v_t = q ẋ, m/s.
-    pub(super) fn speed(&self) -> f64 {
+    fn speed(&self) -> f64 {
         self.q * self.velocity
     }
 
-    pub(super) fn q(&self) -> f64 {
-        self.q
+    /// δ[σ q B(σ q ẋ)] for δẋ and s δs, with B and its derivative in `excess`.
+    fn rate_variation(&self, excess: (f64, f64), v_x: f64, s_ds: f64) -> f64 {
+        self.sigma * excess.0 * s_ds / self.q + excess.1 * (self.q2 * v_x + self.velocity * s_ds)
     }
 
-    /// The derivative by ẋ of σ q B(σ q ẋ), where B and its derivative are `excess`.
-    pub(super) fn rate_derivative(&self, beta: f64, sigma: f64, excess: (f64, f64)) -> f64 {
-        let s_ds = self.s * beta * self.kappa;
-        sigma * excess.0 * s_ds / self.q + excess.1 * (self.q2 + self.velocity * s_ds)
+    /// q² = 1 + s².
+    pub(in crate::integrator) fn q2(&self) -> f64 {
+        self.q2
     }
 
     fn climb(&self, beta: f64) -> Climb {
@@ -204,20 +246,20 @@ impl Slip {
     }
 }
 
-/// How the forces f_x, f_z on a mass enter its two equations.
+/// The factors with which the forces f_x, f_z on a mass enter its two equations.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Row {
+pub(super) struct RowShares {
     /// f_x in the first equation.
     x_by_x: f64,
-    /// f_z in the first equation: along the slope of a contact.
+    /// f_z in the first equation: of a contact, by its slope.
     x_by_z: f64,
     /// f_z in the second equation.
     z_by_z: f64,
 }
 
-/// How the lateral forces on a neighbour follow a mass's two unknowns.
+/// The derivatives of the lateral forces on a neighbour by a mass's two unknowns.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Column {
+pub(super) struct NeighbourWeights {
     /// ∂f_x/∂ẋ.
     x: f64,
     /// ∂f_z/∂ẋ: of a mass that slips up a slope.
@@ -226,14 +268,61 @@ pub(super) struct Column {
     z: f64,
 }
 
-impl Row {
-    /// The block beside the diagonal: what the neighbour's unknowns do to this row.
-    fn coupling(&self, column: &Column) -> Matrix2<f64> {
+impl RowShares {
+    /// The block beside the diagonal: the derivative of this row by the neighbour's unknowns.
+    fn coupling(&self, column: &NeighbourWeights) -> Matrix2<f64> {
         Matrix2::new(
             -(self.x_by_x * column.x + self.x_by_z * column.z_by_x),
             -(self.x_by_z * column.z),
             -(self.z_by_z * column.z_by_x),
             -(self.z_by_z * column.z),
         )
+    }
+}
+
+/// The rate-dependent friction σ q A τ_f(v) of a slipping mass at v = σ q ẋ. Its value at the creep speed belongs to the
+/// equation of [`SlippingMass`] already.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct RateFriction {
+    /// A τ_f(v) - A τ_f(v_c), N, and its derivative, N s/m.
+    excess: (f64, f64),
+    /// The derivative of the equation by ẋ without this part, kg/s.
+    derivative_without: f64,
+}
+
+impl StageSolver {
+    /// Subtracts σ q (A τ_f(v) - A τ_f(v_c)) at the present velocities from the right sides.
+    fn add_rate_shear(&mut self, law: &RateShear) {
+        for ((rate, slip), &i) in self.rate.iter_mut().zip(&self.slip).zip(&self.slips) {
+            rate.excess = law.with_slope(slip.sigma * slip.speed());
+            self.system.right[i].x -= slip.sigma * slip.q * rate.excess.0;
+        }
+    }
+
+    /// Adds the derivative of the rate-dependent friction to the diagonal.
+    fn assemble_rate_shear(&mut self, beta: f64) {
+        for ((rate, slip), &i) in self.rate.iter_mut().zip(&self.slip).zip(&self.slips) {
+            let diagonal = &mut self.system.diagonal[i].m11;
+            rate.derivative_without = *diagonal;
+            *diagonal += slip.rate_variation(rate.excess, 1.0, slip.s * beta * slip.kappa);
+        }
+    }
+
+    /// Replaces the corrections of slipping masses, which follow the tangent of the friction curve, by those along the
+    /// curve itself. Returns the largest of them as the velocity, m/s, that the same force would change if friction did
+    /// not depend on the speed: where the curve is steep, a small correction may still mean a large force.
+    pub(super) fn correct_along_friction_curve(&mut self, law: &RateShear) -> f64 {
+        let mut largest: f64 = 0.0;
+        for ((rate, slip), &i) in self.rate.iter().zip(&self.slip).zip(&self.slips) {
+            let right = &mut self.system.right[i].x;
+            let per_velocity = slip.sigma * slip.q;
+            let (speed, by) = (per_velocity * self.state.velocity_x[i], per_velocity * *right);
+            let q2 = slip.q * slip.q;
+            let steepness = 1.0 + (q2 * rate.excess.1 / rate.derivative_without).max(0.0);
+            let corrected = law.along_curve(speed, by, rate.derivative_without / q2);
+            *right = (corrected - speed) / per_velocity;
+            largest = largest.max(steepness * right.abs());
+        }
+        largest
     }
 }

@@ -1,0 +1,267 @@
+//! One Runge-Kutta method: the stages of an attempted step, from their history to their error test and energies.
+
+use super::dense::StepSpan;
+use super::energy::StepPowers;
+use super::error::{Attempt, ErrorTest, ErrorWorkspace, Tolerance};
+use super::maxwell::Maxwell;
+use super::rates::{Rates, StepStart};
+use super::sensitivity::{SolvedStage, Tangent};
+use super::stage::{ConvergenceTest, NoConvergence, StagePoint, StageSolver};
+use super::tableau::{ContinuousWeights, STAGES, Tableau};
+use crate::math::weighted_sum;
+use crate::model::{Carrier, CarrierPoint, ChannelEnergies, Exchange, Mode, Model, State};
+
+/// One Runge-Kutta method with its workspace.
+#[derive(Clone, Debug)]
+pub(super) struct Method<const N: usize> {
+    pub tableau: &'static Tableau<N>,
+    pub continuous_weights: ContinuousWeights<N>,
+    pub initial_guess: InitialGuess<N>,
+    pub maxwell: Maxwell<N>,
+}
+
+/// The values at the stages of the last attempted step, of either method. Stage 0 is the start of the step.
+#[derive(Clone, Debug)]
+pub(super) struct Stages {
+    pub rates: Vec<Rates>,
+    pub carrier: [CarrierPoint; STAGES],
+    /// The powers through the surface and the carrier; computed if `tracks_energy`.
+    pub exchange: [Exchange; STAGES],
+    pub solver: StageSolver,
+    pub tracks_energy: bool,
+    /// The sensitivities to the targets of u and w; empty if they are not asked for.
+    pub tangents: Vec<Tangent>,
+}
+
+/// How the velocities from which Newton's iterations of a stage start are guessed.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum InitialGuess<const N: usize> {
+    /// The accelerations of slipping masses are extrapolated from the earlier stages with these weights, by stage. Free
+    /// masses, whose equations are linear, start from the step's start: a guess far off costs digits.
+    Extrapolated([[f64; N]; N]),
+    /// The accelerations are those of the stage before. Just after a jump those of a stiff layer are no guide, so no
+    /// velocity is guessed to change by more than the velocities in play.
+    Limited,
+}
+
+/// The input of an attempted step.
+#[derive(Clone, Copy)]
+pub(super) struct StepInput<'a> {
+    pub model: &'a Model,
+    pub start: &'a StepStart,
+    pub carrier: &'a Carrier,
+    pub span: StepSpan,
+    /// β = γh, s.
+    pub beta: f64,
+}
+
+impl<const N: usize> InitialGuess<N> {
+    /// With the weights of Lagrange's polynomials through the latest three stages, which lie at `c`.
+    pub(super) fn extrapolated(c: &[f64; N]) -> Self {
+        let mut weights = [[0.0; N]; N];
+        for i in 1..N {
+            let nodes = i.saturating_sub(3)..i;
+            for j in nodes.clone() {
+                weights[i][j] = nodes.clone().filter(|&m| m != j).map(|m| (c[i] - c[m]) / (c[j] - c[m])).product();
+            }
+        }
+        Self::Extrapolated(weights)
+    }
+}
+
+impl<const N: usize> Method<N> {
+    /// Solves all stages of a step.
+    pub(super) fn attempt(
+        &mut self,
+        stages: &mut Stages,
+        step: &StepInput<'_>,
+        convergence: ConvergenceTest,
+    ) -> Result<(), NoConvergence> {
+        let StepInput { model, start, carrier, span, beta } = *step;
+        let state = &start.state;
+        stages.rates[0].copy_from(&start.rates);
+        stages.exchange[0] = start.exchange;
+        stages.carrier[0] = carrier.at(span.start);
+        stages.solver.begin(model, state, beta);
+        self.maxwell.begin(model, self.tableau, &state.maxwell, span.length);
+        for i in 1..N {
+            let (weights, s) = (&self.tableau.a[i][..], span.at(self.tableau.c[i]));
+            let moved = carrier.moved(span.start, self.tableau.c[i] * span.length).0;
+            let point = stages.prepare(step, i, s, moved, weights);
+            self.maxwell.known_forces(i, &stages.rates[..i], &mut stages.solver.history.force);
+            stages.guess(step, i, &self.initial_guess);
+            stages.solve(model, &point, i, convergence)?;
+            stages.vary(step, &point, i, s, weights);
+        }
+        self.maxwell.at_stage(model, N - 1, &state.maxwell, &stages.rates, &mut stages.solver.state.maxwell);
+        Ok(())
+    }
+
+    /// The error test of the step whose stages are solved.
+    pub(super) fn test(
+        &self,
+        stages: &Stages,
+        step: &StepInput<'_>,
+        tolerance: &Tolerance,
+        workspace: &mut ErrorWorkspace,
+    ) -> Attempt {
+        let test = ErrorTest {
+            tableau: self.tableau,
+            maxwell: &self.maxwell,
+            stages: &stages.rates,
+            carrier: &stages.carrier[..N],
+            end: &stages.solver.state,
+            contacts: stages.solver.contacts(),
+        };
+        test.run(step.model, step.span.length, tolerance, workspace)
+    }
+
+    /// Energies through the channels over the step of length `h` from `start`, up to its fraction `theta`, J.
+    pub(super) fn energies(
+        &self,
+        stages: &Stages,
+        model: &Model,
+        start: &State,
+        h: f64,
+        theta: f64,
+        workspace: &mut ErrorWorkspace,
+    ) -> ChannelEnergies {
+        let weights = if theta < 1.0 { &self.continuous_weights.at(theta) } else { self.tableau.weights() };
+        let (maxwell, a, exchange) = (&self.maxwell, &start.maxwell[..], &stages.exchange[..]);
+        let powers = StepPowers { model, maxwell, a, stages: &stages.rates, exchange, h, weights };
+        powers.energies(workspace.scratch())
+    }
+}
+
+impl Stages {
+    /// Prepares stage `i`, at `s` seconds after the start of the carrier's piece, which has moved by `moved` (m) along x
+    /// since the start of the step: the history of the masses' motion with the `weights` of the stages, and its point.
+    fn prepare(&mut self, step: &StepInput<'_>, i: usize, s: f64, moved: f64, weights: &[f64]) -> StagePoint {
+        let (carrier, h) = (step.carrier, step.span.length);
+        let at = carrier.at(s);
+        self.carrier[i] = at;
+        self.collect_history(&step.start.state, h, &weights[..i]);
+        StagePoint {
+            beta: step.beta,
+            carrier: at,
+            integrated: self.integrate_carrier(h, weights, i),
+            moved,
+            profile_position: carrier.profile_position + at.du,
+            w: carrier.w + at.dw,
+        }
+    }
+
+    /// Sets the starred values: the contributions of the earlier stages, with these weights, in a step of length `h`.
+    fn collect_history(&mut self, state: &State, h: f64, weights: &[f64]) {
+        let history = &mut self.solver.history;
+        let earlier = &self.rates;
+        let sum = |star: &mut [f64], start: &[f64], rate: fn(&Rates) -> &[f64]| {
+            let counting = earlier.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
+            let terms = counting.map(|(stage, weight)| (h * weight, rate(stage)));
+            weighted_sum(star, std::iter::once((1.0, start)).chain(terms));
+        };
+        sum(&mut history.elongation_x, &state.elongation_x, |stage| &stage.velocity_x);
+        sum(&mut history.elongation_z, &state.elongation_z, |stage| &stage.velocity_z);
+        sum(&mut history.velocity_x, &state.velocity_x, |stage| &stage.acceleration_x);
+        sum(&mut history.velocity_z, &state.velocity_z, |stage| &stage.acceleration_z);
+    }
+
+    /// The displacement of the carrier from the start of the step to stage `i` along x and z, m, by the method's own
+    /// quadrature of its rate.
+    ///
+    /// So the elongations are integrated as the differences that they are, ė = ẋ - u̇, and the velocities relative to the
+    /// carrier's, with -ü as a load: a carrier that oscillates widely causes no error in a layer that moves with it. The
+    /// starred velocities take up the error of the quadrature of ü for u̇.
+    fn integrate_carrier(&mut self, h: f64, weights: &[f64], i: usize) -> (f64, f64) {
+        let (mut moved, mut gained) = ((0.0, 0.0), (0.0, 0.0));
+        for (at, weight) in self.carrier[..=i].iter().zip(weights) {
+            let step = h * weight;
+            moved = (moved.0 + step * at.u_rate, moved.1 + step * at.w_rate);
+            gained = (gained.0 + step * at.u_acceleration, gained.1 + step * at.w_acceleration);
+        }
+        let (start, here) = (&self.carrier[0], &self.carrier[i]);
+        let history = &mut self.solver.history;
+        let error_x = here.u_rate - start.u_rate - gained.0;
+        let error_z = here.w_rate - start.w_rate - gained.1;
+        // On straight paths the quadrature is exact.
+        for (star, error) in [(&mut history.velocity_x, error_x), (&mut history.velocity_z, error_z)] {
+            if error != 0.0 {
+                star.iter_mut().for_each(|star| *star += error);
+            }
+        }
+        moved
+    }
+
+    /// Sets the velocities from which Newton's iterations of stage `i` start.
+    fn guess<const N: usize>(&mut self, step: &StepInput<'_>, i: usize, guess: &InitialGuess<N>) {
+        match guess {
+            InitialGuess::Extrapolated(weights) => self.guess_extrapolated(step, &weights[i][..i]),
+            InitialGuess::Limited => self.guess_limited(step, i),
+        }
+    }
+
+    fn guess_extrapolated(&mut self, step: &StepInput<'_>, weights: &[f64]) {
+        let (solver, state) = (&mut self.solver, &step.start.state);
+        solver.state.velocity_x.copy_from_slice(&state.velocity_x);
+        solver.state.velocity_z.copy_from_slice(&state.velocity_z);
+        let earlier = self.rates.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
+        for mass in 0..state.mode.len() {
+            if state.mode[mass].slips() {
+                let acceleration: f64 =
+                    earlier.clone().map(|(stage, weight)| weight * stage.acceleration_x[mass]).sum();
+                solver.state.velocity_x[mass] = solver.history.velocity_x[mass] + step.beta * acceleration;
+            }
+        }
+    }
+
+    fn guess_limited(&mut self, step: &StepInput<'_>, i: usize) {
+        let (known, guess, history) = (&self.rates[i - 1], &mut self.solver.state, &self.solver.history);
+        let carrier = self.carrier[i].u_rate.abs() + self.carrier[i].w_rate.abs();
+        for (i, mode) in step.start.state.mode.iter().enumerate() {
+            let (v_x, v_z) = (history.velocity_x[i], history.velocity_z[i]);
+            let most = carrier + v_x.abs() + v_z.abs();
+            let moves = if *mode == Mode::Stick { 0.0 } else { 1.0 };
+            guess.velocity_x[i] = moves * (v_x + (step.beta * known.acceleration_x[i]).clamp(-most, most));
+            guess.velocity_z[i] = moves * (v_z + (step.beta * known.acceleration_z[i]).clamp(-most, most));
+        }
+    }
+
+    /// Solves stage `i`, which is prepared, and computes the powers at it.
+    fn solve(
+        &mut self,
+        model: &Model,
+        point: &StagePoint,
+        i: usize,
+        convergence: ConvergenceTest,
+    ) -> Result<(), NoConvergence> {
+        self.solver.solve(model, point, convergence, &mut self.rates[i])?;
+        if self.tracks_energy {
+            let solver = &self.solver;
+            self.exchange[i] = Exchange::evaluate(model, &solver.state, &point.carrier, &solver.forces);
+        }
+        Ok(())
+    }
+
+    /// Computes the tangents at stage `i`, just solved, at `s` seconds after the start of the carrier's motion; the stages
+    /// have `weights`.
+    fn vary(&mut self, step: &StepInput<'_>, point: &StagePoint, i: usize, s: f64, weights: &[f64]) {
+        if self.tangents.is_empty() {
+            return;
+        }
+        self.solver.factor_at_solution(step.model, point.beta);
+        let stage = SolvedStage { i, s, h: step.span.length, weights, rates: &self.rates[i], point };
+        for tangent in &mut self.tangents {
+            tangent.solve_stage(step.model, &mut self.solver, &stage);
+        }
+    }
+
+    /// Accepts the last attempted step, which ended with stage `last`: its end becomes the `start` of the next one.
+    pub(super) fn accept(&mut self, start: &mut StepStart, last: usize) {
+        std::mem::swap(&mut start.state, &mut self.solver.state);
+        std::mem::swap(&mut start.rates, &mut self.rates[last]);
+        start.exchange = self.exchange[last];
+        for tangent in &mut self.tangents {
+            tangent.accept(last);
+        }
+    }
+}

@@ -1,0 +1,385 @@
+//! Forward sensitivities of the run to the carrier's targets, along the stages of the steps (docs/theory.md, section 8).
+//!
+//! Over a motion of the carrier of duration T, let one of its displacements end at û + ε instead of û. On the way it is
+//! displaced by ε s/T, and its rate changes by ε/T. All quantities here are derivatives with respect to ε at ε = 0, with
+//! the contact modes held. At a stage they solve the same linear system as Newton's corrections, with another right side.
+
+use nalgebra::Vector2;
+
+use super::rates::Rates;
+use super::stage::{SlippingMass, StagePoint, StageSolver};
+use crate::model::{Forces, LinkKind, LinkMotion, Mode, Model, State};
+
+/// The displacement whose target is varied.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Target {
+    U,
+    W,
+}
+
+/// The variation of the layer's state: dimensionless for positions, 1/s for velocities.
+#[derive(Clone, Debug)]
+struct Variation {
+    /// Of the displacements ξ_i, in the inertial frame.
+    x: Vec<f64>,
+    /// Of the displacements ζ_i.
+    z: Vec<f64>,
+    /// Of ẋ_i.
+    v_x: Vec<f64>,
+    /// Of ż_i.
+    v_z: Vec<f64>,
+    /// Of the elongations a_j of the Maxwell elements.
+    maxwell: Vec<f64>,
+}
+
+/// The variation of the rates at one stage.
+#[derive(Clone, Debug)]
+struct VariationRates {
+    v_x: Vec<f64>,
+    v_z: Vec<f64>,
+    a_x: Vec<f64>,
+    a_z: Vec<f64>,
+    maxwell: Vec<f64>,
+}
+
+/// The variation of the carrier at one instant.
+#[derive(Clone, Copy, Debug, Default)]
+struct CarrierVariation {
+    u: f64,
+    w: f64,
+    u_rate: f64,
+    w_rate: f64,
+}
+
+/// The derivative of a run with respect to one target.
+#[derive(Clone, Debug)]
+pub(super) struct Tangent {
+    target: Target,
+    /// Duration of the carrier's motion, s.
+    duration: f64,
+    /// At the start of the step.
+    start: Variation,
+    /// At the stage, and so at the end of the step; before a stage is solved, the contribution of the earlier ones.
+    end: Variation,
+    stages: Vec<VariationRates>,
+    forces: Forces,
+    known: KnownMotion,
+}
+
+/// The known part of the variation of the links' motion at a stage: with the unknown velocities not varied.
+#[derive(Clone, Debug)]
+struct KnownMotion {
+    elongation_x: Vec<f64>,
+    elongation_z: Vec<f64>,
+    /// Always 0.
+    velocity_x: Vec<f64>,
+    velocity_z: Vec<f64>,
+}
+
+impl KnownMotion {
+    fn new(model: &Model) -> Self {
+        let zero = vec![0.0; model.masses()];
+        Self { elongation_x: zero.clone(), elongation_z: zero.clone(), velocity_x: zero.clone(), velocity_z: zero }
+    }
+
+    fn links(&self, carrier: &CarrierVariation) -> LinkMotion<'_> {
+        LinkMotion {
+            elongation_x: &self.elongation_x,
+            elongation_z: &self.elongation_z,
+            velocity_x: &self.velocity_x,
+            velocity_z: &self.velocity_z,
+            carrier_rates: (carrier.u_rate, carrier.w_rate),
+        }
+    }
+}
+
+impl Variation {
+    fn new(model: &Model) -> Self {
+        let zero = vec![0.0; model.masses()];
+        let maxwell = vec![0.0; model.maxwell_variables()];
+        Self { x: zero.clone(), z: zero.clone(), v_x: zero.clone(), v_z: zero, maxwell }
+    }
+
+    fn parts(&mut self) -> [&mut Vec<f64>; 5] {
+        [&mut self.x, &mut self.z, &mut self.v_x, &mut self.v_z, &mut self.maxwell]
+    }
+}
+
+impl Tangent {
+    pub(super) fn new(model: &Model, target: Target, stages: usize) -> Self {
+        let zero = vec![0.0; model.masses()];
+        let rates = VariationRates {
+            v_x: zero.clone(),
+            v_z: zero.clone(),
+            a_x: zero.clone(),
+            a_z: zero,
+            maxwell: vec![0.0; model.maxwell_variables()],
+        };
+        Self {
+            target,
+            duration: 1.0,
+            start: Variation::new(model),
+            end: Variation::new(model),
+            stages: vec![rates; stages],
+            forces: Forces::new(model),
+            known: KnownMotion::new(model),
+        }
+    }
+
+    /// How many numbers this holds.
+    pub(super) fn floats(&self) -> usize {
+        let (masses, maxwell) = (self.start.x.len(), self.start.maxwell.len());
+        // Start, end and stages; forces; the known motion of the links.
+        (2 + self.stages.len()) * (4 * masses + maxwell) + self.forces.bytes() / size_of::<f64>() + 4 * masses
+    }
+
+    /// Begins a motion of the carrier of `duration` (s). The present state does not depend on its target.
+    pub(super) fn begin(&mut self, duration: f64) {
+        self.duration = duration;
+        for part in self.start.parts() {
+            part.fill(0.0);
+        }
+    }
+
+    /// The carrier's variation `s` seconds after the start of its motion.
+    fn carrier(&self, s: f64) -> CarrierVariation {
+        let (displacement, rate) = (s / self.duration, 1.0 / self.duration);
+        match self.target {
+            Target::U => CarrierVariation { u: displacement, u_rate: rate, ..CarrierVariation::default() },
+            Target::W => CarrierVariation { w: displacement, w_rate: rate, ..CarrierVariation::default() },
+        }
+    }
+
+    /// Writes the contribution of the earlier stages, with these weights, in a step of length `h` to `end`.
+    fn collect_history(&mut self, h: f64, weights: &[f64]) {
+        for (end, start) in self.end.parts().into_iter().zip(self.start.parts()) {
+            end.copy_from_slice(start);
+        }
+        for (stage, weight) in self.stages.iter().zip(weights) {
+            let step = h * weight;
+            let terms = [&stage.v_x, &stage.v_z, &stage.a_x, &stage.a_z, &stage.maxwell];
+            for (sum, term) in self.end.parts().into_iter().zip(terms) {
+                add(sum, step, term);
+            }
+        }
+    }
+
+    /// Puts the constraints of the contact modes into the variation at the start of a step, `s` seconds after the start of
+    /// the motion, and computes its rates there.
+    pub(super) fn evaluate_rates(
+        &mut self,
+        model: &Model,
+        state: &State,
+        forces: &Forces,
+        accelerations: &[f64],
+        s: f64,
+    ) {
+        let carrier = self.carrier(s);
+        for i in 0..model.masses() {
+            if let Some(mass) = Constrained::of(state, i, self.start.x[i], self.start.v_x[i]) {
+                (self.start.z[i], self.start.v_x[i], self.start.v_z[i]) = (mass.z, mass.v_x, mass.v_z);
+            }
+        }
+        self.forces_at_start(model, &carrier);
+        for i in 0..model.masses() {
+            let on_mass = (self.forces.on_mass_x[i], self.forces.on_mass_z[i]);
+            let rates = &mut self.stages[0];
+            let (x, v_x) = (self.start.x[i], self.start.v_x[i]);
+            (rates.v_x[i], rates.v_z[i]) = (v_x, self.start.v_z[i]);
+            rates.a_x[i] = match state.mode[i] {
+                Mode::Free => on_mass.0 / model.mass,
+                Mode::Stick => 0.0,
+                Mode::Forward | Mode::Backward => {
+                    let slip = SlippingMass::of(model, state, i, accelerations[i]);
+                    let forces = (forces.on_mass_x[i], forces.on_mass_z[i]);
+                    slip.variation(model, x, v_x, on_mass, forces) / (model.mass * slip.q2())
+                }
+            };
+            rates.a_z[i] = on_mass.1 / model.mass;
+        }
+        for row in &model.rows {
+            let start = self.start.maxwell[row.range.clone()].iter().zip(&self.forces.rate[row.kind as usize]);
+            for (rate, (a, elongation_rate)) in self.stages[0].maxwell[row.range.clone()].iter_mut().zip(start) {
+                *rate = elongation_rate - a / row.relaxation_time;
+            }
+        }
+    }
+
+    /// ∂F_x and ∂F_z on the carrier at the start of the next step, `s` seconds after the start of the motion, N/m.
+    pub(super) fn carrier_forces(&mut self, model: &Model, s: f64) -> (f64, f64) {
+        self.forces_at_start(model, &self.carrier(s));
+        (self.forces.on_carrier_x(), self.forces.on_carrier_z())
+    }
+
+    /// Computes the variation of the forces of the links at the start of the step.
+    fn forces_at_start(&mut self, model: &Model, carrier: &CarrierVariation) {
+        let start = &self.start;
+        for i in 0..model.masses() {
+            self.known.elongation_x[i] = start.x[i] - carrier.u;
+            self.known.elongation_z[i] = start.z[i] - carrier.w;
+        }
+        let motion = LinkMotion {
+            elongation_x: &self.known.elongation_x,
+            elongation_z: &self.known.elongation_z,
+            velocity_x: &start.v_x,
+            velocity_z: &start.v_z,
+            carrier_rates: (carrier.u_rate, carrier.w_rate),
+        };
+        for kind in LinkKind::ALL {
+            let law = &model.links[kind as usize];
+            self.forces.spring_and_damper(kind, (law.stiffness, law.damping), &motion, &[]);
+        }
+        for row in &model.rows {
+            add(&mut self.forces.link[row.kind as usize], row.stiffness, &start.maxwell[row.range.clone()]);
+        }
+        self.forces.sum_on_masses();
+    }
+
+    /// Accepts the last attempted step, which ended with stage `last`.
+    pub(super) fn accept(&mut self, last: usize) {
+        std::mem::swap(&mut self.start, &mut self.end);
+        self.stages.swap(0, last);
+    }
+    /// Solves stage `i` of a step of length `h` (s) for the tangent: into `end` and the rates of the stage. The `solver`
+    /// has solved the stage itself, which lies `s` seconds after the start of the motion and has these `rates`, and has
+    /// factored its matrix there; `weights` are those of the earlier stages.
+    pub(super) fn solve_stage(&mut self, model: &Model, solver: &mut StageSolver, stage: &SolvedStage<'_>) {
+        let &SolvedStage { i, s, h, weights, rates, point } = stage;
+        let carrier = self.carrier(s);
+        self.collect_history(h, &weights[..i]);
+        self.known_forces(model, solver, point.beta, &carrier);
+        for i in 0..model.masses() {
+            solver.system.right[i] = self.right_side(model, solver, i, point.beta, rates.acceleration_x[i]);
+        }
+        solver.system.solve();
+        self.set_masses(model, solver, point.beta, i);
+        self.set_elements(model, point.beta, &carrier, i);
+    }
+
+    /// The variation of the forces for the known part of the motion.
+    fn known_forces(&mut self, model: &Model, solver: &StageSolver, beta: f64, carrier: &CarrierVariation) {
+        let known = &mut self.known;
+        for i in 0..model.masses() {
+            let (z, v_z) = match Constrained::of(&solver.state, i, self.end.x[i], 0.0) {
+                Some(mass) => (mass.z, mass.v_z),
+                None => (self.end.z[i], 0.0),
+            };
+            known.elongation_x[i] = self.end.x[i] - carrier.u;
+            known.elongation_z[i] = z - carrier.w;
+            known.velocity_z[i] = v_z;
+        }
+        let motion = known.links(carrier);
+        for kind in LinkKind::ALL {
+            let law = &solver.laws[kind as usize];
+            self.forces.spring_and_damper(kind, (law.stiffness, law.damping), &motion, &[]);
+        }
+        for row in &model.rows {
+            let weight = row.stiffness * row.relaxation_time / (row.relaxation_time + beta);
+            add(&mut self.forces.link[row.kind as usize], weight, &self.end.maxwell[row.range.clone()]);
+        }
+        self.forces.sum_on_masses();
+    }
+
+    /// The right side of the linear system for mass `i`, whose ẍ is `acceleration`.
+    fn right_side(&self, model: &Model, solver: &StageSolver, i: usize, beta: f64, acceleration: f64) -> Vector2<f64> {
+        let inertia = model.mass / beta;
+        let on_mass = (self.forces.on_mass_x[i], self.forces.on_mass_z[i]);
+        let (v_x, v_z) = (self.end.v_x[i], self.end.v_z[i]);
+        match solver.state.mode[i] {
+            Mode::Free => Vector2::new(on_mass.0 + inertia * v_x, on_mass.1 + inertia * v_z),
+            Mode::Stick => Vector2::zeros(),
+            Mode::Forward | Mode::Backward => {
+                let slip = SlippingMass::of(model, &solver.state, i, acceleration);
+                let forces = (solver.forces.on_mass_x[i], solver.forces.on_mass_z[i]);
+                let varied = slip.variation(model, self.end.x[i], 0.0, on_mass, forces);
+                Vector2::new(varied + inertia * slip.q2() * v_x, 0.0)
+            }
+        }
+    }
+
+    /// Takes the masses' variations at stage `i` from the solution of the linear system.
+    fn set_masses(&mut self, model: &Model, solver: &StageSolver, beta: f64, stage: usize) {
+        let (end, rates) = (&mut self.end, &mut self.stages[stage]);
+        for i in 0..model.masses() {
+            let found = solver.system.right[i];
+            let history = (end.v_x[i], end.v_z[i]);
+            end.x[i] += beta * found.x;
+            (end.v_x[i], end.v_z[i]) = (found.x, found.y);
+            match Constrained::of(&solver.state, i, end.x[i], found.x) {
+                Some(mass) => (end.z[i], end.v_x[i], end.v_z[i]) = (mass.z, mass.v_x, mass.v_z),
+                None => end.z[i] += beta * found.y,
+            }
+            (rates.v_x[i], rates.v_z[i]) = (end.v_x[i], end.v_z[i]);
+            rates.a_x[i] = (end.v_x[i] - history.0) / beta;
+            rates.a_z[i] = (end.v_z[i] - history.1) / beta;
+        }
+    }
+
+    /// Computes the Maxwell elements' variations at stage `i` from those of the masses.
+    fn set_elements(&mut self, model: &Model, beta: f64, carrier: &CarrierVariation, stage: usize) {
+        let (end, rates) = (&mut self.end, &mut self.stages[stage]);
+        let motion = LinkMotion {
+            elongation_x: &end.x,
+            elongation_z: &end.z,
+            velocity_x: &end.v_x,
+            velocity_z: &end.v_z,
+            carrier_rates: (carrier.u_rate, carrier.w_rate),
+        };
+        for kind in LinkKind::ALL {
+            self.forces.spring_and_damper(kind, (0.0, 0.0), &motion, &[]);
+        }
+        for row in &model.rows {
+            let g = row.relaxation_time / (row.relaxation_time + beta);
+            let elongation_rates = &self.forces.rate[row.kind as usize];
+            let a = end.maxwell[row.range.clone()].iter_mut().zip(&mut rates.maxwell[row.range.clone()]);
+            for ((a, rate), elongation_rate) in a.zip(elongation_rates) {
+                let found = g * (*a + beta * elongation_rate);
+                *rate = (found - *a) / beta;
+                *a = found;
+            }
+        }
+    }
+}
+
+/// A stage that is solved, for which tangents are to be computed.
+#[derive(Clone, Copy)]
+pub(super) struct SolvedStage<'a> {
+    /// Its index.
+    pub i: usize,
+    /// Its time after the start of the carrier's motion, s.
+    pub s: f64,
+    /// The length of the step, s.
+    pub h: f64,
+    /// The row a_ij of the tableau.
+    pub weights: &'a [f64],
+    pub rates: &'a Rates,
+    pub point: &'a StagePoint,
+}
+
+/// sum += factor · term.
+fn add(sum: &mut [f64], factor: f64, term: &[f64]) {
+    for (sum, term) in sum.iter_mut().zip(term) {
+        *sum += factor * term;
+    }
+}
+
+/// The variations of ζ, ẋ and ż of a mass in contact, which its constraint ties to those of ξ and ẋ.
+struct Constrained {
+    z: f64,
+    v_x: f64,
+    v_z: f64,
+}
+
+impl Constrained {
+    /// Of mass `i` of `state`, for the variations of ξ and ẋ; `None` for a free mass.
+    fn of(state: &State, i: usize, x: f64, v_x: f64) -> Option<Self> {
+        let (surface, v) = (&state.surface[i], state.velocity_x[i]);
+        match state.mode[i] {
+            Mode::Free => None,
+            Mode::Stick => Some(Self { z: surface.slope * x, v_x: 0.0, v_z: 0.0 }),
+            Mode::Forward | Mode::Backward => {
+                Some(Self { z: surface.slope * x, v_x, v_z: surface.slope * v_x + surface.curvature * v * x })
+            }
+        }
+    }
+}
