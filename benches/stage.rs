@@ -11,7 +11,7 @@ mod floor;
 
 use std::time::Duration;
 
-use asperity::integrator::{Integrator, STAGES, StepStart, Steps, Tolerance, Tracked};
+use asperity::integrator::{Integrator, STAGES, StepSpan, StepStart, Steps, Tolerance, Tracked};
 use asperity::model::{Carrier, Forces, Mode, Model, State};
 use asperity::scene::Path;
 use common::{layer, parse, prints_tables, side_by_side};
@@ -72,7 +72,9 @@ impl Stages {
     /// All stages of a step, and its error estimate.
     fn run(&mut self) {
         let Self { model, start, carrier, integrator, tolerance } = self;
-        std::hint::black_box(integrator.attempt(model, start, carrier, (0.0, STEP), tolerance).unwrap());
+        std::hint::black_box(
+            integrator.attempt(model, start, carrier, StepSpan { start: 0.0, length: STEP }, tolerance).unwrap(),
+        );
     }
 }
 

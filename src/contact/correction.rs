@@ -22,9 +22,9 @@
 //! strong a damper or the friction is.
 
 use super::laws::{collision, decide_mode, energy_at, has_reversed};
-use crate::integrator::{Rates, Tolerance, TwoStageDense};
+use crate::integrator::{Rates, StepEnd, StepSpan, Tolerance, TwoStageDense};
 use crate::math::{Bounds, bracketed_root};
-use crate::model::{Carrier, CarrierPoint, ChannelEnergies, Forces, LinkKind, Mode, Model, State, SurfacePoint};
+use crate::model::{Carrier, CarrierPoint, ChannelEnergies, LinkKind, Mode, Model, State, SurfacePoint};
 
 /// Weight of the lateness of mode changes in the error of a step.
 ///
@@ -46,23 +46,12 @@ pub struct FixedModeStep<'a> {
     pub model: &'a Model,
     /// The carrier's motion.
     pub carrier: &'a Carrier,
-    /// Start of the step after the start of the carrier's piece, and its length, s.
-    pub span: (f64, f64),
+    /// Its start and length.
+    pub span: StepSpan,
     /// State at the start.
     pub start: &'a State,
     /// Rates at the first stage.
     pub first: &'a Rates,
-}
-
-/// The end of that step, to be corrected.
-#[derive(Debug)]
-pub struct StepEnd<'a> {
-    /// The state.
-    pub state: &'a mut State,
-    /// The forces in it.
-    pub forces: &'a mut Forces,
-    /// The rates in it.
-    pub rates: &'a mut Rates,
 }
 
 /// Energies of the mode changes at the end of a step, J.
@@ -148,7 +137,7 @@ impl EndCorrection {
         let closing = surface.slope * step.end.velocity_x[i] - step.end.velocity_z[i];
         let link = &step.model.links[LinkKind::Vertical as usize];
         self.force += link.stiffness * -gap + link.damping * closing.max(0.0);
-        let time = if closing > 0.0 { (-gap / closing).min(step.span.1) } else { step.span.1 };
+        let time = if closing > 0.0 { (-gap / closing).min(step.span.length) } else { step.span.length };
         Some(Lateness { length: -gap, time })
     }
 
@@ -254,13 +243,17 @@ struct Speed {
 
 impl<'a> Correction<'a> {
     fn new(step: FixedModeStep<'a>, end: StepEnd<'a>) -> Self {
-        let (s, h) = step.span;
-        Self { carrier: step.carrier.at(s + h), step, end, energies: CorrectionEnergies::default() }
+        Self {
+            carrier: step.carrier.at(step.span.start + step.span.length),
+            step,
+            end,
+            energies: CorrectionEnergies::default(),
+        }
     }
 
     fn dense(&self) -> TwoStageDense<'_> {
         let FixedModeStep { model, carrier, span, start, first } = self.step;
-        TwoStageDense::new(model, carrier, span, (start, first), (self.end.state, self.end.rates))
+        TwoStageDense::new(model, carrier, span, start, first, self.end.state, self.end.rates)
     }
 
     /// Takes mass `i`, which is free and below the profile, back to its touch and through its impact, and moves it along
@@ -277,7 +270,7 @@ impl<'a> Correction<'a> {
         let (v_t, lost) = collision(model, velocity, slope);
         self.energies.impact += lost;
         let neighbours = neighbours(i).map(|j| self.velocity(j));
-        let rest = Remainder { time: (1.0 - theta) * self.step.span.1, free, neighbours };
+        let rest = Remainder { time: (1.0 - theta) * self.step.span.length, free, neighbours };
         let x = x + rest.time * v_t / (1.0 + slope * slope).sqrt();
         self.move_to(i, from, x, model.surface_at(x), rest.time);
         self.end.state.mode[i] = Mode::along(v_t);
@@ -294,7 +287,7 @@ impl<'a> Correction<'a> {
     /// Lifts mass `i`, which leaves the profile already, onto it. It stays free.
     fn lift_onto_profile(&mut self, i: usize, from: (f64, f64)) {
         let surface = self.step.model.surface_at(from.0);
-        self.move_to(i, from, from.0, surface, self.step.span.1);
+        self.move_to(i, from, from.0, surface, self.step.span.length);
         self.end.state.release(i);
     }
 
@@ -510,6 +503,6 @@ impl TwoStageDense<'_> {
     /// s, by the line through them.
     fn time_below(&self, first: f64, last: f64) -> f64 {
         let fall = (first - last) / (1.0 - Self::FIRST_STAGE);
-        self.span.1 * if fall > -last { -last / fall } else { 1.0 }
+        self.span.length * if fall > -last { -last / fall } else { 1.0 }
     }
 }

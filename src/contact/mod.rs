@@ -8,7 +8,7 @@ mod gap;
 mod laws;
 mod stability;
 
-pub use correction::{CorrectionEnergies, EndCorrection, FixedModeStep, StepEnd};
+pub use correction::{CorrectionEnergies, EndCorrection, FixedModeStep};
 pub use events::{EventTolerance, first_event, is_due};
 pub use gap::first_touch;
 pub use laws::{decide_modes, free_unloaded, impacts_due, place_layer, stop_reversed};

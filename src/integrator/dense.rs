@@ -32,9 +32,9 @@ impl StepSpan {
     }
 }
 
-/// The state and the rates at one end of a step.
+/// State, rates and carrier at the start or at the end of a step.
 #[derive(Clone, Copy, Debug)]
-pub struct StepEnd<'a> {
+pub struct StepBoundary<'a> {
     /// The state.
     pub state: &'a State,
     /// The rates.
@@ -53,9 +53,9 @@ pub struct DenseOutput<'a> {
     /// The step.
     pub span: StepSpan,
     /// Its start.
-    pub start: StepEnd<'a>,
+    pub start: StepBoundary<'a>,
     /// Its end.
-    pub end: StepEnd<'a>,
+    pub end: StepBoundary<'a>,
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -67,7 +67,7 @@ enum Direction {
 impl DenseOutput<'_> {
     /// The position of mass `i` on the profile through the step, m.
     pub fn position(&self, i: usize) -> Quintic {
-        let at = |StepEnd { state, rates, carrier }: &StepEnd<'_>| Jet {
+        let at = |StepBoundary { state, rates, carrier }: &StepBoundary<'_>| Jet {
             position: self.model.rest_x[i] + (self.carrier.profile_position + (carrier.du + state.elongation_x[i])),
             speed: rates.velocity_x[i],
             acceleration: rates.acceleration_x[i],
@@ -77,7 +77,7 @@ impl DenseOutput<'_> {
 
     /// The height of mass `i` above the profile's datum through the step, m.
     pub fn height(&self, i: usize) -> Quintic {
-        let at = |StepEnd { state, rates, carrier }: &StepEnd<'_>| Jet {
+        let at = |StepBoundary { state, rates, carrier }: &StepBoundary<'_>| Jet {
             position: self.model.rest_z[i] + (self.carrier.w + (carrier.dw + state.elongation_z[i])),
             speed: rates.velocity_z[i],
             acceleration: rates.acceleration_z[i],
@@ -115,7 +115,8 @@ impl DenseOutput<'_> {
     pub fn defect(
         &self,
         theta: f64,
-        (state, forces): (&State, &Forces),
+        state: &State,
+        forces: &Forces,
         workspace: &DenseWorkspace,
         tolerance: &Tolerance,
     ) -> f64 {
@@ -249,7 +250,7 @@ impl DenseOutput<'_> {
 
     /// The elongation of a link of mass `i` to the carrier through the step, m.
     fn elongation(&self, direction: Direction, i: usize) -> Quintic {
-        let at = |StepEnd { state, rates, carrier }: &StepEnd<'_>| match direction {
+        let at = |StepBoundary { state, rates, carrier }: &StepBoundary<'_>| match direction {
             Direction::X => Jet {
                 position: state.elongation_x[i],
                 speed: rates.velocity_x[i] - carrier.u_rate,
@@ -382,8 +383,8 @@ pub struct TwoStageDense<'a> {
     pub model: &'a Model,
     /// The carrier's motion.
     pub carrier: &'a Carrier,
-    /// Start of the step after the start of the carrier's piece and its length, s.
-    pub span: (f64, f64),
+    /// The step.
+    pub span: StepSpan,
     /// State at the start.
     pub start: &'a State,
     /// Rates at the first stage.
@@ -399,17 +400,20 @@ pub struct TwoStageDense<'a> {
 }
 
 impl<'a> TwoStageDense<'a> {
-    /// The step over `span`: its start, s after the start of the carrier's piece, and its length, s.
+    /// The step over `span`, between the states at its start and its end and with the rates at its first stage and its
+    /// end.
     pub fn new(
         model: &'a Model,
         carrier: &'a Carrier,
-        span: (f64, f64),
-        (start, first): (&'a State, &'a Rates),
-        (end, last): (&'a State, &'a Rates),
+        span: StepSpan,
+        start: &'a State,
+        first: &'a Rates,
+        end: &'a State,
+        last: &'a Rates,
     ) -> Self {
-        let at = carrier.at(span.0);
+        let at = carrier.at(span.start);
         let carrier_start = (carrier.profile_position + at.du, carrier.w + at.dw);
-        let carrier_moved = carrier.moved(span.0, span.1);
+        let carrier_moved = carrier.moved(span.start, span.length);
         Self { model, carrier, span, start, first, end, last, carrier_start, carrier_moved }
     }
 
@@ -420,7 +424,7 @@ impl<'a> TwoStageDense<'a> {
     #[inline]
     pub fn position(&self, i: usize, theta: f64) -> f64 {
         let (start, end) = (self.start.elongation_x[i], self.end.elongation_x[i]);
-        let middle = GAMMA * self.span.1 * self.first.velocity_x[i];
+        let middle = GAMMA * self.span.length * self.first.velocity_x[i];
         self.model.rest_x[i]
             + (self.carrier_start.0 + (start + parabola(theta, middle, self.carrier_moved.0 + (end - start))))
     }
@@ -429,7 +433,7 @@ impl<'a> TwoStageDense<'a> {
     #[inline]
     pub fn height(&self, i: usize, theta: f64) -> f64 {
         let (start, end) = (self.start.elongation_z[i], self.end.elongation_z[i]);
-        let middle = GAMMA * self.span.1 * self.first.velocity_z[i];
+        let middle = GAMMA * self.span.length * self.first.velocity_z[i];
         self.model.rest_z[i]
             + (self.carrier_start.1 + (start + parabola(theta, middle, self.carrier_moved.1 + (end - start))))
     }
@@ -447,8 +451,8 @@ impl<'a> TwoStageDense<'a> {
     /// Writes the state at the fraction `theta` of the step into `state`, which holds the Maxwell elongations of the
     /// first stage.
     pub fn state_at(&self, theta: f64, state: &mut State) {
-        let (s, h) = self.span;
-        let here = self.carrier.at(s + theta * h);
+        let StepSpan { start: s, length: h } = self.span;
+        let here = self.carrier.at(self.span.at(theta));
         let (beta, (u, w), (end_u, end_w)) = (GAMMA * h, self.carrier.moved(s, theta * h), self.carrier_moved);
         let (from, to) = (self.start, self.end);
         state.mode.copy_from_slice(&from.mode);

@@ -124,12 +124,12 @@ fn square(x: f64) -> f64 {
 
 /// The outcome of a step attempt.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Attempt {
+pub struct StepAttempt {
     /// The error estimate over the tolerance: at most 1 for a step that passes the error test.
     pub error: f64,
     /// The error estimate of the carrier's displacement over the tolerance, taken over the free masses. It counts only
     /// where one of them may touch.
-    pub unseen: f64,
+    pub carrier_error: f64,
 }
 
 /// Workspace for the estimated errors of one step.
@@ -175,7 +175,13 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
     /// The carrier's displacement is known, not integrated. Yet where masses are in contact the steps must resolve it:
     /// the dense output, the events between the stages and the energies depend on it. So the error that the method
     /// would make of it counts too; where every mass sticks there is no other.
-    pub(super) fn run(&self, model: &Model, h: f64, tolerance: &Tolerance, workspace: &mut ErrorWorkspace) -> Attempt {
+    pub(super) fn run(
+        &self,
+        model: &Model,
+        h: f64,
+        tolerance: &Tolerance,
+        workspace: &mut ErrorWorkspace,
+    ) -> StepAttempt {
         let carrier_error = CarrierError::new(self.carrier, &self.tableau.error, h);
         self.collect(h, &carrier_error, workspace);
         let (end, rates) = (self.end, &self.carrier[STAGES - 1]);
@@ -200,7 +206,7 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
             }
         }
         let mean = |sum: f64| (sum / model.masses() as f64).sqrt();
-        Attempt { error: mean(sum), unseen: mean(free) }
+        StepAttempt { error: mean(sum), carrier_error: mean(free) }
     }
 
     /// The sums of squares of the error of the carrier's displacement, over the masses in contact and over the free ones.

@@ -2,7 +2,7 @@
 
 use super::dense::StepSpan;
 use super::energy::StepPowers;
-use super::error::{Attempt, ErrorTest, ErrorWorkspace, Tolerance};
+use super::error::{ErrorTest, ErrorWorkspace, StepAttempt, Tolerance};
 use super::maxwell::Maxwell;
 use super::rates::{Rates, StepStart};
 use super::sensitivity::{SolvedStage, Tangent};
@@ -104,7 +104,7 @@ impl<const N: usize> Method<N> {
         step: &StepInput<'_>,
         tolerance: &Tolerance,
         workspace: &mut ErrorWorkspace,
-    ) -> Attempt {
+    ) -> StepAttempt {
         let test = ErrorTest {
             tableau: self.tableau,
             maxwell: &self.maxwell,

@@ -14,8 +14,8 @@ mod sensitivity;
 mod stage;
 mod tableau;
 
-pub use dense::{DenseOutput, DenseWorkspace, StepEnd, StepSpan, TwoStageDense};
-pub use error::{Attempt, Tolerance};
+pub use dense::{DenseOutput, DenseWorkspace, StepBoundary, StepSpan, TwoStageDense};
+pub use error::{StepAttempt, Tolerance};
 pub use rates::{NO_LIMIT, Rates, StepStart};
 pub use stage::NoConvergence;
 pub use tableau::{ContinuousWeights, ESDIRK5, METHOD, SDIRK2, STAGES, TWO_STAGES, Tableau};
@@ -42,6 +42,17 @@ pub struct Integrator {
     two_stages: Method<TWO_STAGES>,
     stages: Stages,
     error_workspace: ErrorWorkspace,
+}
+
+/// The end of an attempted step, open to changes.
+#[derive(Debug)]
+pub struct StepEnd<'a> {
+    /// The state.
+    pub state: &'a mut State,
+    /// The forces in it.
+    pub forces: &'a mut Forces,
+    /// The rates in it.
+    pub rates: &'a mut Rates,
 }
 
 /// What the steps compute in addition to the state.
@@ -121,7 +132,7 @@ impl Integrator {
         }
     }
 
-    /// Attempts a step of [`METHOD`] of length `h` from `start`, `s` seconds after the start of the carrier's piece.
+    /// Attempts a step of [`METHOD`] from `start`.
     ///
     /// # Errors
     /// [`NoConvergence`] where Newton's iterations of a stage did not converge.
@@ -130,17 +141,16 @@ impl Integrator {
         model: &Model,
         start: &StepStart,
         carrier: &Carrier,
-        (s, h): (f64, f64),
+        span: StepSpan,
         tolerance: &Tolerance,
-    ) -> Result<Attempt, NoConvergence> {
-        let span = StepSpan { start: s, length: h };
-        let step = StepInput { model, start, carrier, span, beta: self.seven_stages.tableau.gamma() * h };
+    ) -> Result<StepAttempt, NoConvergence> {
+        let step = StepInput { model, start, carrier, span, beta: self.seven_stages.tableau.gamma() * span.length };
         let convergence = ConvergenceTest::new(tolerance, step.beta, 1.0);
         self.seven_stages.attempt(&mut self.stages, &step, convergence)?;
         Ok(self.seven_stages.test(&self.stages, &step, tolerance, &mut self.error_workspace))
     }
 
-    /// Attempts a step of two stages of length `h` from `start`, `s` seconds after the start of the carrier's piece.
+    /// Attempts a step of two stages from `start`.
     ///
     /// # Errors
     /// [`NoConvergence`] where Newton's iterations of a stage did not converge.
@@ -149,17 +159,16 @@ impl Integrator {
         model: &Model,
         start: &StepStart,
         carrier: &Carrier,
-        (s, h): (f64, f64),
+        span: StepSpan,
         tolerance: &Tolerance,
-    ) -> Result<Attempt, NoConvergence> {
-        let span = StepSpan { start: s, length: h };
-        let step = StepInput { model, start, carrier, span, beta: self.two_stages.tableau.gamma() * h };
+    ) -> Result<StepAttempt, NoConvergence> {
+        let step = StepInput { model, start, carrier, span, beta: self.two_stages.tableau.gamma() * span.length };
         let slack = if model.rate_shear.is_some() { STEEP_SLACK } else { NEWTON_SLACK };
         let convergence = ConvergenceTest::new(tolerance, step.beta, slack);
         self.two_stages.attempt(&mut self.stages, &step, convergence)?;
         let attempt = self.two_stages.test(&self.stages, &step, tolerance, &mut self.error_workspace);
         // Touches are looked for at the end of the step alone, so the carrier's motion must be resolved over all masses.
-        Ok(Attempt { error: attempt.error.hypot(attempt.unseen), ..attempt })
+        Ok(StepAttempt { error: attempt.error.hypot(attempt.carrier_error), ..attempt })
     }
 
     /// The ratio of the length of a two-stage step with an error of the tolerance to `h`, the length of the last
@@ -195,26 +204,37 @@ impl Integrator {
         &self.stages.rates
     }
 
-    /// The end of the last attempted two-stage step, open to changes: state, forces and rates; and the rates at its first
-    /// stage.
-    pub fn open_end(&mut self) -> (&mut State, &mut Forces, &mut Rates, &Rates) {
+    /// The end of the last attempted two-stage step, open to changes, and the rates at its first stage.
+    pub fn open_end(&mut self) -> (StepEnd<'_>, &Rates) {
         let (earlier, last) = self.stages.rates.split_at_mut(TWO_STAGES - 1);
-        (&mut self.stages.solver.state, &mut self.stages.solver.forces, &mut last[0], &earlier[1])
+        let StageSolver { state, forces, .. } = &mut self.stages.solver;
+        (StepEnd { state, forces, rates: &mut last[0] }, &earlier[1])
     }
 
-    /// The dense output of the last attempted step of [`METHOD`], of length `h` from `start`, `s` seconds after the start
-    /// of the carrier's piece.
+    /// The dense output of the last attempted step of [`METHOD`], from `start`.
     pub fn dense<'a>(
         &'a self,
         model: &'a Model,
         carrier: &'a Carrier,
         start: &'a StepStart,
-        (s, h): (f64, f64),
+        span: StepSpan,
     ) -> DenseOutput<'a> {
         let carriers = &self.stages.carrier;
-        let first = StepEnd { state: &start.state, rates: &start.rates, carrier: carriers[0] };
-        let last = StepEnd { state: self.end(), rates: &self.stages()[STAGES - 1], carrier: carriers[STAGES - 1] };
-        DenseOutput { model, carrier, span: StepSpan { start: s, length: h }, start: first, end: last }
+        let first = StepBoundary { state: &start.state, rates: &start.rates, carrier: carriers[0] };
+        let last = StepBoundary { state: self.end(), rates: &self.stages()[STAGES - 1], carrier: carriers[STAGES - 1] };
+        DenseOutput { model, carrier, span, start: first, end: last }
+    }
+
+    /// The dense output of the last attempted two-stage step, from `start`.
+    pub fn two_stage_dense<'a>(
+        &'a self,
+        model: &'a Model,
+        carrier: &'a Carrier,
+        start: &'a StepStart,
+        span: StepSpan,
+    ) -> TwoStageDense<'a> {
+        let stages = self.stages();
+        TwoStageDense::new(model, carrier, span, &start.state, &stages[1], self.end(), &stages[TWO_STAGES - 1])
     }
 
     /// The Maxwell elements' elongations at the first stage of the last attempted two-stage step from `start`, into `a`,

@@ -2,7 +2,7 @@
 
 use super::SimulationError;
 use super::run::Run;
-use crate::integrator::Attempt;
+use crate::integrator::StepAttempt;
 
 /// The longest step, as a share of the period of the carrier's sine: a longer one could alias the excitation, all
 /// stages seeing the same and the error estimate nothing.
@@ -84,7 +84,7 @@ impl Run {
     }
 
     /// Tries a step of length `h`; `None` where it is rejected: the run's step size is then a better length.
-    fn try_step(&mut self, h: f64, any_error: bool) -> Option<Attempt> {
+    fn try_step(&mut self, h: f64, any_error: bool) -> Option<StepAttempt> {
         if self.state.time_stepping {
             self.try_time_step(h, any_error)
         } else {

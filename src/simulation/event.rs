@@ -5,7 +5,7 @@ use super::SimulationError;
 use super::driver::{AFTER_FAILURE, StepBounds, TrialStep, WorkLimit};
 use super::run::Run;
 use crate::contact::{first_event, is_due, longest_unstable};
-use crate::integrator::{Attempt, DenseOutput, METHOD};
+use crate::integrator::{DenseOutput, METHOD, StepAttempt};
 use crate::model::Model;
 
 /// A new step is this share of what the error estimate allows, so that few are rejected.
@@ -116,14 +116,14 @@ impl Run {
     }
 
     /// Tries a step of length `h`; `None` where it is rejected: the run's step size is then a better length.
-    pub(super) fn try_event_driven_step(&mut self, h: f64, any_error: bool) -> Option<Attempt> {
+    pub(super) fn try_event_driven_step(&mut self, h: f64, any_error: bool) -> Option<StepAttempt> {
         let Self { model, settings, state, workspace, .. } = self;
         workspace.interpolated_at = None;
-        let span = (state.s, h);
+        let span = state.span(h);
         let attempt = workspace.integrator.attempt(model, &state.layer, &state.carrier, span, &settings.tolerance);
         let mut error = attempt.map_or(f64::NAN, |attempt| attempt.error);
-        if attempt.is_ok_and(|attempt| attempt.unseen > error.max(1.0)) && self.may_touch(h) {
-            error = attempt.map_or(error, |attempt| attempt.unseen);
+        if attempt.is_ok_and(|attempt| attempt.carrier_error > error.max(1.0)) && self.may_touch(h) {
+            error = attempt.map_or(error, |attempt| attempt.carrier_error);
         }
         if any_error && error.is_finite() {
             return attempt.ok();
@@ -164,14 +164,14 @@ impl Run {
     fn first_event(&mut self, h: f64) -> Option<f64> {
         let Self { model, settings, state, workspace, .. } = self;
         let integrator = &workspace.integrator;
-        let dense = integrator.dense(model, &state.carrier, &state.layer, (state.s, h));
+        let dense = integrator.dense(model, &state.carrier, &state.layer, state.span(h));
         first_event(&dense, integrator.stages(), &settings.events, &mut workspace.dense)
     }
 
     /// The dense output of the step of length `h` tried last.
     pub(super) fn dense_output(&self, h: f64) -> DenseOutput<'_> {
         let state = &self.state;
-        self.workspace.integrator.dense(&self.model, &state.carrier, &state.layer, (state.s, h))
+        self.workspace.integrator.dense(&self.model, &state.carrier, &state.layer, state.span(h))
     }
 
     /// Accepts a step, which ends at the time `end` of the piece, and changes the modes if that is due.

@@ -9,7 +9,7 @@ use super::{MethodSwitch, ModeChange, Motion, Start};
 use crate::contact::{
     EndCorrection, EventTolerance, decide_modes, free_unloaded, impacts_due, place_layer, stop_reversed,
 };
-use crate::integrator::{DenseWorkspace, Integrator, StepStart, Steps, Tolerance, Tracked};
+use crate::integrator::{DenseWorkspace, Integrator, StepSpan, StepStart, Steps, Tolerance, Tracked};
 use crate::model::{
     Carrier, CarrierPoint, CarrierPosition, Forces, LinkKind, Mode, Model, State, elastic_energy, kinetic_energy,
 };
@@ -115,6 +115,11 @@ impl RunState {
     pub(super) fn displacement_at(&self, s: f64) -> (f64, f64) {
         let point = self.carrier.at(s);
         (self.carrier.u + point.du, self.carrier.w + point.dw)
+    }
+
+    /// A step of length `h` (s) from here.
+    pub(super) fn span(&self, h: f64) -> StepSpan {
+        StepSpan { start: self.s, length: h }
     }
 
     /// The carrier's position over the profile.

@@ -2,8 +2,6 @@
 
 use super::driver::TrialStep;
 use super::run::Run;
-use crate::integrator::TWO_STAGES;
-use crate::integrator::TwoStageDense;
 use crate::math::bracketed_root;
 use crate::outputs::{Energies, Snapshot};
 
@@ -109,8 +107,8 @@ impl Run {
     fn defect_within(&mut self, h: f64, share: f64) -> f64 {
         self.evaluate_within(h, share);
         let workspace = &self.workspace;
-        let at = (&workspace.interpolated, &workspace.forces);
-        self.dense_output(h).defect(share, at, &workspace.dense, &self.settings.tolerance)
+        let (interpolated, forces) = (&workspace.interpolated, &workspace.forces);
+        self.dense_output(h).defect(share, interpolated, forces, &workspace.dense, &self.settings.tolerance)
     }
 
     /// The state at the fraction `theta` of the step of length `h` tried last, into `interpolated`.
@@ -124,11 +122,10 @@ impl Run {
         let interpolated = &mut workspace.interpolated;
         if state.time_stepping {
             integrator.first_stage_maxwell(model, &start.state, &mut interpolated.maxwell);
-            let stages = integrator.stages();
-            let (start, end) = ((&start.state, &stages[1]), (integrator.end(), &stages[TWO_STAGES - 1]));
-            TwoStageDense::new(model, &state.carrier, (state.s, h), start, end).state_at(theta, interpolated);
+            let dense = integrator.two_stage_dense(model, &state.carrier, start, state.span(h));
+            dense.state_at(theta, interpolated);
         } else {
-            let dense = integrator.dense(model, &state.carrier, start, (state.s, h));
+            let dense = integrator.dense(model, &state.carrier, start, state.span(h));
             dense.state_at(theta, &mut workspace.dense, interpolated);
         }
     }

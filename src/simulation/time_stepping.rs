@@ -4,8 +4,8 @@
 use super::SimulationError;
 use super::driver::{AFTER_FAILURE, StepBounds, TrialStep, WorkLimit};
 use super::run::Run;
-use crate::contact::{FixedModeStep, StepEnd, longest_weakening};
-use crate::integrator::{Attempt, TWO_STAGES, TwoStageDense};
+use crate::contact::{FixedModeStep, longest_weakening};
+use crate::integrator::StepAttempt;
 use crate::model::ChannelEnergies;
 
 /// A new step is this share of what the error allows. Mode changes come unforeseen, so it is less than in smooth
@@ -46,12 +46,11 @@ impl Run {
     }
 
     /// Tries a step of length `h`; `None` where it is rejected: the run's step size is then a better length.
-    pub(super) fn try_time_step(&mut self, h: f64, any_error: bool) -> Option<Attempt> {
+    pub(super) fn try_time_step(&mut self, h: f64, any_error: bool) -> Option<StepAttempt> {
         let Self { model, settings, state, workspace, .. } = self;
         workspace.interpolated_at = None;
-        let span = (state.s, h);
-        let attempt =
-            workspace.integrator.attempt_two_stages(model, &state.layer, &state.carrier, span, &settings.tolerance);
+        let (layer, carrier, span) = (&state.layer, &state.carrier, state.span(h));
+        let attempt = workspace.integrator.attempt_two_stages(model, layer, carrier, span, &settings.tolerance);
         let attempt = attempt.ok().map(|attempt| self.with_lateness(h, attempt));
         let error = attempt.map_or(f64::NAN, |attempt| attempt.error);
         if error <= 1.0 || (any_error && error.is_finite()) {
@@ -63,13 +62,11 @@ impl Run {
     }
 
     /// The attempt of length `h` with the error that the lateness of its mode changes adds.
-    fn with_lateness(&mut self, h: f64, attempt: Attempt) -> Attempt {
+    fn with_lateness(&mut self, h: f64, attempt: StepAttempt) -> StepAttempt {
         let Self { model, settings, state, workspace, .. } = self;
-        let (stages, end) = (workspace.integrator.stages(), workspace.integrator.end());
-        let (start, end) = ((&state.layer.state, &stages[1]), (end, &stages[TWO_STAGES - 1]));
-        let step = TwoStageDense::new(model, &state.carrier, (state.s, h), start, end);
+        let step = workspace.integrator.two_stage_dense(model, &state.carrier, &state.layer, state.span(h));
         let late = workspace.end_correction.detect(&step, &settings.tolerance);
-        Attempt { error: attempt.error.hypot(late), ..attempt }
+        StepAttempt { error: attempt.error.hypot(late), ..attempt }
     }
 
     /// Accepts the step of length `h` tried last, which ends at the time `end` of the piece, with its mode changes
@@ -81,9 +78,10 @@ impl Run {
         let gain = settings.accounts.energy.then(|| integrator.two_stage_energies(model, start, h, 1.0));
         workspace.interpolated_at = None;
         workspace.modes_before.copy_from_slice(&start.mode);
-        let (end_state, forces, rates, first) = integrator.open_end();
-        let step = FixedModeStep { model, carrier: &state.carrier, span: (state.s, h), start, first };
-        let corrected = workspace.end_correction.apply(step, StepEnd { state: end_state, forces, rates });
+        let span = state.span(h);
+        let (step_end, first) = integrator.open_end();
+        let step = FixedModeStep { model, carrier: &state.carrier, span, start, first };
+        let corrected = workspace.end_correction.apply(step, step_end);
         if let Some(gain) = gain {
             let energies = &mut state.energies;
             energies.channels.add(&gain);

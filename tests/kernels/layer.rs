@@ -3,7 +3,7 @@
 use std::path::Path as FilePath;
 
 use asperity::integrator::{
-    Attempt, DenseOutput, DenseWorkspace, Integrator, StepStart, Steps, TWO_STAGES, Tolerance, Tracked, TwoStageDense,
+    DenseOutput, DenseWorkspace, Integrator, StepAttempt, StepSpan, StepStart, Steps, Tolerance, Tracked,
 };
 use asperity::model::{Carrier, Forces, LinkKind, Model, State};
 use asperity::outputs::Snapshot;
@@ -145,8 +145,8 @@ impl Stepper {
     }
 
     /// Attempts a step without accepting it.
-    pub fn attempt(&mut self, h: f64) -> Attempt {
-        let (integrator, span) = (&mut self.integrator, (self.s, h));
+    pub fn attempt(&mut self, h: f64) -> StepAttempt {
+        let (integrator, span) = (&mut self.integrator, StepSpan { start: self.s, length: h });
         if self.two_stages {
             integrator.attempt_two_stages(&self.model, &self.start, &self.carrier, span, &self.tolerance).unwrap()
         } else {
@@ -173,7 +173,7 @@ impl Stepper {
 
     /// The dense output of the last attempted step, of length `h`.
     pub fn dense(&self, h: f64) -> DenseOutput<'_> {
-        self.integrator.dense(&self.model, &self.carrier, &self.start, (self.s, h))
+        self.integrator.dense(&self.model, &self.carrier, &self.start, StepSpan { start: self.s, length: h })
     }
 
     /// The state at the fraction `theta` of the last attempted step, of length `h`.
@@ -186,10 +186,10 @@ impl Stepper {
     /// The state at the fraction `theta` of the last attempted two-stage step, of length `h`.
     pub fn within_two_stages(&self, h: f64, theta: f64) -> State {
         let mut state = self.start.state.clone();
-        let stages = self.integrator.stages();
-        let (start, end) = ((&self.start.state, &stages[1]), (self.integrator.end(), &stages[TWO_STAGES - 1]));
+        let span = StepSpan { start: self.s, length: h };
         self.integrator.first_stage_maxwell(&self.model, &self.start.state, &mut state.maxwell);
-        TwoStageDense::new(&self.model, &self.carrier, (self.s, h), start, end).state_at(theta, &mut state);
+        let dense = self.integrator.two_stage_dense(&self.model, &self.carrier, &self.start, span);
+        dense.state_at(theta, &mut state);
         state
     }
 }
