@@ -27,7 +27,7 @@ pub fn longest_weakening(model: &Model, state: &State) -> f64 {
 }
 
 /// The growth rate, 1/s, of vibrations of contacts whose friction weakens with the speed, or up to twice that rate; 0
-/// if there are none.
+/// if there are none. Slopes, the vertical links and the other masses only reduce it.
 fn weakening(model: &Model, state: &State) -> f64 {
     let Some(law) = &model.rate_shear else { return 0.0 };
     let slipping = (0..model.masses()).filter(|&i| state.mode[i].slips());
@@ -35,7 +35,7 @@ fn weakening(model: &Model, state: &State) -> f64 {
     if steepest >= 0.0 {
         return 0.0;
     }
-    let (frequency, damping) = horizontal_oscillation(model);
+    let (frequency, damping) = model.horizontal_oscillation();
     let chain = Chain { model, state, law, damping };
     let mut rate = -(damping + steepest) / model.mass;
     if rate <= 0.0 || chain.decays(0.0) {
@@ -56,36 +56,6 @@ fn slope(law: &RateShear, state: &State, i: usize) -> f64 {
     let square = 1.0 + state.surface[i].slope * state.surface[i].slope;
     square * law.with_slope(state.mode[i].direction() * state.velocity_x[i] * square.sqrt()).1
 }
-
-/// The frequency, 1/s, of a mass on its horizontal link, and the damping of the link at that frequency, N s/m.
-///
-/// m ω² = c + Σ c_j ω²τ_j²/(1 + ω²τ_j²), and the damping is d + Σ c_j τ_j/(1 + ω²τ_j²). Slopes, the vertical link and
-/// the other masses only reduce the growth.
-fn horizontal_oscillation(model: &Model) -> (f64, f64) {
-    let kind = LinkKind::Horizontal;
-    let link = &model.links[kind as usize];
-    // From above, where all dashpots are at rest, the frequency falls to the largest solution.
-    let mut square = model.instantaneous_stiffness(kind) / model.mass;
-    let mut damping = link.damping;
-    for _ in 0..MOST_ITERATIONS {
-        let (before, mut stiffness) = (square, link.stiffness);
-        damping = link.damping;
-        for row in model.rows_of(kind) {
-            let tau = row.relaxation_time;
-            let share = 1.0 / (1.0 + before * tau * tau);
-            stiffness += row.stiffness * (1.0 - share);
-            damping += row.stiffness * tau * share;
-        }
-        square = stiffness / model.mass;
-        if square >= 0.99 * before {
-            break;
-        }
-    }
-    (square.sqrt(), damping)
-}
-
-/// Iterations for the frequency: each excludes the elements that have relaxed at the frequency so far.
-const MOST_ITERATIONS: usize = 30;
 
 /// The slipping masses, coupled by dampers: these may take from one mass the energy that friction feeds to another.
 struct Chain<'a> {

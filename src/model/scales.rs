@@ -77,6 +77,32 @@ impl Model {
         self.frequency_of(self.mass_stiffness_without_rods())
     }
 
+    /// The frequency, 1/s, of a mass on its horizontal link, and the damping of the link at that frequency, N s/m.
+    ///
+    /// m ω² = c + Σ c_j ω²τ_j²/(1 + ω²τ_j²), and the damping is d + Σ c_j τ_j/(1 + ω²τ_j²).
+    pub fn horizontal_oscillation(&self) -> (f64, f64) {
+        let kind = LinkKind::Horizontal;
+        let link = &self.links[kind as usize];
+        // From above, where all dashpots are at rest, the frequency falls to the largest solution.
+        let mut square = self.instantaneous_stiffness(kind) / self.mass;
+        let mut damping = link.damping;
+        for _ in 0..MOST_ITERATIONS {
+            let (before, mut stiffness) = (square, link.stiffness);
+            damping = link.damping;
+            for row in self.rows_of(kind) {
+                let tau = row.relaxation_time;
+                let share = 1.0 / (1.0 + before * tau * tau);
+                stiffness += row.stiffness * (1.0 - share);
+                damping += row.stiffness * tau * share;
+            }
+            square = stiffness / self.mass;
+            if square >= 0.99 * before {
+                break;
+            }
+        }
+        (square.sqrt(), damping)
+    }
+
     fn frequency_of(&self, stiffness: f64) -> f64 {
         let frequency = (stiffness / self.mass).sqrt();
         let damping = self.links.iter().map(|link| link.damping).fold(0.0, f64::max) / self.mass;
@@ -99,3 +125,6 @@ fn on_mass([vertical, horizontal, lateral_x, lateral_z]: [f64; 4]) -> f64 {
 /// Recommended 30 to 1000. A layer of a material has (H/Δx)², some thousands at most, between the stiffness of its
 /// lateral links and that of those to the carrier; its dampers are critical or weaker.
 const ROD_FREQUENCY: f64 = 100.0;
+
+/// Iterations for the frequency of the horizontal oscillation: each excludes the elements that have relaxed at the frequency so far.
+const MOST_ITERATIONS: usize = 30;
