@@ -5,7 +5,7 @@ use std::ffi::CString;
 use std::ptr;
 
 use super::bindings::{self, fmi2CallbackFunctions, fmi2CallbackLogger, fmi2ComponentEnvironment, fmi2Status};
-use super::fault::Status;
+use super::error::Status;
 use super::log::Message;
 
 /// Where messages go.

@@ -15,11 +15,10 @@ use crate::scene::Value;
 
 use super::bindings::*;
 use super::callbacks::Callbacks;
-use super::fault::Fault;
+use super::error::{Error, catch_panic};
 use super::instance::Instance;
 use super::lifecycle::Function;
 use super::log::Message;
-use super::panics::guard;
 
 /// What a component points to.
 struct Component {
@@ -32,7 +31,7 @@ struct Component {
 unsafe fn call(
     component: fmi2Component,
     function: Function,
-    body: impl FnOnce(&mut Instance) -> Result<(), Fault>,
+    body: impl FnOnce(&mut Instance) -> Result<(), Error>,
 ) -> fmi2Status {
     let component = component.cast::<Component>();
     if component.is_null() {
@@ -51,49 +50,49 @@ unsafe fn call(
 }
 
 /// An array that the master passes; NULL is an empty one.
-unsafe fn array<'a, T>(name: &'static str, pointer: *const T, length: usize) -> Result<&'a [T], Fault> {
+unsafe fn array<'a, T>(name: &'static str, pointer: *const T, length: usize) -> Result<&'a [T], Error> {
     match length {
         0 => Ok(&[]),
-        _ if pointer.is_null() => Err(Fault::Null(name)),
+        _ if pointer.is_null() => Err(Error::Null(name)),
         // SAFETY: not NULL, so `length` elements by the contract.
         _ => Ok(unsafe { slice::from_raw_parts(pointer, length) }),
     }
 }
 
 /// An array that the master wants filled; NULL is an empty one.
-unsafe fn array_mut<'a, T>(name: &'static str, pointer: *mut T, length: usize) -> Result<&'a mut [T], Fault> {
+unsafe fn array_mut<'a, T>(name: &'static str, pointer: *mut T, length: usize) -> Result<&'a mut [T], Error> {
     match length {
         0 => Ok(&mut []),
-        _ if pointer.is_null() => Err(Fault::Null(name)),
+        _ if pointer.is_null() => Err(Error::Null(name)),
         // SAFETY: not NULL, so `length` elements by the contract.
         _ => Ok(unsafe { slice::from_raw_parts_mut(pointer, length) }),
     }
 }
 
 /// A place for one value.
-unsafe fn place<'a, T>(name: &'static str, pointer: *mut T) -> Result<&'a mut T, Fault> {
+unsafe fn place<'a, T>(name: &'static str, pointer: *mut T) -> Result<&'a mut T, Error> {
     // SAFETY: NULL or valid by the contract.
-    unsafe { pointer.as_mut() }.ok_or(Fault::Null(name))
+    unsafe { pointer.as_mut() }.ok_or(Error::Null(name))
 }
 
 /// Gives the master one value.
-unsafe fn put<T>(pointer: *mut T, value: T) -> Result<(), Fault> {
+unsafe fn put<T>(pointer: *mut T, value: T) -> Result<(), Error> {
     // SAFETY: the contract of this module.
     *unsafe { place("value", pointer) }? = value;
     Ok(())
 }
 
 /// A string that the master passes.
-unsafe fn text<'a>(name: &'static str, pointer: fmi2String) -> Result<&'a str, Fault> {
+unsafe fn text<'a>(name: &'static str, pointer: fmi2String) -> Result<&'a str, Error> {
     if pointer.is_null() {
-        return Err(Fault::Null(name));
+        return Err(Error::Null(name));
     }
     // SAFETY: not NULL, so a string that ends with a zero by the contract.
-    unsafe { CStr::from_ptr(pointer) }.to_str().map_err(|_| Fault::NotText(name))
+    unsafe { CStr::from_ptr(pointer) }.to_str().map_err(|_| Error::NotText(name))
 }
 
 /// Strings that the master passes.
-unsafe fn texts<'a>(name: &'static str, pointer: *const fmi2String, length: usize) -> Result<Vec<&'a str>, Fault> {
+unsafe fn texts<'a>(name: &'static str, pointer: *const fmi2String, length: usize) -> Result<Vec<&'a str>, Error> {
     // SAFETY: the contract holds for the array and for each of its strings.
     unsafe { array(name, pointer, length)?.iter().map(|&string| text(name, string)).collect() }
 }
@@ -143,17 +142,17 @@ pub unsafe extern "C" fn fmi2Instantiate(
     // SAFETY: the contract of this module.
     let (callbacks, instance) = unsafe {
         let name = text("instanceName", instanceName).unwrap_or_default();
-        let instance = guard(|| instantiate(name, fmuType, fmuGUID, fmuResourceLocation, loggingOn != 0));
+        let instance = catch_panic(|| instantiate(name, fmuType, fmuGUID, fmuResourceLocation, loggingOn != 0));
         (Callbacks::new(functions, name), instance)
     };
-    match instance.unwrap_or_else(|panic| Err(Fault::Panic(panic))) {
+    match instance.unwrap_or_else(|panic| Err(Error::Panic(panic))) {
         Ok(mut instance) => {
             callbacks.deliver(instance.take_messages());
             Box::into_raw(Box::new(Component { instance, callbacks })).cast()
         }
-        Err(fault) => {
-            let text = format!("fmi2Instantiate: {fault}");
-            callbacks.deliver(vec![Message::of_status(fault.status(), text)]);
+        Err(error) => {
+            let text = format!("fmi2Instantiate: {error}");
+            callbacks.deliver(vec![Message::of_status(error.status(), text)]);
             ptr::null_mut()
         }
     }
@@ -166,15 +165,15 @@ unsafe fn instantiate(
     guid: fmi2String,
     location: fmi2String,
     logging: bool,
-) -> Result<Instance, Fault> {
+) -> Result<Instance, Error> {
     if name.is_empty() {
-        return Err(Fault::NoName);
+        return Err(Error::NoName);
     }
     if kind != fmi2Type_fmi2CoSimulation {
-        return Err(Fault::NotCoSimulation);
+        return Err(Error::NotCoSimulation);
     }
     if location.is_null() {
-        return Err(Fault::NoLocation);
+        return Err(Error::NoLocation);
     }
     // SAFETY: the contract of this module.
     unsafe { Instance::new(text("fmuGUID", guid)?, text("fmuResourceLocation", location)?, logging) }
@@ -189,7 +188,7 @@ pub unsafe extern "C" fn fmi2FreeInstance(c: fmi2Component) {
     // SAFETY: not NULL, so from Box::into_raw in fmi2Instantiate and not freed, by the contract.
     let component = unsafe { Box::from_raw(c.cast::<Component>()) };
     // Where a panic comes out of it there is no one left to tell.
-    let _ = guard(|| drop(component));
+    let _ = catch_panic(|| drop(component));
 }
 const _: fmi2FreeInstanceTYPE = Some(fmi2FreeInstance);
 
@@ -443,7 +442,7 @@ pub unsafe extern "C" fn fmi2SerializeFMUstate(
         call(c, Function::SerializeFmuState, |instance| {
             let bytes = instance.serialise_state(FMUstate.addr())?;
             if bytes.len() != size {
-                return Err(Fault::SerialisedSize { needed: bytes.len(), given: size });
+                return Err(Error::SerialisedSize { needed: bytes.len(), given: size });
             }
             array_mut("serializedState", serializedState.cast::<u8>(), size)?.copy_from_slice(&bytes);
             Ok(())
@@ -486,9 +485,11 @@ pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
     // SAFETY: the contract of this module.
     unsafe {
         call(c, Function::GetDirectionalDerivative, |instance| {
-            let knowns = (array("vKnown_ref", vKnown_ref, nKnown)?, array("dvKnown", dvKnown, nKnown)?);
             let unknowns = array("vUnknown_ref", vUnknown_ref, nUnknown)?;
-            instance.directional_derivatives(unknowns, knowns, array_mut("dvUnknown", dvUnknown, nUnknown)?)
+            let knowns = array("vKnown_ref", vKnown_ref, nKnown)?;
+            let direction = array("dvKnown", dvKnown, nKnown)?;
+            let values = array_mut("dvUnknown", dvUnknown, nUnknown)?;
+            instance.directional_derivatives(unknowns, knowns, direction, values)
         })
     }
 }
@@ -559,7 +560,7 @@ pub unsafe extern "C" fn fmi2GetStatus(c: fmi2Component, s: fmi2StatusKind, valu
     unsafe {
         call(c, Function::GetStatus, |instance| match s {
             fmi2StatusKind_fmi2DoStepStatus => put(value, instance.last_step().into()),
-            _ => Err(Fault::NoSuchStatus),
+            _ => Err(Error::NoSuchStatus),
         })
     }
 }
@@ -572,7 +573,7 @@ pub unsafe extern "C" fn fmi2GetRealStatus(c: fmi2Component, s: fmi2StatusKind, 
     unsafe {
         call(c, Function::GetRealStatus, |instance| match s {
             fmi2StatusKind_fmi2LastSuccessfulTime => put(value, instance.last_successful_time()),
-            _ => Err(Fault::NoSuchStatus),
+            _ => Err(Error::NoSuchStatus),
         })
     }
 }
@@ -586,7 +587,7 @@ pub unsafe extern "C" fn fmi2GetIntegerStatus(
     _value: *mut fmi2Integer,
 ) -> fmi2Status {
     // SAFETY: the contract of this module.
-    unsafe { call(c, Function::GetIntegerStatus, |_| Err(Fault::NoSuchStatus)) }
+    unsafe { call(c, Function::GetIntegerStatus, |_| Err(Error::NoSuchStatus)) }
 }
 const _: fmi2GetIntegerStatusTYPE = Some(fmi2GetIntegerStatus);
 
@@ -601,7 +602,7 @@ pub unsafe extern "C" fn fmi2GetBooleanStatus(
     unsafe {
         call(c, Function::GetBooleanStatus, |_| match s {
             fmi2StatusKind_fmi2Terminated => put(value, 0),
-            _ => Err(Fault::NoSuchStatus),
+            _ => Err(Error::NoSuchStatus),
         })
     }
 }
@@ -615,7 +616,7 @@ pub unsafe extern "C" fn fmi2GetStringStatus(
     _value: *mut fmi2String,
 ) -> fmi2Status {
     // SAFETY: the contract of this module.
-    unsafe { call(c, Function::GetStringStatus, |_| Err(Fault::NoSuchStatus)) }
+    unsafe { call(c, Function::GetStringStatus, |_| Err(Error::NoSuchStatus)) }
 }
 const _: fmi2GetStringStatusTYPE = Some(fmi2GetStringStatus);
 

@@ -7,84 +7,79 @@ use crate::outputs::{self, Output};
 use crate::scene::{Parameter, Value};
 use crate::simulation::{MethodSwitch, ModeChange};
 
-use super::beyond::Beyond;
-use super::catalogue::Catalogue;
-use super::clock::Clock;
-use super::fault::{Fault, Status};
-use super::guid::{Sources, guid};
+use super::definition::{Catalogue, Definition, Parameters, Sources, guid};
+use super::error::{Error, Status, catch_panic};
+use super::fmu_states::{self, FmuStates};
 use super::lifecycle::{Function, State};
-use super::log::{Category, Log, Message};
-use super::memory::Memory;
-use super::panics;
-use super::parameters::Parameters;
-use super::plant::Plant;
-use super::run::Run;
-use super::serial;
-use super::subject::Subject;
+use super::log::{Category, Log, Message, RunWarnings};
+use super::model::InstanceModel;
+use super::state::{Clock, InstanceState};
 use super::values::Outputs;
 
 /// An instance of the FMU.
 #[derive(Debug)]
 pub(super) struct Instance {
     pub(super) catalogue: Catalogue,
-    pub(super) run: Run,
+    pub(super) state: InstanceState,
     pub(super) outputs: Outputs,
-    /// What the last fmi2GetString returned.
+    /// The strings that the last fmi2GetString returned.
     pub(super) texts: Vec<CString>,
-    memory: Memory,
+    fmu_states: FmuStates,
     log: Log,
-    beyond: Beyond,
+    warnings: RunWarnings,
     guid: String,
-    /// What fmi2Reset goes back to.
+    /// The parameters before any was set.
     original: Arc<Parameters>,
     logging: bool,
 }
 
 impl Instance {
-    /// Reads the resources at `location` and checks that they are those that the master thinks they are.
-    pub(super) fn new(given_guid: &str, location: &str, logging: bool) -> Result<Self, Fault> {
-        let (subject, path) = Subject::find(location)?;
-        let catalogue = Catalogue::of(&subject);
-        let own = guid(&Sources::read_from(&path, &subject)?, &catalogue);
+    /// Reads the resources at `location` and checks them against the GUID that the master passes.
+    pub(super) fn new(given_guid: &str, location: &str, logging: bool) -> Result<Self, Error> {
+        let (definition, path) = Definition::find(location)?;
+        let catalogue = Catalogue::of(&definition);
+        let own = guid(&Sources::read_from(&path, &definition)?, &catalogue);
         if given_guid != own {
-            return Err(Fault::Guid { given: given_guid.into(), own });
+            return Err(Error::Guid { given: given_guid.into(), own });
         }
-        Ok(Self::of(subject, catalogue, own, logging))
+        Ok(Self::of(definition, catalogue, own, logging))
     }
 
-    fn of(subject: Subject, catalogue: Catalogue, guid: String, logging: bool) -> Self {
+    fn of(definition: Definition, catalogue: Catalogue, guid: String, logging: bool) -> Self {
         let mut log = Log::new(logging);
-        for warning in subject.warnings() {
+        for warning in definition.warnings() {
             log.add(Message::of_status(Status::Warning, warning.clone()));
         }
-        let original = Arc::new(Parameters::new(subject));
+        let original = Arc::new(Parameters::new(definition));
         Self {
             catalogue,
-            run: Run::new(Arc::clone(&original)),
+            state: InstanceState::new(Arc::clone(&original)),
             outputs: Outputs::default(),
             texts: Vec::new(),
-            memory: Memory::default(),
+            fmu_states: FmuStates::default(),
             log,
-            beyond: Beyond::default(),
+            warnings: RunWarnings::default(),
             guid,
             original,
             logging,
         }
     }
 
-    /// What every call goes through: refused where it is out of place, and no panic leaves it.
-    pub(super) fn call(&mut self, function: Function, body: impl FnOnce(&mut Self) -> Result<(), Fault>) -> Status {
-        let result = panics::guard(|| {
-            function.check(self.run.state)?;
+    /// Performs a call: refuses it where the life cycle does not allow it, and catches panics.
+    pub(super) fn call(&mut self, function: Function, body: impl FnOnce(&mut Self) -> Result<(), Error>) -> Status {
+        let result = catch_panic(|| {
+            if !function.is_allowed(self.state.lifecycle) {
+                return Err(Error::not_allowed(function, self.state.lifecycle));
+            }
             body(self)
         });
         let result = result.unwrap_or_else(|panic| {
-            self.run.state = State::Fatal;
-            Err(Fault::Panic(panic))
+            self.state.lifecycle = State::Fatal;
+            Err(Error::Panic(panic))
         });
-        let Err(fault) = result else { return Status::Ok };
-        self.log.add(Message::of_status(fault.status(), format!("{function}: {fault}")));
-        fault.status()
+        let Err(error) = result else { return Status::Ok };
+        self.log.add(Message::of_status(error.status(), format!("{function}: {error}")));
+        error.status()
     }
 
     /// The messages of the last call.
@@ -93,8 +88,8 @@ impl Instance {
     }
 
     /// fmi2SetDebugLogging
-    pub(super) fn set_debug_logging(&mut self, on: bool, categories: &[&str]) -> Result<(), Fault> {
-        self.log.ask_for(on, categories)?;
+    pub(super) fn set_debug_logging(&mut self, on: bool, categories: &[&str]) -> Result<(), Error> {
+        self.log.select(on, categories)?;
         self.record_events();
         Ok(())
     }
@@ -106,141 +101,138 @@ impl Instance {
         tolerance: Option<f64>,
         start: f64,
         stop: Option<f64>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), Error> {
         let clock = Clock::new(start, stop)?;
-        let has_tolerance = self.run.parameters.subject().parameters().contains(&Parameter::RelativeTolerance);
+        let has_tolerance = self.state.parameters.definition().parameters().contains(&Parameter::RelativeTolerance);
         if let Some(tolerance) = tolerance.filter(|_| has_tolerance) {
-            let parameters = Arc::make_mut(&mut self.run.parameters);
+            let parameters = Arc::make_mut(&mut self.state.parameters);
             parameters.set(Parameter::RelativeTolerance, Value::Real(tolerance))?;
         }
-        self.run.clock = clock;
-        self.run.start_anew();
+        self.state.clock = clock;
+        self.state.discard_start();
         Ok(())
     }
 
     /// fmi2EnterInitializationMode
-    pub(super) fn enter_initialization_mode(&mut self) -> Result<(), Fault> {
-        self.run.state = State::InitializationMode;
+    pub(super) fn enter_initialization_mode(&mut self) -> Result<(), Error> {
+        self.state.lifecycle = State::InitializationMode;
         Ok(())
     }
 
-    /// fmi2ExitInitializationMode: the layer, or the element, is put under the carrier.
-    pub(super) fn exit_initialization_mode(&mut self) -> Result<(), Fault> {
-        self.run.start()?;
-        self.beyond.start = Some(self.run.clock.time);
+    /// fmi2ExitInitializationMode: the layer or the element is placed under the carrier.
+    pub(super) fn exit_initialization_mode(&mut self) -> Result<(), Error> {
+        self.state.start()?;
+        self.warnings.start = Some(self.state.clock.time);
         self.record_events();
         Ok(())
     }
 
     /// fmi2DoStep
-    pub(super) fn do_step(&mut self, point: f64, h: f64) -> Result<(), Fault> {
-        let result = self.run.step(point, h);
-        let (events, handovers) = self.take_records();
-        // What a discarded step went through has not happened.
+    pub(super) fn do_step(&mut self, point: f64, h: f64) -> Result<(), Error> {
+        let result = self.state.step(point, h);
+        let (events, switches) = self.take_records();
+        // Events of a discarded step are dropped.
         result?;
         self.outputs.outdate();
-        self.tell_events(&events);
-        self.tell_work(&handovers);
-        self.tell_beyond();
+        self.log_events(&events);
+        self.log_work(&switches);
+        self.log_warnings();
         Ok(())
     }
 
     /// fmi2Terminate
-    pub(super) fn terminate(&mut self) -> Result<(), Fault> {
-        self.run.state = State::Terminated;
+    pub(super) fn terminate(&mut self) -> Result<(), Error> {
+        self.state.lifecycle = State::Terminated;
         Ok(())
     }
 
-    /// fmi2Reset: back to what fmi2Instantiate gave. The FMU states handed out stay the master's to free.
-    pub(super) fn reset(&mut self) -> Result<(), Fault> {
-        self.run = Run::new(Arc::clone(&self.original));
+    /// fmi2Reset: back to the state after fmi2Instantiate. The FMU states handed out remain until the master frees them.
+    pub(super) fn reset(&mut self) -> Result<(), Error> {
+        self.state = InstanceState::new(Arc::clone(&self.original));
         self.outputs.outdate();
         self.texts.clear();
         self.log = Log::new(self.logging);
-        self.beyond = Beyond::default();
+        self.warnings = RunWarnings::default();
         Ok(())
     }
 
-    /// fmi2GetFMUstate: takes and gives the state's handle, 0 for a new one.
-    pub(super) fn get_state(&mut self, handle: usize) -> Result<usize, Fault> {
-        self.memory.keep(handle, &self.run)
+    /// fmi2GetFMUstate: takes and returns the state's handle, 0 for a new one.
+    pub(super) fn get_state(&mut self, handle: usize) -> Result<usize, Error> {
+        self.fmu_states.keep(handle, self.state.save())
     }
 
     /// fmi2SetFMUstate
-    pub(super) fn set_state(&mut self, handle: usize) -> Result<(), Fault> {
-        let mut run = self.memory.recall(handle)?.clone();
-        run.go_on_timing(&self.run);
-        self.run = run;
+    pub(super) fn set_state(&mut self, handle: usize) -> Result<(), Error> {
+        self.state.restore(self.fmu_states.recall(handle)?)?;
         self.outputs.outdate();
         self.record_events();
         Ok(())
     }
 
     /// fmi2FreeFMUstate
-    pub(super) fn free_state(&mut self, handle: usize) -> Result<(), Fault> {
-        self.memory.forget(handle)
+    pub(super) fn free_state(&mut self, handle: usize) -> Result<(), Error> {
+        self.fmu_states.forget(handle)
     }
 
     /// fmi2SerializedFMUstateSize and fmi2SerializeFMUstate: the state `handle` as a byte string.
-    pub(super) fn serialise_state(&self, handle: usize) -> Result<Vec<u8>, Fault> {
-        Ok(serial::write(self.memory.recall(handle)?, &self.guid)?)
+    pub(super) fn serialise_state(&self, handle: usize) -> Result<Vec<u8>, Error> {
+        Ok(fmu_states::write(self.fmu_states.recall(handle)?, &self.guid)?)
     }
 
-    /// fmi2DeSerializeFMUstate: keeps the state in `bytes` and gives its handle.
-    pub(super) fn deserialise_state(&mut self, bytes: &[u8]) -> Result<usize, Fault> {
-        let mut run = serial::read(bytes, &self.guid, &self.original)?;
-        serial::check_outputs(&mut run, self.catalogue.outputs())?;
-        Ok(self.memory.keep_new(run))
+    /// fmi2DeSerializeFMUstate: keeps the state in `bytes` and returns its handle.
+    pub(super) fn deserialise_state(&mut self, bytes: &[u8]) -> Result<usize, Error> {
+        let state = fmu_states::read(bytes, &self.guid, &self.original, self.catalogue.outputs())?;
+        Ok(self.fmu_states.keep_new(state))
     }
 
     /// The status of the last step.
     pub(super) fn last_step(&self) -> Status {
-        self.run.last_step
+        self.state.last_step
     }
 
     /// The end of the last step that succeeded, s.
     pub(super) fn last_successful_time(&self) -> f64 {
-        self.run.clock.time
+        self.state.clock.time
     }
 
-    /// Mode changes and handovers are recorded only while someone listens.
+    /// Mode changes and switches are recorded only while they are logged.
     fn record_events(&mut self) {
-        let (events, solver) = (self.log.tells(Category::Events), self.log.tells(Category::Solver));
-        if let (false, Ok(plant)) = (self.run.state.before_run(), self.run.plant()) {
-            plant.record(events, solver);
+        let (events, solver) = (self.log.includes(Category::Events), self.log.includes(Category::Solver));
+        if let (false, Ok(model)) = (self.state.lifecycle.before_run(), self.state.model()) {
+            model.record(events, solver);
         }
     }
 
     fn take_records(&mut self) -> (Vec<ModeChange>, Vec<MethodSwitch>) {
-        self.run.plant().map(Plant::take_records).unwrap_or_default()
+        self.state.model().map(InstanceModel::take_records).unwrap_or_default()
     }
 
-    fn tell_events(&mut self, events: &[ModeChange]) {
-        let is_layer = matches!(self.run.parameters.subject(), Subject::Layer(_));
+    fn log_events(&mut self, events: &[ModeChange]) {
+        let is_layer = matches!(self.state.parameters.definition(), Definition::Layer(_));
         for change in events {
             let text = event(change, is_layer);
             self.log.add(Message { status: Status::Ok, category: Category::Events, text });
         }
     }
 
-    fn tell_beyond(&mut self) {
-        let Some(plant) = &self.run.plant else { return };
-        for text in self.beyond.news(self.run.parameters.subject(), plant, self.run.clock.time) {
+    fn log_warnings(&mut self) {
+        let Some(model) = &self.state.model else { return };
+        for text in self.warnings.new_ones(self.state.parameters.definition(), model, self.state.clock.time) {
             self.log.add(Message::of_status(Status::Warning, text));
         }
     }
 
-    fn tell_work(&mut self, handovers: &[MethodSwitch]) {
-        for text in handovers.iter().map(ToString::to_string) {
+    fn log_work(&mut self, switches: &[MethodSwitch]) {
+        for text in switches.iter().map(ToString::to_string) {
             self.log.add(Message { status: Status::Ok, category: Category::Solver, text });
         }
-        let (true, Ok(plant)) = (self.log.tells(Category::Solver), self.run.plant()) else { return };
-        let Some(simulation) = plant.simulation() else { return };
+        let (true, Ok(model)) = (self.log.includes(Category::Solver), self.state.model()) else { return };
+        let Some(simulation) = model.simulation() else { return };
         let mut values = [0.0; 3];
         let counts = [Output::Steps, Output::Rejected, Output::Events].into_iter().filter_map(outputs::variable);
         simulation.evaluate(&counts.collect::<Vec<_>>(), &mut values);
         let [steps, rejected, events] = values;
-        let time = self.run.clock.time;
+        let time = self.state.clock.time;
         let text = format!("t = {time} s: {steps} steps, {rejected} rejected, {events} mode changes since the start");
         self.log.add(Message { status: Status::Ok, category: Category::Solver, text });
     }
@@ -283,21 +275,21 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn a_panic_poisons_the_instance_and_is_told() {
+    fn a_panic_is_fatal_and_logged() {
         let mut instance = instance();
         assert_eq!(instance.call(Function::Reset, |_| panic!("lost a mass")), Status::Fatal);
-        let told = Message {
+        let logged = Message {
             status: Status::Fatal,
             category: Category::Error,
             text: "fmi2Reset: internal error, the instance is lost: lost a mass".into(),
         };
-        assert_eq!(instance.take_messages(), [told]);
+        assert_eq!(instance.take_messages(), [logged]);
         assert_eq!(instance.call(Function::Reset, Instance::reset), Status::Error);
         assert_eq!(instance.take_messages()[0].text, "fmi2Reset: not allowed in the state fatal");
     }
 
     #[test]
-    fn mode_changes_are_told_in_words() {
+    fn mode_changes_are_logged_in_words() {
         let change = ModeChange { time: 0.5, mass: 2, from: 0, to: -1 };
         assert_eq!(event(&change, true), "t = 0.5 s: mass 3 from free to slipping backwards");
         assert_eq!(event(&change, false), "t = 0.5 s: the contact from free to slipping backwards");

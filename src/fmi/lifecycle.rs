@@ -1,10 +1,8 @@
-//! What may be called when: the state table of FMI 2.0.4, section 4.2.4, as data.
+//! The life cycle of an instance: which function may be called in which state, by the table of FMI 2.0.4, section 4.2.4.
 
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
-
-use super::fault::Fault;
 
 /// The states of a co-simulation slave that this FMU can be in. Steps never run asynchronously, so the standard's
 /// stepInProgress and stepCanceled are never reached.
@@ -89,31 +87,36 @@ pub(super) enum Function {
 }
 
 impl Function {
-    /// Refuses a call that is out of place.
-    pub(super) fn check(self, state: State) -> Result<(), Fault> {
-        match (self, self.row().2.contains(&state)) {
-            (_, true) => Ok(()),
-            (Self::CancelStep, false) => Err(Fault::NothingToCancel(state)),
-            (_, false) => Err(Fault::OutOfPlace(state)),
-        }
+    /// Whether the function may be called in `state`.
+    pub(super) fn is_allowed(self, state: State) -> bool {
+        self.rule().states.contains(&state)
     }
 
-    fn row(self) -> &'static Row {
+    fn rule(self) -> &'static Rule {
         &TABLE[self as usize]
     }
 }
 
 impl fmt::Display for Function {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.row().1)
+        f.write_str(self.rule().name)
     }
 }
 
-/// A function, its name and the states in which it may be called.
-type Row = (Function, &'static str, &'static [State]);
+/// A row of the table.
+struct Rule {
+    function: Function,
+    name: &'static str,
+    /// The states in which the function may be called.
+    states: &'static [State],
+}
 
-/// Every state, fatal as an addition to the standard's table: a poisoned instance can be freed, as no memory is
-/// corrupt.
+const fn rule(function: Function, name: &'static str, states: &'static [State]) -> Rule {
+    Rule { function, name, states }
+}
+
+/// Every state. Fatal is an addition to the standard's table: an instance can be freed after a panic, since its memory is
+/// intact.
 const EVERY: &[State] = {
     use State::{Error, Fatal, InitializationMode, Instantiated, StepComplete, StepFailed, Terminated};
     &[Instantiated, InitializationMode, StepComplete, StepFailed, Terminated, Error, Fatal]
@@ -125,97 +128,85 @@ const ALIVE: &[State] = {
     &[Instantiated, InitializationMode, StepComplete, StepFailed, Terminated, Error]
 };
 
-/// Outputs are there: the results of an error state serve for debugging only.
+/// States in which outputs can be read; in the error state for debugging only.
 const READABLE: &[State] = {
     use State::{Error, InitializationMode, StepComplete, StepFailed, Terminated};
     &[InitializationMode, StepComplete, StepFailed, Terminated, Error]
 };
 
-/// Inputs are taken. stepFailed is an addition to the standard's table: a discarded step left everything as it was, so
-/// a master without rollback may try a smaller one, with other inputs.
+/// States in which inputs can be set. stepFailed is an addition to the standard's table: a discarded step left everything
+/// as it was, so a master without rollback may try a smaller step with other inputs.
 const WRITABLE: &[State] = {
     use State::{InitializationMode, Instantiated, StepComplete, StepFailed};
     &[Instantiated, InitializationMode, StepComplete, StepFailed]
 };
 
-/// A step has been possible.
+/// States after a step was possible.
 const STEPPED: &[State] = &[State::StepComplete, State::StepFailed, State::Terminated];
 
-/// The table, one row a function, in the order of [`Function`].
+/// The table: one row per function, in the order of [`Function`].
 #[rustfmt::skip]
-const TABLE: [Row; 31] = {
+const TABLE: [Rule; 31] = {
     use State::{Error, InitializationMode, Instantiated, StepComplete, StepFailed, Terminated};
     [
-        (Function::SetDebugLogging, "fmi2SetDebugLogging", ALIVE),
-        (Function::FreeInstance, "fmi2FreeInstance", EVERY),
-        (Function::SetupExperiment, "fmi2SetupExperiment", &[Instantiated]),
-        (Function::EnterInitializationMode, "fmi2EnterInitializationMode", &[Instantiated]),
-        (Function::ExitInitializationMode, "fmi2ExitInitializationMode", &[InitializationMode]),
-        (Function::Terminate, "fmi2Terminate", &[StepComplete, StepFailed]),
-        (Function::Reset, "fmi2Reset", ALIVE),
-        (Function::GetReal, "fmi2GetReal", READABLE),
-        (Function::GetInteger, "fmi2GetInteger", READABLE),
-        (Function::GetBoolean, "fmi2GetBoolean", READABLE),
-        (Function::GetString, "fmi2GetString", READABLE),
-        (Function::SetReal, "fmi2SetReal", WRITABLE),
-        (Function::SetInteger, "fmi2SetInteger", WRITABLE),
-        (Function::SetBoolean, "fmi2SetBoolean", WRITABLE),
-        (Function::SetString, "fmi2SetString", WRITABLE),
-        (Function::GetFmuState, "fmi2GetFMUstate", ALIVE),
-        (Function::SetFmuState, "fmi2SetFMUstate", ALIVE),
-        (Function::FreeFmuState, "fmi2FreeFMUstate", ALIVE),
-        (Function::SerializedFmuStateSize, "fmi2SerializedFMUstateSize", ALIVE),
-        (Function::SerializeFmuState, "fmi2SerializeFMUstate", ALIVE),
-        (Function::DeSerializeFmuState, "fmi2DeSerializeFMUstate", ALIVE),
-        (Function::GetDirectionalDerivative, "fmi2GetDirectionalDerivative", READABLE),
-        (Function::SetRealInputDerivatives, "fmi2SetRealInputDerivatives", WRITABLE),
-        (Function::GetRealOutputDerivatives, "fmi2GetRealOutputDerivatives",
+        rule(Function::SetDebugLogging, "fmi2SetDebugLogging", ALIVE),
+        rule(Function::FreeInstance, "fmi2FreeInstance", EVERY),
+        rule(Function::SetupExperiment, "fmi2SetupExperiment", &[Instantiated]),
+        rule(Function::EnterInitializationMode, "fmi2EnterInitializationMode", &[Instantiated]),
+        rule(Function::ExitInitializationMode, "fmi2ExitInitializationMode", &[InitializationMode]),
+        rule(Function::Terminate, "fmi2Terminate", &[StepComplete, StepFailed]),
+        rule(Function::Reset, "fmi2Reset", ALIVE),
+        rule(Function::GetReal, "fmi2GetReal", READABLE),
+        rule(Function::GetInteger, "fmi2GetInteger", READABLE),
+        rule(Function::GetBoolean, "fmi2GetBoolean", READABLE),
+        rule(Function::GetString, "fmi2GetString", READABLE),
+        rule(Function::SetReal, "fmi2SetReal", WRITABLE),
+        rule(Function::SetInteger, "fmi2SetInteger", WRITABLE),
+        rule(Function::SetBoolean, "fmi2SetBoolean", WRITABLE),
+        rule(Function::SetString, "fmi2SetString", WRITABLE),
+        rule(Function::GetFmuState, "fmi2GetFMUstate", ALIVE),
+        rule(Function::SetFmuState, "fmi2SetFMUstate", ALIVE),
+        rule(Function::FreeFmuState, "fmi2FreeFMUstate", ALIVE),
+        rule(Function::SerializedFmuStateSize, "fmi2SerializedFMUstateSize", ALIVE),
+        rule(Function::SerializeFmuState, "fmi2SerializeFMUstate", ALIVE),
+        rule(Function::DeSerializeFmuState, "fmi2DeSerializeFMUstate", ALIVE),
+        rule(Function::GetDirectionalDerivative, "fmi2GetDirectionalDerivative", READABLE),
+        rule(Function::SetRealInputDerivatives, "fmi2SetRealInputDerivatives", WRITABLE),
+        rule(Function::GetRealOutputDerivatives, "fmi2GetRealOutputDerivatives",
             &[StepComplete, StepFailed, Terminated, Error]),
-        (Function::DoStep, "fmi2DoStep", &[StepComplete, StepFailed]),
-        (Function::CancelStep, "fmi2CancelStep", &[]),
-        (Function::GetStatus, "fmi2GetStatus", STEPPED),
-        (Function::GetRealStatus, "fmi2GetRealStatus", STEPPED),
-        (Function::GetIntegerStatus, "fmi2GetIntegerStatus", STEPPED),
-        (Function::GetBooleanStatus, "fmi2GetBooleanStatus", STEPPED),
-        (Function::GetStringStatus, "fmi2GetStringStatus", STEPPED),
+        rule(Function::DoStep, "fmi2DoStep", &[StepComplete, StepFailed]),
+        rule(Function::CancelStep, "fmi2CancelStep", &[]),
+        rule(Function::GetStatus, "fmi2GetStatus", STEPPED),
+        rule(Function::GetRealStatus, "fmi2GetRealStatus", STEPPED),
+        rule(Function::GetIntegerStatus, "fmi2GetIntegerStatus", STEPPED),
+        rule(Function::GetBooleanStatus, "fmi2GetBooleanStatus", STEPPED),
+        rule(Function::GetStringStatus, "fmi2GetStringStatus", STEPPED),
     ]
 };
 
+const _: () = {
+    let mut index = 0;
+    while index < TABLE.len() {
+        assert!(TABLE[index].function as usize == index, "rows are in the order of functions");
+        index += 1;
+    }
+};
+
 #[cfg(test)]
-#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 
     #[test]
-    fn every_row_stands_in_its_functions_place() {
-        for (place, row) in TABLE.iter().enumerate() {
-            assert_eq!(row.0 as usize, place, "{}", row.1);
-        }
-    }
-
-    #[test]
-    fn a_call_out_of_place_names_the_function_and_the_state() {
-        let fault = Function::DoStep.check(State::Instantiated).unwrap_err();
-        assert_eq!(format!("{}: {fault}", Function::DoStep), "fmi2DoStep: not allowed in the state instantiated");
-    }
-
-    #[test]
     fn after_a_discard_inputs_and_steps_are_accepted() {
         for function in [Function::SetReal, Function::SetRealInputDerivatives, Function::DoStep] {
-            assert!(function.check(State::StepFailed).is_ok());
-            assert!(function.check(State::Error).is_err());
+            assert!(function.is_allowed(State::StepFailed));
+            assert!(!function.is_allowed(State::Error));
         }
     }
 
     #[test]
-    fn a_poisoned_instance_can_be_freed_and_nothing_else() {
-        let allowed: Vec<_> = TABLE.iter().filter(|row| row.0.check(State::Fatal).is_ok()).map(|row| row.0).collect();
-        assert_eq!(allowed, [Function::FreeInstance]);
-    }
-
-    #[test]
-    fn no_step_can_be_cancelled_as_none_runs_asynchronously() {
-        let fault = Function::CancelStep.check(State::StepComplete).unwrap_err().to_string();
-        assert!(fault.contains("stepComplete") && fault.contains("asynchronous"), "{fault}");
+    fn after_a_panic_an_instance_can_only_be_freed() {
+        let allowed = TABLE.iter().map(|rule| rule.function).filter(|function| function.is_allowed(State::Fatal));
+        assert_eq!(allowed.collect::<Vec<_>>(), [Function::FreeInstance]);
     }
 }

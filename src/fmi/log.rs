@@ -1,19 +1,24 @@
-//! What the FMU tells its master: messages by category, collected during a call and delivered at its end.
+//! Messages to the master: by category, collected during a call and delivered at its end; warnings of runs that the scene
+//! does not cover.
 
-use super::fault::{Fault, Status};
+use super::definition::Definition;
+use super::error::{Error, Status};
+use super::model::InstanceModel;
+use crate::model::{Reduction, Replacement};
+use crate::scene::Scene;
 
 /// The categories of messages, as the model description lists them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Category {
     /// Why a call failed.
     Error,
-    /// What is worth telling though the call succeeded.
+    /// Warnings of a call that succeeded.
     Warning,
     /// Why a step was discarded.
     Discard,
     /// Mode changes of the masses.
     Events,
-    /// The integrator's work, a line a step, and each handover between its drivers.
+    /// The integrator's work, one line per communication step, and each handover between its drivers.
     Solver,
 }
 
@@ -32,14 +37,14 @@ impl Category {
         }
     }
 
-    /// What is told in it.
+    /// What its messages are, for the model description.
     pub fn description(self) -> &'static str {
         match self {
-            Self::Error => "Why a call failed; always told",
-            Self::Warning => "What is worth telling though nothing failed; always told",
-            Self::Discard => "Why a step was discarded; always told",
-            Self::Events => "Every change of a mass between free, slipping and sticking",
-            Self::Solver => "The integrator's work, one line a communication step, and handovers of the method auto",
+            Self::Error => "Why a call failed; always on",
+            Self::Warning => "Warnings of calls that succeeded; always on",
+            Self::Discard => "Why a step was discarded; always on",
+            Self::Events => "Every mode change of a mass: free, slipping, sticking",
+            Self::Solver => "The integrator's work, one line per communication step, and handovers of the method auto",
         }
     }
 
@@ -62,7 +67,7 @@ pub(super) struct Message {
 }
 
 impl Message {
-    /// Tells of a fault or a warning.
+    /// A message of a call that returns `status`, or a warning.
     pub(super) fn of_status(status: Status, text: String) -> Self {
         Self { status, category: Category::of(status), text }
     }
@@ -77,16 +82,16 @@ pub(super) struct Log {
 }
 
 impl Log {
-    /// A log that tells everything, or errors, warnings and discarded steps alone.
+    /// A log of all categories, or of errors, warnings and discarded steps alone.
     pub(super) fn new(everything: bool) -> Self {
         Self { events: everything, solver: everything, waiting: Vec::new() }
     }
 
-    /// Asks for the categories named (all, where none is), or for none of those that are not always told.
-    pub(super) fn ask_for(&mut self, on: bool, names: &[&str]) -> Result<(), Fault> {
+    /// Switches on the categories named (all where none is) and off all others, except those that are always on.
+    pub(super) fn select(&mut self, on: bool, names: &[&str]) -> Result<(), Error> {
         let known = |name: &str| Category::ALL.iter().any(|category| category.name() == name);
         if let Some(&name) = names.iter().find(|name| !known(name)) {
-            return Err(Fault::UnknownCategory(name.into()));
+            return Err(Error::UnknownCategory(name.into()));
         }
         let asked = |category: Category| on && (names.is_empty() || names.contains(&category.name()));
         self.events = asked(Category::Events);
@@ -94,8 +99,8 @@ impl Log {
         Ok(())
     }
 
-    /// Whether messages of `category` are told.
-    pub(super) fn tells(&self, category: Category) -> bool {
+    /// Whether the category is on.
+    pub(super) fn includes(&self, category: Category) -> bool {
         match category {
             Category::Error | Category::Warning | Category::Discard => true,
             Category::Events => self.events,
@@ -114,34 +119,128 @@ impl Log {
     }
 }
 
+/// Warnings that the forces do not show, each given once per run: the layer has left its profile; the run is longer than
+/// the reduction of links assumes.
+#[derive(Clone, Debug, Default)]
+pub(super) struct RunWarnings {
+    /// The time at which the run began, s; `None` where it is not known.
+    pub(super) start: Option<f64>,
+    left_profile: bool,
+    outlasted_reduction: bool,
+}
+
+impl RunWarnings {
+    /// New warnings of a run of `definition` that has reached `time` (s).
+    pub(super) fn new_ones(&mut self, definition: &Definition, model: &InstanceModel, time: f64) -> Vec<String> {
+        let Definition::Layer(scene) = definition else { return Vec::new() };
+        let texts = [self.profile(scene, model.carrier().0), self.reduction(scene, time)];
+        texts.into_iter().flatten().map(|text| format!("t = {time} s: {text}")).collect()
+    }
+
+    fn profile(&mut self, scene: &Scene, u: f64) -> Option<String> {
+        let text = if self.left_profile { None } else { scene.off_profile(u) };
+        self.left_profile |= text.is_some();
+        text
+    }
+
+    /// `solver.reduce` replaces slow elements by springs by the duration of the excitation.
+    fn reduction(&mut self, scene: &Scene, time: f64) -> Option<String> {
+        /// Relative rounding of times.
+        const ROUNDING: f64 = 1e-9;
+        if self.outlasted_reduction || scene.solver.reduce == 0.0 {
+            return None;
+        }
+        let duration = scene.duration();
+        if time - self.start? <= duration * (1.0 + ROUNDING) {
+            return None;
+        }
+        self.outlasted_reduction = true;
+        let springs = Reduction::new(scene)?.replaced.into_iter().any(|one| one.by == Replacement::Spring);
+        springs.then(|| {
+            let bound = scene.solver.reduce;
+            format!(
+                "longer than the scene's excitation of {duration} s: solver.reduce = {bound} takes elements for springs that \
+                 relax in longer runs, and its bound grows with time"
+            )
+        })
+    }
+}
+
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use crate::fmi::instance::Instance;
+    use crate::fmi::instance::tests::instance_of;
 
     #[test]
-    fn errors_warnings_and_discards_are_always_told() {
+    fn errors_warnings_and_discards_are_always_on() {
         let log = Log::new(false);
-        let told: Vec<_> = Category::ALL.into_iter().filter(|&category| log.tells(category)).collect();
-        assert_eq!(told, [Category::Error, Category::Warning, Category::Discard]);
+        let on: Vec<_> = Category::ALL.into_iter().filter(|&category| log.includes(category)).collect();
+        assert_eq!(on, [Category::Error, Category::Warning, Category::Discard]);
     }
 
     #[test]
-    fn categories_are_asked_for_by_name_or_all_at_once() {
+    fn categories_are_selected_by_name_or_all_at_once() {
         let mut log = Log::new(false);
-        log.ask_for(true, &["logSolver"]).unwrap();
-        assert!(log.tells(Category::Solver) && !log.tells(Category::Events));
-        log.ask_for(true, &[]).unwrap();
-        assert!(log.tells(Category::Solver) && log.tells(Category::Events));
-        log.ask_for(false, &[]).unwrap();
-        assert!(!log.tells(Category::Solver) && !log.tells(Category::Events));
+        log.select(true, &["logSolver"]).unwrap();
+        assert!(log.includes(Category::Solver) && !log.includes(Category::Events));
+        log.select(true, &[]).unwrap();
+        assert!(log.includes(Category::Solver) && log.includes(Category::Events));
+        log.select(false, &[]).unwrap();
+        assert!(!log.includes(Category::Solver) && !log.includes(Category::Events));
     }
 
     #[test]
     fn an_unknown_category_is_refused_and_changes_nothing() {
         let mut log = Log::new(true);
-        let fault = log.ask_for(false, &["logEvents", "logAll"]).unwrap_err();
-        assert_eq!(fault.to_string(), "unknown log category \"logAll\"");
-        assert!(log.tells(Category::Events));
+        let error = log.select(false, &["logEvents", "logAll"]).unwrap_err();
+        assert_eq!(error.to_string(), "unknown log category \"logAll\"");
+        assert!(log.includes(Category::Events));
+    }
+
+    /// One mass, moved at 1 m/s in steps of 0.25 s: the warnings.
+    fn warnings(surface: &str, rest: &str) -> Vec<String> {
+        let text = format!(
+            "name = 'a'\nlayer = {{ masses = 1, spacing = 1.0, mass = 1.0, clearance = 9.0, vertical = {{ stiffness = 1.0, \
+             maxwell = [{{ stiffness = 1.0, relaxation_time = 1e6 }}] }} }}\nsurface = {{ {surface} }}\n{rest}"
+        );
+        let mut instance = instance_of(&text);
+        instance.take_messages();
+        instance.enter_initialization_mode().unwrap();
+        instance.exit_initialization_mode().unwrap();
+        (0..8).for_each(|i| step(&mut instance, 0.25 * f64::from(i)));
+        instance.take_messages().into_iter().map(|message| message.text).collect()
+    }
+
+    fn step(instance: &mut Instance, time: f64) {
+        instance.state.inputs.set_input(crate::fmi::Input::U, time);
+        instance.do_step(time, 0.25).unwrap();
+    }
+
+    #[test]
+    fn a_layer_that_leaves_its_profile_is_warned_of_once() {
+        // Values without rates run on as they came, from the second step on: at 1.25 s the carrier has come beyond 1 m.
+        let text = "t = 1.25 s: the profile reaches from -1.0 m to 1.0 m, but the layer has come to 1.25 m: \
+                    beyond its ends the profile goes on straight, along its end tangents";
+        assert_eq!(warnings("kind = 'points', x = [-1, 1], z = [0, 1]", ""), [text]);
+        assert!(warnings("kind = 'flat'", "").is_empty());
+    }
+
+    #[test]
+    fn a_run_that_outlasts_its_reduction_is_warned_of_once() {
+        let solver = |reduce: f64, duration: f64| {
+            format!("solver = {{ reduce = {reduce} }}\nexcitation = [{{ duration = {duration} }}]")
+        };
+        let warned = |reduce, duration| warnings("kind = 'flat'", &solver(reduce, duration));
+        let text = warned(1e-3, 1.0);
+        assert!(
+            text.len() == 1 && text[0].starts_with("t = 1.25 s: longer than the scene's excitation of 1 s"),
+            "{text:?}"
+        );
+        assert!(warned(1e-3, 2.0).is_empty());
+        assert!(warned(0.0, 1.0).is_empty());
+        // Nothing is replaced: the bound is too tight.
+        assert!(warned(1e-9, 1.0).is_empty());
     }
 }

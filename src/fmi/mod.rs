@@ -5,39 +5,30 @@
 //! called when is one table, what a value reference means is one [`Catalogue`], which the writer of the model
 //! description uses too. Two files hold unsafe code: `exports` (raw pointers in) and `callbacks` (the master's logger).
 
-mod beyond;
 mod callbacks;
-mod carrier;
-mod catalogue;
-mod clock;
-mod derivatives;
+mod definition;
+mod error;
 mod exports;
-mod fault;
-mod guid;
+mod fmu_states;
+mod inputs;
 mod instance;
 mod lifecycle;
 mod log;
-mod memory;
-mod panics;
-mod parameters;
-mod plant;
+mod model;
 mod resources;
-mod run;
-mod serial;
-mod subject;
+mod state;
 mod values;
 
 #[cfg_attr(feature = "verify-bindings", path = "verify.rs")]
 #[rustfmt::skip]
 pub mod bindings;
 
-pub use carrier::{Carrier, InputOutOfRange};
-pub use catalogue::{Catalogue, Entry, Input, Kind};
+pub use definition::{Catalogue, Definition, Entry, Input, Kind, Sources, guid};
+pub use error::InputOutOfRange;
 pub use exports::*;
-pub use guid::{Sources, guid};
+pub use inputs::Inputs;
 pub use log::Category;
 pub use resources::{SCENE_FILE, TABLE_FILE};
-pub use subject::Subject;
 
 /// The capabilities that the model description claims, as attributes of its element `CoSimulation`; those left out are
 /// false.

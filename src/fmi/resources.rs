@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use percent_encoding::percent_decode_str;
 
-use super::fault::Fault;
+use super::error::Error;
 
 /// The scene's name in the FMU's folder `resources`.
 pub const SCENE_FILE: &str = "scene.toml";
@@ -15,13 +15,13 @@ pub const TABLE_FILE: &str = "table.csv";
 /// The first of `files` that is in the resources at `location`.
 ///
 /// # Errors
-/// [`Fault::NoResource`] with the folders looked in.
-pub(super) fn find(location: &str, files: &'static [&'static str]) -> Result<PathBuf, Fault> {
+/// [`Error::NoResource`] with the folders looked in.
+pub(super) fn find(location: &str, files: &'static [&'static str]) -> Result<PathBuf, Error> {
     let tried: Vec<_> = folders(location).into_iter().map(PathBuf::from).collect();
     let mut paths = tried.iter().flat_map(|folder| files.iter().map(|file| folder.join(file)));
     match paths.find(|path| path.is_file()) {
         Some(path) => Ok(path),
-        None => Err(Fault::NoResource { location: location.into(), files, tried }),
+        None => Err(Error::NoResource { location: location.into(), files, tried }),
     }
 }
 

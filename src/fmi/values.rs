@@ -1,15 +1,14 @@
-//! Getting and setting variables.
+//! Getting and setting variables; derivatives of outputs by inputs at constant states, and of the forces by time.
 
 use std::ffi::CString;
 use std::sync::Arc;
 
-use crate::scene::Value;
-
-use super::catalogue::{Catalogue, Entry, Kind};
-use super::fault::Fault;
+use super::definition::{Catalogue, Entry, Input, Kind, Parameters};
+use super::error::Error;
 use super::instance::Instance;
-use super::parameters::Parameters;
-use super::run::Run;
+use super::state::InstanceState;
+use crate::outputs::{Output, Variable};
+use crate::scene::{Value, is_possible};
 
 /// The outputs at the last communication point, computed when first asked for.
 #[derive(Debug, Default)]
@@ -19,18 +18,18 @@ pub(super) struct Outputs {
 }
 
 impl Outputs {
-    /// Something that they follow has changed.
+    /// Marks them as outdated: something that they depend on has changed.
     pub(super) fn outdate(&mut self) {
         if let Some(values) = self.values.take() {
             self.spare = values;
         }
     }
 
-    fn get(&mut self, run: &mut Run, catalogue: &Catalogue) -> Result<&[f64], Fault> {
+    fn get(&mut self, state: &mut InstanceState, catalogue: &Catalogue) -> Result<&[f64], Error> {
         if self.values.is_none() {
             let mut values = std::mem::take(&mut self.spare);
             values.resize(catalogue.outputs().len(), 0.0);
-            run.plant()?.evaluate(catalogue.outputs(), &mut values);
+            state.model()?.evaluate(catalogue.outputs(), &mut values);
             self.values = Some(values);
         }
         Ok(self.values.as_deref().unwrap_or_default())
@@ -39,16 +38,16 @@ impl Outputs {
 
 impl Instance {
     /// The values of variables of the type `kind`.
-    fn get(&mut self, references: &[u32], kind: Kind) -> Result<Vec<Value>, Fault> {
+    fn get(&mut self, references: &[u32], kind: Kind) -> Result<Vec<Value>, Error> {
         references.iter().map(|&reference| self.get_one(reference, kind)).collect()
     }
 
-    fn get_one(&mut self, reference: u32, kind: Kind) -> Result<Value, Fault> {
+    fn get_one(&mut self, reference: u32, kind: Kind) -> Result<Value, Error> {
         match self.catalogue.find(reference, kind)? {
-            Entry::Input(input) => Ok(Value::Real(self.run.carrier.input(input))),
-            Entry::Parameter(parameter, _) => Ok(self.run.parameters.subject().parameter(parameter)),
-            Entry::Output(place, variable) => match self.outputs.get(&mut self.run, &self.catalogue)?[place] {
-                value if !value.is_finite() => Err(Fault::NoValue { name: variable.name.clone(), value }),
+            Entry::Input(input) => Ok(Value::Real(self.state.inputs.input(input))),
+            Entry::Parameter(parameter, _) => Ok(self.state.parameters.definition().parameter(parameter)),
+            Entry::Output(index, variable) => match self.outputs.get(&mut self.state, &self.catalogue)?[index] {
+                value if !value.is_finite() => Err(Error::NoValue { name: variable.name.clone(), value }),
                 value if kind == Kind::Real => Ok(Value::Real(value)),
                 // Saturates: a count is held at the largest Integer.
                 value => Ok(Value::Integer(value as i32)),
@@ -57,7 +56,7 @@ impl Instance {
     }
 
     /// fmi2GetReal: all of the values or none; asked for at every communication point, so nothing is allocated.
-    pub(super) fn get_reals(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), Fault> {
+    pub(super) fn get_reals(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), Error> {
         self.check(references, Kind::Real)?;
         for (place, &reference) in values.iter_mut().zip(references) {
             if let Value::Real(value) = self.get_one(reference, Kind::Real)? {
@@ -68,7 +67,7 @@ impl Instance {
     }
 
     /// fmi2GetInteger: as [`get_reals`](Self::get_reals).
-    pub(super) fn get_integers(&mut self, references: &[u32], values: &mut [i32]) -> Result<(), Fault> {
+    pub(super) fn get_integers(&mut self, references: &[u32], values: &mut [i32]) -> Result<(), Error> {
         self.check(references, Kind::Integer)?;
         for (place, &reference) in values.iter_mut().zip(references) {
             if let Value::Integer(value) = self.get_one(reference, Kind::Integer)? {
@@ -79,73 +78,148 @@ impl Instance {
     }
 
     /// Refuses what has no value of the type `kind`.
-    fn check(&mut self, references: &[u32], kind: Kind) -> Result<(), Fault> {
+    fn check(&mut self, references: &[u32], kind: Kind) -> Result<(), Error> {
         references.iter().try_for_each(|&reference| self.get_one(reference, kind).map(|_| ()))
     }
 
     /// fmi2GetString: the values stay until the next call of it.
-    pub(super) fn get_strings(&mut self, references: &[u32]) -> Result<&[CString], Fault> {
+    pub(super) fn get_strings(&mut self, references: &[u32]) -> Result<&[CString], Error> {
         let found = self.get(references, Kind::Text)?;
         let text = |value| if let Value::Text(text) = value { text } else { String::new() };
         self.texts = found.into_iter().map(|value| CString::new(text(value)).unwrap_or_default()).collect();
         Ok(&self.texts)
     }
 
-    /// fmi2GetBoolean and fmi2SetBoolean: no variable is a Boolean, so that every reference is refused.
-    pub(super) fn refuse_booleans(&mut self, references: &[u32]) -> Result<(), Fault> {
+    /// fmi2GetBoolean and fmi2SetBoolean: no variable is a Boolean, so every reference is refused.
+    pub(super) fn refuse_booleans(&mut self, references: &[u32]) -> Result<(), Error> {
         references.iter().try_for_each(|&reference| self.catalogue.find(reference, Kind::Boolean).map(|_| ()))
     }
 
     /// fmi2SetReal, fmi2SetInteger and fmi2SetString: all of the values or none.
     ///
-    /// An input that is no number, or none that a carrier can be at, is taken here and refused by the step: a master
-    /// may write it for as long as it does not ask the model to follow it.
-    pub(super) fn set(&mut self, references: &[u32], values: impl Iterator<Item = Value>) -> Result<(), Fault> {
-        let mut parameters = Arc::clone(&self.run.parameters);
-        let mut carrier = self.run.carrier;
+    /// An input that is not a number or out of range is accepted here and refused by the step: a master may set it as long
+    /// as it does not ask the model to follow it.
+    pub(super) fn set(&mut self, references: &[u32], values: impl Iterator<Item = Value>) -> Result<(), Error> {
+        let mut parameters = Arc::clone(&self.state.parameters);
+        let mut inputs = self.state.inputs;
         for (&reference, value) in references.iter().zip(values) {
             match (self.catalogue.find(reference, kind_of(&value))?, value) {
-                (Entry::Input(input), Value::Real(value)) => carrier.set_input(input, value),
+                (Entry::Input(input), Value::Real(value)) => inputs.set_input(input, value),
                 (entry @ Entry::Parameter(..), value) => self.set_parameter(&mut parameters, entry, value)?,
-                (entry, _) => return Err(Fault::OutputSet(entry.name())),
+                (entry, _) => return Err(Error::OutputSet(entry.name())),
             }
         }
-        self.run.parameters = parameters;
-        self.run.carrier = carrier;
-        self.start_anew();
+        self.state.parameters = parameters;
+        self.state.inputs = inputs;
+        self.update_start();
         Ok(())
     }
 
-    fn set_parameter(&self, parameters: &mut Arc<Parameters>, entry: Entry<'_>, value: Value) -> Result<(), Fault> {
+    fn set_parameter(&self, parameters: &mut Arc<Parameters>, entry: Entry<'_>, value: Value) -> Result<(), Error> {
         let Entry::Parameter(parameter, _) = entry else { return Ok(()) };
-        if !self.run.state.before_run() {
-            return Err(Fault::Late { name: entry.name(), state: self.run.state });
+        if !self.state.lifecycle.before_run() {
+            return Err(Error::Late { name: entry.name(), state: self.state.lifecycle });
         }
         Ok(Arc::make_mut(parameters).set(parameter, value)?)
     }
 
     /// fmi2SetRealInputDerivatives: all of them or none.
-    pub(super) fn set_rates(&mut self, references: &[u32], orders: &[i32], rates: &[f64]) -> Result<(), Fault> {
-        let mut carrier = self.run.carrier;
+    pub(super) fn set_rates(&mut self, references: &[u32], orders: &[i32], rates: &[f64]) -> Result<(), Error> {
+        let mut inputs = self.state.inputs;
         for ((&reference, &order), &rate) in references.iter().zip(orders).zip(rates) {
             match (self.catalogue.find(reference, Kind::Real)?, order) {
-                (Entry::Input(input), 1) => carrier.set_rate(input, rate),
-                (Entry::Input(input), _) => return Err(Fault::DerivativeOrder { name: input.name().into(), order }),
-                (entry, _) => return Err(Fault::NoInput(entry.name())),
+                (Entry::Input(input), 1) => inputs.set_rate(input, rate),
+                (Entry::Input(input), _) => return Err(Error::DerivativeOrder { name: input.name().into(), order }),
+                (entry, _) => return Err(Error::NoInput(entry.name())),
             }
         }
-        self.run.carrier = carrier;
-        self.start_anew();
+        self.state.inputs = inputs;
+        self.update_start();
         Ok(())
     }
 
-    /// Inputs and parameters set before the run are those that it starts from; set later, inputs are those of the next
-    /// step, and the outputs stay what they were at the last communication point.
-    fn start_anew(&mut self) {
-        if self.run.state.before_run() {
-            self.run.start_anew();
+    /// Inputs and parameters set before the run are those that it starts from. Inputs set later are those of the next step;
+    /// the outputs remain those at the last communication point.
+    fn update_start(&mut self) {
+        if self.state.lifecycle.before_run() {
+            self.state.discard_start();
             self.outputs.outdate();
         }
+    }
+
+    /// fmi2GetDirectionalDerivative: the unknowns are the Real outputs of the model structure, the knowns the inputs.
+    pub(super) fn directional_derivatives(
+        &mut self,
+        unknowns: &[u32],
+        knowns: &[u32],
+        direction: &[f64],
+        values: &mut [f64],
+    ) -> Result<(), Error> {
+        let unknowns = unknowns.iter().map(|&reference| self.unknown(reference)).collect::<Result<Vec<_>, _>>()?;
+        let direction = self.direction(knowns, direction)?;
+        let found = unknowns.iter().map(|unknown| self.directional_derivative(unknown, direction));
+        let found = found.collect::<Result<Vec<_>, _>>()?;
+        values.iter_mut().zip(found).for_each(|(place, value)| *place = value);
+        Ok(())
+    }
+
+    fn unknown(&self, reference: u32) -> Result<Variable, Error> {
+        match self.catalogue.find(reference, Kind::Real)? {
+            Entry::Output(_, variable) if variable.is_output() => Ok(variable.clone()),
+            entry => Err(Error::NoUnknown(entry.name())),
+        }
+    }
+
+    /// The displacement of the carrier along x and z.
+    fn direction(&self, knowns: &[u32], steps: &[f64]) -> Result<(f64, f64), Error> {
+        let (mut du, mut dw) = (0.0, 0.0);
+        for (&reference, &step) in knowns.iter().zip(steps) {
+            match self.catalogue.find(reference, Kind::Real)? {
+                _ if !is_possible(step) => {
+                    return Err(Error::OutOfRange { what: "a value of dvKnown", value: step });
+                }
+                Entry::Input(Input::U) => du += step,
+                Entry::Input(Input::W) => dw += step,
+                entry => return Err(Error::NoKnown(entry.name())),
+            }
+        }
+        Ok((du, dw))
+    }
+
+    fn directional_derivative(&mut self, unknown: &Variable, direction: (f64, f64)) -> Result<f64, Error> {
+        // One table says what depends on what, here and in the model description.
+        let direction = self.state.parameters.definition().dependencies(unknown.output).part_of(direction);
+        let mut value = [0.0];
+        self.state.model()?.directional_derivative(std::slice::from_ref(unknown), direction, &mut value);
+        finite(&unknown.name, value[0])
+    }
+
+    /// fmi2GetRealOutputDerivatives: the first derivatives of F_x and F_z at the current time.
+    pub(super) fn output_derivatives(
+        &mut self,
+        references: &[u32],
+        orders: &[i32],
+        values: &mut [f64],
+    ) -> Result<(), Error> {
+        let found = references.iter().zip(orders).map(|(&reference, &order)| self.output_derivative(reference, order));
+        let found = found.collect::<Result<Vec<_>, _>>()?;
+        values.iter_mut().zip(found).for_each(|(place, value)| *place = value);
+        Ok(())
+    }
+
+    fn output_derivative(&mut self, reference: u32, order: i32) -> Result<f64, Error> {
+        let entry = self.catalogue.find(reference, Kind::Real)?;
+        let name = entry.name();
+        let of_x = match entry {
+            Entry::Output(_, Variable { output: Output::ForceX, .. }) => true,
+            Entry::Output(_, Variable { output: Output::ForceZ, .. }) => false,
+            _ => return Err(Error::NoOutputDerivative(name)),
+        };
+        if order != 1 {
+            return Err(Error::DerivativeOrder { name, order });
+        }
+        let (x, z) = self.state.model()?.force_rates();
+        finite(&name, if of_x { x } else { z })
     }
 }
 
@@ -155,4 +229,8 @@ fn kind_of(value: &Value) -> Kind {
         Value::Integer(_) => Kind::Integer,
         Value::Text(_) => Kind::Text,
     }
+}
+
+fn finite(name: &str, value: f64) -> Result<f64, Error> {
+    if value.is_finite() { Ok(value) } else { Err(Error::NoValue { name: format!("the derivative of {name}"), value }) }
 }

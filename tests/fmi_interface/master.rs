@@ -8,7 +8,7 @@ use std::{fs, mem, process, ptr};
 
 use asperity::element::{PointContact, Table};
 use asperity::fmi::bindings::*;
-use asperity::fmi::{self, Catalogue, SCENE_FILE, Sources, Subject, TABLE_FILE};
+use asperity::fmi::{self, Catalogue, Definition, SCENE_FILE, Sources, TABLE_FILE};
 use asperity::scene::Scene;
 
 pub const OK: fmi2Status = fmi2Status_fmi2OK;
@@ -104,13 +104,13 @@ impl Folder {
     /// The GUID and the variables of the scene, or the table, in it.
     pub fn description(&self) -> (String, Catalogue) {
         let table = self.0.join(TABLE_FILE);
-        let (subject, file): (Subject, _) = if table.is_file() {
+        let (definition, file): (Definition, _) = if table.is_file() {
             (PointContact::new(Table::load(&table).unwrap()).into(), table)
         } else {
             (Scene::load(&self.scene_file()).unwrap().into(), self.scene_file())
         };
-        let catalogue = Catalogue::of(&subject);
-        (fmi::guid(&Sources::of(&file, &subject).unwrap(), &catalogue), catalogue)
+        let catalogue = Catalogue::of(&definition);
+        (fmi::guid(&Sources::of(&file, &definition).unwrap(), &catalogue), catalogue)
     }
 }
 

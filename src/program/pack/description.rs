@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::io;
 
-use asperity::fmi::{CAPABILITIES, Catalogue, Category, Entry, Input, Kind, Subject};
+use asperity::fmi::{CAPABILITIES, Catalogue, Category, Definition, Entry, Input, Kind};
 use asperity::outputs::Dependencies;
 use asperity::scene::{Unit, Value};
 use quick_xml::Writer;
@@ -17,7 +17,7 @@ type Xml = Writer<Vec<u8>>;
 const DEFAULT_STEPS: f64 = 500.0;
 
 /// Writes the description of a layer or an element, whose variables are in `catalogue`.
-pub(super) fn write(definition: &Subject, catalogue: &Catalogue, guid: &str) -> io::Result<Vec<u8>> {
+pub(super) fn write(definition: &Definition, catalogue: &Catalogue, guid: &str) -> io::Result<Vec<u8>> {
     let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
     xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
     let description = clean(&definition.description());
@@ -41,7 +41,7 @@ pub(super) fn clean(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
-fn content(xml: &mut Xml, definition: &Subject, catalogue: &Catalogue) -> io::Result<()> {
+fn content(xml: &mut Xml, definition: &Definition, catalogue: &Catalogue) -> io::Result<()> {
     co_simulation(xml, definition)?;
     unit_definitions(xml, catalogue)?;
     log_categories(xml)?;
@@ -50,7 +50,7 @@ fn content(xml: &mut Xml, definition: &Subject, catalogue: &Catalogue) -> io::Re
     model_structure(xml, definition, catalogue)
 }
 
-fn co_simulation(xml: &mut Xml, definition: &Subject) -> io::Result<()> {
+fn co_simulation(xml: &mut Xml, definition: &Definition) -> io::Result<()> {
     xml.create_element("CoSimulation")
         .with_attribute(("modelIdentifier", definition.model_identifier().as_str()))
         .with_attributes(CAPABILITIES)
@@ -69,8 +69,8 @@ fn log_categories(xml: &mut Xml) -> io::Result<()> {
 }
 
 /// The excitation's duration as the time to simulate; a scene without one, and an element, have no default.
-fn default_experiment(xml: &mut Xml, definition: &Subject) -> io::Result<()> {
-    let Subject::Layer(scene) = definition else { return Ok(()) };
+fn default_experiment(xml: &mut Xml, definition: &Definition) -> io::Result<()> {
+    let Definition::Layer(scene) = definition else { return Ok(()) };
     let stop = as_written(scene.duration());
     if stop <= 0.0 {
         return Ok(());
@@ -153,7 +153,7 @@ pub(super) fn causality(entry: &Entry<'_>) -> &'static str {
 }
 
 /// The start value; calculated variables have none.
-pub(super) fn start(definition: &Subject, entry: &Entry<'_>) -> Option<String> {
+pub(super) fn start(definition: &Definition, entry: &Entry<'_>) -> Option<String> {
     match entry {
         Entry::Input(_) => Some(real(0.0)),
         Entry::Output(..) => None,
@@ -166,14 +166,14 @@ pub(super) fn start(definition: &Subject, entry: &Entry<'_>) -> Option<String> {
 }
 
 /// Writes `ModelVariables`: inputs, outputs and parameters in the order of their value references.
-fn model_variables(xml: &mut Xml, definition: &Subject, catalogue: &Catalogue) -> io::Result<()> {
+fn model_variables(xml: &mut Xml, definition: &Definition, catalogue: &Catalogue) -> io::Result<()> {
     xml.create_element("ModelVariables").write_inner_content(|xml| {
         catalogue.entries().try_for_each(|(reference, entry)| scalar_variable(xml, definition, reference, &entry))
     })?;
     Ok(())
 }
 
-fn scalar_variable(xml: &mut Xml, definition: &Subject, reference: u32, entry: &Entry<'_>) -> io::Result<()> {
+fn scalar_variable(xml: &mut Xml, definition: &Definition, reference: u32, entry: &Entry<'_>) -> io::Result<()> {
     xml.create_element("ScalarVariable")
         .with_attribute(("name", entry.name().as_str()))
         .with_attribute(("valueReference", reference.to_string().as_str()))
@@ -211,7 +211,7 @@ fn typed(xml: &mut Xml, entry: &Entry<'_>, start: Option<String>) -> io::Result<
         .map(drop)
 }
 
-fn model_structure(xml: &mut Xml, definition: &Subject, catalogue: &Catalogue) -> io::Result<()> {
+fn model_structure(xml: &mut Xml, definition: &Definition, catalogue: &Catalogue) -> io::Result<()> {
     let outputs = |(reference, entry)| match entry {
         Entry::Output(_, variable) if variable.is_output() => Some((reference, variable)),
         _ => None,

@@ -3,7 +3,7 @@
 use std::io;
 
 use asperity::element::{LeftOut, Load, OperatingPoint, Table, left_out};
-use asperity::fmi::{Catalogue, Entry, Kind, Subject};
+use asperity::fmi::{Catalogue, Definition, Entry, Kind};
 use quick_xml::escape::escape;
 
 use super::description;
@@ -30,8 +30,8 @@ pub(super) const FILES: [(&str, &str); 5] = [
 ];
 
 /// index.html: a summary of the scene or the table, the variables, the parameters, the equations.
-pub(super) fn write(definition: &Subject, catalogue: &Catalogue, summary: &[LabelledLine]) -> io::Result<Vec<u8>> {
-    let page = if matches!(definition, Subject::Element(_)) { ELEMENT_PAGE } else { LAYER_PAGE };
+pub(super) fn write(definition: &Definition, catalogue: &Catalogue, summary: &[LabelledLine]) -> io::Result<Vec<u8>> {
+    let page = if matches!(definition, Definition::Element(_)) { ELEMENT_PAGE } else { LAYER_PAGE };
     let summary: Vec<_> = summary.iter().map(|(name, text)| [(*name).into(), description::clean(text)]).collect();
     let is_parameter = |entry: &Entry<'_>| matches!(entry, Entry::Parameter(..));
     let (parameters, variables): (Vec<_>, Vec<_>) = catalogue.entries().map(|(_, entry)| entry).partition(is_parameter);

@@ -10,7 +10,7 @@ use std::io;
 use std::path::{Component, Path, PathBuf};
 
 use asperity::element::{PointContact, Table, TableError};
-use asperity::fmi::{Catalogue, Sources, Subject, guid};
+use asperity::fmi::{Catalogue, Definition, Sources, guid};
 
 use super::cli::Pack;
 use super::describe;
@@ -46,11 +46,11 @@ pub(crate) fn pack(command: &Pack) -> Result<(), PackError> {
     entries.extend(documents(&definition, &path, &summary)?);
     let bytes = archive::zip(entries).map_err(ArchiveError::from)?;
     write(&command.output, bytes)?;
-    if matches!(definition, Subject::Element(_)) { Ok(print(&lines(&summary))?) } else { Ok(()) }
+    if matches!(definition, Definition::Element(_)) { Ok(print(&lines(&summary))?) } else { Ok(()) }
 }
 
 /// What is packed, and the file that it is read from.
-fn load(command: &Pack) -> Result<(Subject, PathBuf), PackError> {
+fn load(command: &Pack) -> Result<(Definition, PathBuf), PackError> {
     match (&command.table, &command.scene) {
         (Some(table), _) => Ok((PointContact::new(Table::load(table)?).into(), table.clone())),
         (None, scene) => {
@@ -61,10 +61,10 @@ fn load(command: &Pack) -> Result<(Subject, PathBuf), PackError> {
 }
 
 /// What there is in the scene or in the table, and the errors of an element.
-fn summary(command: &Pack, definition: &Subject) -> Result<Vec<LabelledLine>, PackError> {
+fn summary(command: &Pack, definition: &Definition) -> Result<Vec<LabelledLine>, PackError> {
     let contact = match definition {
-        Subject::Layer(scene) => return Ok(describe::rows(scene)),
-        Subject::Element(contact) => contact,
+        Definition::Layer(scene) => return Ok(describe::rows(scene)),
+        Definition::Element(contact) => contact,
     };
     let mut rows = documentation::table_rows(contact.table());
     if let Some(scene) = &command.check {
@@ -74,7 +74,7 @@ fn summary(command: &Pack, definition: &Subject) -> Result<Vec<LabelledLine>, Pa
 }
 
 /// The scene or the table, under a fixed name, and the files that a scene reads.
-fn resources(definition: &Subject, path: &Path) -> Result<Vec<Entry>, PackError> {
+fn resources(definition: &Definition, path: &Path) -> Result<Vec<Entry>, PackError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut entries = vec![Entry::new(format!("resources/{}", definition.file_name()), read(path)?)];
     for file in definition.files() {
@@ -94,7 +94,7 @@ fn archive_path(file: &Path) -> Result<String, PackError> {
 }
 
 /// Model description, documentation, picture, licences.
-fn documents(definition: &Subject, path: &Path, summary: &[LabelledLine]) -> Result<Vec<Entry>, PackError> {
+fn documents(definition: &Definition, path: &Path, summary: &[LabelledLine]) -> Result<Vec<Entry>, PackError> {
     let document = |document, source| PackError::Document { document, source };
     let catalogue = Catalogue::of(definition);
     let guid = guid(&Sources::of(path, definition).map_err(FileError::io("read", path))?, &catalogue);
@@ -103,8 +103,8 @@ fn documents(definition: &Subject, path: &Path, summary: &[LabelledLine]) -> Res
     let index = documentation::write(definition, &catalogue, summary);
     let index = index.map_err(|error| document("documentation/index.html", error))?;
     let picture = match definition {
-        Subject::Layer(scene) => picture::layer_png(scene),
-        Subject::Element(contact) => picture::element_png(contact.table()),
+        Definition::Layer(scene) => picture::layer_png(scene),
+        Definition::Element(contact) => picture::element_png(contact.table()),
     };
     let picture = picture.map_err(|error| FileError::picture(Path::new("model.png"), &*error))?;
     let written = [("modelDescription.xml", description), ("documentation/index.html", index), ("model.png", picture)];

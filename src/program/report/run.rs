@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use asperity::fmi::{Carrier as Inputs, Input, InputOutOfRange};
+use asperity::fmi::{Input, InputOutOfRange, Inputs};
 use asperity::outputs::{Output, Snapshot, Variable, variables};
 use asperity::robustness::{Budget, Failure};
 use asperity::scene::{OutputGroup, Phase, Scene};
@@ -224,7 +224,7 @@ impl<'a> Master<'a> {
         let (stands, h) = (self.simulation.carrier(), to - from);
         let motion = self.inputs.motion(stands, self.carrier.time, h, self.scene.extrapolation)?;
         self.simulation.advance(&motion)?;
-        self.inputs.count_step(h);
+        self.inputs.complete_step(h);
         self.recorder.row(&self.simulation.snapshot());
         self.carrier = start.moved(phase, to);
         Ok(())

@@ -6,7 +6,7 @@ use std::{env, fmt, fs, mem, process, ptr};
 
 use asperity::element::{PointContact, Table};
 use asperity::fmi::bindings::*;
-use asperity::fmi::{self, Catalogue, Entry, Kind, SCENE_FILE, Sources, Subject, TABLE_FILE};
+use asperity::fmi::{self, Catalogue, Definition, Entry, Kind, SCENE_FILE, Sources, TABLE_FILE};
 use asperity::scene::{OutputGroup, Scene};
 
 pub const OK: fmi2Status = fmi2Status_fmi2OK;
@@ -124,13 +124,13 @@ impl Site {
         fs::create_dir_all(&folder).unwrap();
         let file = folder.join(file);
         fs::write(&file, text).unwrap();
-        let subject: Subject = if file.ends_with(TABLE_FILE) {
+        let definition: Definition = if file.ends_with(TABLE_FILE) {
             PointContact::new(Table::load(&file).unwrap()).into()
         } else {
             Scene::load(&file).unwrap().into()
         };
-        let catalogue = Catalogue::of(&subject);
-        let guid = fmi::guid(&Sources::of(&file, &subject).unwrap(), &catalogue);
+        let catalogue = Catalogue::of(&definition);
+        let guid = fmi::guid(&Sources::of(&file, &definition).unwrap(), &catalogue);
         let of = |take: &dyn Fn(&Entry<'_>) -> bool| {
             catalogue.entries().filter(|(_, entry)| take(entry)).map(|(reference, _)| reference).collect::<Vec<_>>()
         };

@@ -1,21 +1,23 @@
-//! The carrier's motion between communication points: û is continuous and runs straight to a target.
+//! The inputs and the carrier's motion that follows from them: between communication points û is continuous and runs
+//! straight to a target.
 
 use serde::{Deserialize, Serialize};
 
 use crate::scene::{Extrapolation, Path, is_possible};
 use crate::simulation::{Motion, Start};
 
-use super::catalogue::Input;
+use super::definition::Input;
+use super::error::InputOutOfRange;
 
-/// The carrier as the master moves it.
+/// The inputs as the master sets them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Carrier {
-    axes: [Axis; 2],
+pub struct Inputs {
+    displacements: [Displacement; 2],
 }
 
-/// One displacement of the carrier.
+/// One displacement of the carrier: where it is and what the next step follows from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Axis {
+struct Displacement {
     /// u_n, m: the input's value.
     value: f64,
     /// u̇_n, m/s, if the master gave it for the next step.
@@ -33,39 +35,26 @@ struct Past {
     step: f64,
 }
 
-/// The master gave an input that is no number or larger than [`LARGEST`](crate::scene::LARGEST), or a rate that leads
-/// to such a one.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("the input {name} is {value:?} at t = {time} s: no step can be done")]
-pub struct InputOutOfRange {
-    /// The input's name.
-    pub name: &'static str,
-    /// What it is or would become.
-    pub value: f64,
-    /// The time of the step, s.
-    pub time: f64,
-}
-
-impl Carrier {
+impl Inputs {
     /// The value of an input.
     pub fn input(&self, input: Input) -> f64 {
-        self.axes[input as usize].value
+        self.displacements[input as usize].value
     }
 
-    /// Gives an input a value.
+    /// Sets an input.
     pub fn set_input(&mut self, input: Input, value: f64) {
-        self.axes[input as usize].value = value;
+        self.displacements[input as usize].value = value;
     }
 
-    /// Gives an input a first derivative for the next step.
+    /// Sets the first derivative of an input for the next step.
     pub fn set_rate(&mut self, input: Input, rate: f64) {
-        self.axes[input as usize].rate = Some(rate);
+        self.displacements[input as usize].rate = Some(rate);
     }
 
-    /// The carrier at the start: it stands where the inputs say and moves at the derivatives given, else not at all.
-    /// The derivatives stay: they are those of the first step, too, unless the master gives others.
+    /// The carrier at the start: at the displacements given, with the derivatives given as its velocity, else at rest.
+    /// The derivatives remain those of the first step unless the master sets others.
     pub fn start(&self, time: f64) -> Start {
-        let [u, w] = &self.axes;
+        let [u, w] = &self.displacements;
         Start { time, u: u.value, w: w.value, u_rate: u.rate.unwrap_or_default(), w_rate: w.rate.unwrap_or_default() }
     }
 
@@ -82,36 +71,36 @@ impl Carrier {
         rule: Extrapolation,
     ) -> Result<Motion, InputOutOfRange> {
         let path = |input: Input, from: f64| {
-            let axis = &self.axes[input as usize];
-            let target = axis.checked_target(input, time, h, rule)?;
+            let displacement = &self.displacements[input as usize];
+            let target = displacement.checked_target(input, time, h, rule)?;
             Ok::<_, InputOutOfRange>(Path {
-                rate: axis.given_rate(from).unwrap_or((target - from) / h),
+                rate: displacement.given_rate(from).unwrap_or((target - from) / h),
                 ..Path::default()
             })
         };
         Ok(Motion { duration: h, u: path(Input::U, u)?, w: path(Input::W, w)? })
     }
 
-    /// Whether a run can have come to it: what was followed was finite. Values and rates not yet followed may be
-    /// anything.
-    pub(super) fn is_sound(&self) -> bool {
-        let pasts = self.axes.iter().filter_map(|axis| axis.past.as_ref());
+    /// Whether a run can have reached these inputs: the values of past steps are finite. Values and rates of the next step
+    /// may be anything.
+    pub(super) fn is_valid(&self) -> bool {
+        let pasts = self.displacements.iter().filter_map(|displacement| displacement.past.as_ref());
         pasts.into_iter().all(|past| is_possible(past.value) && is_possible(past.step) && past.step > 0.0)
     }
 
-    /// Counts a step of `h` as done: its derivatives are used up.
-    pub fn count_step(&mut self, h: f64) {
-        for axis in &mut self.axes {
-            axis.rate = None;
-            axis.past = Some(Past { value: axis.value, step: h });
+    /// Completes a step of `h`: its derivatives apply to no other.
+    pub fn complete_step(&mut self, h: f64) {
+        for displacement in &mut self.displacements {
+            displacement.rate = None;
+            displacement.past = Some(Past { value: displacement.value, step: h });
         }
     }
 }
 
-/// Places that differ by less than this part of the larger one differ by rounding.
+/// Displacements whose relative difference is smaller are equal but for rounding.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-impl Axis {
+impl Displacement {
     /// The rate that the master gave, if û stands at its value but for rounding. It is then followed as it is: found
     /// from the difference to the target it would bear that rounding over h, a kink of a steady motion at every point.
     fn given_rate(&self, stands: f64) -> Option<f64> {
@@ -146,16 +135,16 @@ impl Axis {
 mod tests {
     use super::*;
 
-    fn at(value: f64) -> Carrier {
-        let mut carrier = Carrier::default();
-        carrier.set_input(Input::U, value);
-        carrier
+    fn at(value: f64) -> Inputs {
+        let mut inputs = Inputs::default();
+        inputs.set_input(Input::U, value);
+        inputs
     }
 
     /// Does a step with û and ŵ at 0 and gives where they end.
-    fn step(carrier: &mut Carrier, h: f64, rule: Extrapolation) -> [f64; 2] {
-        let motion = carrier.motion((0.0, 0.0), 0.0, h, rule).unwrap();
-        carrier.count_step(h);
+    fn step(inputs: &mut Inputs, h: f64, rule: Extrapolation) -> [f64; 2] {
+        let motion = inputs.motion((0.0, 0.0), 0.0, h, rule).unwrap();
+        inputs.complete_step(h);
         [motion.u.rate * h, motion.w.rate * h]
     }
 
@@ -166,40 +155,40 @@ mod tests {
 
     #[test]
     fn linear_extrapolation_follows_a_steady_motion_from_the_second_step_on() {
-        let mut carrier = at(0.0);
-        step(&mut carrier, 1.0, Extrapolation::Linear);
+        let mut inputs = at(0.0);
+        step(&mut inputs, 1.0, Extrapolation::Linear);
         for (value, h, target) in [(2.0, 0.5, 3.0), (3.0, 0.5, 4.0), (4.0, 0.25, 4.5)] {
-            carrier.set_input(Input::U, value);
-            assert_eq!(step(&mut carrier, h, Extrapolation::Linear), [target, 0.0]);
+            inputs.set_input(Input::U, value);
+            assert_eq!(step(&mut inputs, h, Extrapolation::Linear), [target, 0.0]);
         }
     }
 
     #[test]
     fn hold_lags_by_one_step_and_never_overshoots() {
-        let mut carrier = at(0.0);
+        let mut inputs = at(0.0);
         for value in [1.0, 2.0, 2.0] {
-            carrier.set_input(Input::U, value);
-            assert_eq!(step(&mut carrier, 1.0, Extrapolation::Hold), [value, 0.0]);
+            inputs.set_input(Input::U, value);
+            assert_eq!(step(&mut inputs, 1.0, Extrapolation::Hold), [value, 0.0]);
         }
     }
 
     #[test]
     fn a_rate_counts_for_one_step_and_its_own_input() {
-        let mut carrier = at(0.0);
-        carrier.set_rate(Input::U, 2.0);
-        assert_eq!(step(&mut carrier, 0.5, Extrapolation::Linear), [1.0, 0.0]);
-        carrier.set_input(Input::U, 1.0);
+        let mut inputs = at(0.0);
+        inputs.set_rate(Input::U, 2.0);
+        assert_eq!(step(&mut inputs, 0.5, Extrapolation::Linear), [1.0, 0.0]);
+        inputs.set_input(Input::U, 1.0);
         // 1 + (1 - 0)·0.25/0.5
-        assert_eq!(step(&mut carrier, 0.25, Extrapolation::Linear), [1.5, 0.0]);
+        assert_eq!(step(&mut inputs, 0.25, Extrapolation::Linear), [1.5, 0.0]);
     }
 
     #[test]
     fn rates_before_the_start_are_the_starting_velocity_and_those_of_the_first_step() {
-        let mut carrier = Carrier::default();
-        carrier.set_rate(Input::W, -0.5);
-        assert_eq!(carrier.start(2.0), Start { time: 2.0, w_rate: -0.5, ..Start::default() });
-        assert_eq!(step(&mut carrier, 0.5, Extrapolation::Linear), [0.0, -0.25]);
-        assert_eq!(step(&mut carrier, 0.5, Extrapolation::Hold), [0.0, 0.0]);
+        let mut inputs = Inputs::default();
+        inputs.set_rate(Input::W, -0.5);
+        assert_eq!(inputs.start(2.0), Start { time: 2.0, w_rate: -0.5, ..Start::default() });
+        assert_eq!(step(&mut inputs, 0.5, Extrapolation::Linear), [0.0, -0.25]);
+        assert_eq!(step(&mut inputs, 0.5, Extrapolation::Hold), [0.0, 0.0]);
     }
 
     #[test]
@@ -213,9 +202,9 @@ mod tests {
     #[test]
     fn a_rate_given_where_the_carrier_stands_is_followed_as_it_is() {
         let rate = |stands: f64| {
-            let mut carrier = at(1e6 + 0.1);
-            carrier.set_rate(Input::U, 0.3);
-            carrier.motion((stands, 0.0), 0.0, 1e-6, Extrapolation::Linear).unwrap().u.rate
+            let mut inputs = at(1e6 + 0.1);
+            inputs.set_rate(Input::U, 0.3);
+            inputs.motion((stands, 0.0), 0.0, 1e-6, Extrapolation::Linear).unwrap().u.rate
         };
         let value: f64 = 1e6 + 0.1;
         for stands in [value, value.next_up(), value.next_down()] {
@@ -228,11 +217,11 @@ mod tests {
 
     #[test]
     fn values_and_rates_that_are_not_finite_stop_the_step() {
-        let mut carrier = at(f64::NAN);
-        assert!(carrier.motion((0.0, 0.0), 0.0, 1.0, Extrapolation::Linear).is_err());
-        carrier.set_input(Input::U, 0.0);
-        carrier.set_rate(Input::U, f64::INFINITY);
-        let fault = carrier.motion((0.0, 0.0), 0.0, 1.0, Extrapolation::Linear).unwrap_err();
+        let mut inputs = at(f64::NAN);
+        assert!(inputs.motion((0.0, 0.0), 0.0, 1.0, Extrapolation::Linear).is_err());
+        inputs.set_input(Input::U, 0.0);
+        inputs.set_rate(Input::U, f64::INFINITY);
+        let fault = inputs.motion((0.0, 0.0), 0.0, 1.0, Extrapolation::Linear).unwrap_err();
         assert_eq!(fault.to_string(), "the input u is inf at t = 0 s: no step can be done");
     }
 }

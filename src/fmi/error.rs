@@ -1,19 +1,20 @@
-//! Why a call fails, and with which status.
+//! Errors of the FMU and the status that each returns; panics, which become errors, too.
 
+use std::any::Any;
+use std::cell::Cell;
+use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
 use std::path::PathBuf;
+use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
 
-use crate::element::{ElementError, TableError};
+use crate::element::{self, ElementError, TableError};
 use crate::scene::{LARGEST, ParameterError, SMALLEST, SceneError};
-use crate::simulation::SimulationError;
+use crate::simulation::{self, SimulationError};
 
-use super::carrier::InputOutOfRange;
-use super::catalogue::Kind;
-use super::lifecycle::State;
-use super::serial::Misfit;
+use super::lifecycle::{Function, State};
 
-/// The status that a function returns, but for fmi2Pending, which never occurs.
+/// The status that a function returns; fmi2Pending never occurs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Status {
     /// fmi2OK
@@ -30,9 +31,9 @@ pub(super) enum Status {
 
 /// Why a call fails.
 #[derive(Debug, thiserror::Error)]
-pub(super) enum Fault {
+pub(super) enum Error {
     #[error("not allowed in the state {0}")]
-    OutOfPlace(State),
+    NotAllowed(State),
     #[error("not allowed in the state {0}: no step is asynchronous, so none is ever in progress")]
     NothingToCancel(State),
     #[error("{0} is NULL")]
@@ -42,7 +43,7 @@ pub(super) enum Fault {
     #[error("no variable has the value reference {0}")]
     UnknownReference(u32),
     #[error("{name} (value reference {reference}) is of type {actual}, not {asked}")]
-    WrongType { reference: u32, name: String, actual: Kind, asked: Kind },
+    WrongType { reference: u32, name: String, actual: &'static str, asked: &'static str },
     #[error("{0} is an output and cannot be set")]
     OutputSet(String),
     #[error("{0} is not an input and takes no derivative")]
@@ -82,7 +83,7 @@ pub(super) enum Fault {
     #[error("{0} is no FMU state of this instance")]
     UnknownState(&'static str),
     #[error("the byte string is no FMU state of this FMU: {0}")]
-    Serialised(#[from] Misfit),
+    Serialised(#[from] RestoreError),
     #[error("the serialised FMU state has {needed} bytes, but the place for it has {given}")]
     SerialisedSize { needed: usize, given: usize },
     #[error("this status is not available: steps never run asynchronously")]
@@ -109,8 +110,13 @@ pub(super) enum Fault {
     Panic(String),
 }
 
-impl Fault {
-    /// The status that tells of the fault. A step is discarded where a smaller one may help.
+impl Error {
+    /// The error of calling `function` in a `state` that does not allow it.
+    pub(super) fn not_allowed(function: Function, state: State) -> Self {
+        if function == Function::CancelStep { Self::NothingToCancel(state) } else { Self::NotAllowed(state) }
+    }
+
+    /// The status to return. A step is discarded where a smaller one may succeed.
     pub(super) fn status(&self) -> Status {
         match self {
             Self::Simulation(SimulationError::TooManySteps { .. } | SimulationError::StepTooSmall { .. }) => {
@@ -124,7 +130,100 @@ impl Fault {
     }
 }
 
+/// Why a byte string cannot be restored as an FMU state.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum RestoreError {
+    #[error("it does not begin like one, or is cut short")]
+    Mark,
+    #[error("its format is {found}, expected {expected}")]
+    Format { found: u32, expected: u32 },
+    #[error("its scene or version is another one")]
+    Guid,
+    #[error("it is cut short or has changed")]
+    Changed,
+    #[error("{0}")]
+    Content(#[from] postcard::Error),
+    #[error("it has the parameter {0}, which the FMU does not have")]
+    NoParameter(String),
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+    #[error(transparent)]
+    Simulation(#[from] simulation::RestoreError),
+    #[error(transparent)]
+    Element(#[from] element::RestoreError),
+    #[error("{0}")]
+    Invalid(&'static str),
+}
+
+/// An input is not a number or larger than [`LARGEST`], or its derivative leads to such a value.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("the input {name} is {value:?} at t = {time} s: no step can be done")]
+pub struct InputOutOfRange {
+    /// The input's name.
+    pub name: &'static str,
+    /// Its value, or the value that it would reach.
+    pub value: f64,
+    /// The time of the step, s.
+    pub time: f64,
+}
+
 fn list(paths: &[PathBuf]) -> String {
     let quoted: Vec<_> = paths.iter().map(|path| format!("\"{}\"", path.display())).collect();
     quoted.join(", ")
+}
+
+type Hook = Box<dyn Fn(&PanicHookInfo<'_>) + Send + Sync>;
+
+thread_local! {
+    /// Whether this thread is inside a guarded call.
+    static GUARDED: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Calls `body`. A panic in it is returned as its message, and nothing is written to stderr.
+pub(super) fn catch_panic<T>(body: impl FnOnce() -> T) -> Result<T, String> {
+    USUAL.get_or_init(silence_guarded_calls);
+    let before = GUARDED.replace(true);
+    let result = panic::catch_unwind(AssertUnwindSafe(body));
+    GUARDED.set(before);
+    result.map_err(|payload| message(payload.as_ref()))
+}
+
+/// The hook for panics outside of guarded calls, such as those of the program's other threads. It is kept here and not in
+/// the new hook, which therefore needs no memory: that would leak when the library is unloaded.
+static USUAL: OnceLock<Hook> = OnceLock::new();
+
+/// Installs the new hook and returns the one before.
+fn silence_guarded_calls() -> Hook {
+    let usual = panic::take_hook();
+    panic::set_hook(Box::new(|panic| match USUAL.get() {
+        Some(usual) if !GUARDED.get() => usual(panic),
+        _ => (),
+    }));
+    usual
+}
+
+fn message(payload: &(dyn Any + Send)) -> String {
+    let text = payload.downcast_ref::<String>().map(String::as_str);
+    text.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("a panic without a message").to_owned()
+}
+
+#[cfg(test)]
+#[allow(clippy::panic)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_call_not_allowed_names_the_state() {
+        let error = Error::not_allowed(Function::DoStep, State::Instantiated);
+        assert_eq!(error.to_string(), "not allowed in the state instantiated");
+        let error = Error::not_allowed(Function::CancelStep, State::StepComplete).to_string();
+        assert!(error.contains("stepComplete") && error.contains("asynchronous"), "{error}");
+    }
+
+    #[test]
+    fn a_panic_becomes_its_message() {
+        assert_eq!(catch_panic(|| 1), Ok(1));
+        assert_eq!(catch_panic(|| panic!("plain")), Err::<(), _>("plain".into()));
+        assert_eq!(catch_panic(|| panic!("number {}", 7)), Err::<(), _>("number 7".into()));
+    }
 }

@@ -1,0 +1,398 @@
+//! What an FMU simulates: a scene's layer or a point-contact element, with its parameters, its variables by value
+//! reference and its GUID.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::{fmt, fs, io};
+
+use uuid::Uuid;
+
+use super::error::Error;
+use super::resources::{self, SCENE_FILE, TABLE_FILE};
+use crate::element::{self, PointContact, Table};
+use crate::outputs::{self, Dependencies, Output, Variable};
+use crate::scene::{self, Extrapolation, Parameter, ParameterError, Scene, Value};
+
+/// What an FMU simulates, as its resources define it.
+#[derive(Clone, Debug)]
+pub enum Definition {
+    /// The layer of a scene.
+    Layer(Box<Scene>),
+    /// A point-contact element.
+    Element(PointContact),
+}
+
+impl From<Scene> for Definition {
+    fn from(scene: Scene) -> Self {
+        Self::Layer(Box::new(scene))
+    }
+}
+
+impl From<PointContact> for Definition {
+    fn from(contact: PointContact) -> Self {
+        Self::Element(contact)
+    }
+}
+
+impl Definition {
+    /// Reads the definition in the resources at `location`; also returns its file.
+    pub(super) fn find(location: &str) -> Result<(Self, PathBuf), Error> {
+        let path = resources::find(location, &[SCENE_FILE, TABLE_FILE])?;
+        let definition = if path.ends_with(TABLE_FILE) {
+            PointContact::new(Table::load(&path)?).into()
+        } else {
+            Scene::load(&path)?.into()
+        };
+        Ok((definition, path))
+    }
+
+    /// The model's name.
+    pub fn name(&self) -> String {
+        match self {
+            Self::Layer(scene) => scene.name.clone(),
+            Self::Element(contact) => contact.name(),
+        }
+    }
+
+    /// A description in a sentence; may be empty.
+    pub fn description(&self) -> String {
+        match self {
+            Self::Layer(scene) => scene.description.clone().unwrap_or_default(),
+            Self::Element(contact) => contact.description(),
+        }
+    }
+
+    /// The name as a C identifier.
+    pub fn model_identifier(&self) -> String {
+        scene::identifier(&self.name())
+    }
+
+    /// Paths of the files that it reads besides its own, relative to that one's folder.
+    pub fn files(&self) -> &[PathBuf] {
+        match self {
+            Self::Layer(scene) => &scene.files,
+            Self::Element(_) => &[],
+        }
+    }
+
+    /// The content of one of its [`files`](Self::files) as it is packed into an FMU; `folder` is that of its own file.
+    ///
+    /// # Errors
+    /// Where the file cannot be read.
+    pub fn carried(&self, folder: &Path, file: &Path) -> io::Result<Vec<u8>> {
+        match self {
+            Self::Layer(scene) => scene.carried(folder, file),
+            Self::Element(_) => fs::read(folder.join(file)),
+        }
+    }
+
+    /// The name of its own file in the resources.
+    pub fn file_name(&self) -> &'static str {
+        match self {
+            Self::Layer(_) => SCENE_FILE,
+            Self::Element(_) => TABLE_FILE,
+        }
+    }
+
+    /// Paths of all files that it was read from; `path` is that of its own.
+    pub fn sources(&self, path: &Path) -> Vec<PathBuf> {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let extracts = match self {
+            Self::Layer(scene) => scene.extracts.iter(),
+            Self::Element(_) => [].iter(),
+        };
+        let files = self.files().iter().chain(extracts.map(|extract| &extract.source));
+        std::iter::once(path.to_owned()).chain(files.map(|file| folder.join(file))).collect()
+    }
+
+    /// Warnings about the definition.
+    pub fn warnings(&self) -> &[String] {
+        match self {
+            Self::Layer(scene) => &scene.warnings,
+            Self::Element(_) => &[],
+        }
+    }
+
+    /// The output variables.
+    pub fn variables(&self) -> Vec<Variable> {
+        match self {
+            Self::Layer(scene) => outputs::variables(scene),
+            Self::Element(contact) => contact.variables(),
+        }
+    }
+
+    /// The inputs that an output depends on directly.
+    pub fn dependencies(&self, output: Output) -> Dependencies {
+        match self {
+            Self::Layer(scene) => outputs::dependencies(scene, output),
+            Self::Element(_) => element::dependencies(output),
+        }
+    }
+
+    /// The parameters.
+    pub fn parameters(&self) -> Vec<Parameter> {
+        match self {
+            Self::Layer(scene) => scene.parameters(),
+            Self::Element(contact) => contact.parameters(),
+        }
+    }
+
+    /// The value of a parameter.
+    pub fn parameter(&self, parameter: Parameter) -> Value {
+        match self {
+            Self::Layer(scene) => scene.parameter(parameter),
+            Self::Element(contact) => contact.parameter(parameter),
+        }
+    }
+
+    /// The parameter called `name`.
+    pub fn parameter_named(&self, name: &str) -> Option<Parameter> {
+        self.parameters().into_iter().find(|parameter| parameter.name() == name)
+    }
+
+    pub(super) fn set_parameter(&mut self, parameter: Parameter, value: Value) -> Result<(), ParameterError> {
+        match self {
+            Self::Layer(scene) => scene.set_parameter(parameter, value),
+            Self::Element(contact) => contact.set_parameter(parameter, value),
+        }
+    }
+
+    /// How inputs are extrapolated where the master gives no derivatives.
+    pub(super) fn extrapolation(&self) -> Extrapolation {
+        match self {
+            Self::Layer(scene) => scene.extrapolation,
+            Self::Element(contact) => contact.extrapolation,
+        }
+    }
+}
+
+/// A definition with the parameters that the master has set.
+#[derive(Clone, Debug)]
+pub(super) struct Parameters {
+    definition: Definition,
+    /// The parameters set, by name. They are kept since the value of a parameter does not show whether it was set: some
+    /// follow others until they are.
+    set: BTreeMap<String, Value>,
+}
+
+impl Parameters {
+    pub(super) fn new(definition: Definition) -> Self {
+        Self { definition, set: BTreeMap::new() }
+    }
+
+    /// The definition with these parameters.
+    pub(super) fn definition(&self) -> &Definition {
+        &self.definition
+    }
+
+    pub(super) fn values_set(&self) -> &BTreeMap<String, Value> {
+        &self.set
+    }
+
+    pub(super) fn set(&mut self, parameter: Parameter, value: Value) -> Result<(), ParameterError> {
+        self.definition.set_parameter(parameter, value.clone())?;
+        self.set.insert(parameter.name(), value);
+        Ok(())
+    }
+}
+
+/// An input: a displacement of the carrier.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Input {
+    /// `u`, along x.
+    U,
+    /// `w`, along z.
+    W,
+}
+
+impl Input {
+    /// Both, in the order of their value references.
+    pub const ALL: [Self; 2] = [Self::U, Self::W];
+
+    /// The variable's name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::U => "u",
+            Self::W => "w",
+        }
+    }
+}
+
+/// The type of a variable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// fmi2Real
+    Real,
+    /// fmi2Integer
+    Integer,
+    /// fmi2Boolean; no variable is one
+    Boolean,
+    /// fmi2String
+    Text,
+}
+
+impl Kind {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Real => "Real",
+            Self::Integer => "Integer",
+            Self::Boolean => "Boolean",
+            Self::Text => "String",
+        }
+    }
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// The variable behind a value reference.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Entry<'a> {
+    /// An input, a Real.
+    Input(Input),
+    /// An output or, in the group elements, a local variable: its index in [`Catalogue::outputs`] and the variable.
+    Output(usize, &'a Variable),
+    /// A fixed parameter and its type.
+    Parameter(Parameter, Kind),
+}
+
+impl Entry<'_> {
+    /// The variable's name.
+    pub fn name(&self) -> String {
+        match self {
+            Self::Input(input) => input.name().into(),
+            Self::Output(_, variable) => variable.name.clone(),
+            Self::Parameter(parameter, _) => parameter.name(),
+        }
+    }
+
+    /// The variable's type.
+    pub fn kind(&self) -> Kind {
+        match self {
+            Self::Input(_) => Kind::Real,
+            Self::Output(_, variable) => match variable.kind {
+                outputs::Kind::Real => Kind::Real,
+                outputs::Kind::Integer => Kind::Integer,
+            },
+            Self::Parameter(_, kind) => *kind,
+        }
+    }
+}
+
+/// The variables of an FMU by value reference: the inputs, then the outputs, then the parameters, numbered from 0.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Catalogue {
+    outputs: Vec<Variable>,
+    parameters: Vec<(Parameter, Kind)>,
+}
+
+impl Catalogue {
+    /// The variables of a scene's layer.
+    pub fn new(scene: &Scene) -> Self {
+        Self::of(&scene.clone().into())
+    }
+
+    /// The variables of what an FMU simulates.
+    pub fn of(definition: &Definition) -> Self {
+        let kind = |parameter| match definition.parameter(parameter) {
+            Value::Real(_) => Kind::Real,
+            Value::Integer(_) => Kind::Integer,
+            Value::Text(_) => Kind::Text,
+        };
+        let parameters = definition.parameters().into_iter().map(|parameter| (parameter, kind(parameter))).collect();
+        Self { outputs: definition.variables(), parameters }
+    }
+
+    /// The variable with the value reference `reference`.
+    pub fn entry(&self, reference: u32) -> Option<Entry<'_>> {
+        let place = usize::try_from(reference).ok()?;
+        if let Some(&input) = Input::ALL.get(place) {
+            return Some(Entry::Input(input));
+        }
+        let place = place - Input::ALL.len();
+        if let Some(variable) = self.outputs.get(place) {
+            return Some(Entry::Output(place, variable));
+        }
+        let &(parameter, kind) = self.parameters.get(place - self.outputs.len())?;
+        Some(Entry::Parameter(parameter, kind))
+    }
+
+    /// The variable with the value reference `reference`, of the type `asked` for.
+    pub(super) fn find(&self, reference: u32, asked: Kind) -> Result<Entry<'_>, Error> {
+        let entry = self.entry(reference).ok_or(Error::UnknownReference(reference))?;
+        match entry.kind() {
+            kind if kind == asked => Ok(entry),
+            actual => {
+                Err(Error::WrongType { reference, name: entry.name(), actual: actual.name(), asked: asked.name() })
+            }
+        }
+    }
+
+    /// All variables with their value references, in rising order.
+    pub fn entries(&self) -> impl Iterator<Item = (u32, Entry<'_>)> {
+        (0..).map_while(|reference| Some((reference, self.entry(reference)?)))
+    }
+
+    /// The outputs in the order of their value references.
+    pub fn outputs(&self) -> &[Variable] {
+        &self.outputs
+    }
+}
+
+/// The content of the files that a definition is read from, as an FMU carries them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sources {
+    /// Its own file, then every file that it reads, in the scene's order.
+    files: Vec<Vec<u8>>,
+}
+
+impl Sources {
+    /// Reads the scene file at `path` and the files of `scene`, which was loaded from it.
+    ///
+    /// # Errors
+    /// Where a file cannot be read.
+    pub fn read(path: &Path, scene: &Scene) -> io::Result<Self> {
+        Self::of(path, &scene.clone().into())
+    }
+
+    /// Reads the file at `path` and what else `definition`, which was loaded from it, reads.
+    ///
+    /// # Errors
+    /// Where a file cannot be read.
+    pub fn of(path: &Path, definition: &Definition) -> io::Result<Self> {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let mut files = vec![fs::read(path)?];
+        for file in definition.files() {
+            files.push(definition.carried(folder, file)?);
+        }
+        Ok(Self { files })
+    }
+
+    pub(super) fn read_from(path: &Path, definition: &Definition) -> Result<Self, Error> {
+        Self::of(path, definition).map_err(|source| Error::Unreadable { path: path.into(), source })
+    }
+}
+
+/// The GUID of the FMU made from `sources`: a UUID of version 5 over the program's version, the bytes of every source
+/// and the list of variables. It is the same on every build and another one for anything that would run differently.
+pub fn guid(sources: &Sources, catalogue: &Catalogue) -> String {
+    let mut content = Vec::new();
+    append(&mut content, env!("CARGO_PKG_VERSION").as_bytes());
+    for file in &sources.files {
+        append(&mut content, file);
+    }
+    for (reference, entry) in catalogue.entries() {
+        append(&mut content, format!("{reference} {} {}", entry.name(), entry.kind()).as_bytes());
+    }
+    let namespace = Uuid::new_v5(&Uuid::NAMESPACE_URL, env!("CARGO_PKG_NAME").as_bytes());
+    format!("{{{}}}", Uuid::new_v5(&namespace, &content))
+}
+
+/// Appends the length, too: two files must not look like two others with the same bytes in a row.
+fn append(content: &mut Vec<u8>, bytes: &[u8]) {
+    content.extend((bytes.len() as u64).to_le_bytes());
+    content.extend(bytes);
+}

@@ -1,0 +1,138 @@
+//! The model of an instance: a run of a layer or of an element.
+
+use serde::{Deserialize, Serialize};
+
+use super::definition::Definition;
+use super::error::{Error, RestoreError};
+use crate::element::{self, Element};
+use crate::outputs::Variable;
+use crate::simulation::{self, MethodSwitch, ModeChange, Motion, Simulation, Start};
+
+/// A run of a layer or of an element.
+#[derive(Clone, Debug)]
+pub(super) enum InstanceModel {
+    Layer(Box<Simulation>),
+    Element(Box<Element>),
+}
+
+/// The state of an [`InstanceModel`], as an FMU state keeps it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) enum ModelState {
+    Layer(simulation::SimulationState),
+    Element(element::ElementState),
+}
+
+impl InstanceModel {
+    /// Starts a run.
+    pub(super) fn start(definition: &Definition, start: &Start) -> Result<Self, Error> {
+        Ok(match definition {
+            Definition::Layer(scene) => Self::Layer(Box::new(Simulation::new(scene, start)?)),
+            Definition::Element(contact) => Self::Element(Box::new(Element::new(contact, start)?)),
+        })
+    }
+
+    /// A run that continues from `state`.
+    pub(super) fn restore(definition: &Definition, state: &ModelState) -> Result<Self, RestoreError> {
+        Ok(match (definition, state) {
+            (Definition::Layer(scene), ModelState::Layer(state)) => {
+                Self::Layer(Box::new(Simulation::restore(scene, state)?))
+            }
+            (Definition::Element(contact), ModelState::Element(state)) => {
+                Self::Element(Box::new(Element::restore(contact, state)?))
+            }
+            _ => return Err(RestoreError::Invalid("its run is of something else")),
+        })
+    }
+
+    /// Puts the model in `state`, of the same definition. The processor time spent remains.
+    pub(super) fn set_state(&mut self, definition: &Definition, state: &ModelState) -> Result<(), RestoreError> {
+        match (&mut *self, state) {
+            (Self::Layer(simulation), ModelState::Layer(state)) => simulation.set_state(state)?,
+            _ => *self = Self::restore(definition, state)?,
+        }
+        Ok(())
+    }
+
+    /// The displacements u and w of the carrier, m.
+    pub(super) fn carrier(&self) -> (f64, f64) {
+        match self {
+            Self::Layer(simulation) => simulation.carrier(),
+            Self::Element(element) => element.carrier(),
+        }
+    }
+
+    /// Advances to the end of `motion`, which is straight.
+    pub(super) fn advance(&mut self, motion: &Motion) -> Result<(), Error> {
+        match self {
+            Self::Layer(simulation) => simulation.advance(motion)?,
+            Self::Element(element) => element.advance(motion.duration, motion.u.rate, motion.w.rate)?,
+        }
+        Ok(())
+    }
+
+    /// Writes the values of `variables` into `values`, in their order.
+    pub(super) fn evaluate(&mut self, variables: &[Variable], values: &mut [f64]) {
+        match self {
+            Self::Layer(simulation) => simulation.evaluate(variables, values),
+            Self::Element(element) => element.evaluate(variables, values),
+        }
+    }
+
+    /// Writes the derivatives of `variables` along a displacement `direction` of the carrier (m), at constant states.
+    pub(super) fn directional_derivative(&mut self, variables: &[Variable], direction: (f64, f64), values: &mut [f64]) {
+        match self {
+            Self::Layer(simulation) => simulation.directional_derivative(variables, direction, values),
+            Self::Element(element) => element.directional_derivative(variables, direction, values),
+        }
+    }
+
+    /// Ḟ_x and Ḟ_z, N/s.
+    pub(super) fn force_rates(&mut self) -> (f64, f64) {
+        match self {
+            Self::Layer(simulation) => simulation.force_rates(),
+            Self::Element(element) => element.force_rates(),
+        }
+    }
+
+    /// The state of the run.
+    pub(super) fn state(&self) -> ModelState {
+        match self {
+            Self::Layer(simulation) => ModelState::Layer(simulation.state()),
+            Self::Element(element) => ModelState::Element(element.save()),
+        }
+    }
+
+    /// Takes over the processor time that `other` has spent, which is not part of the state; an element counts none.
+    pub(super) fn take_over_run_time(&mut self, other: &Self) {
+        if let (Self::Layer(simulation), Self::Layer(other)) = (self, other) {
+            simulation.set_run_time(other.run_time());
+        }
+    }
+
+    /// Starts or stops recording mode changes and switches.
+    pub(super) fn record(&mut self, events: bool, switches: bool) {
+        match self {
+            Self::Layer(simulation) => {
+                simulation.record_mode_changes(events);
+                simulation.record_method_switches(switches);
+            }
+            Self::Element(element) => element.record_mode_changes(events),
+        }
+    }
+
+    /// The records since the last call.
+    pub(super) fn take_records(&mut self) -> (Vec<ModeChange>, Vec<MethodSwitch>) {
+        match self {
+            Self::Layer(simulation) => (simulation.take_mode_changes(), simulation.take_method_switches()),
+            Self::Element(element) => (element.take_mode_changes(), Vec::new()),
+        }
+    }
+
+    /// The simulation of a layer, which counts its work.
+    pub(super) fn simulation(&mut self) -> Option<&mut Simulation> {
+        match self {
+            Self::Layer(simulation) => Some(simulation),
+            Self::Element(_) => None,
+        }
+    }
+}
