@@ -373,7 +373,7 @@ fn a_scene_under_stress_has_a_cell_for_each_pair_of_factors() {
     // A master that gives rates follows straight phases exactly: the same run, but for its communication points.
     let driven = cell(&cells, &[("communication_step", "1")]);
     assert!(number(driven, "steps") >= 1000.0 && driven["status"] == "kept", "{driven:?}");
-    // Each cell tells in the page what it tells in the table.
+    // Each outcome is in the page as in the table.
     for row in &cells {
         assert!(page.contains(&row["reason"]), "{row:?}");
     }

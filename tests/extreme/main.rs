@@ -18,12 +18,9 @@ mod report;
 mod rules;
 mod run;
 
-use std::collections::BTreeMap;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use catalogue::Case;
 use judge::{Judged, Way, judge};
+use rayon::prelude::*;
 use rules::Finding;
 
 /// All cases, or those whose names contain the environment variable EXTREME.
@@ -35,24 +32,7 @@ fn asked() -> Vec<Case> {
 
 /// Judges all cases on all cores. The runs are in the order of the catalogue.
 fn judge_all(cases: &[Case]) -> Vec<Judged> {
-    let next = AtomicUsize::new(0);
-    let runs = Mutex::new(BTreeMap::new());
-    let workers = std::thread::available_parallelism().map_or(1, usize::from);
-    std::thread::scope(|scope| {
-        for _ in 0..workers {
-            scope.spawn(|| {
-                let take = || {
-                    let index = next.fetch_add(1, Ordering::Relaxed);
-                    Some((index, cases.get(index)?))
-                };
-                while let Some((index, case)) = take() {
-                    let found = judge_or_panic(case);
-                    runs.lock().unwrap().insert(index, found);
-                }
-            });
-        }
-    });
-    runs.into_inner().unwrap().into_values().flatten().collect()
+    cases.par_iter().with_max_len(1).flat_map_iter(judge_or_panic).collect()
 }
 
 /// A run that panics is a finding like any other.

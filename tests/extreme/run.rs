@@ -1,4 +1,4 @@
-//! A run of a case: by the library along the excitation, or through the C interface, each row looked at as it comes.
+//! A run of a case by the library along its excitation. Every row is checked by the rules.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ pub const MOST_STEPS: u64 = 1_000_000;
 /// A tight run may take so many times more.
 const OF_TIGHT: u64 = 10;
 
-/// What came of a run.
+/// The rows of a run and what was found.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
     /// The variables that are not the elements'.
@@ -28,7 +28,7 @@ pub struct Outcome {
     pub path: f64,
     /// What it ended with before its end.
     pub error: Option<Stop>,
-    /// The absolute tolerance of a index as a force on one mass, N: no force is known better.
+    /// The absolute tolerance of a position as a force on one mass, N: no force is known better.
     pub known: f64,
     /// Number of masses.
     pub masses: f64,
