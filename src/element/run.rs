@@ -28,7 +28,7 @@ pub enum ElementError {
     /// The carrier comes closer than the table goes.
     #[error(
         "w = {w} m at t = {time} s is a separation of {separation} m, a {} above {largest} {}, where the table ends: at {speed} m/s its \
-         separations go down to {least} m (table.extrapolation = \"hold\" goes on beyond)",
+         separations go down to {least} m (table.extrapolation = \"hold\" extrapolates)",
         .load.name(), .load.unit()
     )]
     Pressure {
@@ -51,8 +51,8 @@ pub enum ElementError {
     },
     /// The carrier is faster than the table goes.
     #[error(
-        "the speed is {speed} m/s at t = {time} s: the table goes from {least} to {largest} m/s (table.extrapolation = \"hold\" goes \
-         on beyond)"
+        "the speed is {speed} m/s at t = {time} s: the table goes from {least} to {largest} m/s (table.extrapolation = \"hold\" \
+         extrapolates)"
     )]
     Speed {
         /// When, s.
@@ -70,7 +70,7 @@ pub enum ElementError {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RestoreError {
     /// A number that is not valid in any run.
-    #[error("{what} = {value} is not a valid state")]
+    #[error("invalid state: {what} = {value}")]
     Invalid {
         /// Which number.
         what: &'static str,
