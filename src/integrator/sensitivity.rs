@@ -227,7 +227,7 @@ impl Tangent {
         };
         for kind in LinkKind::ALL {
             let law = &model.links[kind as usize];
-            self.forces.spring_and_damper(kind, (law.stiffness, law.damping), &motion, &[]);
+            self.forces.spring_and_damper(kind, law.stiffness, law.damping, &motion, &[]);
         }
         for row in &model.rows {
             add(&mut self.forces.link[row.kind as usize], row.stiffness, &start.maxwell[row.range.clone()]);
@@ -271,7 +271,7 @@ impl Tangent {
         let motion = known.links(carrier);
         for kind in LinkKind::ALL {
             let law = &solver.laws[kind as usize];
-            self.forces.spring_and_damper(kind, (law.stiffness, law.damping), &motion, &[]);
+            self.forces.spring_and_damper(kind, law.stiffness, law.damping, &motion, &[]);
         }
         for row in &model.rows {
             let weight = row.stiffness * row.relaxation_time / (row.relaxation_time + beta);
@@ -326,7 +326,7 @@ impl Tangent {
             carrier_rates: (carrier.u_rate, carrier.w_rate),
         };
         for kind in LinkKind::ALL {
-            self.forces.spring_and_damper(kind, (0.0, 0.0), &motion, &[]);
+            self.forces.spring_and_damper(kind, 0.0, 0.0, &motion, &[]);
         }
         for row in &model.rows {
             let g = row.relaxation_time / (row.relaxation_time + beta);

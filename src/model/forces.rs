@@ -116,7 +116,7 @@ impl Forces {
         let motion = LinkMotion::of(state, carrier);
         for kind in LinkKind::ALL {
             let law = &model.links[kind as usize];
-            self.spring_and_damper(kind, (law.stiffness, law.damping), &motion, &[]);
+            self.spring_and_damper(kind, law.stiffness, law.damping, &motion, &[]);
             model.subtract_frozen(kind, &mut self.link[kind as usize]);
         }
         for row in &model.rows {
@@ -128,13 +128,21 @@ impl Forces {
         self.sum_on_masses();
     }
 
-    /// Evaluates ė and F = c e + d ė of every link of a kind with `law` = (c, d), and adds the forces `known` (N), if any.
-    pub fn spring_and_damper(&mut self, kind: LinkKind, law: (f64, f64), motion: &LinkMotion<'_>, known: &[f64]) {
+    /// Evaluates ė and F = c e + d ė of every link of a kind with c = `stiffness` (N/m) and d = `damping` (N s/m), and
+    /// adds the forces `known` (N), if any.
+    pub fn spring_and_damper(
+        &mut self,
+        kind: LinkKind,
+        stiffness: f64,
+        damping: f64,
+        motion: &LinkMotion<'_>,
+        known: &[f64],
+    ) {
         let (rate, force) = (&mut self.rate[kind as usize][..], &mut self.link[kind as usize][..]);
         if kind.is_lateral() {
-            motion.lateral_link_forces(kind, rate, force, law);
+            motion.lateral_link_forces(kind, stiffness, damping, rate, force);
         } else {
-            motion.carrier_link_forces(kind, rate, force, law);
+            motion.carrier_link_forces(kind, stiffness, damping, rate, force);
         }
         for (force, known) in force.iter_mut().zip(known) {
             *force += known;
@@ -246,13 +254,7 @@ impl<'a> LinkMotion<'a> {
         }
     }
 
-    fn carrier_link_forces(
-        &self,
-        kind: LinkKind,
-        rate: &mut [f64],
-        force: &mut [f64],
-        (stiffness, damping): (f64, f64),
-    ) {
+    fn carrier_link_forces(&self, kind: LinkKind, stiffness: f64, damping: f64, rate: &mut [f64], force: &mut [f64]) {
         let (elongation, velocity, carrier_rate) = self.along(kind);
         for ((force, rate), (e, v)) in force.iter_mut().zip(rate).zip(elongation.iter().zip(velocity)) {
             *rate = v - carrier_rate;
@@ -260,13 +262,7 @@ impl<'a> LinkMotion<'a> {
         }
     }
 
-    fn lateral_link_forces(
-        &self,
-        kind: LinkKind,
-        rate: &mut [f64],
-        force: &mut [f64],
-        (stiffness, damping): (f64, f64),
-    ) {
+    fn lateral_link_forces(&self, kind: LinkKind, stiffness: f64, damping: f64, rate: &mut [f64], force: &mut [f64]) {
         let (elongation, velocity, _) = self.along(kind);
         let elongations = elongation.iter().zip(elongation.iter().skip(1));
         let rates = velocity.iter().zip(velocity.iter().skip(1));

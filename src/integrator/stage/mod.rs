@@ -262,7 +262,7 @@ impl StageSolver {
         for kind in LinkKind::ALL {
             let law = &self.laws[kind as usize];
             let known = &self.history.force[kind as usize];
-            self.forces.spring_and_damper(kind, (law.stiffness, law.damping), &motion, known);
+            self.forces.spring_and_damper(kind, law.stiffness, law.damping, &motion, known);
             model.subtract_frozen(kind, &mut self.forces.link[kind as usize]);
         }
         self.forces.sum_on_masses();
