@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use super::values::{ANY, NOT_NEGATIVE, POSITIVE, Range, WholeRange, Word, words};
+use super::values::{ANY, NOT_NEGATIVE, NumberRange, POSITIVE, WholeRange, Word, words};
 use super::{Extrapolation, Initial, LengthUnit, Method, Missing, OutputGroup, ThirdColumn, Tilt, Unit};
 
 #[derive(Clone, Copy, Debug)]
@@ -20,8 +20,8 @@ pub(super) struct Key {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Allowed {
-    Number(Range),
-    Numbers(Range),
+    Number(NumberRange),
+    Numbers(NumberRange),
     Whole(WholeRange),
     Flag,
     /// A text, and what it is.
@@ -49,7 +49,7 @@ const fn key(name: &'static str, allowed: Allowed, meaning: &'static str) -> Key
     Key { name, allowed, unit: Unit::One, meaning, form: None }
 }
 
-const fn number(name: &'static str, range: Range, unit: Unit, meaning: &'static str) -> Key {
+const fn number(name: &'static str, range: NumberRange, unit: Unit, meaning: &'static str) -> Key {
     Key { unit, ..key(name, Allowed::Number(range), meaning) }
 }
 
@@ -75,7 +75,7 @@ impl Key {
     }
 
     /// The range of a number; `None` for everything else.
-    pub(super) fn range(&self) -> Option<Range> {
+    pub(super) fn range(&self) -> Option<NumberRange> {
         if let Allowed::Number(range) = self.allowed { Some(range) } else { None }
     }
 
@@ -339,7 +339,7 @@ pub(super) fn at(path: &str) -> Option<&'static Key> {
 }
 
 /// The range of the number at a path; positive numbers where there is none.
-pub(super) fn range_of(path: &str) -> Range {
+pub(super) fn range_of(path: &str) -> NumberRange {
     at(path).and_then(Key::range).unwrap_or(POSITIVE)
 }
 

@@ -33,7 +33,7 @@ pub use excitation::{Path, Phase};
 pub use material::{Material, PronyTerm, Wlf, complex_stiffness};
 pub use parameters::{Parameter, Value};
 pub use profile::{Extract, LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt, UnknownWord};
-pub use surface::{Line, Surface};
+pub use surface::{MeanLine, Surface};
 pub use values::{LARGEST, SMALLEST, Unit, is_possible};
 
 /// A whole scene, checked. Serialised, it is every number of it: what the scene does not name is null or empty.

@@ -42,15 +42,15 @@ impl Surface {
     }
 
     /// The least squares line through the profile's data points.
-    pub fn line(&self) -> Line {
-        Line::through(&self.x, &self.z)
+    pub fn line(&self) -> MeanLine {
+        MeanLine::through(&self.x, &self.z)
     }
 }
 
 /// The least squares line of a profile as a curve: the weight of a point is the width of the intervals beside it, so
 /// that uneven spacing does not matter.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Line {
+pub struct MeanLine {
     /// The middle of the profile, m.
     pub x: f64,
     /// The mean height, m.
@@ -59,7 +59,7 @@ pub struct Line {
     pub slope: f64,
 }
 
-impl Line {
+impl MeanLine {
     /// The line through points; about their means, so that no digits are lost far from x = 0.
     fn through(x: &[f64], z: &[f64]) -> Self {
         let step = |i: usize| x[i + 1] - x[i];
@@ -80,7 +80,7 @@ impl Line {
 
 /// Subtracts the least squares line from the heights.
 pub(super) fn remove_tilt(x: &[f64], z: &mut [f64]) {
-    let line = Line::through(x, z);
+    let line = MeanLine::through(x, z);
     z.iter_mut().zip(x).for_each(|(z, x)| *z = (*z - line.z) - line.slope * (x - line.x));
 }
 

@@ -18,7 +18,7 @@ pub fn is_possible(number: f64) -> bool {
 
 /// Numbers whose size lies between two bounds, both included; 0 and negative numbers where they are allowed.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Range {
+pub(super) struct NumberRange {
     smallest: f64,
     largest: f64,
     zero: bool,
@@ -26,13 +26,14 @@ pub(super) struct Range {
 }
 
 /// From [`SMALLEST`] to [`LARGEST`].
-pub(super) const POSITIVE: Range = Range { smallest: SMALLEST, largest: LARGEST, zero: false, negative: false };
+pub(super) const POSITIVE: NumberRange =
+    NumberRange { smallest: SMALLEST, largest: LARGEST, zero: false, negative: false };
 /// The same, and 0.
-pub(super) const NOT_NEGATIVE: Range = Range { zero: true, ..POSITIVE };
+pub(super) const NOT_NEGATIVE: NumberRange = NumberRange { zero: true, ..POSITIVE };
 /// Up to [`LARGEST`] in size.
-pub(super) const ANY: Range = Range { smallest: 0.0, negative: true, ..NOT_NEGATIVE };
+pub(super) const ANY: NumberRange = NumberRange { smallest: 0.0, negative: true, ..NOT_NEGATIVE };
 
-impl Range {
+impl NumberRange {
     /// The same with another upper bound.
     pub(super) const fn up_to(self, largest: f64) -> Self {
         Self { largest, ..self }
@@ -78,7 +79,7 @@ pub(super) fn words<T: Word>() -> String {
     format!("one of {}", quoted.join(", "))
 }
 
-impl fmt::Display for Range {
+impl fmt::Display for NumberRange {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let low = if self.negative { -self.largest } else { self.smallest };
         let zero = if self.zero && !self.negative { "0 or " } else { "" };

@@ -18,7 +18,7 @@ pub use options::{LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt, Unknow
 use super::error::{ContentError, SceneError};
 use super::surface::{Coordinate, Surface, check_points, remove_tilt};
 use super::text_table::decode;
-use options::Raw;
+use options::MeasuredPoints;
 
 /// A line of an areal measurement, as an FMU carries it: text in place of the file that it was taken from.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,7 +43,7 @@ pub(super) struct Profile {
 }
 
 #[derive(Debug)]
-pub(super) enum Failure {
+pub(super) enum ReadFailure {
     Unreadable(io::Error),
     Refused(SceneError),
 }
@@ -61,19 +61,19 @@ impl Surface {
 }
 
 /// Reads the profile at `path`, which is relative to `folder`. Where that file is not there, its extract may be.
-pub(super) fn read(folder: &Path, path: &Path, options: &ProfileOptions) -> Result<Profile, Failure> {
+pub(super) fn read(folder: &Path, path: &Path, options: &ProfileOptions) -> Result<Profile, ReadFailure> {
     let (file, bytes) = match fs::read(folder.join(path)) {
         Ok(bytes) => (path.to_owned(), bytes),
         Err(error) => {
             let extract = extract_name(path, options);
-            let bytes = fs::read(folder.join(&extract)).map_err(|_| Failure::Unreadable(error))?;
+            let bytes = fs::read(folder.join(&extract)).map_err(|_| ReadFailure::Unreadable(error))?;
             (extract, bytes)
         }
     };
     let is_extract = file != path;
     let parsed = parse(&bytes, options, is_extract);
     let Parsed { surface, warnings, extract } =
-        parsed.map_err(|error| Failure::Refused(error.in_file(folder.join(&file))))?;
+        parsed.map_err(|error| ReadFailure::Refused(error.in_file(folder.join(&file))))?;
     let file = if extract.is_some() { extract_name(path, options) } else { file };
     Ok(Profile { surface, warnings, file, extract })
 }
@@ -108,18 +108,18 @@ fn parse(bytes: &[u8], options: &ProfileOptions, is_extract: bool) -> Result<Par
 }
 
 #[cfg(feature = "x3p")]
-fn read_x3p(bytes: &[u8], options: &ProfileOptions) -> Result<Raw, ContentError> {
+fn read_x3p(bytes: &[u8], options: &ProfileOptions) -> Result<MeasuredPoints, ContentError> {
     x3p::read(bytes, options)
 }
 
 #[cfg(not(feature = "x3p"))]
-fn read_x3p(_: &[u8], _: &ProfileOptions) -> Result<Raw, ContentError> {
+fn read_x3p(_: &[u8], _: &ProfileOptions) -> Result<MeasuredPoints, ContentError> {
     let expected = "text: this library was built without the reader of X3P files (feature x3p)";
     Err(ContentError::value(None, "", "a zip archive", expected))
 }
 
 /// Converts to metres, fills gaps, removes the tilt and checks the points.
-fn finish(mut raw: Raw, options: &ProfileOptions) -> Result<Parsed, ContentError> {
+fn finish(mut raw: MeasuredPoints, options: &ProfileOptions) -> Result<Parsed, ContentError> {
     let [x_unit, z_unit] = raw.units;
     to_metres(&mut raw.x, options.x_unit.or(x_unit));
     to_metres(&mut raw.z, options.z_unit.or(z_unit));
@@ -145,7 +145,7 @@ fn to_metres(values: &mut [f64], unit: Option<LengthUnit>) {
     }
 }
 
-fn check(raw: &mut Raw, periodic: bool) -> Result<(), ContentError> {
+fn check(raw: &mut MeasuredPoints, periodic: bool) -> Result<(), ContentError> {
     check_points(&raw.x, &mut raw.z, periodic).map_err(|error| match error.index {
         Some(i) => {
             let (axis, value) = if error.coordinate == Coordinate::X { ("x", raw.x[i]) } else { ("z", raw.z[i]) };
@@ -156,7 +156,7 @@ fn check(raw: &mut Raw, periodic: bool) -> Result<(), ContentError> {
 }
 
 /// Puts points without a height on the straight line between their neighbours, and leaves those at the ends out.
-fn fill_gaps(raw: &mut Raw) {
+fn fill_gaps(raw: &mut MeasuredPoints) {
     let is_there = |z: &f64| !z.is_nan();
     let first = raw.z.iter().position(is_there).unwrap_or(raw.z.len());
     let end = raw.z.iter().rposition(is_there).map_or(first, |last| last + 1);

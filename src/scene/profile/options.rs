@@ -111,7 +111,7 @@ impl LengthUnit {
 
 /// Points as they stand in a file.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Raw {
+pub(super) struct MeasuredPoints {
     pub(super) x: Vec<f64>,
     /// NaN where it is missing.
     pub(super) z: Vec<f64>,
@@ -122,7 +122,7 @@ pub(super) struct Raw {
     pub(super) warnings: Vec<String>,
 }
 
-impl Raw {
+impl MeasuredPoints {
     /// Refuses point `i`, by its line or else by its number from 1.
     pub(super) fn refuse(&self, i: usize, axis: &str, given: &str, expected: &str) -> ContentError {
         match self.lines.get(i) {

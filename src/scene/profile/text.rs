@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use super::options::{LengthUnit, Missing, ProfileOptions, Raw, ThirdColumn};
+use super::options::{LengthUnit, MeasuredPoints, Missing, ProfileOptions, ThirdColumn};
 use crate::scene::error::ContentError;
 use crate::scene::text_table::Columns;
 use crate::scene::values::ANY;
@@ -13,7 +13,7 @@ const ONE_UNIT: &str = "the header names a unit for one of the two columns alone
                         say otherwise";
 
 /// Reads the points and what the header says of them.
-pub(super) fn read(text: &str, options: &ProfileOptions) -> Result<Raw, ContentError> {
+pub(super) fn read(text: &str, options: &ProfileOptions) -> Result<MeasuredPoints, ContentError> {
     let numbered =
         || text.lines().zip(1..).map(|(line, number)| (number, trim(line))).filter(|(_, line)| !line.is_empty());
     let Some(first) = first_point(numbered()) else { return Err(refuse_all(text, numbered())) };
@@ -21,7 +21,7 @@ pub(super) fn read(text: &str, options: &ProfileOptions) -> Result<Raw, ContentE
     check_header(&above)?;
     let lines: Vec<&str> = above.iter().map(|(_, line)| *line).collect();
     let header = Header::read(&lines);
-    let mut reader = Reader::new(header.third_column, options);
+    let mut reader = PointsReader::new(header.third_column, options);
     reader.raw.units = header.units;
     if header.is_one_sided && (options.x_unit.is_none() || options.z_unit.is_none()) {
         reader.raw.warnings.push(ONE_UNIT.into());
@@ -119,15 +119,15 @@ fn cut(text: &str) -> String {
 }
 
 /// Collects the points, line by line.
-struct Reader {
-    raw: Raw,
+struct PointsReader {
+    raw: MeasuredPoints,
     third_column: Option<ThirdColumn>,
     missing: Missing,
 }
 
-impl Reader {
+impl PointsReader {
     fn new(named: Option<ThirdColumn>, options: &ProfileOptions) -> Self {
-        Self { raw: Raw::default(), third_column: options.third_column.or(named), missing: options.missing }
+        Self { raw: MeasuredPoints::default(), third_column: options.third_column.or(named), missing: options.missing }
     }
 
     fn add(&mut self, number: usize, line: &str) -> Result<(), ContentError> {

@@ -4,7 +4,7 @@ use std::path::{Component, Path as FilePath, PathBuf};
 
 use super::table::{Entry, Result, TableReader};
 use crate::scene::keys::{PATH, SurfaceKind};
-use crate::scene::profile::{self, Extract, Failure, ProfileOptions, Tilt};
+use crate::scene::profile::{self, Extract, ProfileOptions, ReadFailure, Tilt};
 use crate::scene::surface::{Coordinate, SelfAffine, check_points};
 use crate::scene::values::LARGEST;
 use crate::scene::{Layer, Surface, warnings};
@@ -109,8 +109,8 @@ fn read_file(table: &mut TableReader<'_>, found: &mut Found) -> Result<Surface> 
     let entry = table.required("path")?;
     let path = read_path(&entry)?;
     let profile = profile::read(entry.source().folder(), &path, &options).map_err(|failure| match failure {
-        Failure::Unreadable(error) => entry.unreadable(&error),
-        Failure::Refused(error) => error.named_by(entry.location(), entry.path()),
+        ReadFailure::Unreadable(error) => entry.unreadable(&error),
+        ReadFailure::Refused(error) => error.named_by(entry.location(), entry.path()),
     })?;
     let warnings = profile.warnings.iter().map(|warning| format!("{}: {warning}", path.display()));
     found.warnings.extend(warnings);

@@ -203,14 +203,14 @@ const MOST_COLUMNS: usize = 1 << 24;
 
 /// How many points there are.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Grid {
+pub(super) struct MatrixSize {
     /// Points of a line.
     pub(super) columns: usize,
     /// Lines.
     pub(super) rows: usize,
 }
 
-impl Grid {
+impl MatrixSize {
     pub(super) fn of(document: &Document) -> Result<Self, ContentError> {
         let feature = document.text("Record1.FeatureType").unwrap_or("SUR");
         if !["PRF", "SUR"].contains(&feature) {
@@ -221,7 +221,7 @@ impl Grid {
                 "PRF or SUR, a profile or an areal measurement",
             ));
         }
-        let grid = match document.whole("Record3.ListDimension")? {
+        let size = match document.whole("Record3.ListDimension")? {
             Some(columns) => Self { columns, rows: 1 },
             None => {
                 let size = |key: &str| document.whole(key)?.ok_or_else(|| missing(key));
@@ -237,11 +237,11 @@ impl Grid {
                 Self { columns: size("MatrixDimension.SizeX")?, rows: size("MatrixDimension.SizeY")? }
             }
         };
-        let count = grid.columns.checked_mul(grid.rows);
-        if grid.columns <= MOST_COLUMNS && count.is_some_and(|count| (1..=MOST_POINTS).contains(&count)) {
-            return Ok(grid);
+        let count = size.columns.checked_mul(size.rows);
+        if size.columns <= MOST_COLUMNS && count.is_some_and(|count| (1..=MOST_POINTS).contains(&count)) {
+            return Ok(size);
         }
-        let given = format!("{} by {} points", grid.columns, grid.rows);
+        let given = format!("{} by {} points", size.columns, size.rows);
         let expected = format!("1 to {MOST_POINTS} points, at most {MOST_COLUMNS} of them in a line");
         Err(ContentError::value(None, "MatrixDimension", &given, &expected))
     }

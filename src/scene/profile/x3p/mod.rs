@@ -15,25 +15,25 @@ use std::ops::Range;
 
 use md5::{Digest, Md5};
 
-use super::options::{Missing, ProfileOptions, Raw};
+use super::options::{MeasuredPoints, Missing, ProfileOptions};
 use crate::scene::error::ContentError;
 use crate::scene::values::ANY;
-use document::{Archive, Document, Grid, missing, unreadable};
+use document::{Archive, Document, MatrixSize, missing, unreadable};
 
 const CHUNK: usize = 1 << 16;
 
 /// Reads the line that `options` choose.
-pub(super) fn read(bytes: &[u8], options: &ProfileOptions) -> Result<Raw, ContentError> {
+pub(super) fn read(bytes: &[u8], options: &ProfileOptions) -> Result<MeasuredPoints, ContentError> {
     let mut archive = Archive::open(bytes)?;
     let document = Document::parse(&archive.main()?)?;
-    let grid = Grid::of(&document)?;
-    let line = grid.choose(options.line)?;
+    let size = MatrixSize::of(&document)?;
+    let line = size.choose(options.line)?;
     let [x, z] = if document.is_inline() {
-        inline(&document, &grid, line)?
+        inline(&document, &size, line)?
     } else {
-        binary(&document, &grid, line, &mut archive)?
+        binary(&document, &size, line, &mut archive)?
     };
-    let raw = Raw { x, z, ..Raw::default() };
+    let raw = MeasuredPoints { x, z, ..MeasuredPoints::default() };
     match raw.z.iter().position(|z| z.is_nan()).filter(|_| options.missing == Missing::Refuse) {
         Some(i) => Err(raw.refuse(i, "z", "missing", "a height, or missing = \"fill\" where heights are missing")),
         None => Ok(raw),
@@ -42,16 +42,16 @@ pub(super) fn read(bytes: &[u8], options: &ProfileOptions) -> Result<Raw, Conten
 
 /// An axis: a coordinate from its index or from a value of some type.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Axis {
+struct CoordinateAxis {
     /// The type of the values; none where they follow from the index.
-    values: Option<Values>,
+    stored_as: Option<NumberType>,
     increment: f64,
     offset: f64,
 }
 
 /// The type of a value in a binary file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Values {
+enum NumberType {
     /// 16 bits with a sign.
     Short,
     /// 32 bits with a sign.
@@ -60,47 +60,48 @@ enum Values {
     Double,
 }
 
-struct Axes([Axis; 3]);
+struct Axes([CoordinateAxis; 3]);
 
 /// The x and the heights of a line whose points stand in the document; a missing height is NaN.
-fn inline(document: &Document, grid: &Grid, line: usize) -> Result<[Vec<f64>; 2], ContentError> {
+fn inline(document: &Document, size: &MatrixSize, line: usize) -> Result<[Vec<f64>; 2], ContentError> {
     let axes = Axes::read(document)?;
     let found = document.points().count();
-    if found != grid.count() {
-        let expected = format!("{}, as many as MatrixDimension says", grid.count());
+    if found != size.count() {
+        let expected = format!("{}, as many as MatrixDimension says", size.count());
         return Err(ContentError::value(None, "DataList", &format!("{found} points"), &expected));
     }
-    let points = document.points().skip(line * grid.columns).take(grid.columns);
+    let points = document.points().skip(line * size.columns).take(size.columns);
     axes.line(points.enumerate().map(|(i, point)| axes.written(i, point)))
 }
 
 /// As [`inline`], from the binary file of an archive.
 fn binary(
     document: &Document,
-    grid: &Grid,
+    size: &MatrixSize,
     line: usize,
     archive: &mut Archive<'_>,
 ) -> Result<[Vec<f64>; 2], ContentError> {
     let axes = Axes::read(document)?;
     let bytes = axes.bytes();
-    let part = File { link: "PointDataLink", checksum: "MD5ChecksumPointData", length: grid.count() * bytes };
-    let kept = line * grid.columns * bytes..(line + 1) * grid.columns * bytes;
+    let part = LinkedFile { link: "PointDataLink", checksum: "MD5ChecksumPointData", length: size.count() * bytes };
+    let kept = line * size.columns * bytes..(line + 1) * size.columns * bytes;
     let data = part.read(document, archive, kept)?.ok_or_else(|| missing("DataLink.PointDataLink"))?;
-    let part = File { link: "ValidPointsLink", checksum: "MD5ChecksumValidPoints", length: grid.count().div_ceil(8) };
+    let part =
+        LinkedFile { link: "ValidPointsLink", checksum: "MD5ChecksumValidPoints", length: size.count().div_ceil(8) };
     let mask = part.read(document, archive, 0..part.length)?;
     // The first point is the lowest bit of the first byte.
     let bit = |i: usize| mask.as_ref().is_none_or(|mask| mask[i / 8] >> (i % 8) & 1 == 1);
     axes.line(data.chunks_exact(bytes).enumerate().map(|(i, point)| {
         let (x, z) = axes.stored(i, point);
-        Ok((x, if bit(line * grid.columns + i) { z } else { f64::NAN }))
+        Ok((x, if bit(line * size.columns + i) { z } else { f64::NAN }))
     }))
 }
 
 impl Axes {
     fn read(document: &Document) -> Result<Self, ContentError> {
-        let [x, y, z] = ["CX", "CY", "CZ"].map(|name| Axis::read(document, name));
+        let [x, y, z] = ["CX", "CY", "CZ"].map(|name| CoordinateAxis::read(document, name));
         let (x, y, z) = (x?, y?, z?);
-        if z.values.is_none() {
+        if z.stored_as.is_none() {
             return Err(ContentError::value(None, "CZ.AxisType", "I", "A: absolute heights"));
         }
         Ok(Self([x, y, z]))
@@ -108,17 +109,17 @@ impl Axes {
 
     /// Bytes of a point.
     fn bytes(&self) -> usize {
-        self.0.iter().filter_map(|axis| axis.values).map(Values::bytes).sum()
+        self.0.iter().filter_map(|axis| axis.stored_as).map(NumberType::bytes).sum()
     }
 
     /// x and height of point `i` of a line, from its bytes.
     fn stored(&self, i: usize, point: &[u8]) -> (f64, f64) {
         let mut at = 0;
-        let [x, _, z] = self.0.map(|axis| match axis.values {
+        let [x, _, z] = self.0.map(|axis| match axis.stored_as {
             None => axis.coordinate(i as f64),
-            Some(values) => {
-                at += values.bytes();
-                axis.coordinate(values.value(&point[at - values.bytes()..at]))
+            Some(number) => {
+                at += number.bytes();
+                axis.coordinate(number.value(&point[at - number.bytes()..at]))
             }
         });
         (x, z)
@@ -135,7 +136,7 @@ impl Axes {
         };
         let [x, _, z] = self.0;
         let height = z.coordinate(number(point.rsplit(';').next())?);
-        let x_value = if x.values.is_some() { number(point.split(';').next())? } else { i as f64 };
+        let x_value = if x.stored_as.is_some() { number(point.split(';').next())? } else { i as f64 };
         Ok((x.coordinate(x_value), height))
     }
 
@@ -158,7 +159,7 @@ impl Axes {
     }
 }
 
-impl Axis {
+impl CoordinateAxis {
     fn read(document: &Document, name: &str) -> Result<Self, ContentError> {
         let key = |field: &str| format!("{name}.{field}");
         let axis_type = document.required(&key("AxisType"))?;
@@ -167,14 +168,14 @@ impl Axis {
             "A" => false,
             other => return Err(ContentError::value(None, &key("AxisType"), other, "I or A, incremental or absolute")),
         };
-        let values = if incremental { None } else { Some(Values::read(document, &key("DataType"))?) };
+        let stored_as = if incremental { None } else { Some(NumberType::read(document, &key("DataType"))?) };
         // On an absolute axis an increment of 0 says as little as none.
         let increment = document.number(&key("Increment"))?.filter(|increment| incremental || *increment != 0.0);
         let offset = document.number(&key("Offset"))?.unwrap_or(0.0);
         match increment {
-            Some(increment) => Ok(Self { values, increment, offset }),
+            Some(increment) => Ok(Self { stored_as, increment, offset }),
             None if incremental => Err(missing(&key("Increment"))),
-            None => Ok(Self { values, increment: 1.0, offset }),
+            None => Ok(Self { stored_as, increment: 1.0, offset }),
         }
     }
 
@@ -183,7 +184,7 @@ impl Axis {
     }
 }
 
-impl Values {
+impl NumberType {
     fn read(document: &Document, key: &str) -> Result<Self, ContentError> {
         Ok(match document.required(key)? {
             "I" => Self::Short,
@@ -214,14 +215,14 @@ impl Values {
 }
 
 /// A file that the document links to.
-struct File {
+struct LinkedFile {
     link: &'static str,
     checksum: &'static str,
     /// The bytes that it must have.
     length: usize,
 }
 
-impl File {
+impl LinkedFile {
     /// The bytes of a range, where the document names the file. All are looked at for the checksum, but not kept.
     fn read(
         &self,

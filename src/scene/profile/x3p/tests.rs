@@ -85,7 +85,7 @@ impl File {
         writer.finish().unwrap().into_inner()
     }
 
-    fn line(&self, line: usize) -> Raw {
+    fn line(&self, line: usize) -> MeasuredPoints {
         let options = ProfileOptions { line: Some(line), missing: Missing::Fill, ..ProfileOptions::default() };
         read(&self.archive(), &options).unwrap_or_else(|error| unreachable!("{error:?}"))
     }
