@@ -28,7 +28,7 @@ const OF_ERROR: f64 = 0.1;
 
 /// What is scaled by powers of ten.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Quantity {
+pub enum ScaledQuantity {
     /// Every spring of every link, those of Maxwell elements too.
     Stiffness,
     /// The point masses.
@@ -41,7 +41,7 @@ pub enum Quantity {
     CommunicationStep,
 }
 
-impl Quantity {
+impl ScaledQuantity {
     /// All of them.
     pub const ALL: [Self; 5] =
         [Self::Stiffness, Self::Mass, Self::RelaxationTimes, Self::Speed, Self::CommunicationStep];
@@ -113,7 +113,7 @@ fn hasten(phase: &mut Phase, factor: f64) {
 /// The powers of ten by which quantities are scaled; by default the scene as it is, without a master.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Perturbation {
-    /// Of the scene's own quantities, in the order of [`Quantity::ALL`].
+    /// Of the scene's own quantities, in the order of [`ScaledQuantity::ALL`].
     powers: [i32; 4],
     communication: Option<i32>,
 }
@@ -121,24 +121,24 @@ pub struct Perturbation {
 impl Perturbation {
     /// This perturbation with one more quantity scaled.
     #[must_use]
-    pub fn with(mut self, quantity: Quantity, power: i32) -> Self {
+    pub fn with(mut self, quantity: ScaledQuantity, power: i32) -> Self {
         match quantity {
-            Quantity::CommunicationStep => self.communication = Some(power),
+            ScaledQuantity::CommunicationStep => self.communication = Some(power),
             _ => self.powers[quantity as usize] = power,
         }
         self
     }
 
     /// The power of ten of a quantity; `None` for the communication step where there is no master.
-    pub fn power(&self, quantity: Quantity) -> Option<i32> {
+    pub fn power(&self, quantity: ScaledQuantity) -> Option<i32> {
         match quantity {
-            Quantity::CommunicationStep => self.communication,
+            ScaledQuantity::CommunicationStep => self.communication,
             _ => Some(self.powers[quantity as usize]),
         }
     }
 
     /// The factor of a quantity.
-    pub fn factor(&self, quantity: Quantity) -> Option<f64> {
+    pub fn factor(&self, quantity: ScaledQuantity) -> Option<f64> {
         self.power(quantity).map(power_of_ten)
     }
 
@@ -148,7 +148,7 @@ impl Perturbation {
     /// A parameter that is out of range.
     pub fn apply(&self, scene: &Scene) -> Result<Scene, ParameterError> {
         let mut scene = scene.clone();
-        for quantity in Quantity::ALL.into_iter().filter(|quantity| self.power(*quantity) != Some(0)) {
+        for quantity in ScaledQuantity::ALL.into_iter().filter(|quantity| self.power(*quantity) != Some(0)) {
             quantity.scale(&mut scene, self.factor(quantity).unwrap_or(1.0))?;
         }
         scene.check()?;
@@ -196,19 +196,19 @@ impl Budget {
     }
 
     /// What an error of a run of [`limit`](Self::limit) means for the scene.
-    pub fn failure(self, scene: &Scene, error: &SimulationError) -> Failure {
+    pub fn failure(self, scene: &Scene, error: &SimulationError) -> RunFailure {
         match error {
             SimulationError::TooManySteps { time, .. } if self.0 <= scene.solver.max_steps => {
-                Failure::OverBudget { time: *time }
+                RunFailure::OverBudget { time: *time }
             }
-            error => Failure::Stopped(error.to_string()),
+            error => RunFailure::Stopped(error.to_string()),
         }
     }
 }
 
 /// Why a run did not come to its end.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Failure {
+pub enum RunFailure {
     /// Its budget was used up.
     #[error("over budget at t = {time:.3e} s")]
     OverBudget {
@@ -410,11 +410,11 @@ impl Verdict {
     }
 }
 
-impl From<&Failure> for Verdict {
-    fn from(failure: &Failure) -> Self {
+impl From<&RunFailure> for Verdict {
+    fn from(failure: &RunFailure) -> Self {
         match failure {
-            Failure::OverBudget { .. } => Self::OverBudget,
-            Failure::Stopped(_) => Self::Stopped,
+            RunFailure::OverBudget { .. } => Self::OverBudget,
+            RunFailure::Stopped(_) => Self::Stopped,
         }
     }
 }
@@ -449,7 +449,7 @@ u_sine = { amplitude = 1e-5, frequency = 100.0 }
 
     #[test]
     fn every_stiffness_is_scaled_and_nothing_else() {
-        let stiff = Perturbation::default().with(Quantity::Stiffness, 3).apply(&scene(TEXT)).unwrap();
+        let stiff = Perturbation::default().with(ScaledQuantity::Stiffness, 3).apply(&scene(TEXT)).unwrap();
         let by_hand = TEXT.replace("stiffness = 1e3", "stiffness = 1e6").replace("stiffness = 5e2", "stiffness = 5e5");
         assert_eq!(stiff, scene(&by_hand.replace("stiffness = 2e3", "stiffness = 2e6")));
     }
@@ -472,14 +472,14 @@ kind = 'flat'";
         let rubber = scene(text);
         let scaled = |quantity| Perturbation::default().with(quantity, 1).apply(&rubber).unwrap();
         let stiff = text.replace("= 2e6", "= 2e7").replace("modulus = 5e6", "modulus = 5e7");
-        assert_eq!(scaled(Quantity::Stiffness), scene(&stiff));
-        assert_eq!(scaled(Quantity::Mass), scene(&text.replace("1100.0", "11000.0")));
-        assert_eq!(scaled(Quantity::RelaxationTimes), scene(&text.replace("= 1e-4 }", "= 1e-3 }")));
+        assert_eq!(scaled(ScaledQuantity::Stiffness), scene(&stiff));
+        assert_eq!(scaled(ScaledQuantity::Mass), scene(&text.replace("1100.0", "11000.0")));
+        assert_eq!(scaled(ScaledQuantity::RelaxationTimes), scene(&text.replace("= 1e-4 }", "= 1e-3 }")));
     }
 
     #[test]
     fn the_path_is_the_same_at_any_speed() {
-        let fast = Perturbation::default().with(Quantity::Speed, 2).apply(&scene(TEXT)).unwrap();
+        let fast = Perturbation::default().with(ScaledQuantity::Speed, 2).apply(&scene(TEXT)).unwrap();
         let (slow, fast) = (&scene(TEXT).excitation[0], &fast.excitation[0]);
         assert_eq!((fast.duration, fast.w.rate, fast.u.frequency), (1e-5, -1.0, 1e4));
         for share in [0.0, 0.3, 1.0] {
@@ -492,17 +492,17 @@ kind = 'flat'";
 
     #[test]
     fn what_a_scene_does_not_have_is_not_scaled() {
-        use Quantity::{CommunicationStep, Mass, RelaxationTimes, Speed, Stiffness};
-        assert_eq!(Quantity::of(&scene(TEXT)), Quantity::ALL);
+        use ScaledQuantity::{CommunicationStep, Mass, RelaxationTimes, Speed, Stiffness};
+        assert_eq!(ScaledQuantity::of(&scene(TEXT)), ScaledQuantity::ALL);
         let springs = TEXT.replace("maxwell = [{ stiffness = 5e2, relaxation_time = 1e-4 }]", "");
-        assert_eq!(Quantity::of(&scene(&springs)), [Stiffness, Mass, Speed, CommunicationStep]);
+        assert_eq!(ScaledQuantity::of(&scene(&springs)), [Stiffness, Mass, Speed, CommunicationStep]);
         let at_rest = TEXT.replace("w_rate = -0.01", "").replace("u_sine", "# u_sine");
-        assert_eq!(Quantity::of(&scene(&at_rest)), [Stiffness, Mass, RelaxationTimes, CommunicationStep]);
+        assert_eq!(ScaledQuantity::of(&scene(&at_rest)), [Stiffness, Mass, RelaxationTimes, CommunicationStep]);
     }
 
     #[test]
     fn a_parameter_out_of_range_is_an_error() {
-        let light = Perturbation::default().with(Quantity::Mass, -330);
+        let light = Perturbation::default().with(ScaledQuantity::Mass, -330);
         assert!(light.apply(&scene(TEXT)).unwrap_err().to_string().contains("layer.mass"));
     }
 

@@ -7,7 +7,7 @@
 use std::fs;
 use std::path::Path;
 
-use asperity::robustness::{Perturbation, Quantity};
+use asperity::robustness::{Perturbation, ScaledQuantity};
 use asperity::simulation::Start;
 use toml::{Table, Value};
 
@@ -100,8 +100,8 @@ pub fn read() -> Vec<Case> {
 fn perturbed(bases: &Table) -> Vec<Case> {
     const POWERS: [i32; 3] = [-6, -3, 3];
     const PHRASE: &str = "quantities scaled by powers of ten";
-    let quantities = Quantity::ALL.into_iter().filter(|&quantity| quantity != Quantity::CommunicationStep);
-    let scaled = |(quantity, power): (Quantity, i32)| {
+    let quantities = ScaledQuantity::ALL.into_iter().filter(|&quantity| quantity != ScaledQuantity::CommunicationStep);
+    let scaled = |(quantity, power): (ScaledQuantity, i32)| {
         let name = format!("scaled: {} × 1e{power}", quantity.name());
         let block = case(&name, [PHRASE, quantity.name()], bases["block"].as_table().unwrap().clone());
         Case { perturbation: Perturbation::default().with(quantity, power), ..block }

@@ -1,6 +1,6 @@
 //! Errors against what a run costs: over the tolerances of each method, and over the communication steps of a master.
 
-use asperity::robustness::{Failure, at_tolerance, exact};
+use asperity::robustness::{RunFailure, at_tolerance, exact};
 use asperity::scene::{Method, Scene};
 
 use super::reference::{Comparison, Reference};
@@ -39,9 +39,9 @@ impl ToleranceRow {
     }
 }
 
-/// The ladder of tolerances.
+/// The runs of each method over tolerances.
 #[derive(Debug)]
-pub(super) struct Ladder<'a> {
+pub(super) struct ToleranceLadder<'a> {
     /// From loose to tight.
     pub(super) tolerances: &'a [f64],
     /// Rows of a phase.
@@ -50,7 +50,7 @@ pub(super) struct Ladder<'a> {
     pub(super) repeat: u32,
 }
 
-impl Ladder<'_> {
+impl ToleranceLadder<'_> {
     /// As [`weight`].
     pub(super) fn weight(&self) -> f64 {
         let rungs = METHODS.iter().flat_map(|&(method, _)| self.tolerances.iter().map(move |&rung| (method, rung)));
@@ -97,7 +97,7 @@ impl Ladder<'_> {
         method: &str,
         reference: &Reference,
         progress: &Progress,
-    ) -> Result<Figures, Failure> {
+    ) -> Result<Figures, RunFailure> {
         let tolerance = scene.solver.relative_tolerance;
         let weight = self.rung_weight(scene.solver.method, tolerance);
         let measure = |rows: Rows, what: &str| {
@@ -202,7 +202,7 @@ impl<'a> CommunicationSteps<'a> {
         finest.trace.every((Self::FINEST / parts) as usize)
     }
 
-    fn drive(&self, given: Given, parts: u32) -> Result<Measured, Failure> {
+    fn drive(&self, given: Given, parts: u32) -> Result<Measured, RunFailure> {
         let scene = &self.reference.scene;
         let times = |duration: f64| self.rows(parts).times(duration).collect();
         let points: Vec<Vec<f64>> = scene.excitation.iter().map(|phase| times(phase.duration)).collect();

@@ -11,7 +11,7 @@ mod trace;
 use std::path::PathBuf;
 use std::{fs, io};
 
-use asperity::robustness::Failure;
+use asperity::robustness::RunFailure;
 use asperity::scene::Scene;
 
 use super::cli::Report;
@@ -19,7 +19,7 @@ use super::figure::{Figure as _, Ladders};
 use super::files::{FileError, check_output, load, set_parameters, sources, write};
 use super::result_file::ResultFileError;
 use super::terminal::warn;
-use convergence::{CommunicationRow, CommunicationSteps, Ladder, ToleranceRow};
+use convergence::{CommunicationRow, CommunicationSteps, ToleranceLadder, ToleranceRow};
 use reference::Reference;
 use robustness::Robustness;
 use run::Progress;
@@ -35,7 +35,7 @@ pub(crate) enum ReportError {
     #[error("the scene {0}")]
     NoRun(&'static str),
     #[error("no reference: not even the loosest tolerance comes to its end: {0}")]
-    Reference(Failure),
+    Reference(RunFailure),
 }
 
 const PAGE: &str = "index.html";
@@ -87,7 +87,7 @@ impl Parts {
     fn run(command: &Report, scene: &Scene, peers: Peers) -> Result<Self, ReportError> {
         let scene = run::watched(scene);
         let tolerances = &command.tolerances.0;
-        let ladder = Ladder { tolerances, points: command.points, repeat: command.repeat };
+        let ladder = ToleranceLadder { tolerances, points: command.points, repeat: command.repeat };
         let tightest = tolerances.last().copied().unwrap_or_default();
         let by_steps = CommunicationSteps::weight(tightest / 10.0, scene.solver.relative_tolerance);
         let progress = Progress::new(Reference::weight(tightest) + ladder.weight() + by_steps);

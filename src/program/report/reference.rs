@@ -1,6 +1,6 @@
 //! The run that all others are compared with, its own error, and whether runs can be compared row by row at all.
 
-use asperity::robustness::{Budget, DISPLACEMENT, Failure, at_tolerance, divergence, exact};
+use asperity::robustness::{Budget, DISPLACEMENT, RunFailure, at_tolerance, divergence, exact};
 use asperity::scene::Scene;
 
 use super::run::{Counts, Figures, Measured, Progress, UNLIMITED, follow, weight, with_durations};
@@ -77,11 +77,11 @@ impl Reference {
     /// Finds the reference for a ladder of tolerances, from loose to tight: by the method "event" at a tenth of the
     /// tightest, its error by a run at a tenth of that. Where such a run gives up, the tightest of the ladder that do
     /// not.
-    pub(super) fn find(scene: &Scene, ladder: &[f64], points: u32, progress: &Progress) -> Result<Self, Failure> {
+    pub(super) fn find(scene: &Scene, ladder: &[f64], points: u32, progress: &Progress) -> Result<Self, RunFailure> {
         let rows = Rows::PerPhase(points);
-        let (rung, base) = Search { scene: &exact(scene), rows, progress }.tightest(ladder)?;
+        let (rung, base) = ReferenceSearch { scene: &exact(scene), rows, progress }.tightest(ladder)?;
         let scene = with_durations(scene, &base.durations);
-        let search = Search { scene: &exact(&scene), rows, progress };
+        let search = ReferenceSearch { scene: &exact(&scene), rows, progress };
         let (run, check) = match search.tighter(ladder[rung], &base.counts) {
             None => ((ladder[rung], base), search.looser(&ladder[..rung])),
             Some((tolerance, run)) => {
@@ -117,21 +117,21 @@ impl Reference {
     }
 }
 
-struct Search<'a> {
+struct ReferenceSearch<'a> {
     scene: &'a Scene,
     rows: Rows,
     progress: &'a Progress,
 }
 
-impl Search<'_> {
-    fn run(&self, tolerance: f64, rows: Rows, u: f64, budget: Budget) -> Result<Measured, Failure> {
+impl ReferenceSearch<'_> {
+    fn run(&self, tolerance: f64, rows: Rows, u: f64, budget: Budget) -> Result<Measured, RunFailure> {
         let scene = at_tolerance(self.scene, tolerance);
         let message = format!("reference, tolerance {tolerance:e}");
         self.progress.during(&message, weight(tolerance), |tick| follow(&scene, rows, u, budget, tick))
     }
 
     /// The tightest rung whose run does not fail, and that run; `ladder` is not empty.
-    fn tightest(&self, ladder: &[f64]) -> Result<(usize, Measured), Failure> {
+    fn tightest(&self, ladder: &[f64]) -> Result<(usize, Measured), RunFailure> {
         let mut rung = ladder.len() - 1;
         loop {
             match self.run(ladder[rung], self.rows, 0.0, UNLIMITED) {
@@ -156,7 +156,7 @@ impl Search<'_> {
 
     /// The reference with means in place of rows. What a moved start changes in them counts as its error too: no run
     /// can know better.
-    fn by_means(&self, pointwise: Reference) -> Result<Reference, Failure> {
+    fn by_means(&self, pointwise: Reference) -> Result<Reference, RunFailure> {
         let comparison = Comparison::Means(Rows::PerPhase(SAMPLES));
         let run = |tolerance: f64, u: f64| self.run(tolerance, comparison.rows(), u, UNLIMITED);
         let measured = run(pointwise.tolerance, 0.0)?;

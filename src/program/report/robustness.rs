@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use asperity::robustness::{
-    Accuracy, Budget, DISPLACEMENT, Difference, Failure, Perturbation, Quantity, TIGHTER, Verdict, at_tolerance, exact,
+    Accuracy, Budget, DISPLACEMENT, Difference, Perturbation, RunFailure, ScaledQuantity, TIGHTER, Verdict,
+    at_tolerance, exact,
 };
 use asperity::scene::Scene;
 use cpu_time::ThreadTime;
@@ -36,7 +37,7 @@ pub(super) const SHORT_STEPS: u32 = 2000;
 #[derive(Debug)]
 pub(super) struct Robustness {
     /// What the scene has of what is scaled.
-    pub(super) quantities: Vec<Quantity>,
+    pub(super) quantities: Vec<ScaledQuantity>,
     /// Powers of ten each way.
     pub(super) powers: i32,
     /// Every so many of them in pairs.
@@ -66,7 +67,7 @@ enum Outcome {
         communication_steps: u64,
         accuracy: Accuracy,
     },
-    Failed(Failure),
+    Failed(RunFailure),
     NotTried,
 }
 
@@ -92,12 +93,12 @@ impl Robustness {
     /// Runs the scene of `reference` scaled by so many powers of ten each way; the pairs may take about `seconds`.
     pub(super) fn run(reference: &Reference, powers: u32, points: u32, seconds: f64) -> Self {
         let scene = &reference.scene;
-        let unlimited = Runner { scene, points, budget: scene.solver.max_steps, patience: PATIENCE };
+        let unlimited = PerturbedRunner { scene, points, budget: scene.solver.max_steps, patience: PATIENCE };
         let unperturbed = unlimited.run(Perturbation::default());
         let work = unperturbed.counts().unwrap_or(&reference.measured.counts).work();
         let budget = BUDGET * work.max(CHEAP / BUDGET);
         let mut all = Self {
-            quantities: Quantity::of(scene),
+            quantities: ScaledQuantity::of(scene),
             powers: powers as i32,
             stride: 0,
             tolerance: scene.solver.relative_tolerance,
@@ -105,10 +106,10 @@ impl Robustness {
             longest: longest(scene),
             trials: BTreeMap::from([(Perturbation::default(), unperturbed)]),
         };
-        let runner = Runner { budget, ..unlimited };
+        let runner = PerturbedRunner { budget, ..unlimited };
         let singles = all.missing(all.quantities.iter().flat_map(|&quantity| all.line(quantity)));
         all.run_all(runner, singles, f64::INFINITY, "robustness, one by one");
-        all.run_pairs(Runner { patience: 1, ..runner }, seconds);
+        all.run_pairs(PerturbedRunner { patience: 1, ..runner }, seconds);
         all
     }
 
@@ -154,8 +155,8 @@ impl Robustness {
             Outcome::Ended { accuracy: Accuracy::Unknown(reason), .. } => {
                 format!("no tight run to compare with: {reason}")
             }
-            Outcome::Failed(Failure::Stopped(reason)) => reason.clone(),
-            Outcome::Failed(Failure::OverBudget { time }) => {
+            Outcome::Failed(RunFailure::Stopped(reason)) => reason.clone(),
+            Outcome::Failed(RunFailure::OverBudget { time }) => {
                 format!("more than {} steps, used up at t = {time:.3e} s", self.budget)
             }
             Outcome::NotTried => "not tried: not enough time".into(),
@@ -176,14 +177,14 @@ impl Robustness {
 
     /// The perturbation that has the same run: a communication step longer than every phase is as long as the phases.
     fn same(&self, perturbation: Perturbation) -> Perturbation {
-        match perturbation.power(Quantity::CommunicationStep) {
-            Some(power) if power > self.longest => perturbation.with(Quantity::CommunicationStep, self.longest),
+        match perturbation.power(ScaledQuantity::CommunicationStep) {
+            Some(power) if power > self.longest => perturbation.with(ScaledQuantity::CommunicationStep, self.longest),
             _ => perturbation,
         }
     }
 
     /// One quantity scaled by all powers.
-    fn line(&self, quantity: Quantity) -> impl Iterator<Item = Perturbation> {
+    fn line(&self, quantity: ScaledQuantity) -> impl Iterator<Item = Perturbation> {
         self.powers(1).map(move |power| Perturbation::default().with(quantity, power))
     }
 
@@ -210,7 +211,7 @@ impl Robustness {
     }
 
     /// Runs the pairs, the cheap ones first, at as many powers as there is time for.
-    fn run_pairs(&mut self, runner: Runner<'_>, seconds: f64) {
+    fn run_pairs(&mut self, runner: PerturbedRunner<'_>, seconds: f64) {
         let time = seconds * rayon::current_num_threads() as f64;
         let strides: Vec<i32> = (1..=self.powers).filter(|stride| self.powers % stride == 0).collect();
         let fits = |stride: i32| {
@@ -233,7 +234,7 @@ impl Robustness {
     }
 
     /// Does the runs until they have taken `time` (s).
-    fn run_all(&mut self, runner: Runner<'_>, runs: Vec<Perturbation>, time: f64, message: &'static str) {
+    fn run_all(&mut self, runner: PerturbedRunner<'_>, runs: Vec<Perturbation>, time: f64, message: &'static str) {
         let bar = bar(runs.len() as u64);
         bar.set_message(message);
         // Of all threads together, ns.
@@ -254,10 +255,10 @@ impl Robustness {
     /// What a run is likely to take, s: what the quantities do one by one, together.
     fn expected_cost(&self, perturbation: Perturbation) -> f64 {
         let base = self.unperturbed().cost;
-        let alone = |quantity: Quantity| {
+        let alone = |quantity: ScaledQuantity| {
             let power = perturbation.power(quantity)?;
             let trial = self.trials.get(&self.same(Perturbation::default().with(quantity, power)))?;
-            let over = matches!(trial.outcome, Outcome::Failed(Failure::OverBudget { .. }));
+            let over = matches!(trial.outcome, Outcome::Failed(RunFailure::OverBudget { .. }));
             Some(if over { BEYOND } else { 1.0 } * trial.cost / base)
         };
         base * self.quantities.iter().filter_map(|&quantity| alone(quantity)).product::<f64>()
@@ -282,7 +283,7 @@ fn two_digits(value: f64) -> String {
 
 /// Runs a scene perturbed.
 #[derive(Clone, Copy, Debug)]
-struct Runner<'a> {
+struct PerturbedRunner<'a> {
     /// Without perturbation; no force ends its phases.
     scene: &'a Scene,
     /// Rows of a phase.
@@ -293,12 +294,12 @@ struct Runner<'a> {
     patience: u64,
 }
 
-impl Runner<'_> {
+impl PerturbedRunner<'_> {
     fn run(&self, perturbation: Perturbation) -> Trial {
         let clock = ThreadTime::now();
         let outcome = match perturbation.apply(self.scene) {
-            Ok(scene) => self.outcome(&scene, perturbation.factor(Quantity::CommunicationStep)),
-            Err(refused) => Outcome::Failed(Failure::Stopped(refused.to_string())),
+            Ok(scene) => self.outcome(&scene, perturbation.factor(ScaledQuantity::CommunicationStep)),
+            Err(refused) => Outcome::Failed(RunFailure::Stopped(refused.to_string())),
         };
         Trial { outcome, cost: clock.elapsed().as_secs_f64() }
     }
@@ -327,13 +328,13 @@ fn accuracy(
     scene: &Scene,
     run: &Measured,
     budget: Budget,
-    along: impl Fn(&Scene, f64, Budget) -> Result<Measured, Failure>,
+    along: impl Fn(&Scene, f64, Budget) -> Result<Measured, RunFailure>,
 ) -> Accuracy {
     let tight_scene = exact(&at_tolerance(scene, scene.solver.relative_tolerance / TIGHTER));
     let tight = match along(&tight_scene, 0.0, budget) {
         Ok(tight) => tight.trace.forces(),
-        Err(Failure::Stopped(reason)) => return Accuracy::Unknown(reason),
-        Err(Failure::OverBudget { .. }) => return Accuracy::Unknown(format!("more than {} steps", budget.0)),
+        Err(RunFailure::Stopped(reason)) => return Accuracy::Unknown(reason),
+        Err(RunFailure::OverBudget { .. }) => return Accuracy::Unknown(format!("more than {} steps", budget.0)),
     };
     let moved = || along(&tight_scene, DISPLACEMENT, budget).ok().map(|moved| moved.trace.forces());
     Accuracy::judge(scene, &run.trace.forces(), &tight, moved)

@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use asperity::fmi::{Input, InputOutOfRange, Inputs};
 use asperity::outputs::{Output, Snapshot, Variable, variables};
-use asperity::robustness::{Budget, Failure};
+use asperity::robustness::{Budget, RunFailure};
 use asperity::scene::{OutputGroup, Phase, Scene};
 use asperity::simulation::{Simulation, SimulationError};
 use cpu_time::ThreadTime;
@@ -107,10 +107,10 @@ pub(super) fn follow(
     u: f64,
     budget: Budget,
     tick: &dyn Fn(f64),
-) -> Result<Measured, Failure> {
+) -> Result<Measured, RunFailure> {
     let failed = |error: SimulationError| budget.failure(scene, &error);
     let duration = scene.duration();
-    let mut recorder = Recorder::new(scene);
+    let mut recorder = TraceRecorder::new(scene);
     let mut runner = Runner::new(&budget.limit(scene), rows, u).map_err(failed)?;
     let clock = ThreadTime::now();
     runner.observe_now(|_, snapshot| recorder.row(snapshot));
@@ -157,10 +157,10 @@ pub(super) fn drive(
     u: f64,
     budget: Budget,
     tick: &dyn Fn(f64),
-) -> Result<Measured, Failure> {
+) -> Result<Measured, RunFailure> {
     let failed = |error: StepError| match error {
         StepError::Run(error) => budget.failure(scene, &error),
-        StepError::Input(error) => Failure::Stopped(error.to_string()),
+        StepError::Input(error) => RunFailure::Stopped(error.to_string()),
     };
     let limited = budget.limit(scene);
     let duration = scene.duration();
@@ -195,7 +195,7 @@ struct Master<'a> {
     given: Given,
     inputs: Inputs,
     simulation: Simulation,
-    recorder: Recorder,
+    recorder: TraceRecorder,
     /// On the excitation, at the communication point.
     carrier: CarrierSample,
 }
@@ -208,7 +208,7 @@ impl<'a> Master<'a> {
             set_rates(&mut inputs, phase, 0.0);
         }
         let mut simulation = Simulation::new(scene, &inputs.start(0.0))?;
-        let mut recorder = Recorder::new(scene);
+        let mut recorder = TraceRecorder::new(scene);
         recorder.row(&simulation.snapshot());
         let carrier = CarrierSample { time: 0.0, u, w: 0.0 };
         Ok(Self { scene, given, inputs, simulation, recorder, carrier })
@@ -252,7 +252,7 @@ const WATCHED: [Output; 10] = [
 
 /// Records the rows of a run.
 #[derive(Debug)]
-struct Recorder {
+struct TraceRecorder {
     variables: Vec<Variable>,
     values: [f64; WATCHED.len()],
     trace: Trace,
@@ -263,7 +263,7 @@ struct Recorder {
     residual: f64,
 }
 
-impl Recorder {
+impl TraceRecorder {
     /// For a run of `scene`, which is [`watched`].
     fn new(scene: &Scene) -> Self {
         let mut outputs = scene.outputs.clone();
@@ -294,9 +294,9 @@ impl Recorder {
         self.trace.end_phase();
     }
 
-    fn check(&self, budget: Budget) -> Result<(), Failure> {
+    fn check(&self, budget: Budget) -> Result<(), RunFailure> {
         let used_up = self.counts.work() > budget.0;
-        if used_up { Err(Failure::OverBudget { time: self.trace.end() }) } else { Ok(()) }
+        if used_up { Err(RunFailure::OverBudget { time: self.trace.end() }) } else { Ok(()) }
     }
 
     fn finish(self, simulation: &Simulation, time: f64, durations: Vec<f64>) -> Measured {
@@ -382,10 +382,10 @@ u_rate = 0.01
             assert_eq!(measured.trace.forces().rows.len(), rows);
             assert!((measured.trace.end() - 2e-3).abs() < 1e-15, "{:e}", measured.trace.end());
             let failure = run(&scene, measured.counts.work() - 1).unwrap_err();
-            assert!(matches!(failure, Failure::OverBudget { time } if time > 1e-3), "{failure:?}");
+            assert!(matches!(failure, RunFailure::OverBudget { time } if time > 1e-3), "{failure:?}");
         }
         scene.solver.max_steps = 2;
         let failure = along(&scene, 10_000).unwrap_err();
-        assert!(matches!(&failure, Failure::Stopped(reason) if reason.contains("solver.max_steps")), "{failure:?}");
+        assert!(matches!(&failure, RunFailure::Stopped(reason) if reason.contains("solver.max_steps")), "{failure:?}");
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use asperity::robustness::Quantity;
+use asperity::robustness::ScaledQuantity;
 
 use super::convergence::{CommunicationRow, PROGRAM, ToleranceRow};
 use super::reference::Reference;
@@ -83,7 +83,7 @@ pub(super) fn write_communication(
 pub(super) fn write_robustness(path: &Path, scene: &str, robustness: &Robustness) -> Result<(), FileError> {
     let records = robustness.trials().map(|(perturbation, trial)| {
         let mut fields = vec![scene.to_owned()];
-        fields.extend(Quantity::ALL.map(|quantity| optional(perturbation.factor(quantity))));
+        fields.extend(ScaledQuantity::ALL.map(|quantity| optional(perturbation.factor(quantity))));
         fields.extend([robustness.verdict(trial).name().to_owned(), robustness.reason(trial)]);
         let (accuracy, counts) = (trial.accuracy(), trial.counts());
         let error = accuracy.and_then(|accuracy| Some(accuracy.error()?.share));

@@ -2,7 +2,7 @@
 
 use std::io;
 
-use asperity::robustness::{Accuracy, KEPT, NOTABLE, Perturbation, Quantity, TIGHTER, Verdict, WRONG};
+use asperity::robustness::{Accuracy, KEPT, NOTABLE, Perturbation, ScaledQuantity, TIGHTER, Verdict, WRONG};
 use asperity::scene::Scene;
 use quick_xml::escape::escape;
 
@@ -134,7 +134,7 @@ fn figures(robustness: &Robustness, trial: &Trial) -> String {
 
 /// A cell of a colour; its title has the whole outcome.
 fn coloured(robustness: &Robustness, perturbation: Perturbation, class: &str) -> Cell {
-    let unscaled = Quantity::ALL.iter().all(|&quantity| perturbation.power(quantity).unwrap_or(0) == 0);
+    let unscaled = ScaledQuantity::ALL.iter().all(|&quantity| perturbation.power(quantity).unwrap_or(0) == 0);
     let centre = if unscaled { " centre" } else { "" };
     Cell { class: format!("cell {class}{centre}"), title: outcome(robustness, perturbation), ..Cell::from("") }
 }
@@ -152,8 +152,8 @@ fn outcome(robustness: &Robustness, perturbation: Perturbation) -> String {
 
 /// "stiffness × 10³, speed × 10⁻²".
 fn factors(perturbation: Perturbation) -> String {
-    let scaled = Quantity::ALL.into_iter().filter_map(|quantity| Some((quantity, perturbation.power(quantity)?)));
-    let scaled = scaled.filter(|&(quantity, power)| power != 0 || quantity == Quantity::CommunicationStep);
+    let scaled = ScaledQuantity::ALL.into_iter().filter_map(|quantity| Some((quantity, perturbation.power(quantity)?)));
+    let scaled = scaled.filter(|&(quantity, power)| power != 0 || quantity == ScaledQuantity::CommunicationStep);
     let texts: Vec<String> =
         scaled.map(|(quantity, power)| format!("{} × {}", quantity.name(), factor(power))).collect();
     if texts.is_empty() { "as it is".into() } else { texts.join(", ") }
@@ -204,7 +204,7 @@ fn in_words(reach: Option<(i32, i32)>) -> String {
 }
 
 /// The outcome of the runs next to those that come to their end.
-fn beyond(robustness: &Robustness, quantity: Quantity, ends: Option<(i32, i32)>) -> String {
+fn beyond(robustness: &Robustness, quantity: ScaledQuantity, ends: Option<(i32, i32)>) -> String {
     let (low, high) = ends.map_or((0, 0), |(low, high)| (low - 1, high + 1));
     let mut next = vec![low, high];
     next.dedup();
@@ -262,7 +262,7 @@ fn at_most(bound: f64) -> String {
 }
 
 /// One pair, errors or work.
-fn map(robustness: &Robustness, x: Quantity, y: Quantity, of_work: bool) -> io::Result<String> {
+fn map(robustness: &Robustness, x: ScaledQuantity, y: ScaledQuantity, of_work: bool) -> io::Result<String> {
     let row = |up: i32| {
         let cell = |right: i32| {
             let perturbation = Perturbation::default().with(x, right).with(y, -up);
@@ -298,7 +298,7 @@ fn failures(robustness: &Robustness) -> io::Result<String> {
         return Ok(String::new());
     }
     let distance = |perturbation: &Perturbation| -> i32 {
-        Quantity::ALL.into_iter().filter_map(|quantity| perturbation.power(quantity)).map(i32::abs).sum()
+        ScaledQuantity::ALL.into_iter().filter_map(|quantity| perturbation.power(quantity)).map(i32::abs).sum()
     };
     failures.sort_by_key(distance);
     let more = failures.len().saturating_sub(FAILURES);
@@ -331,7 +331,7 @@ mod tests {
     #[test]
     fn factors_are_written_as_by_hand() {
         assert_eq!([-12, -1, 0, 1, 6].map(factor), ["10⁻¹²", "10⁻¹", "1", "10", "10⁶"]);
-        let perturbation = Perturbation::default().with(Quantity::Stiffness, 3).with(Quantity::Speed, -2);
+        let perturbation = Perturbation::default().with(ScaledQuantity::Stiffness, 3).with(ScaledQuantity::Speed, -2);
         assert_eq!(factors(perturbation), "stiffness × 10³, speed × 10⁻²");
         assert_eq!(factors(Perturbation::default()), "as it is");
     }
