@@ -1,8 +1,8 @@
 //! Tables of text as people, instruments and spreadsheets write them: from bytes to text, from text to rows of fields.
 //!
 //! The one reader of text tables: profiles, Prony series, measured moduli, sweep tables and result files go through it.
-//! Files whose separator is known or the same on all lines are read by [`rows`]; the output of instruments, whose
-//! headers hold anything, line by line by [`Columns`].
+//! Files with the same separator on all lines are read by [`rows`]; the output of instruments, whose headers may hold
+//! anything, line by line, each with the separator that it shows.
 
 use std::borrow::Cow;
 use std::iter;
