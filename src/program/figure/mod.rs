@@ -14,7 +14,8 @@ use std::sync::Once;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::register_font;
-use plotters_backend::{BackendColor, BackendCoord, BackendStyle, DrawingErrorKind};
+use plotters::style::text_anchor::{HPos, VPos};
+use plotters_backend::{BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingErrorKind};
 
 pub(crate) use chart::{Curve, Stroke};
 pub(crate) use ladders::{Ladder, LadderPanel, Ladders, Rung};
@@ -183,7 +184,32 @@ impl DrawingBackend for Pixels<'_> {
         let inner = points.len().saturating_sub(1).max(1);
         points[..inner].iter().skip(1).try_for_each(|&point| self.draw_circle(point, width / 2, style, true))
     }
+
+    /// As plotters does it, but with the baseline of the SVG: plotters sets glyphs of ab_glyph too high.
+    fn draw_text<S: BackendTextStyle>(&mut self, text: &str, style: &S, (x, y): BackendCoord) -> PixelResult {
+        let failed = |error| DrawingErrorKind::FontError(Box::new(error));
+        let ((left, top), (right, bottom)) = style.layout_box(text).map_err(failed)?;
+        let across = match style.anchor().h_pos {
+            HPos::Left => 0,
+            HPos::Center => (left - right) / 2,
+            HPos::Right => left - right,
+        };
+        let down = match style.anchor().v_pos {
+            VPos::Top => 0,
+            VPos::Center => (top - bottom) / 2,
+            VPos::Bottom => top - bottom,
+        };
+        let down = down + (BASELINE * style.size()).round() as i32;
+        let drawn = style.draw(text, (0, 0), |dx, dy, colour| {
+            let (dx, dy) = style.transform().transform(dx + across - left, dy + down - top);
+            self.draw_pixel((x + dx, y + dy), colour)
+        });
+        drawn.map_err(failed)?
+    }
 }
+
+/// What is added to a text's position, as a share of its size.
+const BASELINE: f64 = 0.11;
 
 /// The corners of a segment of some width, which must have a length.
 fn thick_segment(from: BackendCoord, to: BackendCoord, width: u32) -> [BackendCoord; 4] {
