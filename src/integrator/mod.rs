@@ -1,8 +1,8 @@
 //! The implicit Runge-Kutta methods: attempts and acceptance of single steps of the layer with its contact modes held,
 //! their error tests, dense outputs, energies and sensitivities.
 //!
-//! Two methods share one implementation: [`METHOD`], of order 5 with seven stages, for the event-driven driver, and
-//! [`SDIRK2`], with two implicit stages, for the time-stepping driver.
+//! Two methods share one implementation: [`METHOD`], of order 5 with seven stages, for event-driven runs, and
+//! [`SDIRK2`], of order 2 with two implicit stages, for time-stepping.
 
 mod dense;
 mod energy;

@@ -175,7 +175,7 @@ const fn complete<const N: usize>(mut weights: [f64; N]) -> [f64; N] {
     weights
 }
 
-/// The method of the event-driven driver.
+/// The Runge-Kutta method of event-driven runs.
 pub const METHOD: Tableau<7> = ESDIRK5;
 
 /// Number of stages of [`METHOD`], the explicit one included.
