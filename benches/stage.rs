@@ -62,7 +62,7 @@ impl Stages {
         let carrier = Carrier::new(0.0, (0.0, 0.0), still, &model.profile);
         let mut forces = Forces::new(&model);
         forces.evaluate(&model, &state, &carrier.at(0.0));
-        let integrator = Integrator::new(&model, Tracked::default(), Steps::Accurate);
+        let integrator = Integrator::new(&model, Tracked::default(), Steps::SevenStages);
         let mut start = StepStart { state, ..StepStart::new(&model) };
         integrator.evaluate_start(&model, &mut start, &carrier.at(0.0), &forces);
         let tolerance = Tolerance::new(&model, 1e-6, 1e-11);

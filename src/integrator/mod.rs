@@ -68,7 +68,7 @@ pub struct Tracked {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Steps {
     /// [`METHOD`] alone.
-    Accurate,
+    SevenStages,
     /// [`SDIRK2`] alone.
     TwoStages,
     /// Both.
@@ -76,16 +76,16 @@ pub enum Steps {
 }
 
 impl Steps {
-    fn accurate(self) -> bool {
+    fn seven_stages(self) -> bool {
         self != Self::TwoStages
     }
 
     fn two_stages(self) -> bool {
-        self != Self::Accurate
+        self != Self::SevenStages
     }
 
     fn stages(self) -> usize {
-        if self.accurate() { STAGES } else { TWO_STAGES }
+        if self.seven_stages() { STAGES } else { TWO_STAGES }
     }
 }
 
@@ -98,7 +98,7 @@ impl Integrator {
                 tableau: &METHOD,
                 continuous_weights: ContinuousWeights::new(&METHOD),
                 initial_guess: InitialGuess::extrapolated(&METHOD.c),
-                maxwell: Maxwell::new(model, steps.accurate()),
+                maxwell: Maxwell::new(model, steps.seven_stages()),
             },
             two_stages: Method {
                 tableau: &SDIRK2,
@@ -173,7 +173,7 @@ impl Integrator {
 
     /// The ratio of the length of a two-stage step with an error of the tolerance to `h`, the length of the last
     /// attempted step of [`METHOD`], by the changes of velocities and accelerations over that step.
-    pub fn two_stage_share(&self, h: f64, tolerance: &Tolerance) -> f64 {
+    pub fn two_stage_length_ratio(&self, h: f64, tolerance: &Tolerance) -> f64 {
         let (first, last, end) = (&self.stages.rates[0], &self.stages.rates[STAGES - 1], self.end());
         let carrier = &self.stages.carrier[STAGES - 1];
         let mut sum = 0.0;
@@ -205,7 +205,7 @@ impl Integrator {
     }
 
     /// The end of the last attempted two-stage step, open to changes, and the rates at its first stage.
-    pub fn open_end(&mut self) -> (StepEnd<'_>, &Rates) {
+    pub fn end_mut(&mut self) -> (StepEnd<'_>, &Rates) {
         let (earlier, last) = self.stages.rates.split_at_mut(TWO_STAGES - 1);
         let StageSolver { state, forces, .. } = &mut self.stages.solver;
         (StepEnd { state, forces, rates: &mut last[0] }, &earlier[1])

@@ -47,7 +47,7 @@ impl Run {
             self.accept_time_step(step.h, end);
         } else {
             if auto {
-                time_step *= self.workspace.integrator.two_stage_share(step.h, &self.settings.tolerance);
+                time_step *= self.workspace.integrator.two_stage_length_ratio(step.h, &self.settings.tolerance);
             }
             self.accept_event_driven_step(step, end);
         }

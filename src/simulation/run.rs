@@ -200,7 +200,7 @@ impl Run {
     pub(super) fn new(model: Arc<Model>, settings: Settings, start: &Start) -> Self {
         let tracked = Tracked { energy: settings.accounts.energy, tangents: settings.accounts.tangents };
         let steps = match settings.method {
-            Method::Event => Steps::Accurate,
+            Method::Event => Steps::SevenStages,
             Method::Step => Steps::TwoStages,
             Method::Auto => Steps::Both,
         };

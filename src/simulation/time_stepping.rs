@@ -79,7 +79,7 @@ impl Run {
         workspace.interpolated_at = None;
         workspace.modes_before.copy_from_slice(&start.mode);
         let span = state.span(h);
-        let (step_end, first) = integrator.open_end();
+        let (step_end, first) = integrator.end_mut();
         let step = FixedModeStep { model, carrier: &state.carrier, span, start, first };
         let corrected = workspace.end_correction.apply(step, step_end);
         if let Some(gain) = gain {
