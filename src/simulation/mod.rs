@@ -172,6 +172,16 @@ impl Simulation {
     /// the motion (s) and the run at that instant. Returns when the force was reached, s after the start of the motion:
     /// 0 if F_z is there already, `None` without a force or if it is not reached within the motion.
     ///
+    /// A snapshot within a step is interpolated: it can be looked at, but neither cloned into a simulation nor advanced.
+    ///
+    /// ```compile_fail,E0308
+    /// # use asperity::simulation::{Motion, Simulation};
+    /// # fn observed(simulation: &mut Simulation, motion: &Motion, times: &[f64]) {
+    /// let mut clones: Vec<Simulation> = Vec::new();
+    /// let _ = simulation.advance_observed(motion, None, times, |_, snapshot| clones.push(snapshot.clone()));
+    /// # }
+    /// ```
+    ///
     /// # Errors
     /// [`SimulationError`]; the simulation is then as it was before the call.
     pub fn advance_observed(
