@@ -1,6 +1,6 @@
 //! The skeleton of both methods: try steps until one is good, cut it where a row or an event asks for it, accept it.
 
-use super::SimulationError;
+use super::motion::SimulationError;
 use super::run::Run;
 use crate::integrator::StepAttempt;
 

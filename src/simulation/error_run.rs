@@ -7,8 +7,8 @@
 use std::sync::Arc;
 
 use super::driver::{TrialStep, WorkLimit};
+use super::motion::{Motion, SimulationError, Start};
 use super::run::{Run, RunState, Settings};
-use super::{Motion, SimulationError, Start};
 use crate::contact::EventTolerance;
 use crate::integrator::Tolerance;
 use crate::model::Model;

@@ -1,12 +1,11 @@
 //! The event-driven method: the modes are held through a step, the first mode change is located on the dense output, and
 //! the step ends there.
 
-use super::SimulationError;
 use super::driver::{AFTER_FAILURE, StepBounds, TrialStep, WorkLimit};
+use super::motion::SimulationError;
 use super::run::Run;
 use crate::contact::{first_event, is_due, longest_unstable};
 use crate::integrator::{DenseOutput, METHOD, StepAttempt};
-use crate::model::Model;
 
 /// A new step is this share of what the error estimate allows, so that few are rejected.
 const SAFETY: f64 = 0.9;
@@ -28,53 +27,6 @@ const UNSEEN: f64 = 5e-4;
 /// Cuts of one step at events after which each further cut leaves at most half of it. By rounding, an event can be found
 /// at the very end of the shortened step again and again.
 const MOST_CUTS: u32 = 50;
-/// Length of a step below which a cut is suspected of a [`Stall`], divided by the stiffest period over 2π.
-const STALLED: f64 = 1e-9;
-/// Number of such steps after which the shortest cut doubles. Simultaneous events of many masses also take many of them,
-/// but modes change at those.
-const MOST_STALLED: u32 = 100;
-
-/// Steps that make no progress because rounding makes events.
-///
-/// Where a mass is so fast that the rounding of its velocity, divided by the length of a short step, is an inertia force
-/// larger than the tolerance of events, an event is found at the start of each such step but is not due at its end. The
-/// run would cut every step to the resolution of time. After some of these steps in a row, the shortest length that a
-/// step is cut to therefore doubles with each, until a mode changes or no event is found.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Stall {
-    /// Steps cut to this length, s, or less are suspected.
-    length: f64,
-    /// Number of steps cut so short after which no mode changed, less the number of other steps since.
-    steps: u32,
-    /// Number of mode changes before the last step, if it was cut so short.
-    events_before: Option<u64>,
-}
-
-impl Stall {
-    pub(super) fn new(model: &Model) -> Self {
-        Self { length: STALLED / model.stiffest_frequency(), ..Self::default() }
-    }
-
-    pub(super) fn reset(&mut self) {
-        (self.steps, self.events_before) = (0, None);
-    }
-
-    /// The shortest length, s, that the next step may be cut to; `shortest` (s) is the resolution of time, `events` the
-    /// number of mode changes so far.
-    fn shortest_cut(&mut self, shortest: f64, events: u64) -> f64 {
-        if self.events_before.take() == Some(events) {
-            self.steps += 1;
-        } else {
-            self.steps = self.steps.saturating_sub(1);
-        }
-        shortest * f64::from(self.steps.saturating_sub(MOST_STALLED)).exp2()
-    }
-
-    /// Records a step that is about to be accepted; `events` is the number of mode changes before it.
-    fn note_step(&mut self, cut_short: bool, events: u64) {
-        self.events_before = cut_short.then_some(events);
-    }
-}
 
 impl Run {
     /// Tries steps until one is good up to its first event.
@@ -106,8 +58,7 @@ impl Run {
             let share = event.filter(|_| h > shortest_cut).map_or(1.0, |theta| theta.max(shortest_cut / h));
             if share >= 1.0 || (share >= LEAST_SHARE && self.can_resume_within(h, share)) {
                 self.state.step_size = proposed;
-                let stall = &mut self.workspace.stall;
-                stall.note_step(cuts > 0 && share * h <= stall.length, self.state.counters.events);
+                self.workspace.stall.note_step(share * h, cuts > 0, self.state.counters.events);
                 return Ok(TrialStep { h, share });
             }
             cuts += 1;

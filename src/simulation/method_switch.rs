@@ -4,9 +4,8 @@
 //! costs the event-driven method a step of six stages, which is cut there; a time step costs two and takes any number of
 //! changes. So time-stepping is cheaper from a third of a change per step on.
 
-use std::fmt;
-
 use super::driver::TrialStep;
+use super::record::MethodSwitch;
 use super::run::Run;
 use crate::scene::Method;
 
@@ -18,25 +17,6 @@ const MANY: f64 = 0.5;
 const FEW: f64 = 0.1;
 /// Time steps over which the mean is taken.
 const MEMORY: f64 = 8.0;
-
-/// A switch to the other method.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MethodSwitch {
-    /// When, s.
-    pub time: f64,
-    /// To time-stepping, or back to events.
-    pub to_time_stepping: bool,
-    /// The mean number of mode changes per time step that decided it.
-    pub mode_changes_per_step: f64,
-}
-
-impl fmt::Display for MethodSwitch {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { time, to_time_stepping, mode_changes_per_step } = self;
-        let method = if *to_time_stepping { "time-stepping" } else { "event-driven" };
-        write!(f, "t = {time} s: {method} from here on; mode changes per time step: {mode_changes_per_step:.2}")
-    }
-}
 
 impl Run {
     /// Accepts a step, which ends at the time `end` of the piece, and makes the mode changes due there.

@@ -2,18 +2,21 @@
 //!
 //! - [`Simulation`] is the public face: a [run](run) and, where the group `solver` asks for its error, an
 //!   error-estimation run beside it.
-//! - `run` holds all that changes in a run (`RunState`), apart from its workspace.
+//! - `run` holds all that changes in a run (`RunState`), apart from its workspace; `state` saves and restores it.
 //! - `driver` is the skeleton of both methods: step, mode changes, step; `event` and `time_stepping` are where they
 //!   differ, `method_switch` decides between them (method *auto*).
 //! - `snapshot` shows the run at an instant, at the end of a step or within it.
-//! - `error_run` estimates the run's error, `state` saves and restores.
+//! - `error_run` estimates the run's error.
 
 mod driver;
 mod error_run;
 mod event;
 mod method_switch;
+mod motion;
+mod record;
 mod run;
 mod snapshot;
+mod stall;
 mod state;
 #[cfg(test)]
 pub(crate) mod tests;
@@ -25,88 +28,14 @@ use cpu_time::ThreadTime;
 
 use crate::model::Model;
 use crate::outputs::{Snapshot, Variable};
-use crate::scene::{LARGEST, ParameterError, Path, Scene, is_possible};
+use crate::scene::Scene;
 use driver::{TrialStep, WorkLimit};
 use error_run::ErrorRun;
-pub use method_switch::MethodSwitch;
+pub use motion::{Motion, OutOfRange, SimulationError, Start};
+pub use record::{MethodSwitch, ModeChange};
 use run::{Run, Settings};
+use state::check_length;
 pub use state::{RestoreError, SimulationState};
-
-/// The carrier at the start of a run.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Start {
-    /// Time t_0, s.
-    pub time: f64,
-    /// Displacement along x, m.
-    pub u: f64,
-    /// Displacement along z, m; negative presses.
-    pub w: f64,
-    /// u̇ just after the start, m/s: the velocity that the layer starts with.
-    pub u_rate: f64,
-    /// ẇ just after the start, m/s.
-    pub w_rate: f64,
-}
-
-/// One smooth piece of the carrier's motion, from where the carrier stands.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motion {
-    /// Duration, s.
-    pub duration: f64,
-    /// Displacement along x.
-    pub u: Path,
-    /// Displacement along z.
-    pub w: Path,
-}
-
-/// The carrier's motion is not a number, or larger than [`LARGEST`].
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("the carrier's motion is out of range: {what} = {value:?}, expected a number up to ±{LARGEST:?}")]
-pub struct OutOfRange {
-    /// Which quantity.
-    pub what: &'static str,
-    /// Its value.
-    pub value: f64,
-}
-
-/// Why a run could not go on; the simulation is as it was before the call.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum SimulationError {
-    /// The steps allowed were used up.
-    #[error("gave up at t = {time} s after {steps} steps, the limit solver.max_steps")]
-    TooManySteps {
-        /// The time reached, s.
-        time: f64,
-        /// The limit.
-        steps: u64,
-    },
-    /// The step size fell to the resolution of time.
-    #[error("the step size fell to {step} s at t = {time} s")]
-    StepTooSmall {
-        /// The time reached, s.
-        time: f64,
-        /// The step size, s.
-        step: f64,
-    },
-    /// The carrier's motion is out of range.
-    #[error(transparent)]
-    OutOfRange(#[from] OutOfRange),
-    /// Parameters that do not go together, as [`Scene::check`] finds.
-    #[error(transparent)]
-    Scene(#[from] ParameterError),
-}
-
-/// A mode change of one mass.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ModeChange {
-    /// When, s.
-    pub time: f64,
-    /// Which mass, from 0.
-    pub mass: usize,
-    /// Mode before: 0 free, 1 or -1 slipping, 2 sticking.
-    pub from: i8,
-    /// Mode after.
-    pub to: i8,
-}
 
 /// A run of a scene.
 ///
@@ -141,6 +70,53 @@ impl Simulation {
         let settings = Settings::new(scene, &model);
         let error_run = settings.accounts.solver.then(|| ErrorRun::new(&model, &settings, start));
         Self { run: Run::new(model, settings, start), error_run, run_time: 0.0 }
+    }
+
+    /// The state of the simulation.
+    pub fn state(&self) -> SimulationState {
+        let error_run = self.error_run.as_ref().map(|error_run| error_run.run.state.clone());
+        SimulationState { run: self.run.state.clone(), error_run }
+    }
+
+    /// A simulation of `scene` in `state`: it goes on bit for bit as the one whose state this is.
+    ///
+    /// # Errors
+    /// [`RestoreError`] where `state` is not that of a run of this scene.
+    pub fn restore(scene: &Scene, state: &SimulationState) -> Result<Self, RestoreError> {
+        scene.check()?;
+        let mut simulation = Self::started(scene, &Start::default());
+        simulation.set_state(state)?;
+        Ok(simulation)
+    }
+
+    /// Puts the simulation in `state`, of the same scene.
+    ///
+    /// # Errors
+    /// [`RestoreError`] where `state` is not that of a run of this scene; the simulation is then as it was.
+    pub fn set_state(&mut self, state: &SimulationState) -> Result<(), RestoreError> {
+        let expected = usize::from(self.error_run.is_some());
+        check_length("error-estimation runs", usize::from(state.error_run.is_some()), expected)?;
+        self.run.check_state(&state.run)?;
+        if let (Some(error_run), Some(state)) = (&self.error_run, &state.error_run) {
+            error_run.run.check_state(state)?;
+        }
+        if state.run.start != self.run.state.start {
+            self.freeze_dashpots(state.run.start);
+        }
+        self.run.set_state(&state.run);
+        if let (Some(error_run), Some(state)) = (&mut self.error_run, &state.error_run) {
+            error_run.run.set_state(state);
+        }
+        Ok(())
+    }
+
+    /// Makes the model that of a run that started at these u and w, m.
+    fn freeze_dashpots(&mut self, [u, w]: [f64; 2]) {
+        let model = Arc::make_mut(&mut self.run.model);
+        model.freeze_dashpots(model.profile.reduce(u), w);
+        if let Some(error_run) = &mut self.error_run {
+            error_run.run.model = Arc::clone(&self.run.model);
+        }
     }
 
     /// The time reached, s.
@@ -415,39 +391,5 @@ impl<F> Observer<'_, F> {
 
     fn run_time_now(&self) -> f64 {
         self.run_time + self.clock.as_ref().map_or(0.0, |clock| clock.elapsed().as_secs_f64())
-    }
-}
-
-impl Start {
-    /// Refuses a start that is not finite, or too large.
-    pub(crate) fn check(&self) -> Result<(), OutOfRange> {
-        check_size(&[
-            ("time", self.time),
-            ("u", self.u),
-            ("w", self.w),
-            ("rate of u", self.u_rate),
-            ("rate of w", self.w_rate),
-        ])
-    }
-}
-
-impl Motion {
-    fn check(&self) -> Result<(), OutOfRange> {
-        check_size(&[
-            ("duration", self.duration),
-            ("rate of u", self.u.rate),
-            ("amplitude of u", self.u.amplitude),
-            ("frequency of u", self.u.frequency),
-            ("rate of w", self.w.rate),
-            ("amplitude of w", self.w.amplitude),
-            ("frequency of w", self.w.frequency),
-        ])
-    }
-}
-
-fn check_size(quantities: &[(&'static str, f64)]) -> Result<(), OutOfRange> {
-    match quantities.iter().find(|(_, value)| !is_possible(*value)) {
-        Some(&(what, value)) => Err(OutOfRange { what, value }),
-        None => Ok(()),
     }
 }

@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::event::Stall;
-use super::{MethodSwitch, ModeChange, Motion, Start};
+use super::motion::{Motion, Start};
+use super::record::{MethodSwitch, ModeChange};
+use super::stall::Stall;
 use crate::contact::{
     EndCorrection, EventTolerance, decide_modes, free_unloaded, impacts_due, place_layer, stop_reversed,
 };

@@ -1,14 +1,11 @@
 //! The state of a simulation: saved, serialised, restored bit for bit.
 
-use std::sync::Arc;
-
 use serde::{Deserialize, Serialize};
 
 use super::run::{Run, RunState};
-use super::{Simulation, Start};
 use crate::integrator::{Rates, StepStart};
 use crate::model::{LinkKind, Mode, State};
-use crate::scene::{Method, ParameterError, Scene};
+use crate::scene::{Method, ParameterError};
 
 /// All that changes in a simulation, but for the processor time and the records of mode changes and method switches.
 ///
@@ -16,9 +13,9 @@ use crate::scene::{Method, ParameterError, Scene};
 /// rates, once more where the error is estimated; the workspace of the steps is no part of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SimulationState {
-    run: RunState,
+    pub(super) run: RunState,
     /// The error-estimation run.
-    error_run: Option<RunState>,
+    pub(super) error_run: Option<RunState>,
 }
 
 /// Why a state cannot be restored.
@@ -61,58 +58,9 @@ pub enum RestoreError {
     },
 }
 
-impl Simulation {
-    /// The state of the simulation.
-    pub fn state(&self) -> SimulationState {
-        let error_run = self.error_run.as_ref().map(|error_run| error_run.run.state.clone());
-        SimulationState { run: self.run.state.clone(), error_run }
-    }
-
-    /// A simulation of `scene` in `state`: it goes on bit for bit as the one whose state this is.
-    ///
-    /// # Errors
-    /// [`RestoreError`] where `state` is not that of a run of this scene.
-    pub fn restore(scene: &Scene, state: &SimulationState) -> Result<Self, RestoreError> {
-        scene.check()?;
-        let mut simulation = Self::started(scene, &Start::default());
-        simulation.set_state(state)?;
-        Ok(simulation)
-    }
-
-    /// Puts the simulation in `state`, of the same scene.
-    ///
-    /// # Errors
-    /// [`RestoreError`] where `state` is not that of a run of this scene; the simulation is then as it was.
-    pub fn set_state(&mut self, state: &SimulationState) -> Result<(), RestoreError> {
-        let expected = usize::from(self.error_run.is_some());
-        check_length("error-estimation runs", usize::from(state.error_run.is_some()), expected)?;
-        self.run.check_state(&state.run)?;
-        if let (Some(error_run), Some(state)) = (&self.error_run, &state.error_run) {
-            error_run.run.check_state(state)?;
-        }
-        if state.run.start != self.run.state.start {
-            self.freeze_dashpots(state.run.start);
-        }
-        self.run.set_state(&state.run);
-        if let (Some(error_run), Some(state)) = (&mut self.error_run, &state.error_run) {
-            error_run.run.set_state(state);
-        }
-        Ok(())
-    }
-
-    /// Makes the model that of a run that started at these u and w, m.
-    fn freeze_dashpots(&mut self, [u, w]: [f64; 2]) {
-        let model = Arc::make_mut(&mut self.run.model);
-        model.freeze_dashpots(model.profile.reduce(u), w);
-        if let Some(error_run) = &mut self.error_run {
-            error_run.run.model = Arc::clone(&self.run.model);
-        }
-    }
-}
-
 impl Run {
     /// Copies `state`, which was checked.
-    fn set_state(&mut self, state: &RunState) {
+    pub(super) fn set_state(&mut self, state: &RunState) {
         let time_stepping = self.state.time_stepping;
         self.state.copy_from(state);
         self.state.carrier.find_profile_position(&self.model.profile);
@@ -121,7 +69,8 @@ impl Run {
         }
     }
 
-    fn check_state(&self, state: &RunState) -> Result<(), RestoreError> {
+    /// Checks that `state` can be that of this run.
+    pub(super) fn check_state(&self, state: &RunState) -> Result<(), RestoreError> {
         check_lengths(&state.layer, &self.state.layer)?;
         check_numbers(state)?;
         check_modes(&state.layer.state.mode, self.model.has_friction)?;
@@ -162,7 +111,7 @@ fn near(a: f64, b: f64, distance: f64) -> bool {
     (a - b).abs() <= distance + POSITION_ROUNDING * b.abs()
 }
 
-fn check_length(what: &'static str, found: usize, expected: usize) -> Result<(), RestoreError> {
+pub(super) fn check_length(what: &'static str, found: usize, expected: usize) -> Result<(), RestoreError> {
     if found == expected { Ok(()) } else { Err(RestoreError::Length { what, found, expected }) }
 }
 
@@ -285,7 +234,8 @@ mod tests {
     use super::super::tests::{WAVE, scene, scene_with_rate_shear, variables_of};
     use super::*;
     use crate::scene::Path;
-    use crate::simulation::Motion;
+    use crate::scene::Scene;
+    use crate::simulation::{Motion, Simulation, Start};
 
     /// A run with masses free, slipping and sticking.
     fn run(scene: &Scene) -> Simulation {

@@ -1,8 +1,8 @@
 //! The time-stepping method: steps of two stages with their modes held, any number of mode changes corrected at the end
 //! of each.
 
-use super::SimulationError;
 use super::driver::{AFTER_FAILURE, StepBounds, TrialStep, WorkLimit};
+use super::motion::SimulationError;
 use super::run::Run;
 use crate::contact::{FixedModeStep, longest_weakening};
 use crate::integrator::StepAttempt;

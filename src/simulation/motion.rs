@@ -1,0 +1,100 @@
+//! The carrier's motion, and why a run may not be able to follow it.
+
+use crate::scene::{LARGEST, ParameterError, Path, is_possible};
+
+/// The carrier at the start of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Start {
+    /// Time t_0, s.
+    pub time: f64,
+    /// Displacement along x, m.
+    pub u: f64,
+    /// Displacement along z, m; negative presses.
+    pub w: f64,
+    /// u̇ just after the start, m/s: the velocity that the layer starts with.
+    pub u_rate: f64,
+    /// ẇ just after the start, m/s.
+    pub w_rate: f64,
+}
+
+/// One smooth piece of the carrier's motion, from where the carrier stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion {
+    /// Duration, s.
+    pub duration: f64,
+    /// Displacement along x.
+    pub u: Path,
+    /// Displacement along z.
+    pub w: Path,
+}
+
+/// The carrier's motion is not a number, or larger than [`LARGEST`].
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("the carrier's motion is out of range: {what} = {value:?}, expected a number up to ±{LARGEST:?}")]
+pub struct OutOfRange {
+    /// Which quantity.
+    pub what: &'static str,
+    /// Its value.
+    pub value: f64,
+}
+
+/// Why a run could not go on; the simulation is as it was before the call.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SimulationError {
+    /// The steps allowed were used up.
+    #[error("gave up at t = {time} s after {steps} steps, the limit solver.max_steps")]
+    TooManySteps {
+        /// The time reached, s.
+        time: f64,
+        /// The limit.
+        steps: u64,
+    },
+    /// The step size fell to the resolution of time.
+    #[error("the step size fell to {step} s at t = {time} s")]
+    StepTooSmall {
+        /// The time reached, s.
+        time: f64,
+        /// The step size, s.
+        step: f64,
+    },
+    /// The carrier's motion is out of range.
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
+    /// Parameters that do not go together, as [`Scene::check`] finds.
+    #[error(transparent)]
+    Scene(#[from] ParameterError),
+}
+
+impl Start {
+    /// Refuses a start that is not finite, or too large.
+    pub(crate) fn check(&self) -> Result<(), OutOfRange> {
+        check_size(&[
+            ("time", self.time),
+            ("u", self.u),
+            ("w", self.w),
+            ("rate of u", self.u_rate),
+            ("rate of w", self.w_rate),
+        ])
+    }
+}
+
+impl Motion {
+    pub(super) fn check(&self) -> Result<(), OutOfRange> {
+        check_size(&[
+            ("duration", self.duration),
+            ("rate of u", self.u.rate),
+            ("amplitude of u", self.u.amplitude),
+            ("frequency of u", self.u.frequency),
+            ("rate of w", self.w.rate),
+            ("amplitude of w", self.w.amplitude),
+            ("frequency of w", self.w.frequency),
+        ])
+    }
+}
+
+fn check_size(quantities: &[(&'static str, f64)]) -> Result<(), OutOfRange> {
+    match quantities.iter().find(|(_, value)| !is_possible(*value)) {
+        Some(&(what, value)) => Err(OutOfRange { what, value }),
+        None => Ok(()),
+    }
+}
