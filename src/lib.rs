@@ -6,7 +6,8 @@
 //!
 //! # Modules
 //!
-//! Each module uses only those before it in this table.
+//! Each module uses only those before it in this table. `docs/theory.md` has the derivations, with the files that hold
+//! them.
 //!
 //! | module | contents |
 //! |---|---|
