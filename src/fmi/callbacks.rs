@@ -8,7 +8,7 @@ use super::bindings::{self, fmi2CallbackFunctions, fmi2CallbackLogger, fmi2Compo
 use super::error::Status;
 use super::log::Message;
 
-/// Where messages go.
+/// The master's logger and what it is called with.
 #[derive(Debug)]
 pub(super) struct Callbacks {
     logger: fmi2CallbackLogger,
@@ -17,7 +17,7 @@ pub(super) struct Callbacks {
 }
 
 impl Callbacks {
-    /// Copies what is needed of `functions`; where it is NULL, or the logger in it, messages go nowhere.
+    /// Copies the logger and its environment from `functions`. Where that or the logger is NULL, messages are dropped.
     ///
     /// # Safety
     /// `functions` is NULL or points to the master's callbacks, which can be called for as long as this lives.
@@ -31,7 +31,7 @@ impl Callbacks {
         }
     }
 
-    /// Tells the master.
+    /// Passes the messages to the logger.
     pub(super) fn deliver(&self, messages: Vec<Message>) {
         let Some(logger) = self.logger else { return };
         for message in messages {

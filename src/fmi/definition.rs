@@ -295,7 +295,7 @@ impl Catalogue {
         Self::of(&scene.clone().into())
     }
 
-    /// The variables of what an FMU simulates.
+    /// The variables of a definition.
     pub fn of(definition: &Definition) -> Self {
         let kind = |parameter| match definition.parameter(parameter) {
             Value::Real(_) => Kind::Real,
@@ -308,15 +308,15 @@ impl Catalogue {
 
     /// The variable with the value reference `reference`.
     pub fn entry(&self, reference: u32) -> Option<Entry<'_>> {
-        let place = usize::try_from(reference).ok()?;
-        if let Some(&input) = Input::ALL.get(place) {
+        let index = usize::try_from(reference).ok()?;
+        if let Some(&input) = Input::ALL.get(index) {
             return Some(Entry::Input(input));
         }
-        let place = place - Input::ALL.len();
-        if let Some(variable) = self.outputs.get(place) {
-            return Some(Entry::Output(place, variable));
+        let index = index - Input::ALL.len();
+        if let Some(variable) = self.outputs.get(index) {
+            return Some(Entry::Output(index, variable));
         }
-        let &(parameter, kind) = self.parameters.get(place - self.outputs.len())?;
+        let &(parameter, kind) = self.parameters.get(index - self.outputs.len())?;
         Some(Entry::Parameter(parameter, kind))
     }
 

@@ -84,7 +84,7 @@ pub(super) enum Error {
     UnknownState(&'static str),
     #[error("the byte string is no FMU state of this FMU: {0}")]
     Serialised(#[from] RestoreError),
-    #[error("the serialised FMU state has {needed} bytes, but the place for it has {given}")]
+    #[error("the serialised FMU state has {needed} bytes, but its buffer has {given}")]
     SerialisedSize { needed: usize, given: usize },
     #[error("this status is not available: steps never run asynchronously")]
     NoSuchStatus,

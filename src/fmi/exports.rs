@@ -2,10 +2,9 @@
 //!
 //! # Safety
 //!
-//! All of them rest on the standard's contract: a component is NULL or came from [`fmi2Instantiate`] and is not freed,
-//! and one thread at a time uses it; a pointer to data is NULL or valid for as many elements as the call says; a string
-//! is NULL or ends with a zero. NULL is answered everywhere; nothing else that breaks the contract can be seen from
-//! here.
+//! All of them assume the standard's contract: a component is NULL or was returned by [`fmi2Instantiate`] and is not
+//! freed, and one thread at a time uses it; a pointer to data is NULL or valid for the number of elements passed; a string
+//! is NULL or ends with a zero. NULL is handled everywhere; other violations cannot be detected here.
 #![allow(unsafe_code, non_snake_case, non_upper_case_globals, clippy::missing_safety_doc)]
 
 use std::ffi::{CStr, c_char};
@@ -26,8 +25,8 @@ struct Component {
     callbacks: Callbacks,
 }
 
-/// The prologue of every function that takes an instance: NULL, the lifecycle and panics are dealt with here, and what
-/// there is to say is said at the end, when the instance is no longer borrowed.
+/// Common part of all functions that take an instance: checks for NULL, the life cycle, panics. Messages are delivered at
+/// the end, when the instance is no longer borrowed.
 unsafe fn call(
     component: fmi2Component,
     function: Function,
@@ -69,16 +68,16 @@ unsafe fn array_mut<'a, T>(name: &'static str, pointer: *mut T, length: usize) -
     }
 }
 
-/// A place for one value.
-unsafe fn place<'a, T>(name: &'static str, pointer: *mut T) -> Result<&'a mut T, Error> {
+/// The target of a pointer to one value.
+unsafe fn target<'a, T>(name: &'static str, pointer: *mut T) -> Result<&'a mut T, Error> {
     // SAFETY: NULL or valid by the contract.
     unsafe { pointer.as_mut() }.ok_or(Error::Null(name))
 }
 
-/// Gives the master one value.
+/// Writes one value for the master.
 unsafe fn put<T>(pointer: *mut T, value: T) -> Result<(), Error> {
     // SAFETY: the contract of this module.
-    *unsafe { place("value", pointer) }? = value;
+    *unsafe { target("value", pointer) }? = value;
     Ok(())
 }
 
@@ -111,7 +110,7 @@ pub unsafe extern "C" fn fmi2GetVersion() -> *const c_char {
 }
 const _: fmi2GetVersionTYPE = Some(fmi2GetVersion);
 
-/// Asks for categories of messages, or for none.
+/// Switches categories of messages on or off.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetDebugLogging(
     c: fmi2Component,
@@ -128,7 +127,7 @@ pub unsafe extern "C" fn fmi2SetDebugLogging(
 }
 const _: fmi2SetDebugLoggingTYPE = Some(fmi2SetDebugLogging);
 
-/// Makes an instance; NULL where that fails, with the reason told to the logger.
+/// Creates an instance. Returns NULL where that fails; the reason is logged.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2Instantiate(
     instanceName: fmi2String,
@@ -187,7 +186,7 @@ pub unsafe extern "C" fn fmi2FreeInstance(c: fmi2Component) {
     }
     // SAFETY: not NULL, so from Box::into_raw in fmi2Instantiate and not freed, by the contract.
     let component = unsafe { Box::from_raw(c.cast::<Component>()) };
-    // Where a panic comes out of it there is no one left to tell.
+    // There is no instance left to report a panic.
     let _ = catch_panic(|| drop(component));
 }
 const _: fmi2FreeInstanceTYPE = Some(fmi2FreeInstance);
@@ -233,7 +232,7 @@ pub unsafe extern "C" fn fmi2Terminate(c: fmi2Component) -> fmi2Status {
 }
 const _: fmi2TerminateTYPE = Some(fmi2Terminate);
 
-/// Goes back to what fmi2Instantiate gave.
+/// Returns to the state after fmi2Instantiate.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2Reset(c: fmi2Component) -> fmi2Status {
     // SAFETY: the contract of this module.
@@ -288,7 +287,7 @@ pub unsafe extern "C" fn fmi2GetBoolean(
 }
 const _: fmi2GetBooleanTYPE = Some(fmi2GetBoolean);
 
-/// Gets Strings, which stay until the next call on this instance.
+/// Gets Strings, which remain valid until the next call on this instance.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetString(
     c: fmi2Component,
@@ -299,9 +298,9 @@ pub unsafe extern "C" fn fmi2GetString(
     // SAFETY: the contract of this module.
     unsafe {
         call(c, Function::GetString, |instance| {
-            let places = array_mut("value", value, nvr)?;
+            let pointers = array_mut("value", value, nvr)?;
             let texts = instance.get_strings(array("vr", vr, nvr)?)?;
-            places.iter_mut().zip(texts).for_each(|(place, text)| *place = text.as_ptr());
+            pointers.iter_mut().zip(texts).for_each(|(pointer, text)| *pointer = text.as_ptr());
             Ok(())
         })
     }
@@ -375,13 +374,13 @@ pub unsafe extern "C" fn fmi2SetString(
 }
 const _: fmi2SetStringTYPE = Some(fmi2SetString);
 
-/// Keeps the whole state of the instance, in a new FMU state or in the place of one.
+/// Copies the state of the instance into a new FMU state or over an existing one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetFMUstate(c: fmi2Component, FMUstate: *mut fmi2FMUstate) -> fmi2Status {
     // SAFETY: the contract of this module.
     unsafe {
         call(c, Function::GetFmuState, |instance| {
-            let state = place("FMUstate", FMUstate)?;
+            let state = target("FMUstate", FMUstate)?;
             *state = ptr::without_provenance_mut(instance.get_state(state.addr())?);
             Ok(())
         })
@@ -389,7 +388,7 @@ pub unsafe extern "C" fn fmi2GetFMUstate(c: fmi2Component, FMUstate: *mut fmi2FM
 }
 const _: fmi2GetFMUstateTYPE = Some(fmi2GetFMUstate);
 
-/// Goes back to an FMU state.
+/// Restores an FMU state.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetFMUstate(c: fmi2Component, FMUstate: fmi2FMUstate) -> fmi2Status {
     // SAFETY: the contract of this module.
@@ -422,7 +421,7 @@ pub unsafe extern "C" fn fmi2SerializedFMUstateSize(
     // SAFETY: the contract of this module.
     unsafe {
         call(c, Function::SerializedFmuStateSize, |instance| {
-            *place("size", size)? = instance.serialise_state(FMUstate.addr())?.len();
+            *target("size", size)? = instance.serialise_state(FMUstate.addr())?.len();
             Ok(())
         })
     }
@@ -451,7 +450,7 @@ pub unsafe extern "C" fn fmi2SerializeFMUstate(
 }
 const _: fmi2SerializeFMUstateTYPE = Some(fmi2SerializeFMUstate);
 
-/// Makes a new FMU state from a byte string; what `FMUstate` points to is written and never read.
+/// Creates a new FMU state from a byte string; the target of `FMUstate` is written and never read.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
     c: fmi2Component,
@@ -462,7 +461,7 @@ pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
     // SAFETY: the contract of this module.
     unsafe {
         call(c, Function::DeSerializeFmuState, |instance| {
-            let state = place("FMUstate", FMUstate)?;
+            let state = target("FMUstate", FMUstate)?;
             let bytes = array("serializedState", serializedState.cast::<u8>(), size)?;
             *state = ptr::without_provenance_mut(instance.deserialise_state(bytes)?);
             Ok(())
@@ -471,7 +470,7 @@ pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
 }
 const _: fmi2DeSerializeFMUstateTYPE = Some(fmi2DeSerializeFMUstate);
 
-/// How outputs follow inputs with the states held.
+/// Directional derivatives of outputs by inputs, at constant states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
     c: fmi2Component,
@@ -545,7 +544,7 @@ pub unsafe extern "C" fn fmi2DoStep(
 }
 const _: fmi2DoStepTYPE = Some(fmi2DoStep);
 
-/// Refused in every state: no step runs asynchronously.
+/// Refused in every state, since no step runs asynchronously.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2CancelStep(c: fmi2Component) -> fmi2Status {
     // SAFETY: the contract of this module.
@@ -625,7 +624,7 @@ mod tests {
     use super::super::instance;
     use super::*;
 
-    /// The host lives on: the call returns fmi2Fatal, later ones fmi2Error, and what is lost can be freed.
+    /// The call returns fmi2Fatal, later ones fmi2Error; the instance can still be freed.
     #[test]
     fn a_panic_stops_at_the_interface() {
         // SAFETY: no callbacks.

@@ -33,8 +33,8 @@ impl FmuStates {
         if handle == 0 {
             return Ok(self.keep_new(state));
         }
-        let place = self.states.get_mut(&handle).ok_or(Error::UnknownState("what FMUstate points to"))?;
-        **place = state;
+        let kept = self.states.get_mut(&handle).ok_or(Error::UnknownState("what FMUstate points to"))?;
+        **kept = state;
         Ok(handle)
     }
 
@@ -60,10 +60,10 @@ impl FmuStates {
     }
 }
 
-/// What every serialised FMU state begins with.
+/// The first bytes of every serialised FMU state.
 const MARK: [u8; 8] = *b"asperity";
 
-/// The version of the format: to be raised whenever what is written changes.
+/// The version of the format, to be raised with each change of what is written.
 const FORMAT: u32 = 5;
 
 /// Bytes of the checksum.
@@ -217,7 +217,7 @@ mod tests {
         bytes
     }
 
-    /// Every Real that the instance gives, one call each.
+    /// Reads every Real of the instance, one call each.
     fn check_reals(instance: &mut Instance) {
         let real = |(reference, entry): (u32, Entry<'_>)| {
             let is_output = matches!(entry, Entry::Output(..)) && entry.kind() == Kind::Real;

@@ -58,11 +58,11 @@ impl Inputs {
         Start { time, u: u.value, w: w.value, u_rate: u.rate.unwrap_or_default(), w_rate: w.rate.unwrap_or_default() }
     }
 
-    /// The motion over a step of `h` from `time`: straight from where û and ŵ stand to their targets. Rounding does not
-    /// add up: the next motion starts from where this one ended.
+    /// The motion over a step of `h` (s) from `time` (s): straight from û = `u` and ŵ = `w` (m) to their targets. Rounding
+    /// does not accumulate, since the next motion starts from where this one ended.
     ///
     /// # Errors
-    /// [`InputOutOfRange`] where a value is no number or too large, or a derivative leads to such a one.
+    /// [`InputOutOfRange`].
     pub fn motion(
         &self,
         (u, w): (f64, f64),
@@ -101,18 +101,19 @@ impl Inputs {
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 impl Displacement {
-    /// The rate that the master gave, if û stands at its value but for rounding. It is then followed as it is: found
-    /// from the difference to the target it would bear that rounding over h, a kink of a steady motion at every point.
-    fn given_rate(&self, stands: f64) -> Option<f64> {
-        let same = (stands - self.value).abs() <= ROUNDING * stands.abs().max(self.value.abs());
+    /// The rate that the master gave, if û = `current` equals its value but for rounding. It is then used as it is: if it
+    /// were computed from the difference to the target, that rounding over h would be a kink at every communication point
+    /// of a steady motion.
+    fn given_rate(&self, current: f64) -> Option<f64> {
+        let same = (current - self.value).abs() <= ROUNDING * current.abs().max(self.value.abs());
         self.rate.filter(|_| same)
     }
 
-    /// Where û stands at the end of a step of `h`.
+    /// û at the end of a step of `h`.
     fn target(&self, h: f64, rule: Extrapolation) -> f64 {
         match (self.rate, rule, self.past) {
             (Some(rate), _, _) => self.value + h * rate,
-            // At rest it stays there, over steps of any ratio.
+            // At rest it stays exactly where it is, whatever the ratio of the steps.
             (None, Extrapolation::Linear, Some(past)) if past.value != self.value => {
                 self.value + (self.value - past.value) * (h / past.step)
             }
@@ -120,7 +121,7 @@ impl Displacement {
         }
     }
 
-    /// [`target`](Self::target), where the carrier can be there.
+    /// [`target`](Self::target), checked to be in range.
     fn checked_target(&self, input: Input, time: f64, h: f64, rule: Extrapolation) -> Result<f64, InputOutOfRange> {
         let target = self.target(h, rule);
         match [self.value, target].into_iter().find(|value| !is_possible(*value)) {
@@ -141,7 +142,7 @@ mod tests {
         inputs
     }
 
-    /// Does a step with û and ŵ at 0 and gives where they end.
+    /// Does a step from û = ŵ = 0 and returns where it ends.
     fn step(inputs: &mut Inputs, h: f64, rule: Extrapolation) -> [f64; 2] {
         let motion = inputs.motion((0.0, 0.0), 0.0, h, rule).unwrap();
         inputs.complete_step(h);
@@ -192,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn the_carrier_runs_straight_from_where_it_stands() {
+    fn the_carrier_moves_straight_from_its_position() {
         let motion = at(3.0).motion((1.0, 0.5), 0.0, 0.25, Extrapolation::Hold).unwrap();
         assert_eq!((motion.duration, motion.u.rate, motion.w.rate), (0.25, 8.0, -2.0));
     }
@@ -200,15 +201,15 @@ mod tests {
     /// A carrier at 1e6 m, where the last digit is 1e-10 m: what its rounding would be over 1e-6 s is far from the
     /// rate.
     #[test]
-    fn a_rate_given_where_the_carrier_stands_is_followed_as_it_is() {
-        let rate = |stands: f64| {
+    fn a_rate_given_at_the_carriers_position_is_used_as_it_is() {
+        let rate = |current: f64| {
             let mut inputs = at(1e6 + 0.1);
             inputs.set_rate(Input::U, 0.3);
-            inputs.motion((stands, 0.0), 0.0, 1e-6, Extrapolation::Linear).unwrap().u.rate
+            inputs.motion((current, 0.0), 0.0, 1e-6, Extrapolation::Linear).unwrap().u.rate
         };
         let value: f64 = 1e6 + 0.1;
-        for stands in [value, value.next_up(), value.next_down()] {
-            assert_eq!(rate(stands), 0.3);
+        for current in [value, value.next_up(), value.next_down()] {
+            assert_eq!(rate(current), 0.3);
         }
         // A micrometre is no rounding: û goes where the target is.
         assert!((rate(value - 1e-6) - 1.3).abs() < 1e-3);

@@ -13,15 +13,14 @@ use super::fmu_states::{self, FmuStates};
 use super::lifecycle::{Function, State};
 use super::log::{Category, Log, Message, RunWarnings};
 use super::model::InstanceModel;
-use super::state::{Clock, InstanceState};
-use super::values::Outputs;
+use super::state::{Clock, InstanceState, OutputCache};
 
 /// An instance of the FMU.
 #[derive(Debug)]
 pub(super) struct Instance {
     pub(super) catalogue: Catalogue,
     pub(super) state: InstanceState,
-    pub(super) outputs: Outputs,
+    pub(super) outputs: OutputCache,
     /// The strings that the last fmi2GetString returned.
     pub(super) texts: Vec<CString>,
     fmu_states: FmuStates,
@@ -54,7 +53,7 @@ impl Instance {
         Self {
             catalogue,
             state: InstanceState::new(Arc::clone(&original)),
-            outputs: Outputs::default(),
+            outputs: OutputCache::default(),
             texts: Vec::new(),
             fmu_states: FmuStates::default(),
             log,

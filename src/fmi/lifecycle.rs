@@ -20,7 +20,7 @@ pub(super) enum State {
     Terminated,
     /// After an error in a step or at the end of the initialisation.
     Error,
-    /// After a panic: the instance is poisoned.
+    /// After a panic: the instance can only be freed.
     Fatal,
 }
 

@@ -18,7 +18,7 @@ pub enum Category {
     Discard,
     /// Mode changes of the masses.
     Events,
-    /// The integrator's work, one line per communication step, and each handover between its drivers.
+    /// The integrator's work, one line per communication step, and each switch between the methods of *auto*.
     Solver,
 }
 
@@ -44,7 +44,7 @@ impl Category {
             Self::Warning => "Warnings of calls that succeeded; always on",
             Self::Discard => "Why a step was discarded; always on",
             Self::Events => "Every mode change of a mass: free, slipping, sticking",
-            Self::Solver => "The integrator's work, one line per communication step, and handovers of the method auto",
+            Self::Solver => "The integrator's work, one line per communication step, and switches of the method auto",
         }
     }
 
@@ -126,7 +126,7 @@ pub(super) struct RunWarnings {
     /// The time at which the run began, s; `None` where it is not known.
     pub(super) start: Option<f64>,
     left_profile: bool,
-    outlasted_reduction: bool,
+    exceeded_reduction: bool,
 }
 
 impl RunWarnings {
@@ -147,14 +147,14 @@ impl RunWarnings {
     fn reduction(&mut self, scene: &Scene, time: f64) -> Option<String> {
         /// Relative rounding of times.
         const ROUNDING: f64 = 1e-9;
-        if self.outlasted_reduction || scene.solver.reduce == 0.0 {
+        if self.exceeded_reduction || scene.solver.reduce == 0.0 {
             return None;
         }
         let duration = scene.duration();
         if time - self.start? <= duration * (1.0 + ROUNDING) {
             return None;
         }
-        self.outlasted_reduction = true;
+        self.exceeded_reduction = true;
         let springs = Reduction::new(scene)?.replaced.into_iter().any(|one| one.by == Replacement::Spring);
         springs.then(|| {
             let bound = scene.solver.reduce;
@@ -228,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_that_outlasts_its_reduction_is_warned_of_once() {
+    fn a_run_longer_than_its_reduction_is_warned_of_once() {
         let solver = |reduce: f64, duration: f64| {
             format!("solver = {{ reduce = {reduce} }}\nexcitation = [{{ duration = {duration} }}]")
         };

@@ -1,9 +1,24 @@
 //! The FMU: the C interface of FMI 2.0 for co-simulation around a [`Simulation`](crate::simulation::Simulation) of a
-//! layer, or an [`Element`](crate::element::Element) that looks the forces up.
+//! layer, or an [`Element`](crate::element::Element) that interpolates the forces in a table.
 //!
-//! The exports check what a C caller can get wrong and then call a method of an instance in safe Rust. What may be
-//! called when is one table, what a value reference means is one [`Catalogue`], which the writer of the model
-//! description uses too. Two files hold unsafe code: `exports` (raw pointers in) and `callbacks` (the master's logger).
+//! The exports check pointers and then call a method of an instance in safe Rust. Each file uses only those above it:
+//!
+//! | file | what it holds |
+//! |------|---------------|
+//! | `bindings` | C types, generated from the standard's headers |
+//! | `lifecycle` | states of an instance and the functions allowed in each |
+//! | `error` | errors with the status that each returns; panics |
+//! | `resources` | the file of the scene or table in the FMU's resources |
+//! | `definition` | what the FMU simulates, its parameters, variables by value reference, GUID |
+//! | `inputs` | inputs and the carrier's motion between communication points |
+//! | `model` | the instance's model: a simulation of the layer, or an element |
+//! | `state` | the state of an instance, its copy in an FMU state, its clock |
+//! | `fmu_states` | FMU states handed out, and as byte strings |
+//! | `log` | messages by category, warnings of runs that the scene does not cover |
+//! | `instance` | an instance: its functions |
+//! | `values` | functions that get and set variables, and derivatives |
+//! | `callbacks` | the master's logger (unsafe code) |
+//! | `exports` | the 34 C functions (unsafe code) |
 
 mod callbacks;
 mod definition;

@@ -25,8 +25,8 @@ pub(super) fn find(location: &str, files: &'static [&'static str]) -> Result<Pat
     }
 }
 
-/// The folders that `location` may mean, the likeliest first: a URI is meant decoded, a plain path as it stands, but
-/// each may be the other way round.
+/// The folders that `location` may mean, the likeliest first: a URI decoded, a plain path as it is, then the other way
+/// round.
 fn folders(location: &str) -> Vec<String> {
     let mut folders = Vec::new();
     let mut add = |folder: &str| {
@@ -111,14 +111,14 @@ mod tests {
     }
 
     #[test]
-    fn a_plain_path_is_meant_as_it_stands() {
+    fn a_plain_path_is_tried_as_it_is_first() {
         assert_eq!(folders("/a%20b"), ["/a%20b", "/a b"]);
         assert_eq!(folders("/a b"), ["/a b"]);
         assert_eq!(first("fil"), "fil");
     }
 
     #[test]
-    fn what_is_not_there_is_told_with_the_places_looked_in() {
+    fn a_missing_file_is_reported_with_the_folders_tried() {
         let message = find("file:///no/such%20place", &[SCENE_FILE, TABLE_FILE]).unwrap_err().to_string();
         for part in ["no file scene.toml or table.csv", "file:///no/such%20place", "/no/such place", "/no/such%20place"]
         {

@@ -1,10 +1,10 @@
-//! The state of an instance and what an FMU state keeps of it; the clock.
+//! The state of an instance, its copy in an FMU state, and its clock.
 
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::definition::Parameters;
+use super::definition::{Catalogue, Parameters};
 use super::error::{Error, RestoreError, Status};
 use super::inputs::Inputs;
 use super::lifecycle::State;
@@ -26,7 +26,7 @@ pub(super) struct InstanceState {
     pub(super) model: Option<InstanceModel>,
 }
 
-/// A copy of an instance's state: what an FMU state keeps.
+/// An FMU state: a copy of an instance's state without the workspace of its model.
 #[derive(Clone, Debug)]
 pub(super) struct FmuState {
     pub(super) lifecycle: State,
@@ -112,7 +112,7 @@ impl InstanceState {
         }
     }
 
-    /// Continues from `state`. The processor time spent is not part of it: it goes on from where it is.
+    /// Continues from `state`. The processor time spent is not part of it and continues from its current value.
     pub(super) fn restore(&mut self, state: &FmuState) -> Result<(), RestoreError> {
         let definition = state.parameters.definition();
         let same = Arc::ptr_eq(&self.parameters, &state.parameters);
@@ -131,6 +131,33 @@ impl InstanceState {
         self.parameters = Arc::clone(&state.parameters);
         (self.inputs, self.clock, self.last_step) = (state.inputs, state.clock, state.last_step);
         Ok(())
+    }
+}
+
+/// The outputs at the last communication point, computed when first asked for.
+#[derive(Debug, Default)]
+pub(super) struct OutputCache {
+    values: Option<Vec<f64>>,
+    spare: Vec<f64>,
+}
+
+impl OutputCache {
+    /// Marks them as outdated: something that they depend on has changed.
+    pub(super) fn outdate(&mut self) {
+        if let Some(values) = self.values.take() {
+            self.spare = values;
+        }
+    }
+
+    /// The values of all outputs, in the order of their value references.
+    pub(super) fn get(&mut self, state: &mut InstanceState, catalogue: &Catalogue) -> Result<&[f64], Error> {
+        if self.values.is_none() {
+            let mut values = std::mem::take(&mut self.spare);
+            values.resize(catalogue.outputs().len(), 0.0);
+            state.model()?.evaluate(catalogue.outputs(), &mut values);
+            self.values = Some(values);
+        }
+        Ok(self.values.as_deref().unwrap_or_default())
     }
 }
 

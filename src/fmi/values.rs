@@ -3,38 +3,11 @@
 use std::ffi::CString;
 use std::sync::Arc;
 
-use super::definition::{Catalogue, Entry, Input, Kind, Parameters};
+use super::definition::{Entry, Input, Kind, Parameters};
 use super::error::Error;
 use super::instance::Instance;
-use super::state::InstanceState;
 use crate::outputs::{Output, Variable};
 use crate::scene::{Value, is_possible};
-
-/// The outputs at the last communication point, computed when first asked for.
-#[derive(Debug, Default)]
-pub(super) struct Outputs {
-    values: Option<Vec<f64>>,
-    spare: Vec<f64>,
-}
-
-impl Outputs {
-    /// Marks them as outdated: something that they depend on has changed.
-    pub(super) fn outdate(&mut self) {
-        if let Some(values) = self.values.take() {
-            self.spare = values;
-        }
-    }
-
-    fn get(&mut self, state: &mut InstanceState, catalogue: &Catalogue) -> Result<&[f64], Error> {
-        if self.values.is_none() {
-            let mut values = std::mem::take(&mut self.spare);
-            values.resize(catalogue.outputs().len(), 0.0);
-            state.model()?.evaluate(catalogue.outputs(), &mut values);
-            self.values = Some(values);
-        }
-        Ok(self.values.as_deref().unwrap_or_default())
-    }
-}
 
 impl Instance {
     /// The values of variables of the type `kind`.
@@ -58,9 +31,9 @@ impl Instance {
     /// fmi2GetReal: all of the values or none; asked for at every communication point, so nothing is allocated.
     pub(super) fn get_reals(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), Error> {
         self.check(references, Kind::Real)?;
-        for (place, &reference) in values.iter_mut().zip(references) {
+        for (target, &reference) in values.iter_mut().zip(references) {
             if let Value::Real(value) = self.get_one(reference, Kind::Real)? {
-                *place = value;
+                *target = value;
             }
         }
         Ok(())
@@ -69,9 +42,9 @@ impl Instance {
     /// fmi2GetInteger: as [`get_reals`](Self::get_reals).
     pub(super) fn get_integers(&mut self, references: &[u32], values: &mut [i32]) -> Result<(), Error> {
         self.check(references, Kind::Integer)?;
-        for (place, &reference) in values.iter_mut().zip(references) {
+        for (target, &reference) in values.iter_mut().zip(references) {
             if let Value::Integer(value) = self.get_one(reference, Kind::Integer)? {
-                *place = value;
+                *target = value;
             }
         }
         Ok(())
@@ -82,7 +55,7 @@ impl Instance {
         references.iter().try_for_each(|&reference| self.get_one(reference, kind).map(|_| ()))
     }
 
-    /// fmi2GetString: the values stay until the next call of it.
+    /// fmi2GetString: the strings remain until its next call.
     pub(super) fn get_strings(&mut self, references: &[u32]) -> Result<&[CString], Error> {
         let found = self.get(references, Kind::Text)?;
         let text = |value| if let Value::Text(text) = value { text } else { String::new() };
@@ -159,7 +132,7 @@ impl Instance {
         let direction = self.direction(knowns, direction)?;
         let found = unknowns.iter().map(|unknown| self.directional_derivative(unknown, direction));
         let found = found.collect::<Result<Vec<_>, _>>()?;
-        values.iter_mut().zip(found).for_each(|(place, value)| *place = value);
+        values.iter_mut().zip(found).for_each(|(target, value)| *target = value);
         Ok(())
     }
 
@@ -203,7 +176,7 @@ impl Instance {
     ) -> Result<(), Error> {
         let found = references.iter().zip(orders).map(|(&reference, &order)| self.output_derivative(reference, order));
         let found = found.collect::<Result<Vec<_>, _>>()?;
-        values.iter_mut().zip(found).for_each(|(place, value)| *place = value);
+        values.iter_mut().zip(found).for_each(|(target, value)| *target = value);
         Ok(())
     }
 

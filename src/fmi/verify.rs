@@ -1,5 +1,5 @@
 //! The types of FMI 2.0 as the package `fmi-sys` generates them from the official headers when it is built: with the
-//! feature `verify-bindings` they stand in the place of the committed ones, so every export is checked against them.
+//! feature `verify-bindings` they replace the committed ones, so that every export is checked against them.
 
 #[path = "bindings.rs"]
 #[rustfmt::skip]
@@ -7,7 +7,7 @@ pub mod committed;
 
 pub use fmi_sys::fmi2::*;
 
-/// The exports hold the function types together; what is left is the struct's layout and the constants.
+/// The exports check the function types; this checks the struct's layout and the constants.
 const _: () = {
     use std::mem::{offset_of, size_of};
     type Ours = committed::fmi2CallbackFunctions;
