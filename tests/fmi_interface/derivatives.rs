@@ -1,4 +1,4 @@
-//! Derivatives of outputs: by the inputs with the states held, and by time.
+//! Derivatives of outputs: by the inputs at constant states, and by time.
 
 use std::ptr;
 
@@ -16,7 +16,7 @@ fn derivative(fmu: &Fmu, unknown: &str, by: (f64, f64)) -> f64 {
     value[0]
 }
 
-/// The Real outputs of the model structure, but for what is added up along a step.
+/// The Real outputs of the model structure that are not integrated over a step.
 fn unknowns(fmu: &Fmu) -> Vec<(u32, String)> {
     let entries = fmu.catalogue.entries().filter_map(|(reference, entry)| match entry {
         Entry::Output(_, variable) if variable.is_output() && entry.kind() == Kind::Real => {
@@ -29,7 +29,7 @@ fn unknowns(fmu: &Fmu) -> Vec<(u32, String)> {
 }
 
 #[test]
-fn of_the_forces_they_are_the_links_stiffness_in_every_state() {
+fn those_of_the_forces_are_the_stiffness_of_the_links() {
     let close = |found: f64, expected: f64| assert!((found / expected - 1.0).abs() < 1e-14, "{found} {expected}");
     let check = |fmu: &Fmu| {
         close(derivative(fmu, "F_x", (1.0, 0.5)), -3.0 * STIFFNESS.1);
@@ -47,9 +47,9 @@ fn of_the_forces_they_are_the_links_stiffness_in_every_state() {
     check(&fmu);
 }
 
-/// Without dampers a step too short for the masses to move is a carrier moved with the states held.
+/// Without dampers, a step too short for the masses to move is a displacement of the carrier at constant states.
 #[test]
-fn they_are_the_difference_quotient_of_a_step_too_short_for_anything_else_to_move() {
+fn they_agree_with_difference_quotients_over_very_short_steps() {
     let fmu = Fmu::initialising_with(&EVERYTHING.replace("damping = 8e-3", "damping = 0").replace("2e-3", "0"));
     assert_eq!((fmu.set_real("w", -1.5e-6), fmu.exit()), (OK, OK));
     let (mut time, h) = (0.0, 1e-6);
@@ -68,9 +68,9 @@ fn check_against_quotient(fmu: &Fmu, time: f64) {
     let (state, unknowns) = (fmu.state(), unknowns(fmu));
     assert!(unknowns.len() >= 9, "{unknowns:?}");
     let references: Vec<_> = unknowns.iter().map(|(reference, _)| *reference).collect();
-    let (h, step, stands) = (1e-14, 1e-10, (fmu.real("u"), fmu.real("w")));
+    let (h, step, position) = (1e-14, 1e-10, (fmu.real("u"), fmu.real("w")));
     let moved = |(du, dw): (f64, f64)| {
-        assert_eq!((fmu.set_real("u", stands.0), fmu.set_real("w", stands.1)), (OK, OK));
+        assert_eq!((fmu.set_real("u", position.0), fmu.set_real("w", position.1)), (OK, OK));
         assert_eq!((fmu.set_rate("u", step * du / h), fmu.set_rate("w", step * dw / h)), (OK, OK));
         assert_eq!(fmu.step(time, h), OK, "{:?}", fmu.messages());
         let mut values = vec![0.0; references.len()];
@@ -203,7 +203,7 @@ fn only_first_derivatives_of_the_forces_exist() {
     }
 }
 
-/// After a step that was discarded they are still those at the end of the step before.
+/// After a discarded step they are those at the end of the step before.
 #[test]
 fn a_discarded_step_leaves_the_derivatives_as_they_were() {
     let fmu = Fmu::initialising_with(EVERYTHING);

@@ -1,4 +1,4 @@
-//! Making instances: what is checked, and where the scene is found.
+//! Instantiation: its checks, and where the scene is found.
 
 use std::ffi::CStr;
 use std::{fs, ptr};
@@ -43,7 +43,7 @@ fn attempt(folder: &Folder, change: impl FnOnce(&mut Request)) -> Result<(), Str
 }
 
 #[test]
-fn what_cannot_be_made_is_refused_with_the_reason() {
+fn a_failed_instantiation_returns_null_and_logs_why() {
     let folder = Folder::with_scene("", SCENE);
     assert_eq!(attempt(&folder, |_| ()), Ok(()));
     let refused = |change: fn(&mut Request), expected: &str| {
@@ -62,7 +62,7 @@ fn what_cannot_be_made_is_refused_with_the_reason() {
 }
 
 #[test]
-fn a_bad_scene_is_told_as_the_reader_tells_it() {
+fn an_invalid_scene_is_reported_with_the_readers_message() {
     let folder = Folder::with_scene("", SCENE);
     let guid = folder.description().0;
     fs::write(folder.scene_file(), SCENE.replace("masses = 2", "masses = 0")).unwrap();
@@ -82,7 +82,7 @@ fn a_bad_scene_is_told_as_the_reader_tells_it() {
 }
 
 #[test]
-fn without_callbacks_or_logger_nothing_is_said_and_nothing_crashes() {
+fn callbacks_and_logger_may_be_null() {
     let folder = Folder::with_scene("", SCENE);
     let (messages, no_logger) = (Messages::default(), |functions: &mut fmi2CallbackFunctions| functions.logger = None);
     let mut functions = callbacks(&messages);

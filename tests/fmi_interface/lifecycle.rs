@@ -1,10 +1,13 @@
-//! Every function in every state, against the standard's table with the additions of this FMU.
+//! Every function in every state, against the standard's table with the additions of this FMU; the functions exported.
 
+use std::collections::BTreeSet;
+use std::process::Command;
 use std::ptr;
 
 use asperity::fmi::bindings::*;
 use asperity::fmi::*;
 
+use crate::common::{library, run};
 use crate::master::{DISCARD, ERROR, Fmu, OK};
 
 /// The states that calls can lead to, by the letters of the table below.
@@ -106,14 +109,14 @@ fn try_in(letter: char, fmu: &Fmu, &(name, allowed, call): &(&str, &str, Call)) 
 }
 
 #[test]
-fn a_call_out_of_place_changes_nothing() {
+fn a_call_not_allowed_changes_nothing() {
     let fmu = Fmu::initialising();
     assert_eq!((fmu.step(0.0, 1e-7), fmu.enter(), fmu.terminate()), (ERROR, ERROR, ERROR));
     assert_eq!((fmu.exit(), fmu.step(0.0, 1e-7)), (OK, OK));
 }
 
 #[test]
-fn out_of_the_error_state_lead_a_state_and_a_reset() {
+fn a_restored_state_or_a_reset_ends_the_error_state() {
     let fmu = Fmu::running();
     let mut state = ptr::null_mut();
     assert_eq!(fmu.get_state(&mut state), OK);
@@ -122,4 +125,17 @@ fn out_of_the_error_state_lead_a_state_and_a_reset() {
     assert_eq!(fmu.set_state(state), OK);
     assert_eq!(fmu.real("u"), 0.0);
     assert_eq!((fmu.step(0.0, 1e-7), fmu.reset(), fmu.enter()), (OK, OK, OK));
+}
+
+/// The functions that are not called on an instance in some state.
+const OTHERS: [&str; 4] = ["fmi2GetTypesPlatform", "fmi2GetVersion", "fmi2Instantiate", "fmi2FreeInstance"];
+
+#[test]
+#[cfg(target_os = "linux")]
+fn the_34_functions_are_exported_and_nothing_else() {
+    let text = run(Command::new("nm").args(["-D", "--defined-only"]).arg(library()));
+    let exported: Vec<_> = text.lines().filter_map(|line| line.split_whitespace().last()).collect();
+    let expected: BTreeSet<_> = TABLE.iter().map(|row| row.0).chain(OTHERS).collect();
+    assert_eq!((exported.len(), expected.len()), (34, 34), "{exported:?}");
+    assert_eq!(BTreeSet::from_iter(exported), expected);
 }

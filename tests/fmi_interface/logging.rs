@@ -1,11 +1,11 @@
-//! What reaches the master's logger.
+//! Messages to the master's logger.
 
 use std::ffi::CStr;
 
 use crate::master::{ERROR, Fmu, Message, OK, SCENE};
 
 #[test]
-fn messages_are_formats_that_print_themselves() {
+fn messages_escape_format_characters() {
     let fmu = Fmu::new();
     let reference = fmu.reference("layer.initial");
     assert_eq!(fmu.set_text(reference, "100%s"), ERROR);
@@ -27,7 +27,7 @@ fn a_message_has_its_instance_status_and_category() {
 }
 
 #[test]
-fn the_solver_is_heard_only_when_asked_for() {
+fn work_is_logged_only_when_selected() {
     let fmu = Fmu::running();
     assert_eq!(fmu.step(0.0, 1e-7), OK);
     assert_eq!(fmu.messages(), []);
@@ -48,7 +48,7 @@ fn an_unknown_category_is_refused() {
 }
 
 #[test]
-fn reset_brings_the_logging_of_the_instantiation_back() {
+fn a_reset_restores_the_logging_of_the_instantiation() {
     let fmu = Fmu::of(SCENE, true);
     assert_eq!(fmu.set_debug_logging(false, &[]), OK);
     assert_eq!(fmu.reset(), OK);
@@ -58,7 +58,7 @@ fn reset_brings_the_logging_of_the_instantiation_back() {
 }
 
 #[test]
-fn mode_changes_are_heard_only_when_asked_for() {
+fn mode_changes_are_logged_only_when_selected() {
     let lift = |categories: &[&CStr]| {
         let fmu = Fmu::initialising();
         assert_eq!((fmu.set_real("w", -5e-6), fmu.exit()), (OK, OK));
@@ -72,10 +72,10 @@ fn mode_changes_are_heard_only_when_asked_for() {
     assert!(messages.iter().any(|message| message.text.ends_with(" to free")), "{messages:?}");
 }
 
-/// The carrier drags the rough layer fast: mode changes crowd, and the method auto says that it goes over to time
-/// steps.
+/// The carrier drags the rough layer fast: there are many mode changes per step, and the method auto logs its switch to
+/// time-stepping.
 #[test]
-fn a_handover_of_auto_is_heard_with_the_solver() {
+fn a_method_switch_of_auto_is_logged_with_the_work() {
     let drag = |method: &str| {
         let fmu = Fmu::of(&SCENE.replace("masses = 2", "masses = 60"), false);
         let reference = fmu.reference("solver.method");
@@ -88,8 +88,8 @@ fn a_handover_of_auto_is_heard_with_the_solver() {
             assert_eq!((fmu.set_real("u", 5.0 * (point + 1e-5)), fmu.set_rate("u", 5.0)), (OK, OK));
             assert_eq!(fmu.step(point, 1e-5), OK);
         }
-        let told = |message: &Message| message.text.contains("time-stepping from here on");
-        fmu.messages().iter().filter(|message| told(message)).count()
+        let switched = |message: &Message| message.text.contains("time-stepping from here on");
+        fmu.messages().iter().filter(|message| switched(message)).count()
     };
     assert_eq!((drag("event"), drag("step")), (0, 0));
     assert!(drag("auto") > 0);

@@ -8,18 +8,15 @@ mod common;
 #[path = "../common/sweeps.rs"]
 mod sweeps;
 
-mod alone;
 mod derivatives;
 mod element;
 mod failures;
 mod instantiation;
-mod library;
 mod lifecycle;
 mod logging;
 mod many;
 mod master;
 mod material;
-mod serialised;
 mod states;
 mod stepping;
 mod values;

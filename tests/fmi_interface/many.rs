@@ -1,10 +1,22 @@
-//! Many instances: one after another and side by side.
+//! Many instances, one after another and in parallel; tests that need a process of their own.
 
+use std::path::Path;
+use std::process::Command;
 use std::{fs, thread};
 
-use crate::alone;
 use crate::common::scratch;
 use crate::master::{EVERYTHING, Fmu, OK};
+
+/// Variable with the folder of a test in a process of its own; without it such a test does nothing.
+pub const FOLDER: &str = "ASPERITY_TEST_FOLDER";
+
+/// Runs the ignored test `name` of this program in another process.
+pub fn run_alone(name: &str, folder: &Path) {
+    let mut command = Command::new(std::env::current_exe().unwrap());
+    command.args(["--exact", name, "--ignored", "--test-threads=1"]).env(FOLDER, folder);
+    let text = crate::common::run(&mut command);
+    assert!(text.contains("1 passed"), "{text}");
+}
 
 /// Pages of memory that this process holds.
 fn pages() -> u64 {
@@ -15,7 +27,7 @@ fn pages() -> u64 {
 #[test]
 #[cfg(target_os = "linux")]
 fn ten_thousand_instances_leave_memory_flat() {
-    alone::run("many::ten_thousand_instances", &scratch("ten-thousand"));
+    run_alone("many::ten_thousand_instances", &scratch("ten-thousand"));
 }
 
 #[test]
@@ -35,7 +47,7 @@ fn ten_thousand_instances() {
     assert!(pages() <= before + 200, "{before} pages before, {} after", pages());
 }
 
-/// Steps into contact and along it, with rates, states and derivatives; everything that comes out.
+/// Steps into contact and along it with rates and states; all outputs.
 fn drive(number: u32) -> Vec<u64> {
     let (fmu, h) = (Fmu::running_with(EVERYTHING), 1e-6);
     let speed = 0.05 * f64::from(number + 1);
@@ -51,7 +63,7 @@ fn drive(number: u32) -> Vec<u64> {
 }
 
 #[test]
-fn eight_threads_give_what_one_gives_bit_for_bit() {
+fn eight_threads_agree_with_one_bit_for_bit() {
     let alone: Vec<_> = (0..8).map(drive).collect();
     let threads: Vec<_> = (0..8).map(|number| thread::spawn(move || drive(number))).collect();
     let together: Vec<_> = threads.into_iter().map(|thread| thread.join().unwrap()).collect();

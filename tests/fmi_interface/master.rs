@@ -15,7 +15,7 @@ pub const OK: fmi2Status = fmi2Status_fmi2OK;
 pub const DISCARD: fmi2Status = fmi2Status_fmi2Discard;
 pub const ERROR: fmi2Status = fmi2Status_fmi2Error;
 
-/// Two masses above a wave, with something of everything that makes variables.
+/// Two masses above a wave.
 pub const SCENE: &str = r#"
 name = "interface"
 [layer]
@@ -39,7 +39,7 @@ coulomb = 0.3
 outputs = ["forces", "contact"]
 "#;
 
-/// Three masses over the same wave, with everything that a scene can have.
+/// Three masses over the same wave, with all kinds of links, friction and outputs.
 pub const EVERYTHING: &str = r#"
 name = "everything"
 [layer]
@@ -146,7 +146,7 @@ unsafe extern "C" fn receive(
     }
 }
 
-/// Callbacks that gather messages; memory and stepFinished are NULL, so that using them would be seen.
+/// Callbacks that collect messages; memory functions and stepFinished are NULL, so that a call of them would crash.
 pub fn callbacks(messages: &Messages) -> fmi2CallbackFunctions {
     type Receive = unsafe extern "C" fn(*mut c_void, *const c_char, fmi2Status, *const c_char, *const c_char);
     type Logger = unsafe extern "C" fn(*mut c_void, *const c_char, fmi2Status, *const c_char, *const c_char, ...);
@@ -161,7 +161,7 @@ pub fn callbacks(messages: &Messages) -> fmi2CallbackFunctions {
     }
 }
 
-/// What fmi2Instantiate is given.
+/// The arguments of fmi2Instantiate.
 pub struct Request {
     pub name: Option<String>,
     pub kind: fmi2Type,

@@ -1,4 +1,4 @@
-//! Experiments, steps and what stops them.
+//! Experiments and communication steps.
 
 use asperity::fmi::bindings::fmi2StatusKind_fmi2LastSuccessfulTime;
 
@@ -9,7 +9,7 @@ use asperity::simulation::{Motion, Simulation, Start};
 use crate::master::{DISCARD, ERROR, EVERYTHING, Fmu, Folder, OK};
 
 #[test]
-fn the_start_may_be_any_time_and_the_stop_is_kept() {
+fn the_start_may_be_any_time_and_the_stop_time_holds() {
     let fmu = Fmu::new();
     assert_eq!(fmu.setup_all(None, -3.0, Some(-3.0 + 2e-6)), OK);
     assert_eq!((fmu.enter(), fmu.exit()), (OK, OK));
@@ -21,7 +21,7 @@ fn the_start_may_be_any_time_and_the_stop_is_kept() {
 }
 
 #[test]
-fn experiments_that_make_no_sense_are_refused() {
+fn invalid_experiments_are_refused() {
     let fmu = Fmu::new();
     for (tolerance, start, stop) in [
         (None, f64::NAN, None),
@@ -59,7 +59,7 @@ fn a_step_ends_at_the_masters_time() {
 }
 
 #[test]
-fn a_step_that_is_none_changes_nothing() {
+fn a_step_of_size_0_changes_nothing() {
     let fmu = Fmu::running();
     assert_eq!((fmu.set_rate("u", 1.0), fmu.set_real("u", f64::NAN)), (OK, OK));
     assert_eq!(fmu.step(0.0, 0.0), OK);
@@ -68,7 +68,7 @@ fn a_step_that_is_none_changes_nothing() {
 }
 
 #[test]
-fn steps_with_bad_arguments_are_refused_and_may_be_done_right() {
+fn steps_with_invalid_arguments_are_refused_and_can_be_repeated() {
     let fmu = Fmu::running();
     assert_eq!(fmu.step(0.0, 1e-6), OK);
     for (point, h) in
@@ -81,7 +81,7 @@ fn steps_with_bad_arguments_are_refused_and_may_be_done_right() {
 }
 
 #[test]
-fn an_input_that_is_no_number_stops_the_step_and_is_named() {
+fn an_input_that_is_not_a_number_fails_the_step_and_is_named() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let fmu = Fmu::running();
         assert_eq!(fmu.step(0.0, 1e-6), OK);
@@ -93,7 +93,7 @@ fn an_input_that_is_no_number_stops_the_step_and_is_named() {
 }
 
 #[test]
-fn a_start_that_is_no_number_is_an_error() {
+fn a_start_that_is_not_a_number_is_an_error() {
     let fmu = Fmu::initialising();
     assert_eq!(fmu.set_real("u", f64::NAN), OK);
     assert_eq!(fmu.get_reals(&[fmu.reference("F_x")], &mut [0.0]), ERROR);
@@ -154,7 +154,7 @@ fn the_stop_time_may_be_overshot_by_rounding() {
 
 /// Equal: within 1e-10 max(|t|, h), and less than half a step away.
 #[test]
-fn points_equal_but_for_rounding_are_taken_and_others_refused() {
+fn points_equal_but_for_rounding_are_accepted() {
     let at = |time: f64| {
         let fmu = Fmu::new();
         assert_eq!((fmu.setup(time), fmu.enter(), fmu.exit()), (OK, OK, OK));
@@ -176,10 +176,10 @@ fn points_equal_but_for_rounding_are_taken_and_others_refused() {
     }
 }
 
-/// By every method a step gives what the library gives for the same motion, and a state that was written down is taken
-/// up with the same bits.
+/// By every method a step has the results of the library for the same motion, and a serialised state continues bit for
+/// bit.
 #[test]
-fn every_method_is_that_of_the_library() {
+fn every_method_agrees_with_the_library() {
     for method in ["event", "step", "auto"] {
         let solver = format!("[solver]\nmethod = \"{method}\"\nrelative_tolerance = 1e-3\n[fmu]");
         let text = EVERYTHING.replace("[fmu]", &solver);
