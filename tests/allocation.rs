@@ -1,4 +1,4 @@
-//! Nothing is allocated once a run has started: all room is made by `Simulation::new`.
+//! A run allocates nothing: all memory is allocated by `Simulation::new`.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic, reason = "tests may fail")]
 
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -13,7 +13,7 @@ thread_local! {
     static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
 }
 
-/// The system's allocator, counting for each thread how often it is asked.
+/// The system's allocator, counting allocations per thread.
 struct Counting;
 
 #[global_allocator]
@@ -44,14 +44,14 @@ unsafe impl GlobalAlloc for Counting {
     }
 }
 
-/// How often `work` asks for memory on this thread.
+/// Number of allocations that `work` makes on this thread.
 fn allocations(work: impl FnOnce()) -> usize {
     let before = ALLOCATIONS.get();
     work();
     ALLOCATIONS.get() - before
 }
 
-/// Everything at once: Maxwell elements on every kind of link, stick and slip, impacts, all outputs.
+/// Maxwell elements on every kind of link, stick and slip, impacts, all outputs.
 const RATTLE: &str = r#"
 name = "rattle"
 
@@ -79,7 +79,7 @@ rate_shear = { force = 2e-4, reference_speed = 6e-3, sharpness = 0.1 }
 outputs = ["forces", "dissipation", "friction", "contact", "energy", "solver", "elements"]
 "#;
 
-/// The carrier swings, so that masses stop, stick, break loose, lift and touch.
+/// The carrier oscillates, so that masses stop, stick, break loose, lift and touch.
 const SWING: Motion = Motion {
     duration: 1e-4,
     u: Path { rate: 1.0, amplitude: 2e-4, frequency: 5000.0 },
@@ -99,7 +99,7 @@ fn value(variables: &[Variable], values: &[f64], name: &str) -> f64 {
     values[variables.iter().position(|variable| variable.name == name).unwrap()]
 }
 
-/// Nor does a run by time steps, nor one that goes from one driver to the other.
+/// The time-stepping method and a run that switches between the methods.
 #[test]
 fn other_methods_allocate_nothing() {
     for method in ["step", "auto"] {
@@ -122,7 +122,7 @@ fn other_methods_allocate_nothing() {
     }
 }
 
-/// The counter counts: a test of the tests.
+/// Checks the counter itself.
 #[test]
 fn an_allocation_is_counted() {
     assert_eq!(allocations(|| drop(std::hint::black_box(vec![1_u8]))), 1);
@@ -144,7 +144,6 @@ fn a_run_allocates_nothing() {
     assert!(events > 200.0 && lost > 0.0, "a lively run: {events} events, {lost} J lost in impacts");
 }
 
-/// Nor do rows within the steps.
 #[test]
 fn rows_within_steps_allocate_nothing() {
     let (mut simulation, variables, mut values) = rattling();
@@ -162,7 +161,6 @@ fn rows_within_steps_allocate_nothing() {
     assert_eq!((count, rows), (0, 404));
 }
 
-/// Nor does a motion that fails.
 #[test]
 fn a_refused_motion_allocates_nothing() {
     let (mut simulation, ..) = rattling();

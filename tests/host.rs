@@ -1,4 +1,4 @@
-//! The FMU in a host written in C: its results, what valgrind says, thousands of instances.
+//! The FMU in a host written in C: its results, errors and leaks by valgrind, thousands of instances.
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests may fail")]
 #![cfg(target_os = "linux")]
@@ -69,7 +69,7 @@ fn driven_from_c_stick_slip_and_impacts_are_those_of_fmpy() {
     the_host_gives_what_fmpy_gives(SCENE, "host-impacts");
 }
 
-/// What the host says under valgrind, which must find nothing.
+/// The output of the host under valgrind, which must find nothing.
 fn under_valgrind(folder: &str, options: &[&str]) -> String {
     const VALGRIND: &str =
         "valgrind --error-exitcode=99 --leak-check=full --errors-for-leak-kinds=definite,indirect,possible";
@@ -85,14 +85,14 @@ fn valgrind_finds_no_error_and_nothing_lost() {
     under_valgrind("host-valgrind", &["--points", "60", "--instances", "2"]);
 }
 
-/// States kept, gone back to and freed in each, one of them by fmi2FreeInstance.
+/// In each, states are kept, restored and freed, one of them by fmi2FreeInstance.
 #[test]
 fn of_a_thousand_instances_nothing_is_lost() {
     let text = under_valgrind("host-thousand", &["--points", "3", "--instances", "1000"]);
     assert!(text.contains("host: 1000 instances"), "{text}");
 }
 
-/// What the host says of its memory, kB: after a tenth of the instances and at the end.
+/// Peak memory of the host, kB: after a tenth of the instances and at the end.
 fn peaks(text: &str) -> Vec<u64> {
     let lines = text.lines().filter(|line| line.starts_with("host: ") && line.ends_with(" kB"));
     lines.map(|line| line.rsplit(' ').nth(1).unwrap().parse().unwrap()).collect()

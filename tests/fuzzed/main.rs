@@ -1,4 +1,4 @@
-//! What is fuzzed for hours in tests/fuzz, run for seconds: on the seeds, on the seeds with changes, on random bytes.
+//! The fuzz targets of tests/fuzz for some seconds: on the seeds, on the seeds with changes, on random bytes.
 #![allow(
     unsafe_code,
     unreachable_pub,

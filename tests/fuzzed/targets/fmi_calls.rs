@@ -1,5 +1,5 @@
-//! Sequences of FMI calls on several instances, with any arguments that the standard's contract allows a master: wrong
-//! values, wrong references, NULL, wrong sizes, calls out of order, states freed or of another instance.
+//! Sequences of FMI calls on several instances, with any arguments that the standard's contract allows: wrong values,
+//! wrong references, NULL, wrong sizes, calls in any order, states that are freed or of another instance.
 
 mod functions;
 
@@ -14,30 +14,30 @@ use super::fmu::{self, Fmu, OK, Outputs, checked, show, sites};
 use super::number::Number;
 use functions::{call_function, on_nothing, step};
 
-/// Calls of one case, and elements of an array of arguments.
+/// Maximum number of calls in a case and of elements in an array of arguments.
 const MOST_CALLS: usize = 24;
 const MOST_ELEMENTS: usize = 6;
 
-/// Instances at a time.
+/// Number of instances at a time.
 const SLOTS: usize = 3;
 
 #[derive(Debug, Arbitrary)]
 struct Case {
-    /// The scene of the first instance, which can step from the start where `started` says so.
+    /// The scene of the first instance, which is initialised at the beginning if `started`.
     site: u8,
     started: Option<[Number; 4]>,
     calls: Vec<(u8, Call)>,
 }
 
-/// A value reference: small ones are there, 255 stands for the largest.
+/// A value reference: small ones exist, 255 stands for the largest possible.
 #[derive(Clone, Copy, Debug, Arbitrary)]
 struct Reference(u8);
 
-/// A place for FMU states: those kept so far, freed or not, NULL and one that never was.
+/// An FMU state: one of those kept so far, freed or not, NULL, or one that never existed.
 #[derive(Clone, Copy, Debug, Arbitrary)]
 struct Handle(u8);
 
-/// An array; NULL where `null` is 7, so seldom.
+/// An array; NULL where `null` is 7.
 #[derive(Debug, Arbitrary)]
 struct Array<T> {
     null: u8,
@@ -109,19 +109,19 @@ pub fn run(bytes: &[u8]) {
     }
 }
 
-/// A state as it was kept.
+/// A state kept.
 struct Kept {
     handle: fmi2FMUstate,
     slot: usize,
-    /// What it showed; `None` where it is freed, made from bytes or showed nothing.
+    /// The outputs when it was kept; `None` where it is freed, was made from bytes, or there were none.
     outputs: Option<Outputs>,
 }
 
-/// What a master has in hand.
+/// The instances and states of a master.
 #[derive(Default)]
 struct Master {
     slots: [Option<Fmu>; SLOTS],
-    /// How often the instance of a slot has been used before.
+    /// Number of cases that each instance was used in before.
     uses: [usize; SLOTS],
     states: Vec<Kept>,
     bytes: Vec<Vec<u8>>,
@@ -147,7 +147,7 @@ impl<T> Array<T> {
         self.elements.iter().take(MOST_ELEMENTS)
     }
 
-    /// The pointer to pass for `values`, made from the elements.
+    /// The pointer to pass for `values`.
     fn pointer<V>(&self, values: &[V]) -> *const V {
         if self.null == 7 { ptr::null() } else { values.as_ptr() }
     }
@@ -182,7 +182,7 @@ impl Master {
         (self.slots[slot], self.uses[slot]) = (Some(fmu), uses);
     }
 
-    /// Frees the states and keeps the instance for another case.
+    /// Frees the states and returns the instance for another case.
     fn give_back(&mut self, slot: usize) {
         let Some(fmu) = self.slots[slot].take() else { return };
         for kept in self.states.iter_mut().filter(|kept| kept.slot == slot) {
@@ -209,7 +209,7 @@ impl Master {
         }
     }
 
-    /// What is known of a state of the instance in `slot`.
+    /// The record of a state of the instance in `slot`.
     fn kept(&mut self, slot: usize, handle: fmi2FMUstate) -> Option<&mut Kept> {
         self.states.iter_mut().rev().find(|kept| kept.handle == handle && kept.slot == slot)
     }
@@ -370,7 +370,7 @@ impl Master {
         }
     }
 
-    /// One instance goes on where another of the same scene stands.
+    /// One instance continues from the state of another of the same scene.
     fn thaw(&mut self, slot: usize, fmu: Fmu, from: usize) {
         let Some((other, bytes)) = self.slots[from].and_then(|other| Some((other, other.frozen()?))) else { return };
         let mut state = ptr::null_mut();

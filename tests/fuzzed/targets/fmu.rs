@@ -1,4 +1,4 @@
-//! Small FMUs to fuzz, layers and an element, and what every call of theirs must keep to.
+//! Small FMUs to fuzz, layers and an element, with the checks of every call.
 
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::sync::{Mutex, OnceLock};
@@ -12,28 +12,29 @@ use asperity::scene::{OutputGroup, Scene};
 pub const OK: fmi2Status = fmi2Status_fmi2OK;
 pub const DISCARD: fmi2Status = fmi2Status_fmi2Discard;
 
-/// The largest number of steps that a call may ask for here.
+/// The largest `solver.max_steps`.
 pub const MOST_STEPS: i32 = 40;
 
-/// A folder with a scene or a table, and what its model description would say.
+/// A folder with a scene or a table, and the variables of its FMU.
 pub struct Site {
     pub guid: CString,
     pub location: CString,
     pub reals: Vec<u32>,
     pub integers: Vec<u32>,
-    /// Parameters: reals, and texts.
+    /// Parameters: Reals and Strings.
     pub parameters: Vec<u32>,
     pub texts: Vec<u32>,
-    /// The number of steps and the processor time, which an element has not.
+    /// The number of steps and the processor time; an element has neither.
     pub max_steps: Option<u32>,
     time: Option<u32>,
     /// A new instance as a byte string.
     pub fresh: Vec<u8>,
-    /// Instances that can be used again: a new one reads its scene, which takes longer than most cases do.
+    /// Instances for further cases: reading the scene takes longer than most cases.
     pool: Mutex<Vec<(usize, usize)>>,
 }
 
-/// Layers without friction on a flat floor, with a bit of all on a wave and on points, of rubber; and an element.
+/// Layers without friction on a flat surface, with all kinds of links and friction on a wave and on points, of a
+/// material; and an element.
 pub fn sites() -> &'static [Site] {
     static SITES: OnceLock<Vec<Site>> = OnceLock::new();
     SITES.get_or_init(|| {
@@ -43,7 +44,7 @@ pub fn sites() -> &'static [Site] {
     })
 }
 
-/// An instance is freed after so many cases.
+/// Number of cases after which an instance is freed.
 const MOST_USES: usize = 200;
 
 const SCENES: [&str; 7] = [
@@ -58,7 +59,7 @@ const SCENES: [&str; 7] = [
     RUBBER,
 ];
 
-/// Two masses with everything that a scene can have.
+/// Two masses with all kinds of links, friction and outputs.
 const EVERYTHING: &str = "
 name = 'everything'
 [layer]
@@ -92,7 +93,7 @@ friction = { coulomb = 0.3, shear_strength = 1e4, \
 solver = { method = 'auto', relative_tolerance = 1e-3, max_steps = 30 }
 ";
 
-/// The text of a scene with all outputs; one without a name gets all the rest too.
+/// The text of a scene with all outputs; one without a name gets the missing tables, too.
 fn with_all_outputs(text: &str) -> String {
     let groups: Vec<String> = OutputGroup::ALL.iter().map(|group| format!("'{}'", group.name())).collect();
     let base = if text.starts_with("name") { "" } else { EVERYTHING };
@@ -160,7 +161,7 @@ impl Site {
         bytes.unwrap()
     }
 
-    /// An instance that is as a new one, and how often it has been used.
+    /// An instance in the state of a new one, and the number of cases that it was used in.
     pub fn take(&'static self) -> (Fmu, usize) {
         let (c, uses) =
             self.pool.lock().unwrap().pop().unwrap_or_else(|| (self.instantiate(false).expose_provenance(), 0));
@@ -190,7 +191,7 @@ impl Site {
     }
 }
 
-/// Reads every message, and lets no panic pass that was caught at the interface.
+/// Reads every message; fails on one of a panic caught at the interface.
 unsafe extern "C" fn receive(
     _environment: *mut c_void,
     instance: *const c_char,
@@ -207,13 +208,13 @@ unsafe extern "C" fn receive(
     }
 }
 
-/// A panic cannot leave a function of C.
+/// Aborts, since a panic cannot leave a C function.
 fn fail(message: &str) {
     eprintln!("{message}");
     process::abort();
 }
 
-/// Callbacks whose memory functions are NULL, so that using them would be seen.
+/// Callbacks whose memory functions are NULL, so that a call of them would crash.
 pub fn callbacks() -> fmi2CallbackFunctions {
     type Receive = unsafe extern "C" fn(*mut c_void, *const c_char, fmi2Status, *const c_char, *const c_char);
     type Logger = unsafe extern "C" fn(*mut c_void, *const c_char, fmi2Status, *const c_char, *const c_char, ...);
@@ -228,7 +229,7 @@ pub fn callbacks() -> fmi2CallbackFunctions {
     }
 }
 
-/// Tells what a case is where FUZZ_SHOW is set.
+/// Prints a case if FUZZ_SHOW is set.
 pub fn show(case: &impl fmt::Debug) {
     static SHOWN: OnceLock<bool> = OnceLock::new();
     if *SHOWN.get_or_init(|| env::var_os("FUZZ_SHOW").is_some()) {
@@ -236,20 +237,20 @@ pub fn show(case: &impl fmt::Debug) {
     }
 }
 
-/// A status that is one, and of no panic.
+/// Checks that `status` is valid and not fmi2Fatal.
 pub fn checked(status: fmi2Status) -> fmi2Status {
     assert!(status == OK || status == DISCARD || status == fmi2Status_fmi2Error, "status {status}");
     status
 }
 
-/// An instance and its site; not freed by itself.
+/// An instance and its site; not freed on drop.
 #[derive(Clone, Copy)]
 pub struct Fmu {
     pub c: fmi2Component,
     pub site: &'static Site,
 }
 
-/// All outputs but the processor time, bit by bit.
+/// The bits of all outputs except the processor time.
 pub type Outputs = Vec<u64>;
 
 impl Fmu {
@@ -273,7 +274,7 @@ impl Fmu {
         Some(values.iter().map(|value| value.to_bits()).chain(counts.iter().map(|&count| count as u64)).collect())
     }
 
-    /// The outputs after a step that is said to be done: all are there.
+    /// The outputs after a successful step, all of which must be readable.
     pub fn outputs_of_step(&self) -> Outputs {
         if let Some(reference) = &self.site.time {
             let mut time = f64::NAN;
@@ -284,7 +285,7 @@ impl Fmu {
         self.outputs().expect("outputs after a step")
     }
 
-    /// The time reached, where it is told.
+    /// The time reached, where it can be read.
     pub fn time(&self) -> Option<f64> {
         let mut time = f64::NAN;
         // SAFETY: as above.
@@ -292,7 +293,7 @@ impl Fmu {
         (checked(status) == OK).then_some(time)
     }
 
-    /// A state that is kept; NULL where none can be.
+    /// A new FMU state; NULL where that is not allowed.
     pub fn keep(&self) -> fmi2FMUstate {
         keep(self.c)
     }
@@ -306,12 +307,12 @@ impl Fmu {
         serialised(self.c, state)
     }
 
-    /// The instance as it stands, as a byte string.
+    /// The state of the instance as a byte string.
     pub fn frozen(&self) -> Option<Vec<u8>> {
         frozen(self.c)
     }
 
-    /// The work that a step may do, which of an element is none.
+    /// `solver.max_steps`; 0 for an element.
     pub fn max_steps(&self) -> i32 {
         let Some(reference) = &self.site.max_steps else { return 0 };
         let mut steps = 0;
@@ -320,7 +321,7 @@ impl Fmu {
         if checked(status) == OK { steps } else { 0 }
     }
 
-    /// From the instantiation to where it can step; whether that went well.
+    /// Initialises a new instance; whether that succeeded.
     pub fn start(&self, [u, w, u_rate, w_rate]: [f64; 4]) -> bool {
         // SAFETY: as above.
         unsafe {
@@ -344,7 +345,7 @@ impl Fmu {
         checked(unsafe { fmi::fmi2DoStep(self.c, point, h, 1) })
     }
 
-    /// A step, and all that holds after it: numbers where it was done, nothing changed where it was refused.
+    /// A step with its checks: finite outputs where it was done, no change where it was refused.
     pub fn checked_step(&self, point: f64, h: f64) -> fmi2Status {
         let (outputs, time, kept) = (self.outputs(), self.time(), self.keep());
         let status = self.step(point, h);
@@ -377,7 +378,7 @@ impl Fmu {
         status
     }
 
-    /// Derivatives of all outputs by the inputs and of the forces by time: numbers, or refused.
+    /// Checks that derivatives of all outputs by the inputs and of the forces by time are finite or refused.
     pub fn check_derivatives(&self, direction: [f64; 2]) {
         let (reals, mut values) = (&self.site.reals, vec![0.0; self.site.reals.len()]);
         // SAFETY: an instance that lives, slices of the lengths given.
@@ -433,5 +434,5 @@ fn frozen(c: fmi2Component) -> Option<Vec<u8>> {
     bytes
 }
 
-/// Bytes of the checksum at the end of a serialised state.
+/// Length of the checksum at the end of a serialised state, bytes.
 pub const CHECKSUM: usize = 16;

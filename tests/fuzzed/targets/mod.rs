@@ -1,4 +1,4 @@
-//! What is fuzzed: five functions of arbitrary bytes that panic where the library breaks a promise.
+//! The fuzz targets: five functions of arbitrary bytes that panic where the library violates its specification.
 
 pub mod fmi_calls;
 pub mod profile;

@@ -1,4 +1,4 @@
-//! Numbers as a fuzzer should give them: the strange ones often, and often ones that a run can go on with.
+//! Numbers for a fuzzer: often extreme ones, and often ones that a run can continue with.
 
 use arbitrary::Arbitrary;
 
@@ -7,11 +7,11 @@ use arbitrary::Arbitrary;
 pub enum Number {
     /// One of [`STRANGE`].
     Strange(u8),
-    /// So many tenths of a micrometre: a displacement of the size of the scenes' profiles.
+    /// In tenths of a micrometre: a displacement of the size of the scenes' profiles.
     Small(i8),
     /// mantissa · 10^exponent
     Decimal(i8, i8),
-    /// Any at all.
+    /// Any bits.
     Any(f64),
 }
 

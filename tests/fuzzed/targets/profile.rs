@@ -1,5 +1,5 @@
-//! A file with a profile or with a Prony series, read as a scene reads it: refused with a place and a reason, or a
-//! spline, or a material.
+//! A file with a profile or with a Prony series, as a scene reads it: an error with a position and a reason, or a valid
+//! spline or material.
 
 use std::io::{Cursor, Write as _};
 use std::path::{Path, PathBuf};
@@ -12,11 +12,11 @@ use zip::write::SimpleFileOptions;
 
 use super::scene::run_scene;
 
-/// Longer ones are no other profiles.
+/// Maximum length of a file, bytes; longer ones test nothing new.
 const MOST_BYTES: usize = 4096;
 
-/// Writes the bytes behind the first two into a file, and reads a scene that names it: as the bits of these two say, or
-/// a Prony series where the highest is set.
+/// Writes all bytes but the first two into a file and reads a scene that names it, as a profile with the keys that the
+/// bits of those two select, or as a Prony series where the highest bit is set.
 pub fn run(bytes: &[u8]) {
     let Some(([first, second], text)) = bytes.split_first_chunk().filter(|(_, text)| text.len() <= MOST_BYTES) else {
         return;
@@ -45,7 +45,7 @@ pub fn run(bytes: &[u8]) {
     }
 }
 
-/// The keys of the scene's surface that the bits stand for.
+/// The keys of the scene's surface that the bits select.
 fn keys(first: u8, second: u8) -> String {
     let choice = |byte: u8, shift: u32, words: &[&'static str]| words.get(usize::from(byte >> shift) % 4).copied();
     let missing = choice(first, 3, &["missing='fill'", "missing='refuse'"]);
@@ -57,7 +57,7 @@ fn keys(first: u8, second: u8) -> String {
     keys.map(|key| format!(",{key}")).collect()
 }
 
-/// An X3P file: its document, and behind a zero the points, of which the first bits are the mask too.
+/// An X3P file: its document and, after a zero byte, the points, whose first bits are the mask, too.
 fn archive(bytes: &[u8]) -> Vec<u8> {
     let zero = bytes.iter().position(|&byte| byte == 0).unwrap_or(bytes.len());
     let (document, points) = bytes.split_at(zero);
@@ -72,7 +72,7 @@ fn archive(bytes: &[u8]) -> Vec<u8> {
     writer.finish().unwrap().into_inner()
 }
 
-/// What an FMU carries in place of the file is the same profile to the last bit.
+/// Checks that the extract that an FMU carries instead of the file is the same profile, bit for bit.
 fn check_extract(scene: &Scene, extract: &Extract, scene_file: &Path, keys: &str) {
     fs::remove_file(folder().join("profile.csv")).unwrap();
     fs::write(folder().join(&extract.name), &extract.text).unwrap();
@@ -90,7 +90,7 @@ fn folder() -> &'static PathBuf {
     })
 }
 
-/// As short as can be: the rest is added later.
+/// A minimal scene; links are added later.
 fn scene(periodic: bool, keys: &str) -> String {
     format!(
         "name='p'\nlayer={{masses=2,spacing=1e-4,mass=1e-7}}\n\
@@ -114,7 +114,7 @@ fn with_links(mut scene: Scene, method: Method) -> Scene {
     scene
 }
 
-/// What every profile keeps to.
+/// The properties of every profile.
 fn check(scene: &Scene, periodic: bool) {
     let (x, z) = (&scene.surface.x, &scene.surface.z);
     assert!(x.len() == z.len() && x.len() >= if periodic { 3 } else { 2 });

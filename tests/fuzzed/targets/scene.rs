@@ -1,4 +1,4 @@
-//! The text of a scene: refused with a place and a reason, or run.
+//! The text of a scene: an error with a position and a reason, or a run.
 
 use std::path::Path;
 
@@ -6,8 +6,8 @@ use asperity::outputs::{Snapshot, Variable, variables};
 use asperity::scene::{OutputGroup, Phase, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
 
-/// What a scene may ask for here: a fuzzer finds the large numbers that are allowed, and memory and time are no
-/// mistakes.
+/// Maximum size of a scene here: a fuzzer finds the large numbers that are allowed, but use of memory and time is not an
+/// error.
 const MOST_MASSES: usize = 4;
 const MOST_STEPS: u64 = 30;
 const MOST_DIGITS: usize = 4;
@@ -32,7 +32,7 @@ pub fn run(bytes: &[u8]) {
     }
 }
 
-/// Digits of the longest whole number, decimal or not; those after a point are none.
+/// Digits of the longest integer, decimal or not; those after a point do not count.
 fn longest_integer(bytes: &[u8]) -> usize {
     let (mut longest, mut run, mut after_point) = (0, 0, false);
     for &byte in bytes {
@@ -50,7 +50,7 @@ fn longest_integer(bytes: &[u8]) -> usize {
     longest
 }
 
-/// The promise of a run: what is done leaves finite numbers, what is refused leaves everything as it was.
+/// Checks that a motion that succeeds has finite outputs and that one that fails changes nothing.
 pub fn run_scene(mut scene: Scene) {
     assert!(!scene.model_identifier().is_empty());
     if scene.layer.masses > MOST_MASSES {
@@ -78,7 +78,7 @@ pub fn run_scene(mut scene: Scene) {
     }
 }
 
-/// The first phases of the scene, and a press that touches in many scenes.
+/// The first phases of the scene, and a motion that presses, which makes contact in many scenes.
 fn motions(scene: &Scene) -> Vec<(Motion, Option<f64>)> {
     let press = Motion {
         duration: 1e-5,

@@ -1,4 +1,4 @@
-//! FMU states as byte strings: valid ones, changed in a few places and sealed anew, and ones made of anything.
+//! FMU states as byte strings: valid ones with a few changes and a matching checksum, and arbitrary ones.
 
 use std::cell::OnceCell;
 use std::ptr;
@@ -10,13 +10,13 @@ use uuid::Uuid;
 use super::fmu::{CHECKSUM, Fmu, MOST_STEPS, OK, checked, show, sites};
 use super::number::Number;
 
-/// What is done with a state.
+/// A byte string and the steps that follow.
 #[derive(Debug, Arbitrary)]
 struct Case {
-    /// Which of the states that are there to begin with.
+    /// Index of the valid state to begin with.
     base: u8,
     content: Content,
-    /// Whether the checksum is put right, so that the content is looked at.
+    /// Whether the checksum is corrected, so that the content is read.
     sealed: bool,
     steps: Vec<(Number, Number, Number)>,
 }
@@ -25,9 +25,9 @@ struct Case {
 enum Content {
     /// The base with changes.
     Changed(Vec<Change>),
-    /// The head of the base, then anything.
+    /// The head of the base, then arbitrary bytes.
     Body(Vec<u8>),
-    /// Anything.
+    /// Arbitrary bytes.
     Any(Vec<u8>),
 }
 
@@ -39,7 +39,7 @@ enum Change {
     Insert(u16, u8),
 }
 
-/// States to begin with and the instances that they are of, one for each thread: every case goes back to them.
+/// The valid states to begin with and their instances, one set per thread: every case returns to them.
 struct Bases {
     fmus: Vec<Fmu>,
     states: Vec<(usize, Vec<u8>)>,
@@ -50,7 +50,7 @@ thread_local! {
     static BASES: OnceCell<&'static Bases> = const { OnceCell::new() };
 }
 
-/// Makes up a state, takes it up if it is accepted, and steps on.
+/// Makes a byte string, restores it if it is accepted, and does some steps.
 pub fn run(bytes: &[u8]) {
     let Ok(case) = Case::arbitrary_take_rest(Unstructured::new(bytes)) else { return };
     show(&case);
@@ -98,7 +98,7 @@ impl Bases {
     }
 }
 
-/// Reads all that can be read, and steps.
+/// Reads all outputs and does steps.
 fn go_on(fmu: &Fmu, steps: &[(Number, Number, Number)]) {
     fmu.outputs();
     fmu.check_derivatives([1.0, -1.0]);

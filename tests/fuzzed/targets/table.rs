@@ -1,4 +1,4 @@
-//! The table of a sweep: refused with a place and a reason, or an element that moves over it.
+//! The table of a sweep: an error with a position and a reason, or an element that moves over it.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use asperity::outputs::Variable;
 use asperity::scene::{Parameter, Value};
 use asperity::simulation::Start;
 
-/// Reads the bytes behind the first as a table and moves an element over it, which goes beyond it where that is odd.
+/// Reads all bytes but the first as a table and moves an element over it, beyond its ends if the first is odd.
 pub fn run(bytes: &[u8]) {
     let Some((first, text)) = bytes.split_first() else { return };
     let Ok(text) = std::str::from_utf8(text) else { return };
@@ -53,7 +53,7 @@ fn run_table(table: Table, goes_beyond: bool) {
     }
 }
 
-/// What every place shows: numbers, and a contact that only presses.
+/// Checks for finite outputs and a contact that only presses.
 fn check(element: &Element, variables: &[Variable]) {
     let mut values = vec![f64::NAN; variables.len()];
     element.evaluate(variables, &mut values);

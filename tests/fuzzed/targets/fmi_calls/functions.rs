@@ -1,4 +1,4 @@
-//! Calls of one instance that need nothing else of what the master has in hand.
+//! Calls that involve one instance alone.
 
 use std::ptr;
 
@@ -35,7 +35,7 @@ pub(super) fn step(fmu: Fmu, call: &Call) {
     }
 }
 
-/// From the same state a step gives the same, bit for bit.
+/// A step from the same state has the same result, bit for bit.
 fn step_twice(fmu: Fmu, point: f64, h: f64) {
     let state = fmu.keep();
     if state.is_null() {
@@ -49,7 +49,7 @@ fn step_twice(fmu: Fmu, point: f64, h: f64) {
     fmu.forget(state);
 }
 
-/// Functions of the lifecycle, and those that only ask.
+/// Functions of the life cycle and of the status.
 pub(super) fn call_function(fmu: Fmu, call: &Call) {
     let c = fmu.c;
     // SAFETY: an instance that lives; slices of the lengths given, or NULL.
@@ -77,7 +77,6 @@ pub(super) fn call_function(fmu: Fmu, call: &Call) {
     checked(status);
 }
 
-/// Getters.
 fn get(fmu: Fmu, call: &Call) {
     let c = fmu.c;
     // SAFETY: an instance that lives; slices of the lengths given, or NULL.
@@ -105,7 +104,6 @@ fn get(fmu: Fmu, call: &Call) {
     checked(status);
 }
 
-/// Setters.
 fn set(fmu: Fmu, call: &Call) {
     let c = fmu.c;
     // SAFETY: an instance that lives; slices of the lengths given, or NULL.
@@ -152,7 +150,6 @@ fn set(fmu: Fmu, call: &Call) {
     checked(status);
 }
 
-/// Derivatives.
 fn derive(fmu: Fmu, call: &Call) {
     let c = fmu.c;
     // SAFETY: an instance that lives; slices of the lengths given, or NULL.
@@ -198,7 +195,7 @@ fn references(array: &Array<Reference>) -> Vec<u32> {
     array.taken().map(|one| one.number()).collect()
 }
 
-/// Back to what a new instance is, but for what cannot be seen.
+/// Returns to the state of a new instance.
 fn reset(fmu: Fmu) -> fmi2Status {
     // SAFETY: an instance that lives.
     let status = checked(unsafe { fmi2Reset(fmu.c) });
@@ -219,7 +216,7 @@ unsafe fn get_status(c: fmi2Component, kind: fmi2StatusKind, which: u8, null: bo
     }
 }
 
-/// Functions that take no instance, or NULL for one.
+/// Functions without an instance, or with NULL instead of one.
 pub(super) fn on_nothing() {
     // SAFETY: NULL is what is tested.
     unsafe {
