@@ -206,7 +206,8 @@ impl Forces {
         };
         let of_element = |row: &MaxwellRow| row.stiffness * state.maxwell[row.range.start + link];
         let maxwell: f64 = model.rows_of(kind).map(of_element).sum();
-        self.link[kind as usize][link] = law.stiffness * e + law.damping * rate + maxwell;
+        let frozen = if law.frozen > 0.0 { law.frozen * model.frozen_dashpot(kind, link) } else { 0.0 };
+        self.link[kind as usize][link] = law.stiffness * e + law.damping * rate + maxwell - frozen;
     }
 
     /// F_x of the layer on the carrier, N.
@@ -305,4 +306,44 @@ fn sum_on_masses(sum: &mut [f64], to_carrier: &[f64], lateral: &[f64]) {
 fn sum_on_mass(i: usize, to_carrier: &[f64], lateral: &[f64]) -> f64 {
     let of = |link: Option<&f64>| link.copied().unwrap_or(0.0);
     of(lateral.get(i)) - of(to_carrier.get(i)) - if i > 0 { of(lateral.get(i - 1)) } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SCENE: &str = "name = 'a'
+        layer = { masses = 4, spacing = 1.0, mass = 1.0,
+                  vertical = { stiffness = 2.0, damping = 0.7, maxwell = [{ stiffness = 3.0, relaxation_time = 0.2 },
+                                                                        { stiffness = 5.0, relaxation_time = 1e9 }] },
+                  lateral_x = { stiffness = 1.0, damping = 0.3 },
+                  lateral_z = { stiffness = 1.0, maxwell = [{ stiffness = 1.5, relaxation_time = 1e9 }] } }
+        surface = { kind = 'sinusoid', amplitude = 0.1, wavelength = 3.0 }
+        solver = { reduce = 1e-3 }
+        excitation = [{ duration = 1.0 }]";
+
+    /// With dashpots that are frozen where the profile has lifted the masses to.
+    #[test]
+    fn refreshed_forces_are_those_evaluated_anew() {
+        let mut model = Model::of_text(SCENE);
+        model.freeze_dashpots(0.0, -0.3);
+        assert!(model.links[0].frozen == 5.0 && model.links[3].frozen == 1.5 && model.frozen[1] > 0.1);
+        let mut state = State::new(model.masses(), model.maxwell_variables());
+        let carrier = CarrierPoint { u_rate: 0.2, w_rate: -0.1, ..CarrierPoint::default() };
+        let mut refreshed = Forces::new(&model);
+        refreshed.evaluate(&model, &state, &carrier);
+        for i in 0..model.masses() {
+            let x = i as f64;
+            (state.elongation_x[i], state.elongation_z[i]) = (0.1 * x, 0.3 - 0.05 * x * x);
+            (state.velocity_x[i], state.velocity_z[i]) = (0.3 - x, x * x);
+            state.maxwell[i] = 0.02 * x;
+            refreshed.refresh(&model, &state, &carrier, i);
+        }
+        let mut evaluated = Forces::new(&model);
+        evaluated.evaluate(&model, &state, &carrier);
+        let all = |forces: &Forces| [forces.on_mass_x.clone(), forces.on_mass_z.clone(), forces.link.concat()].concat();
+        for (found, expected) in all(&refreshed).iter().zip(all(&evaluated)) {
+            assert!((found - expected).abs() < 1e-13, "{refreshed:?} {evaluated:?}");
+        }
+    }
 }
