@@ -1,12 +1,12 @@
 //! What a feature costs that a scene does not need: pairs of scenes, one without a feature, one with it at zero, side
-//! by side: `cargo bench --bench leaving_out`. That their results are alike is tested in `tests/leaving_out`.
+//! by side: `cargo bench --bench leaving_out`. That their results are alike is tested in `tests/physics/leaving_out`.
 
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "like a test")]
 
 #[allow(dead_code, unreachable_pub, reason = "shared with the other benchmarks")]
 mod common;
 #[allow(dead_code, unreachable_pub, reason = "shared with the test")]
-#[path = "../tests/leaving_out/pairs.rs"]
+#[path = "../tests/physics/leaving_out/pairs.rs"]
 mod pairs;
 
 use std::path::Path;

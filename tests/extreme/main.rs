@@ -12,7 +12,7 @@ mod fmu;
 mod html;
 mod judge;
 #[allow(dead_code, reason = "shared by several tests")]
-#[path = "../fmi_interface/master.rs"]
+#[path = "../fmu/fmi_interface/master.rs"]
 mod master;
 mod report;
 mod rules;

@@ -1,0 +1,135 @@
+//! Instantiation: its checks, and where the scene is found.
+
+use std::ffi::CStr;
+use std::{fs, ptr};
+
+use asperity::fmi::bindings::*;
+use asperity::fmi::{fmi2FreeInstance, fmi2GetTypesPlatform, fmi2GetVersion};
+
+use crate::fmi_interface::master::{ERROR, Folder, Messages, Request, SCENE, callbacks};
+
+#[test]
+fn version_and_platform_are_the_standards() {
+    // SAFETY: static strings.
+    let texts = unsafe { [fmi2GetVersion(), fmi2GetTypesPlatform()].map(|text| CStr::from_ptr(text)) };
+    assert_eq!(texts, [c"2.0", c"default"]);
+}
+
+/// Tries to make an instance of the scene in `folder`, `change` applied to the request; the error's text, if any.
+fn attempt(folder: &Folder, change: impl FnOnce(&mut Request)) -> Result<(), String> {
+    let messages = Messages::default();
+    let functions = callbacks(&messages);
+    let guid = folder.description().0;
+    let location = format!("file://{}", folder.text());
+    let mut request = Request {
+        name: Some("one".into()),
+        kind: fmi2Type_fmi2CoSimulation,
+        guid: Some(guid),
+        location: Some(location),
+        functions: &functions,
+        logging: false,
+    };
+    change(&mut request);
+    let c = request.send();
+    if !c.is_null() {
+        // SAFETY: just made.
+        unsafe { fmi2FreeInstance(c) };
+        return Ok(());
+    }
+    let messages = messages.into_inner().unwrap();
+    assert_eq!(messages.len(), 1);
+    assert_eq!((messages[0].status, messages[0].category.as_str()), (ERROR, "logStatusError"));
+    Err(messages[0].text.clone())
+}
+
+#[test]
+fn a_failed_instantiation_returns_null_and_logs_why() {
+    let folder = Folder::with_scene("", SCENE);
+    assert_eq!(attempt(&folder, |_| ()), Ok(()));
+    let refused = |change: fn(&mut Request), expected: &str| {
+        let text = attempt(&folder, change).unwrap_err();
+        assert!(text.starts_with("fmi2Instantiate: ") && text.contains(expected), "{text}");
+    };
+    refused(|request| request.kind = fmi2Type_fmi2ModelExchange, "co-simulation");
+    refused(|request| request.kind = 7, "co-simulation");
+    refused(|request| request.name = None, "name");
+    refused(|request| request.name = Some(String::new()), "name");
+    refused(|request| request.guid = None, "fmuGUID is NULL");
+    refused(|request| request.guid = Some("{other}".into()), "{other}");
+    refused(|request| request.location = None, "fmuResourceLocation is NULL");
+    refused(|request| request.location = Some("file:///no/such/folder".into()), "/no/such/folder");
+    refused(|request| request.location = Some(String::new()), "scene.toml");
+}
+
+#[test]
+fn an_invalid_scene_is_reported_with_the_readers_message() {
+    let folder = Folder::with_scene("", SCENE);
+    let guid = folder.description().0;
+    fs::write(folder.scene_file(), SCENE.replace("masses = 2", "masses = 0")).unwrap();
+    let messages = Messages::default();
+    let functions = callbacks(&messages);
+    let request = Request {
+        name: Some("one".into()),
+        kind: fmi2Type_fmi2CoSimulation,
+        guid: Some(guid),
+        location: Some(folder.text().into()),
+        functions: &functions,
+        logging: false,
+    };
+    assert!(request.send().is_null());
+    let text = messages.into_inner().unwrap()[0].text.clone();
+    assert!(text.contains("scene.toml:4: layer.masses = 0"), "{text}");
+}
+
+#[test]
+fn callbacks_and_logger_may_be_null() {
+    let folder = Folder::with_scene("", SCENE);
+    let (messages, no_logger) = (Messages::default(), |functions: &mut fmi2CallbackFunctions| functions.logger = None);
+    let mut functions = callbacks(&messages);
+    no_logger(&mut functions);
+    assert_eq!(attempt(&folder, |request| request.functions = ptr::null()), Ok(()));
+    assert_eq!(attempt(&folder, |request| request.functions = &functions), Ok(()));
+    let guid = folder.description().0;
+    let request = Request {
+        name: Some("one".into()),
+        kind: fmi2Type_fmi2CoSimulation,
+        guid: Some(guid),
+        location: None,
+        functions: ptr::null(),
+        logging: true,
+    };
+    assert!(request.send().is_null());
+}
+
+#[test]
+fn null_is_no_instance() {
+    // SAFETY: NULL is what is tested.
+    unsafe {
+        fmi2FreeInstance(ptr::null_mut());
+        assert_eq!(asperity::fmi::fmi2DoStep(ptr::null_mut(), 0.0, 1.0, 0), ERROR);
+    }
+}
+
+#[test]
+fn resources_are_found_in_every_spelling() {
+    let folder = Folder::with_scene(" ä#1 50% a%20b", SCENE);
+    let raw = folder.text();
+    let encoded = raw.replace('%', "%25").replace(' ', "%20").replace('#', "%23").replace('ä', "%C3%A4");
+    for path in [raw, &encoded, &format!("{raw}/"), &format!("{encoded}/")] {
+        for start in ["file://", "file:///", "file://localhost", "file:", "FILE://", ""] {
+            let location = format!("{start}{path}");
+            assert_eq!(attempt(&folder, |request| request.location = Some(location.clone())), Ok(()), "{location}");
+        }
+    }
+}
+
+#[test]
+fn the_guid_follows_whatever_would_run_differently() {
+    let folder = Folder::with_scene("", SCENE);
+    let first = folder.description().0;
+    assert_eq!(folder.description().0, first);
+    assert_eq!(Folder::with_scene(" elsewhere", SCENE).description().0, first);
+    fs::write(folder.path().join("profile.csv"), "0,0\n1e-4,2e-6\n2e-4,0\n").unwrap();
+    assert_ne!(folder.description().0, first);
+    assert_ne!(Folder::with_scene("", &SCENE.replace("0.3", "0.4")).description().0, first);
+}

@@ -1,0 +1,71 @@
+//! Many instances, one after another and in parallel; tests that need a process of their own.
+
+use std::path::Path;
+use std::process::Command;
+use std::{fs, thread};
+
+use crate::common::scratch;
+use crate::fmi_interface::master::{EVERYTHING, Fmu, OK};
+
+/// Variable with the folder of a test in a process of its own; without it such a test does nothing.
+pub const FOLDER: &str = "ASPERITY_TEST_FOLDER";
+
+/// Runs the ignored test `name` of this program in another process.
+pub fn run_alone(name: &str, folder: &Path) {
+    let mut command = Command::new(std::env::current_exe().unwrap());
+    command.args(["--exact", name, "--ignored", "--test-threads=1"]).env(FOLDER, folder);
+    let text = crate::common::run(&mut command);
+    assert!(text.contains("1 passed"), "{text}");
+}
+
+/// Pages of memory that this process holds.
+fn pages() -> u64 {
+    let text = fs::read_to_string("/proc/self/statm").unwrap();
+    text.split(' ').nth(1).unwrap().parse().unwrap()
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn ten_thousand_instances_leave_memory_flat() {
+    run_alone("many::ten_thousand_instances", &scratch("ten-thousand"));
+}
+
+#[test]
+#[ignore = "run by another test, in a process of its own"]
+fn ten_thousand_instances() {
+    let live = || {
+        let fmu = Fmu::running();
+        let state = fmu.state();
+        assert_eq!((fmu.set_real("w", -1e-6), fmu.step(0.0, 1e-7)), (OK, OK));
+        fmu.thaw(&fmu.serialised(state));
+        assert_eq!(fmu.step(0.0, 1e-7), OK);
+    };
+    (0..1_000).for_each(|_| live());
+    let before = pages();
+    (0..10_000).for_each(|_| live());
+    // One page in fifty instances would be seen; an instance holds several.
+    assert!(pages() <= before + 200, "{before} pages before, {} after", pages());
+}
+
+/// Steps into contact and along it with rates and states; all outputs.
+fn drive(number: u32) -> Vec<u64> {
+    let (fmu, h) = (Fmu::running_with(EVERYTHING), 1e-6);
+    let speed = 0.05 * f64::from(number + 1);
+    let mut seen = Vec::new();
+    for i in 0..100 {
+        let time = f64::from(i) * h;
+        assert_eq!((fmu.set_real("u", speed * time), fmu.set_real("w", -0.02 * time)), (OK, OK));
+        assert_eq!((fmu.set_rate("u", speed), fmu.step(time, h)), (OK, OK));
+        fmu.thaw(&fmu.frozen());
+        seen.extend(fmu.bits());
+    }
+    seen
+}
+
+#[test]
+fn eight_threads_agree_with_one_bit_for_bit() {
+    let alone: Vec<_> = (0..8).map(drive).collect();
+    let threads: Vec<_> = (0..8).map(|number| thread::spawn(move || drive(number))).collect();
+    let together: Vec<_> = threads.into_iter().map(|thread| thread.join().unwrap()).collect();
+    assert_eq!(together, alone);
+}

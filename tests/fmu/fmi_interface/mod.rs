@@ -1,0 +1,14 @@
+//! The FMU driven through its C functions, as a master drives it.
+
+mod derivatives;
+mod element;
+mod failures;
+mod instantiation;
+mod lifecycle;
+mod logging;
+mod many;
+mod master;
+mod material;
+mod states;
+mod stepping;
+mod values;

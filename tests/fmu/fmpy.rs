@@ -1,0 +1,143 @@
+//! The FMU in fmpy: its results, its simulation from the command line; its description there and in fmutool.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::common::{
+    Table, asperity, difference, drive, fmpy, interpolate, largest, library, library_along, masters_python, pack,
+    python, root, run, scratch, simulate,
+};
+use asperity::scene::{OutputGroup, Scene};
+
+const DEFAULT_SCENE: &str = "scenes/tread-block/tread-block.toml";
+
+/// Every scene in scenes/.
+fn shipped_scenes() -> Vec<PathBuf> {
+    let files = |folder: &Path| fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect::<Vec<_>>();
+    let folders = files(&root().join("scenes")).into_iter().filter(|path| path.is_dir());
+    let toml = |path: &PathBuf| path.extension().is_some_and(|extension| extension == "toml");
+    let scenes: Vec<_> = folders.flat_map(|folder| files(&folder)).filter(toml).collect();
+    assert!(!scenes.is_empty());
+    scenes
+}
+
+/// fmpy's check, of which the schema is part, and that of the FMU manipulation toolbox.
+fn validate(fmu: &Path) {
+    let fmpy = fmpy(&["validate", fmu.to_str().unwrap()]);
+    assert_eq!(fmpy.trim(), "No problems found.", "{}", fmu.display());
+    let mut fmutool = Command::new(masters_python());
+    fmutool.args(["-m", "fmu_manipulation_toolbox.cli.fmutool", "-check", "-input"]).arg(fmu);
+    let fmutool = run(&mut fmutool);
+    let verdicts = ["This FMU seems to be compliant with FMI-2.0.", "No semantic error against the FMI-2 standard."];
+    assert!(verdicts.iter().all(|verdict| fmutool.contains(verdict)), "{fmutool}");
+    assert!(fmutool.lines().all(|line| line.starts_with("INFO ")), "{fmutool}");
+}
+
+/// The scene in tests/reference with the output groups `groups`.
+fn scene_with_groups(folder: &Path, groups: &[&str]) -> PathBuf {
+    let text = fs::read_to_string(root().join("tests/reference/rough-coulomb.toml")).unwrap();
+    let (before, after) = text.split_once("outputs = [").unwrap();
+    let (_, after) = after.split_once(']').unwrap();
+    let scene = folder.join("scene.toml");
+    fs::write(&scene, format!("{before}outputs = {groups:?}{after}")).unwrap();
+    let profile = "rough-coulomb.profile.csv";
+    fs::copy(root().join("tests/reference").join(profile), folder.join(profile)).unwrap();
+    scene
+}
+
+#[test]
+fn no_fault_is_found_in_the_shipped_scenes() {
+    let folder = scratch("fmpy-validate");
+    shipped_scenes().iter().for_each(|scene| validate(&pack(scene, &folder)));
+}
+
+#[test]
+fn no_fault_is_found_with_every_output_group_and_with_none() {
+    let folder = scratch("fmpy-groups");
+    validate(&pack(&scene_with_groups(&folder, &OutputGroup::ALL.map(OutputGroup::name)), &folder));
+    validate(&pack(&scene_with_groups(&folder, &[]), &folder));
+}
+
+#[test]
+fn the_same_scene_gives_the_same_bytes() {
+    let folder = scratch("fmpy-bytes");
+    let pack = || fs::read(pack(&root().join(DEFAULT_SCENE), &folder)).unwrap();
+    assert!(pack() == pack());
+}
+
+/// Whatever is given as a library is packed as it is.
+#[test]
+fn an_fmu_has_the_libraries_of_all_platforms_named() {
+    let folder = scratch("fmpy-platforms");
+    let (scene, fmu, windows) = (root().join(DEFAULT_SCENE), folder.join("all.fmu"), folder.join("windows.dll"));
+    fs::write(&windows, "a library for Windows").unwrap();
+    let libraries =
+        [("linux64", library()), ("win64", &windows)].map(|(name, path)| format!("{name}={}", path.display()));
+    let mut command = asperity();
+    command.arg("pack").arg(scene).arg("-o").arg(&fmu);
+    run(command.args(libraries.iter().flat_map(|library| ["--library", library])));
+    let platforms = "import sys, fmpy; print(*sorted(fmpy.supported_platforms(sys.argv[1])))";
+    assert_eq!(run(Command::new(python()).args(["-c", platforms]).arg(&fmu)).trim(), "linux64 win64");
+}
+
+#[test]
+fn a_missing_library_is_named_with_the_way_to_build_it() {
+    let folder = scratch("fmpy-library");
+    let output = asperity()
+        .arg("pack")
+        .arg(root().join(DEFAULT_SCENE))
+        .arg("-o")
+        .arg(folder.join("x.fmu"))
+        .args(["--library", "nowhere/libasperity.so"])
+        .output()
+        .unwrap();
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text.contains("nowhere/libasperity.so") && text.contains("cargo rustc"), "{text}");
+}
+
+/// The library's own results, to rounding: both take the same steps.
+#[test]
+fn driven_along_its_excitation_the_fmu_gives_what_the_library_gives() {
+    const TOLERANCE: f64 = 1e-9;
+    let folder = scratch("fmpy-library-along");
+    let path = root().join(DEFAULT_SCENE);
+    let motion = simulate(&path, &folder, &[]);
+    let driven = drive(&pack(&path, &folder), &folder.join("tread-block.csv"), &[]);
+    let scene = Scene::load(&path).unwrap();
+    let own = library_along(&scene, &motion);
+    for name in own.names() {
+        let (error, largest) = (difference(&driven.column(name), &own.column(name)), largest(&own.column(name)));
+        assert!(error <= TOLERANCE * largest, "{name}: {error:e} of {largest:e}");
+    }
+}
+
+/// `fmpy simulate` gives values alone, so that the FMU starts at rest and goes on as the motion came: of every kink it
+/// learns one step late. The forces jump there; the energy lost, which does not, comes closer as the step gets shorter.
+#[test]
+fn from_the_command_line_fmpy_comes_as_close_as_its_step_is_short() {
+    let folder = scratch("fmpy-command-line");
+    let scene = root().join(DEFAULT_SCENE);
+    let own = simulate(&scene, &folder, &["--points", "400"]);
+    let fmu = pack(&scene, &folder);
+    let errors = [1e-5, 2.5e-6].map(|step| command_line_error(&fmu, &folder.join("tread-block.csv"), &own, step));
+    assert!(errors[0] < 0.05 && errors[1] < 0.5 * errors[0], "{errors:?}");
+}
+
+/// The largest error of E_diss over its largest value, at communication steps of `step`.
+fn command_line_error(fmu: &Path, motion: &Path, own: &Table, step: f64) -> f64 {
+    let output = motion.with_extension(format!("{step:e}.csv"));
+    let interval = step.to_string();
+    let paths = [fmu, motion, &output].map(|path| path.to_str().unwrap());
+    fmpy(&["simulate", paths[0], "--input-file", paths[1], "--output-file", paths[2], "--output-interval", &interval]);
+    let found = Table::read(&output);
+    let (times, losses) = (own.column("time"), own.column("E_diss"));
+    let wanted: Vec<f64> = found.column("time").iter().map(|&time| interpolate(&times, &losses, time)).collect();
+    difference(&found.column("E_diss"), &wanted) / largest(&wanted)
+}
+
+#[test]
+fn the_library_is_where_the_script_looks_for_it() {
+    assert!(library().is_file());
+}

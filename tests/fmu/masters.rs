@@ -1,0 +1,142 @@
+//! The default scene in other people's masters.
+//!
+//! Each master gives the FMU u and w at even times, without rates. The carrier then goes on as it came: in the first
+//! step to u_0, in the others to u_n + (u_n - u_{n-1}). The library, moved straight along that path, gives the same.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::common::{
+    Table, difference, fmpy, interpolate, largest, library_along, masters_python, pack, root, run, scratch, simulate,
+    target,
+};
+use asperity::scene::Scene;
+
+/// The communication step, s, and how many there are.
+const STEP: f64 = 1e-5;
+const STEPS: usize = 550;
+/// The difference allowed, over the largest value.
+const TOLERANCE: f64 = 1e-9;
+
+/// The default scene, packed, with u and w at even times as a file and as a table.
+struct Case {
+    folder: PathBuf,
+    scene: Scene,
+    fmu: PathBuf,
+    motion: PathBuf,
+    values: Table,
+}
+
+impl Case {
+    fn new(name: &str) -> Self {
+        let folder = scratch(name);
+        let path = root().join("scenes/tread-block/tread-block.toml");
+        let values = even_times(&simulate(&path, &folder, &[]));
+        let motion = folder.join("motion.csv");
+        values.write(&motion);
+        Self { fmu: pack(&path, &folder), scene: Scene::load(&path).unwrap(), folder, motion, values }
+    }
+
+    /// Runs a script of tests/python on the FMU and the motion.
+    fn run_script(&self, script: &str) -> Table {
+        let result = self.folder.join("result.csv");
+        let mut python = Command::new(masters_python());
+        python.arg(root().join("tests/python").join(script)).args([&self.fmu, &self.motion]).arg("-o").arg(&result);
+        run(&mut python);
+        Table::read(&result)
+    }
+
+    /// Simulates an FMU by fmpy's own loop.
+    fn simulate_in_fmpy(&self, fmu: &Path) -> Table {
+        let result = self.folder.join("result.csv");
+        let [fmu, motion, output] = [fmu, &self.motion, &result].map(|path| path.to_str().unwrap());
+        let interval = STEP.to_string();
+        fmpy(&["simulate", fmu, "--input-file", motion, "--output-file", output, "--output-interval", &interval]);
+        Table::read(&result)
+    }
+
+    /// Compares the times and all outputs with what the library gives.
+    fn compare(&self, found: &Table) {
+        assert_close("time", &found.column("time"), &self.values.column("time"));
+        self.compare_outputs(found, "", &self.scene);
+    }
+
+    /// Compares the outputs called `prefix` and their names with what the library gives for `scene`.
+    fn compare_outputs(&self, found: &Table, prefix: &str, scene: &Scene) {
+        let own = library_along(scene, &extrapolated(&self.values));
+        for name in own.names() {
+            let theirs = format!("{prefix}{name}");
+            assert_close(&theirs, &found.column(&theirs), &own.column(name));
+        }
+    }
+}
+
+/// The displacements at even times.
+fn even_times(motion: &Table) -> Table {
+    let [times, u, w] = ["time", "u", "w"].map(|name| motion.column(name));
+    let row = |time| vec![time, interpolate(&times, &u, time), interpolate(&times, &w, time)];
+    Table::new(&["time", "u", "w"], (0..=STEPS).map(|i| row(i as f64 * STEP)).collect())
+}
+
+/// Where the FMU takes the carrier, given values alone.
+fn extrapolated(values: &Table) -> Table {
+    let [time, u, w] = ["time", "u", "w"].map(|name| values.column(name));
+    let target = |values: &[f64], i: usize| if i < 2 { values[0] } else { 2.0 * values[i - 1] - values[i - 2] };
+    let row = |i| vec![time[i], target(&u, i), target(&w, i)];
+    Table::new(&["time", "u", "w"], (0..time.len()).map(row).collect())
+}
+
+/// Some masters do not show the values at the start.
+fn assert_close(name: &str, found: &[f64], own: &[f64]) {
+    assert!(found.len() == own.len() || found.len() == own.len() - 1, "{name}: {} rows", found.len());
+    let error = difference(found, &own[own.len() - found.len()..]) / largest(own);
+    assert!(error <= TOLERANCE, "{name}: {error:e} of the largest");
+}
+
+#[test]
+fn fmpy_gives_what_the_library_gives() {
+    let case = Case::new("masters-fmpy");
+    case.compare(&case.simulate_in_fmpy(&case.fmu));
+}
+
+#[test]
+fn libcosim_gives_what_the_library_gives() {
+    let case = Case::new("masters-libcosim");
+    case.compare(&case.run_script("in_libcosim.py"));
+}
+
+#[test]
+fn ecos_gives_what_the_library_gives() {
+    let case = Case::new("masters-ecos");
+    case.compare(&case.run_script("in_ecos.py"));
+}
+
+/// Two of the FMU, the second with more friction, packed into one by fmu-manipulation-toolbox and simulated by fmpy.
+#[test]
+fn a_container_of_two_gives_what_the_library_gives_for_each() {
+    let case = Case::new("masters-container");
+    fs::copy(root().join("tests/python/pair.json"), case.folder.join("pair.json")).unwrap();
+    let mut command = Command::new(masters_python());
+    command.args(["-m", "fmu_manipulation_toolbox.cli.fmucontainer", "-container", "pair.json", "-fmu-directory"]);
+    run(command.arg(&case.folder));
+    let found = case.simulate_in_fmpy(&case.folder.join("pair.fmu"));
+    case.compare(&found);
+    let mut second = case.scene.clone();
+    second.set_by_name("friction.coulomb", "0.5").unwrap();
+    case.compare_outputs(&found, "second.", &second);
+}
+
+/// By hand, for it first builds fmi-sim, which needs libclang: `cargo test --test fmu -- --ignored`.
+#[test]
+#[ignore = "builds fmi-sim, which takes minutes"]
+fn fmi_sim_gives_what_the_library_gives() {
+    let case = Case::new("masters-fmi-sim");
+    let (root, result) = (target().join("fmi-sim"), case.folder.join("result.csv"));
+    let install = ["install", "fmi-sim", "--version", "0.7.0", "--locked", "--root"];
+    run(Command::new(env!("CARGO")).args(install).arg(&root));
+    let mut command = Command::new(root.join("bin/fmi-sim"));
+    command.arg("--model").arg(&case.fmu).arg("--input-file").arg(&case.motion).arg("--output-file").arg(&result);
+    run(command.args(["co-simulation", "--output-interval", &STEP.to_string()]));
+    case.compare(&Table::read(&result));
+}

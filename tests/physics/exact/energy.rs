@@ -1,0 +1,156 @@
+//! The energy balance: E_in = Δ(T + V) + E_damper + E_maxwell + E_friction + E_impact holds exactly in the model, and
+//! every channel is added up on its own, so what a run misses is its numerical error.
+
+use asperity::simulation::{Motion, Start};
+
+use crate::exact::run::{Law, Random, Run, largest, link, rate, sine, solver, steps};
+
+const CHANNELS: [&str; 5] =
+    ["energy.residual", "energy.input", "E_diss", "dissipation.E_friction", "dissipation.E_impact"];
+
+/// Six coupled masses over a random periodic profile of 2 µm a point, itself rough.
+fn scene(friction: &str, relative: f64) -> String {
+    let mut random = Random(7);
+    let points = 32;
+    let x: Vec<f64> = (0..=points).map(|i| f64::from(i) * 2.0e-5).collect();
+    let mut z: Vec<f64> = (0..=points).map(|_| random.between(-2.0e-6, 2.0e-6)).collect();
+    z[points as usize] = z[0];
+    let roughness: Vec<f64> = (0..6).map(|_| random.between(-1.0e-6, 1.0e-6)).collect();
+    let links = link("vertical", &Law::with_maxwell(2.0e3, 4.0e-3, &[(1.0e3, 1.0e-4), (500.0, 5.0e-6)]))
+        + &link("horizontal", &Law::with_maxwell(1.0e3, 4.0e-3, &[(600.0, 2.0e-5)]))
+        + &link("lateral_x", &Law::new(500.0, 2.0e-3))
+        + &link("lateral_z", &Law::with_maxwell(300.0, 1.0e-3, &[(200.0, 3.0e-5)]));
+    let solver = solver(relative, relative * 6.0e-6);
+    format!(
+        "[layer]\nmasses = 6\nspacing = 7e-5\nmass = 1e-7\nclearance = 1e-6\n\
+         roughness = {{ kind = \"points\", z = {roughness:?} }}\n{links}\
+         [surface]\nkind = \"points\"\nperiodic = true\nx = {x:?}\nz = {z:?}\n{friction}\n{solver}"
+    )
+}
+
+/// Presses, slides and vibrates; what the balance misses at worst over the largest energy, and the last values of the
+/// channels.
+fn balance(friction: &str, relative: f64) -> (f64, Vec<f64>) {
+    let mut run = Run::new(&scene(friction, relative), Start { u_rate: 0.1, w_rate: -0.02, ..Start::default() });
+    let names = if friction.is_empty() { vec!["energy.residual", "energy.input", "E_diss"] } else { CHANNELS.to_vec() };
+    let duration = 3.0e-4;
+    let phases = [(rate(0.1), rate(-0.02)), (rate(0.3), sine(3.0e-6, 8.0e3)), (sine(2.0e-5, 3.0e3), rate(0.005))];
+    let (mut worst, mut size, mut last) = (0.0_f64, 0.0_f64, Vec::new());
+    for (u, w) in phases {
+        let mut times = steps((0.0, duration), 60);
+        times.push(duration);
+        let columns = run.sample(&Motion { duration, u, w }, &times, &names);
+        worst = worst.max(largest(&columns[0]));
+        size = size.max(largest(&columns[1])).max(largest(&columns[2]));
+        last = columns.iter().map(|column| column[60]).collect();
+    }
+    assert!(run.get("dissipation.E_impact") > 0.0, "masses strike the profile");
+    assert!(run.events().len() > 20, "masses come and go");
+    (worst / size, last)
+}
+
+/// Steps with an error of the tolerance each, some thousand of them between events that they all pass on.
+fn balances(friction: &str) {
+    let (coarse, _) = balance(friction, 1e-6);
+    let (fine, last) = balance(friction, 1e-9);
+    assert!(coarse <= 1e-4, "at 1e-6 the balance misses {coarse:e}");
+    assert!(fine <= 1e-7, "at 1e-9 the balance misses {fine:e}");
+    assert!(fine <= 0.02 * coarse, "from {coarse:e} only to {fine:e}");
+    if !friction.is_empty() {
+        assert!(last[3] > 0.01 * last[2], "friction takes its share: {last:?}");
+    }
+}
+
+#[test]
+fn without_friction() {
+    balances("");
+}
+
+#[test]
+fn with_coulomb_friction() {
+    balances("[friction]\ncoulomb = 0.4");
+}
+
+#[test]
+fn with_adhesive_shear() {
+    balances("[friction]\nshear_force = 2e-3");
+}
+
+#[test]
+fn with_both() {
+    balances("[friction]\ncoulomb = 0.2\nshear_force = 1e-3");
+}
+
+/// An element that starts undeformed has the energy ½ c_j e² and loses it in some τ_j, of which a step sees nothing if
+/// τ_j is far shorter.
+#[test]
+fn what_a_fast_element_loses_within_a_step_is_counted() {
+    let (c, e, relative) = (1.0e3, 1.0e-5, 1.0e-4);
+    for tau in [1.0e-10, 1.0e-8, 3.0e-8, 1.0e-7, 1.0e-6] {
+        let vertical = link("vertical", &Law::with_maxwell(2.0e4, 1.0e-3, &[(c, tau)]));
+        let solver = solver(relative, 1.0e-6 * relative);
+        let text = format!(
+            "[layer]\nmasses = 1\nspacing = 1e-4\nmass = 1e-7\ninitial = \"undeformed\"\n{vertical}\
+             [surface]\nkind = \"flat\"\n{solver}"
+        );
+        let mut run = Run::new(&text, Start { w: -e, ..Start::default() });
+        run.drive(1.0e-4, rate(0.0), rate(0.0));
+        let (lost, stored) = (run.get("dissipation.E_maxwell"), 0.5 * c * e * e);
+        // The force is good to the tolerance of the whole spring's, twenty-one times the element's: so is what it lost.
+        assert!((lost - stored).abs() <= 21.0 * relative * stored, "τ = {tau:e}: {lost:e} J of {stored:e} J");
+    }
+}
+
+/// Eight masses are pressed fast onto `surface` and slid over it at `speed` (m/s), with dampers `horizontal` and
+/// `lateral_z` (N s/m): the residual is at most ten times the relative tolerance of the largest energy, and no energy
+/// lost comes back.
+fn check_extreme(method: &str, friction: &str, horizontal: f64, lateral_z: f64, surface: &str, speed: f64) {
+    let links = link("vertical", &Law::with_maxwell(2.0e3, 8.0e-3, &[(1.0e3, 1.0e-4)]))
+        + &link("horizontal", &Law::new(1.0e3, horizontal))
+        + &link("lateral_x", &Law::new(500.0, 2.0e-3))
+        + &link("lateral_z", &Law::new(500.0, lateral_z));
+    let text = format!(
+        "[layer]\nmasses = 8\nspacing = 1e-4\nmass = 1e-7\n{links}[surface]\n{surface}\n[friction]\n{friction}\n\
+         [solver]\nmethod = '{method}'\nrelative_tolerance = 1e-6\n"
+    );
+    let mut run = Run::new(&text, Start { w_rate: -0.1, ..Start::default() });
+    let (mut worst, mut size, mut falls) = (0.0_f64, 0.0_f64, 0.0_f64);
+    for (duration, u, w) in [(2.0e-4, rate(0.0), rate(-0.1)), (6.0e-5 / speed, rate(speed), rate(0.0))] {
+        let columns = run.sample(&Motion { duration, u, w }, &steps((0.0, duration), 40), &CHANNELS);
+        worst = worst.max(largest(&columns[0])).max(run.get("energy.residual").abs());
+        size = size.max(largest(&columns[1])).max(largest(&columns[2]));
+        let lost = columns[2..].iter().flat_map(|channel| channel.windows(2));
+        falls = lost.map(|pair| pair[0] - pair[1]).fold(falls, f64::max);
+    }
+    let case = format!("{method}, {friction}, {horizontal:e}, {lateral_z:e}, {surface}, {speed} m/s");
+    assert!(worst <= 1e-5 * size, "{case}: the balance misses {worst:e} J of {size:e} J");
+    assert!(falls <= 1e-6 * size, "{case}: {falls:e} J of {size:e} J come back");
+}
+
+const WAVES: &str = "kind = 'sinusoid'\namplitude = 5e-6\nwavelength = 2.3e-4";
+
+/// The friction stops a mass within a ten-millionth of a step.
+#[test]
+fn with_a_friction_beyond_all_other_forces() {
+    for method in ["step", "event"] {
+        for friction in ["shear_force = 1e3", "shear_force = 1e9", "coulomb = 10.0\nshear_force = 1e3"] {
+            check_extreme(method, friction, 8.0e-3, 2.0e-3, WAVES, 0.2);
+        }
+    }
+}
+
+/// Dampers a million times critical bring masses together within a hundred-thousandth of a step.
+#[test]
+fn with_dampers_far_beyond_critical() {
+    check_extreme("step", "coulomb = 0.3", 3.0e4, 2.0e-3, WAVES, 0.2);
+    check_extreme("step", "coulomb = 0.3", 8.0e-3, 3.0e4, WAVES, 0.2);
+}
+
+/// The profile bends far between a touch and the end of its step.
+#[test]
+fn where_a_mass_strikes_a_bend() {
+    let spike = "kind = 'points'\nx = [0.0, 1e-4, 1.9e-4, 2e-4, 2.1e-4, 3e-4, 5e-4, 1e-3]\n\
+                 z = [0.0, 0.0, 0.0, 2e-5, 0.0, 0.0, 0.0, 0.0]";
+    check_extreme("step", "coulomb = 0.3", 8.0e-3, 2.0e-3, spike, 0.2);
+    check_extreme("step", "coulomb = 0.3", 8.0e-3, 2.0e-3, WAVES, 100.0);
+}

@@ -1,0 +1,117 @@
+//! The energy balance, and no work from nothing.
+
+use asperity::outputs::Output;
+use asperity::scene::{Method, OutputGroup, Path};
+use asperity::simulation::Motion;
+use proptest::prelude::*;
+
+use crate::invariants::case::{Case, Record};
+use crate::invariants::check::check;
+use crate::invariants::random::{cases, cases_by};
+use crate::invariants::trust::{Units, largest_energy};
+
+/// What the balance may miss, in units of the error that one step may make of the largest energy.
+const ALLOWED: f64 = 10.0;
+
+/// Of what a unit is for each step, that adds up where nothing damps it.
+const OF_EACH_STEP: f64 = 0.1;
+
+/// The relative tolerance above which a step of the event-driven method may pass over what dampers do just after a
+/// kink: they bring the layer to the carrier's new velocity in a time far shorter than the step, which is good at its
+/// end, and the quadrature of what they lose knows the power at the kink and after it alone.
+const COARSE: f64 = 1e-6;
+
+/// What that may amount to, in kinetic energies of the layer at the carrier's jumps.
+const PASSED_OVER: f64 = 4.0;
+
+fn run(case: &Case) -> Result<Record, TestCaseError> {
+    let case = case.clone().with_group(OutputGroup::Solver);
+    case.run(6).map_err(|error| TestCaseError::fail(format!("{error}")))
+}
+
+/// The error of energies that a run may have, J.
+fn allowed(case: &Case, record: &Record) -> f64 {
+    let solver = &case.scene.solver;
+    let steps = record.largest(Output::Steps);
+    let kinks = solver.method != Method::Step && solver.relative_tolerance > COARSE;
+    ALLOWED.max(OF_EACH_STEP * steps) * Units::of(case).energy(largest_energy(case, record))
+        + if kinks { PASSED_OVER * case.kinks() } else { 0.0 }
+}
+
+fn balances(method: Method, cases: u32) {
+    check(&format!("the energy balance by {method:?}"), cases, cases_by(method), |case| {
+        prop_assume!(case.has_a_time_of_its_own());
+        let record = run(&case)?;
+        let (missed, allowed) = (record.largest(Output::EnergyResidual), allowed(&case, &record));
+        prop_assert!(missed <= allowed, "missed: {missed:e} J, allowed {allowed:e} J");
+        Ok(())
+    });
+}
+
+#[test]
+fn the_energy_balance_holds_by_event() {
+    balances(Method::Event, 200);
+}
+
+#[test]
+fn the_energy_balance_holds_by_step() {
+    balances(Method::Step, 60);
+}
+
+#[test]
+fn the_energy_balance_holds_by_auto() {
+    balances(Method::Auto, 100);
+}
+
+/// Energy that is lost stays lost: no channel falls.
+#[test]
+fn no_channel_of_dissipation_falls() {
+    let channels = [
+        Output::DamperEnergy,
+        Output::MaxwellEnergy,
+        Output::FrictionEnergy,
+        Output::ImpactEnergy,
+        Output::DissipatedEnergy,
+    ];
+    check("channels of dissipation", 100, cases(), |case| {
+        prop_assume!(case.has_a_time_of_its_own());
+        let record = run(&case)?;
+        let allowed = allowed(&case, &record);
+        for channel in channels {
+            let Some(column) = record.get(channel) else { continue };
+            for (row, pair) in column.windows(2).enumerate() {
+                prop_assert!(
+                    pair[1] - pair[0] >= -allowed,
+                    "{channel:?} after row {row}: {:e} to {:e}",
+                    pair[0],
+                    pair[1]
+                );
+            }
+        }
+        Ok(())
+    });
+}
+
+/// A carrier at rest gives no energy: what the layer has, from its start undeformed or in motion, only falls.
+#[test]
+fn under_a_carrier_at_rest_energy_only_falls() {
+    check("a carrier at rest", 150, cases(), |mut case| {
+        for motion in &mut case.motions {
+            *motion = Motion { duration: motion.duration, u: Path::default(), w: Path::default() };
+        }
+        prop_assume!(case.has_a_time_of_its_own());
+        let record = run(&case)?;
+        let allowed = allowed(&case, &record);
+        let energy: Vec<f64> = record
+            .column(Output::KineticEnergy)
+            .iter()
+            .zip(record.column(Output::ElasticEnergy))
+            .map(|(kinetic, elastic)| kinetic + elastic)
+            .collect();
+        for (row, pair) in energy.windows(2).enumerate() {
+            prop_assert!(pair[1] <= pair[0] + allowed, "after row {row}: {:e} to {:e}", pair[0], pair[1]);
+        }
+        prop_assert_eq!(record.largest(Output::InputEnergy), 0.0);
+        Ok(())
+    });
+}

@@ -1,0 +1,124 @@
+//! The dense output of the method of seven stages, against exact solutions.
+
+use asperity::integrator::DenseWorkspace;
+use asperity::model::{Forces, State};
+use nalgebra::Vector2;
+
+use crate::kernels::convergence::{Exact, PATHS, chain, differences, displaced, slider, sliding};
+use crate::kernels::equations::{random_layer, random_state};
+use crate::kernels::layer::{Layer, Link, Random, Stepper, at_rate, last_order};
+
+const THETAS: [f64; 6] = [0.0, 0.13, 0.37, 0.5, 0.81, 1.0];
+
+/// The largest difference of positions, velocities and Maxwell elongations within one step of length `h`.
+fn worst(stepper: &mut Stepper, h: f64, exact: impl Fn(f64) -> State) -> [f64; 3] {
+    stepper.attempt(h);
+    let mut worst = [0.0_f64; 3];
+    for theta in THETAS {
+        let differences = differences(&stepper.within(h, theta), &exact(theta * h));
+        worst = std::array::from_fn(|part| worst[part].max(differences[part]));
+    }
+    worst
+}
+
+/// The dense output of one step of a free chain: positions and Maxwell elongations miss O(h⁶), velocities O(h⁵).
+#[test]
+fn the_inside_of_a_free_step_has_its_order() {
+    let layer = chain();
+    let start = displaced(&layer.model());
+    let exact = Exact::new(&layer);
+    let mut stepper = Stepper::new(layer.model(), PATHS, start.clone(), 1e-12);
+    let errors = [1e-2, 5e-3, 2.5e-3].map(|h| worst(&mut stepper, h, |time| exact.at(&start, time)));
+    for (part, expected) in [6.0, 5.0, 6.0].into_iter().enumerate() {
+        let order = last_order(&errors.map(|error| error[part]));
+        assert!(order > expected - 0.4, "part {part}: {order} from {errors:?}");
+    }
+}
+
+/// The same for a slipping mass, against steps so short that their error does not count: its height follows the profile
+/// at its position, its z velocity the slope there.
+#[test]
+fn the_inside_of_a_slipping_step_has_its_order() {
+    let layer = slider();
+    let start = sliding(&layer.model(), 2.0, 0.0);
+    let paths = (at_rate(1.0), at_rate(0.0));
+    let exact = |time: f64| {
+        let mut fine = Stepper::new(layer.model(), paths, start.clone(), 1e-14);
+        if time > 0.0 {
+            fine.run(time, 40);
+        }
+        fine.start.state
+    };
+    let mut stepper = Stepper::new(layer.model(), paths, start.clone(), 1e-14);
+    let errors = [1e-1, 5e-2, 2.5e-2].map(|h| worst(&mut stepper, h, exact));
+    for (part, expected) in [6.0, 5.0, 6.0].into_iter().enumerate() {
+        let order = last_order(&errors.map(|error| error[part]));
+        assert!(order > expected - 0.4, "part {part}: {order} from {errors:?}");
+    }
+}
+
+/// At its ends the dense output gives the states there.
+#[test]
+fn the_ends_of_a_step_are_the_states_there() {
+    for (layer, paths) in [(chain(), PATHS), (slider(), (at_rate(0.5), at_rate(0.0)))] {
+        let start = if layer.masses == 1 { sliding(&layer.model(), 2.0, 0.0) } else { displaced(&layer.model()) };
+        let mut stepper = Stepper::new(layer.model(), paths, start, 1e-13);
+        stepper.attempt(0.01);
+        for (theta, expected) in [(0.0, &stepper.start.state), (1.0, stepper.integrator.end())] {
+            // Roundings of positions up to 0.3 m, over the step's length where a velocity is their difference.
+            let [position, velocity, maxwell] = differences(&stepper.within(0.01, theta), expected);
+            assert!(position < 2e-16 && velocity < 1e-13 && maxwell < 1e-15, "{position:e} {velocity:e} {maxwell:e}");
+        }
+    }
+}
+
+/// Right after a jump of the velocity a short-lived Maxwell element is not yet where ė drives it: a = τ ė (1 -
+/// e^{-t/τ}). Inside the step the dense output follows it, from relaxation times as long as the step to a hundred
+/// millionth of it, and adds nothing to what the step itself misses at its end.
+#[test]
+fn a_stiff_element_is_followed_after_a_jump_of_the_velocity() {
+    let h = 1e-3;
+    for exponent in 3..=11 {
+        let tau = 10.0_f64.powi(-exponent);
+        // So weak a link leaves the velocity as it is, 1 m/s, but for 1e-12 of it.
+        let link = Link::new(1e-6, 0.0, &[(1e-6, tau)]);
+        let layer = Layer { links: [link, None, None, None], clearance: 10.0, ..Layer::default() };
+        let mut state = State::new(1, 1);
+        state.velocity_z[0] = 1.0;
+        let mut stepper = Stepper::new(layer.model(), (at_rate(0.0), at_rate(0.0)), state, 1e-12);
+        stepper.attempt(h);
+        let exact = |theta: f64| -tau * (-theta * h / tau).exp_m1();
+        let end = (stepper.integrator.end().maxwell[0] - exact(1.0)).abs() / tau;
+        // |R(-h/τ)|, at most 0.11: the element starts off its slow manifold by τ ė.
+        assert!(end < 0.15, "τ {tau:e}: {end:e}");
+        for theta in [1e-9, 1e-6, 1e-3, 0.05, 0.3, 0.9, 1.0] {
+            let error = (stepper.within(h, theta).maxwell[0] - exact(theta)).abs() / tau;
+            assert!(error < theta * end + 1e-11, "τ {tau:e}, θ {theta:e}: {error:e}");
+        }
+    }
+}
+
+/// F_N and f·t of one mass within a step are those of the whole state there, whatever the modes of its neighbours.
+#[test]
+fn one_contact_within_a_step_is_that_of_the_whole_state() {
+    let mut random = Random(7);
+    for case in 0..200 {
+        let layer = random_layer(&mut random, 1 + case % 5);
+        let model = layer.model();
+        let state = random_state(&mut random, &model, &Vector2::zeros());
+        let mut stepper = Stepper::new(model, PATHS, state, 1e-12);
+        stepper.attempt(1e-3);
+        let theta = random.between(0.0, 1.0);
+        let within = stepper.within(1e-3, theta);
+        let mut forces = Forces::new(&stepper.model);
+        forces.evaluate(&stepper.model, &within, &stepper.carrier.at(theta * 1e-3));
+        let mut workspace = DenseWorkspace::new(&stepper.model);
+        for i in (0..within.mode.len()).filter(|&i| within.mode[i].in_contact()) {
+            let expected = forces.contact(&stepper.model, i, within.velocity_x[i], &within.surface[i]);
+            let found = stepper.dense(1e-3).contact(i, theta, &mut workspace);
+            // Sums of some twenty forces up to 1e3 N in another order.
+            let error = (found.normal - expected.normal).abs().max((found.tangential - expected.tangential).abs());
+            assert!(error < 1e-11, "case {case}, mass {i}: {found:?} {expected:?}");
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! Clones and failed calls: the same bits.
+
+use asperity::scene::{Path, Scene};
+use asperity::simulation::{ModeChange, Motion, Simulation, SimulationError, Start};
+
+use crate::kernels::layer::{Layer, Link, at_rate, outputs};
+
+/// Two masses that rattle over a sinusoid: impacts, lifts, stops and breaks in milliseconds.
+fn rattling(max_steps: u32) -> Scene {
+    let links = [
+        Link::new(1000.0, 0.002, &[(500.0, 1e-4)]),
+        Link::new(2000.0, 0.008, &[(300.0, 1e-3), (200.0, 1e-5)]),
+        Link::new(300.0, 0.001, &[]),
+        Link::new(200.0, 0.001, &[(50.0, 1e-4)]),
+    ];
+    let layer = Layer {
+        masses: 2,
+        mass: 2e-7,
+        spacing: 1.7e-4,
+        clearance: 1e-6,
+        links,
+        surface: "kind = \"sinusoid\"\namplitude = 1e-5\nwavelength = 5e-4".into(),
+        friction: Some((0.2, 1e-4)),
+        rate_shear: None,
+        solver: format!("max_steps = {max_steps}"),
+    };
+    layer.scene()
+}
+
+fn start(scene: &Scene) -> Simulation {
+    let mut simulation = Simulation::new(scene, &Start { w_rate: -0.04, ..Start::default() }).unwrap();
+    simulation.record_mode_changes(true);
+    simulation
+}
+
+const PRESS: Motion = Motion {
+    duration: 2e-4,
+    u: Path { rate: 0.0, amplitude: 0.0, frequency: 0.0 },
+    w: Path { rate: -0.04, amplitude: 0.0, frequency: 0.0 },
+};
+const DRAG: Motion = Motion {
+    duration: 1e-4,
+    u: Path { rate: 4.0, amplitude: 1e-4, frequency: 3000.0 },
+    w: Path { rate: 0.0, amplitude: 0.0, frequency: 0.0 },
+};
+
+/// Everything that shows from outside, at the ends of `count` motions and within them.
+fn evolution(scene: &Scene, simulation: &mut Simulation, count: usize) -> (Vec<Vec<(String, u64)>>, Vec<ModeChange>) {
+    let mut rows = Vec::new();
+    for _ in 0..count {
+        let times = [0.0, 3.3e-5, 7.7e-5];
+        simulation.advance_observed(&DRAG, None, &times, |_, now| rows.push(outputs(scene, now))).unwrap();
+        rows.push(outputs(scene, &simulation.snapshot()));
+    }
+    (rows, simulation.take_mode_changes())
+}
+
+/// A clone goes on as its original does: outputs, steps and mode changes bit for bit, several times over.
+#[test]
+fn a_clone_goes_on_bit_for_bit() {
+    let scene = rattling(1_000_000);
+    let mut simulation = start(&scene);
+    simulation.advance(&PRESS).unwrap();
+    simulation.advance(&DRAG).unwrap();
+    let (mut first, mut second) = (simulation.clone(), simulation.clone());
+    let expected = evolution(&scene, &mut simulation, 20);
+    assert!(expected.1.len() > 20, "a lively run: {} mode changes", expected.1.len());
+    assert_eq!(evolution(&scene, &mut first, 20), expected);
+    assert_eq!(evolution(&scene, &mut second, 20), expected);
+}
+
+/// Whether a failed call leaves `simulation` as `before` was, now and from then on.
+fn check_untouched(scene: &Scene, mut simulation: Simulation, mut before: Simulation, motion: &Motion) {
+    assert_eq!(simulation.time().to_bits(), before.time().to_bits());
+    assert_eq!(simulation.carrier(), before.carrier());
+    assert_eq!(outputs(scene, &simulation.snapshot()), outputs(scene, &before.snapshot()));
+    for _ in 0..50 {
+        assert_eq!(simulation.advance(motion), before.advance(motion));
+        assert_eq!(outputs(scene, &simulation.snapshot()), outputs(scene, &before.snapshot()));
+    }
+    assert_eq!(simulation.take_mode_changes(), before.take_mode_changes());
+}
+
+/// A run whose steps are used up halfway through a motion stands where it stood before, and goes on from there as if it
+/// had not been asked.
+#[test]
+fn a_motion_that_takes_too_many_steps_leaves_no_trace() {
+    for limit in [1, 2, 7, 30] {
+        let scene = rattling(limit);
+        let mut simulation = start(&scene);
+        let short = Motion { duration: 1e-8, ..PRESS };
+        (0..3).for_each(|_| simulation.advance(&short).unwrap());
+        let before = simulation.clone();
+        let error = simulation.advance(&Motion { duration: 1e-2, ..DRAG }).unwrap_err();
+        assert!(matches!(error, SimulationError::TooManySteps { steps, .. } if steps == u64::from(limit)), "{error}");
+        check_untouched(&scene, simulation, before, &short);
+    }
+}
+
+/// The same from amid the rattle, where the failed motion has changed modes, energies and counters.
+#[test]
+fn a_failure_amid_the_rattle_leaves_no_trace() {
+    let scene = rattling(60);
+    let mut simulation = start(&scene);
+    let short = |motion: Motion| Motion { duration: 2e-6, ..motion };
+    (0..100).for_each(|_| simulation.advance(&short(PRESS)).unwrap());
+    (0..100).for_each(|_| simulation.advance(&short(DRAG)).unwrap());
+    let before = simulation.clone();
+    assert!(simulation.advance(&Motion { duration: 1e-2, ..DRAG }).is_err());
+    check_untouched(&scene, simulation, before, &short(DRAG));
+}
+
+/// A motion that is not finite is refused before anything is done.
+#[test]
+fn a_motion_that_is_not_finite_leaves_no_trace() {
+    let scene = rattling(1_000_000);
+    let mut simulation = start(&scene);
+    simulation.advance(&PRESS).unwrap();
+    let before = simulation.clone();
+    let motions = [
+        Motion { duration: f64::NAN, ..DRAG },
+        Motion { u: at_rate(f64::INFINITY), ..DRAG },
+        Motion { w: Path { amplitude: f64::NAN, ..DRAG.u }, ..DRAG },
+        Motion { w: Path { frequency: f64::NEG_INFINITY, ..DRAG.u }, ..DRAG },
+    ];
+    for motion in motions {
+        let error = simulation.advance(&motion).unwrap_err();
+        assert!(matches!(error, SimulationError::OutOfRange { .. }), "{error}");
+    }
+    check_untouched(&scene, simulation, before, &Motion { duration: 1e-5, ..DRAG });
+}

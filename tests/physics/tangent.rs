@@ -1,0 +1,154 @@
+//! The group `tangent`: the change of the forces at the end of a motion with the carrier's target in that motion,
+//! against a difference quotient by rollback.
+
+use std::path::Path as FilePath;
+
+use asperity::outputs::{Variable, variables};
+use asperity::scene::{Path, Scene};
+use asperity::simulation::{Motion, Simulation, Start};
+
+/// Six masses, rough on rough, Maxwell elements in all links.
+fn scene(friction: &str) -> Scene {
+    let text = format!(
+        "name = 'tangent'
+        [layer]
+        masses = 6
+        spacing = 1e-4
+        mass = 1e-7
+        roughness = {{ kind = 'points', z = [1e-6, -2e-6, 5e-7, 2e-6, -1e-6, 0.0] }}
+        [layer.vertical]
+        stiffness = 2e3
+        damping = 8e-3
+        maxwell = [{{ stiffness = 1e3, relaxation_time = 1e-4 }}, {{ stiffness = 5e2, relaxation_time = 1e-6 }}]
+        [layer.horizontal]
+        stiffness = 1e3
+        damping = 5e-3
+        maxwell = [{{ stiffness = 6e2, relaxation_time = 1e-4 }}]
+        [layer.lateral_x]
+        stiffness = 5e2
+        damping = 2e-3
+        maxwell = [{{ stiffness = 2e2, relaxation_time = 1e-5 }}]
+        [layer.lateral_z]
+        stiffness = 3e2
+        damping = 2e-3
+        [surface]
+        kind = 'sinusoid'
+        amplitude = 3e-6
+        wavelength = 3.3e-4
+        {friction}
+        [solver]
+        relative_tolerance = 1e-10
+        [fmu]
+        outputs = ['forces', 'contact', 'tangent', 'solver']"
+    );
+    Scene::parse(&text, FilePath::new("scene.toml")).unwrap()
+}
+
+fn straight(duration: f64, u: f64, w: f64) -> Motion {
+    let path = |rate| Path { rate, ..Path::default() };
+    Motion { duration, u: path(u), w: path(w) }
+}
+
+struct Run {
+    simulation: Simulation,
+    variables: Vec<Variable>,
+}
+
+impl Run {
+    fn new(scene: &Scene, motions: &[Motion]) -> Self {
+        let mut simulation = Simulation::new(scene, &Start::default()).unwrap();
+        for motion in motions {
+            simulation.advance(motion).unwrap();
+        }
+        Self { simulation, variables: variables(scene) }
+    }
+
+    /// The values of the variables with these names after `motion`; the run itself stays where it is.
+    fn after<const N: usize>(&self, motion: &Motion, names: [&str; N]) -> [f64; N] {
+        let mut simulation = self.simulation.clone();
+        simulation.advance(motion).unwrap();
+        let mut values = vec![0.0; self.variables.len()];
+        simulation.evaluate(&self.variables, &mut values);
+        names.map(|name| values[self.variables.iter().position(|variable| variable.name == name).unwrap()])
+    }
+
+    /// The tangents after `motion` against the central difference quotient; no mode changes on the way.
+    fn check(&self, motion: &Motion) {
+        let names = ["tangent.dF_x_du", "tangent.dF_z_du", "tangent.dF_x_dw", "tangent.dF_z_dw"];
+        let tangents = self.after(motion, names);
+        let moved = 1e-9;
+        for (axis, pair) in tangents.chunks(2).enumerate() {
+            let shifted = |by: f64| {
+                let mut motion = *motion;
+                [&mut motion.u, &mut motion.w][axis].rate += by / motion.duration;
+                self.after(&motion, ["F_x", "F_z", "solver.events"])
+            };
+            let (up, down) = (shifted(moved), shifted(-moved));
+            assert_eq!(up[2], down[2], "a mode has changed");
+            for force in 0..2 {
+                let quotient = (up[force] - down[force]) / (2.0 * moved);
+                let scale = tangents.iter().fold(0.0_f64, |largest, t| largest.max(t.abs()));
+                // The quotient's own error: curvature over 1e-9 m of a profile that bends over 1e-4 m, and the runs'
+                // tolerance of 1e-10 of some 1e-5 m over 2e-9 m.
+                assert!((pair[force] - quotient).abs() < 2e-5 * scale, "{axis} {force}: {} {quotient}", pair[force]);
+            }
+        }
+    }
+}
+
+const COULOMB: &str = "[friction]\ncoulomb = 0.3";
+const BOTH: &str = "[friction]\ncoulomb = 0.2\nshear_force = 1e-3";
+/// Masses that slip at 0.3 m/s do so where the shear strength falls with the speed, or where it rises.
+const FALLING: &str =
+    "[friction]\ncoulomb = 0.2\nrate_shear = { force = 4e-3, reference_speed = 6e-2, sharpness = 1.0 }";
+const RISING: &str = "[friction]\nrate_shear = { force = 4e-3, reference_speed = 10.0, sharpness = 0.4 }";
+
+#[test]
+fn without_contact() {
+    let run = Run::new(&scene(COULOMB), &[straight(1e-4, 0.01, 0.1)]);
+    for duration in [1e-8, 1e-6, 1e-4] {
+        run.check(&straight(duration, 0.05, 0.02));
+    }
+}
+
+#[test]
+fn sticking() {
+    let run = Run::new(&scene(COULOMB), &[straight(4e-4, 0.0, -0.05), straight(1e-3, 0.0, 0.0)]);
+    for duration in [1e-8, 1e-6, 1e-5] {
+        run.check(&straight(duration, 1e-4, -1e-4));
+    }
+}
+
+#[test]
+fn slipping() {
+    for friction in ["", COULOMB, BOTH, FALLING, RISING] {
+        let run = Run::new(&scene(friction), &[straight(4e-4, 0.0, -0.05), straight(1.01e-3, 0.3, 0.0)]);
+        for duration in [1e-8, 1e-6, 1e-5] {
+            run.check(&straight(duration, 0.3, 0.0));
+        }
+    }
+}
+
+#[test]
+fn zero_before_the_first_motion_and_held_after_it() {
+    let run = Run::new(&scene(COULOMB), &[]);
+    let mut simulation = run.simulation.clone();
+    let mut values = vec![1.0; run.variables.len()];
+    simulation.evaluate(&run.variables, &mut values);
+    for (variable, value) in run.variables.iter().zip(&values) {
+        assert!(!variable.name.starts_with("tangent.") || *value == 0.0, "{}", variable.name);
+    }
+}
+
+/// Over a motion short against all its times, a sticking layer answers as its springs, Maxwell springs and, over the
+/// duration, its dampers do: ∂F_x/∂u = -k (c + Σ c_j + d/h).
+#[test]
+fn a_short_motion_meets_the_glassy_stiffness_and_the_damper_over_the_step() {
+    let run = Run::new(&scene(COULOMB), &[straight(4e-4, 0.0, -0.05), straight(1e-3, 0.0, 0.0)]);
+    let h = 1e-10;
+    let [x, z, count] = run.after(&straight(h, 0.0, 0.0), ["tangent.dF_x_du", "tangent.dF_z_dw", "contact.sticking"]);
+    assert_eq!(count, 6.0, "all masses stick");
+    // The relaxation over 1e-10 s against 1e-6 s leaves 1e-4 of a part of the stiffness.
+    assert!((x / (-6.0 * (1.6e3 + 5e-3 / h)) - 1.0).abs() < 1e-4);
+    assert!((z / (-6.0 * (3.5e3 + 8e-3 / h)) - 1.0).abs() < 1e-4);
+}

@@ -1,0 +1,288 @@
+//! From measured moduli to a compound and back: `asperity fit`, and `asperity material` on the scene that it is for.
+
+use std::f64::consts::TAU;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Output;
+
+use crate::common::{asperity, root, run, scratch};
+use asperity::scene::{Material, PronyTerm, Scene};
+
+/// A tread-like rubber, one term a decade from 1e-13 s on.
+const SIXTEEN: [f64; 16] =
+    [1538.0, 888.0, 824.0, 495.0, 201.0, 76.3, 31.9, 14.8, 8.12, 4.65, 3.16, 2.26, 1.67, 1.42, 0.969, 1.26];
+const WLF: [f64; 3] = [7.52, 119.75, 293.15];
+
+fn compound(equilibrium_modulus: f64, terms: impl IntoIterator<Item = (f64, f64)>) -> Material {
+    let term = |(relaxation_time, modulus)| PronyTerm { relaxation_time, modulus };
+    let prony = terms.into_iter().map(term).collect();
+    Material { density: 1100.0, poisson_ratio: 0.49, equilibrium_modulus, viscosity: None, prony, wlf: None }
+}
+
+fn sixteen() -> Material {
+    compound(4.44e6, (-13..).map(|exponent| 10.0_f64.powi(exponent)).zip(SIXTEEN.map(|modulus| 1e6 * modulus)))
+}
+
+fn three() -> Material {
+    compound(2e6, [(1.3e-5, 5e6), (3.1e-3, 3e6), (0.7, 1e6)])
+}
+
+/// Frequencies in Hz from 10^low to 10^high, five a decade.
+fn frequencies(low: i32, high: i32) -> Vec<f64> {
+    (5 * low..=5 * high).map(|i| 10.0_f64.powf(f64::from(i) / 5.0)).collect()
+}
+
+/// A table of moduli; each of them times what `factor` gives.
+fn write_moduli(path: &Path, compound: &Material, frequencies: &[f64], mut factor: impl FnMut() -> f64) {
+    let mut text = String::from("frequency [Hz],E' [MPa],E'' (Pa)\n");
+    for frequency in frequencies {
+        let (storage, loss) = compound.complex_modulus(TAU * frequency);
+        text += &format!("{frequency:e},{:e},{:e}\n", factor() * storage / 1e6, factor() * loss);
+    }
+    fs::write(path, text).unwrap();
+}
+
+/// 1 + sigma times a normal deviate, the same each time: G. Marsaglia's xorshift, G. Box's and M. Muller's
+/// transformation.
+fn noise(sigma: f64) -> impl FnMut() -> f64 {
+    let mut state: u64 = 88_172_645_463_325_252;
+    let mut uniform = move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        ((state >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
+    };
+    move || 1.0 + sigma * (-2.0 * uniform().ln()).sqrt() * (TAU * uniform()).cos()
+}
+
+fn fit(data: &Path, options: &[&str]) -> (PathBuf, Output) {
+    let output = data.with_extension("fitted.csv");
+    let result = asperity().arg("fit").arg(data).arg("-o").arg(&output).args(options).output().unwrap();
+    (output, result)
+}
+
+/// A fit that has to succeed: its file and what it printed.
+fn fitted(data: &Path, options: &[&str]) -> (PathBuf, String) {
+    let (output, result) = fit(data, options);
+    assert!(result.status.success(), "{}", String::from_utf8_lossy(&result.stderr));
+    (output, String::from_utf8(result.stdout).unwrap())
+}
+
+/// A scene with the lines that a fit has printed.
+fn scene_of(folder: &Path, printed: &str) -> PathBuf {
+    let (_, material) = printed.split_once("[material]").unwrap();
+    let scene = folder.join("fitted.toml");
+    let layer = "name = \"fitted\"\n[layer]\nmasses = 1\nspacing = 1e-4\nthickness = 1e-3\nwidth = 1e-2\n";
+    let text = format!("{layer}[surface]\nkind = \"flat\"\n[material]\ndensity = 1100\npoisson_ratio = 0.49{material}");
+    fs::write(&scene, text).unwrap();
+    scene
+}
+
+/// The compound that a fit has found, read as a scene reads it.
+fn found(data: &Path, options: &[&str]) -> Material {
+    let (_, printed) = fitted(data, options);
+    Scene::load(&scene_of(data.parent().unwrap(), &printed)).unwrap().material.unwrap()
+}
+
+/// The largest relative difference of E' and E'' at some frequencies (Hz).
+fn largest(found: &Material, known: &Material, frequencies: &[f64]) -> f64 {
+    let differences = frequencies.iter().flat_map(|frequency| {
+        let ((a, b), (c, d)) = (found.complex_modulus(TAU * frequency), known.complex_modulus(TAU * frequency));
+        [(a / c - 1.0).abs(), (b / d - 1.0).abs()]
+    });
+    differences.fold(0.0, f64::max)
+}
+
+#[test]
+fn moduli_of_known_terms_come_back() {
+    let folder = scratch("fit-known");
+    for (known, low, high) in [(three(), -4, 6), (sixteen(), -5, 15), (sixteen(), -2, 7)] {
+        let (data, frequencies) = (folder.join("dma.csv"), frequencies(low, high));
+        write_moduli(&data, &known, &frequencies, || 1.0);
+        let found = found(&data, &["--error", "1e-4"]);
+        let difference = largest(&found, &known, &frequencies);
+        assert!(difference < 1e-3, "{difference:e}");
+        assert!(found.prony.len() <= known.prony.len());
+    }
+}
+
+#[test]
+fn a_compound_of_three_terms_is_fitted_by_three() {
+    let folder = scratch("fit-three");
+    let data = folder.join("dma.csv");
+    write_moduli(&data, &three(), &frequencies(-4, 6), || 1.0);
+    assert_eq!(found(&data, &[]).prony.len(), 3);
+}
+
+#[test]
+fn noise_is_reported_and_its_mean_is_met() {
+    let folder = scratch("fit-noise");
+    let (data, frequencies) = (folder.join("dma.csv"), frequencies(-5, 15));
+    write_moduli(&data, &sixteen(), &frequencies, noise(0.05));
+    let (output, result) = fit(&data, &["--error", "0.02"]);
+    assert_eq!(result.status.code(), Some(1));
+    let message = String::from_utf8(result.stderr).unwrap();
+    assert!(
+        message.contains("the error asked for, 2 %, cannot be reached") && message.contains("fitted.csv"),
+        "{message}"
+    );
+    assert!(output.exists() && output.with_extension("svg").exists(), "what was found is there all the same");
+    let scene = scene_of(&folder, &String::from_utf8(result.stdout).unwrap());
+    let best = Scene::load(&scene).unwrap().material.unwrap();
+    // Some 33 unknowns for 202 figures: their own share of the noise is 5 % √(33/202) = 2 %, at the worst some times as
+    // much.
+    assert!(largest(&best, &sixteen(), &frequencies) < 0.1, "{}", largest(&best, &sixteen(), &frequencies));
+    let enough = found(&data, &["--error", "0.06"]);
+    assert!(enough.prony.len() <= 16, "{}", enough.prony.len());
+}
+
+/// Two decades at each of thirteen temperatures, in degrees, with decimal commas and in Latin-1, make one curve.
+#[test]
+fn temperatures_make_one_curve() {
+    let folder = scratch("fit-temperatures");
+    let data = folder.join("dma.csv");
+    let mut text = String::from("f [Hz];E' [MPa];tan(d);Temperature [°C]\r\n");
+    for celsius in (-40..=80).step_by(10) {
+        let above = f64::from(celsius) + 273.15 - WLF[2];
+        let shift = 10.0_f64.powf(-WLF[0] * above / (WLF[1] + above));
+        for frequency in frequencies(-1, 1) {
+            let (storage, loss) = sixteen().complex_modulus(TAU * shift * frequency);
+            let row = format!("{frequency:e};{:e};{:e};{celsius}\r\n", storage / 1e6, loss / storage);
+            text += &row.replace('.', ",");
+        }
+    }
+    let latin: Vec<u8> = text.chars().map(|letter| u8::try_from(u32::from(letter)).unwrap()).collect();
+    fs::write(&data, latin).unwrap();
+    let (_, refused) = fit(&data, &[]);
+    let message = String::from_utf8(refused.stderr).unwrap();
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(message.contains("dma.csv:1: column 4 = \"Temperature [°C]\": expected the constants"), "{message}");
+    let (_, printed) = fitted(&data, &["--wlf", "7.52,119.75,293.15", "--error", "1e-4"]);
+    assert!(printed.contains("233.15 to 353.15 K, shifted to 293.15 K"), "{printed}");
+    let scene = Scene::load(&scene_of(&folder, &printed)).unwrap();
+    let found = scene.material.unwrap();
+    assert_eq!(found.wlf.unwrap().temperature, WLF[2]);
+    let difference = largest(&found, &sixteen(), &frequencies(-3, 8));
+    assert!(difference < 1e-3, "{difference:e}");
+}
+
+#[test]
+fn the_picture_holds_data_and_fit() {
+    let folder = scratch("fit-picture");
+    let data = folder.join("dma.csv");
+    write_moduli(&data, &three(), &frequencies(-4, 6), || 1.0);
+    let (output, printed) = fitted(&data, &[]);
+    let picture = fs::read_to_string(output.with_extension("svg")).unwrap().replace("&apos;", "'");
+    for name in
+        ["E' measured", "E' fitted", "E'' measured", "E'' fitted", "tan δ measured", "tan δ fitted", "frequency in Hz"]
+    {
+        assert!(picture.contains(name), "{name}");
+    }
+    // 51 rows of three quantities, and a ring for each in the legend.
+    assert_eq!(picture.matches("<circle").count(), 3 * 51 + 3);
+    assert!(
+        printed.contains("E''") && printed.contains("tan delta") && printed.contains("Terms       3, from"),
+        "{printed}"
+    );
+    fitted(&data, &["--plot", folder.join("dma.png").to_str().unwrap()]);
+    assert!(fs::read(folder.join("dma.png")).unwrap().starts_with(b"\x89PNG"));
+}
+
+#[test]
+fn the_file_says_what_it_was_fitted_to() {
+    let folder = scratch("fit-file");
+    let data = folder.join("dma.csv");
+    write_moduli(&data, &three(), &frequencies(-4, 6), || 1.0);
+    let (output, _) = fitted(&data, &["--viscosity", "--error", "0.01"]);
+    let text = fs::read_to_string(output).unwrap();
+    for line in
+        ["# equilibrium_modulus = ", "# viscosity = 0 Pa s", "# source = dma.csv", "# data = 51 rows", "# error = "]
+    {
+        assert!(text.contains(line), "{line}: {text}");
+    }
+    assert!(text.contains("# options = --error 0.01 --viscosity\n"), "{text}");
+    assert_eq!(text.lines().find(|line| !line.starts_with('#')), Some("relaxation_time,modulus"));
+}
+
+#[test]
+fn what_is_read_is_not_written_over_and_what_is_wrong_is_refused() {
+    let folder = scratch("fit-wrong");
+    let data = folder.join("dma.csv");
+    write_moduli(&data, &three(), &[1.0, 10.0], || 1.0);
+    let refused = |output: &Path, options: &[&str]| {
+        let result = asperity().arg("fit").arg(&data).arg("-o").arg(output).args(options).output().unwrap();
+        assert!(!result.status.success() && result.stdout.is_empty());
+        String::from_utf8(result.stderr).unwrap()
+    };
+    assert!(refused(&data, &[]).contains("will not write"));
+    let picture = folder.join("out.svg");
+    assert!(refused(&picture, &["--plot", picture.to_str().unwrap()]).contains("will not write"));
+    let output = folder.join("out.csv");
+    assert!(refused(&output, &["--error", "0"]).contains("a number from 1e-12 to 0.5"));
+    assert!(refused(&output, &["--wlf", "1,2"]).contains("expected C1,C2,TREF"));
+    fs::write(&data, "f [Hz],E' [MPa],E'' [MPa]\n1,2,-3\n").unwrap();
+    let message = refused(&output, &[]);
+    assert!(message.contains("dma.csv:2: column 3 (E'' [MPa]) = \"-3\": expected a number above 0"), "{message}");
+    assert!(!output.exists());
+}
+
+/// What `material` writes, `fit` reads: the terms are those of the scene, moved as its temperature says.
+#[test]
+fn the_moduli_of_a_scene_are_those_of_its_terms() {
+    let folder = scratch("fit-material");
+    let layer = "name = 'a'\nlayer = { masses = 1, spacing = 1e-4, thickness = 1e-3, width = 1e-2 }\n";
+    let wlf = "wlf = { c1 = 7.52, c2 = 119.75, reference_temperature = 293.15, temperature = 313.15 }";
+    let prony = "prony = [{ modulus = 6e6, relaxation_time = 1e-2 }]";
+    let material =
+        format!("[material]\ndensity = 1100\npoisson_ratio = 0.49\nequilibrium_modulus = 2e6\n{prony}\n{wlf}\n");
+    let scene = folder.join("a.toml");
+    fs::write(&scene, format!("{layer}surface = {{ kind = 'flat' }}\n{material}")).unwrap();
+    let (table, picture) = (folder.join("moduli.csv"), folder.join("moduli.svg"));
+    let printed = run(asperity().arg("material").arg(&scene).arg("-o").arg(&table).arg("-o").arg(&picture));
+    // a_T = 10^(-7.52·20/139.75) = 0.083906; tan δ at most 3/4 at ωτ = 1/2: ω = 50/a_T = 595.9 rad/s.
+    for part in ["313.15 K", "a_T = 0.083906", "equilibrium E 2e6 Pa", "glassy E 8e6 Pa", "tan δ at most 0.75 at 595.9"]
+    {
+        assert!(printed.contains(part), "{part}: {printed}");
+    }
+    let drawn = fs::read_to_string(&picture).unwrap().replace("&apos;", "'");
+    assert!(drawn.contains("angular frequency in rad/s") && drawn.contains("E''") && drawn.contains("tan δ"));
+    let (_, fit) = fitted(&table, &[]);
+    let found = Scene::load(&scene_of(&folder, &fit)).unwrap().material.unwrap();
+    let shift = 10.0_f64.powf(-7.52 * 20.0 / 139.75);
+    assert_eq!(found.prony.len(), 1);
+    // Digits that the fit's file has, some more than its error.
+    assert!((found.prony[0].relaxation_time / (1e-2 * shift) - 1.0).abs() < 1e-9, "{found:?}");
+    let cold = run(asperity().arg("material").arg(&scene).args(["--temperature", "293.15", "-o"]).arg(&table));
+    assert!(cold.contains("a_T = 1 ") && cold.contains("at most 0.75 at 50 rad/s"), "{cold}");
+}
+
+#[test]
+fn links_have_stiffnesses_instead() {
+    let folder = scratch("fit-links");
+    let scene = root().join("tests/reference/sinusoid.toml");
+    let table = folder.join("links.csv");
+    let material =
+        |options: &[&str]| asperity().arg("material").arg(&scene).arg("-o").arg(&table).args(options).output().unwrap();
+    let printed = String::from_utf8(material(&["--frequencies", "10..1000"]).stdout).unwrap();
+    let known = Scene::load(&scene).unwrap();
+    let link = known.layer.vertical.as_ref().unwrap();
+    assert!(printed.contains("vertical") && printed.contains("equilibrium K"), "{printed}");
+    let text = fs::read_to_string(&table).unwrap();
+    let mut lines = text.lines().filter(|line| !line.starts_with('#'));
+    let names: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let storage = names.iter().position(|name| *name == "vertical K' [N/m]").unwrap();
+    let row: Vec<f64> = lines.next().unwrap().split(',').map(|field| field.parse().unwrap()).collect();
+    let of = |j: &asperity::scene::MaxwellElement| {
+        let x = row[0] * j.relaxation_time;
+        (j.stiffness * x * x / (1.0 + x * x), j.stiffness * x / (1.0 + x * x))
+    };
+    let (real, imaginary) = link.maxwell.iter().map(of).fold((0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1));
+    let real = real + link.stiffness.unwrap_or(0.0);
+    let imaginary = imaginary + row[0] * link.damping.unwrap_or(0.0);
+    // The same sums in another order of rounding.
+    assert!((row[0] - 10.0).abs() < 1e-14 && (row[storage] / real - 1.0).abs() < 1e-14);
+    assert!((row[storage + 1] / imaginary - 1.0).abs() < 1e-13);
+    let refused = material(&["--temperature", "300"]);
+    let message = String::from_utf8(refused.stderr).unwrap();
+    assert!(message.contains("the scene has no material.wlf"), "{message}");
+}

@@ -1,0 +1,26 @@
+//! The command line program and what it reads: scenes, measured data, tables.
+#![allow(
+    missing_docs,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    unreachable_pub,
+    reason = "tests may fail"
+)]
+
+#[path = "../common/mod.rs"]
+#[allow(dead_code, unreachable_pub, reason = "shared by several tests")]
+mod common;
+mod element;
+mod fit;
+mod peers;
+mod program;
+mod report;
+mod scene_errors;
+mod surface;
+mod sweep;
+#[path = "../common/sweeps.rs"]
+#[allow(dead_code, reason = "shared by several tests")]
+mod sweeps;

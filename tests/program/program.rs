@@ -1,0 +1,414 @@
+//! The program on its command line: result files, messages, exit codes, pictures.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::common::{Table, asperity, root, run, scratch, simulate};
+
+fn reference(name: &str) -> PathBuf {
+    root().join(format!("tests/reference/{name}.toml"))
+}
+
+/// The scene of tests/reference/sinusoid.toml, changed.
+fn changed(folder: &Path, from: &str, to: &str) -> PathBuf {
+    let text = fs::read_to_string(reference("sinusoid")).unwrap();
+    assert!(text.contains(from), "{from}");
+    let scene = folder.join("scene.toml");
+    fs::write(&scene, text.replacen(from, to, 1)).unwrap();
+    scene
+}
+
+/// What the program says on standard error as it fails.
+fn failure(arguments: &[&str]) -> String {
+    let output = asperity().args(arguments).output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+    assert!(output.stdout.is_empty(), "{arguments:?}");
+    String::from_utf8(output.stderr).unwrap()
+}
+
+fn warnings(scene: &Path, folder: &Path) -> String {
+    let output = asperity().arg("simulate").arg(scene).arg("-o").arg(folder.join("out.csv")).output().unwrap();
+    assert!(output.status.success());
+    String::from_utf8(output.stderr).unwrap()
+}
+
+#[test]
+fn a_result_file_has_the_variables_in_their_order_and_even_rows() {
+    let table = simulate(&reference("sinusoid"), &scratch("program-rows"), &["--points", "4"]);
+    assert_eq!(table.names()[..7], ["time", "u", "w", "F_x", "F_z", "P_diss", "E_diss"]);
+    assert!(table.get("dissipation.E_friction").is_none(), "no friction in the scene");
+    let wanted = [0.0, 0.000125, 0.00025, 0.000375, 0.0005, 0.0015, 0.0025, 0.0035, 0.0045];
+    assert!(crate::common::difference(&table.column("time"), &wanted) < 1e-17);
+    assert!((table.column("u")[8] - 0.5 * 4e-3).abs() < 1e-17);
+}
+
+#[test]
+fn no_output_takes_the_place_of_what_is_read_or_written() {
+    let folder = scratch("program-overwrites");
+    let scene = changed(&folder, "", "");
+    // A result file may be called as a picture is.
+    let [scene, out] = [scene.to_str().unwrap(), folder.join("out.svg").to_str().unwrap()].map(str::to_owned);
+    let before = fs::read(&scene).unwrap();
+    for arguments in [
+        &["simulate", &scene, "-o", &scene][..],
+        &["simulate", &scene, "-o", &out, "--plot", &out],
+        &["pack", &scene, "-o", &scene],
+    ] {
+        assert!(failure(arguments).contains("will not write"), "{arguments:?}");
+        assert_eq!(fs::read(&scene).unwrap(), before);
+    }
+    run(asperity().args(["simulate", &scene, "-o", &out]));
+    assert!(failure(&["plot", &out, "--y", "F_z", "-o", &out]).contains("will not write"));
+}
+
+/// What was expected, what was found, where.
+#[test]
+fn errors_on_the_command_line_say_what_was_expected() {
+    let folder = scratch("program-wrong");
+    let scene = changed(&folder, "", "").to_str().unwrap().to_owned();
+    let result = folder.join("ok.csv").to_str().unwrap().to_owned();
+    fs::write(&result, "time,u\n0,1\n1,2\n").unwrap();
+    let ragged = folder.join("ragged.csv").to_str().unwrap().to_owned();
+    fs::write(&ragged, "time,u\n0,1\n1,2,3\n").unwrap();
+    let nowhere = folder.join("nowhere/out.csv").to_str().unwrap().to_owned();
+    let refused = |arguments: &[&str]| {
+        let output = asperity().args(arguments).output().unwrap();
+        assert!(!output.status.success() && output.stdout.is_empty(), "{arguments:?}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let expected: [(&[&str], &str); 11] = [
+        (&["plot", &result, "--y", "u", "-o", "out.pdf"], "expected a name that ends in .svg or .png"),
+        (
+            &["plot", &result, "--y", "u", "-o", "out.svg", "--labels", "a,b"],
+            "expected 1, one name for each file, found 2",
+        ),
+        (
+            &["plot", &ragged, "--y", "u", "-o", "out.svg"],
+            "line 3: expected as many fields as in the first line, 2, found 3",
+        ),
+        (&["simulate", &scene, "-o", &nowhere], "nowhere/out.csv: there is no folder "),
+        (&["simulate", &scene, "-o", "x.csv", "--points", "0"], "expected a whole number, 1 or more"),
+        (&["material", &scene, "-o", "out.pdf"], "expected a name that ends in .svg, .png or .csv"),
+        (&["material", &scene, "--temperature", "-5"], "expected a temperature above 0 K"),
+        (&["pack", "-o", "x.fmu"], "<SCENE.toml|--table <TABLE.csv>>"),
+        (&["pack", &scene, "-o", "x.fmu", "--check", &scene], "cannot be used with '--check"),
+        (&["sweep", "--merge", &result, "-o", "x.csv", "--shard", "1/2"], "cannot be used with '--shard"),
+        (&["report", &scene, "-o", "x", "--stress", "13"], "expected a whole number from 0 to 12"),
+    ];
+    for (arguments, text) in expected {
+        let message = refused(arguments);
+        assert!(message.contains(text), "{arguments:?}: {message}");
+    }
+}
+
+/// The kind of a picture is that of its name.
+#[test]
+fn a_picture_is_png_where_its_name_says_so() {
+    let folder = scratch("program-png");
+    let (result, picture) = (folder.join("ok.csv"), folder.join("out.PNG"));
+    fs::write(&result, "time,u\n0,1\n1,2\n").unwrap();
+    run(asperity().arg("plot").arg(&result).args(["--y", "u", "-o"]).arg(&picture));
+    assert!(fs::read(&picture).unwrap().starts_with(b"\x89PNG"));
+}
+
+#[test]
+fn elements_are_columns() {
+    let folder = scratch("program-elements");
+    let scene = changed(&folder, "[\"forces\",", "[\"elements\", \"forces\",");
+    let table = simulate(&scene, &folder, &["--points", "1"]);
+    let names = table.names();
+    assert_eq!(names[names.len() - 5..], ["x", "z", "F_N", "F_T", "mode"].map(|field| format!("element[1].{field}")));
+}
+
+#[test]
+fn a_parameter_is_overridden_by_its_name() {
+    let folder = scratch("program-set");
+    let plain = simulate(&reference("sinusoid"), &folder, &["--points", "2"]);
+    let softer = simulate(
+        &reference("sinusoid"),
+        &folder,
+        &[
+            "--points",
+            "2",
+            "--set",
+            "layer.vertical.stiffness=1000",
+            "--set",
+            "layer.vertical.maxwell[1].stiffness = 0",
+        ],
+    );
+    assert!(softer.column("F_z")[4] < 0.5 * plain.column("F_z")[4]);
+    let text = failure(&["simulate", reference("sinusoid").to_str().unwrap(), "-o", "x.csv", "--set", "layer.mass=-1"]);
+    assert_eq!(text.lines().count(), 1, "{text}");
+    assert!(text.starts_with("asperity: --set: layer.mass = -1"), "{text}");
+}
+
+#[test]
+fn a_bad_scene_is_refused_in_one_line_with_its_place() {
+    let folder = scratch("program-bad");
+    let scene = changed(&folder, "masses = 1", "masses = 0");
+    let text = failure(&["describe", scene.to_str().unwrap()]);
+    assert_eq!(text.lines().count(), 1, "{text}");
+    assert!(text.starts_with("asperity: ") && text.contains("scene.toml:5: layer.masses = 0"), "{text}");
+}
+
+#[test]
+fn a_run_that_fails_keeps_its_rows_and_says_so() {
+    let folder = scratch("program-gives-up");
+    let output = folder.join("out.csv");
+    let scene = reference("rough-coulomb");
+    let arguments = ["simulate", scene.to_str().unwrap(), "-o", output.to_str().unwrap()];
+    let text = failure(&[&arguments[..], &["--set", "solver.max_steps=60"]].concat());
+    assert!(text.contains("solver.max_steps") && text.contains("out.csv"), "{text}");
+    let times = Table::read(&output).column("time");
+    assert!(!times.is_empty() && times[times.len() - 1] < 2.6e-3, "{times:?}");
+}
+
+#[test]
+fn a_phase_that_a_force_ends_takes_the_time_that_it_takes() {
+    let folder = scratch("program-force");
+    let scene = changed(&folder, "w_rate = -0.12", "w_rate = -0.12\nuntil_force = 0.02");
+    let table = simulate(&scene, &folder, &["--points", "10"]);
+    assert_eq!(table.column("time").len(), 21);
+    assert!((table.column("F_z")[10] - 0.02).abs() < 1e-6, "{}", table.column("F_z")[10]);
+    assert!(table.column("time")[10] < 5e-4);
+}
+
+#[test]
+fn a_phase_that_ends_at_once_adds_no_rows() {
+    let folder = scratch("program-at-once");
+    let scene = changed(&folder, "u_rate = 0.5", "until_force = 0.0\nu_rate = 0.5");
+    assert_eq!(simulate(&scene, &folder, &["--points", "10"]).column("time").len(), 11);
+}
+
+#[test]
+fn a_force_that_is_not_reached_is_a_warning() {
+    let folder = scratch("program-not-reached");
+    let scene = changed(&folder, "w_rate = -0.12", "w_rate = -0.12\nuntil_force = 1e6");
+    let text = warnings(&scene, &folder);
+    assert!(text.contains("warning: phase 1") && text.contains("until_force"), "{text}");
+    assert_eq!(Table::read(&folder.join("out.csv")).column("time").len(), 101);
+}
+
+#[test]
+fn a_scene_without_excitation_gives_the_start_and_a_warning() {
+    let folder = scratch("program-no-excitation");
+    let text = fs::read_to_string(reference("sinusoid")).unwrap();
+    let scene = folder.join("scene.toml");
+    fs::write(&scene, text.split("[[excitation]]").next().unwrap()).unwrap();
+    assert!(warnings(&scene, &folder).contains("no [[excitation]]"));
+    assert_eq!(Table::read(&folder.join("out.csv")).column("time"), [0.0]);
+}
+
+#[test]
+fn drawing_a_picture_changes_no_column() {
+    let folder = scratch("program-drawn");
+    let scene = changed(&folder, "outputs = [", "outputs = [\"tangent\", ");
+    let picture = folder.join("out.svg");
+    let plain = simulate(&scene, &folder, &["--points", "3"]);
+    let drawn = simulate(&scene, &folder, &["--points", "3", "--plot", picture.to_str().unwrap()]);
+    for name in plain.names().iter().filter(|name| *name != "solver.run_time") {
+        assert_eq!(plain.column(name), drawn.column(name), "{name}");
+    }
+    assert!(plain.column("tangent.dF_z_dw").iter().any(|&tangent| tangent != 0.0));
+}
+
+#[test]
+fn a_picture_shows_more_than_the_scene_names() {
+    let folder = scratch("program-picture");
+    let scene = changed(&folder, "outputs = [", "outputs = [] # ");
+    let picture = folder.join("out.svg");
+    let table = simulate(&scene, &folder, &["--plot", picture.to_str().unwrap()]);
+    assert_eq!(table.names(), ["time", "u", "w"]);
+    let text = fs::read_to_string(picture).unwrap();
+    for word in ["F_x", "F_z", "sticking", "E_diss", "E_impact", "time in ms"] {
+        assert!(text.contains(word), "{word}");
+    }
+}
+
+#[test]
+fn result_files_are_drawn_over_each_other() {
+    let folder = scratch("program-plot");
+    let scene = reference("figure-7-low");
+    simulate(&scene, &folder, &[]);
+    let (result, picture) = (folder.join("figure-7-low.csv"), folder.join("out.svg"));
+    let plot = |options: &[&str]| {
+        let mut command = asperity();
+        command.arg("plot").arg(&result).arg(&result).args(["--x", "u"]).args(options).arg("-o").arg(&picture);
+        command
+    };
+    run(&mut plot(&["--y", "F_x", "--negate", "--from-motion", "--labels", "one,two", "--title", "a <title>"]));
+    let text = fs::read_to_string(&picture).unwrap();
+    assert!(text.contains("one") && text.contains("two") && text.contains("a &lt;title&gt;"), "{text}");
+    let refused = plot(&["--y", "nothing"]).output().unwrap();
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(String::from_utf8(refused.stderr).unwrap().contains("no column nothing; there are time, u, w,"));
+}
+
+#[test]
+fn a_description_summarises_what_is_there_and_what_is_left_out() {
+    let text = run(asperity().arg("describe").arg(reference("free-chain")));
+    for part in [
+        "5 masses",
+        "the paper's 2k + 4kn - 2n = 46 (k = 5, n = 2, every mass free)",
+        "as coded 56: two coordinates and two velocities a mass, 36 Maxwell variables",
+        "Friction    left out",
+        "elements     left out",
+        "Reduce      left out",
+        "bytes a run",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+}
+
+#[test]
+fn a_scene_as_json_is_all_of_it() {
+    let json = |name: &str| -> serde_json::Value {
+        serde_json::from_str(&run(asperity().arg("describe").arg(reference(name)).arg("--json"))).unwrap()
+    };
+    let chain = json("free-chain");
+    assert_eq!(chain["name"], "free-chain");
+    assert_eq!(chain["layer"]["masses"], 5);
+    assert_eq!(chain["layer"]["roughness"][2], -2e-6);
+    assert_eq!(chain["layer"]["lateral_x"]["maxwell"][1]["relaxation_time"], 1e-5);
+    assert_eq!(
+        (&chain["friction"], &chain["surface"]["z"]),
+        (&serde_json::Value::Null, &serde_json::json!([0.0, 0.0]))
+    );
+    assert_eq!(chain["excitation"][0]["w"], serde_json::json!({ "rate": 0.0, "amplitude": 5e-6, "frequency": 3500.0 }));
+    let rough = json("rough-coulomb");
+    assert_eq!(rough["friction"]["coulomb"], 0.3);
+    assert_eq!((&rough["solver"]["method"], &rough["outputs"][1]), (&"event".into(), &"dissipation".into()));
+    let file = Table::read(&root().join("tests/reference/rough-coulomb.profile.csv"));
+    let heights: Vec<f64> = rough["surface"]["z"].as_array().unwrap().iter().map(|z| z.as_f64().unwrap()).collect();
+    // The numbers are written in full; the reader here may miss the last digit of one.
+    assert!(crate::common::difference(&heights, &file.column("z")) < 1e-15 * crate::common::largest(&heights));
+}
+
+/// Two masses of rubber, A = 1e-6 m², pressed at 20 mm/s; at 400 K times are a tenth of those at 300 K.
+const RUBBER: &str = "name = 'rubber'
+[layer]
+masses = 2
+spacing = 1e-4
+thickness = 1e-3
+width = 1e-2
+[material]
+density = 1000
+poisson_ratio = 0.25
+equilibrium_modulus = 2e6
+viscosity = 10
+prony = 'compound.csv'
+wlf = { c1 = 2, c2 = 100, reference_temperature = 300, temperature = 400 }
+[surface]
+kind = 'flat'
+[friction]
+shear_strength = 1e4
+[[excitation]]
+duration = 1e-3
+w_rate = -0.02
+until_pressure = 1e4
+";
+
+fn rubber(folder: &Path, text: &str) -> PathBuf {
+    fs::write(folder.join("compound.csv"), "relaxation_time,modulus\n1e-3,5e6\n").unwrap();
+    let scene = folder.join("rubber.toml");
+    fs::write(&scene, text).unwrap();
+    scene
+}
+
+#[test]
+fn a_phase_ends_at_a_pressure_on_the_whole_layer() {
+    let folder = scratch("program-pressure");
+    let scene = rubber(&folder, RUBBER);
+    let table = simulate(&scene, &folder, &["--points", "10"]);
+    let force = table.column("F_z")[10];
+    assert!((force / (2.0 * 1e-6) - 1e4).abs() < 0.1, "{force}");
+    assert!(table.column("time")[10] < 1e-3);
+    let text = warnings(&rubber(&folder, &RUBBER.replace("until_pressure = 1e4", "until_pressure = 1e9")), &folder);
+    assert!(text.contains("warning: phase 1") && text.contains("until_pressure = 1000000000 Pa"), "{text}");
+}
+
+#[test]
+fn a_description_of_a_material_has_the_derived_links_and_the_shift() {
+    let folder = scratch("program-rubber");
+    let scene = rubber(&folder, RUBBER);
+    let text = run(asperity().arg("describe").arg(&scene));
+    for part in [
+        "2 masses of 1e-6 kg",
+        "0.001 m thick, 0.01 m wide, density 1000 kg/m³, Poisson's ratio 0.25",
+        "400 K, times given at 300 K: a_T = 1.0000e-1",
+        "vertical    2 of c 2000 N/m, d 0.001 N s/m, n = 1: 5000 N/m at 1e-4 s",
+        "lateral_z   1 of c 80000 N/m",
+        "shear        10000 Pa: 0.01 N a mass in contact",
+        "until F_z = 10000 Pa times the layer's area",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    let json = run(asperity().arg("describe").arg(&scene).arg("--json"));
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["material"]["prony"][0]["modulus"], 5e6);
+    let number = |value: &serde_json::Value, expected: f64| {
+        let found = value.as_f64().unwrap();
+        assert!((found / expected - 1.0).abs() < 1e-14, "{found}, not {expected}");
+    };
+    number(&json["shift_factor"], 0.1);
+    number(&json["layer"]["mass"], 1e-6);
+    number(&json["layer"]["horizontal"]["stiffness"], 800.0);
+    number(&json["layer"]["vertical"]["maxwell"][0]["relaxation_time"], 1e-4);
+    number(&json["friction"]["shear_force"], 0.01);
+    number(&json["excitation"][0]["until_force"], 0.02);
+}
+
+#[test]
+fn parameters_that_do_not_go_together_are_refused_once_all_are_set() {
+    let folder = scratch("program-cold");
+    let scene = rubber(&folder, RUBBER);
+    let output = folder.join("out.csv");
+    let arguments = ["simulate", scene.to_str().unwrap(), "-o", output.to_str().unwrap()];
+    let cold = ["--set", "material.wlf.temperature=190"];
+    let text = failure(&[&arguments[..], &cold].concat());
+    assert!(text.contains("material.wlf.temperature = 190.0: expected more than "), "{text}");
+    let both = [&arguments[..], &cold, &["--set", "material.wlf.reference_temperature=200"]].concat();
+    run(asperity().args(both));
+}
+
+#[test]
+fn the_archive_holds_the_compound() {
+    let folder = scratch("program-compound");
+    let (scene, library, fmu) = (rubber(&folder, RUBBER), folder.join("any.so"), folder.join("rubber.fmu"));
+    fs::write(&library, "a library").unwrap();
+    run(asperity().arg("pack").arg(&scene).arg("-o").arg(&fmu).arg("--library").arg(&library));
+    let bytes = fs::read(&fmu).unwrap();
+    let name = b"resources/compound.csv";
+    assert!(bytes.windows(name.len()).any(|window| window == name));
+}
+
+/// One mass on a stiff, a long and a short element: K' = 3, m ω² = 3 + 2, T = 0.1 s.
+#[test]
+fn a_description_says_which_maxwell_elements_are_replaced_and_why() {
+    let layer = "layer = { masses = 2, spacing = 1.0, mass = 5e-4, vertical = { stiffness = 3.0, maxwell = [\
+                 { stiffness = 2.0, relaxation_time = 1e-1 }, { stiffness = 1e-1, relaxation_time = 1e2 },\
+                 { stiffness = 1e-1, relaxation_time = 1e-4 }] } }";
+    let rest = "surface = { kind = 'flat' }\nsolver = { reduce = 1e-2 }";
+    let folder = scratch("reduce");
+    let describe = |excitation: &str| {
+        let scene = folder.join("reduce.toml");
+        fs::write(&scene, format!("name = 'a'\n{layer}\n{rest}\n{excitation}")).unwrap();
+        run(asperity().arg("describe").arg(&scene))
+    };
+    let text = describe("[[excitation]]\nduration = 1e-1");
+    for part in [
+        "Reduce      0.01: ",
+        "vertical    1 of 3 elements stay, K' = 4.1000e0 N/m",
+        "[2] 0.1 N/m at 100 s is long: a spring, bound 2.44e-5",
+        "[3] 0.1 N/m at 1e-4 s is short: a damper, bound 2.48e-6",
+        "as coded 10: two coordinates and two velocities a mass, 2 Maxwell variables",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    let text = describe("");
+    for part in
+        ["nothing is long, no element becomes a spring", "2 of 3 elements stay", "[3] 0.1 N/m at 1e-4 s is short"]
+    {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+}

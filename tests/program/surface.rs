@@ -1,0 +1,201 @@
+//! Rough surfaces as a user meets them: `asperity surface`, and X3P files on their way into an FMU.
+
+use std::f64::consts::TAU;
+use std::fs;
+use std::io::{Cursor, Read as _, Write as _};
+use std::path::Path;
+
+use crate::common::{asperity, run, scratch};
+use asperity::fmi::{Catalogue, Sources, guid};
+use asperity::scene::Scene;
+use serde_json::Value;
+use zip::write::SimpleFileOptions;
+use zip::{ZipArchive, ZipWriter};
+
+const LENGTH: f64 = 0.1;
+const RMS: f64 = 2e-5;
+const ROLL_OFF: f64 = 5e-3;
+const CUT_OFF: f64 = 1e-4;
+
+/// A scene on the surface whose keys are given.
+fn scene(surface: &str) -> String {
+    format!(
+        "name = 's'\n[layer]\nmasses = 2\nspacing = 1e-4\nmass = 1e-7\n[layer.vertical]\nstiffness = 1e3\n\
+         [surface]\n{surface}\n[[excitation]]\nduration = 1e-5\n"
+    )
+}
+
+/// A self-affine one with `points` points.
+fn rough(hurst: f64, points: usize) -> String {
+    scene(&format!(
+        "kind = 'self_affine'\nlength = {LENGTH}\npoints = {points}\nhurst = {hurst}\nrms = {RMS}\n\
+         roll_off_wavelength = {ROLL_OFF}\ncut_off_wavelength = {CUT_OFF}\nseed = 3\n"
+    ))
+}
+
+/// The root mean square slope, q² times the spectrum summed over its modes.
+fn rms_slope(hurst: f64) -> f64 {
+    let modes = (1..=(LENGTH / CUT_OFF).round() as usize).map(|m| m as f64);
+    let powers = modes.map(|m| (m, (m * ROLL_OFF / LENGTH).max(1.0).powf(-1.0 - 2.0 * hurst)));
+    let (heights, slopes) = powers.fold((0.0, 0.0), |(heights, slopes), (m, power)| {
+        (heights + power, slopes + power * (TAU * m / LENGTH).powi(2))
+    });
+    RMS * (slopes / heights).sqrt()
+}
+
+/// What `asperity surface --json` says.
+fn findings(file: &Path, options: &[&str]) -> Value {
+    serde_json::from_str(&run(asperity().arg("surface").arg(file).arg("--json").args(options))).unwrap()
+}
+
+fn near(found: &Value, expected: f64, tolerance: f64) {
+    let found = found.as_f64().unwrap();
+    assert!((found / expected - 1.0).abs() < tolerance, "{found:e} for {expected:e}");
+}
+
+fn failure(arguments: &[&str]) -> String {
+    let output = asperity().args(arguments).output().unwrap();
+    assert!(!output.status.success(), "{arguments:?}");
+    String::from_utf8(output.stderr).unwrap()
+}
+
+#[test]
+fn a_self_affine_surface_is_found_as_it_was_asked_for() {
+    let folder = scratch("surface-self-affine");
+    let file = folder.join("scene.toml");
+    for hurst in [0.4, 0.8, 1.0] {
+        fs::write(&file, rough(hurst, 8000)).unwrap();
+        let found = findings(&file, &[]);
+        assert_eq!((&found["points"], &found["periodic"]), (&8001.into(), &true.into()));
+        near(&found["rms_height"], RMS, 1e-9);
+        // The spline through eight points a shortest wavelength has less of its slope.
+        near(&found["rms_slope"], rms_slope(hurst), 0.005);
+        // The bands are a fifth wide; the exponent hangs little on where they end.
+        let law = &found["law"];
+        assert!((law["hurst"].as_f64().unwrap() - hurst).abs() < 0.01, "{law}");
+        near(&law["roll_off_wavelength"], ROLL_OFF, 0.1);
+        near(&law["wavelengths"][0], CUT_OFF, 0.25);
+        assert_eq!(law["ends"], true);
+    }
+}
+
+/// The same profile as a measurement: not known to be periodic, in µm and with decimal commas, and tilted.
+#[test]
+fn a_measured_surface_is_found_as_it_was_made() {
+    let folder = scratch("surface-measured");
+    let [source, written, measured] = ["scene.toml", "plain.csv", "measured.txt"].map(|name| folder.join(name));
+    fs::write(&source, rough(0.8, 8000)).unwrap();
+    run(asperity().arg("surface").arg(&source).arg("--write").arg(&written));
+    let surface = Scene::load(&source).unwrap().surface;
+    fs::write(&source, scene("kind = 'file'\npath = 'plain.csv'\nperiodic = true")).unwrap();
+    assert_eq!(Scene::load(&source).unwrap().surface, surface, "what is written is the same profile to the last bit");
+
+    let mut text = "Profile 1\r\nx [mm];z [µm]\r\n".to_owned();
+    for (i, (x, z)) in surface.x.iter().zip(&surface.z).enumerate() {
+        let height = if i == 4000 { "***".into() } else { format!("{}", (z + 2e-3 * x) * 1e6).replace('.', ",") };
+        text += &format!("{};{height}\r\n", format!("{}", x * 1e3).replace('.', ","));
+    }
+    fs::write(&measured, text.chars().map(|letter| letter as u8).collect::<Vec<_>>()).unwrap();
+    assert!(failure(&["surface", measured.to_str().unwrap()]).contains("measured.txt:4003: z = \"***\""));
+    let found = findings(&measured, &["--missing", "fill"]);
+    near(&found["length"], LENGTH, 1e-9);
+    near(&found["tilt"], 2e-3, 0.02);
+    near(&found["rms_height_without_tilt"], RMS, 0.02);
+    let level = findings(&measured, &["--missing", "fill", "--tilt", "remove"]);
+    near(&level["rms_height"], RMS, 0.02);
+    near(&level["rms_slope"], rms_slope(0.8), 0.02);
+    // Of 8 bands on the plateau each holds a few modes under a window: some hundredths.
+    let hurst = level["law"]["hurst"].as_f64().unwrap();
+    assert!((hurst - 0.8).abs() < 0.04, "{}", level["law"]);
+    let part = findings(&measured, &["--missing", "fill", "--wavelengths", "2e-4..2e-3"]);
+    assert!((part["law"]["hurst"].as_f64().unwrap() - 0.8).abs() < 0.08, "{}", part["law"]);
+    assert_eq!(part["law"]["roll_off_wavelength"], Value::Null);
+}
+
+#[test]
+fn the_analysis_is_printed_and_plotted() {
+    let folder = scratch("surface-analysis");
+    let [source, svg, png] = ["scene.toml", "rough.svg", "rough.png"].map(|name| folder.join(name));
+    fs::write(&source, rough(0.8, 4000)).unwrap();
+    let text = run(asperity().arg("surface").arg(&source).arg("-o").arg(&svg));
+    for part in
+        ["4001, even steps of 2.5000e-5 m", "rms 2.0000e-5 m about the mean", "Hurst exponent 0.799", "roll-off"]
+    {
+        assert!(text.contains(part), "{part} in\n{text}");
+    }
+    let drawn = fs::read_to_string(&svg).unwrap();
+    assert!(
+        drawn.starts_with("<svg") && ["power spectrum", "Hurst exponent 0.80"].iter().all(|part| drawn.contains(part))
+    );
+    run(asperity().arg("surface").arg(&source).arg("-o").arg(&png));
+    assert!(fs::read(&png).unwrap().starts_with(b"\x89PNG"));
+    fs::write(&source, scene("kind = 'flat'")).unwrap();
+    assert!(run(asperity().arg("surface").arg(&source)).contains("no power law"));
+}
+
+#[test]
+fn what_cannot_be_analysed_is_refused() {
+    let folder = scratch("surface-refused");
+    let [source, profile] = ["scene.toml", "profile.csv"].map(|name| folder.join(name));
+    fs::write(&source, scene("kind = 'file'\npath = 'profile.csv'")).unwrap();
+    fs::write(&profile, "0 1\n1 2\n2 1\n").unwrap();
+    let [source, profile] = [&source, &profile].map(|path| path.to_str().unwrap());
+    assert!(failure(&["surface", source, "--unit", "mm"]).contains("a scene defines how its surface is read"));
+    assert!(failure(&["surface", source, "--write", profile]).contains("will not write"));
+    assert!(failure(&["surface", source, "-o", profile]).contains("expected a name that ends in .svg or .png"));
+    assert!(failure(&["surface", profile, "--unit", "km"]).contains(r#"expected one of "m", "mm", "um", "nm""#));
+    assert!(failure(&["surface", profile, "--wavelengths", "2..1"]).contains("SHORTEST..LONGEST"));
+    assert!(failure(&["surface", "none.csv"]).contains("none.csv: cannot be read"));
+}
+
+/// An areal measurement of 3 lines with 5 heights that are no round numbers, one of them missing.
+fn x3p() -> Vec<u8> {
+    let document = "<p:ISO5436_2 xmlns:p='a'><Record1><FeatureType>SUR</FeatureType><Axes>\
+                    <CX><AxisType>I</AxisType><Increment>3.3e-7</Increment></CX>\
+                    <CY><AxisType>I</AxisType><Increment>1e-6</Increment></CY>\
+                    <CZ><AxisType>A</AxisType><DataType>D</DataType></CZ></Axes></Record1>\
+                    <Record3><MatrixDimension><SizeX>5</SizeX><SizeY>3</SizeY><SizeZ>1</SizeZ></MatrixDimension>\
+                    <DataLink><PointDataLink>bindata/data.bin</PointDataLink></DataLink></Record3></p:ISO5436_2>";
+    let height = |i: u32| if i == 12 { f64::NAN } else { 1e-7 * f64::from(i * i).sqrt().sin() };
+    let data: Vec<u8> = (0..15).flat_map(|i| height(i).to_le_bytes()).collect();
+    let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, bytes) in [("road/main.xml", document.as_bytes()), ("road/bindata/data.bin", &data)] {
+        writer.start_file(name, SimpleFileOptions::default()).unwrap();
+        writer.write_all(bytes).unwrap();
+    }
+    writer.finish().unwrap().into_inner()
+}
+
+/// An FMU carries the lines that its scene takes, as text; unpacked it is the same scene, under the same GUID.
+#[test]
+fn lines_of_an_areal_measurement_go_into_the_archive_as_text() {
+    let folder = scratch("surface-x3p");
+    let [source, fmu, unpacked] = ["scene.toml", "scene.fmu", "unpacked"].map(|name| folder.join(name));
+    fs::write(folder.join("road.x3p"), x3p()).unwrap();
+    let file = "kind = 'file', path = 'road.x3p'";
+    let text = scene("kind = 'file'\npath = 'road.x3p'\nline = 3\nmissing = 'fill'\ntilt = 'remove'");
+    let roughness = format!("mass = 1e-7\nroughness = {{ {file}, line = 1, unit = 'mm' }}");
+    fs::write(&source, text.replace("mass = 1e-7", &roughness)).unwrap();
+    let scene = Scene::load(&source).unwrap();
+    assert_eq!(scene.files, ["road.x3p.line-1.csv", "road.x3p.line-3.csv"].map(Path::new));
+    // Any file serves as the library here.
+    run(asperity().arg("pack").arg(&source).arg("-o").arg(&fmu).arg("--library").arg(&source));
+
+    let mut archive = ZipArchive::new(Cursor::new(fs::read(&fmu).unwrap())).unwrap();
+    archive.extract(&unpacked).unwrap();
+    assert!(!unpacked.join("resources/road.x3p").exists());
+    let carried = Scene::load(&unpacked.join("resources/scene.toml")).unwrap();
+    let expected = Scene { extracts: Vec::new(), ..scene.clone() };
+    assert_eq!(carried, expected);
+    let mut description = String::new();
+    archive.by_name("modelDescription.xml").unwrap().read_to_string(&mut description).unwrap();
+    let sources = Sources::read(&unpacked.join("resources/scene.toml"), &carried).unwrap();
+    assert!(description.contains(&guid(&sources, &Catalogue::new(&carried))));
+
+    let without_line = failure(&["surface", folder.join("road.x3p").to_str().unwrap()]);
+    assert!(without_line.contains("line = not given: expected a whole number from 1 to 3"), "{without_line}");
+    assert!(
+        failure(&["surface", source.to_str().unwrap(), "--write", folder.join("road.x3p").to_str().unwrap()])
+            .contains("will not write")
+    );
+}

@@ -1,0 +1,282 @@
+//! `asperity sweep`: tables against exact results, continued, in shards, and what is refused.
+
+use std::f64::consts::TAU;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::common::{asperity, run, scratch};
+
+/// Four masses on a plane: full slip after some tenths of a millimetre.
+const FLAT: &str = r#"
+name = "plane"
+[layer]
+masses = 4
+spacing = 1e-4
+mass = 1e-7
+[layer.vertical]
+stiffness = 2e3
+damping = 3e-2
+maxwell = [ { stiffness = 4e3, relaxation_time = 50.0 } ]
+[layer.horizontal]
+stiffness = 5e3
+damping = 3e-2
+[surface]
+kind = "flat"
+[friction]
+coulomb = 0.3
+shear_force = 1e-3
+[solver]
+method = "step"
+relative_tolerance = 1e-4
+"#;
+
+/// Writes a scene and returns its path and that of its table.
+fn scene(folder: &Path, text: &str) -> (PathBuf, PathBuf) {
+    let path = folder.join("scene.toml");
+    fs::write(&path, text).unwrap();
+    (path, folder.join("table.csv"))
+}
+
+fn sweep(scene: &Path, table: &Path, options: &[&str]) {
+    run(asperity().arg("sweep").arg(scene).arg("-o").arg(table).args(options));
+}
+
+/// The message of a sweep that fails.
+fn refused(arguments: &[&Path], options: &[&str]) -> String {
+    let output = asperity().arg("sweep").args(arguments).args(options).output().unwrap();
+    assert!(!output.status.success(), "{arguments:?} {options:?} should fail");
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// Rows of a table by their columns' names, without units.
+struct Rows {
+    names: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Rows {
+    fn read(path: &Path) -> Self {
+        let text = fs::read_to_string(path).unwrap();
+        let lines: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).collect();
+        let names = lines[0].split(',').map(|name| name.split(" [").next().unwrap().to_owned()).collect();
+        let rows = lines[1..].iter().map(|line| line.split(',').map(str::to_owned).collect()).collect();
+        Self { names, rows }
+    }
+
+    fn text(&self, row: usize, name: &str) -> &str {
+        let column = self.names.iter().position(|other| other == name).unwrap_or_else(|| panic!("no column {name}"));
+        &self.rows[row][column]
+    }
+
+    fn number(&self, row: usize, name: &str) -> f64 {
+        self.text(row, name).parse().unwrap_or_else(|_| panic!("{name}: {:?}", self.rows[row]))
+    }
+}
+
+/// On a plane at full slip |F_x| = μ F_z + k A τ_0, all of it adhesion, lost as friction; and at rest, all masses
+/// stuck, a motion of the carrier stretches the horizontal springs and dampers alone.
+#[test]
+fn full_slip_on_a_plane() {
+    let folder = scratch("sweep-plane");
+    let (scene, table) = scene(&folder, FLAT);
+    sweep(&scene, &table, &["--speeds", "0.01,1", "--forces", "0.5,2"]);
+    let rows = Rows::read(&table);
+    for row in 0..4 {
+        assert_eq!(rows.text(row, "status"), "steady");
+        let [speed, force, friction] = ["speed", "mean_force", "friction"].map(|name| rows.number(row, name));
+        assert!((force / rows.number(row, "force") - 1.0).abs() <= 1e-3, "{force} N");
+        // The masses are at rest in the carrier's frame, so only rounding and the sampling of F_z are left.
+        let expected = 0.3 + 4e-3 / force;
+        assert!((friction - expected).abs() <= 1e-6 * expected, "{friction}, expected {expected}");
+        assert_eq!((rows.number(row, "friction_hysteresis"), rows.number(row, "friction_adhesion")), (0.0, friction));
+        let power = rows.number(row, "P_friction");
+        assert!((power - friction * force * speed).abs() <= 1e-5 * power, "{power} W");
+        assert_eq!(rows.number(row, "contact_ratio"), 1.0);
+        // In steady motion the Maxwell elements bear nothing, though they would take minutes.
+        assert!((rows.number(row, "w") + force / (4.0 * 2e3)).abs() <= 1e-9);
+        assert_eq!(rows.number(row, "separation"), rows.number(row, "w"));
+        // F_x = k (c u + d v): the damper's constant share at once, then the spring; least squares through the origin
+        // of c u + d v over even u up to u_1 give k (c + d v Σu/Σu²), Σu/Σu² = 3/(2 n + 1) n/u_1, n = 16.
+        let way = 4e-7;
+        let expected = 4.0 * (5e3 + 3e-2 * speed * 3.0 * 16.0 / 33.0 / way);
+        let found = rows.number(row, "tangential_stiffness");
+        assert!((found - expected).abs() <= 1e-3 * expected, "{found} N/m, expected {expected}");
+    }
+}
+
+/// One mass held down on a sinusoid: mean F_x = -½ q â² Im K*(qv), model.md section 8 case 2, at the speed of the
+/// largest loss and a decade on either side; F_z is the spring's alone.
+#[test]
+fn hysteresis_on_a_sinusoid() {
+    let (c, c_1, tau_1) = (2e3, 1.5e3, 1e-4);
+    let (amplitude, wavelength): (f64, f64) = (1e-5, 1e-3);
+    let q = TAU / wavelength;
+    let text = format!(
+        "name = 'mass'\n[layer]\nmasses = 1\nspacing = 1e-4\nmass = 1e-9\n[layer.vertical]\nstiffness = {c}\n\
+         maxwell = [ {{ stiffness = {c_1}, relaxation_time = {tau_1} }}, {{ stiffness = 3e3, relaxation_time = 500.0 }} ]\n\
+         [layer.horizontal]\nstiffness = 2e7\ndamping = 0.28\n\
+         [surface]\nkind = 'sinusoid'\namplitude = {amplitude}\nwavelength = {wavelength}\npoints_per_wavelength = 256\n"
+    );
+    let folder = scratch("sweep-sinusoid");
+    let (scene, table) = scene(&folder, &text);
+    let best = 1.0 / (q * tau_1);
+    let speeds = [0.1 * best, best, 10.0 * best].map(|speed| format!("{speed:e}")).join(",");
+    sweep(&scene, &table, &["--speeds", &speeds, "--forces", "0.2"]);
+    let rows = Rows::read(&table);
+    for row in 0..3 {
+        let x = rows.number(row, "speed") * q * tau_1;
+        let slow = 3e3 / (rows.number(row, "speed") * q * 500.0);
+        let expected = 0.5 * q * amplitude * amplitude * (c_1 * x / (1.0 + x * x) + slow);
+        let found = rows.number(row, "friction") * rows.number(row, "mean_force");
+        // The time that the transient has until its trend is below 5e-3 of the friction coefficient.
+        assert!((found / expected - 1.0).abs() <= 1e-3, "qvτ = {x}: {found} N, expected {expected} N");
+        assert_eq!(rows.number(row, "friction_hysteresis"), rows.number(row, "friction"));
+        assert!((rows.number(row, "w") / (-0.2 / c) - 1.0).abs() <= 2e-3);
+        // Frictionless: no stick to start from, no such channel, no temperature.
+        let absent = ["tangential_stiffness", "P_friction", "P_damper", "temperature"];
+        assert_eq!(absent.map(|name| rows.text(row, name).is_empty()), [true, true, false, true]);
+    }
+}
+
+const POINTS: [&str; 4] = ["--speeds", "0.1..1/3", "--forces", "0.5,2"];
+
+/// Cut off after any byte, a table is completed, the same to the last byte; points done are kept to the letter.
+#[test]
+fn a_table_cut_off_anywhere_is_completed() {
+    let folder = scratch("sweep-resume");
+    let (scene, table) = scene(&folder, FLAT);
+    sweep(&scene, &table, &POINTS);
+    let whole = fs::read(&table).unwrap();
+    for cut in (0..whole.len()).step_by(131).chain([whole.len() - 1]) {
+        fs::write(&table, &whole[..cut]).unwrap();
+        sweep(&scene, &table, &POINTS);
+        assert!(fs::read(&table).unwrap() == whole, "cut off after {cut} bytes");
+    }
+    // Points done are not computed again: what is changed by hand stays.
+    let text = String::from_utf8(whole.clone()).unwrap().replace(",steady,", ",by hand,");
+    fs::write(&table, &text).unwrap();
+    let message = refused(&[&scene, Path::new("-o"), &table], &POINTS);
+    assert!(message.contains("6 of 6 points are not steady"), "{message}");
+    assert_eq!(fs::read_to_string(&table).unwrap(), text);
+    // More points: those done are kept, the others added in their places.
+    sweep(&scene, &table, &["--speeds", "0.1..1/3", "--forces", "0.5,2", "--force"]);
+    assert!(fs::read(&table).unwrap() == whole);
+    sweep(&scene, &table, &["--speeds", "0.1..1/3,2", "--forces", "0.5,2"]);
+    assert_eq!(Rows::read(&table).rows.len(), 8);
+    assert!(table.with_extension("svg").exists());
+}
+
+/// Merged shards are the whole, byte for byte; points that are missing or differ are named.
+#[test]
+fn merged_shards_are_the_whole() {
+    let folder = scratch("sweep-shards");
+    let (scene, table) = scene(&folder, FLAT);
+    sweep(&scene, &table, &POINTS);
+    let shards = ["1/3", "2/3", "3/3"].map(|shard| {
+        let path = folder.join(format!("shard-{}.csv", &shard[..1]));
+        sweep(&scene, &path, &[&POINTS[..], &["--shard", shard]].concat());
+        path
+    });
+    let joined = folder.join("joined.csv");
+    let join =
+        |paths: &[&PathBuf]| asperity().args(["sweep", "--merge"]).args(paths).arg("-o").arg(&joined).output().unwrap();
+    assert!(join(&shards.each_ref()).status.success());
+    assert!(fs::read(&joined).unwrap() == fs::read(&table).unwrap());
+    let output = join(&[&shards[0], &shards[2]]);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(message.contains("2 of 6 points are missing: 0.316228 m/s, 0.5 N; 0.316228 m/s, 2 N"), "{message}");
+    // The sweep then completes it.
+    sweep(&scene, &joined, &POINTS);
+    assert!(fs::read(&joined).unwrap() == fs::read(&table).unwrap());
+    let other = folder.join("other.csv");
+    fs::write(&other, fs::read_to_string(&shards[0]).unwrap().replace("steady", "other")).unwrap();
+    let message = String::from_utf8_lossy(&join(&[&shards[0], &other]).stderr).into_owned();
+    assert!(message.contains("differ at 0.1 m/s, 0.5 N"), "{message}");
+    sweep(&scene, &other, &[&POINTS[..], &["--shard", "2/3", "--force", "--set", "friction.coulomb=0.2"]].concat());
+    let message = String::from_utf8_lossy(&join(&[&shards[0], &other]).stderr).into_owned();
+    assert!(message.contains("are of different sweeps: fingerprint"), "{message}");
+}
+
+#[test]
+fn invalid_commands_are_refused() {
+    let folder = scratch("sweep-refused");
+    let (scene, table) = scene(&folder, FLAT);
+    let asked = |options: &[&str]| refused(&[&scene, Path::new("-o"), &table], options);
+    assert!(asked(&["--speeds", "1", "--pressures", "1e5"]).contains("give --forces"));
+    assert!(asked(&["--speeds", "1"]).contains("expected --pressures or --forces"));
+    assert!(asked(&["--speeds", "1", "--forces", "1", "--temperatures", "300"]).contains("no material.wlf"));
+    assert!(asked(&["--speeds", "2..1/3", "--forces", "1"]).contains("a < b"));
+    assert!(asked(&["--speeds", "1", "--forces", "1", "--shard", "3/2"]).contains("I from 1 to N"));
+    assert!(!table.exists());
+    // Another file, another sweep, a table of more points: none is replaced without --force.
+    fs::write(&table, "time,u,w\n0,0,0\n").unwrap();
+    assert!(asked(&["--speeds", "1", "--forces", "1"]).contains("not the table of a sweep: expected the line"));
+    sweep(&scene, &table, &["--speeds", "1,2", "--forces", "1", "--force"]);
+    let whole = fs::read(&table).unwrap();
+    assert!(
+        asked(&["--speeds", "1", "--forces", "1"])
+            .contains("has points that this sweep does not have, the first at 2 m/s, 1 N")
+    );
+    let set = ["--speeds", "1,2", "--forces", "1", "--set", "friction.coulomb=0.5"];
+    assert!(asked(&set).contains("is the table of another sweep"));
+    assert!(asked(&["--speeds", "1,2", "--forces", "1", "--error", "0.1"]).contains("is the table of another sweep"));
+    assert!(fs::read(&table).unwrap() == whole);
+    assert!(
+        refused(&[&scene, Path::new("-o"), &scene], &["--speeds", "1", "--forces", "1"]).contains("will not write")
+    );
+}
+
+/// A point that fails has a row with its reason, and the exit code is an error.
+#[test]
+fn points_that_fail_are_rows() {
+    let folder = scratch("sweep-failed");
+    let (scene, table) = scene(&folder, FLAT);
+    let path = [&scene, Path::new("-o"), &table];
+    let message = refused(&path, &["--speeds", "1", "--forces", "1", "--set", "solver.max_steps=3"]);
+    assert!(message.contains("1 of 1 points"), "{message}");
+    // The status holds a comma, so it is quoted.
+    assert!(fs::read_to_string(&table).unwrap().contains(",\"gave up at t = "));
+    // Too short a way for three blocks.
+    let message = refused(&path, &["--speeds", "1", "--forces", "1", "--distance", "5e-4", "--force"]);
+    assert!(message.contains("1 of 1 points"), "{message}");
+    let status = Rows::read(&table).text(0, "status").to_owned();
+    assert!(status.contains("no room for 3 blocks"), "{status}");
+}
+
+/// The scene of the README: adhesion's maximum at low speed, hysteresis' at high speed, and both move with the
+/// temperature as the shift says, μ(v, T) = μ(a_T v, T_ref), the rate-dependent shear strength included. Below v_0
+/// `tests/physics/exact` holds that to 1 %. Above v_0 the strength falls as the speed rises, and masses chatter where it falls
+/// faster than dampers hold them, which does not shift: warmer, it falls less steeply over the speed, and the inertia
+/// stays. At 0.1 m/s they chatter at 293 K and not at 303 K (friction 0.095 and 0.093 at tolerances of 1e-5 by both
+/// methods), so of that point hysteresis alone is compared.
+#[test]
+fn two_maxima_move_with_the_temperature() {
+    let folder = scratch("sweep-two-maxima");
+    let scene = crate::common::root().join("scenes/two-maxima/two-maxima.toml");
+    let friction = |temperature: &str, speeds: &[f64]| {
+        let table = folder.join(format!("{temperature}.csv"));
+        let list = speeds.iter().map(|speed| format!("{speed:e}")).collect::<Vec<_>>().join(",");
+        let options = ["--speeds", &list, "--pressures", "4e5", "--temperatures", temperature, "--error", "2e-3"];
+        sweep(&scene, &table, &options);
+        let rows = Rows::read(&table);
+        let parts = ["friction", "friction_hysteresis", "friction_adhesion"];
+        (0..speeds.len()).map(|row| parts.map(|name| rows.number(row, name))).collect::<Vec<_>>()
+    };
+    let speeds = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0];
+    let reference = friction("293.15", &speeds);
+    let peaks = |part: usize| -> Vec<usize> {
+        let of = |i: usize| reference[i][part];
+        (1..speeds.len() - 1).filter(|&i| of(i) > of(i - 1) && of(i) > of(i + 1)).collect()
+    };
+    let (whole, hysteresis, adhesion) = (peaks(0), peaks(1), peaks(2));
+    assert_eq!((whole.len(), hysteresis.len(), adhesion.len()), (2, 1, 1), "{reference:?}");
+    assert_eq!([whole[0], whole[1]], [adhesion[0], hysteresis[0]], "{reference:?}");
+    // a_T at 10 K above; both maxima and a place between.
+    let shift = 10_f64.powf(-7.52 * 10.0 / (119.75 + 10.0));
+    let shifted = friction("303.15", &[1e-5, 1e-3, 1e-1].map(|speed| speed / shift));
+    for (here, (i, part)) in shifted.iter().zip([(1, 0), (3, 0), (5, 1)]) {
+        let there = reference[i];
+        // The sweep's own error of 0.2 %, and what chatter leaves, 0.4 % at the last one.
+        assert!((here[part] - there[part]).abs() <= 0.01 * there[part], "{} m/s: {here:?}, {there:?}", speeds[i]);
+    }
+}
