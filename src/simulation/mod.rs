@@ -4,19 +4,16 @@
 //!   error-estimation run beside it.
 //! - `run` holds all that changes in a run (`RunState`), apart from its workspace; `state` saves and restores it.
 //! - `driver` is the skeleton of both methods: step, mode changes, step; `event` and `time_stepping` are where they
-//!   differ, `method_switch` decides between them (method *auto*).
+//!   differ.
 //! - `snapshot` shows the run at an instant, at the end of a step or within it.
 //! - `error_run` estimates the run's error.
 
 mod driver;
 mod error_run;
 mod event;
-mod method_switch;
 mod motion;
-mod record;
 mod run;
 mod snapshot;
-mod stall;
 mod state;
 #[cfg(test)]
 pub(crate) mod tests;
@@ -31,8 +28,7 @@ use crate::outputs::{Snapshot, Variable};
 use crate::scene::Scene;
 use driver::{TrialStep, WorkLimit};
 use error_run::ErrorRun;
-pub use motion::{Motion, OutOfRange, SimulationError, Start};
-pub use record::{MethodSwitch, ModeChange};
+pub use motion::{MethodSwitch, ModeChange, Motion, OutOfRange, SimulationError, Start};
 use run::{Run, Settings};
 use state::check_length;
 pub use state::{RestoreError, SimulationState};

@@ -1,4 +1,6 @@
-//! The carrier's motion, and why a run may not be able to follow it.
+//! The carrier's motion, why a run may not be able to follow it, and what it records on the way.
+
+use std::fmt;
 
 use crate::scene::{LARGEST, ParameterError, Path, is_possible};
 
@@ -63,6 +65,38 @@ pub enum SimulationError {
     /// Parameters that do not go together, as [`Scene::check`] finds.
     #[error(transparent)]
     Scene(#[from] ParameterError),
+}
+
+/// A mode change of one mass.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModeChange {
+    /// When, s.
+    pub time: f64,
+    /// Which mass, from 0.
+    pub mass: usize,
+    /// Mode before: 0 free, 1 or -1 slipping, 2 sticking.
+    pub from: i8,
+    /// Mode after.
+    pub to: i8,
+}
+
+/// A switch to the other method.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MethodSwitch {
+    /// When, s.
+    pub time: f64,
+    /// To time-stepping, or back to events.
+    pub to_time_stepping: bool,
+    /// The mean number of mode changes per time step that decided it.
+    pub mode_changes_per_step: f64,
+}
+
+impl fmt::Display for MethodSwitch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { time, to_time_stepping, mode_changes_per_step } = self;
+        let method = if *to_time_stepping { "time-stepping" } else { "event-driven" };
+        write!(f, "t = {time} s: {method} from here on; mode changes per time step: {mode_changes_per_step:.2}")
+    }
 }
 
 impl Start {
