@@ -18,7 +18,7 @@ pub(super) enum InstanceModel {
 /// The state of an [`InstanceModel`], as an FMU state keeps it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) enum ModelState {
-    Layer(simulation::SimulationState),
+    Layer(Box<simulation::SimulationState>),
     Element(element::ElementState),
 }
 
@@ -97,7 +97,7 @@ impl InstanceModel {
     /// The state of the run.
     pub(super) fn state(&self) -> ModelState {
         match self {
-            Self::Layer(simulation) => ModelState::Layer(simulation.state()),
+            Self::Layer(simulation) => ModelState::Layer(Box::new(simulation.state())),
             Self::Element(element) => ModelState::Element(element.save()),
         }
     }

@@ -132,7 +132,7 @@ pub(super) fn draw_line<B: Backend>(
     if stroke == Stroke::Rings {
         context.draw_series(points.into_iter().map(|point| Circle::new(point, CIRCLE, translucent(colour(look)))))?;
     } else if let Some((dash, gap)) = stroke.dashes() {
-        context.draw_series([DashedPathElement::new(points.into_iter(), dash, gap, line)])?;
+        context.draw_series([DashedPathElement::new(points, dash, gap, line)])?;
     } else {
         context.draw_series([PathElement::new(points, line)])?;
     }

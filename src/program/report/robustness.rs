@@ -344,10 +344,10 @@ fn accuracy(
 /// communication step. The end of a phase is one of them, unless the run ends before it.
 fn communication_points(scene: &Scene, factor: f64) -> Vec<Vec<f64>> {
     let base = scene.duration() / COMMUNICATION_STEPS;
-    let phases = scene.excitation.iter().enumerate();
     if COMMUNICATION_STEPS / factor <= MOST_COMMUNICATION_STEPS {
-        return phases.map(|(_, phase)| even_points(base * factor, phase.duration)).collect();
+        return scene.excitation.iter().map(|phase| even_points(base * factor, phase.duration)).collect();
     }
+    let phases = scene.excitation.iter().enumerate();
     let longest = phases.clone().max_by(|(_, a), (_, b)| a.duration.total_cmp(&b.duration)).map_or(0, |(i, _)| i);
     let short = |duration: f64| short_points(base, base * factor, duration);
     let points = |i: usize, duration: f64| if i < longest { even_points(base, duration) } else { short(duration) };
