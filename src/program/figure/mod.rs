@@ -181,8 +181,8 @@ impl DrawingBackend for Pixels<'_> {
         for ends in points.windows(2).filter(|ends| ends[0] != ends[1]) {
             self.fill_polygon(thick_segment(ends[0], ends[1], width), style)?;
         }
-        let inner = points.len().saturating_sub(1).max(1);
-        points[..inner].iter().skip(1).try_for_each(|&point| self.draw_circle(point, width / 2, style, true))
+        let mut joints = points.iter().skip(1).take(points.len().saturating_sub(2));
+        joints.try_for_each(|&point| self.draw_circle(point, width / 2, style, true))
     }
 
     /// As plotters does it, but with the baseline of the SVG: plotters sets glyphs of ab_glyph too high.
