@@ -118,10 +118,10 @@ pub fn print_counts(cases: &[Case], runs: &[Judged]) {
     }
 }
 
-/// The least share of the library's runs whose estimated error is within a factor of ten of the true one: 99.2 % of 471
+/// The least share of the library's runs whose estimated error is within a factor of ten of the true one: 99.2 % of 495
 /// were. Where that can differ between machines, in the last digits of sensitive motions, is room for three runs more.
 const WITHIN_TEN: f64 = 0.985;
-/// The same of those whose errors are above what can be known: 98.7 % of 299 were.
+/// The same of those whose errors are above what can be known: 98.7 % of 317 were.
 const WITHIN_TEN_ABOVE: f64 = 0.98;
 
 /// Prints how the estimated errors compare with the true ones.
