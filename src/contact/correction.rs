@@ -10,7 +10,7 @@
 //! - A slip that has reversed stops.
 //! - Lifts and breaks begin at the end of the step, since only the forces went past their limits.
 //!
-//! Then the rules of model.md decide on these masses and their neighbours by the forces as they are.
+//! Then the rules of docs/model.md decide on these masses and their neighbours by the forces as they are.
 //!
 //! So a step takes any number of mode changes at its own cost. The error of their lateness falls with the square of the
 //! step's length, like that of the method; it is estimated together with that one, and where it is too large the step

@@ -1,5 +1,5 @@
 //! The rules of mode changes, at the start and during a run: impact, lift, stop, stick, break. They are those of
-//! model.md.
+//! docs/model.md.
 
 use crate::model::{CarrierPoint, CarrierPosition, Forces, Mode, Model, State, SurfacePoint};
 use crate::scene::Initial;

@@ -52,15 +52,15 @@ pub(super) enum Error {
     DerivativeOrder { name: String, order: i32 },
     #[error("{0} has no derivative by time; only F_x and F_z have")]
     NoOutputDerivative(String),
-    #[error("{0} is no output, whose directional derivative could be asked for")]
+    #[error("{0} is not an output; directional derivatives exist only for outputs")]
     NoUnknown(String),
-    #[error("{0} is no input, by which an output could be derived")]
+    #[error("{0} is not an input; derivatives exist only with respect to the inputs")]
     NoKnown(String),
     #[error("{name} is a fixed parameter and cannot be set in the state {state}: its value stays")]
     Late { name: String, state: State },
     #[error(transparent)]
     Parameter(#[from] ParameterError),
-    #[error("{name} is {value}: it has no value here")]
+    #[error("{name} evaluates to {value} in this state")]
     NoValue { name: String, value: f64 },
     #[error("unknown log category \"{0}\"")]
     UnknownCategory(String),
@@ -80,9 +80,9 @@ pub(super) enum Error {
     Simulation(#[from] SimulationError),
     #[error("no values: the initialisation failed")]
     NoRun,
-    #[error("{0} is no FMU state of this instance")]
+    #[error("{0} is not an FMU state of this instance")]
     UnknownState(&'static str),
-    #[error("the byte string is no FMU state of this FMU: {0}")]
+    #[error("the byte string is not an FMU state of this FMU: {0}")]
     Serialised(#[from] RestoreError),
     #[error("the serialised FMU state has {needed} bytes, but its buffer has {given}")]
     SerialisedSize { needed: usize, given: usize },
@@ -137,7 +137,7 @@ pub(super) enum RestoreError {
     Mark,
     #[error("its format is {found}, expected {expected}")]
     Format { found: u32, expected: u32 },
-    #[error("its scene or version is another one")]
+    #[error("it is of another scene or another version")]
     Guid,
     #[error("it is cut short or has changed")]
     Changed,
@@ -157,7 +157,7 @@ pub(super) enum RestoreError {
 
 /// An input is not a number or larger than [`LARGEST`], or its derivative leads to such a value.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("the input {name} is {value:?} at t = {time} s: no step can be done")]
+#[error("the input {name} is {value:?} at t = {time} s, which is out of range; the step was not done")]
 pub struct InputOutOfRange {
     /// The input's name.
     pub name: &'static str,

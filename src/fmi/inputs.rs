@@ -223,6 +223,6 @@ mod tests {
         inputs.set_input(Input::U, 0.0);
         inputs.set_rate(Input::U, f64::INFINITY);
         let fault = inputs.motion((0.0, 0.0), 0.0, 1.0, Extrapolation::Linear).unwrap_err();
-        assert_eq!(fault.to_string(), "the input u is inf at t = 0 s: no step can be done");
+        assert_eq!(fault.to_string(), "the input u is inf at t = 0 s, which is out of range; the step was not done");
     }
 }

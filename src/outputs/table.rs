@@ -180,7 +180,7 @@ pub(super) static TABLE: [OutputRow; 35] = {
         layer(Output::ForceZ, Forces, "F_z", Real, Newton, "Force of the layer on the carrier along z, positive when compressed",
             |now| now.at.forces.on_carrier_z())
             .depending(elastic_z, |now, shift| now.at.force_changes(shift).1),
-        layer(Output::DissipatedPower, Dissipation, "P_diss", Real, Watt, "Power dissipated now",
+        layer(Output::DissipatedPower, Dissipation, "P_diss", Real, Watt, "Power dissipated at present",
             |now| now.at.powers().dissipated())
             .depending(dissipated_power, |now, shift| now.at.maxwell_power_change(shift) + now.at.friction_power_change(shift)),
         layer(Output::DissipatedEnergy, Dissipation, "E_diss", Real, Joule, "Energy dissipated since the start, all channels",
@@ -196,10 +196,10 @@ pub(super) static TABLE: [OutputRow; 35] = {
             .only_where(|scene| scene.friction.is_some()),
         layer(Output::ImpactEnergy, Dissipation, "dissipation.E_impact", Real, Joule, "Energy dissipated in impacts",
             |now| now.at.energies.impact),
-        layer(Output::Hysteresis, Friction, "friction.F_hysteresis", Real, Newton, "Tangential force of the normal forces on the slopes",
+        layer(Output::Hysteresis, Friction, "friction.F_hysteresis", Real, Newton, "Tangential force by hysteresis: the tangential part of the normal contact forces on the slopes",
             |now| now.contact_sums().hysteresis)
             .depending(elastic, |now, shift| now.at.contact_sum(shift, ContactChange::hysteresis)),
-        layer(Output::Adhesion, Friction, "friction.F_adhesion", Real, Newton, "Tangential force of the friction in the contacts",
+        layer(Output::Adhesion, Friction, "friction.F_adhesion", Real, Newton, "Tangential force by adhesion: the tangential part of the friction forces in the contacts",
             |now| now.contact_sums().adhesion)
             .depending(elastic_friction, |now, shift| now.at.contact_sum(shift, ContactChange::adhesion)),
         layer(Output::FrictionCoefficient, Friction, "friction.coefficient", Real, One, "|F_x|/F_z, 0 where F_z <= 0",
@@ -230,13 +230,13 @@ pub(super) static TABLE: [OutputRow; 35] = {
         layer(Output::EnergyResidual, Energy, "energy.residual", Real, Joule, "Residual of the energy balance: the numerical error of the run",
             |now| now.energy_residual())
             .depending(elastic, |now, shift| -now.at.elastic_energy_change(shift)),
-        layer(Output::TangentXU, Tangent, "tangent.dF_x_du", Real, NewtonPerMeter, "Change of F_x at the end of a step with the target of u in that step",
+        layer(Output::TangentXU, Tangent, "tangent.dF_x_du", Real, NewtonPerMeter, "Derivative of F_x at the end of a communication step with respect to u there",
             |now| now.at.tangents[0]),
-        layer(Output::TangentXW, Tangent, "tangent.dF_x_dw", Real, NewtonPerMeter, "Change of F_x at the end of a step with the target of w in that step",
+        layer(Output::TangentXW, Tangent, "tangent.dF_x_dw", Real, NewtonPerMeter, "Derivative of F_x at the end of a communication step with respect to w there",
             |now| now.at.tangents[1]),
-        layer(Output::TangentZU, Tangent, "tangent.dF_z_du", Real, NewtonPerMeter, "Change of F_z at the end of a step with the target of u in that step",
+        layer(Output::TangentZU, Tangent, "tangent.dF_z_du", Real, NewtonPerMeter, "Derivative of F_z at the end of a communication step with respect to u there",
             |now| now.at.tangents[2]),
-        layer(Output::TangentZW, Tangent, "tangent.dF_z_dw", Real, NewtonPerMeter, "Change of F_z at the end of a step with the target of w in that step",
+        layer(Output::TangentZW, Tangent, "tangent.dF_z_dw", Real, NewtonPerMeter, "Derivative of F_z at the end of a communication step with respect to w there",
             |now| now.at.tangents[3]),
         layer(Output::Steps, Solver, "solver.steps", Integer, One, "Accepted steps since the start",
             |now| as_integer(now.at.counters.steps)),

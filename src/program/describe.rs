@@ -260,23 +260,27 @@ fn reduction(scene: &Scene) -> Vec<LabelledLine> {
 
 fn long_times(reduction: &Reduction) -> String {
     if reduction.run.is_finite() {
-        format!("long against the run of {:.4e} s becomes a spring; beyond it the bound grows with time", reduction.run)
+        format!(
+            "elements with relaxation times much longer than the run of {:.4e} s become springs; for a longer run the bound grows in proportion",
+            reduction.run
+        )
     } else {
-        "no [[excitation]], so the length of the run is not known: nothing is long, no element becomes a spring".into()
+        "no [[excitation]], so the duration of the run is not known: no element becomes a spring".into()
     }
 }
 
 fn short_times(scene: &Scene, reduction: &Reduction) -> String {
     if scene.layer.initial == Initial::Undeformed {
-        return "undeformed at the start, where no damper is equivalent to an element: none becomes one".into();
+        return "undeformed at the start, where no damper is equivalent to an element: no element becomes a damper"
+            .into();
     }
     let period = if reduction.run.is_finite() {
         "the shortest period of carrier, profile and layer"
     } else {
-        "the layer's own shortest period, the carrier's motion not being known,"
+        "the layer's own shortest period (the carrier's motion is not known),"
     };
     format!(
-        "short against {period} 2π/ω, ω = {:.4e} rad/s, becomes a damper; a jump of ė adds d |Δė| for about τ",
+        "elements with relaxation times much shorter than {period} 2π/ω, ω = {:.4e} rad/s, become dampers; a jump of the elongation rate ė adds an error of d |Δė| for about τ",
         reduction.frequency
     )
 }

@@ -266,7 +266,7 @@ const RATE_SHEAR: &[Key] = &[
         "sharpness",
         NOT_NEGATIVE,
         Unit::One,
-        "How sharply the rate-dependent shear force falls about its largest, with the squared decades of the speed",
+        "Coefficient c in exp(-c log10(v/v0)^2), the fall of the rate-dependent shear force about its maximum",
     ),
     number(
         "creep_speed",
@@ -281,8 +281,8 @@ const RATE_SHEAR: &[Key] = &[
 const SOLVER: &[Key] = &[
     word::<Method>(
         "method",
-        "How mode changes are treated: event locates every one, step takes them at the ends of its steps, auto changes \
-         to step where they are many",
+        "event: locate each mode change; step: correct mode changes at the end of each step; auto: switch between the \
+         two",
     ),
     number("relative_tolerance", POSITIVE.up_to(0.1), Unit::One, "Relative tolerance of the local error"),
     number(

@@ -116,7 +116,7 @@ impl Material {
         )
     }
 
-    /// A link whose constants are the moduli times `size`, m (model.md, section 7).
+    /// A link whose constants are the moduli times `size`, m (docs/model.md, section 7).
     fn link(&self, size: f64) -> Link {
         let shift = self.shift_factor();
         let element = |term: &PronyTerm| MaxwellElement {

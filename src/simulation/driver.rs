@@ -15,12 +15,11 @@ use crate::scene::Method;
 const OF_PERIOD: f64 = 0.25;
 /// The least share of the length asked for at which a shorter step is given up.
 const SHORTEST_CUT: f64 = 1e-12;
-/// Mode changes per time step, in the mean, from which on the run is time-stepped: half as much again as would pay, so
-/// that a few changes are still located.
-const MANY: f64 = 0.5;
-/// Below this many the run is event-driven again: a third of what would pay, so that it does not alternate between the
-/// two.
-const FEW: f64 = 0.1;
+/// Mean number of mode changes per time step above which the run switches to time-stepping: 1.5 times the break-even of
+/// 1/3, so that a few changes are still located.
+const TO_TIME_STEPPING: f64 = 0.5;
+/// The number below which it switches back to events: well below the break-even, so that it does not alternate.
+const TO_EVENTS: f64 = 0.1;
 /// Time steps over which the mean is taken.
 const MEMORY: f64 = 8.0;
 
@@ -181,7 +180,11 @@ impl Run {
 
     fn switch_if_due(&mut self, time_step: f64) {
         let mode_changes_per_step = self.state.mode_changes_per_step;
-        let due = if self.state.time_stepping { mode_changes_per_step < FEW } else { mode_changes_per_step > MANY };
+        let due = if self.state.time_stepping {
+            mode_changes_per_step < TO_EVENTS
+        } else {
+            mode_changes_per_step > TO_TIME_STEPPING
+        };
         if !due {
             return;
         }

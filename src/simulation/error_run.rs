@@ -20,7 +20,7 @@ use crate::outputs::{Accounts, Counters};
 /// 1.4 times the run's steps where events are located, 2.2 times with time-stepping.
 const TIGHTER: f64 = 0.2;
 /// The share of the error that shows in the difference of the two runs, where errors fall with the tolerance.
-const SHOWN: f64 = 1.0 - TIGHTER;
+const VISIBLE_SHARE: f64 = 1.0 - TIGHTER;
 /// Its steps are at most this share of the run's. Where steps only grow, both would take the same, with the same error.
 const SHORTER: f64 = 0.7;
 /// Limit of its work in one motion, as a multiple of the run's, in addition to [`LEAST_WORK`]. Beyond it the error is not
@@ -83,7 +83,7 @@ impl ErrorRun {
     /// Where this run could not go on, the error is unknown and counts as the whole force.
     pub(super) fn compare(&mut self, s: f64, force: f64, counters: &mut Counters) {
         match self.force_z_at(s) {
-            Some(reference) => counters.note_error(force, reference, SHOWN),
+            Some(reference) => counters.note_error(force, reference, VISIBLE_SHARE),
             None => counters.note_unknown(force),
         }
     }

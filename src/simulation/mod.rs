@@ -48,7 +48,7 @@ pub struct Simulation {
 
 impl Simulation {
     /// Starts a run of `scene`: the layer hangs under the carrier, at rest or moving with it, and masses that would lie
-    /// under the profile are lifted onto it (model.md, section 5).
+    /// under the profile are lifted onto it (docs/model.md, section 5).
     ///
     /// # Errors
     /// [`SimulationError::OutOfRange`] where `start` is not finite, [`SimulationError::Scene`] where parameters set one
@@ -180,8 +180,8 @@ impl Simulation {
         result
     }
 
-    /// [`advance_observed`](Self::advance_observed), but for the way back: on an error the run stands anywhere within
-    /// the motion.
+    /// [`advance_observed`](Self::advance_observed) without rollback: after an error the run stands anywhere within the
+    /// motion.
     fn follow(
         &mut self,
         motion: &Motion,
@@ -192,7 +192,7 @@ impl Simulation {
         let clock = self.run.settings.accounts.solver.then(ThreadTime::now);
         let mut observer = Observer { times, clock, run_time: self.run_time, observe };
         self.show_rows(0.0, &mut observer);
-        if self.run.has_risen(until_force) {
+        if self.run.has_reached(until_force) {
             return Ok(Some(0.0));
         }
         self.run.enter(motion);
@@ -200,37 +200,62 @@ impl Simulation {
             error_run.enter(motion);
         }
         let mut work = WorkLimit::new(self.run.settings.max_steps);
-        let mut risen = self.run.has_risen(until_force);
-        while self.run.state.s < motion.duration && !risen {
-            let mut step = self.run.next_step(motion.duration, &mut work)?;
-            if let Some(share) = self.run.rises_within(&step, until_force) {
-                let h = share * step.h;
-                step = self.run.cut_step(h, &mut work)?;
-                risen = step.h == h;
-            }
-            if let Some(error_run) = &mut self.error_run {
-                error_run.note_step(step.h, work.tried());
-            }
-            let mut end = self.run.end_of(&step, motion.duration);
-            while let Some(time) = observer.next_before(end) {
-                let theta = (time - self.run.state.s) / step.h;
-                if self.run.can_show_within(step.h, theta) {
-                    self.show_within(&step, theta, &mut observer);
-                } else {
-                    (step, end) = self.run.cut_step_at(time, motion.duration, &mut work)?;
-                    risen = false;
-                }
-            }
+        let mut reached = self.run.has_reached(until_force);
+        while self.run.state.s < motion.duration && !reached {
+            let (mut step, at_force) = self.next_step(motion.duration, until_force, &mut work)?;
+            let (end, shortened) = self.show_rows_within(&mut step, motion.duration, &mut work, &mut observer)?;
             self.run.take_step(&step, end);
-            risen = risen || self.run.has_risen(until_force);
-            if risen || end >= motion.duration {
+            reached = (at_force && !shortened) || self.run.has_reached(until_force);
+            if reached || end >= motion.duration {
                 self.run.find_tangents();
             }
             self.show_rows(end, &mut observer);
         }
         self.end_error_run();
         self.run_time = observer.run_time_now();
-        Ok(risen.then_some(self.run.state.s))
+        Ok(reached.then_some(self.run.state.s))
+    }
+
+    /// The next good step, and whether it was shortened to end where F_z reaches the force.
+    fn next_step(
+        &mut self,
+        duration: f64,
+        until_force: Option<f64>,
+        work: &mut WorkLimit,
+    ) -> Result<(TrialStep, bool), SimulationError> {
+        let mut step = self.run.next_step(duration, work)?;
+        let mut at_force = false;
+        if let Some(share) = self.run.reaches_within(&step, until_force) {
+            let h = share * step.h;
+            step = self.run.cut_step(h, work)?;
+            at_force = step.h == h;
+        }
+        if let Some(error_run) = &mut self.error_run {
+            error_run.note_step(step.h, work.tried());
+        }
+        Ok((step, at_force))
+    }
+
+    /// Shows the rows that lie within `step`; where its dense output is not good enough, the step is shortened to end at
+    /// the row. Returns the end of the step, s after the start of the motion, and whether it was shortened.
+    fn show_rows_within(
+        &mut self,
+        step: &mut TrialStep,
+        duration: f64,
+        work: &mut WorkLimit,
+        observer: &mut Observer<'_, impl FnMut(f64, &Snapshot<'_>)>,
+    ) -> Result<(f64, bool), SimulationError> {
+        let (mut end, mut shortened) = (self.run.end_of(step, duration), false);
+        while let Some(time) = observer.next_before(end) {
+            let theta = (time - self.run.state.s) / step.h;
+            if self.run.can_show_within(step.h, theta) {
+                self.show_within(step, theta, observer);
+            } else {
+                (*step, end) = self.run.cut_step_at(time, duration, work)?;
+                shortened = true;
+            }
+        }
+        Ok((end, shortened))
     }
 
     /// Shows the rows up to the time `end` of the motion, where the run stands.

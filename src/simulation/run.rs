@@ -53,7 +53,7 @@ pub(super) struct RunState {
     pub tangents: [f64; 4],
     /// u and w at the start of the run, m.
     pub start: [f64; 2],
-    /// Whether the time-stepping method has the run, or the event-driven one.
+    /// Whether time-stepping is active, or the event-driven method.
     pub time_stepping: bool,
     /// The running mean of the mode changes per time step; of the method *auto* alone.
     pub mode_changes_per_step: f64,
@@ -323,7 +323,7 @@ impl Run {
         }
     }
 
-    /// Evaluates the forces as the run stands; the carrier.
+    /// Evaluates the link forces in the current state and returns the carrier there.
     pub(super) fn evaluate_forces(&mut self) -> CarrierPoint {
         let carrier = self.state.carrier.at(self.state.s);
         self.workspace.forces.evaluate(&self.model, &self.state.layer.state, &carrier);
@@ -337,7 +337,7 @@ impl Run {
     }
 
     /// Whether F_z has reached the force `until`, N.
-    pub(super) fn has_risen(&mut self, until: Option<f64>) -> bool {
+    pub(super) fn has_reached(&mut self, until: Option<f64>) -> bool {
         until.is_some_and(|force| self.force_z() >= force)
     }
 

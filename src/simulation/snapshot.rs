@@ -72,7 +72,7 @@ impl Run {
     }
 
     /// The share of the step after which F_z is the force `until`, N; `None` where `step` ends below.
-    pub(super) fn rises_within(&mut self, step: &TrialStep, until: Option<f64>) -> Option<f64> {
+    pub(super) fn reaches_within(&mut self, step: &TrialStep, until: Option<f64>) -> Option<f64> {
         let TrialStep { h, share } = *step;
         let force = until.filter(|&force| self.force_z_within(h, share) >= force)?;
         Some(bracketed_root(|theta| self.force_z_within(h, theta) - force, (0.0, share), 1e-14))

@@ -39,9 +39,9 @@ pub(super) struct BlockMeans {
     pub(super) drag: f64,
     /// F_z, N.
     pub(super) load: f64,
-    /// Tangential force of the normal forces on the slopes, against the motion, N.
+    /// Tangential force by hysteresis: the tangential part of the normal contact forces on the slopes, against the motion, N.
     pub(super) hysteresis: f64,
-    /// Tangential force of the friction in the contacts, against the motion, N.
+    /// Tangential force by adhesion: the tangential part of the friction forces in the contacts, against the motion, N.
     pub(super) adhesion: f64,
     /// Masses in contact over all masses, 1.
     pub(super) contact: f64,

@@ -96,12 +96,12 @@ fn knowns_are_inputs_and_unknowns_real_outputs_and_a_refused_call_writes_nothing
     let [force, mass, count, element] =
         ["F_x", "layer.mass", "contact.count", "element[1].F_N"].map(|name| fmu.reference(name));
     for (unknown, known, by, expected) in [
-        (0, 0, 1.0, "u is no output"),
-        (mass, 0, 1.0, "layer.mass is no output"),
-        (element, 0, 1.0, "element[1].F_N is no output"),
+        (0, 0, 1.0, "u is not an output"),
+        (mass, 0, 1.0, "layer.mass is not an output"),
+        (element, 0, 1.0, "element[1].F_N is not an output"),
         (count, 0, 1.0, "contact.count (value reference"),
-        (force, mass, 1.0, "layer.mass is no input"),
-        (force, force, 1.0, "F_x is no input"),
+        (force, mass, 1.0, "layer.mass is not an input"),
+        (force, force, 1.0, "F_x is not an input"),
         (force, 9999, 1.0, "9999"),
         (9999, 0, 1.0, "9999"),
         (force, 0, f64::NAN, "dvKnown is NaN"),

@@ -66,7 +66,7 @@ fn freed_and_foreign_states_are_refused() {
     let mut foreign = other.state();
     for bad in [freed, ptr::null_mut(), foreign, ptr::without_provenance_mut(8)] {
         assert_eq!(fmu.set_state(bad), ERROR);
-        assert!(fmu.message().contains("no FMU state of this instance"));
+        assert!(fmu.message().contains("not an FMU state of this instance"));
     }
     assert_eq!((fmu.free_state(&mut foreign), fmu.get_state(&mut foreign)), (ERROR, ERROR));
     assert_eq!(other.set_state(foreign), OK);
@@ -176,7 +176,7 @@ fn a_string_of_another_length_is_refused() {
     let fmu = in_contact();
     let bytes = fmu.frozen();
     for length in (0..bytes.len()).step_by(7).chain([bytes.len() - 1]) {
-        assert!(refused(&fmu, &bytes[..length]).contains("no FMU state"), "{length}");
+        assert!(refused(&fmu, &bytes[..length]).contains("not an FMU state"), "{length}");
     }
     refused(&fmu, &[&bytes[..], &[0]].concat());
     assert_eq!(fmu.frozen(), bytes);
@@ -201,7 +201,7 @@ fn a_string_changed_in_any_byte_is_refused() {
 fn another_scene_or_format_is_refused_and_named() {
     let fmu = Fmu::running();
     let other = Fmu::running_with(&SCENE.replace("coulomb = 0.3", "coulomb = 0.4"));
-    assert!(refused(&fmu, &other.frozen()).contains("its scene or version is another one"));
+    assert!(refused(&fmu, &other.frozen()).contains("it is of another scene or another version"));
     let mut later = fmu.frozen();
     later[8] += 1;
     assert!(refused(&fmu, &later).contains("its format is 6, expected 5"));
@@ -219,7 +219,7 @@ fn wrong_pointers_and_sizes_are_refused() {
         assert!(text.contains(&size.to_string()) && text.contains(&wrong.to_string()), "{text}");
     }
     assert_eq!(fmu.serialise(ptr::null_mut(), &mut [0]), ERROR);
-    assert!(fmu.message().contains("no FMU state of this instance"));
+    assert!(fmu.message().contains("not an FMU state of this instance"));
     // SAFETY: NULL is what is tested.
     unsafe {
         assert_eq!(fmi2SerializedFMUstateSize(fmu.c, state, ptr::null_mut()), ERROR);
