@@ -23,6 +23,19 @@
 //! | `robustness` | catalogue of perturbations of a scene and the judge of their runs, for reports and tests |
 //! | program | the command line program: simulate, sweep, fit, pack, report, plot |
 //!
+//! # Where to make a change
+//!
+//! | change | files |
+//! |---|---|
+//! | a friction law | `model/friction.rs` (limit at rest, force in slip) and its constants in `model/mod.rs`; its derivative in `integrator/stage/newton.rs`, power in `model/energy.rs`, directional derivative in `outputs/snapshot.rs`; the impact in `contact/laws.rs`; its keys as below |
+//! | a kind of link | `LinkKind` in `scene/mod.rs`; `model/forces.rs`, `model/energy.rs`, `model/scales.rs`; its blocks in `integrator/stage/newton.rs`, its force in `integrator/dense.rs` and `contact/correction.rs`; its keys and its size in `scene/material.rs` |
+//! | a key of the scene, a parameter | a line in `scene/keys.rs`, a field in `scene/mod.rs`, a line in `scene/reader`; a parameter also in `scene/parameters.rs` |
+//! | an output | a variant of [`outputs::Output`] and a row in `outputs/table.rs` |
+//! | a column of a sweep's table | `element/table_format.rs`; its value in `program/sweep/point.rs` and `slide.rs` |
+//! | the rules of mode changes, the impact | `contact/laws.rs`, for both methods |
+//! | what an FMU state holds | `FmuState` in `fmi/state.rs`, `RunState` in `simulation/run.rs` |
+//! | the carrier's motion as an unknown | `model/carrier.rs`; `integrator/method.rs` and `stage` (a border of the block tridiagonal system), `integrator/dense.rs`, `integrator/error.rs`; impulses in `contact/correction.rs`; `RunState` |
+//!
 //! ```
 //! use asperity::outputs::variables;
 //! use asperity::scene::{Path, Scene};
@@ -89,7 +102,7 @@
 //! | σ | `Mode::direction()` | 1 | direction of slip along t |
 //! | h, γ, β | `h`, `Tableau::gamma()`, `beta` | s, 1, s | step, coefficient of a stage, γh |
 //! | G, K | `Jenkins::force`, `stiffness` | N, N/m | spring of a point-contact element, G = -F_x |
-//! | a, y | `Contact` over the approach | m, 1 | minus the separation of an element's carrier; ln of its pressure |
+//! | a, y | `Contact` over the approach | m, 1 | point-contact element: approach, minus the separation; ln of the pressure |
 //! | P_damper, P_maxwell, P_friction, P_in | `Powers::damper`, … | W | powers of the channels and of the carrier |
 //! | E_damper, E_maxwell, E_friction, E_in | `ChannelEnergies::damper`, … | J | their integrals over time |
 //! | E_impact | `Energies::impact` | J | energy lost in impacts |

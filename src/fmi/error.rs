@@ -12,7 +12,7 @@ use crate::element::{self, ElementError, TableError};
 use crate::scene::{LARGEST, ParameterError, SMALLEST, SceneError};
 use crate::simulation::{self, SimulationError};
 
-use super::lifecycle::{Function, State};
+use super::lifecycle::{Function, LifecycleState};
 
 /// The status that a function returns; fmi2Pending never occurs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -33,9 +33,9 @@ pub(super) enum Status {
 #[derive(Debug, thiserror::Error)]
 pub(super) enum Error {
     #[error("not allowed in the state {0}")]
-    NotAllowed(State),
+    NotAllowed(LifecycleState),
     #[error("not allowed in the state {0}: no step is asynchronous, so none is ever in progress")]
-    NothingToCancel(State),
+    NothingToCancel(LifecycleState),
     #[error("{0} is NULL")]
     Null(&'static str),
     #[error("{0} is not UTF-8")]
@@ -57,7 +57,7 @@ pub(super) enum Error {
     #[error("{0} is not an input; derivatives exist only with respect to the inputs")]
     NoKnown(String),
     #[error("{name} is a fixed parameter and cannot be set in the state {state}: its value stays")]
-    Late { name: String, state: State },
+    Late { name: String, state: LifecycleState },
     #[error(transparent)]
     Parameter(#[from] ParameterError),
     #[error("{name} evaluates to {value} in this state")]
@@ -112,7 +112,7 @@ pub(super) enum Error {
 
 impl Error {
     /// The error of calling `function` in a `state` that does not allow it.
-    pub(super) fn not_allowed(function: Function, state: State) -> Self {
+    pub(super) fn not_allowed(function: Function, state: LifecycleState) -> Self {
         if function == Function::CancelStep { Self::NothingToCancel(state) } else { Self::NotAllowed(state) }
     }
 
@@ -214,9 +214,9 @@ mod tests {
 
     #[test]
     fn a_call_not_allowed_names_the_state() {
-        let error = Error::not_allowed(Function::DoStep, State::Instantiated);
+        let error = Error::not_allowed(Function::DoStep, LifecycleState::Instantiated);
         assert_eq!(error.to_string(), "not allowed in the state instantiated");
-        let error = Error::not_allowed(Function::CancelStep, State::StepComplete).to_string();
+        let error = Error::not_allowed(Function::CancelStep, LifecycleState::StepComplete).to_string();
         assert!(error.contains("stepComplete") && error.contains("asynchronous"), "{error}");
     }
 

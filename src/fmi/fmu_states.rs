@@ -14,7 +14,7 @@ use uuid::Uuid;
 use super::definition::Parameters;
 use super::error::{Error, RestoreError, Status};
 use super::inputs::Inputs;
-use super::lifecycle::State;
+use super::lifecycle::LifecycleState;
 use super::model::{InstanceModel, ModelState};
 use super::state::{Clock, FmuState};
 use crate::outputs::Variable;
@@ -72,7 +72,7 @@ const CHECKSUM: usize = 16;
 /// An [`FmuState`] as it is serialised: with the parameters set instead of the definition.
 #[derive(Serialize, Deserialize)]
 struct WrittenState {
-    lifecycle: State,
+    lifecycle: LifecycleState,
     parameters: BTreeMap<String, Value>,
     inputs: Inputs,
     clock: Clock,
@@ -121,11 +121,13 @@ fn check_outputs(mut model: InstanceModel, outputs: &[Variable]) -> Result<(), R
 impl WrittenState {
     fn check(&self) -> Result<(), RestoreError> {
         let has_run = match self.lifecycle {
-            State::Instantiated | State::InitializationMode => self.model.is_none(),
-            State::StepComplete | State::StepFailed | State::Terminated => self.model.is_some(),
+            LifecycleState::Instantiated | LifecycleState::InitializationMode => self.model.is_none(),
+            LifecycleState::StepComplete | LifecycleState::StepFailed | LifecycleState::Terminated => {
+                self.model.is_some()
+            }
             // After a failed step or a failed initialisation.
-            State::Error => true,
-            State::Fatal => false,
+            LifecycleState::Error => true,
+            LifecycleState::Fatal => false,
         };
         match (has_run, self.clock.is_valid() && self.inputs.is_valid()) {
             (false, _) => Err(RestoreError::Invalid("its lifecycle and its run do not fit together")),

@@ -10,7 +10,7 @@ use crate::simulation::{MethodSwitch, ModeChange};
 use super::definition::{Catalogue, Definition, Parameters, Sources, guid};
 use super::error::{Error, Status, catch_panic};
 use super::fmu_states::{self, FmuStates};
-use super::lifecycle::{Function, State};
+use super::lifecycle::{Function, LifecycleState};
 use super::log::{Category, Log, Message, RunWarnings};
 use super::model::InstanceModel;
 use super::state::{Clock, InstanceState, OutputCache};
@@ -73,7 +73,7 @@ impl Instance {
             body(self)
         });
         let result = result.unwrap_or_else(|panic| {
-            self.state.lifecycle = State::Fatal;
+            self.state.lifecycle = LifecycleState::Fatal;
             Err(Error::Panic(panic))
         });
         let Err(error) = result else { return Status::Ok };
@@ -114,7 +114,7 @@ impl Instance {
 
     /// fmi2EnterInitializationMode
     pub(super) fn enter_initialization_mode(&mut self) -> Result<(), Error> {
-        self.state.lifecycle = State::InitializationMode;
+        self.state.lifecycle = LifecycleState::InitializationMode;
         Ok(())
     }
 
@@ -141,7 +141,7 @@ impl Instance {
 
     /// fmi2Terminate
     pub(super) fn terminate(&mut self) -> Result<(), Error> {
-        self.state.lifecycle = State::Terminated;
+        self.state.lifecycle = LifecycleState::Terminated;
         Ok(())
     }
 

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// The states of a co-simulation slave that this FMU can be in. Steps never run asynchronously, so the standard's
 /// stepInProgress and stepCanceled are never reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) enum State {
+pub(super) enum LifecycleState {
     /// After fmi2Instantiate and fmi2Reset.
     Instantiated,
     /// Between fmi2EnterInitializationMode and fmi2ExitInitializationMode.
@@ -24,7 +24,7 @@ pub(super) enum State {
     Fatal,
 }
 
-impl State {
+impl LifecycleState {
     /// The standard's name.
     fn name(self) -> &'static str {
         match self {
@@ -44,7 +44,7 @@ impl State {
     }
 }
 
-impl fmt::Display for State {
+impl fmt::Display for LifecycleState {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
     }
@@ -88,7 +88,7 @@ pub(super) enum Function {
 
 impl Function {
     /// Whether the function may be called in `state`.
-    pub(super) fn is_allowed(self, state: State) -> bool {
+    pub(super) fn is_allowed(self, state: LifecycleState) -> bool {
         self.rule().states.contains(&state)
     }
 
@@ -108,46 +108,47 @@ struct Rule {
     function: Function,
     name: &'static str,
     /// The states in which the function may be called.
-    states: &'static [State],
+    states: &'static [LifecycleState],
 }
 
-const fn rule(function: Function, name: &'static str, states: &'static [State]) -> Rule {
+const fn rule(function: Function, name: &'static str, states: &'static [LifecycleState]) -> Rule {
     Rule { function, name, states }
 }
 
 /// Every state. Fatal is an addition to the standard's table: an instance can be freed after a panic, since its memory is
 /// intact.
-const EVERY: &[State] = {
-    use State::{Error, Fatal, InitializationMode, Instantiated, StepComplete, StepFailed, Terminated};
+const EVERY: &[LifecycleState] = {
+    use LifecycleState::{Error, Fatal, InitializationMode, Instantiated, StepComplete, StepFailed, Terminated};
     &[Instantiated, InitializationMode, StepComplete, StepFailed, Terminated, Error, Fatal]
 };
 
 /// Every state but fatal.
-const ALIVE: &[State] = {
-    use State::{Error, InitializationMode, Instantiated, StepComplete, StepFailed, Terminated};
+const ALIVE: &[LifecycleState] = {
+    use LifecycleState::{Error, InitializationMode, Instantiated, StepComplete, StepFailed, Terminated};
     &[Instantiated, InitializationMode, StepComplete, StepFailed, Terminated, Error]
 };
 
 /// States in which outputs can be read; in the error state for debugging only.
-const READABLE: &[State] = {
-    use State::{Error, InitializationMode, StepComplete, StepFailed, Terminated};
+const READABLE: &[LifecycleState] = {
+    use LifecycleState::{Error, InitializationMode, StepComplete, StepFailed, Terminated};
     &[InitializationMode, StepComplete, StepFailed, Terminated, Error]
 };
 
 /// States in which inputs can be set. stepFailed is an addition to the standard's table: a discarded step left everything
 /// as it was, so a master without rollback may try a smaller step with other inputs.
-const WRITABLE: &[State] = {
-    use State::{InitializationMode, Instantiated, StepComplete, StepFailed};
+const WRITABLE: &[LifecycleState] = {
+    use LifecycleState::{InitializationMode, Instantiated, StepComplete, StepFailed};
     &[Instantiated, InitializationMode, StepComplete, StepFailed]
 };
 
 /// States after a step was possible.
-const STEPPED: &[State] = &[State::StepComplete, State::StepFailed, State::Terminated];
+const STEPPED: &[LifecycleState] =
+    &[LifecycleState::StepComplete, LifecycleState::StepFailed, LifecycleState::Terminated];
 
 /// The table: one row per function, in the order of [`Function`].
 #[rustfmt::skip]
 const TABLE: [Rule; 31] = {
-    use State::{Error, InitializationMode, Instantiated, StepComplete, StepFailed, Terminated};
+    use LifecycleState::{Error, InitializationMode, Instantiated, StepComplete, StepFailed, Terminated};
     [
         rule(Function::SetDebugLogging, "fmi2SetDebugLogging", ALIVE),
         rule(Function::FreeInstance, "fmi2FreeInstance", EVERY),
@@ -199,14 +200,15 @@ mod tests {
     #[test]
     fn after_a_discard_inputs_and_steps_are_accepted() {
         for function in [Function::SetReal, Function::SetRealInputDerivatives, Function::DoStep] {
-            assert!(function.is_allowed(State::StepFailed));
-            assert!(!function.is_allowed(State::Error));
+            assert!(function.is_allowed(LifecycleState::StepFailed));
+            assert!(!function.is_allowed(LifecycleState::Error));
         }
     }
 
     #[test]
     fn after_a_panic_an_instance_can_only_be_freed() {
-        let allowed = TABLE.iter().map(|rule| rule.function).filter(|function| function.is_allowed(State::Fatal));
+        let allowed =
+            TABLE.iter().map(|rule| rule.function).filter(|function| function.is_allowed(LifecycleState::Fatal));
         assert_eq!(allowed.collect::<Vec<_>>(), [Function::FreeInstance]);
     }
 }

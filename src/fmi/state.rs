@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::definition::{Catalogue, Parameters};
 use super::error::{Error, RestoreError, Status};
 use super::inputs::Inputs;
-use super::lifecycle::State;
+use super::lifecycle::LifecycleState;
 use super::model::{InstanceModel, ModelState};
 use crate::scene::{SMALLEST, is_possible};
 
@@ -15,7 +15,7 @@ use crate::scene::{SMALLEST, is_possible};
 #[derive(Debug)]
 pub(super) struct InstanceState {
     /// The state of the life cycle.
-    pub(super) lifecycle: State,
+    pub(super) lifecycle: LifecycleState,
     /// What is simulated, with the parameters set.
     pub(super) parameters: Arc<Parameters>,
     pub(super) inputs: Inputs,
@@ -29,7 +29,7 @@ pub(super) struct InstanceState {
 /// An FMU state: a copy of an instance's state without the workspace of its model.
 #[derive(Clone, Debug)]
 pub(super) struct FmuState {
-    pub(super) lifecycle: State,
+    pub(super) lifecycle: LifecycleState,
     pub(super) parameters: Arc<Parameters>,
     pub(super) inputs: Inputs,
     pub(super) clock: Clock,
@@ -42,7 +42,7 @@ impl InstanceState {
     /// The state after fmi2Instantiate.
     pub(super) fn new(parameters: Arc<Parameters>) -> Self {
         Self {
-            lifecycle: State::Instantiated,
+            lifecycle: LifecycleState::Instantiated,
             parameters,
             inputs: Inputs::default(),
             clock: Clock::default(),
@@ -70,7 +70,7 @@ impl InstanceState {
     /// Ends the initialisation.
     pub(super) fn start(&mut self) -> Result<(), Error> {
         let result = self.model().map(|_| ());
-        self.lifecycle = if result.is_ok() { State::StepComplete } else { State::Error };
+        self.lifecycle = if result.is_ok() { LifecycleState::StepComplete } else { LifecycleState::Error };
         result
     }
 
@@ -83,9 +83,9 @@ impl InstanceState {
         };
         self.last_step = result.as_ref().map_or_else(Error::status, |()| Status::Ok);
         self.lifecycle = match self.last_step {
-            Status::Ok | Status::Warning => State::StepComplete,
-            Status::Discard => State::StepFailed,
-            Status::Error | Status::Fatal => State::Error,
+            Status::Ok | Status::Warning => LifecycleState::StepComplete,
+            Status::Discard => LifecycleState::StepFailed,
+            Status::Error | Status::Fatal => LifecycleState::Error,
         };
         result
     }

@@ -13,7 +13,7 @@ use crate::model::{Carrier, CarrierPoint, ChannelEnergies, Exchange, Mode, Model
 
 /// One Runge-Kutta method with its workspace.
 #[derive(Clone, Debug)]
-pub(super) struct Method<const N: usize> {
+pub(super) struct RungeKutta<const N: usize> {
     pub tableau: &'static Tableau<N>,
     pub continuous_weights: ContinuousWeights<N>,
     pub initial_guess: InitialGuess<N>,
@@ -69,7 +69,7 @@ impl<const N: usize> InitialGuess<N> {
     }
 }
 
-impl<const N: usize> Method<N> {
+impl<const N: usize> RungeKutta<N> {
     /// Solves all stages of a step.
     pub(super) fn attempt(
         &mut self,

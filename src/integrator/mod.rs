@@ -23,7 +23,7 @@ pub use tableau::{ContinuousWeights, ESDIRK5, METHOD, SDIRK2, STAGES, TWO_STAGES
 use crate::model::{Carrier, CarrierPoint, ChannelEnergies, Exchange, Forces, Model, State};
 use error::ErrorWorkspace;
 use maxwell::Maxwell;
-use method::{InitialGuess, Method, Stages, StepInput};
+use method::{InitialGuess, RungeKutta, Stages, StepInput};
 use sensitivity::{Tangent, Target};
 use stage::{ConvergenceTest, StageSolver};
 use tableau::{GAMMA, SDIRK2_ESTIMATE};
@@ -38,8 +38,8 @@ const STEEP_SLACK: f64 = 0.1;
 /// Attempts and accepts steps: the values at the stages of the last attempted step, and workspace.
 #[derive(Clone, Debug)]
 pub struct Integrator {
-    seven_stages: Method<STAGES>,
-    two_stages: Method<TWO_STAGES>,
+    seven_stages: RungeKutta<STAGES>,
+    two_stages: RungeKutta<TWO_STAGES>,
     stages: Stages,
     error_workspace: ErrorWorkspace,
 }
@@ -94,13 +94,13 @@ impl Integrator {
     pub fn new(model: &Model, tracked: Tracked, steps: Steps) -> Self {
         let targets: &[Target] = if tracked.tangents { &[Target::U, Target::W] } else { &[] };
         Self {
-            seven_stages: Method {
+            seven_stages: RungeKutta {
                 tableau: &METHOD,
                 continuous_weights: ContinuousWeights::new(&METHOD),
                 initial_guess: InitialGuess::extrapolated(&METHOD.c),
                 maxwell: Maxwell::new(model, steps.seven_stages()),
             },
-            two_stages: Method {
+            two_stages: RungeKutta {
                 tableau: &SDIRK2,
                 continuous_weights: ContinuousWeights::sdirk2(),
                 initial_guess: InitialGuess::Limited,
