@@ -74,7 +74,6 @@ pub struct EndCorrection {
     force: f64,
     /// By mass: whether a correction changes its forces.
     concerned: Vec<bool>,
-    /// Extremes of the whole profile.
     profile: Bounds,
     /// [`Model::long_term_stiffness`], N/m: it relates a friction force past its limit to an elongation.
     long_term: Option<f64>,
@@ -216,7 +215,6 @@ impl Lateness {
 
 struct Correction<'a> {
     step: FixedModeStep<'a>,
-    /// The carrier at the end.
     carrier: CarrierPoint,
     end: StepEnd<'a>,
     energies: CorrectionEnergies,

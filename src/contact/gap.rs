@@ -47,7 +47,6 @@ pub fn first_touch(
 struct Search<'a> {
     profile: &'a Spline,
     tolerance: f64,
-    /// Parts examined so far.
     parts: u32,
 }
 

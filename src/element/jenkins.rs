@@ -25,7 +25,6 @@ const ROOT: f64 = 1e-14;
 /// The rates of a straight motion, m/s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Rates {
-    /// u̇
     pub(super) u: f64,
     /// ȧ = -ẇ
     pub(super) approach: f64,
@@ -39,7 +38,6 @@ pub(super) trait Listener {
     fn changed(&mut self, elapsed: f64, mode: Mode);
 }
 
-/// The spring and the slider.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Jenkins {
     /// G = -F_x, N.
@@ -57,12 +55,10 @@ struct Phase<'a> {
     from: f64,
     here: Contact,
     start: Jenkins,
-    /// Whether the stiffness grows.
     rising: bool,
 }
 
 impl Jenkins {
-    /// A relaxed spring.
     pub(super) fn new(contact: &Contact) -> Self {
         let stiffness = contact.stiffness.value;
         Self { force: 0.0, stiffness, mode: if stiffness > 0.0 { Mode::Stick } else { Mode::Free } }

@@ -42,7 +42,6 @@ impl Series {
     }
 }
 
-/// The table at one temperature.
 #[derive(Clone, Debug)]
 pub(super) struct Law {
     /// A, m².
@@ -118,7 +117,6 @@ fn at_temperature(table: &Table, quantity: Quantity, node: Node, kelvin: f64) ->
     series.at(temperatures, interval_of(temperatures, kelvin), kelvin).value
 }
 
-/// The law at one speed.
 #[derive(Clone, Debug)]
 pub(super) struct Curve {
     /// The speed, between the least and the largest of the table, m/s.

@@ -29,7 +29,6 @@ pub(super) enum Status {
     Fatal,
 }
 
-/// Why a call fails.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum Error {
     #[error("not allowed in the state {0}")]

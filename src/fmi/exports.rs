@@ -19,7 +19,6 @@ use super::instance::Instance;
 use super::lifecycle::Function;
 use super::log::Message;
 
-/// What a component points to.
 struct Component {
     instance: Instance,
     callbacks: Callbacks,
@@ -90,7 +89,6 @@ unsafe fn text<'a>(name: &'static str, pointer: fmi2String) -> Result<&'a str, E
     unsafe { CStr::from_ptr(pointer) }.to_str().map_err(|_| Error::NotText(name))
 }
 
-/// Strings that the master passes.
 unsafe fn texts<'a>(name: &'static str, pointer: *const fmi2String, length: usize) -> Result<Vec<&'a str>, Error> {
     // SAFETY: the contract holds for the array and for each of its strings.
     unsafe { array(name, pointer, length)?.iter().map(|&string| text(name, string)).collect() }

@@ -66,7 +66,6 @@ const MARK: [u8; 8] = *b"asperity";
 /// The version of the format, to be raised with each change of what is written.
 const FORMAT: u32 = 5;
 
-/// Bytes of the checksum.
 const CHECKSUM: usize = 16;
 
 /// An [`FmuState`] as it is serialised: with the parameters set instead of the definition.

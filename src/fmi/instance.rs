@@ -15,7 +15,6 @@ use super::log::{Category, Log, Message, RunWarnings};
 use super::model::InstanceModel;
 use super::state::{Clock, InstanceState, OutputCache};
 
-/// An instance of the FMU.
 #[derive(Debug)]
 pub(super) struct Instance {
     pub(super) catalogue: Catalogue,

@@ -25,7 +25,6 @@ pub(super) enum LifecycleState {
 }
 
 impl LifecycleState {
-    /// The standard's name.
     fn name(self) -> &'static str {
         match self {
             Self::Instantiated => "instantiated",
@@ -103,7 +102,6 @@ impl fmt::Display for Function {
     }
 }
 
-/// A row of the table.
 struct Rule {
     function: Function,
     name: &'static str,
@@ -122,7 +120,6 @@ const EVERY: &[LifecycleState] = {
     &[Instantiated, InitializationMode, StepComplete, StepFailed, Terminated, Error, Fatal]
 };
 
-/// Every state but fatal.
 const ALIVE: &[LifecycleState] = {
     use LifecycleState::{Error, InitializationMode, Instantiated, StepComplete, StepFailed, Terminated};
     &[Instantiated, InitializationMode, StepComplete, StepFailed, Terminated, Error]

@@ -58,7 +58,6 @@ impl Category {
     }
 }
 
-/// A message to the master.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Message {
     pub(super) status: Status,
@@ -73,7 +72,6 @@ impl Message {
     }
 }
 
-/// The messages of one instance.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Log {
     events: bool,
@@ -99,7 +97,6 @@ impl Log {
         Ok(())
     }
 
-    /// Whether the category is on.
     pub(super) fn includes(&self, category: Category) -> bool {
         match category {
             Category::Error | Category::Warning | Category::Discard => true,

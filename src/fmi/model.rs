@@ -23,7 +23,6 @@ pub(super) enum ModelState {
 }
 
 impl InstanceModel {
-    /// Starts a run.
     pub(super) fn start(definition: &Definition, start: &Start) -> Result<Self, Error> {
         Ok(match definition {
             Definition::Layer(scene) => Self::Layer(Box::new(Simulation::new(scene, start)?)),
@@ -94,7 +93,6 @@ impl InstanceModel {
         }
     }
 
-    /// The state of the run.
     pub(super) fn state(&self) -> ModelState {
         match self {
             Self::Layer(simulation) => ModelState::Layer(Box::new(simulation.state())),

@@ -11,7 +11,6 @@ use super::lifecycle::LifecycleState;
 use super::model::{InstanceModel, ModelState};
 use crate::scene::{SMALLEST, is_possible};
 
-/// The state of an instance.
 #[derive(Debug)]
 pub(super) struct InstanceState {
     /// The state of the life cycle.
@@ -20,7 +19,6 @@ pub(super) struct InstanceState {
     pub(super) parameters: Arc<Parameters>,
     pub(super) inputs: Inputs,
     pub(super) clock: Clock,
-    /// What the last step returned.
     pub(super) last_step: Status,
     /// The model. Before the run, one that would start from the parameters and inputs set, once outputs were asked for.
     pub(super) model: Option<InstanceModel>,
@@ -67,7 +65,6 @@ impl InstanceState {
         self.model.as_mut().ok_or(Error::NoRun)
     }
 
-    /// Ends the initialisation.
     pub(super) fn start(&mut self) -> Result<(), Error> {
         let result = self.model().map(|_| ());
         self.lifecycle = if result.is_ok() { LifecycleState::StepComplete } else { LifecycleState::Error };

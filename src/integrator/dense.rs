@@ -273,7 +273,6 @@ struct MassPoint {
     /// The second derivative of the elongation by the fraction of the step, m; along z of a free mass alone.
     bend: (f64, f64),
     surface: SurfacePoint,
-    /// The elongations through the step.
     motion: [Quintic; 2],
 }
 
@@ -281,7 +280,6 @@ struct MassPoint {
 struct LinkPoint {
     elongation: (f64, f64),
     rate: (f64, f64),
-    /// The elongations through the step.
     motion: [Quintic; 2],
 }
 

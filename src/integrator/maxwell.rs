@@ -111,7 +111,6 @@ impl<const STAGES: usize> Maxwell<STAGES> {
         }
     }
 
-    /// How many numbers this holds.
     pub(super) fn floats(&self) -> usize {
         self.kinds.iter().map(|sums| STAGES * sums.error_start.len()).sum()
     }

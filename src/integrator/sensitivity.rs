@@ -126,7 +126,6 @@ impl Tangent {
         }
     }
 
-    /// How many numbers this holds.
     pub(super) fn floats(&self) -> usize {
         let (masses, maxwell) = (self.start.x.len(), self.start.maxwell.len());
         // Start, end and stages; forces; the known motion of the links.

@@ -27,7 +27,6 @@ pub(crate) enum DescribeError {
 /// Stands for what the scene does not give.
 const LEFT_OUT: &str = "left out";
 
-/// Prints the summary.
 pub(crate) fn describe(command: &Describe) -> Result<(), DescribeError> {
     let scene = load(&command.scene)?;
     let text = if command.json { json(&scene)? } else { text(&scene)? };

@@ -87,7 +87,6 @@ pub(crate) fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), FileEr
     fs::write(path, content).map_err(FileError::io("write", path))
 }
 
-/// Writes to standard output.
 pub(crate) fn print(text: &str) -> Result<(), FileError> {
     io::stdout().write_all(text.as_bytes()).map_err(FileError::io("write", Path::new("standard output")))
 }

@@ -7,14 +7,12 @@ use quick_xml::events::BytesText;
 
 type Html = Writer<Vec<u8>>;
 
-/// A cell of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Cell {
     /// What it says, as plain text.
     pub(crate) text: String,
     /// Its class in the style sheet; empty for none.
     pub(crate) class: String,
-    /// The columns that it fills.
     pub(crate) span: usize,
     /// What it says more of where it is pointed at; empty for nothing.
     pub(crate) title: String,

@@ -133,7 +133,6 @@ impl Response {
         loss / storage
     }
 
-    /// The sum of all springs.
     fn glassy(&self) -> f64 {
         self.equilibrium() + self.link.maxwell.iter().map(|element| element.stiffness).sum::<f64>()
     }

@@ -77,7 +77,6 @@ struct Recorder {
     failure: Option<FileError>,
 }
 
-/// Positions of the progress bar.
 const PROGRESS_LENGTH: f64 = 1000.0;
 
 impl Recorder {

@@ -45,7 +45,6 @@ impl WorkLimit {
         Self { tried: 0, limit }
     }
 
-    /// Number of steps tried.
     pub(super) fn tried(&self) -> u64 {
         self.tried
     }
@@ -140,7 +139,6 @@ impl Run {
         self.model.rate_shear.is_none()
     }
 
-    /// Counts one more step tried.
     pub(super) fn count_work(&self, work: &mut WorkLimit) -> Result<(), SimulationError> {
         if work.tried >= work.limit {
             return Err(SimulationError::TooManySteps { time: self.state.time(), steps: work.limit });

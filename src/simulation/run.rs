@@ -251,7 +251,6 @@ impl Run {
             + self.workspace.dense.bytes()
     }
 
-    /// Newton's iterations since the start.
     pub(super) fn newton_iterations(&self) -> u64 {
         self.workspace.integrator.iterations()
     }
@@ -263,7 +262,6 @@ impl Run {
         self.workspace.recorded = [lengths.0.unwrap_or(0), lengths.1.unwrap_or(0)];
     }
 
-    /// Goes back to the checkpoint.
     pub(super) fn roll_back(&mut self) {
         let [mode_changes, method_switches] = self.workspace.recorded;
         self.state.copy_from(&self.workspace.checkpoint);

@@ -20,7 +20,6 @@ const LARGEST_DEFECT_SHOWN: f64 = 100.0;
 const MOST_UNCORRECTED: f64 = 3.0;
 
 impl Run {
-    /// The run as it stands.
     pub(super) fn snapshot(&mut self, run_time: f64) -> Snapshot<'_> {
         let carrier = self.evaluate_forces();
         Snapshot {

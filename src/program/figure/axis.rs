@@ -20,7 +20,6 @@ const SHORT: f64 = 2.0;
 /// A relative difference that counts as rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// An axis.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Axis {
     pub(super) title: String,

@@ -23,7 +23,6 @@ const TICK: u32 = 5 * FINE;
 const LABEL: (u32, u32) = (42 * FINE, 28 * FINE);
 /// Radius of a circle at a point.
 const CIRCLE: i32 = 4 * FINE as i32;
-/// Radius of a marker.
 pub(super) const MARKER: i32 = 5 * FINE as i32;
 
 const LEGEND_LINE: u32 = 30 * FINE;
@@ -31,7 +30,6 @@ const SYMBOL: u32 = 26 * FINE;
 /// Between a symbol and its name; three times that before the next symbol.
 const GAP: u32 = 7 * FINE;
 
-/// How a curve is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Stroke {
     Line,
@@ -41,19 +39,15 @@ pub(crate) enum Stroke {
     Rings,
 }
 
-/// A curve.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Curve {
-    /// Its name in the legend.
     pub(crate) name: String,
-    /// The number of its colour.
     pub(crate) look: usize,
     pub(crate) stroke: Stroke,
     /// In the units of the quantities; points that an axis cannot show are left out.
     pub(crate) points: Vec<(f64, f64)>,
 }
 
-/// Curves over axes.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Chart {
     /// Above the chart; empty for none.
@@ -76,7 +70,6 @@ impl Chart {
         self.draw(&below)
     }
 
-    /// Draws axes and curves.
     pub(super) fn draw<B: Backend>(&self, canvas: &Canvas<B>) -> DrawResult {
         let mut context = context(canvas, &self.title, &self.x, &self.y)?;
         draw_axes(&mut context, &self.x, &self.y)?;
@@ -102,7 +95,6 @@ pub(super) fn context<'a, B: Backend>(
     Ok(builder.build_cartesian_2d(x.clone(), y.clone())?)
 }
 
-/// Draws grid, ticks and titles.
 pub(super) fn draw_axes<B: Backend>(context: &mut Context<'_, B>, x: &Axis, y: &Axis) -> DrawResult {
     let (width, height) = context.plotting_area().dim_in_pixel();
     context

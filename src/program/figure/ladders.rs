@@ -19,21 +19,16 @@ const FLOOR_NAME: &str = "below the reference's own error";
 /// Pieces of a line that labels avoid: each about as long as a marker.
 const PIECES: i32 = 24;
 
-/// One point of a ladder.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Rung {
-    /// The cost.
     pub(crate) x: f64,
-    /// The error.
     pub(crate) y: f64,
     /// Written beside the marker where there is space; empty for nothing.
     pub(crate) label: String,
 }
 
-/// One line.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Ladder {
-    /// Its name in the legend.
     pub(crate) name: String,
     pub(crate) dashed: bool,
     /// The number of its colour and marker.
@@ -41,7 +36,6 @@ pub(crate) struct Ladder {
     pub(crate) rungs: Vec<Rung>,
 }
 
-/// The ladders of one quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LadderPanel {
     /// The title of the vertical axis.
@@ -153,7 +147,6 @@ impl Ladder {
         self.rungs.iter().filter(|rung| is_loggable(rung.x) && is_loggable(rung.y))
     }
 
-    /// Their positions on the canvas.
     fn points<B: Backend>(&self, canvas: &Canvas<B>, context: &Context<'_, B>) -> Vec<(i32, i32)> {
         let (left, top) = canvas.get_base_pixel();
         let positions = self.drawn().map(|rung| context.backend_coord(&(rung.x, rung.y)));
@@ -176,7 +169,6 @@ impl Labels {
         Self { area, occupied: Vec::new() }
     }
 
-    /// Keeps labels off a square.
     fn occupy(&mut self, (x, y): (i32, i32), radius: i32) {
         self.occupied.push([x - radius, y - radius, x + radius, y + radius]);
     }

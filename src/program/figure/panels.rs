@@ -7,7 +7,6 @@ use super::axis::{Axis, Fit, is_loggable};
 use super::chart::{Chart, Curve, Legend, Stroke, Symbol};
 use super::{Backend, Canvas, DrawResult, FINE, Figure};
 
-/// One chart of several.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Panel {
     /// In [`Stacked`] the title of the vertical axis, in [`SideBySide`] that of the chart.
@@ -121,7 +120,6 @@ const RUN_PANELS: [RunPanel; 3] = [
 ];
 
 impl History {
-    /// A history without rows.
     pub(crate) fn new(scene: &Scene) -> Self {
         let shows = |group: &OutputGroup| {
             matches!(group, OutputGroup::Forces | OutputGroup::Contact | OutputGroup::Dissipation)
@@ -138,7 +136,6 @@ impl History {
         &self.scene
     }
 
-    /// Adds a row.
     pub(crate) fn add(&mut self, time: f64, snapshot: &Snapshot<'_>) {
         let mut values = vec![0.0; self.variables.len()];
         snapshot.evaluate(&self.variables, &mut values);

@@ -2,7 +2,6 @@
 
 use std::f64::consts::TAU;
 
-/// The quantity in a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
     /// Frequency or angular frequency.

@@ -81,7 +81,6 @@ impl ModuliError {
     }
 }
 
-/// A column in use.
 #[derive(Clone, Debug)]
 struct Column {
     /// Counted from 0.
@@ -121,7 +120,6 @@ impl Column {
     }
 }
 
-/// The columns of the quantities.
 struct Columns {
     /// Number of fields in a row.
     fields: usize,

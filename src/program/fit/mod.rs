@@ -57,7 +57,6 @@ pub(crate) fn fit(command: &Fit) -> Result<(), FitError> {
     Ok(())
 }
 
-/// A fit with its data.
 #[derive(Debug)]
 struct FitResult<'a> {
     command: &'a Fit,

@@ -70,7 +70,6 @@ impl Compound {
 pub(super) struct RelativeError {
     /// Root mean square over the points.
     pub(super) rms: f64,
-    /// Largest absolute value.
     pub(super) largest: f64,
     /// Angular frequency of the largest error, rad/s.
     pub(super) at: f64,

@@ -11,7 +11,6 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use crate::program::files::{FileError, read};
 
-/// The archive cannot be made.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum ArchiveError {
     #[error(transparent)]
@@ -28,10 +27,8 @@ pub(crate) enum ArchiveError {
     Zip(#[from] ZipError),
 }
 
-/// A file of the archive.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Entry {
-    /// Its path, with forward slashes.
     pub(super) name: String,
     pub(super) bytes: Vec<u8>,
     /// Some systems want shared libraries to be executable.

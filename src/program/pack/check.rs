@@ -28,7 +28,6 @@ const SLIDING_DISTANCE: f64 = 1.0;
 const LOOP_OUTPUTS: [Output; 4] = [Output::ForceX, Output::ForceZ, Output::DissipatedPower, Output::DissipatedEnergy];
 /// Displacements of the motion to and fro, over the length over which the element sticks.
 const LEGS: [f64; 3] = [10.0, -20.0, 20.0];
-/// Rows of each of them.
 const ROWS: u32 = 200;
 
 /// An element cannot be compared with its layer.

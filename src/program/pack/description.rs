@@ -112,7 +112,6 @@ fn unit_definitions(xml: &mut Xml, catalogue: &Catalogue) -> io::Result<()> {
     Ok(())
 }
 
-/// The unit of a variable.
 pub(super) fn unit(entry: &Entry<'_>) -> Unit {
     match entry {
         Entry::Input(_) => Unit::Meter,
@@ -132,7 +131,6 @@ fn unit_definition(xml: &mut Xml, unit: Unit) -> io::Result<()> {
     Ok(())
 }
 
-/// The description of a variable.
 pub(super) fn description(entry: &Entry<'_>) -> String {
     match entry {
         Entry::Input(Input::U) => "Displacement of the carrier along x".into(),

@@ -93,7 +93,6 @@ fn archive_path(file: &Path) -> Result<String, PackError> {
     Ok(parts.collect::<Result<Vec<_>, _>>()?.join("/"))
 }
 
-/// Model description, documentation, picture, licences.
 fn documents(definition: &Definition, path: &Path, summary: &[LabelledLine]) -> Result<Vec<Entry>, PackError> {
     let document = |document, source| PackError::Document { document, source };
     let catalogue = Catalogue::of(definition);

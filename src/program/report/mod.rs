@@ -72,14 +72,12 @@ pub(crate) fn report(command: &Report) -> Result<(), ReportError> {
     Ok(write(&file, page)?)
 }
 
-/// The results.
 #[derive(Debug)]
 struct Parts {
     reference: Reference,
     /// This program's runs, then the peers'.
     rows: Vec<ToleranceRow>,
     communication: Vec<CommunicationRow>,
-    /// Where it was asked for.
     robustness: Option<Robustness>,
 }
 

@@ -16,7 +16,6 @@ const SAMPLES: u32 = 50 * WINDOWS;
 
 #[derive(Debug)]
 pub(super) struct Reference {
-    /// Its relative tolerance.
     pub(super) tolerance: f64,
     /// The relative tolerance of the run that gives its error; `None` where no other run came to its end.
     pub(super) check: Option<f64>,
@@ -32,13 +31,11 @@ pub(super) struct Reference {
 /// What a start moved by [`DISPLACEMENT`] changes, row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Sensitivity {
-    /// The largest differences.
     pub(super) differences: Errors,
     /// The difference above which the runs have diverged.
     pub(super) limit: f64,
 }
 
-/// How two runs are compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Comparison {
     /// Row by row.

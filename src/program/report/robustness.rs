@@ -38,7 +38,6 @@ pub(super) const SHORT_STEPS: u32 = 2000;
 pub(super) struct Robustness {
     /// What the scene has of what is scaled.
     pub(super) quantities: Vec<ScaledQuantity>,
-    /// Powers of ten each way.
     pub(super) powers: i32,
     /// Every so many of them in pairs.
     pub(super) stride: i32,
@@ -51,7 +50,6 @@ pub(super) struct Robustness {
     trials: BTreeMap<Perturbation, Trial>,
 }
 
-/// A perturbed run.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Trial {
     outcome: Outcome,
@@ -118,12 +116,10 @@ impl Robustness {
         self.trials.get(&self.same(perturbation)).unwrap_or(&Trial::NOT_TRIED)
     }
 
-    /// The scene as it is.
     pub(super) fn unperturbed(&self) -> &Trial {
         self.trial(Perturbation::default())
     }
 
-    /// All that were planned.
     pub(super) fn trials(&self) -> impl Iterator<Item = (&Perturbation, &Trial)> {
         self.trials.iter()
     }
@@ -281,12 +277,10 @@ fn two_digits(value: f64) -> String {
     }
 }
 
-/// Runs a scene perturbed.
 #[derive(Clone, Copy, Debug)]
 struct PerturbedRunner<'a> {
     /// Without perturbation; no force ends its phases.
     scene: &'a Scene,
-    /// Rows of a phase.
     points: u32,
     /// The most steps of a run, beside those that a master's communication steps need.
     budget: u64,

@@ -30,13 +30,9 @@ pub(super) struct Measured {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Counts {
-    /// Accepted steps.
     pub(super) steps: u64,
-    /// Rejected steps.
     pub(super) rejected: u64,
-    /// Mode changes.
     pub(super) events: u64,
-    /// Newton's iterations.
     pub(super) iterations: u64,
     /// The largest residual of the energy balance over the largest of its energies.
     pub(super) residual: f64,
@@ -45,7 +41,6 @@ pub(super) struct Counts {
 /// The figures of a run; `None` where they are not known.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Figures {
-    /// Against the reference.
     pub(super) errors: Errors,
     /// Processor time, s.
     pub(super) time: Option<f64>,
@@ -79,7 +74,6 @@ impl Measured {
 }
 
 impl Figures {
-    /// The largest of the errors.
     pub(super) fn error(&self) -> Option<f64> {
         self.errors.into_iter().flatten().reduce(f64::max)
     }

@@ -58,7 +58,6 @@ pub(super) fn write_errors(
     write(path, MEASURED.into_iter().chain(ADDED.split(',')), records)
 }
 
-/// Writes errors and communication steps.
 pub(super) fn write_communication(
     path: &Path,
     scene: &str,
@@ -132,7 +131,6 @@ fn below(reference: &Reference, errors: &Errors) -> String {
 /// Runs of other programs, measured elsewhere.
 #[derive(Debug, Default)]
 pub(super) struct Peers {
-    /// Of the scene asked for.
     pub(super) rows: Vec<ToleranceRow>,
     /// All scenes of the file, each once.
     pub(super) scenes: Vec<String>,

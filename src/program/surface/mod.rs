@@ -60,7 +60,6 @@ fn read(command: &Surface) -> Result<(scene::Surface, Vec<PathBuf>), SurfaceErro
 /// Heights and slopes of a profile, in SI units.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 struct Statistics {
-    /// Number of data points.
     points: usize,
     /// Distance from the first point to the last: the period, if the profile is periodic.
     length: f64,
@@ -133,7 +132,6 @@ struct Analysis {
     #[serde(flatten)]
     statistics: Statistics,
     law: Option<PowerLaw>,
-    /// How the spectrum was computed.
     taken: String,
     spectrum: Vec<Band>,
 }
@@ -207,7 +205,6 @@ fn picture(surface: &scene::Surface, analysis: &Analysis, file: &Path) -> Profil
     }
 }
 
-/// Two columns in m.
 fn columns(surface: &scene::Surface) -> String {
     let row = |(x, z): (&f64, &f64)| format!("{},{}\n", real(*x), real(*z));
     let rows: String = surface.x.iter().zip(&surface.z).map(row).collect();

@@ -26,13 +26,11 @@ pub(super) struct Band {
     pub(super) wave_number: f64,
     /// Mean of C, m³.
     pub(super) density: f64,
-    /// Number of wave numbers.
     pub(super) modes: usize,
 }
 
 /// Maximum number of even points: finer detail is neither drawn nor fitted.
 const MOST_POINTS: usize = 1 << 20;
-/// Bands per decade.
 const BANDS: f64 = 12.0;
 
 impl Spectrum {
@@ -115,9 +113,7 @@ const FINE: usize = 8;
 /// A band in logarithms.
 #[derive(Clone, Copy, Debug)]
 struct Point {
-    /// ln q
     x: f64,
-    /// ln C
     y: f64,
     /// 1 over the variance.
     weight: f64,
@@ -127,7 +123,6 @@ struct Point {
 struct LawFit {
     level: f64,
     exponent: f64,
-    /// Standard error of the exponent.
     error: f64,
     /// Weighted sum of the squared residuals.
     cost: f64,

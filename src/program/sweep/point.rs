@@ -40,7 +40,6 @@ const SMALL: f64 = 1e-2;
 /// Longest distance in blocks where none is given.
 const BLOCKS: f64 = 100.0;
 
-/// When a point ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Bounds {
     /// Standard error of the friction coefficient over its mean.
@@ -106,7 +105,6 @@ impl PointResult {
         Self { status, sliding: None, tangential_stiffness: None }
     }
 
-    /// The row of the table.
     pub(super) fn row(&self, point: OperatingPoint, header: &TableHeader) -> TableRow {
         let mut row = TableRow::new(point, self.status.clone());
         row.set(Quantity::Stiffness, self.tangential_stiffness);
@@ -129,7 +127,6 @@ impl PointResult {
     }
 }
 
-/// Blocks at one w, averaged.
 #[derive(Clone, Debug, PartialEq)]
 struct Average {
     means: BlockMeans,

@@ -21,7 +21,6 @@ const INTEGRATED: [Output; 5] =
 const STIFFNESS_DISTANCE: f64 = 1e-6;
 /// ... or this share of a block, where that is shorter: a fine profile has fine contacts.
 const STIFFNESS_SHARE: f64 = 1e-3;
-/// Samples on that distance.
 const STIFFNESS_SAMPLES: u32 = 16;
 /// F_z at rest is the load within this share of it.
 const LOAD_AT_REST: f64 = 1e-3;
@@ -32,7 +31,6 @@ const REST: f64 = 100.0;
 /// How often that and a relaxation of the dashpots are repeated.
 const RELAXATIONS: usize = 3;
 
-/// Means over a block.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct BlockMeans {
     /// |F_x|, positive against the motion: the carrier's work over the distance, N.
@@ -73,7 +71,6 @@ pub(super) struct Blocks {
     pub(super) speed: f64,
     /// Length of a block, m.
     pub(super) length: f64,
-    /// Samples of a block.
     samples: u32,
     /// u at the start, m.
     start: f64,
@@ -100,7 +97,6 @@ impl Blocks {
     }
 }
 
-/// A layer that slides.
 #[derive(Debug)]
 pub(super) struct Slide {
     simulation: Simulation,

@@ -13,7 +13,6 @@ enum Spacing {
     Linear,
 }
 
-/// Most values between two ends.
 const MOST: usize = 10_000;
 /// Significant digits of the values between two ends.
 const DIGITS: usize = 6;
@@ -66,7 +65,6 @@ fn wrong(found: &str, expected: &str) -> String {
     format!("expected {expected}, found {found:?}")
 }
 
-/// One share of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Shard {
     /// Counted from 1.

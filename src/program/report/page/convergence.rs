@@ -128,7 +128,6 @@ const TOLERANCE_FIGURES: [&str; 9] = [
     "energy residual",
 ];
 
-/// The reference comes last.
 fn runs(reference: &Reference, rows: &[ToleranceRow]) -> io::Result<String> {
     let own = ToleranceRow::of_reference(reference);
     let rows: Vec<&ToleranceRow> = rows.iter().chain([&own]).collect();

@@ -19,7 +19,6 @@ const TEMPLATE: &str = include_str!("page.html");
 /// Stands where there is no number.
 const NOTHING: &str = "–";
 
-/// The page of these sections.
 pub(super) fn page(scene: &Scene, sections: &[String]) -> io::Result<String> {
     let rows = describe::rows(scene).into_iter().map(|(name, text)| vec![name.into(), text.into()]);
     let fields = [
@@ -57,7 +56,6 @@ fn short(value: Option<f64>) -> Cell {
     number(value.map_or_else(|| NOTHING.into(), |value| format!("{value:.1e}")))
 }
 
-/// A count, or nothing.
 fn count(value: Option<u64>) -> Cell {
     number(value.map_or_else(|| NOTHING.into(), |count| count.to_string()))
 }

@@ -22,7 +22,6 @@ const CHEAP: f64 = 2.0;
 /// Bounds of the steps over those of the scene as it is, with their classes in the style sheet.
 const WORK: [(f64, &str); 5] = [(1.0, "less"), (CHEAP, "twice"), (5.0, "five"), (10.0, "ten"), (f64::INFINITY, "more")];
 
-/// The section on robustness.
 pub(in crate::program::report) fn robustness(scene: &Scene, robustness: &Robustness) -> io::Result<String> {
     let names: Vec<&str> = robustness.quantities.iter().map(|quantity| quantity.name()).collect();
     let steps = robustness.unperturbed().counts().map_or(0, Counts::work);
@@ -169,7 +168,6 @@ fn shortened(robustness: &Robustness) -> String {
     })
 }
 
-/// The range of each quantity.
 fn ranges(robustness: &Robustness) -> io::Result<String> {
     let kept = format!("error at most {KEPT} times the tolerance");
     let cheap = format!("at most {CHEAP} times the steps");
@@ -261,7 +259,6 @@ fn at_most(bound: f64) -> String {
     }
 }
 
-/// One pair, errors or work.
 fn map(robustness: &Robustness, x: ScaledQuantity, y: ScaledQuantity, of_work: bool) -> io::Result<String> {
     let row = |up: i32| {
         let cell = |right: i32| {

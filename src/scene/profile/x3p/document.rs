@@ -89,7 +89,6 @@ pub(super) struct Document {
     texts: BTreeMap<String, String>,
     /// The points that stand inline, each ended by a line feed.
     points: String,
-    /// Whether they do.
     inline: bool,
 }
 
@@ -201,12 +200,9 @@ const MOST_POINTS: usize = 1 << 28;
 /// The most points of a line.
 const MOST_COLUMNS: usize = 1 << 24;
 
-/// How many points there are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct MatrixSize {
-    /// Points of a line.
     pub(super) columns: usize,
-    /// Lines.
     pub(super) rows: usize,
 }
 

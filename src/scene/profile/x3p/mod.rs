@@ -107,7 +107,6 @@ impl Axes {
         Ok(Self([x, y, z]))
     }
 
-    /// Bytes of a point.
     fn bytes(&self) -> usize {
         self.0.iter().filter_map(|axis| axis.stored_as).map(NumberType::bytes).sum()
     }
