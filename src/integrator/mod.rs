@@ -305,7 +305,8 @@ impl Integrator {
         let rates = &self.stages.rates[0];
         let masses = rates.velocity_x.len();
         let links: usize = rates.elongation_rate.iter().map(Vec::len).sum();
-        let stages = self.stages.rates.len() + 1;
+        // With those at the start of the next step, in the state and in the one to go back to.
+        let stages = self.stages.rates.len() + 2;
         // Per mass: rates and starred values; five blocks and a right side; row shares, neighbour weights and an equation
         // of slip; errors.
         let by_mass = stages * 6 + 4 + (5 * 4 + 2) + (3 + 3 + 11) + 5;
