@@ -112,9 +112,9 @@ impl Model {
     }
 
     /// Freezes the dashpots that have [frozen springs](LinkLaw::frozen) at their links' elongations at the start, m:
-    /// `profile_position` is u there, reduced to the profile's period, and `w` is w, both in m. A mass that would lie
-    /// under the profile is lifted onto it.
-    pub fn freeze_dashpots(&mut self, profile_position: f64, w: f64) {
+    /// `u` and `w` are the carrier's displacement there, m. A mass that would lie under the profile is lifted onto it.
+    pub fn freeze_dashpots(&mut self, u: f64, w: f64) {
+        let profile_position = self.profile.reduce(u);
         for i in 0..self.frozen.len() {
             let surface = self.surface_at(self.rest_x[i] + profile_position);
             let gap = self.rest_z[i] + w - surface.height;

@@ -61,7 +61,7 @@ impl Simulation {
 
     fn started(scene: &Scene, start: &Start) -> Self {
         let mut model = Model::new(scene);
-        model.freeze_dashpots(model.profile.reduce(start.u), start.w);
+        model.freeze_dashpots(start.u, start.w);
         let model = Arc::new(model);
         let settings = Settings::new(scene, &model);
         let error_run = settings.accounts.solver.then(|| ErrorRun::new(&model, &settings, start));
@@ -108,8 +108,7 @@ impl Simulation {
 
     /// Makes the model that of a run that started at these u and w, m.
     fn freeze_dashpots(&mut self, [u, w]: [f64; 2]) {
-        let model = Arc::make_mut(&mut self.run.model);
-        model.freeze_dashpots(model.profile.reduce(u), w);
+        Arc::make_mut(&mut self.run.model).freeze_dashpots(u, w);
         if let Some(error_run) = &mut self.error_run {
             error_run.run.model = Arc::clone(&self.run.model);
         }
@@ -281,8 +280,7 @@ impl Simulation {
             error_run.compare(s, force, &mut self.run.state.counters);
         }
         self.run_time = observer.run_time_now();
-        let energies = self.run.energies_within(step.h, theta);
-        (observer.observe)(time, &self.run.snapshot_within(step.h, theta, &energies, self.run_time));
+        (observer.observe)(time, &self.run.snapshot_within(step.h, theta, self.run_time));
     }
 
     /// Compares F_z with that of the error-estimation run at the same time.

@@ -20,6 +20,7 @@ const LARGEST_DEFECT_SHOWN: f64 = 100.0;
 const MOST_UNCORRECTED: f64 = 3.0;
 
 impl Run {
+    /// The run as it stands; `run_time` is the processor time since the start, s.
     pub(super) fn snapshot(&mut self, run_time: f64) -> Snapshot<'_> {
         let carrier = self.evaluate_forces();
         Snapshot {
@@ -36,8 +37,9 @@ impl Run {
         }
     }
 
-    /// The run at the fraction `theta` of the step of length `h` tried last, with the `energies` there.
-    pub(super) fn snapshot_within(&mut self, h: f64, theta: f64, energies: &Energies, run_time: f64) -> Snapshot<'_> {
+    /// The run at the fraction `theta` of the step of length `h` tried last.
+    pub(super) fn snapshot_within(&mut self, h: f64, theta: f64, run_time: f64) -> Snapshot<'_> {
+        let energies = self.energies_within(h, theta);
         self.evaluate_within(h, theta);
         let s = self.state.s + theta * h;
         Snapshot {
@@ -47,7 +49,7 @@ impl Run {
             forces: &self.workspace.forces,
             carrier: self.state.carrier.at(s),
             displacement: self.state.displacement_at(s),
-            energies: *energies,
+            energies,
             tangents: self.state.tangents,
             counters: self.state.counters,
             run_time,
@@ -55,7 +57,7 @@ impl Run {
     }
 
     /// Energies since the start at the fraction `theta` of the step of length `h` tried last.
-    pub(super) fn energies_within(&mut self, h: f64, theta: f64) -> Energies {
+    fn energies_within(&mut self, h: f64, theta: f64) -> Energies {
         let mut energies = self.state.energies;
         if self.settings.accounts.energy {
             let Self { model, state, workspace, .. } = self;
