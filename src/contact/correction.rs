@@ -215,6 +215,7 @@ impl Lateness {
 
 struct Correction<'a> {
     step: FixedModeStep<'a>,
+    /// The carrier at the end.
     carrier: CarrierPoint,
     end: StepEnd<'a>,
     energies: CorrectionEnergies,

@@ -55,6 +55,7 @@ struct Phase<'a> {
     from: f64,
     here: Contact,
     start: Jenkins,
+    /// Whether the stiffness grows.
     rising: bool,
 }
 

@@ -180,6 +180,7 @@ impl Parameters {
         Self { definition, set: BTreeMap::new() }
     }
 
+    /// The definition with these parameters.
     pub(super) fn definition(&self) -> &Definition {
         &self.definition
     }

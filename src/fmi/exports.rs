@@ -19,6 +19,7 @@ use super::instance::Instance;
 use super::lifecycle::Function;
 use super::log::Message;
 
+/// What a component points to.
 struct Component {
     instance: Instance,
     callbacks: Callbacks,

@@ -22,6 +22,7 @@ struct Displacement {
     value: f64,
     /// u̇_n, m/s, if the master gave it for the next step.
     rate: Option<f64>,
+    /// The communication step before.
     past: Option<Past>,
 }
 

@@ -19,6 +19,7 @@ pub(super) struct InstanceState {
     pub(super) parameters: Arc<Parameters>,
     pub(super) inputs: Inputs,
     pub(super) clock: Clock,
+    /// What the last step returned.
     pub(super) last_step: Status,
     /// The model. Before the run, one that would start from the parameters and inputs set, once outputs were asked for.
     pub(super) model: Option<InstanceModel>,

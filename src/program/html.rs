@@ -13,6 +13,7 @@ pub(crate) struct Cell {
     pub(crate) text: String,
     /// Its class in the style sheet; empty for none.
     pub(crate) class: String,
+    /// The columns that it fills.
     pub(crate) span: usize,
     /// What it says more of where it is pointed at; empty for nothing.
     pub(crate) title: String,

@@ -95,6 +95,7 @@ pub(super) struct StageSolver {
     contacts: Vec<usize>,
     /// Those of them that slip, in their order; without any the equations are linear.
     slips: Vec<usize>,
+    /// Their equations of motion.
     slip: Vec<SlippingMass>,
     /// The rate-dependent part of their friction; empty where the scene has none.
     rate: Vec<RateFriction>,

@@ -42,6 +42,7 @@ pub(crate) enum Stroke {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Curve {
     pub(crate) name: String,
+    /// The number of its colour.
     pub(crate) look: usize,
     pub(crate) stroke: Stroke,
     /// In the units of the quantities; points that an axis cannot show are left out.

@@ -21,7 +21,9 @@ const PIECES: i32 = 24;
 
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Rung {
+    /// The cost.
     pub(crate) x: f64,
+    /// The error.
     pub(crate) y: f64,
     /// Written beside the marker where there is space; empty for nothing.
     pub(crate) label: String,
@@ -169,6 +171,7 @@ impl Labels {
         Self { area, occupied: Vec::new() }
     }
 
+    /// Keeps labels off a square.
     fn occupy(&mut self, (x, y): (i32, i32), radius: i32) {
         self.occupied.push([x - radius, y - radius, x + radius, y + radius]);
     }

@@ -72,6 +72,7 @@ pub(crate) trait Figure {
         ""
     }
 
+    /// Draws everything but the title.
     fn draw<B: Backend>(&self, canvas: &Canvas<B>) -> DrawResult;
 
     /// Writes the figure to `path`: as PNG where its name ends so, else as SVG.

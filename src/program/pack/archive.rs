@@ -29,6 +29,7 @@ pub(crate) enum ArchiveError {
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Entry {
+    /// Its path, with forward slashes.
     pub(super) name: String,
     pub(super) bytes: Vec<u8>,
     /// Some systems want shared libraries to be executable.

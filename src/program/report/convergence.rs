@@ -44,6 +44,7 @@ impl ToleranceRow {
 pub(super) struct ToleranceLadder<'a> {
     /// From loose to tight.
     pub(super) tolerances: &'a [f64],
+    /// Rows of a phase.
     pub(super) points: u32,
     /// How often each run is timed.
     pub(super) repeat: u32,

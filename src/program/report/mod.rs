@@ -78,6 +78,7 @@ struct Parts {
     /// This program's runs, then the peers'.
     rows: Vec<ToleranceRow>,
     communication: Vec<CommunicationRow>,
+    /// Where it was asked for.
     robustness: Option<Robustness>,
 }
 

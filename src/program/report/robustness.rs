@@ -38,6 +38,7 @@ pub(super) const SHORT_STEPS: u32 = 2000;
 pub(super) struct Robustness {
     /// What the scene has of what is scaled.
     pub(super) quantities: Vec<ScaledQuantity>,
+    /// Powers of ten each way.
     pub(super) powers: i32,
     /// Every so many of them in pairs.
     pub(super) stride: i32,
@@ -281,6 +282,7 @@ fn two_digits(value: f64) -> String {
 struct PerturbedRunner<'a> {
     /// Without perturbation; no force ends its phases.
     scene: &'a Scene,
+    /// Rows of a phase.
     points: u32,
     /// The most steps of a run, beside those that a master's communication steps need.
     budget: u64,

@@ -41,6 +41,7 @@ pub(super) struct Counts {
 /// The figures of a run; `None` where they are not known.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Figures {
+    /// Against the reference.
     pub(super) errors: Errors,
     /// Processor time, s.
     pub(super) time: Option<f64>,

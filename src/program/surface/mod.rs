@@ -132,6 +132,7 @@ struct Analysis {
     #[serde(flatten)]
     statistics: Statistics,
     law: Option<PowerLaw>,
+    /// How the spectrum was computed.
     taken: String,
     spectrum: Vec<Band>,
 }

@@ -113,7 +113,9 @@ const FINE: usize = 8;
 /// A band in logarithms.
 #[derive(Clone, Copy, Debug)]
 struct Point {
+    /// ln q
     x: f64,
+    /// ln C
     y: f64,
     /// 1 over the variance.
     weight: f64,
@@ -123,6 +125,7 @@ struct Point {
 struct LawFit {
     level: f64,
     exponent: f64,
+    /// Standard error of the exponent.
     error: f64,
     /// Weighted sum of the squared residuals.
     cost: f64,

@@ -28,6 +28,7 @@ const CURVATURE: f64 = 0.1;
 /// s is at least this share of what it is estimated to be.
 const LEAST: f64 = 0.2;
 
+/// A value with its uncertainty.
 struct Known {
     value: f64,
     error: f64,

@@ -40,6 +40,7 @@ const SMALL: f64 = 1e-2;
 /// Longest distance in blocks where none is given.
 const BLOCKS: f64 = 100.0;
 
+/// When a point ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Bounds {
     /// Standard error of the friction coefficient over its mean.
@@ -127,6 +128,7 @@ impl PointResult {
     }
 }
 
+/// Blocks at one w, averaged.
 #[derive(Clone, Debug, PartialEq)]
 struct Average {
     means: BlockMeans,

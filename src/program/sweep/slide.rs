@@ -21,6 +21,7 @@ const INTEGRATED: [Output; 5] =
 const STIFFNESS_DISTANCE: f64 = 1e-6;
 /// ... or this share of a block, where that is shorter: a fine profile has fine contacts.
 const STIFFNESS_SHARE: f64 = 1e-3;
+/// Samples on that distance.
 const STIFFNESS_SAMPLES: u32 = 16;
 /// F_z at rest is the load within this share of it.
 const LOAD_AT_REST: f64 = 1e-3;
@@ -71,6 +72,7 @@ pub(super) struct Blocks {
     pub(super) speed: f64,
     /// Length of a block, m.
     pub(super) length: f64,
+    /// Samples of a block.
     samples: u32,
     /// u at the start, m.
     start: f64,

@@ -24,9 +24,11 @@ const CORRELATED: f64 = 0.95;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Window {
     pub(super) mean: f64,
+    /// Its standard error.
     pub(super) error: f64,
     /// The change from the first block to the last.
     pub(super) trend: f64,
+    /// The standard error of that.
     trend_error: f64,
 }
 

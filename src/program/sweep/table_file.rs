@@ -161,6 +161,7 @@ pub(super) struct TableFile {
     path: PathBuf,
     /// A line is written at once, so that one that is cut off has no end.
     file: Mutex<File>,
+    /// The rows that were there.
     pub(super) done: Vec<StoredRow>,
 }
 

@@ -13,6 +13,7 @@ enum Spacing {
     Linear,
 }
 
+/// Most values between two ends.
 const MOST: usize = 10_000;
 /// Significant digits of the values between two ends.
 const DIGITS: usize = 6;

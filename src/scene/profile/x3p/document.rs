@@ -202,7 +202,9 @@ const MOST_COLUMNS: usize = 1 << 24;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct MatrixSize {
+    /// Points of a line.
     pub(super) columns: usize,
+    /// Number of lines.
     pub(super) rows: usize,
 }
 
