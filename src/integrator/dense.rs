@@ -1,9 +1,8 @@
 //! Dense output of both methods: the motion and the state within a step (docs/theory.md, section 5).
 //!
-//! [`DenseOutput`] belongs to the method of seven stages. Positions are the quintic polynomials through position,
-//! velocity and acceleration at both ends (order 5), velocities their derivatives. The Maxwell elements follow these
-//! velocities by the exact solution of ȧ = ė - a/τ, for any τ; its difference from the step's own end is distributed
-//! linearly over the step.
+//! [`DenseOutput`] belongs to the method of seven stages. Velocities are combinations of those at the stages
+//! ([`StageInterpolation`]), positions their integrals. The Maxwell elements follow these velocities by the exact
+//! solution of ȧ = ė - a/τ, for any τ; its difference from the step's own end is distributed linearly over the step.
 //!
 //! [`TwoStageDense`] belongs to the method of two stages. Positions are the parabolas through the start and the end with
 //! the velocity of the first stage there. Velocities and Maxwell elements, which may have followed a jump in no time, are
@@ -11,10 +10,13 @@
 //! method's own order.
 
 use super::error::Tolerance;
+use super::interpolation::StageInterpolation;
 use super::rates::Rates;
-use super::tableau::{GAMMA, sdirk2_weights};
+use super::tableau::{GAMMA, STAGES, sdirk2_weights};
 use crate::math::{Jet, Quintic, Relaxation, weighted_sum};
-use crate::model::{Carrier, CarrierPoint, ContactForces, Forces, LinkKind, Mode, Model, State, SurfacePoint};
+use crate::model::{
+    Carrier, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint,
+};
 
 /// Where a step lies in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,18 +34,16 @@ impl StepSpan {
     }
 }
 
-/// State, rates and carrier at the start or at the end of a step.
+/// State and carrier at the start or at the end of a step.
 #[derive(Clone, Copy, Debug)]
 pub struct StepBoundary<'a> {
     /// The state.
     pub state: &'a State,
-    /// The rates.
-    pub rates: &'a Rates,
     /// The carrier.
     pub carrier: CarrierPoint,
 }
 
-/// The interpolant of one step of the method of seven stages.
+/// The interpolant of one step by the values at its stages.
 #[derive(Clone, Copy, Debug)]
 pub struct DenseOutput<'a> {
     /// The model.
@@ -56,91 +56,123 @@ pub struct DenseOutput<'a> {
     pub start: StepBoundary<'a>,
     /// Its end.
     pub end: StepBoundary<'a>,
-}
-
-#[derive(Clone, Copy, PartialEq)]
-enum Direction {
-    X,
-    Z,
+    /// The rates at its stages.
+    pub stages: &'a [Rates],
+    /// The carrier at its stages.
+    pub carriers: &'a [CarrierPoint],
+    /// The weights of its stages.
+    pub interpolation: &'a StageInterpolation,
 }
 
 impl DenseOutput<'_> {
     /// The position of mass `i` on the profile through the step, m.
     pub fn position(&self, i: usize) -> Quintic {
-        let at = |StepBoundary { state, rates, carrier }: &StepBoundary<'_>| Jet {
-            position: self.model.rest_x[i] + (self.carrier.profile_position + (carrier.du + state.elongation_x[i])),
-            speed: rates.velocity_x[i],
-            acceleration: rates.acceleration_x[i],
+        let at = |at: &StepBoundary<'_>| Jet {
+            position: self.model.rest_x[i] + (self.carrier.profile_position + at.carrier.du),
+            speed: at.carrier.u_rate,
+            acceleration: at.carrier.u_acceleration,
         };
-        Quintic::hermite(at(&self.start), at(&self.end), self.span.length)
+        let carrier = Quintic::hermite(at(&self.start), at(&self.end), self.span.length);
+        let rate = |j: usize| self.stages[j].velocity_x[i] - self.carriers[j].u_rate;
+        carrier.plus(&self.elongation(self.start.state.elongation_x[i], rate))
     }
 
     /// The height of mass `i` above the profile's datum through the step, m.
     pub fn height(&self, i: usize) -> Quintic {
-        let at = |StepBoundary { state, rates, carrier }: &StepBoundary<'_>| Jet {
-            position: self.model.rest_z[i] + (self.carrier.w + (carrier.dw + state.elongation_z[i])),
-            speed: rates.velocity_z[i],
-            acceleration: rates.acceleration_z[i],
+        let at = |at: &StepBoundary<'_>| Jet {
+            position: self.model.rest_z[i] + (self.carrier.w + at.carrier.dw),
+            speed: at.carrier.w_rate,
+            acceleration: at.carrier.w_acceleration,
         };
-        Quintic::hermite(at(&self.start), at(&self.end), self.span.length)
+        let carrier = Quintic::hermite(at(&self.start), at(&self.end), self.span.length);
+        let rate = |j: usize| self.stages[j].velocity_z[i] - self.carriers[j].w_rate;
+        carrier.plus(&self.elongation(self.start.state.elongation_z[i], rate))
+    }
+
+    /// The elongation of a link to the carrier through the step, m: `start` at first, with the rate `rate(j)` (m/s) at
+    /// stage j.
+    fn elongation(&self, start: f64, rate: impl Fn(usize) -> f64) -> Quintic {
+        let change = self.interpolation.bernstein(self.stages.len(), rate).map(|rate| self.span.length * rate);
+        Quintic::from_derivative(start, change)
     }
 
     /// Writes the state at the fraction `theta` of the step.
     pub fn state_at(&self, theta: f64, workspace: &mut DenseWorkspace, state: &mut State) {
-        let carrier = self.carrier.at(self.span.at(theta));
-        state.mode.copy_from_slice(&self.start.state.mode);
-        for i in 0..self.model.masses() {
-            let mass = self.mass_at(theta, i, &carrier);
-            workspace.set_mass(i, &mass);
+        workspace.set_weights(self, theta);
+        let start = self.start.state;
+        state.mode.copy_from_slice(&start.mode);
+        state.surface.copy_from_slice(&start.surface);
+        let carrier = self.carrier_at(theta, workspace);
+        let DenseWorkspace { values, integral, .. } = &*workspace;
+        self.combine(&mut state.velocity_x, values, None, |stage| &stage.velocity_x, carrier.missing_rate.0);
+        self.combine(&mut state.velocity_z, values, None, |stage| &stage.velocity_z, carrier.missing_rate.1);
+        let (from_x, from_z) = (Some(&start.elongation_x[..]), Some(&start.elongation_z[..]));
+        self.combine(&mut state.elongation_x, integral, from_x, |stage| &stage.velocity_x, -carrier.integrated.0);
+        self.combine(&mut state.elongation_z, integral, from_z, |stage| &stage.velocity_z, -carrier.integrated.1);
+        for i in (0..start.mode.len()).filter(|&i| start.mode[i].in_contact()) {
+            let mass = self.on_profile(i, (state.elongation_x[i], state.velocity_x[i]), &carrier);
             (state.elongation_x[i], state.elongation_z[i]) = mass.elongation;
             (state.velocity_x[i], state.velocity_z[i]) = mass.velocity;
             state.surface[i] = mass.surface;
         }
-        workspace.set_lateral_rates();
-        workspace.relax(self, theta);
         for row in &self.model.rows {
             let weights = &workspace.relaxation[row.time_index];
-            let (start, end) =
-                (&self.start.state.maxwell[row.range.clone()], &self.end.state.maxwell[row.range.clone()]);
-            let driven =
-                workspace.rate[row.kind as usize].iter().zip(weights.driven).map(|(rate, weight)| (weight, &rate[..]));
-            let ends = [(weights.decay, start), (theta, end)];
-            weighted_sum(&mut state.maxwell[row.range.clone()], ends.into_iter().chain(driven));
+            let ends = [(weights.start, start), (theta, self.end.state)];
+            let ends = ends.into_iter().map(|(weight, state)| (weight, &state.maxwell[row.range.clone()]));
+            let rates = self.stages.iter().map(|stage| &stage.elongation_rate[row.kind as usize][..]);
+            weighted_sum(&mut state.maxwell[row.range.clone()], ends.chain(weights.rate.into_iter().zip(rates)));
         }
     }
 
-    /// The defect of the dense output in the equations of motion at the fraction `theta`: the difference between the
-    /// accelerations of the interpolant and those that the `forces` in its state give, as the velocity gained over the
-    /// step, in the tolerance's norm. The state and the workspace are those that [`state_at`](Self::state_at) wrote.
+    /// `from` plus the weighted values of the stages plus `shift`.
+    fn combine(
+        &self,
+        out: &mut [f64],
+        weights: &[f64; STAGES],
+        from: Option<&[f64]>,
+        value: fn(&Rates) -> &[f64],
+        shift: f64,
+    ) {
+        let stages = weights.iter().zip(self.stages).map(|(&weight, stage)| (weight, value(stage)));
+        weighted_sum(out, from.map(|from| (1.0, from)).into_iter().chain(stages));
+        if shift != 0.0 {
+            out.iter_mut().for_each(|value| *value += shift);
+        }
+    }
+
+    /// The defect of the dense output in the equations of motion at the fraction `theta`, in the tolerance's norm: the
+    /// difference between the accelerations of the interpolant and those that the `forces` in its `state` give, as the
+    /// correction of the velocities that Newton's first iteration of a stage as long as the step so far would make. The
+    /// workspace is that with which [`state_at`](Self::state_at) wrote the state.
     pub fn defect(
         &self,
         theta: f64,
         state: &State,
         forces: &Forces,
-        workspace: &DenseWorkspace,
+        workspace: &mut DenseWorkspace,
         tolerance: &Tolerance,
     ) -> f64 {
         let (carrier, h) = (self.carrier.at(self.span.at(theta)), self.span.length);
-        let per_square = 1.0 / (h * h);
-        let missed = |bend: f64, of_carrier: f64, of_forces: f64, velocity: f64| {
-            let gained = theta * h * (of_forces - (bend * per_square + of_carrier));
+        workspace.set_accelerations(self, theta, &carrier);
+        let settled = Settled::new(self.model, theta * h);
+        let missed = |of_forces: f64, of_interpolant: f64, velocity: f64, settled: f64| {
+            let gained = settled * theta * h * (of_forces - of_interpolant);
             gained * gained / tolerance.of_velocity(velocity)
         };
         let mut largest = 0.0_f64;
         for i in 0..self.model.masses() {
+            let (a_x, a_z) = (workspace.acceleration[0][i], workspace.acceleration[1][i]);
             let (v_x, v_z) = (state.velocity_x[i] - carrier.u_rate, state.velocity_z[i] - carrier.w_rate);
-            let along_x = |acceleration: f64| missed(workspace.bend[0][i], carrier.u_acceleration, acceleration, v_x);
-            let along_z = |acceleration: f64| missed(workspace.bend[1][i], carrier.w_acceleration, acceleration, v_z);
             let here = match state.mode[i] {
                 Mode::Stick => 0.0,
                 Mode::Free => {
-                    let m = self.model.mass;
-                    along_x(forces.on_mass_x[i] / m).max(along_z(forces.on_mass_z[i] / m))
+                    let (f_x, f_z) = (forces.on_mass_x[i] / self.model.mass, forces.on_mass_z[i] / self.model.mass);
+                    missed(f_x, a_x, v_x, settled.x).max(missed(f_z, a_z, v_z, settled.z))
                 }
                 mode => {
                     let (v, surface) = (state.velocity_x[i], &state.surface[i]);
                     let contact = forces.contact(self.model, i, v, surface);
-                    along_x(contact.acceleration(self.model, mode, v, surface))
+                    missed(contact.acceleration(self.model, mode, v, surface), a_x, v_x, settled.x)
                 }
             };
             largest = largest.max(here);
@@ -148,76 +180,85 @@ impl DenseOutput<'_> {
         largest.sqrt()
     }
 
-    /// Mass `i` at the fraction `theta`, where the carrier is at `carrier`.
-    fn mass_at(&self, theta: f64, i: usize, carrier: &CarrierPoint) -> MassPoint {
-        let motion = [self.elongation(Direction::X, i), self.elongation(Direction::Z, i)];
-        let (start, h) = (self.start.state, self.span.length);
-        let x = motion[0].evaluate(theta);
-        let mut surface = start.surface[i];
-        let v_x = match start.mode[i] {
-            Mode::Stick => 0.0,
-            _ => x.speed / h + carrier.u_rate,
+    /// The carrier at the fraction `theta`, for which the weights of `workspace` are set.
+    fn carrier_at(&self, theta: f64, workspace: &DenseWorkspace) -> CarrierWithin {
+        let now = self.carrier.at(self.span.at(theta));
+        let sum = |weights: &[f64; STAGES], rate: fn(&CarrierPoint) -> f64| -> f64 {
+            weights.iter().zip(self.carriers).map(|(weight, at)| weight * rate(at)).sum()
         };
-        if start.mode[i] == Mode::Free {
-            let z = motion[1].evaluate(theta);
-            return MassPoint {
-                elongation: (x.position, z.position),
-                velocity: (v_x, z.speed / h + carrier.w_rate),
-                bend: (x.acceleration, z.acceleration),
-                surface,
-                motion,
-            };
+        let both = |weights| (sum(weights, |at| at.u_rate), sum(weights, |at| at.w_rate));
+        let rate = both(&workspace.values);
+        CarrierWithin {
+            moved_x: self.carrier.moved(self.span.start, theta * self.span.length).0,
+            integrated: both(&workspace.integral),
+            missing_rate: (now.u_rate - rate.0, now.w_rate - rate.1),
+            now,
         }
-        let elongation_x = if start.mode[i].slips() {
-            surface = self
-                .model
-                .surface_at(self.model.rest_x[i] + (self.carrier.profile_position + (carrier.du + x.position)));
-            x.position
-        } else {
-            // The error of the polynomial for the carrier's displacement would move a mass that sticks.
-            start.elongation_x[i] - self.carrier.moved(self.span.start, theta * h).0
+    }
+
+    /// Mass `i` at the fraction of the step for which the weights of `workspace` are set.
+    fn mass_at(&self, i: usize, carrier: &CarrierWithin, workspace: &DenseWorkspace) -> MassPoint {
+        let start = self.start.state;
+        let sum = |weights: &[f64; STAGES], value: fn(&Rates) -> &[f64]| -> f64 {
+            weights.iter().zip(self.stages).map(|(weight, stage)| weight * value(stage)[i]).sum()
         };
-        let elongation_z = surface.height - self.model.rest_z[i] - (self.carrier.w + carrier.dw);
+        let along_x = |weights| sum(weights, |stage| &stage.velocity_x);
+        let x = start.elongation_x[i] + along_x(&workspace.integral) - carrier.integrated.0;
+        let v_x = along_x(&workspace.values) + carrier.missing_rate.0;
+        if start.mode[i].in_contact() {
+            return self.on_profile(i, (x, v_x), carrier);
+        }
+        let along_z = |weights| sum(weights, |stage| &stage.velocity_z);
         MassPoint {
-            elongation: (elongation_x, elongation_z),
-            velocity: (v_x, surface.slope * v_x),
-            bend: (x.acceleration, 0.0),
-            surface,
-            motion,
+            elongation: (x, start.elongation_z[i] + along_z(&workspace.integral) - carrier.integrated.1),
+            velocity: (v_x, along_z(&workspace.values) + carrier.missing_rate.1),
+            surface: start.surface[i],
         }
+    }
+
+    /// Mass `i`, in contact, with the elongation and velocity `along_x` (m, m/s) if it slips.
+    fn on_profile(&self, i: usize, along_x: (f64, f64), carrier: &CarrierWithin) -> MassPoint {
+        let start = self.start.state;
+        let (elongation_x, v_x, surface) = if start.mode[i].slips() {
+            let at = self.model.rest_x[i] + (self.carrier.profile_position + (carrier.now.du + along_x.0));
+            (along_x.0, along_x.1, self.model.surface_at(at))
+        } else {
+            (start.elongation_x[i] - carrier.moved_x, 0.0, start.surface[i])
+        };
+        let elongation_z = surface.height - self.model.rest_z[i] - (self.carrier.w + carrier.now.dw);
+        MassPoint { elongation: (elongation_x, elongation_z), velocity: (v_x, surface.slope * v_x), surface }
     }
 
     /// ẋ of mass `i` at the fraction `theta`, m/s.
     pub fn velocity_x(&self, i: usize, theta: f64) -> f64 {
-        let carrier = self.carrier.at(self.span.at(theta));
-        self.elongation(Direction::X, i).evaluate(theta).speed / self.span.length + carrier.u_rate
+        let values = self.interpolation.values(theta);
+        let relative = values.iter().zip(self.stages).zip(self.carriers);
+        let relative = relative.map(|((weight, stage), carrier)| weight * (stage.velocity_x[i] - carrier.u_rate));
+        relative.sum::<f64>() + self.carrier.at(self.span.at(theta)).u_rate
     }
 
     /// The contact forces of mass `i`, in contact, at the fraction `theta`: the same as in the state there, for this mass
     /// alone.
     pub fn contact(&self, i: usize, theta: f64, workspace: &mut DenseWorkspace) -> ContactForces {
-        workspace.relax(self, theta);
-        let carrier = self.carrier.at(self.span.at(theta));
-        let here = self.mass_at(theta, i, &carrier);
-        let to_carrier = LinkPoint {
-            elongation: here.elongation,
-            rate: (here.velocity.0 - carrier.u_rate, here.velocity.1 - carrier.w_rate),
-            motion: here.motion,
-        };
+        workspace.set_weights(self, theta);
+        let carrier = self.carrier_at(theta, workspace);
+        let here = self.mass_at(i, &carrier, workspace);
+        let rate = (here.velocity.0 - carrier.now.u_rate, here.velocity.1 - carrier.now.w_rate);
+        let to_carrier = LinkPoint { elongation: here.elongation, rate };
         let mut force_x = -self.link_force(LinkKind::Horizontal, i, theta, &to_carrier, workspace);
         let mut force_z = -self.link_force(LinkKind::Vertical, i, theta, &to_carrier, workspace);
         for (j, link, sign) in [(i.wrapping_sub(1), i.wrapping_sub(1), -1.0), (i + 1, i, 1.0)] {
             if j >= self.model.masses() {
                 continue;
             }
-            let between = LinkPoint::between(&here, &self.mass_at(theta, j, &carrier), sign);
+            let between = LinkPoint::between(&here, &self.mass_at(j, &carrier, workspace), sign);
             force_x += sign * self.link_force(LinkKind::LateralX, link, theta, &between, workspace);
             force_z += sign * self.link_force(LinkKind::LateralZ, link, theta, &between, workspace);
         }
         ContactForces::new(self.model, (force_x, force_z), here.velocity.0, &here.surface)
     }
 
-    /// The force of one link at the fraction `theta`, N.
+    /// The force of one link at the fraction `theta`, for which the weights of `workspace` are set, N.
     fn link_force(
         &self,
         kind: LinkKind,
@@ -227,8 +268,7 @@ impl DenseOutput<'_> {
         workspace: &DenseWorkspace,
     ) -> f64 {
         let law = &self.model.links[kind as usize];
-        let along_x = kind.is_along_x();
-        let of = |(x, z): (f64, f64)| if along_x { x } else { z };
+        let of = |(x, z): (f64, f64)| if kind.is_along_x() { x } else { z };
         let mut force = law.stiffness * of(point.elongation) + law.damping * of(point.rate);
         if law.frozen > 0.0 {
             force -= law.frozen * self.model.frozen_dashpot(kind, link);
@@ -237,50 +277,38 @@ impl DenseOutput<'_> {
         if rows.peek().is_none() {
             return force;
         }
-        let rate = point.motion[usize::from(!along_x)].derivative_monomials();
         for row in rows {
-            let weights = &workspace.relaxation[row.time_index];
             let (start, end) =
                 (self.start.state.maxwell[row.range.start + link], self.end.state.maxwell[row.range.start + link]);
-            let driven: f64 = weights.driven.iter().zip(rate).map(|(weight, rate)| weight * rate).sum();
-            force += row.stiffness * (weights.decay * start + theta * end + driven);
+            force += row.stiffness * (workspace.relaxation[row.time_index].start * start + theta * end);
         }
-        force
+        let rates = self.stages.iter().map(|stage| stage.elongation_rate[kind as usize][link]);
+        force + workspace.of_rate[kind as usize].iter().zip(rates).map(|(weight, rate)| weight * rate).sum::<f64>()
     }
+}
 
-    /// The elongation of a link of mass `i` to the carrier through the step, m.
-    fn elongation(&self, direction: Direction, i: usize) -> Quintic {
-        let at = |StepBoundary { state, rates, carrier }: &StepBoundary<'_>| match direction {
-            Direction::X => Jet {
-                position: state.elongation_x[i],
-                speed: rates.velocity_x[i] - carrier.u_rate,
-                acceleration: rates.acceleration_x[i] - carrier.u_acceleration,
-            },
-            Direction::Z => Jet {
-                position: state.elongation_z[i],
-                speed: rates.velocity_z[i] - carrier.w_rate,
-                acceleration: rates.acceleration_z[i] - carrier.w_acceleration,
-            },
-        };
-        Quintic::hermite(at(&self.start), at(&self.end), self.span.length)
-    }
+/// The carrier at one instant within a step.
+struct CarrierWithin {
+    now: CarrierPoint,
+    /// Its displacement along x since the start of the step, m.
+    moved_x: f64,
+    /// Its displacement along x and z since then as the stages' rates give it, m.
+    integrated: (f64, f64),
+    /// What the stages' rates miss of u̇ and ẇ, m/s.
+    missing_rate: (f64, f64),
 }
 
 /// A mass at one instant within a step; along x and z.
 struct MassPoint {
     elongation: (f64, f64),
     velocity: (f64, f64),
-    /// The second derivative of the elongation by the fraction of the step, m; along z of a free mass alone.
-    bend: (f64, f64),
     surface: SurfacePoint,
-    motion: [Quintic; 2],
 }
 
 /// The links at one mass, or between two, at one instant within a step; along x and z.
 struct LinkPoint {
     elongation: (f64, f64),
     rate: (f64, f64),
-    motion: [Quintic; 2],
 }
 
 impl LinkPoint {
@@ -290,87 +318,109 @@ impl LinkPoint {
         Self {
             elongation: difference(there.elongation, here.elongation),
             rate: difference(there.velocity, here.velocity),
-            motion: std::array::from_fn(|axis| there.motion[axis].less(&here.motion[axis], sign)),
         }
     }
 }
 
-/// Workspace of [`DenseOutput`] for the links' elongation rates through a step.
+/// How much of a force on a mass becomes velocity in a time β, along x and z: (m/β)/(m/β + βc + d + Σ_j c_j βτ_j/(τ_j + β))
+/// of the links to the carrier and to neighbours at rest. The rest goes into them: motion that is faster settles.
+struct Settled {
+    x: f64,
+    z: f64,
+}
+
+impl Settled {
+    fn new(model: &Model, beta: f64) -> Self {
+        let weight = |kind: LinkKind| {
+            let link = &model.links[kind as usize];
+            let relaxing = |row: &MaxwellRow| row.stiffness * beta * row.relaxation_time / (row.relaxation_time + beta);
+            beta * link.stiffness + link.damping + model.rows_of(kind).map(relaxing).sum::<f64>()
+        };
+        let share = |own: LinkKind, lateral: LinkKind| {
+            let inertia = model.mass / beta;
+            inertia / (inertia + weight(own) + 2.0 * weight(lateral))
+        };
+        Self { x: share(LinkKind::Horizontal, LinkKind::LateralX), z: share(LinkKind::Vertical, LinkKind::LateralZ) }
+    }
+}
+
+/// Workspace of [`DenseOutput`]: the weights of the stages at one fraction of a step.
 #[derive(Clone, Debug)]
 pub struct DenseWorkspace {
-    /// By kind of link: the coefficients of 1, θ, … θ⁴ of h ė; empty where the links have no Maxwell elements.
-    rate: [[Vec<f64>; 5]; 4],
-    /// Along x and z: the second derivative of each mass's elongation by the fraction of the step, m.
-    bend: [Vec<f64>; 2],
-    /// By relaxation time: the weights of a at the start and of the rates in a at the fraction of the step. They make the
-    /// elements follow the rates exactly, less the linear share of the difference at the step's own end.
-    relaxation: Vec<Relaxation>,
-    /// The fraction and the length of the step for which `relaxation` holds.
-    relaxed: (f64, f64),
+    /// The fraction and the length of the step for which the weights are set.
+    at: (f64, f64),
+    /// Of the stages' values in a value.
+    values: [f64; STAGES],
+    /// Of the stages' rates in a value's change since the start, s.
+    integral: [f64; STAGES],
+    /// By relaxation time.
+    relaxation: Vec<RelaxationWeights>,
+    /// By kind of link: of the stages' elongation rates in the force of all Maxwell elements, N s/m.
+    of_rate: [[f64; STAGES]; 4],
+    /// Along x and z: the accelerations of the interpolant, m/s².
+    acceleration: [Vec<f64>; 2],
+}
+
+/// The weights of a Maxwell element's elongation at the start and of its link's rates at the stages (s). They make the
+/// element follow the interpolated rate exactly, less the linear share of the difference at the step's own end.
+#[derive(Clone, Copy, Debug, Default)]
+struct RelaxationWeights {
+    start: f64,
+    rate: [f64; STAGES],
 }
 
 impl DenseWorkspace {
     /// Workspace for steps of `model`.
     pub fn new(model: &Model) -> Self {
-        let has = |kind: LinkKind| model.rows.iter().any(|row| row.kind == kind);
-        let rate = LinkKind::ALL.map(|kind| {
-            // The rates of the lateral links are differences of those of the links to the carrier.
-            let needed = has(kind)
-                || (!kind.is_lateral()
-                    && LinkKind::ALL.into_iter().any(|lateral| {
-                        lateral.is_lateral() && lateral.is_along_x() == kind.is_along_x() && has(lateral)
-                    }));
-            std::array::from_fn(|_| vec![0.0; if needed { kind.count(model.masses()) } else { 0 }])
-        });
-        let relaxation = vec![Relaxation::default(); model.relaxation_times.len()];
-        let bend = [vec![0.0; model.masses()], vec![0.0; model.masses()]];
-        Self { rate, bend, relaxation, relaxed: (f64::NAN, f64::NAN) }
+        Self {
+            at: (f64::NAN, f64::NAN),
+            values: [0.0; STAGES],
+            integral: [0.0; STAGES],
+            relaxation: vec![RelaxationWeights::default(); model.relaxation_times.len()],
+            of_rate: [[0.0; STAGES]; 4],
+            acceleration: [vec![0.0; model.masses()], vec![0.0; model.masses()]],
+        }
     }
 
     /// Bytes that this holds.
     pub fn bytes(&self) -> usize {
-        self.rate.iter().flatten().chain(&self.bend).map(|array| array.len() * size_of::<f64>()).sum()
+        self.acceleration.iter().map(|array| array.len() * size_of::<f64>()).sum()
     }
 
-    /// Computes the relaxation weights at the fraction `theta` of `step`, unless they are there already.
-    fn relax(&mut self, step: &DenseOutput<'_>, theta: f64) {
-        if self.relaxed == (theta, step.span.length) {
+    /// Sets the weights at the fraction `theta` of `step`, unless they are there already.
+    fn set_weights(&mut self, step: &DenseOutput<'_>, theta: f64) {
+        let h = step.span.length;
+        if self.at == (theta, h) {
             return;
         }
-        self.relaxed = (theta, step.span.length);
+        self.at = (theta, h);
+        self.values = step.interpolation.values(theta);
+        self.integral = step.interpolation.integral(theta).map(|weight| h * weight);
+        self.of_rate = [[0.0; STAGES]; 4];
         for (relaxation, tau) in self.relaxation.iter_mut().zip(&step.model.relaxation_times) {
-            let ratio = step.span.length / tau;
-            let (here, whole) = (Relaxation::new(ratio, theta), Relaxation::new(ratio, 1.0));
-            *relaxation = Relaxation {
-                decay: here.decay - theta * whole.decay,
-                driven: std::array::from_fn(|m| here.driven[m] - theta * whole.driven[m]),
-            };
+            let (here, whole) = (Relaxation::new(h / tau, theta), Relaxation::new(h / tau, 1.0));
+            let driven = std::array::from_fn(|power| h * (here.driven[power] - theta * whole.driven[power]));
+            relaxation.start = here.decay - theta * whole.decay;
+            relaxation.rate = step.interpolation.combined(&driven);
+        }
+        for row in &step.model.rows {
+            let rates = self.relaxation[row.time_index].rate;
+            for (weight, rate) in self.of_rate[row.kind as usize].iter_mut().zip(rates) {
+                *weight += row.stiffness * rate;
+            }
         }
     }
 
-    /// Writes the elongation rates of the links of mass `i` to the carrier, and its second derivatives.
-    fn set_mass(&mut self, i: usize, mass: &MassPoint) {
-        for (kind, elongation) in [LinkKind::Horizontal, LinkKind::Vertical].into_iter().zip(&mass.motion) {
-            let rate = &mut self.rate[kind as usize];
-            if !rate[0].is_empty() {
-                for (rate, monomial) in rate.iter_mut().zip(elongation.derivative_monomials()) {
-                    rate[i] = monomial;
-                }
-            }
-        }
-        (self.bend[0][i], self.bend[1][i]) = mass.bend;
-    }
-
-    /// Computes the elongation rates of the lateral links from those of the masses.
-    fn set_lateral_rates(&mut self) {
-        let [vertical, horizontal, lateral_x, lateral_z] = &mut self.rate;
-        for (of_masses, lateral) in [(horizontal, lateral_x), (vertical, lateral_z)] {
-            for (of_masses, lateral) in of_masses.iter().zip(lateral) {
-                for (i, rate) in lateral.iter_mut().enumerate() {
-                    *rate = of_masses[i + 1] - of_masses[i];
-                }
-            }
-        }
+    /// Computes the accelerations of the interpolant at the fraction `theta` of `step`, with the carrier there.
+    fn set_accelerations(&mut self, step: &DenseOutput<'_>, theta: f64, carrier: &CarrierPoint) {
+        let slope = step.interpolation.slope(theta).map(|weight| weight / step.span.length);
+        let missing = |of_carrier: f64, rate: fn(&CarrierPoint) -> f64| {
+            of_carrier - slope.iter().zip(step.carriers).map(|(weight, at)| weight * rate(at)).sum::<f64>()
+        };
+        let [x, z] = &mut self.acceleration;
+        let missing_x = missing(carrier.u_acceleration, |at| at.u_rate);
+        step.combine(x, &slope, None, |stage| &stage.velocity_x, missing_x);
+        step.combine(z, &slope, None, |stage| &stage.velocity_z, missing(carrier.w_acceleration, |at| at.w_rate));
     }
 }
 

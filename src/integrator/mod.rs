@@ -7,6 +7,7 @@
 mod dense;
 mod energy;
 mod error;
+mod interpolation;
 mod maxwell;
 mod method;
 mod rates;
@@ -22,6 +23,7 @@ pub use tableau::{ContinuousWeights, ESDIRK5, METHOD, SDIRK2, STAGES, TWO_STAGES
 
 use crate::model::{Carrier, CarrierPoint, ChannelEnergies, Exchange, Forces, Model, State};
 use error::ErrorWorkspace;
+use interpolation::StageInterpolation;
 use maxwell::Maxwell;
 use method::{InitialGuess, RungeKutta, Stages, StepInput};
 use sensitivity::{Tangent, Target};
@@ -41,6 +43,8 @@ pub struct Integrator {
     seven_stages: RungeKutta<STAGES>,
     two_stages: RungeKutta<TWO_STAGES>,
     stages: Stages,
+    /// Of [`METHOD`].
+    interpolation: StageInterpolation,
     error_workspace: ErrorWorkspace,
 }
 
@@ -114,6 +118,7 @@ impl Integrator {
                 tracks_energy: tracked.energy,
                 tangents: targets.iter().map(|&target| Tangent::new(model, target, steps.stages())).collect(),
             },
+            interpolation: StageInterpolation::new(&METHOD),
             error_workspace: ErrorWorkspace::new(model),
         }
     }
@@ -220,9 +225,16 @@ impl Integrator {
         span: StepSpan,
     ) -> DenseOutput<'a> {
         let carriers = &self.stages.carrier;
-        let first = StepBoundary { state: &start.state, rates: &start.rates, carrier: carriers[0] };
-        let last = StepBoundary { state: self.end(), rates: &self.stages()[STAGES - 1], carrier: carriers[STAGES - 1] };
-        DenseOutput { model, carrier, span, start: first, end: last }
+        DenseOutput {
+            model,
+            carrier,
+            span,
+            start: StepBoundary { state: &start.state, carrier: carriers[0] },
+            end: StepBoundary { state: self.end(), carrier: carriers[STAGES - 1] },
+            stages: self.stages(),
+            carriers,
+            interpolation: &self.interpolation,
+        }
     }
 
     /// The dense output of the last attempted two-stage step, from `start`.

@@ -107,9 +107,10 @@ impl Run {
     /// `share`, in the tolerance's norm.
     fn defect_within(&mut self, h: f64, share: f64) -> f64 {
         self.evaluate_within(h, share);
-        let workspace = &self.workspace;
+        let Self { model, settings, state, workspace, .. } = self;
         let (interpolated, forces) = (&workspace.interpolated, &workspace.forces);
-        self.dense_output(h).defect(share, interpolated, forces, &workspace.dense, &self.settings.tolerance)
+        let dense = workspace.integrator.dense(model, &state.carrier, &state.layer, state.span(h));
+        dense.defect(share, interpolated, forces, &mut workspace.dense, &settings.tolerance)
     }
 
     /// The state at the fraction `theta` of the step of length `h` tried last, into `interpolated`.
