@@ -142,8 +142,8 @@ impl DenseOutput<'_> {
 
     /// The defect of the dense output in the equations of motion at the fraction `theta`, in the tolerance's norm: the
     /// difference between the accelerations of the interpolant and those that the `forces` in its `state` give, as the
-    /// correction of the velocities that Newton's first iteration of a stage as long as the step so far would make. The
-    /// workspace is that with which [`state_at`](Self::state_at) wrote the state.
+    /// correction of the velocities, and with them of the positions, that Newton's first iteration of a stage as long as
+    /// the step so far would make. The workspace is that with which [`state_at`](Self::state_at) wrote the state.
     pub fn defect(
         &self,
         theta: f64,
@@ -157,7 +157,8 @@ impl DenseOutput<'_> {
         let settled = Settled::new(self.model, theta * h);
         let missed = |of_forces: f64, of_interpolant: f64, velocity: f64, settled: f64| {
             let gained = settled * theta * h * (of_forces - of_interpolant);
-            gained * gained / tolerance.of_velocity(velocity)
+            let moved = theta * h * gained;
+            (gained * gained / tolerance.of_velocity(velocity)).max(moved * moved / tolerance.of_position(0.0))
         };
         let mut largest = 0.0_f64;
         for i in 0..self.model.masses() {

@@ -4,11 +4,10 @@
 //! motion is far faster than the step, its stages have settled, and so has any combination of them: nothing is
 //! differentiated, as Hermite's interpolant does with the accelerations at both ends.
 //!
-//! The stages have order 2 each, so a combination has order q where it is exact for their elementary weights up to that
-//! order: Σ w_j (1, c, c², Ac², Ac³, AAc²)_j = (1, θ, θ², θ³/3, θ⁴/4, θ⁴/12). With one condition fewer than there are
-//! stages, one direction n is left to the weights, and w = w_p + φ(θ) n with w_p the least weights that meet the
-//! conditions. The parabola φ makes both ends exact, w(0) = e_1 and w(1) = e_s, and the position at the end the one of
-//! the method, ∫w = b. That is possible since b meets the integrated conditions.
+//! The stages have order 2 each, so w has order 4 for velocities, and order 3 for what depends on the state, where it is
+//! exact for their elementary weights up to these orders: Σ w_j (1, c, c², c³, Ac², Ac³, AAc²)_j = (1, θ, θ², θ³, θ³/3,
+//! θ⁴/4, θ⁴/12). These are as many conditions as stages. The first and the last stage and, integrated, the method's own b
+//! meet them; so w is the first and the last stage at the ends, and the position at the end is the one of the method.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -29,16 +28,7 @@ pub struct StageInterpolation {
 impl StageInterpolation {
     /// The weights of a method whose stages have order 2.
     pub(super) fn new<const N: usize>(tableau: &Tableau<N>) -> Self {
-        let conditions = Conditions::new(tableau);
-        let n = conditions.free_direction();
-        let mut by_power = conditions.least_weights();
-        // w_p has no part along n.
-        let parabola = parabola(n[0], n[N - 1], n.dot(&DVector::from_column_slice(tableau.weights())));
-        for (weights, coefficient) in by_power.iter_mut().zip(parabola) {
-            *weights += coefficient * &n;
-        }
-        let by_power: [[f64; STAGES]; POWERS] =
-            std::array::from_fn(|power| std::array::from_fn(|j| if j < N { by_power[power][j] } else { 0.0 }));
+        let by_power = weights(tableau);
         Self { bernstein: in_bernstein_basis(&by_power), by_power }
     }
 
@@ -83,67 +73,28 @@ impl StageInterpolation {
     }
 }
 
-/// The conditions for the order of the weights, R w = r(θ).
-struct Conditions {
-    /// R: one row a condition.
-    rows: DMatrix<f64>,
-    /// Rᵀ(RRᵀ)⁻¹.
-    least: DMatrix<f64>,
-}
+/// The right side of every condition: a power of θ and its coefficient.
+const RIGHT: [(usize, f64); STAGES] =
+    [(0, 1.0), (1, 1.0), (2, 1.0), (3, 1.0), (3, 1.0 / 3.0), (4, 0.25), (4, 1.0 / 12.0)];
 
-impl Conditions {
-    /// One fewer than there are stages.
-    fn new<const N: usize>(tableau: &Tableau<N>) -> Self {
-        let a = DMatrix::from_fn(N, N, |i, j| tableau.a[i][j]);
-        let c = DVector::from_column_slice(&tableau.c);
-        let (square, cube) = (c.component_mul(&c), c.component_mul(&c).component_mul(&c));
-        let once = &a * &square;
-        let all = [DVector::repeat(N, 1.0), c, square, once.clone(), &a * cube, &a * once];
-        let rows = DMatrix::from_fn(N - 1, N, |row, stage| all[row][stage]);
-        // Not singular: the conditions of a method do not depend on each other.
-        let inverse = (&rows * rows.transpose()).try_inverse().unwrap_or_else(|| DMatrix::zeros(N - 1, N - 1));
-        Self { least: rows.transpose() * inverse, rows }
-    }
-
-    /// The direction of length 1 that the conditions leave free.
-    fn free_direction(&self) -> DVector<f64> {
-        let stages = self.rows.ncols();
-        let unit = |j: usize| DVector::from_fn(stages, |i, _| f64::from(u8::from(i == j)));
-        let free = (0..stages).map(|j| self.without_constrained_part(self.without_constrained_part(unit(j))));
-        let longest = free.max_by(|a, b| a.norm().total_cmp(&b.norm()));
-        longest.unwrap_or_else(|| DVector::zeros(stages)).normalize()
-    }
-
-    fn without_constrained_part(&self, vector: DVector<f64>) -> DVector<f64> {
-        let constrained = &self.least * (&self.rows * &vector);
-        vector - constrained
-    }
-
-    /// The least weights that meet the conditions, by power of θ.
-    fn least_weights(&self) -> Vec<DVector<f64>> {
-        (0..POWERS)
-            .map(|power| self.solve(&DVector::from_fn(self.rows.nrows(), |row, _| right_side(row, power))))
-            .collect()
-    }
-
-    /// The least solution of R w = `right`. A second pass removes what the rounding of the normal equations left.
-    fn solve(&self, right: &DVector<f64>) -> DVector<f64> {
-        let weights = &self.least * right;
-        let left = right - &self.rows * &weights;
-        weights + &self.least * left
-    }
-}
-
-/// The coefficient of θ^`power` in the right side of condition `row`.
-fn right_side(row: usize, power: usize) -> f64 {
-    const RIGHT: [(usize, f64); 6] = [(0, 1.0), (1, 1.0), (2, 1.0), (3, 1.0 / 3.0), (4, 0.25), (4, 1.0 / 12.0)];
-    if RIGHT[row].0 == power { RIGHT[row].1 } else { 0.0 }
-}
-
-/// The coefficients of the parabola with these values at 0 and 1 and this integral between them.
-fn parabola(start: f64, end: f64, integral: f64) -> [f64; 3] {
-    let bend = 3.0 * (start + end) - 6.0 * integral;
-    [start, end - start - bend, bend]
+/// The solution of the first N conditions by power of θ.
+fn weights<const N: usize>(tableau: &Tableau<N>) -> [[f64; STAGES]; POWERS] {
+    let a = DMatrix::from_fn(N, N, |i, j| tableau.a[i][j]);
+    let c = DVector::from_column_slice(&tableau.c);
+    let (square, cube) = (c.component_mul(&c), c.component_mul(&c).component_mul(&c));
+    let once = &a * &square;
+    let all = [DVector::repeat(N, 1.0), c, square, cube.clone(), once.clone(), &a * cube, &a * once];
+    let conditions = DMatrix::from_fn(N, N, |row, stage| all[row][stage]);
+    let factored = conditions.clone().lu();
+    std::array::from_fn(|power| {
+        let right = DVector::from_fn(N, |row, _| if RIGHT[row].0 == power { RIGHT[row].1 } else { 0.0 });
+        // Not singular: the conditions do not depend on each other.
+        let solve = |right: &DVector<f64>| factored.solve(right).unwrap_or_else(|| DVector::zeros(N));
+        let weights = solve(&right);
+        // The conditions are within rounding then, however large the weights are.
+        let weights = &weights + solve(&(right - &conditions * &weights));
+        std::array::from_fn(|j| if j < N { weights[j] } else { 0.0 })
+    })
 }
 
 fn in_bernstein_basis(by_power: &[[f64; STAGES]; POWERS]) -> [[f64; STAGES]; POWERS] {
@@ -168,11 +119,11 @@ mod tests {
     /// Roundings of weights of size 1 to 100.
     const ROUNDING: f64 = 1e-13;
 
-    fn elementary(tableau: &Tableau<STAGES>) -> [[f64; STAGES]; 6] {
+    fn elementary(tableau: &Tableau<STAGES>) -> [[f64; STAGES]; 7] {
         let times = |x: &[f64; STAGES]| std::array::from_fn(|i| (0..STAGES).map(|j| tableau.a[i][j] * x[j]).sum());
         let c = tableau.c;
         let (square, cube) = (c.map(|c| c * c), c.map(|c| c * c * c));
-        [[1.0; STAGES], c, square, times(&square), times(&cube), times(&times(&square))]
+        [[1.0; STAGES], c, square, cube, times(&square), times(&cube), times(&times(&square))]
     }
 
     fn sum(weights: &[f64; STAGES], values: &[f64; STAGES]) -> f64 {
@@ -184,7 +135,15 @@ mod tests {
         let interpolation = StageInterpolation::new(&METHOD);
         for theta in [0.0, 0.1, 0.45, 0.9, 1.0_f64] {
             let weights = interpolation.values(theta);
-            let expected = [1.0, theta, theta.powi(2), theta.powi(3) / 3.0, theta.powi(4) / 4.0, theta.powi(4) / 12.0];
+            let expected = [
+                1.0,
+                theta,
+                theta.powi(2),
+                theta.powi(3),
+                theta.powi(3) / 3.0,
+                theta.powi(4) / 4.0,
+                theta.powi(4) / 12.0,
+            ];
             for (values, expected) in elementary(&METHOD).iter().zip(expected) {
                 assert!((sum(&weights, values) - expected).abs() < ROUNDING, "{theta}: {weights:?}");
             }

@@ -36,7 +36,7 @@ fn the_inside_of_a_free_step_has_its_order() {
 }
 
 /// The same for a slipping mass, against steps so short that their error does not count: its height follows the profile
-/// at its position, its z velocity the slope there.
+/// at its position, its z velocity the slope there. What depends on the motion, as its Maxwell elements do, misses O(h⁵).
 #[test]
 fn the_inside_of_a_slipping_step_has_its_order() {
     let layer = slider();
@@ -51,7 +51,7 @@ fn the_inside_of_a_slipping_step_has_its_order() {
     };
     let mut stepper = Stepper::new(layer.model(), paths, start.clone(), 1e-14);
     let errors = [1e-1, 5e-2, 2.5e-2].map(|h| worst(&mut stepper, h, exact));
-    for (part, expected) in [6.0, 5.0, 6.0].into_iter().enumerate() {
+    for (part, expected) in [6.0, 5.0, 5.0].into_iter().enumerate() {
         let order = last_order(&errors.map(|error| error[part]));
         assert!(order > expected - 0.4, "part {part}: {order} from {errors:?}");
     }
