@@ -10,8 +10,10 @@ use crate::scene::{OutputGroup, Scene};
 pub struct Accounts {
     /// Energies: the groups `dissipation` and `energy`.
     pub energy: bool,
-    /// The error estimate of F_z and the processor time: the group `solver`.
+    /// The error estimate of the forces and the processor time: the group `solver`.
     pub solver: bool,
+    /// The error estimate of E_diss: the groups `solver` and `dissipation` together.
+    pub dissipation_error: bool,
     /// The forces' sensitivities to the carrier's targets: the group `tangent`.
     pub tangents: bool,
 }
@@ -23,6 +25,7 @@ impl Accounts {
         Self {
             energy: asked(OutputGroup::Dissipation) || asked(OutputGroup::Energy),
             solver: asked(OutputGroup::Solver),
+            dissipation_error: asked(OutputGroup::Solver) && asked(OutputGroup::Dissipation),
             tangents: asked(OutputGroup::Tangent),
         }
     }
@@ -52,6 +55,43 @@ impl Energies {
     }
 }
 
+/// The quantities of a run whose error is estimated, at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Monitored {
+    /// F_x and F_z, N.
+    pub forces: [f64; 2],
+    /// E_diss, J; `None` where it is not asked for.
+    pub dissipated: Option<f64>,
+}
+
+/// The largest estimated error of a quantity, and the largest absolute value of it, both in its unit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct LargestError {
+    error: f64,
+    value: f64,
+}
+
+impl LargestError {
+    /// Includes an `error` found where the more accurate run has the `value`.
+    fn include(&mut self, error: f64, value: f64) {
+        self.error = self.error.max(error);
+        self.value = self.value.max(value.abs());
+    }
+
+    /// The error over the largest value; 0 without an error.
+    fn relative(&self) -> f64 {
+        match (self.error, self.value) {
+            (0.0, _) => 0.0,
+            (_, 0.0) => 1.0,
+            (error, value) => (error / value).min(f64::MAX),
+        }
+    }
+}
+
+/// Differences of a force below this share of the larger of both forces are roundings: a force that is the sum of
+/// opposite ones, as in a symmetric scene, consists of nothing else.
+const ROUNDING: f64 = 1e-13;
+
 /// The solver's counts since the start, and its error estimate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Counters {
@@ -61,35 +101,85 @@ pub struct Counters {
     pub rejected: u64,
     /// Mode changes.
     pub events: u64,
-    /// Largest estimated error of F_z, N.
-    largest_error: f64,
-    /// Largest |F_z| of the error-estimation run, N.
-    largest_force: f64,
+    /// Of F_x and F_z, N.
+    forces: [LargestError; 2],
+    /// Of E_diss, J.
+    dissipated: LargestError,
 }
 
 impl Counters {
     /// All numbers that are not counts, to check that they are finite.
-    pub fn numbers(&self) -> [f64; 2] {
-        [self.largest_error, self.largest_force]
+    pub fn numbers(&self) -> [f64; 6] {
+        let [x, z] = self.forces;
+        [x.error, x.value, z.error, z.value, self.dissipated.error, self.dissipated.value]
     }
 
-    /// Compares F_z with that of the error-estimation run at the same time, N. The difference is the `share` of the error.
-    pub fn note_error(&mut self, force: f64, reference: f64, share: f64) {
-        self.largest_error = self.largest_error.max((force - reference).abs() / share);
-        self.largest_force = self.largest_force.max(reference.abs());
-    }
-
-    /// Notes that the error of F_z = `force` (N) is unknown: it counts as large as the force.
-    pub fn note_unknown(&mut self, force: f64) {
-        self.note_error(2.0 * force, force, 1.0);
-    }
-
-    /// Estimated error of F_z over its largest value so far; 0 without an estimate.
-    pub fn estimated_error(&self) -> f64 {
-        match (self.largest_error, self.largest_force) {
-            (0.0, _) => 0.0,
-            (_, 0.0) => 1.0,
-            (error, force) => (error / force).min(f64::MAX),
+    /// Compares a run with its error-estimation run at the same time. The difference is the `share` of the error.
+    pub fn note_error(&mut self, found: &Monitored, reference: &Monitored, share: f64) {
+        let largest = self.forces.iter().map(|force| force.value).chain(reference.forces.map(f64::abs));
+        let rounding = ROUNDING * largest.fold(0.0, f64::max);
+        for ((force, found), reference) in self.forces.iter_mut().zip(found.forces).zip(reference.forces) {
+            let difference = (found - reference).abs();
+            force.include(if difference > rounding { difference / share } else { 0.0 }, reference);
         }
+        if let (Some(found), Some(reference)) = (found.dissipated, reference.dissipated) {
+            self.dissipated.include((found - reference).abs() / share, reference);
+        }
+    }
+
+    /// Notes that the errors of a run are unknown: they count as large as the quantities `found`.
+    pub fn note_unknown(&mut self, found: &Monitored) {
+        for (force, found) in self.forces.iter_mut().zip(found.forces) {
+            force.include(found.abs(), found);
+        }
+        if let Some(found) = found.dissipated {
+            self.dissipated.include(found.abs(), found);
+        }
+    }
+
+    /// The larger of the estimated errors of F_x and F_z, each over its largest value so far; 0 without an estimate.
+    pub fn force_error(&self) -> f64 {
+        self.forces.iter().map(LargestError::relative).fold(0.0, f64::max)
+    }
+
+    /// The estimated error of E_diss over its largest value so far; 0 without an estimate.
+    pub fn dissipation_error(&self) -> f64 {
+        self.dissipated.relative()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn monitored(x: f64, z: f64, dissipated: f64) -> Monitored {
+        Monitored { forces: [x, z], dissipated: Some(dissipated) }
+    }
+
+    #[test]
+    fn the_error_is_that_of_the_worse_force_over_its_own_largest_value() {
+        let mut counters = Counters::default();
+        assert_eq!((counters.force_error(), counters.dissipation_error()), (0.0, 0.0));
+        counters.note_error(&monitored(0.5, 101.0, 3.0), &monitored(1.0, 100.0, 4.0), 0.5);
+        assert_eq!((counters.force_error(), counters.dissipation_error()), (1.0, 0.5));
+        // The largest error stays, over a value that has become larger.
+        counters.note_error(&monitored(-8.0, 50.0, 8.0), &monitored(-8.0, 50.0, 8.0), 0.5);
+        assert_eq!((counters.force_error(), counters.dissipation_error()), (0.125, 0.25));
+    }
+
+    #[test]
+    fn a_force_of_roundings_has_no_error() {
+        let mut counters = Counters::default();
+        counters.note_error(&monitored(1e-15, 1.0, 0.0), &monitored(-2e-15, 1.0, 0.0), 1.0);
+        assert_eq!(counters.force_error(), 0.0);
+        counters.note_error(&monitored(0.0, 1.0, 0.0), &monitored(2e-12, 1.0, 0.0), 1.0);
+        assert_eq!(counters.force_error(), 1.0);
+    }
+
+    #[test]
+    fn unknown_errors_are_as_large_as_the_quantities() {
+        let mut counters = Counters::default();
+        counters.note_unknown(&monitored(-2.0, 5.0, 0.1));
+        assert_eq!((counters.force_error(), counters.dissipation_error()), (1.0, 1.0));
     }
 }

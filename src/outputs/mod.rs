@@ -5,7 +5,7 @@ mod accounts;
 mod snapshot;
 mod table;
 
-pub use accounts::{Accounts, Counters, Energies};
+pub use accounts::{Accounts, Counters, Energies, Monitored};
 pub use snapshot::Snapshot;
 
 use crate::scene::{OutputGroup, Scene, Unit};
@@ -70,8 +70,10 @@ pub enum Output {
     Events,
     /// Rejected steps since the start.
     Rejected,
-    /// Estimated accumulated error of F_z over its largest value so far.
-    EstimatedError,
+    /// The larger of the estimated accumulated errors of F_x and F_z, each over its largest value so far.
+    ForceError,
+    /// Estimated accumulated error of E_diss over its largest value so far.
+    DissipationError,
     /// Processor time since the start, s.
     RunTime,
     /// Position of mass `.0` (from 0) along x, m.

@@ -7,7 +7,7 @@
 
 use std::cell::OnceCell;
 
-use super::{Counters, Energies, Variable};
+use super::{Counters, Energies, Monitored, Variable};
 use crate::model::{
     CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, Powers, State, elastic_energy,
     kinetic_energy,
@@ -99,6 +99,14 @@ impl Snapshot<'_> {
         let (now, shift) = (Evaluation::new(self), CarrierShift::new(self.model, direction));
         for (variable, value) in variables.iter().zip(values) {
             *value = variable.row.derivative(&now, variable.mass, &shift);
+        }
+    }
+
+    /// The quantities whose error is estimated; E_diss where it is `tracked`.
+    pub(crate) fn monitored(&self, tracked: bool) -> Monitored {
+        Monitored {
+            forces: [self.forces.on_carrier_x(), self.forces.on_carrier_z()],
+            dissipated: tracked.then(|| self.energies.dissipated()),
         }
     }
 

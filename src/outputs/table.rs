@@ -169,7 +169,7 @@ const fn mass(
 
 /// All outputs, in the order of the result files within their groups.
 #[rustfmt::skip]
-pub(super) static TABLE: [OutputRow; 35] = {
+pub(super) static TABLE: [OutputRow; 36] = {
     use Kind::{Integer, Real};
     use OutputGroup::{Contact, Dissipation, Energy, Forces, Friction, Solver, Tangent};
     use Unit::{Joule, Meter, Newton, NewtonPerMeter, One, Second, SquareMeter, Watt};
@@ -244,8 +244,11 @@ pub(super) static TABLE: [OutputRow; 35] = {
             |now| as_integer(now.at.counters.events)),
         layer(Output::Rejected, Solver, "solver.rejected", Integer, One, "Rejected steps since the start",
             |now| as_integer(now.at.counters.rejected)),
-        layer(Output::EstimatedError, Solver, "solver.error", Real, One, "Estimated accumulated error of F_z over its largest value so far",
-            |now| now.at.counters.estimated_error()),
+        layer(Output::ForceError, Solver, "solver.error", Real, One, "Estimated accumulated error: the larger of those of F_x and F_z, each over its largest value so far",
+            |now| now.at.counters.force_error()),
+        layer(Output::DissipationError, Solver, "solver.error_E_diss", Real, One, "Estimated accumulated error of E_diss over its largest value so far",
+            |now| now.at.counters.dissipation_error())
+            .only_where(|scene| scene.outputs.contains(&Dissipation)),
         layer(Output::RunTime, Solver, "solver.run_time", Real, Second, "Processor time since the start",
             |now| now.at.run_time),
         mass(Output::ElementX, "x", Real, Meter, "Position along x of mass",

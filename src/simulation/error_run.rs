@@ -12,7 +12,7 @@ use super::run::{Run, RunState, Settings};
 use crate::contact::EventTolerance;
 use crate::integrator::Tolerance;
 use crate::model::Model;
-use crate::outputs::{Accounts, Counters};
+use crate::outputs::{Accounts, Monitored, Snapshot};
 
 /// The error-estimation run's tolerance, as a share of the run's.
 ///
@@ -29,7 +29,7 @@ const MORE_WORK: u64 = 4;
 /// Number of steps that it may try in any motion, however few the run itself takes.
 const LEAST_WORK: u64 = 10_000;
 
-/// A more accurate run that follows another one: never behind it when it is asked for F_z.
+/// A more accurate run that follows another one: never behind it when it is compared.
 #[derive(Clone, Debug)]
 pub(super) struct ErrorRun {
     pub(super) run: Run,
@@ -79,28 +79,31 @@ impl ErrorRun {
         self.run.state.step_size = self.run.state.step_size.min(SHORTER * h);
     }
 
-    /// Includes in `counters` by how much the run beside, with F_z = `force` (N) at the time `s` of the motion, is off.
-    /// Where this run could not go on, the error is unknown and counts as the whole force.
-    pub(super) fn compare(&mut self, s: f64, force: f64, counters: &mut Counters) {
-        match self.force_z_at(s) {
-            Some(reference) => counters.note_error(force, reference, VISIBLE_SHARE),
-            None => counters.note_unknown(force),
+    /// Includes in the counters of `snapshot`, the run beside at the time `s` of the motion, by how much it is off. Where
+    /// this run could not go on, the errors are unknown and count as large as the quantities themselves.
+    pub(super) fn compare(&mut self, s: f64, snapshot: &mut Snapshot<'_>) {
+        let found = snapshot.monitored(self.run.settings.accounts.energy);
+        match self.monitored_at(s) {
+            Some(reference) => snapshot.counters.note_error(&found, &reference, VISIBLE_SHARE),
+            None => snapshot.counters.note_unknown(&found),
         }
     }
 
-    /// F_z at the time `s` since the start of the motion, which does not fall from call to call, N; `None` where the
-    /// run could not go on.
-    fn force_z_at(&mut self, s: f64) -> Option<f64> {
+    /// The quantities compared at the time `s` since the start of the motion, which does not fall from call to call;
+    /// `None` where the run could not go on.
+    fn monitored_at(&mut self, s: f64) -> Option<Monitored> {
         if self.failed {
             return None;
         }
-        let force = self.follow_to(s, false);
-        self.failed = force.is_err();
-        force.ok()
+        let monitored = self.follow_to(s, false);
+        self.failed = monitored.is_err();
+        monitored.ok()
     }
 
-    /// F_z at the time `s`; the run stands there if it `ends` there, or before a step that goes beyond it.
-    fn follow_to(&mut self, s: f64, ends: bool) -> Result<f64, SimulationError> {
+    /// The quantities compared at the time `s`; the run stands there if it `ends` there, or before a step that goes
+    /// beyond it.
+    fn follow_to(&mut self, s: f64, ends: bool) -> Result<Monitored, SimulationError> {
+        let tracked = self.run.settings.accounts.energy;
         while self.run.state.s < s {
             let steps = self.work.tried();
             if steps > LEAST_WORK + MORE_WORK.saturating_mul(self.steps_beside) {
@@ -114,13 +117,13 @@ impl ErrorRun {
             let theta = (s - self.run.state.s) / step.h;
             if !ends && s < end && self.run.can_show_within(step.h, theta) {
                 self.pending = Some(step);
-                return Ok(self.run.force_z_within(step.h, theta));
+                return Ok(self.run.snapshot_within(step.h, theta, 0.0).monitored(tracked));
             }
             let (step, end) =
                 if s < end { self.run.cut_step_at(s, self.duration, &mut self.work)? } else { (step, end) };
             self.run.take_step(&step, end);
         }
-        Ok(self.run.force_z())
+        Ok(self.run.snapshot(0.0).monitored(tracked))
     }
 
     /// Ends the motion where the run beside it stands, in `state`. If this run could not go on, it continues from there.
@@ -141,7 +144,7 @@ impl Settings {
             events: EventTolerance::new(model, &tolerance),
             tolerance,
             max_steps: self.max_steps.saturating_mul(MORE_WORK),
-            accounts: Accounts::default(),
+            accounts: Accounts { energy: self.accounts.dissipation_error, ..Accounts::default() },
             method: self.method,
         }
     }
@@ -151,7 +154,7 @@ impl Settings {
 mod tests {
     use super::super::tests::{WAVE, scene};
     use super::*;
-    use crate::outputs::{Output, Snapshot, variables};
+    use crate::outputs::{Output, variables};
     use crate::scene::{Path, Scene};
     use crate::simulation::{Simulation, Start};
 
@@ -177,23 +180,41 @@ mod tests {
         beside.s == run.s && beside.displacement() == run.displacement()
     }
 
-    /// The difference to a run at a far tighter tolerance, by rows as the estimate goes by them.
+    /// The differences to a run at a far tighter tolerance, by rows as the estimates go by them.
     #[test]
-    fn the_estimate_is_the_error() {
+    fn the_estimates_are_the_errors() {
         let scene = coarse();
         let times: Vec<f64> = (0..=20).map(|i| f64::from(i) * WAVE.duration / 20.0).collect();
-        let forces = |simulation: &mut Simulation| {
-            let mut forces = Vec::new();
-            let observe = |_, snapshot: &Snapshot<'_>| forces.push(snapshot.forces.on_carrier_z());
+        let rows = |simulation: &mut Simulation| {
+            let mut rows: Vec<[f64; 3]> = Vec::new();
+            let observe = |_, snapshot: &Snapshot<'_>| {
+                let Monitored { forces: [x, z], dissipated } = snapshot.monitored(true);
+                rows.push([x, z, dissipated.unwrap()]);
+            };
             simulation.advance_observed(&WAVE, None, &times, observe).unwrap();
-            forces
+            rows
         };
         let (mut coarse, mut tight) = (started(&scene), started(&super::super::tests::scene()));
-        let (found, wanted) = (forces(&mut coarse), forces(&mut tight));
-        let error = found.iter().zip(&wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        let error = error / wanted.iter().map(|force| force.abs()).fold(0.0, f64::max);
-        let ratio = value(&scene, &mut coarse, Output::EstimatedError) / error;
-        assert!(error > 1e-7 && (0.3..3.0).contains(&ratio), "{ratio} times {error:e}");
+        let (found, wanted) = (rows(&mut coarse), rows(&mut tight));
+        let error = |i: usize| {
+            let differences = found.iter().zip(&wanted).map(|(a, b)| (a[i] - b[i]).abs());
+            differences.fold(0.0, f64::max) / wanted.iter().map(|row| row[i].abs()).fold(0.0, f64::max)
+        };
+        for (output, error) in [(Output::ForceError, error(0).max(error(1))), (Output::DissipationError, error(2))] {
+            let ratio = value(&scene, &mut coarse, output) / error;
+            assert!(error > 1e-7 && (0.3..3.0).contains(&ratio), "{output:?}: {ratio} times {error:e}");
+        }
+    }
+
+    #[test]
+    fn energies_are_compared_only_where_they_are_asked_for() {
+        use crate::scene::OutputGroup::{Dissipation, Energy, Forces, Solver};
+        for (outputs, tracked) in [(vec![Forces, Energy, Solver], false), (vec![Dissipation, Solver], true)] {
+            let mut scene = coarse();
+            scene.outputs = outputs;
+            assert_eq!(started(&scene).error_run.unwrap().run.settings.accounts.energy, tracked);
+            assert_eq!(variables(&scene).iter().any(|variable| variable.name == "solver.error_E_diss"), tracked);
+        }
     }
 
     #[test]
@@ -215,10 +236,10 @@ mod tests {
         let mut simulation = started(&scene);
         simulation.error_run.as_mut().unwrap().run.settings.max_steps = 3;
         simulation.advance(&WAVE).unwrap();
-        assert_eq!(value(&scene, &mut simulation, Output::EstimatedError), 1.0);
+        assert_eq!(value(&scene, &mut simulation, Output::ForceError), 1.0);
         assert!(stands_beside(&simulation));
-        let reference = simulation.error_run.as_mut().unwrap().run.force_z();
-        assert_eq!(reference, simulation.run.force_z());
+        let reference = simulation.error_run.as_mut().unwrap().run.snapshot(0.0).monitored(false);
+        assert_eq!(reference, simulation.run.snapshot(0.0).monitored(false));
     }
 
     /// A motion that fails leaves both runs as they were.

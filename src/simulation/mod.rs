@@ -24,7 +24,7 @@ use std::sync::Arc;
 use cpu_time::ThreadTime;
 
 use crate::model::Model;
-use crate::outputs::{Snapshot, Variable};
+use crate::outputs::{Counters, Snapshot, Variable};
 use crate::scene::Scene;
 use driver::{TrialStep, WorkLimit};
 use error_run::ErrorRun;
@@ -260,9 +260,9 @@ impl Simulation {
     /// Shows the rows up to the time `end` of the motion, where the run stands.
     fn show_rows(&mut self, end: f64, observer: &mut Observer<'_, impl FnMut(f64, &Snapshot<'_>)>) {
         while let Some(time) = observer.next_up_to(end) {
-            self.estimate_error();
-            self.run_time = observer.run_time_now();
-            (observer.observe)(time, &self.run.snapshot(self.run_time));
+            let s = self.run.state.s;
+            let shown = observer.show(time, self.run.snapshot(0.0), s, self.error_run.as_mut());
+            (self.run.state.counters, self.run_time) = shown;
         }
     }
 
@@ -275,26 +275,17 @@ impl Simulation {
     ) {
         let Some(time) = observer.next() else { return };
         let s = self.run.state.s + theta * step.h;
-        if let Some(error_run) = &mut self.error_run {
-            let force = self.run.force_z_within(step.h, theta);
-            error_run.compare(s, force, &mut self.run.state.counters);
-        }
-        self.run_time = observer.run_time_now();
-        (observer.observe)(time, &self.run.snapshot_within(step.h, theta, self.run_time));
-    }
-
-    /// Compares F_z with that of the error-estimation run at the same time.
-    fn estimate_error(&mut self) {
-        if let Some(error_run) = &mut self.error_run {
-            let force = self.run.force_z();
-            error_run.compare(self.run.state.s, force, &mut self.run.state.counters);
-        }
+        let shown = observer.show(time, self.run.snapshot_within(step.h, theta, 0.0), s, self.error_run.as_mut());
+        (self.run.state.counters, self.run_time) = shown;
     }
 
     /// Ends the motion of the error-estimation run where the run stands.
     fn end_error_run(&mut self) {
-        self.estimate_error();
         if let Some(error_run) = &mut self.error_run {
+            let s = self.run.state.s;
+            let mut snapshot = self.run.snapshot(0.0);
+            error_run.compare(s, &mut snapshot);
+            self.run.state.counters = snapshot.counters;
             error_run.end_motion(&self.run.state);
         }
     }
@@ -390,6 +381,25 @@ struct Observer<'a, F> {
     /// Processor time before the motion, s.
     run_time: f64,
     observe: F,
+}
+
+impl<F: FnMut(f64, &Snapshot<'_>)> Observer<'_, F> {
+    /// Shows `snapshot`, of the time `s` of the motion, as the row at `time`, compared with the `error_run`. Returns the
+    /// counters then, and the processor time since the start, s.
+    fn show(
+        &mut self,
+        time: f64,
+        mut snapshot: Snapshot<'_>,
+        s: f64,
+        error_run: Option<&mut ErrorRun>,
+    ) -> (Counters, f64) {
+        if let Some(error_run) = error_run {
+            error_run.compare(s, &mut snapshot);
+        }
+        snapshot.run_time = self.run_time_now();
+        (self.observe)(time, &snapshot);
+        (snapshot.counters, snapshot.run_time)
+    }
 }
 
 impl<F> Observer<'_, F> {

@@ -57,18 +57,29 @@ pub struct Judged {
     pub residual: f64,
     /// As `asperity report` gives it; `None` where there is no tight run.
     pub verdict: Option<Verdict>,
-    /// The largest error of F_z against the tight run over the largest |F_z|; NaN where there is no tight run.
-    pub true_error: f64,
-    /// `solver.error` at the end.
-    pub estimate: f64,
-    /// The error below which nothing is known of it: roundings, and the absolute tolerance as a force over the largest
-    /// |F_z|.
-    pub floor: f64,
+    /// Of the worse of F_x and F_z, each over its largest value: `solver.error`.
+    pub forces: Estimate,
+    /// Of E_diss: `solver.error_E_diss`.
+    pub losses: Estimate,
     /// Processor time, s.
     pub time: f64,
 }
 
-impl Judged {
+/// A run's own estimate of an error beside the true one.
+#[derive(Clone, Copy, Debug)]
+pub struct Estimate {
+    /// The variable of the estimate.
+    pub name: &'static str,
+    /// Against the tight run, over the largest value; NaN where there is no tight run.
+    pub true_error: f64,
+    /// At the end.
+    pub estimate: f64,
+    /// The error below which nothing is known of it: roundings, and the absolute tolerance as a force over the largest
+    /// value.
+    pub floor: f64,
+}
+
+impl Estimate {
     /// Estimated over true error. Below the floor nothing is known of either: forces are sums with roundings, and the
     /// positions of the tight run too are right within an absolute tolerance, which is a force.
     pub fn ratio(&self) -> f64 {
@@ -78,11 +89,12 @@ impl Judged {
 
     /// The estimate is below the true error by more than it may ever be.
     fn underestimate(&self) -> Option<Finding> {
-        let found = !self.way.is_fmu() && self.ratio() < 1.0 / BELOW;
-        let text = format!("solver.error is {:.1e}, the error {:.1e}", self.estimate, self.true_error);
-        found.then_some(Finding { rule: "estimate", text })
+        let text = format!("{} is {:.1e}, the error {:.1e}", self.name, self.estimate, self.true_error);
+        (self.ratio() < 1.0 / BELOW).then_some(Finding { rule: "estimate", text })
     }
+}
 
+impl Judged {
     /// A run that panicked.
     pub fn panicked(case: &Case, text: String) -> Self {
         let stop = Stop { name: "panic", text: text.clone() };
@@ -130,7 +142,8 @@ fn judge_run(case: &Case, way: Way, mut outcome: Outcome, straight: Way, tight: 
     }
     let stopped = outcome.error.is_some() || tight.error.is_some() || tight.rows.is_empty();
     let comparable = way.is_fmu() == straight.is_fmu() && !stopped;
-    let true_error = if comparable { error_against(&outcome, tight) } else { f64::NAN };
+    let tight_run = comparable.then_some(tight);
+    let (forces, losses) = (worse_force(&outcome, tight_run), losses(&outcome, tight_run));
     if way == straight && tight.error.is_some() && outcome.error.is_none() {
         let text = tight.error.as_ref().map_or("", |error| error.text.as_str());
         outcome.findings.push(Finding { rule: "tight", text: format!("the tight run: {text}") });
@@ -144,19 +157,20 @@ fn judge_run(case: &Case, way: Way, mut outcome: Outcome, straight: Way, tight: 
         item: case.item.clone(),
         way,
         verdict: accuracy.map(|accuracy| accuracy.verdict(relative_tolerance(case))),
-        floor: floor(outcome.known, tight.largest("F_z")),
+        forces,
+        losses,
         steps: outcome.last("solver.steps"),
         events: outcome.last("solver.events"),
         rejected: outcome.last("solver.rejected"),
         residual: outcome.largest("energy.residual") / scale,
-        true_error,
-        estimate: outcome.last("solver.error"),
         time: outcome.last("solver.run_time"),
         reason: outcome.error.as_ref().map_or_else(String::new, |_| case.ends.reason.clone()),
         error: outcome.error,
         findings: outcome.findings,
     };
-    judged.findings.extend(judged.underestimate());
+    if !way.is_fmu() {
+        judged.findings.extend([judged.forces, judged.losses].iter().filter_map(Estimate::underestimate));
+    }
     judged
 }
 
@@ -173,33 +187,61 @@ fn wrong(case: &Case, accuracy: &Accuracy) -> Option<Finding> {
     found.then(|| Finding { rule: "accuracy", text: format!("{accuracy:?}") })
 }
 
-/// The largest difference of F_z over the largest |F_z|, as `solver.error` means it; N where there is none.
-fn error_against(outcome: &Outcome, tight: &Outcome) -> f64 {
-    if tight.largest("F_z") == 0.0 {
-        return outcome.largest("F_z");
-    }
-    outcome.forces().difference(&tight.forces(), &[Force::Z]).share
+/// Of the force with the larger error over its largest value, as `solver.error` means it.
+fn worse_force(outcome: &Outcome, tight: Option<&Outcome>) -> Estimate {
+    let largest = |force: Force| tight.map_or(0.0, |tight| tight.largest(force.name()));
+    let rounding = ROUNDING * largest(Force::X).max(largest(Force::Z));
+    let of = |force: Force| Estimate {
+        name: "solver.error",
+        true_error: tight.map_or(f64::NAN, |tight| relative_error(outcome, tight, force.name(), rounding)),
+        estimate: outcome.last("solver.error"),
+        floor: floor(outcome.known, largest(force)),
+    };
+    let [x, z] = Force::BOTH.map(of);
+    if x.true_error > z.true_error { x } else { z }
 }
 
+/// Of E_diss. What the absolute tolerance allows is a force on every mass along the carrier's path; roundings are those
+/// of the largest energy.
+fn losses(outcome: &Outcome, tight: Option<&Outcome>) -> Estimate {
+    let largest = tight.map_or(0.0, |tight| tight.largest("E_diss"));
+    let rounding = tight.map_or(0.0, |tight| FLOOR * energy_scale(tight));
+    Estimate {
+        name: "solver.error_E_diss",
+        true_error: tight.map_or(f64::NAN, |tight| relative_error(outcome, tight, "E_diss", 0.0)),
+        estimate: outcome.last("solver.error_E_diss"),
+        floor: floor(outcome.known * outcome.masses * outcome.path + rounding, largest),
+    }
+}
+
+/// The largest difference over the largest value, 0 up to `rounding`; the difference itself where there is no value.
+fn relative_error(outcome: &Outcome, tight: &Outcome, name: &str, rounding: f64) -> f64 {
+    let (largest, difference) = (tight.largest(name), largest_difference(outcome, tight, name));
+    match (difference > rounding, largest > 0.0) {
+        (false, _) => 0.0,
+        (true, false) => difference,
+        (true, true) => difference / largest,
+    }
+}
+
+/// Below this share of the larger force, differences of the other one are roundings.
+const ROUNDING: f64 = 1e-13;
 /// No estimate is below the true error by more than this factor: the worst is 33, by the method "step" that passes a
 /// crest a hair deep, and any other is under 16.
 const BELOW: f64 = 50.0;
 /// How many times their estimates two methods may differ: each is to be within a factor of ten of the truth.
 const OF_ESTIMATES: f64 = 10.0;
-/// How many relative tolerances they may differ by where nothing is estimated.
-const OF_TOLERANCE: f64 = 100.0;
 /// Below this share of the largest force, differences are roundings.
 const FLOOR: f64 = 1e-9;
 /// The means and losses of a sensitive motion may differ by this share of the largest.
 const SENSITIVE: f64 = 0.1;
 
-/// What a force that is known within `known` is at least in error, over the largest.
+/// What a quantity that is known within `known` is at least in error, over the largest.
 fn floor(known: f64, largest: f64) -> f64 {
     if known > 0.0 { FLOOR + known / largest } else { FLOOR }
 }
 
-/// Where event-driven and time-stepping runs differ by more than their estimates allow. These are of F_z; of F_x, which
-/// is held against the larger of the two, nothing is estimated, and errors within the tolerance of each step add up.
+/// Where event-driven and time-stepping runs differ by more than their estimates allow.
 fn disagreement(case: &Case, event: &Outcome, step: &Outcome) -> Option<String> {
     if event.error.is_some() || step.error.is_some() {
         return None;
@@ -208,29 +250,28 @@ fn disagreement(case: &Case, event: &Outcome, step: &Outcome) -> Option<String> 
         return sensitive_disagreement(event, step);
     }
     let [one, other] = [event, step].map(|outcome| outcome.last("solver.error"));
-    let [largest_x, largest_z] = ["F_x", "F_z"].map(|name| event.largest(name));
-    // The force of every mass is known within the tolerance alone.
-    let known = event.known * event.masses;
-    let of = |force: Force, largest: f64, more: f64| {
-        let difference = largest_difference(step, event, force);
-        let allowed = (OF_ESTIMATES * (one + other) + FLOOR + more) * largest + known;
+    // The force of every mass is known within the tolerance alone, the absolute one or that of the larger force.
+    let larger = event.largest("F_x").max(event.largest("F_z"));
+    let known = event.known * event.masses + relative_tolerance(case) * larger;
+    let of = |force: Force| {
+        let (difference, largest) = (largest_difference(step, event, force.name()), event.largest(force.name()));
+        let allowed = (OF_ESTIMATES * (one + other) + FLOOR) * largest + known;
         (difference > allowed).then(|| {
             let (name, share) = (force.name(), difference / largest);
             format!("{name} differs by {share:.1e} of {largest:.1e} N, estimates {one:.1e} and {other:.1e}")
         })
     };
-    let more = OF_TOLERANCE * relative_tolerance(case);
-    of(Force::Z, largest_z, 0.0).or_else(|| of(Force::X, largest_z.max(largest_x), more))
+    of(Force::Z).or_else(|| of(Force::X))
 }
 
-/// The largest difference of a force between two runs, N.
-fn largest_difference(one: &Outcome, other: &Outcome, force: Force) -> f64 {
-    let (one, other) = (one.column(force.name()), other.column(force.name()));
+/// The largest difference of a column between two runs.
+fn largest_difference(one: &Outcome, other: &Outcome, name: &str) -> f64 {
+    let (one, other) = (one.column(name), other.column(name));
     one.iter().zip(&other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
 }
 
 /// Means are of the rows: where these show instants alone, what is a mean of one draw of a sensitive motion is known as
-/// that draw is, within the estimates of F_z.
+/// that draw is, within the estimates.
 fn sensitive_disagreement(event: &Outcome, step: &Outcome) -> Option<String> {
     let mean = |outcome: &Outcome, name: &str| {
         let column = outcome.column(name);

@@ -74,6 +74,12 @@ impl Case {
         assert!(error <= bound * scale, "{}: {column} differs by {:e}, allowed {bound:e}", self.name, error / scale);
     }
 
+    /// The largest error of a column over its largest value.
+    fn relative_error(&self, found: &Table, column: &str) -> f64 {
+        let wanted = self.reference.column(column);
+        difference(&found.column(column), &wanted) / largest(&wanted)
+    }
+
     /// Counts are equal, apart from rows that an event is nearer to than a millionth of the run.
     fn compare_counts(&self, found: &Table, column: &str, tolerance: &str) {
         let (wanted, found) = (self.reference.column(column), found.column(column));
@@ -145,16 +151,18 @@ fn fmu_with_sines(name: &'static str) {
     case.compare(&drive(&fmu, &motion, &[FINE]).every(STEPS), FINE, AT_DEFAULT);
 }
 
-/// The run's own estimate against its true error: the reference's error is far below both.
+/// The run's own estimates against its true errors: the reference's errors are far below both.
 fn estimate(name: &'static str) {
     let case = Case::new(name, "estimate");
-    let wanted = case.reference.column("F_z");
     for (method, tolerance) in [("event", 1e-3), ("event", 1e-4), ("event", 1e-5), ("step", 1e-2), ("step", 1e-3)] {
         let settings = [format!("solver.method={method}"), format!("solver.relative_tolerance={tolerance}")];
         let found = simulate(&case.scene, &case.folder, &["--set", &settings[0], "--set", &settings[1]]);
-        let error = difference(&found.column("F_z"), &wanted) / largest(&wanted);
-        let ratio = found.column("solver.error").last().unwrap() / error;
-        assert!((0.1..10.0).contains(&ratio), "{name}, {method}, {tolerance}: {ratio} times the error, {error:e}");
+        for (estimate, columns) in [("solver.error", &FORCES[..]), ("solver.error_E_diss", &["E_diss"])] {
+            let error = columns.iter().map(|column| case.relative_error(&found, column)).fold(0.0, f64::max);
+            let ratio = found.column(estimate).last().unwrap() / error;
+            let run = format!("{name}, {method}, {tolerance}");
+            assert!((0.1..10.0).contains(&ratio), "{run}: {estimate} is {ratio} times the error, {error:e}");
+        }
     }
 }
 
