@@ -122,7 +122,7 @@ impl Spline {
         match &self.ends {
             Ends::Tangents { left, .. } if x < self.first() => left,
             Ends::Tangents { right, .. } if x >= self.last() => right,
-            _ => &self.pieces[self.grid.interval(&self.pieces, x)],
+            _ => self.grid.piece(&self.pieces, x),
         }
     }
 }
@@ -205,11 +205,17 @@ impl Grid {
     /// Rises with `x` even in rounded arithmetic, which is why counting starts by cells is exact.
     #[inline]
     fn cell(&self, x: f64) -> usize {
-        (((x - self.first) * self.cells_per_meter) as usize).min(self.last_cell)
+        (((x - self.first) * self.cells_per_meter) as u32 as usize).min(self.last_cell)
+    }
+
+    /// The polynomial of the interval of `x`: nearly always that of the cell.
+    #[inline]
+    fn piece<'a>(&self, pieces: &'a [Piece], x: f64) -> &'a Piece {
+        let piece = &pieces[self.cell(x)];
+        if piece.start <= x && x < piece.end { piece } else { &pieces[self.interval(pieces, x)] }
     }
 
     /// The interval of `x`, or the nearest one where `x` is outside.
-    #[inline]
     fn interval(&self, pieces: &[Piece], x: f64) -> usize {
         let cell = self.cell(x);
         if self.starts_before.is_empty() { self.neighbour(pieces, cell, x) } else { self.search(pieces, cell, x) }

@@ -138,14 +138,16 @@ impl Forces {
         motion: &LinkMotion<'_>,
         known: &[f64],
     ) {
-        let (rate, force) = (&mut self.rate[kind as usize][..], &mut self.link[kind as usize][..]);
+        let links = (&mut self.link[kind as usize][..], &mut self.rate[kind as usize][..]);
+        let (elongation, velocity, carrier_rate) = motion.along(kind);
+        let law = |e: f64, rate: f64| stiffness * e + damping * rate;
         if kind.is_lateral() {
-            motion.lateral_link_forces(kind, stiffness, damping, rate, force);
+            let elongations = elongation.iter().zip(&elongation[1..]);
+            let pairs = elongations.zip(velocity.iter().zip(&velocity[1..]));
+            set_link_forces(links, pairs.map(|((e, e_next), (v, v_next))| (e_next - e, v_next - v)), known, law);
         } else {
-            motion.carrier_link_forces(kind, stiffness, damping, rate, force);
-        }
-        for (force, known) in force.iter_mut().zip(known) {
-            *force += known;
+            let masses = elongation.iter().zip(velocity);
+            set_link_forces(links, masses.map(|(e, v)| (*e, v - carrier_rate)), known, law);
         }
     }
 
@@ -255,24 +257,6 @@ impl<'a> LinkMotion<'a> {
         }
     }
 
-    fn carrier_link_forces(&self, kind: LinkKind, stiffness: f64, damping: f64, rate: &mut [f64], force: &mut [f64]) {
-        let (elongation, velocity, carrier_rate) = self.along(kind);
-        for ((force, rate), (e, v)) in force.iter_mut().zip(rate).zip(elongation.iter().zip(velocity)) {
-            *rate = v - carrier_rate;
-            *force = stiffness * e + damping * *rate;
-        }
-    }
-
-    fn lateral_link_forces(&self, kind: LinkKind, stiffness: f64, damping: f64, rate: &mut [f64], force: &mut [f64]) {
-        let (elongation, velocity, _) = self.along(kind);
-        let elongations = elongation.iter().zip(elongation.iter().skip(1));
-        let rates = velocity.iter().zip(velocity.iter().skip(1));
-        for ((force, rate), ((e, e_next), (v, v_next))) in force.iter_mut().zip(rate).zip(elongations.zip(rates)) {
-            *rate = v_next - v;
-            *force = stiffness * (e_next - e) + damping * *rate;
-        }
-    }
-
     fn along(&self, kind: LinkKind) -> (&'a [f64], &'a [f64], f64) {
         if kind.is_along_x() {
             (self.elongation_x, self.velocity_x, self.carrier_rates.0)
@@ -282,24 +266,54 @@ impl<'a> LinkMotion<'a> {
     }
 }
 
+/// Sets the forces and the elongation rates of links with these elongations and rates: those of the `law`, and the forces
+/// `known`, if any.
+#[inline]
+fn set_link_forces(
+    (force, rate): (&mut [f64], &mut [f64]),
+    motion: impl Iterator<Item = (f64, f64)>,
+    known: &[f64],
+    law: impl Fn(f64, f64) -> f64,
+) {
+    let links = force.iter_mut().zip(rate).zip(motion);
+    if known.is_empty() {
+        for ((force, rate), (e, e_rate)) in links {
+            (*force, *rate) = (law(e, e_rate), e_rate);
+        }
+    } else {
+        for (((force, rate), (e, e_rate)), known) in links.zip(known) {
+            (*force, *rate) = (law(e, e_rate) + known, e_rate);
+        }
+    }
+}
+
 fn sum(forces: &[f64]) -> f64 {
     sum_of(forces.len(), |i| forces[i])
 }
 
 fn sum_on_masses(sum: &mut [f64], to_carrier: &[f64], lateral: &[f64]) {
+    let Some((last, first)) = lateral.last().zip(lateral.first()) else {
+        return negate(sum, to_carrier);
+    };
+    let between = lateral.iter().zip(&lateral[1..]);
+    let inner = sum[1..].iter_mut();
     if to_carrier.is_empty() {
+        inner.zip(between).for_each(|(sum, (left, right))| *sum = right - left);
+    } else {
+        let links = between.zip(&to_carrier[1..]);
+        inner.zip(links).for_each(|(sum, ((left, right), force))| *sum = (right - left) - force);
+    }
+    let of_carrier = |i: usize| to_carrier.get(i).copied().unwrap_or(0.0);
+    sum[0] = first - of_carrier(0);
+    sum[lateral.len()] = -of_carrier(lateral.len()) - last;
+}
+
+/// sum = -forces, or 0 where there are none.
+fn negate(sum: &mut [f64], forces: &[f64]) {
+    if forces.is_empty() {
         sum.fill(0.0);
     } else {
-        for (sum, force) in sum.iter_mut().zip(to_carrier) {
-            *sum = -force;
-        }
-    }
-    if let (Some(first), Some(last)) = (lateral.first(), lateral.last()) {
-        sum[0] += first;
-        sum[lateral.len()] -= last;
-    }
-    for (sum, force) in sum.iter_mut().skip(1).zip(lateral.windows(2)) {
-        *sum += force[1] - force[0];
+        sum.iter_mut().zip(forces).for_each(|(sum, force)| *sum = -force);
     }
 }
 

@@ -14,7 +14,7 @@ mod newton;
 use super::error::{NEWTON_SHARE, Tolerance};
 use super::rates::Rates;
 use crate::math::BlockTridiagonal;
-use crate::model::{CarrierPoint, Forces, LinkKind, LinkMotion, Mode, Model, State};
+use crate::model::{CarrierPoint, ContactForces, Forces, LinkKind, LinkMotion, Mode, Model, State};
 use newton::{NeighbourWeights, RateFriction, RowShares, largest};
 
 pub(super) use newton::SlippingMass;
@@ -80,6 +80,18 @@ pub(super) struct StageLaw {
     weight: f64,
 }
 
+/// Which slipping stages the factors of the Jacobian serve. It changes little through a step, so that those of one stage
+/// nearly always do for the others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Factors {
+    /// None: they are of another step.
+    Outdated,
+    /// The further stages of the step, too.
+    Held,
+    /// One iteration: a stage of the step did not converge at once with those of another.
+    Single,
+}
+
 /// Solver of the stages of one model.
 #[derive(Clone, Debug)]
 pub(super) struct StageSolver {
@@ -95,19 +107,23 @@ pub(super) struct StageSolver {
     contacts: Vec<usize>,
     /// Those of them that slip, in their order; without any the equations are linear.
     slips: Vec<usize>,
-    /// Their equations of motion.
-    slip: Vec<SlippingMass>,
     /// The rate-dependent part of their friction; empty where the scene has none.
     rate: Vec<RateFriction>,
     rows: Vec<RowShares>,
     columns: Vec<NeighbourWeights>,
     pub system: BlockTridiagonal,
+    /// Which stages the factors of the system serve.
+    factors: Factors,
     /// Newton iterations since the start of the run.
     pub iterations: u64,
 }
 
 /// Iterations after which Newton's method has failed; one or two are usual.
 const MAX_ITERATIONS: usize = 10;
+
+/// With the factors of another stage the error falls by a constant ratio, so that the next correction bounds it only where
+/// that is small.
+const HELD_FALL: f64 = 0.25;
 
 impl StageSolver {
     pub(super) fn new(model: &Model) -> Self {
@@ -129,11 +145,11 @@ impl StageSolver {
             laws: [StageLaw::default(); 4],
             contacts: Vec::with_capacity(k),
             slips: Vec::with_capacity(k),
-            slip: Vec::with_capacity(k),
             rate: Vec::with_capacity(if model.rate_shear.is_some() { k } else { 0 }),
             rows: vec![RowShares::default(); k],
             columns: vec![NeighbourWeights::default(); k],
             system: BlockTridiagonal::new(k),
+            factors: Factors::Outdated,
             iterations: 0,
         }
     }
@@ -146,12 +162,12 @@ impl StageSolver {
         self.state.surface.copy_from_slice(&state.surface);
         self.slips.clear();
         self.slips.extend(self.contacts.iter().filter(|&&i| state.mode[i].slips()));
-        self.slip.resize(self.slips.len(), SlippingMass::default());
         if model.rate_shear.is_some() {
             self.rate.resize(self.slips.len(), RateFriction::default());
         }
         self.set_laws(model, beta);
         self.assemble_constant_rows(model, beta);
+        self.factors = Factors::Outdated;
         if self.slips.is_empty() {
             self.system.factor();
         }
@@ -215,16 +231,20 @@ impl StageSolver {
         let mut residual = self.residuals(model, point.beta);
         let mut last = f64::INFINITY;
         for _ in 0..MAX_ITERATIONS {
-            self.assemble_slips(model, point.beta);
-            self.system.factor();
+            let held = self.factors == Factors::Held;
+            if !held {
+                self.factor_slips(model, point.beta);
+            }
             self.system.solve();
-            let steep = model.rate_shear.as_ref().map_or(0.0, |law| self.correct_along_friction_curve(law));
+            let along_curve = |law| self.correct_along_friction_curve(model, law, point.beta);
+            let steep = model.rate_shear.as_ref().map_or(0.0, along_curve);
             let change = self.correct().max(steep);
             self.set_positions(model, point);
             self.set_forces(model, point);
             let left = self.residuals(model, point.beta);
             let next = change * (left / residual);
-            let converged = left.min(next) <= test.converged;
+            let falls = !held || left <= HELD_FALL * residual;
+            let converged = left <= test.converged || (falls && next <= test.converged);
             // Only rounding errors remain when the corrections no longer fall and are within the step's tolerance.
             let stalled = change >= 0.25 * last && change <= test.stalled;
             if !(change.is_finite() && left.is_finite()) {
@@ -233,9 +253,20 @@ impl StageSolver {
             if converged || stalled || change == 0.0 {
                 return Ok(());
             }
+            self.factors = if held { Factors::Single } else { self.factors };
             (last, residual) = (change, left);
         }
         Err(NoConvergence)
+    }
+
+    /// Factors the Jacobian at the velocities of the last residuals. Friction that depends on the speed changes it too much
+    /// for another stage.
+    fn factor_slips(&mut self, model: &Model, beta: f64) {
+        self.assemble_slips(model, beta);
+        self.system.factor();
+        if self.factors == Factors::Outdated && model.rate_shear.is_none() {
+            self.factors = Factors::Held;
+        }
     }
 
     /// Computes the positions from the velocities and puts the contact constraint in.
@@ -244,15 +275,20 @@ impl StageSolver {
         let (state, history) = (&mut self.state, &self.history);
         set_elongations(&mut state.elongation_x, &history.elongation_x, beta, &state.velocity_x, point.integrated.0);
         set_elongations(&mut state.elongation_z, &history.elongation_z, beta, &state.velocity_z, point.integrated.1);
+        // Slices of one length, so that an index into one of them is one into all.
+        let k = state.mode.len();
+        let (mode, surface) = (&state.mode[..k], &mut state.surface[..k]);
+        let (e_x, e_z) = (&mut state.elongation_x[..k], &mut state.elongation_z[..k]);
+        let (v_x, v_z) = (&state.velocity_x[..k], &mut state.velocity_z[..k]);
+        let (star_x, rest_x, rest_z) = (&history.elongation_x[..k], &model.rest_x[..k], &model.rest_z[..k]);
         for &i in &self.contacts {
-            if state.mode[i] == Mode::Stick {
-                state.elongation_x[i] = history.elongation_x[i] - point.moved;
+            if mode[i] == Mode::Stick {
+                e_x[i] = star_x[i] - point.moved;
             } else {
-                let surface = model.surface_at(model.rest_x[i] + (point.profile_position + state.elongation_x[i]));
-                state.velocity_z[i] = surface.slope * state.velocity_x[i];
-                state.surface[i] = surface;
+                surface[i] = model.surface_at(rest_x[i] + (point.profile_position + e_x[i]));
+                v_z[i] = surface[i].slope * v_x[i];
             }
-            state.elongation_z[i] = state.surface[i].height - model.rest_z[i] - point.w;
+            e_z[i] = surface[i].height - rest_z[i] - point.w;
         }
     }
 
@@ -289,13 +325,15 @@ impl StageSolver {
         rate_of_change(&mut rates.acceleration_z, &state.velocity_z, &history.velocity_z, per_beta);
         std::mem::swap(&mut rates.elongation_rate, &mut self.forces.rate);
         rates.clear_contacts();
+        let k = state.mode.len();
+        let (modes, velocities, surfaces) = (&state.mode[..k], &state.velocity_x[..k], &state.surface[..k]);
+        let (f_x, f_z) = (&self.forces.on_mass_x[..k], &self.forces.on_mass_z[..k]);
         for &i in &self.contacts {
-            let (mode, v, surface) = (state.mode[i], state.velocity_x[i], &state.surface[i]);
+            let (mode, v, surface) = (modes[i], velocities[i], &surfaces[i]);
             if mode == Mode::Stick {
                 rates.acceleration_x[i] = 0.0;
             }
-            let contact = self.forces.contact(model, i, v, surface);
-            rates.set_contact(model, i, mode, v, surface, &contact);
+            rates.set_contact(model, i, mode, v, surface, &ContactForces::new(model, (f_x[i], f_z[i]), v, surface));
         }
     }
 }

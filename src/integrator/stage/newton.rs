@@ -28,16 +28,31 @@ impl StageSolver {
         for &i in &self.contacts {
             self.system.right[i] = Vector2::zeros();
         }
-        for (slip, &i) in self.slip.iter_mut().zip(&self.slips) {
-            let v = self.state.velocity_x[i];
-            let acceleration = (v - self.history.velocity_x[i]) / beta;
-            *slip = SlippingMass::new(model, self.state.mode[i], &self.state.surface[i], v, acceleration);
-            self.system.right[i].x = -slip.residual(model, (self.forces.on_mass_x[i], self.forces.on_mass_z[i]));
-        }
+        self.slip_residuals(model, 1.0 / beta);
         if let Some(law) = &model.rate_shear {
-            self.add_rate_shear(law);
+            self.add_rate_shear(model, law, beta);
         }
         largest(&self.system.right) / inertia
+    }
+
+    fn slip_residuals(&mut self, model: &Model, per_beta: f64) {
+        let right = &mut self.system.right[..];
+        // Slices of one length, so that an index into one of them is one into all.
+        let k = right.len();
+        let (velocity, star) = (&self.state.velocity_x[..k], &self.history.velocity_x[..k]);
+        let (mode, surface) = (&self.state.mode[..k], &self.state.surface[..k]);
+        let (f_x, f_z) = (&self.forces.on_mass_x[..k], &self.forces.on_mass_z[..k]);
+        for &i in &self.slips {
+            let acceleration = (velocity[i] - star[i]) * per_beta;
+            let slip = SlippingMass::new(model, mode[i], &surface[i], velocity[i], acceleration);
+            right[i].x = -slip.residual(model, (f_x[i], f_z[i]));
+        }
+    }
+
+    /// The equation of mass `i`, which slips, at the present velocities.
+    fn slipping_mass(&self, model: &Model, i: usize, beta: f64) -> SlippingMass {
+        let acceleration = (self.state.velocity_x[i] - self.history.velocity_x[i]) / beta;
+        SlippingMass::of(model, &self.state, i, acceleration)
     }
 
     /// Assembles the part of the Jacobian that is constant through a step: all but the rows and columns of slipping
@@ -69,7 +84,8 @@ impl StageSolver {
     pub(super) fn assemble_slips(&mut self, model: &Model, beta: f64) {
         let k = self.state.mode.len();
         let [vertical, horizontal, lateral_x, lateral_z] = self.laws;
-        for (slip, &i) in self.slip.iter().zip(&self.slips) {
+        for &i in &self.slips {
+            let slip = self.slipping_mass(model, i, beta);
             let neighbours = neighbours(i, k);
             let climb = slip.climb(beta);
             let weight = |law: &StageLaw| law.stiffness * climb.height + law.damping * climb.rate;
@@ -83,7 +99,7 @@ impl StageSolver {
             self.columns[i] = NeighbourWeights { x: lateral_x.weight, z_by_x: weight(&lateral_z), z: 0.0 };
         }
         if model.rate_shear.is_some() {
-            self.assemble_rate_shear(beta);
+            self.assemble_rate_shear(model, beta);
         }
         for slip in 0..self.slips.len() {
             let i = self.slips[slip];
@@ -292,17 +308,21 @@ pub(super) struct RateFriction {
 
 impl StageSolver {
     /// Subtracts σ q (A τ_f(v) - A τ_f(v_c)) at the present velocities from the right sides.
-    fn add_rate_shear(&mut self, law: &RateShear) {
-        for ((rate, slip), &i) in self.rate.iter_mut().zip(&self.slip).zip(&self.slips) {
-            rate.excess = law.with_slope(slip.sigma * slip.speed());
-            self.system.right[i].x -= slip.sigma * slip.q * rate.excess.0;
+    fn add_rate_shear(&mut self, model: &Model, law: &RateShear, beta: f64) {
+        for n in 0..self.slips.len() {
+            let i = self.slips[n];
+            let slip = self.slipping_mass(model, i, beta);
+            self.rate[n].excess = law.with_slope(slip.sigma * slip.speed());
+            self.system.right[i].x -= slip.sigma * slip.q * self.rate[n].excess.0;
         }
     }
 
     /// Adds the derivative of the rate-dependent friction to the diagonal.
-    fn assemble_rate_shear(&mut self, beta: f64) {
-        for ((rate, slip), &i) in self.rate.iter_mut().zip(&self.slip).zip(&self.slips) {
-            let diagonal = &mut self.system.diagonal[i].m11;
+    fn assemble_rate_shear(&mut self, model: &Model, beta: f64) {
+        for n in 0..self.slips.len() {
+            let i = self.slips[n];
+            let slip = self.slipping_mass(model, i, beta);
+            let (rate, diagonal) = (&mut self.rate[n], &mut self.system.diagonal[i].m11);
             rate.derivative_without = *diagonal;
             *diagonal += slip.rate_variation(rate.excess, 1.0, slip.s * beta * slip.kappa);
         }
@@ -311,15 +331,16 @@ impl StageSolver {
     /// Replaces the corrections of slipping masses, which follow the tangent of the friction curve, by those along the
     /// curve itself. Returns the largest of them as the velocity, m/s, that the same force would change if friction did
     /// not depend on the speed: where the curve is steep, a small correction may still mean a large force.
-    pub(super) fn correct_along_friction_curve(&mut self, law: &RateShear) -> f64 {
+    pub(super) fn correct_along_friction_curve(&mut self, model: &Model, law: &RateShear, beta: f64) -> f64 {
         let mut largest: f64 = 0.0;
-        for ((rate, slip), &i) in self.rate.iter().zip(&self.slip).zip(&self.slips) {
+        for (n, rate) in self.rate.iter().enumerate() {
+            let i = self.slips[n];
+            let slip = self.slipping_mass(model, i, beta);
             let right = &mut self.system.right[i].x;
             let per_velocity = slip.sigma * slip.q;
-            let (speed, by) = (per_velocity * self.state.velocity_x[i], per_velocity * *right);
-            let q2 = slip.q * slip.q;
-            let steepness = 1.0 + (q2 * rate.excess.1 / rate.derivative_without).max(0.0);
-            let corrected = law.along_curve(speed, by, rate.derivative_without / q2);
+            let (speed, by) = (slip.sigma * slip.speed(), per_velocity * *right);
+            let steepness = 1.0 + (slip.q2 * rate.excess.1 / rate.derivative_without).max(0.0);
+            let corrected = law.along_curve(speed, by, rate.derivative_without / slip.q2);
             *right = (corrected - speed) / per_velocity;
             largest = largest.max(steepness * right.abs());
         }
