@@ -497,28 +497,30 @@ impl<'a> TwoStageDense<'a> {
         )
     }
 
-    /// Writes the state at the fraction `theta` of the step into `state`, which holds the Maxwell elongations of the
-    /// first stage.
+    /// Writes the state at the fraction `theta` of the step into `state`, without the Maxwell elements.
     pub fn state_at(&self, theta: f64, state: &mut State) {
         let StepSpan { start: s, length: h } = self.span;
-        let here = self.carrier.at(self.span.at(theta));
-        let (beta, (u, w), (end_u, end_w)) = (GAMMA * h, self.carrier.moved(s, theta * h), self.carrier_moved);
-        let (from, to) = (self.start, self.end);
+        let (from, first, to) = (self.start, self.first, self.end);
+        let ((u, w), (end_u, end_w)) = (self.carrier.moved(s, theta * h), self.carrier_moved);
         state.mode.copy_from_slice(&from.mode);
         state.surface.copy_from_slice(&from.surface);
+        let elongations = |out: &mut [f64], start: &[f64], velocity: &[f64], end: &[f64], moved: f64, in_step: f64| {
+            for (out, ((start, end), velocity)) in out.iter_mut().zip(start.iter().zip(end).zip(velocity)) {
+                *out = start + (parabola(theta, GAMMA * h * velocity, in_step + (end - start)) - moved);
+            }
+        };
+        let (e_x, e_z) = (&mut state.elongation_x, &mut state.elongation_z);
+        elongations(e_x, &from.elongation_x, &first.velocity_x, &to.elongation_x, u, end_u);
+        elongations(e_z, &from.elongation_z, &first.velocity_z, &to.elongation_z, w, end_w);
+        let weights = piecewise_linear(theta);
+        let velocities = |out: &mut [f64], values: [&[f64]; 3]| {
+            weighted_sum(out, weights.into_iter().zip(values).filter(|(weight, _)| *weight != 0.0));
+        };
+        velocities(&mut state.velocity_x, [&from.velocity_x, &first.velocity_x, &to.velocity_x]);
+        velocities(&mut state.velocity_z, [&from.velocity_z, &first.velocity_z, &to.velocity_z]);
+        let here = self.carrier.at(self.span.at(theta));
         for i in 0..self.model.masses() {
-            let (e_x, e_z) = (from.elongation_x[i], from.elongation_z[i]);
-            let x = parabola(theta, beta * self.first.velocity_x[i], end_u + (to.elongation_x[i] - e_x));
-            let z = parabola(theta, beta * self.first.velocity_z[i], end_w + (to.elongation_z[i] - e_z));
-            state.elongation_x[i] = e_x + (x - u);
-            state.elongation_z[i] = e_z + (z - w);
-            (state.velocity_x[i], state.velocity_z[i]) = self.velocity(i, theta);
             self.constrain(i, &here, state);
-        }
-        // So far they are those of the first stage.
-        let [of_start, of_first, of_end] = piecewise_linear(theta);
-        for (a, (start, end)) in state.maxwell.iter_mut().zip(from.maxwell.iter().zip(&to.maxwell)) {
-            *a = of_start * start + of_first * *a + of_end * end;
         }
     }
 
@@ -550,7 +552,7 @@ fn parabola(theta: f64, middle: f64, end: f64) -> f64 {
 
 /// Weights of the values at the start, at the first stage and at the end in their piecewise linear interpolant.
 #[inline]
-fn piecewise_linear(theta: f64) -> [f64; 3] {
+pub(super) fn piecewise_linear(theta: f64) -> [f64; 3] {
     if theta < GAMMA {
         [1.0 - theta / GAMMA, theta / GAMMA, 0.0]
     } else {

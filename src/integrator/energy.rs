@@ -7,21 +7,96 @@
 
 use super::maxwell::{Maxwell, StageCoefficients};
 use super::rates::Rates;
-use crate::math::{dot, sum_of_pairs, weighted_sum};
+use crate::math::{dot, sum_of_pairs};
 use crate::model::{ChannelEnergies, Exchange, LinkKind, MaxwellRow, Model};
 
 /// Σ ė_i ė_j over the links of one kind, m²/s², for j ≤ i.
 type RateProducts<const STAGES: usize> = [[f64; STAGES]; STAGES];
+
+/// The sums over the layer from which the energies up to any fraction of a step follow.
+#[derive(Clone, Debug)]
+pub(super) struct StepSums<const STAGES: usize> {
+    /// Whether they are those of the last attempted step.
+    known: bool,
+    /// By kind of link.
+    rates: [RateProducts<STAGES>; 4],
+    /// The largest Σ (ė_i - ė_0)² of a stage, by kind of link, m²/s²; 0 where the stages resolve all elements.
+    changes: [f64; 4],
+    /// By row of elements.
+    elements: Vec<ElementSums<STAGES>>,
+}
+
+/// The sums over one row of Maxwell elements.
+#[derive(Clone, Debug)]
+struct ElementSums<const STAGES: usize> {
+    /// Σ a_0², m².
+    start: f64,
+    /// Σ a_0 ė_j, m²/s.
+    mixed: [f64; STAGES],
+    /// Σ l² (m²) and Σ l τė_0 (m²) of l = a_0 - τė_0; `None` for elements slower than the step.
+    relaxing: Option<(f64, f64)>,
+}
+
+impl<const STAGES: usize> StepSums<STAGES> {
+    /// Workspace for the elements of `model`; empty for a method that is not `used`.
+    pub(super) fn new(model: &Model, used: bool) -> Self {
+        let none = ElementSums { start: 0.0, mixed: [0.0; STAGES], relaxing: None };
+        Self {
+            known: false,
+            rates: [[[0.0; STAGES]; STAGES]; 4],
+            changes: [0.0; 4],
+            elements: vec![none; if used { model.rows.len() } else { 0 }],
+        }
+    }
+
+    /// A new step is attempted.
+    pub(super) fn forget(&mut self) {
+        self.known = false;
+    }
+
+    /// Takes the sums of the step of length `h` (s) with these `stages`, from the elongations `a` (m) of the elements, unless
+    /// they are known.
+    pub(super) fn collect(&mut self, model: &Model, a: &[f64], stages: &[Rates], h: f64) {
+        if self.known {
+            return;
+        }
+        self.known = true;
+        for kind in LinkKind::ALL {
+            let has_elements = model.rows_of(kind).next().is_some();
+            if has_elements || model.links[kind as usize].damping > 0.0 {
+                self.rates[kind as usize] = rate_products(stages, kind, has_elements);
+            }
+            let unresolved = model.rows_of(kind).any(|row| h / row.relaxation_time > RESOLVED);
+            self.changes[kind as usize] = if unresolved { largest_change(stages, kind) } else { 0.0 };
+        }
+        for (row, sums) in model.rows.iter().zip(&mut self.elements) {
+            *sums = ElementSums::new(row, &a[row.range.clone()], stages, h);
+        }
+    }
+}
+
+impl<const STAGES: usize> ElementSums<STAGES> {
+    fn new(row: &MaxwellRow, a: &[f64], stages: &[Rates], h: f64) -> Self {
+        let (tau, rate) = (row.relaxation_time, |j: usize| &stages[j].elongation_rate[row.kind as usize][..]);
+        let l = |a: f64, rate: f64| a - tau * rate;
+        let relaxing = || {
+            let square = sum_of_pairs(a, rate(0), |a, rate| l(a, rate) * l(a, rate));
+            (square, tau * sum_of_pairs(a, rate(0), |a, rate| l(a, rate) * rate))
+        };
+        Self {
+            start: dot(a, a),
+            mixed: std::array::from_fn(|j| dot(a, rate(j))),
+            relaxing: (h / tau > RESOLVED).then(relaxing),
+        }
+    }
+}
 
 /// A step over which energies are to be integrated.
 #[derive(Clone, Copy)]
 pub(super) struct StepPowers<'a, const STAGES: usize> {
     pub model: &'a Model,
     pub maxwell: &'a Maxwell<STAGES>,
-    /// The elongations of the Maxwell elements at the start, m.
-    pub a: &'a [f64],
-    /// The rates at the stages.
-    pub stages: &'a [Rates],
+    pub sums: &'a StepSums<STAGES>,
     /// The powers through the surface and the carrier at the stages.
     pub exchange: &'a [Exchange],
     /// The length of the step, s.
@@ -31,9 +106,9 @@ pub(super) struct StepPowers<'a, const STAGES: usize> {
 }
 
 impl<const STAGES: usize> StepPowers<'_, STAGES> {
-    /// Energies through all channels, J. `scratch` has one number per mass.
-    pub(super) fn energies(&self, scratch: &mut [f64]) -> ChannelEnergies {
-        let mut energy = self.lost(scratch);
+    /// Energies through all channels, J.
+    pub(super) fn energies(&self) -> ChannelEnergies {
+        let mut energy = self.lost();
         for (weight, exchange) in self.weights.iter().zip(self.exchange) {
             energy.friction += self.h * weight * exchange.friction;
             energy.input += self.h * weight * exchange.input;
@@ -42,29 +117,19 @@ impl<const STAGES: usize> StepPowers<'_, STAGES> {
     }
 
     /// Energies lost in the dampers and Maxwell elements, J.
-    fn lost(&self, scratch: &mut [f64]) -> ChannelEnergies {
-        let Self { model, maxwell, a, stages, h, weights, .. } = *self;
+    fn lost(&self) -> ChannelEnergies {
+        let Self { model, maxwell, sums, h, weights, .. } = *self;
         let mut energy = ChannelEnergies::default();
-        let mut products = [[[0.0; STAGES]; STAGES]; 4];
-        let mut changes = [None; 4];
-        for kind in LinkKind::ALL {
-            let damping = model.links[kind as usize].damping;
-            if damping == 0.0 && !maxwell.has_elements(kind) {
-                continue;
-            }
-            let products = &mut products[kind as usize];
-            *products = rate_products(stages, kind, maxwell.has_elements(kind));
-            energy.damper += h * damping * (0..STAGES).map(|i| weights[i] * products[i][i]).sum::<f64>();
+        for (link, products) in model.links.iter().zip(&sums.rates) {
+            let squares: f64 = (0..STAGES).map(|i| weights[i] * products[i][i]).sum();
+            energy.damper += h * link.damping * squares;
         }
         for (index, coefficients) in maxwell.coefficients().iter().enumerate() {
             let squares = SquareWeights::new(coefficients, h / model.relaxation_times[index], weights);
-            for row in model.rows.iter().filter(|row| row.time_index == index) {
-                let (kind, a) = (row.kind as usize, &a[row.range.clone()]);
-                let mut sum = squares.sum(row, a, stages, &products[kind], scratch);
-                if let Some(unresolved) = &squares.unresolved {
-                    let change = *changes[kind].get_or_insert_with(|| largest_change(stages, row.kind));
-                    sum += unresolved.sum(row.relaxation_time, a, &stages[0].elongation_rate[kind], change);
-                }
+            let rows = model.rows.iter().zip(&sums.elements).filter(|(row, _)| row.time_index == index);
+            for (row, elements) in rows {
+                let kind = row.kind as usize;
+                let sum = squares.sum(elements, &sums.rates[kind], row.relaxation_time, sums.changes[kind]);
                 energy.maxwell += h * row.stiffness / row.relaxation_time * sum;
             }
         }
@@ -146,21 +211,15 @@ impl<const STAGES: usize> SquareWeights<STAGES> {
         squares
     }
 
-    /// Σ_i weight_i a_i² over the elements of one row, whose elongations at the start are `a`.
-    fn sum(
-        &self,
-        row: &MaxwellRow,
-        a: &[f64],
-        stages: &[Rates],
-        products: &RateProducts<STAGES>,
-        scratch: &mut [f64],
-    ) -> f64 {
-        let rates = self.mixed.iter().zip(stages).filter(|(factor, _)| **factor != 0.0);
-        let mixed = rates.map(|(&factor, stage)| (factor, &stage.elongation_rate[row.kind as usize][..]));
-        let scratch = &mut scratch[..a.len()];
-        weighted_sum(scratch, std::iter::once((self.start, a)).chain(mixed));
-        let of_rates = self.rates.iter().flatten().zip(products.iter().flatten());
-        dot(a, scratch) + of_rates.map(|(factor, product)| factor * product).sum::<f64>()
+    /// Σ_i weight_i a_i² over the elements of one row, of relaxation time `tau` (s), whose links change their rates by
+    /// `change`, the [`largest_change`].
+    fn sum(&self, elements: &ElementSums<STAGES>, rates: &RateProducts<STAGES>, tau: f64, change: f64) -> f64 {
+        let of_rates = self.rates.iter().flatten().zip(rates.iter().flatten());
+        let resolved = self.start * elements.start
+            + dot(&self.mixed, &elements.mixed)
+            + of_rates.map(|(factor, product)| factor * product).sum::<f64>();
+        let unresolved = self.unresolved.iter().zip(elements.relaxing);
+        resolved + unresolved.map(|(unresolved, sums)| unresolved.sum(sums, tau * tau * change)).sum::<f64>()
     }
 }
 
@@ -180,19 +239,14 @@ impl UnresolvedRelaxation {
         }
     }
 
-    /// The sum over elements of relaxation time `tau` (s) with the elongations `a`, whose links start with `rate` and
-    /// change it by `change`, the [`largest_change`].
+    /// The sum over elements with these Σ l² and Σ l τė_0 (m²), where the change of ė in the step explains `explained` (m²)
+    /// of the first.
     ///
-    /// Where l is no larger than the change of ė in the step explains, the stages resolve it: the sum is 0 then, and goes
-    /// there continuously.
-    fn sum(&self, tau: f64, a: &[f64], rate: &[f64], change: f64) -> f64 {
-        let l = |a: f64, rate: f64| a - tau * rate;
-        let square = sum_of_pairs(a, rate, |a, rate| l(a, rate) * l(a, rate));
-        let explained = tau * tau * change;
+    /// Where l is no larger than that, the stages resolve it: the sum is 0 then, and goes there continuously.
+    fn sum(&self, (square, mixed): (f64, f64), explained: f64) -> f64 {
         if square <= explained {
             return 0.0;
         }
-        let mixed = tau * sum_of_pairs(a, rate, |a, rate| l(a, rate) * rate);
         (1.0 - explained / square) * (self.square * square + 2.0 * self.mixed * mixed)
     }
 }
@@ -229,16 +283,10 @@ mod tests {
         let mut maxwell = Maxwell::<STAGES>::new(&model, true);
         maxwell.begin(&model, &ESDIRK5, &start, h);
         let weights: [f64; STAGES] = std::array::from_fn(|_| number());
-        let powers = StepPowers {
-            model: &model,
-            maxwell: &maxwell,
-            a: &start,
-            stages: &stages,
-            exchange: &[],
-            h,
-            weights: &weights,
-        };
-        let found = powers.lost(&mut [0.0; 5]);
+        let mut sums = StepSums::new(&model, true);
+        sums.collect(&model, &start, &stages, h);
+        let powers = StepPowers { model: &model, maxwell: &maxwell, sums: &sums, exchange: &[], h, weights: &weights };
+        let found = powers.lost();
 
         let mut expected = ChannelEnergies::default();
         for (i, weight) in weights.iter().enumerate() {

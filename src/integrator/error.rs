@@ -148,11 +148,6 @@ impl ErrorWorkspace {
         let zero = vec![0.0; model.masses()];
         Self { x: zero.clone(), z: zero.clone(), v_x: zero.clone(), v_z: zero.clone(), force: zero }
     }
-
-    /// Scratch space, one number per mass.
-    pub(super) fn scratch(&mut self) -> &mut [f64] {
-        &mut self.force
-    }
 }
 
 /// What the error test of an attempted step needs.

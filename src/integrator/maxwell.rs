@@ -111,6 +111,26 @@ impl<const STAGES: usize> Maxwell<STAGES> {
         }
     }
 
+    /// Writes the sum of the elongations at the start, at stage `i` and at the end of a step with these weights to `a`, m.
+    pub(super) fn between(
+        &self,
+        model: &Model,
+        i: usize,
+        [of_start, of_stage, of_end]: [f64; 3],
+        (start, end): (&[f64], &[f64]),
+        stages: &[Rates],
+        a: &mut [f64],
+    ) {
+        for row in &model.rows {
+            let (coefficients, range) = (&self.coefficients[row.time_index], row.range.clone());
+            let ends = [(of_start + of_stage * coefficients.start[i], start), (of_end, end)];
+            let ends = ends.into_iter().filter(|(weight, _)| *weight != 0.0);
+            let driven = coefficients.rate[i].map(|weight| of_stage * weight);
+            let terms = ends.map(|(weight, end)| (weight, &end[range.clone()]));
+            weighted_sum(&mut a[range.clone()], terms.chain(by_rate(row.kind, &driven[..=i], stages)));
+        }
+    }
+
     pub(super) fn floats(&self) -> usize {
         self.kinds.iter().map(|sums| STAGES * sums.error_start.len()).sum()
     }

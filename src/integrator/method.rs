@@ -1,7 +1,7 @@
 //! One Runge-Kutta method: the stages of an attempted step, from their history to their error test and energies.
 
 use super::dense::StepSpan;
-use super::energy::StepPowers;
+use super::energy::{StepPowers, StepSums};
 use super::error::{ErrorTest, ErrorWorkspace, StepAttempt, Tolerance};
 use super::maxwell::Maxwell;
 use super::rates::{Rates, StepStart};
@@ -18,6 +18,8 @@ pub(super) struct RungeKutta<const N: usize> {
     pub continuous_weights: ContinuousWeights<N>,
     pub initial_guess: InitialGuess<N>,
     pub maxwell: Maxwell<N>,
+    /// For the energies over the last attempted step.
+    pub sums: StepSums<N>,
 }
 
 /// The values at the stages of the last attempted step, of either method. Stage 0 is the start of the step.
@@ -84,6 +86,7 @@ impl<const N: usize> RungeKutta<N> {
         stages.carrier[0] = carrier.at(span.start);
         stages.solver.begin(model, state, beta);
         self.maxwell.begin(model, self.tableau, &state.maxwell, span.length);
+        self.sums.forget();
         for i in 1..N {
             let (weights, s) = (&self.tableau.a[i][..], span.at(self.tableau.c[i]));
             let moved = carrier.moved(span.start, self.tableau.c[i] * span.length).0;
@@ -118,18 +121,17 @@ impl<const N: usize> RungeKutta<N> {
 
     /// Energies through the channels over the step of length `h` from `start`, up to its fraction `theta`, J.
     pub(super) fn energies(
-        &self,
+        &mut self,
         stages: &Stages,
         model: &Model,
         start: &State,
         h: f64,
         theta: f64,
-        workspace: &mut ErrorWorkspace,
     ) -> ChannelEnergies {
         let weights = if theta < 1.0 { &self.continuous_weights.at(theta) } else { self.tableau.weights() };
-        let (maxwell, a, exchange) = (&self.maxwell, &start.maxwell[..], &stages.exchange[..]);
-        let powers = StepPowers { model, maxwell, a, stages: &stages.rates, exchange, h, weights };
-        powers.energies(workspace.scratch())
+        self.sums.collect(model, &start.maxwell, &stages.rates[..N], h);
+        let (maxwell, sums) = (&self.maxwell, &self.sums);
+        StepPowers { model, maxwell, sums, exchange: &stages.exchange, h, weights }.energies()
     }
 }
 

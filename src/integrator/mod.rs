@@ -22,6 +22,8 @@ pub use stage::NoConvergence;
 pub use tableau::{ContinuousWeights, ESDIRK5, METHOD, SDIRK2, STAGES, TWO_STAGES, Tableau};
 
 use crate::model::{Carrier, CarrierPoint, ChannelEnergies, Exchange, Forces, Model, State};
+use dense::piecewise_linear;
+use energy::StepSums;
 use error::ErrorWorkspace;
 use interpolation::StageInterpolation;
 use maxwell::Maxwell;
@@ -103,12 +105,14 @@ impl Integrator {
                 continuous_weights: ContinuousWeights::new(&METHOD),
                 initial_guess: InitialGuess::extrapolated(&METHOD.c),
                 maxwell: Maxwell::new(model, steps.seven_stages()),
+                sums: StepSums::new(model, steps.seven_stages()),
             },
             two_stages: RungeKutta {
                 tableau: &SDIRK2,
                 continuous_weights: ContinuousWeights::sdirk2(),
                 initial_guess: InitialGuess::Limited,
                 maxwell: Maxwell::new(model, steps.two_stages()),
+                sums: StepSums::new(model, steps.two_stages()),
             },
             stages: Stages {
                 rates: vec![Rates::new(model); steps.stages()],
@@ -249,22 +253,23 @@ impl Integrator {
         TwoStageDense::new(model, carrier, span, &start.state, &stages[1], self.end(), &stages[TWO_STAGES - 1])
     }
 
-    /// The Maxwell elements' elongations at the first stage of the last attempted two-stage step from `start`, into `a`,
-    /// m.
-    pub fn first_stage_maxwell(&self, model: &Model, start: &State, a: &mut [f64]) {
-        self.two_stages.maxwell.at_stage(model, 1, &start.maxwell, &self.stages.rates, a);
+    /// The Maxwell elements' elongations at the fraction `theta` of the last attempted two-stage step from `start`, into
+    /// `a`, m: linear from the start to the first stage and from there to the end, see [`TwoStageDense`].
+    pub fn two_stage_maxwell(&self, model: &Model, start: &State, theta: f64, a: &mut [f64]) {
+        let ends = (&start.maxwell[..], &self.end().maxwell[..]);
+        self.two_stages.maxwell.between(model, 1, piecewise_linear(theta), ends, &self.stages.rates, a);
     }
 
     /// Energies through the channels over the last attempted step of [`METHOD`], of length `h` from `start`, up to its
     /// fraction `theta`, J.
     pub fn energies(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> ChannelEnergies {
-        self.seven_stages.energies(&self.stages, model, start, h, theta, &mut self.error_workspace)
+        self.seven_stages.energies(&self.stages, model, start, h, theta)
     }
 
     /// Energies through the channels over the last attempted two-stage step, of length `h` from `start`, up to its
     /// fraction `theta`, J.
     pub fn two_stage_energies(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> ChannelEnergies {
-        self.two_stages.energies(&self.stages, model, start, h, theta, &mut self.error_workspace)
+        self.two_stages.energies(&self.stages, model, start, h, theta)
     }
 
     /// Accepts the last attempted step of [`METHOD`]: its end becomes the `start` of the next one.

@@ -13,8 +13,21 @@ const LANES: usize = 8;
 pub fn weighted_sum<'a>(out: &mut [f64], terms: impl IntoIterator<Item = (f64, &'a [f64])>) {
     let mut terms = terms.into_iter();
     let mut batch = [(0.0, &[][..]); MOST_TERMS];
-    let mut filled = fill(&mut batch, &mut terms);
+    let filled = fill(&mut batch, &mut terms);
     sum_up::<false>(out, &batch[..filled]);
+    if filled == MOST_TERMS {
+        add_weighted_sum(out, terms);
+    }
+}
+
+/// out_i += Σ_t weight_t term_t,i. Terms may be longer than `out`.
+///
+/// # Panics
+/// Where a term is shorter than `out`.
+pub fn add_weighted_sum<'a>(out: &mut [f64], terms: impl IntoIterator<Item = (f64, &'a [f64])>) {
+    let mut terms = terms.into_iter();
+    let mut batch = [(0.0, &[][..]); MOST_TERMS];
+    let mut filled = MOST_TERMS;
     while filled == MOST_TERMS {
         filled = fill(&mut batch, &mut terms);
         sum_up::<true>(out, &batch[..filled]);
@@ -110,6 +123,8 @@ mod tests {
                 let mut out = vec![7.0; n];
                 weighted_sum(&mut out, weighted.iter().copied());
                 assert!((0..n).all(|i| out[i] == expected(i)), "{terms} terms, {n} numbers: {out:?}");
+                add_weighted_sum(&mut out, weighted.iter().copied());
+                assert!((0..n).all(|i| out[i] == 2.0 * expected(i)), "{terms} terms, {n} numbers: {out:?}");
             }
         }
     }

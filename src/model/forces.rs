@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::reduction::{Reduction, Replacement};
 use super::{CarrierPoint, Model, State};
-use crate::math::sum_of;
+use crate::math::{add_weighted_sum, sum_of};
 use crate::scene::{Initial, LinkKind, Scene};
 
 /// The spring and the damper of one kind of link.
@@ -119,11 +119,9 @@ impl Forces {
             self.spring_and_damper(kind, law.stiffness, law.damping, &motion, &[]);
             model.subtract_frozen(kind, &mut self.link[kind as usize]);
         }
-        for row in &model.rows {
-            let elongations = &state.maxwell[row.range.clone()];
-            for (force, a) in self.link[row.kind as usize].iter_mut().zip(elongations) {
-                *force += row.stiffness * a;
-            }
+        for kind in LinkKind::ALL {
+            let elements = model.rows_of(kind).map(|row| (row.stiffness, &state.maxwell[row.range.clone()]));
+            add_weighted_sum(&mut self.link[kind as usize], elements);
         }
         self.sum_on_masses();
     }

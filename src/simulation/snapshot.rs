@@ -123,7 +123,7 @@ impl Run {
         let (integrator, start) = (&workspace.integrator, &state.layer);
         let interpolated = &mut workspace.interpolated;
         if state.time_stepping {
-            integrator.first_stage_maxwell(model, &start.state, &mut interpolated.maxwell);
+            integrator.two_stage_maxwell(model, &start.state, theta, &mut interpolated.maxwell);
             let dense = integrator.two_stage_dense(model, &state.carrier, start, state.span(h));
             dense.state_at(theta, interpolated);
         } else {

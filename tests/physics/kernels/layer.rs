@@ -187,7 +187,7 @@ impl Stepper {
     pub fn within_two_stages(&self, h: f64, theta: f64) -> State {
         let mut state = self.start.state.clone();
         let span = StepSpan { start: self.s, length: h };
-        self.integrator.first_stage_maxwell(&self.model, &self.start.state, &mut state.maxwell);
+        self.integrator.two_stage_maxwell(&self.model, &self.start.state, theta, &mut state.maxwell);
         let dense = self.integrator.two_stage_dense(&self.model, &self.carrier, &self.start, span);
         dense.state_at(theta, &mut state);
         state
