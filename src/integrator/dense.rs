@@ -470,7 +470,7 @@ impl<'a> TwoStageDense<'a> {
     pub const FIRST_STAGE: f64 = GAMMA;
 
     /// The position of mass `i` on the profile at the fraction `theta` of the step, m.
-    #[inline]
+    #[inline(always)]
     pub fn position(&self, i: usize, theta: f64) -> f64 {
         let (start, end) = (self.start.elongation_x[i], self.end.elongation_x[i]);
         let middle = GAMMA * self.span.length * self.first.velocity_x[i];
@@ -479,7 +479,7 @@ impl<'a> TwoStageDense<'a> {
     }
 
     /// The height of mass `i` above the profile's datum at the fraction `theta` of the step, m.
-    #[inline]
+    #[inline(always)]
     pub fn height(&self, i: usize, theta: f64) -> f64 {
         let (start, end) = (self.start.elongation_z[i], self.end.elongation_z[i]);
         let middle = GAMMA * self.span.length * self.first.velocity_z[i];
@@ -543,11 +543,11 @@ impl<'a> TwoStageDense<'a> {
 
 /// The parabola from 0 at the start to `end` whose velocity at the first stage makes `middle` in the fraction γ: the
 /// integral of the straight line through the velocities at the stages.
-#[inline]
+#[inline(always)]
 fn parabola(theta: f64, middle: f64, end: f64) -> f64 {
     let (first, last) = sdirk2_weights(theta);
-    let velocity = middle / GAMMA;
-    first * velocity + last * (end - (1.0 - GAMMA) * velocity) / GAMMA
+    let (of_middle, of_end) = ((first - last * ((1.0 - GAMMA) / GAMMA)) / GAMMA, last / GAMMA);
+    of_middle * middle + of_end * end
 }
 
 /// Weights of the values at the start, at the first stage and at the end in their piecewise linear interpolant.

@@ -207,13 +207,7 @@ impl Stages {
         solver.state.velocity_x.copy_from_slice(&state.velocity_x);
         solver.state.velocity_z.copy_from_slice(&state.velocity_z);
         let earlier = self.rates.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
-        for mass in 0..state.mode.len() {
-            if state.mode[mass].slips() {
-                let acceleration: f64 =
-                    earlier.clone().map(|(stage, weight)| weight * stage.acceleration_x[mass]).sum();
-                solver.state.velocity_x[mass] = solver.history.velocity_x[mass] + step.beta * acceleration;
-            }
-        }
+        solver.guess_slips(earlier.map(|(stage, weight)| (step.beta * weight, &stage.acceleration_x[..])));
     }
 
     fn guess_limited(&mut self, step: &StepInput<'_>, i: usize) {

@@ -74,7 +74,8 @@ impl Spline {
     /// Height z (m), slope z' (1), curvature z'' (1/m) and z''' (1/m², constant between two points) at `x`.
     ///
     /// At a data point z''' is that of the interval to the right.
-    #[inline]
+    // Four numbers returned through memory would cost more than their computation.
+    #[inline(always)]
     pub fn evaluate(&self, x: f64) -> (f64, f64, f64, f64) {
         let x = self.reduce(x);
         self.piece_at(x).evaluate(x)
@@ -89,7 +90,7 @@ impl Spline {
     }
 
     /// The x within the data points at which a periodic spline is the same as at `x`; `x` itself for a natural one.
-    #[inline]
+    #[inline(always)]
     pub fn reduce(&self, x: f64) -> f64 {
         match self.ends {
             Ends::Periodic { period } if x < self.first() || x >= self.last() => self.wrap(x, period),
@@ -98,7 +99,14 @@ impl Spline {
     }
 
     /// Rounding may leave the result a digit outside of the period; it is put back, so that distant x stay legal too.
+    #[inline]
     fn wrap(&self, x: f64, period: f64) -> f64 {
+        let next = x - period;
+        if (self.first()..self.last()).contains(&next) { next } else { self.wrap_far(x, period) }
+    }
+
+    #[cold]
+    fn wrap_far(&self, x: f64, period: f64) -> f64 {
         let first = self.first();
         let reduced = x - period * floor((x - first) / period);
         let reduced = if reduced >= self.last() { reduced - period } else { reduced };
@@ -117,7 +125,7 @@ impl Spline {
     }
 
     /// The polynomial that holds at `x`, which is already reduced.
-    #[inline]
+    #[inline(always)]
     fn piece_at(&self, x: f64) -> &Piece {
         match &self.ends {
             Ends::Tangents { left, .. } if x < self.first() => left,

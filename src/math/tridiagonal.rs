@@ -4,8 +4,8 @@ use nalgebra::{Matrix2, Vector2};
 
 /// Lower_i δ_{i-1} + Diagonal_i δ_i + Upper_i δ_{i+1} = Right_i, i = 0 … n-1, with the workspace to solve it.
 ///
-/// Blocks are eliminated from both ends towards the middle, and back: two chains of divisions that do not wait for each
-/// other.
+/// Blocks are eliminated from both ends towards the middle, and back: two chains of operations that do not wait for each
+/// other. All that does not need the right sides is done once, by [`factor`](Self::factor).
 #[derive(Clone, Debug, Default)]
 pub struct BlockTridiagonal {
     /// Blocks left of the diagonal; the first is not read.
@@ -18,8 +18,12 @@ pub struct BlockTridiagonal {
     pub right: Vec<Vector2<f64>>,
     /// The inverses of the blocks left on the diagonal once the rows outside are taken out.
     inverse: Vec<Matrix2<f64>>,
-    /// How much of the row outside is taken out of each row.
+    /// How much of the row outside is taken out of each row; of the middle row, of the one before it.
     share: Vec<Matrix2<f64>>,
+    /// How much of the row behind the middle one is taken out of that.
+    share_behind: Matrix2<f64>,
+    /// How much of the solution of the row inside is taken out of that of each row.
+    back: Vec<Matrix2<f64>>,
 }
 
 impl BlockTridiagonal {
@@ -32,7 +36,9 @@ impl BlockTridiagonal {
             upper: zero.clone(),
             right: vec![Vector2::zeros(); n],
             inverse: zero.clone(),
-            share: zero,
+            share: zero.clone(),
+            share_behind: Matrix2::zeros(),
+            back: zero,
         }
     }
 
@@ -41,13 +47,14 @@ impl BlockTridiagonal {
     pub fn factor(&mut self) {
         let (middle, mirrored) = self.halves();
         let last = middle + mirrored;
-        let Self { lower, diagonal, upper, inverse, share, .. } = self;
+        let Self { lower, diagonal, upper, inverse, share, back, .. } = self;
         let mut first_end = inverse_of(&diagonal[0]);
         let mut second_end = inverse_of(&diagonal[last]);
         for step in 0..middle.max(mirrored) {
             if step < middle {
                 let into = step + 1;
                 inverse[step] = first_end;
+                back[step] = first_end * upper[step];
                 share[into] = lower[into] * first_end;
                 // The middle row is reached from both sides.
                 if into < middle {
@@ -57,6 +64,7 @@ impl BlockTridiagonal {
             if step < mirrored {
                 let (from, into) = (last - step, last - step - 1);
                 inverse[from] = second_end;
+                back[from] = second_end * lower[from];
                 if into > middle {
                     share[into] = upper[into] * second_end;
                     second_end = inverse_of(&(diagonal[into] - share[into] * lower[from]));
@@ -68,53 +76,64 @@ impl BlockTridiagonal {
             center -= share[middle] * upper[middle - 1];
         }
         if mirrored > 0 {
-            center -= upper[middle] * inverse[middle + 1] * lower[middle + 1];
+            self.share_behind = upper[middle] * inverse[middle + 1];
+            center -= self.share_behind * lower[middle + 1];
         }
         inverse[middle] = inverse_of(&center);
     }
 
     /// The solution for the right sides in `right`, in their place, once the blocks are factored.
     pub fn solve(&mut self) {
+        self.solve_by(|block, vector| block * vector);
+    }
+
+    /// The same where all blocks are diagonal.
+    pub fn solve_uncoupled(&mut self) {
+        self.solve_by(|block, vector| Vector2::new(block.m11 * vector.x, block.m22 * vector.y));
+    }
+
+    #[inline(always)]
+    fn solve_by(&mut self, times: impl Fn(&Matrix2<f64>, &Vector2<f64>) -> Vector2<f64>) {
         let (middle, mirrored) = self.halves();
-        let last = middle + mirrored;
-        let Self { lower, upper, right, inverse, share, .. } = self;
-        let (mut first, mut second) = (right[0], right[last]);
-        for step in 1..middle.max(mirrored) {
-            if step < middle {
-                first = right[step] - share[step] * first;
-                right[step] = first;
-            }
-            if step < mirrored {
-                let row = last - step;
-                second = right[row] - share[row] * second;
-                right[row] = second;
-            }
+        let Self { right, inverse, share, share_behind, back, .. } = self;
+        let (left, behind) = right.split_at_mut(middle);
+        let Some((center, behind)) = behind.split_first_mut() else { return };
+        let eliminate = |carried: &mut Vector2<f64>, right: &mut Vector2<f64>, share, inverse| {
+            *carried = *right - times(share, carried);
+            *right = times(inverse, carried);
+        };
+        let (mut first, mut second) = (Vector2::zeros(), Vector2::zeros());
+        let mut rows = left.iter_mut().zip(&share[..middle]).zip(&inverse[..middle]);
+        let mirror = behind.iter_mut().rev().zip(share[middle + 1..].iter().rev());
+        let mirror = mirror.zip(inverse[middle + 1..].iter().rev());
+        // The half before the middle may have one row more.
+        if middle > mirrored
+            && let Some(((right, share), inverse)) = rows.next()
+        {
+            eliminate(&mut first, right, share, inverse);
         }
-        let mut center = right[middle];
-        if middle > 0 {
-            center -= share[middle] * right[middle - 1];
+        for (((right, share), inverse), ((mirror_right, mirror_share), mirror_inverse)) in rows.zip(mirror) {
+            eliminate(&mut first, right, share, inverse);
+            eliminate(&mut second, mirror_right, mirror_share, mirror_inverse);
         }
-        if mirrored > 0 {
-            center -= upper[middle] * (inverse[middle + 1] * right[middle + 1]);
+        let rest = *center - times(&share[middle], &first) - times(share_behind, &second);
+        *center = times(&inverse[middle], &rest);
+        let substitute = |found: &mut Vector2<f64>, right: &mut Vector2<f64>, back| {
+            *found = *right - times(back, found);
+            *right = *found;
+        };
+        let (mut first, mut second) = (*center, *center);
+        let mut rows = left.iter_mut().rev().zip(back[..middle].iter().rev());
+        for ((mirror_right, mirror_back), (right, back)) in behind.iter_mut().zip(&back[middle + 1..]).zip(&mut rows) {
+            substitute(&mut second, mirror_right, mirror_back);
+            substitute(&mut first, right, back);
         }
-        center = inverse[middle] * center;
-        right[middle] = center;
-        let (mut first, mut second) = (center, center);
-        for step in 1..=middle.max(mirrored) {
-            if step <= middle {
-                let row = middle - step;
-                first = inverse[row] * (right[row] - upper[row] * first);
-                right[row] = first;
-            }
-            if step <= mirrored {
-                let row = middle + step;
-                second = inverse[row] * (right[row] - lower[row] * second);
-                right[row] = second;
-            }
+        if let Some((right, back)) = rows.next() {
+            substitute(&mut first, right, back);
         }
     }
 
-    /// The number of rows before the middle one, and behind it.
+    /// The number of rows before the middle one, and behind it: as many, or one less.
     fn halves(&self) -> (usize, usize) {
         let n = self.diagonal.len();
         (n / 2, n - 1 - n / 2)
@@ -141,13 +160,15 @@ mod tests {
 
     #[test]
     fn agrees_with_a_dense_solution() {
-        for n in [1, 2, 3, 4, 7, 20] {
+        for (n, coupled) in [1, 2, 3, 4, 7, 20].into_iter().flat_map(|n| [(n, true), (n, false)]) {
             let mut seed = n as u64;
+            let coupling = if coupled { Matrix2::repeat(1.0) } else { Matrix2::identity() };
             let mut system = BlockTridiagonal::new(n);
             let mut dense = DMatrix::zeros(2 * n, 2 * n);
             for i in 0..n {
-                let mut block =
-                    |strength: f64| Matrix2::from_fn(|_, _| noise(&mut seed)) + Matrix2::identity() * strength;
+                let mut block = |strength: f64| {
+                    Matrix2::from_fn(|_, _| noise(&mut seed)).component_mul(&coupling) + Matrix2::identity() * strength
+                };
                 (system.lower[i], system.diagonal[i], system.upper[i]) = (block(0.0), block(4.0), block(0.0));
                 system.right[i] = Vector2::from_fn(|_, _| noise(&mut seed));
                 dense.fixed_view_mut::<2, 2>(2 * i, 2 * i).copy_from(&system.diagonal[i]);
@@ -161,7 +182,11 @@ mod tests {
             let right = DVector::from_fn(2 * n, |row, _| system.right[row / 2][row % 2]);
             let expected = dense.lu().solve(&right).unwrap();
             system.factor();
-            system.solve();
+            if coupled {
+                system.solve()
+            } else {
+                system.solve_uncoupled()
+            }
             for row in 0..2 * n {
                 // Diagonally dominant, so a few roundings of numbers of size 1.
                 assert!((system.right[row / 2][row % 2] - expected[row]).abs() < 1e-14, "n = {n}, row {row}");

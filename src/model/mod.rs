@@ -146,7 +146,7 @@ impl Model {
     }
 
     /// The profile at the position `x`, m.
-    #[inline]
+    #[inline(always)]
     pub fn surface_at(&self, x: f64) -> SurfacePoint {
         let (height, slope, curvature, third) = self.profile.evaluate(x);
         SurfacePoint { height, slope, curvature, third }

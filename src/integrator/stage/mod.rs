@@ -192,6 +192,20 @@ impl StageSolver {
         &self.contacts
     }
 
+    /// Guesses the velocities of the slipping masses: the starred ones and the sum of these accelerations, m/s², with
+    /// their weights, s.
+    pub(super) fn guess_slips<'a>(&mut self, accelerations: impl Iterator<Item = (f64, &'a [f64])>) {
+        let (velocity, star) = (&mut self.state.velocity_x, &self.history.velocity_x);
+        for &i in &self.slips {
+            velocity[i] = star[i];
+        }
+        for (weight, acceleration) in accelerations {
+            for &i in &self.slips {
+                velocity[i] += weight * acceleration[i];
+            }
+        }
+    }
+
     /// Solves the stage, whose history is set, and writes its rates.
     ///
     /// # Errors
@@ -217,7 +231,8 @@ impl StageSolver {
     /// Solves the equations without slip, which are linear: their matrix is factored once per step.
     fn solve_linear(&mut self, model: &Model, point: &StagePoint) -> Result<(), NoConvergence> {
         self.residuals(model, point.beta);
-        self.system.solve();
+        // Slips alone couple the motions along x and z.
+        self.system.solve_uncoupled();
         let change = self.correct();
         self.set_positions(model, point);
         self.set_forces(model, point);

@@ -128,13 +128,22 @@ fn neighbours(i: usize, k: usize) -> f64 {
 pub(super) fn largest(values: &[Vector2<f64>]) -> f64 {
     // A comparison ignores NaN, the sum does not.
     let greater = |a: f64, b: f64| if a > b { a } else { b };
-    let (mut largest, mut sum) = (Vector2::zeros(), Vector2::zeros());
-    for value in values {
-        largest = value.abs().zip_map(&largest, greater);
-        sum += value;
+    let (mut largest, mut sum) = ([Vector2::zeros(); LANES], [Vector2::zeros(); LANES]);
+    let mut take = |lane: usize, value: &Vector2<f64>| {
+        largest[lane] = value.abs().zip_map(&largest[lane], greater);
+        sum[lane] += value;
+    };
+    let (chunks, rest) = values.as_chunks::<LANES>();
+    for chunk in chunks {
+        (0..LANES).for_each(|lane| take(lane, &chunk[lane]));
     }
-    if (sum.x + sum.y).is_finite() { greater(largest.x, largest.y) } else { f64::NAN }
+    rest.iter().for_each(|value| take(0, value));
+    let largest = largest.iter().fold(0.0, |most, of_lane| greater(of_lane.x, greater(of_lane.y, most)));
+    if sum.iter().sum::<Vector2<f64>>().sum().is_finite() { largest } else { f64::NAN }
 }
+
+/// Masses taken together, so that the operations on one do not wait for those on the one before.
+const LANES: usize = 4;
 
 /// How the height of a slipping mass on the profile follows its ẋ.
 struct Climb {
