@@ -1,4 +1,4 @@
-"""Turns `asperity describe SCENE.toml --json` into the flat text that cvode_contact reads.
+"""Turns `asperity describe SCENE.toml --json` into the flat text that sundials_contact reads.
 
     asperity describe SCENE.toml --json | flatten.py > SCENE.txt
 

@@ -37,7 +37,9 @@ fn the_benchmark_s_scenes_are_made_the_same_everywhere() {
         assert!((scene.surface.z[1] - second).abs() < 1e-13, "{name}: {}", scene.surface.z[1]);
         assert_eq!(scene.warnings, [""; 0], "{name}");
     }
-    assert_eq!(load("free-chain-1000").layer.masses, 1000);
+    let chain = load("smooth-chain-1000");
+    assert_eq!((chain.layer.masses, chain.surface.z.len()), (1000, 10001));
+    assert_eq!(chain.warnings, [""; 0]);
 }
 
 #[test]

@@ -24,12 +24,11 @@ static inline void differences(long n, const double *restrict a, double *restric
   EACH(i, n) d[i] = a[i + 1] - a[i];
 }
 
-/* (3), (4): f_i = -F_i + F_l,i - F_l,i-1 of k masses, F the links to the carrier, F_l those to the neighbours. */
-static inline void sum_on_masses(long k, const double *restrict carrier, const double *restrict lateral,
-                                 double *restrict f) {
-  f[0] = -carrier[0] + (k > 1 ? lateral[0] : 0);
-  EACH(i, k - 2) f[i + 1] = -carrier[i + 1] + (lateral[i + 1] - lateral[i]);
-  if (k > 1) f[k - 1] = -carrier[k - 1] - lateral[k - 2];
+/* (3), (4): f_i = -F_i + F_l,i - F_l,i-1 of k masses, F the links to the carrier, F_l those to the neighbours; places
+ * -1 and k - 1 of F_l are set to 0. */
+static inline void sum_on_masses(long k, const double *restrict carrier, double *restrict lateral, double *restrict f) {
+  lateral[-1] = lateral[k - 1] = 0;
+  EACH(i, k) f[i] = -carrier[i] + (lateral[i] - lateral[i - 1]);
 }
 
 #endif

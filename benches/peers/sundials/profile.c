@@ -66,6 +66,7 @@ Profile profile_new(const Scene *scene) {
   double *m = second_derivatives(scene);
   Profile profile = {.pieces = n, .periodic = scene->periodic, .start = x[0], .length = x[n] - x[0]};
   profile.per_length = are_even(x, n) ? n / profile.length : 0;
+  profile.per_period = 1 / profile.length;
   profile.piece = room(n + 1, sizeof *profile.piece);
   for (int i = 0; i < n; i++) {
     double h = x[i + 1] - x[i];

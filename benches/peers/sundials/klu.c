@@ -37,19 +37,18 @@ static void entry(Sparse *sparse, long row, long column, double value) {
 
 /* factor (c e + d r) of mass j along x and along z, by the state. */
 static void entries_of_x(Sparse *sparse, const Problem *problem, long row, double factor, int j, double c, double d) {
-  long k = problem->layer->k;
-  double moves = factor * problem->variation.x_moves[j];
+  double moves = factor * problem->jacobian->of[j].x_moves;
   entry(sparse, row, j, moves * c);
-  entry(sparse, row, 2 * k + j, moves * d);
+  entry(sparse, row, 2 * problem->layer->stride + j, moves * d);
 }
 
 static void entries_of_z(Sparse *sparse, const Problem *problem, long row, double factor, int j, double c, double d) {
-  long k = problem->layer->k;
-  const Variation *v = &problem->variation;
-  entry(sparse, row, j, factor * (c * v->slope[j] + d * v->turn[j]));
-  entry(sparse, row, k + j, factor * c * v->z_moves[j]);
-  entry(sparse, row, 2 * k + j, factor * d * v->slope[j]);
-  entry(sparse, row, 3 * k + j, factor * d * v->z_moves[j]);
+  long stride = problem->layer->stride;
+  const Variation *v = &problem->jacobian->of[j];
+  entry(sparse, row, j, factor * (c * v->slope + d * v->turn));
+  entry(sparse, row, stride + j, factor * c * v->z_moves);
+  entry(sparse, row, 2 * stride + j, factor * d * v->slope);
+  entry(sparse, row, 3 * stride + j, factor * d * v->z_moves);
 }
 
 typedef void Entries(Sparse *, const Problem *, long, double, int, double, double);
@@ -57,7 +56,7 @@ typedef void Entries(Sparse *, const Problem *, long, double, int, double, doubl
 static void entries_of_elements(Sparse *sparse, const Layer *layer, long row, double factor, int kind, int i) {
   const Link *link = &layer->scene.link[kind];
   for (int j = 0; j < link->n; j++)
-    entry(sparse, row, layer->maxwell[kind] + (long)j * layer->count[kind] + i, factor * link->stiffness[j]);
+    entry(sparse, row, layer->maxwell[kind] + j * layer->stride + i, factor * link->stiffness[j]);
 }
 
 /* factor f_i, (3) or (4). */
@@ -80,24 +79,24 @@ static void entries_of_force(Sparse *sparse, const Problem *problem, long row, d
 }
 
 static void rows_of_mass(Sparse *sparse, const Problem *problem, int i) {
-  const Variation *v = &problem->variation;
-  long k = problem->layer->k, r_x = 2 * k + i, r_z = 3 * k + i;
-  entry(sparse, i, r_x, v->x_moves[i]);
-  entry(sparse, k + i, r_z, v->z_moves[i]);
-  entry(sparse, r_x, i, v->x_of_x[i]);
-  entry(sparse, r_x, r_x, v->x_of_v[i]);
-  entries_of_force(sparse, problem, r_x, v->x_of_f_x[i], i, HORIZONTAL, LATERAL_X);
-  entries_of_force(sparse, problem, r_x, v->x_of_f_z[i], i, VERTICAL, LATERAL_Z);
-  entries_of_force(sparse, problem, r_z, v->z_of_f_z[i], i, VERTICAL, LATERAL_Z);
+  const Variation *v = &problem->jacobian->of[i];
+  long stride = problem->layer->stride, r_x = 2 * stride + i, r_z = 3 * stride + i;
+  entry(sparse, i, r_x, v->x_moves);
+  entry(sparse, stride + i, r_z, v->z_moves);
+  entry(sparse, r_x, i, v->x_of_x);
+  entry(sparse, r_x, r_x, v->x_of_v);
+  entries_of_force(sparse, problem, r_x, v->x_of_f_x, i, HORIZONTAL, LATERAL_X);
+  entries_of_force(sparse, problem, r_x, v->x_of_f_z, i, VERTICAL, LATERAL_Z);
+  entries_of_force(sparse, problem, r_z, v->z_of_f_z, i, VERTICAL, LATERAL_Z);
 }
 
 static void rows_of_elements(Sparse *sparse, const Problem *problem, int kind) {
   const Layer *layer = problem->layer;
   Entries *entries_of = kind == HORIZONTAL || kind == LATERAL_X ? entries_of_x : entries_of_z;
-  int lateral = kind == LATERAL_X || kind == LATERAL_Z;
+  int lateral = is_lateral(kind);
   for (int j = 0; j < layer->scene.link[kind].n; j++)
     for (int i = 0; i < layer->count[kind]; i++) {
-      long row = layer->maxwell[kind] + (long)j * layer->count[kind] + i;
+      long row = layer->maxwell[kind] + j * layer->stride + i;
       entry(sparse, row, row, -layer->scene.link[kind].rate[j]);
       entries_of(sparse, problem, row, 1, i + lateral, 0, 1);
       if (lateral) entries_of(sparse, problem, row, -1, i, 0, 1);
@@ -150,7 +149,8 @@ static int set_up_system(double t, N_Vector y, N_Vector f, SUNMatrix matrix, boo
   Sparse *sparse = problem->linear_data;
   *jcur = !jok;
   if (!jok) {
-    linearise(problem, t, y);
+    layer_evaluate(problem->layer, t, N_VGetArrayPointer(y));
+    jacobian_linearise(problem->jacobian);
     memset(sparse->jacobian, 0, sparse->entries * sizeof *sparse->jacobian);
     visit(sparse, problem);
   }

@@ -20,6 +20,7 @@ typedef struct {
   int pieces, periodic;
   double start, length;
   double per_length; /* pieces per length where they are all alike, else 0 */
+  double per_period; /* 1/length */
   Piece *piece;      /* and one more: beyond the end, straight */
   double tangent;    /* slope before the start */
 } Profile;
@@ -37,6 +38,27 @@ static inline int profile_piece(const Profile *profile, double x) {
   return i + (i < profile->pieces - 1 && x >= profile->piece[i + 1].x);
 }
 
+static inline Ground profile_on(const Piece *piece, double t) {
+  double b = piece->half, third = 6 * piece->sixth, c = t * 3 * piece->sixth;
+  return (Ground){piece->height + t * (piece->slope + t * (b + t * piece->sixth)), piece->slope + t * (2 * b + c),
+                  2 * (b + c), third};
+}
+
+/* Whether profile_even_at may be used: without a branch, so that loops over masses become those of vectors. */
+static inline int profile_is_even(const Profile *profile) {
+  return profile->periodic && profile->per_length > 0;
+}
+
+/* The piece that holds x, and the distance from its start into t. Rounding may take a neighbour: the spline goes on. */
+static inline const Piece *profile_even_piece(const Profile *profile, double x, double *t) {
+  double d = x - profile->start;
+  d -= profile->length * floor(d * profile->per_period);
+  int last = profile->pieces - 1, i = (int)(d * profile->per_length);
+  i = i > last ? last : i < 0 ? 0 : i;
+  *t = d - (profile->piece[i].x - profile->start);
+  return &profile->piece[i];
+}
+
 static inline Ground profile_at(const Profile *profile, double x) {
   double from_start = x - profile->start;
   const Piece *piece;
@@ -52,9 +74,7 @@ static inline Ground profile_at(const Profile *profile, double x) {
   } else {
     piece = &profile->piece[from_start > profile->length ? profile->pieces : profile_piece(profile, x)];
   }
-  double t = x - piece->x, b = piece->half, c = piece->sixth;
-  return (Ground){piece->height + t * (piece->slope + t * (b + t * c)), piece->slope + t * (2 * b + t * 3 * c),
-                  2 * b + t * 6 * c, 6 * c};
+  return profile_on(piece, x - piece->x);
 }
 
 #endif

@@ -8,7 +8,7 @@
 void fail(const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
-  fputs("cvode_contact: ", stderr);
+  fputs("sundials_contact: ", stderr);
   vfprintf(stderr, format, arguments);
   fputc('\n', stderr);
   exit(1);
