@@ -120,7 +120,7 @@ periodic = true
 coulomb = 0.05
 
 [[excitation]]
-duration = 0.02
+duration = 0.01
 u_rate = 1.0
 u_sine = {{ amplitude = 0.0005, frequency = 100.0 }}
 """

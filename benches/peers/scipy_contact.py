@@ -23,7 +23,7 @@ from scipy.sparse import lil_matrix
 import flatten
 
 FREE, STICKING = 0, 2  # and 1, -1: slipping in that direction
-LENGTH = 1e-6  # m, absolute tolerance of an elongation over the relative one, as in cvode_contact
+LENGTH = 1e-6  # m, absolute tolerance of an elongation over the relative one, as in sundials_contact
 
 
 class Profile:
