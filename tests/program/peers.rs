@@ -57,3 +57,18 @@ fn the_peers_get_every_number_of_a_scene_or_refuse_it() {
     assert!(!refused.status.success());
     assert!(String::from_utf8(refused.stderr).unwrap().contains("until_force"));
 }
+
+/// Rungs at tolerances 1e-1 to 1e-4: the second has a small error by chance, which the third does not confirm.
+#[test]
+fn a_rung_counts_with_the_largest_error_of_it_and_of_all_tighter_ones() {
+    let script = "
+from ladder import Rung, counting_errors, time_at
+rungs = [Rung(0, {'F_x': error, 'F_z': 0.0}, 0, 0, 9.0, [2 * time, time])
+         for error, time in ((1e-1, 1.0), (1e-5, 2.0), (1e-2, 3.0), (1e-4, 12.0))]
+print(counting_errors(rungs), *(f'{time_at(rungs, error):.3f}' for error in (1.0, 1e-2, 1e-3)), time_at(rungs, 1e-5))
+";
+    let folder = root().join("benches/peers");
+    let said = run(Command::new("python3").args(["-B", "-c", script]).env("PYTHONPATH", folder));
+    // Between 1e-2 in 2 s and 1e-4 in 12 s, in logarithms, lies 1e-3 in √24 s.
+    assert_eq!(said.trim(), "[0.1, 0.01, 0.01, 0.0001] 1.000 2.000 4.899 None");
+}
