@@ -28,18 +28,23 @@ Jacobian *jacobian_new(Layer *layer) {
 /* With N = (1 - S s) f_x + (s + S)(f_z - m κ ẋ²) - σ A τ_0 q, ẍ = N/(m q²); ds/dx = κ, dq/dx = s κ/q. */
 static Variation slipping_variation(const Layer *layer, int i) {
   double m = layer->scene.mass, s = layer->slope[i], kappa = layer->curvature[i], v = layer->speed[i];
-  double sigma = layer_direction(layer, i), S = sigma * layer->scene.friction, shear = sigma * layer->scene.shear;
-  double q2 = 1 + s * s, q = sqrt(q2), w = 1 / (m * q2);
+  double sigma = layer_direction(layer, i), S = sigma * layer->scene.friction, along = 1 - S * s, across = s + S;
+  double per_q2 = 1 / (1 + s * s), w = layer->per_mass * per_q2;
   double f_x = layer->f_x[i], f_z = layer->f_z[i] - m * kappa * v * v;
-  double N = (1 - S * s) * f_x + (s + S) * f_z - shear * q;
-  double N_x = kappa * (f_z - S * f_x - shear * s / q) - (s + S) * m * layer->third[i] * v * v;
+  double N = along * f_x + across * f_z;
+  double N_x = kappa * (f_z - S * f_x) - across * m * layer->third[i] * v * v;
+  if (layer->scene.shear != 0) {
+    double shear = sigma * layer->scene.shear, q = sqrt(1 + s * s);
+    N -= shear * q;
+    N_x -= shear * s * kappa / q;
+  }
   return (Variation){.x_moves = 1,
                      .slope = s,
                      .turn = kappa * v,
-                     .x_of_f_x = (1 - S * s) * w,
-                     .x_of_f_z = (s + S) * w,
-                     .x_of_x = w * (N_x - 2 * s * kappa / q2 * N),
-                     .x_of_v = -2 * w * (s + S) * m * kappa * v};
+                     .x_of_f_x = along * w,
+                     .x_of_f_z = across * w,
+                     .x_of_x = w * (N_x - 2 * s * kappa * per_q2 * N),
+                     .x_of_v = -2 * w * across * m * kappa * v};
 }
 
 void jacobian_linearise(Jacobian *jacobian) {
