@@ -141,6 +141,9 @@ impl Instance {
     /// fmi2Terminate
     pub(super) fn terminate(&mut self) -> Result<(), Error> {
         self.state.lifecycle = LifecycleState::Terminated;
+        if let Some(divergence) = self.state.model.as_ref().and_then(InstanceModel::divergence) {
+            self.log.add(Message::of_status(Status::Warning, divergence.to_string()));
+        }
         Ok(())
     }
 

@@ -240,4 +240,20 @@ mod tests {
         // Nothing is replaced: the bound is too tight.
         assert!(warned(1e-9, 1.0).is_empty());
     }
+
+    #[test]
+    fn a_run_that_does_not_converge_is_warned_of_at_its_end() {
+        let mut instance = instance_of(crate::simulation::tests::STICK_SLIP);
+        instance.enter_initialization_mode().unwrap();
+        instance.exit_initialization_mode().unwrap();
+        let h = 1e-3;
+        for i in 0..30 {
+            instance.state.inputs.set_input(crate::fmi::Input::U, 0.02 * h * f64::from(i));
+            instance.do_step(h * f64::from(i), h).unwrap();
+        }
+        assert!(instance.take_messages().is_empty());
+        instance.terminate().unwrap();
+        let messages = instance.take_messages();
+        assert!(messages.len() == 1 && messages[0].text.contains("do not converge"), "{messages:?}");
+    }
 }

@@ -6,7 +6,7 @@ use super::definition::Definition;
 use super::error::{Error, RestoreError};
 use crate::element::{self, Element};
 use crate::outputs::Variable;
-use crate::simulation::{self, MethodSwitch, ModeChange, Motion, Simulation, Start};
+use crate::simulation::{self, Divergence, MethodSwitch, ModeChange, Motion, Simulation, Start};
 
 /// A run of a layer or of an element.
 #[derive(Clone, Debug)]
@@ -104,6 +104,14 @@ impl InstanceModel {
     pub(super) fn take_over_run_time(&mut self, other: &Self) {
         if let (Self::Layer(simulation), Self::Layer(other)) = (self, other) {
             simulation.set_run_time(other.run_time());
+        }
+    }
+
+    /// Why the run does not converge, if it shows; an element has no steps.
+    pub(super) fn divergence(&self) -> Option<Divergence> {
+        match self {
+            Self::Layer(simulation) => simulation.divergence(),
+            Self::Element(_) => None,
         }
     }
 

@@ -2,12 +2,14 @@
 //!
 //! Errors of single steps say little about the error of a run: damped motion forgets them, impacts and stick-slip
 //! multiply them, and where a touch was missed there is none to add up. A more accurate run beside it sees all of that.
-//! Where errors fall with the tolerance, the two differ by 1 - [`TIGHTER`] of the less accurate one's error.
+//! Where errors fall with the tolerance, the two differ by 1 - [`TIGHTER`] of the less accurate one's error. Where stick and
+//! slip get out of step they do not fall: the two then differ by far more than the tolerance, and in the number of their
+//! mode changes ([`Divergence`]).
 
 use std::sync::Arc;
 
 use super::driver::{TrialStep, WorkLimit};
-use super::motion::{Motion, SimulationError, Start};
+use super::motion::{Divergence, Motion, SimulationError, Start};
 use super::run::{Run, RunState, Settings};
 use crate::contact::EventTolerance;
 use crate::integrator::Tolerance;
@@ -26,6 +28,11 @@ const SHORTER: f64 = 0.7;
 /// Limit of its work in one motion, as a multiple of the run's, in addition to [`LEAST_WORK`]. Beyond it the error is not
 /// estimated: the two runs differ in kind then, as where one mass slips along what it flies over in the other.
 const MORE_WORK: u64 = 4;
+/// The estimated error, in relative tolerances, above which two runs whose modes changed differently often do not converge.
+///
+/// Recommended 30 to 100. Errors of 30 tolerances are more than a run has that keeps to its tolerance, which in most is
+/// within ten. With 10, runs are found too whose error still falls with the tolerance.
+const DIVERGED: f64 = 30.0;
 /// Number of steps that it may try in any motion, however few the run itself takes.
 const LEAST_WORK: u64 = 10_000;
 
@@ -126,6 +133,14 @@ impl ErrorRun {
         Ok(self.run.snapshot(0.0).monitored(tracked))
     }
 
+    /// Why the run beside this one, which stands at the same time, does not converge; `None` where nothing shows that.
+    pub(super) fn divergence(&self, beside: &Run) -> Option<Divergence> {
+        let (counters, tolerance) = (&beside.state.counters, beside.settings.tolerance.relative);
+        let (error, mode_changes) = (counters.force_error(), [counters.events, self.run.state.counters.events]);
+        let diverged = error > DIVERGED * tolerance && mode_changes[0] != mode_changes[1];
+        diverged.then_some(Divergence { error, tolerance, mode_changes })
+    }
+
     /// Ends the motion where the run beside it stands, in `state`. If this run could not go on, it continues from there.
     pub(super) fn end_motion(&mut self, state: &RunState) {
         self.failed = self.failed || self.follow_to(state.s, true).is_err();
@@ -152,10 +167,10 @@ impl Settings {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{WAVE, scene};
+    use super::super::tests::{STICK_SLIP, WAVE, scene};
     use super::*;
     use crate::outputs::{Output, variables};
-    use crate::scene::{Path, Scene};
+    use crate::scene::{Method, Path, Scene};
     use crate::simulation::{Simulation, Start};
 
     fn coarse() -> Scene {
@@ -240,6 +255,36 @@ mod tests {
         assert!(stands_beside(&simulation));
         let reference = simulation.error_run.as_mut().unwrap().run.snapshot(0.0).monitored(false);
         assert_eq!(reference, simulation.run.snapshot(0.0).monitored(false));
+    }
+
+    #[test]
+    fn a_large_error_and_other_mode_changes_are_a_divergence() {
+        let mut simulation = started(&coarse());
+        simulation.advance(&WAVE).unwrap();
+        assert_eq!(simulation.divergence(), None);
+        let error_run = simulation.error_run.as_mut().unwrap();
+        error_run.run.state.counters.events += 1;
+        assert_eq!(simulation.divergence(), None);
+        let force = |x| Monitored { forces: [x, 1e9], dissipated: None };
+        simulation.run.state.counters.note_error(&force(0.0), &force(1e9), 1.0);
+        let Divergence { error, tolerance, mode_changes: [run, finer] } = simulation.divergence().unwrap();
+        assert_eq!((error, tolerance, finer), (1.0, 1e-4, run + 1));
+        simulation.error_run.as_mut().unwrap().run.state.counters.events -= 1;
+        assert_eq!(simulation.divergence(), None);
+    }
+
+    #[test]
+    fn stick_and_slip_out_of_step_do_not_converge() {
+        let mut scene = Scene::parse(STICK_SLIP, std::path::Path::new("stick-slip.toml")).unwrap();
+        let slide = Motion { duration: 0.03, u: Path { rate: 0.02, ..Path::default() }, w: Path::default() };
+        for method in [Method::Event, Method::Step] {
+            for tolerance in [1e-2, 1e-3] {
+                (scene.solver.method, scene.solver.relative_tolerance) = (method, tolerance);
+                let mut simulation = Simulation::new(&scene, &Start::default()).unwrap();
+                simulation.advance(&slide).unwrap();
+                assert!(simulation.divergence().is_some(), "{method:?}, {tolerance}");
+            }
+        }
     }
 
     /// A motion that fails leaves both runs as they were.

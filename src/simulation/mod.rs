@@ -28,7 +28,7 @@ use crate::outputs::{Counters, Snapshot, Variable};
 use crate::scene::Scene;
 use driver::{TrialStep, WorkLimit};
 use error_run::ErrorRun;
-pub use motion::{MethodSwitch, ModeChange, Motion, OutOfRange, SimulationError, Start};
+pub use motion::{Divergence, MethodSwitch, ModeChange, Motion, OutOfRange, SimulationError, Start};
 use run::{Run, Settings};
 use state::check_length;
 pub use state::{RestoreError, SimulationState};
@@ -340,6 +340,12 @@ impl Simulation {
     /// Sets the processor time since the start, s.
     pub fn set_run_time(&mut self, time: f64) {
         self.run_time = time;
+    }
+
+    /// Why the run so far does not converge; `None` where nothing shows that, or without the group `solver`. Judged best at
+    /// the end of a run: early in it the largest forces, which errors are measured by, are still to come.
+    pub fn divergence(&self) -> Option<Divergence> {
+        self.error_run.as_ref().and_then(|error_run| error_run.divergence(&self.run))
     }
 
     /// Newton's iterations since the start, those of rejected steps and of motions rolled back included.

@@ -1,4 +1,4 @@
-//! The carrier's motion, why a run may not be able to follow it, and what it records on the way.
+//! The carrier's motion, why a run may not be able to follow it or not converge, and what it records on the way.
 
 use std::fmt;
 
@@ -96,6 +96,30 @@ impl fmt::Display for MethodSwitch {
         let Self { time, to_time_stepping, mode_changes_per_step } = self;
         let method = if *to_time_stepping { "time-stepping" } else { "event-driven" };
         write!(f, "t = {time} s: {method} from here on; mode changes per time step: {mode_changes_per_step:.2}")
+    }
+}
+
+/// A run and the more accurate one beside it do not converge: they differ by far more than the tolerance, and their
+/// modes changed differently often, as where stick and slip get out of step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Divergence {
+    /// The estimated error of the forces, over their largest values.
+    pub error: f64,
+    /// The relative tolerance.
+    pub tolerance: f64,
+    /// Number of mode changes of the run and of the more accurate one.
+    pub mode_changes: [u64; 2],
+}
+
+impl fmt::Display for Divergence {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { error, tolerance, mode_changes: [run, finer] } = self;
+        let times = error / tolerance;
+        write!(
+            f,
+            "solver.error = {error:.1e} is {times:.0} relative tolerances, and a more accurate run has {finer} mode changes, \
+             not {run}: the two do not converge, a lower tolerance need not give a smaller error"
+        )
     }
 }
 

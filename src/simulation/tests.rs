@@ -31,6 +31,17 @@ relative_tolerance = 1e-11
 outputs = ["forces", "dissipation", "friction", "contact", "energy", "tangent", "solver", "elements"]
 "#;
 
+/// Six hardly damped masses that stick and slip: what they do after a few slips depends on every error before.
+pub(crate) const STICK_SLIP: &str = "
+name = 'stick-slip'
+layer = { masses = 6, spacing = 1e-4, mass = 1e-7, clearance = -1e-5, vertical = { stiffness = 2e3, damping = 8e-3 },
+          horizontal = { stiffness = 300 }, lateral_x = { stiffness = 2000 } }
+surface = { kind = 'sinusoid', amplitude = 2e-6, wavelength = 2.7e-4 }
+friction = { coulomb = 0.1, rate_shear = { force = 8e-3, reference_speed = 1e-4, sharpness = 0.3 } }
+solver = { relative_tolerance = 1e-2 }
+fmu = { outputs = ['forces', 'solver'] }
+";
+
 /// A motion after which masses are free, slip and stick.
 pub(super) const WAVE: Motion = Motion {
     duration: 1.3e-4,

@@ -1,6 +1,6 @@
 //! Judges the runs of a case: method against method, and both against a tight run.
 
-use asperity::robustness::{Accuracy, Force, Perturbation, Verdict};
+use asperity::robustness::{Accuracy, Force, KEPT, Perturbation, Verdict};
 
 use crate::catalogue::{Case, number};
 use crate::fmu::by_fmu;
@@ -144,6 +144,7 @@ fn judge_run(case: &Case, way: Way, mut outcome: Outcome, straight: Way, tight: 
     let comparable = way.is_fmu() == straight.is_fmu() && !stopped;
     let tight_run = comparable.then_some(tight);
     let (forces, losses) = (worse_force(&outcome, tight_run), losses(&outcome, tight_run));
+    outcome.findings.extend(false_alarm(case, outcome.warns, &forces));
     if way == straight && tight.error.is_some() && outcome.error.is_none() {
         let text = tight.error.as_ref().map_or("", |error| error.text.as_str());
         outcome.findings.push(Finding { rule: "tight", text: format!("the tight run: {text}") });
@@ -185,6 +186,13 @@ fn wrong(case: &Case, accuracy: &Accuracy) -> Option<Finding> {
     let kept = accuracy.verdict(relative_tolerance(case)) == Verdict::Kept;
     let found = case.perturbation != Perturbation::default() && !kept;
     found.then(|| Finding { rule: "accuracy", text: format!("{accuracy:?}") })
+}
+
+/// A run that keeps its tolerance converges.
+fn false_alarm(case: &Case, warns: bool, forces: &Estimate) -> Option<Finding> {
+    let found = warns && forces.true_error <= KEPT * relative_tolerance(case);
+    let text = format!("warns that it does not converge, with an error of {:.1e}", forces.true_error);
+    found.then_some(Finding { rule: "warning", text })
 }
 
 /// Of the force with the larger error over its largest value, as `solver.error` means it.

@@ -32,6 +32,8 @@ pub struct Outcome {
     pub known: f64,
     /// Number of masses.
     pub masses: f64,
+    /// Whether it warns that it does not converge.
+    pub warns: bool,
     /// What did not hold.
     pub findings: Vec<Finding>,
 }
@@ -141,6 +143,7 @@ pub fn by_library(case: &Case, method: &str, tight: f64) -> Outcome {
             return watch.end(Some(error.into()));
         }
     }
+    watch.outcome.warns = simulation.divergence().is_some();
     watch.end(None)
 }
 
