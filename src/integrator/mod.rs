@@ -324,8 +324,8 @@ impl Integrator {
         let links: usize = rates.elongation_rate.iter().map(Vec::len).sum();
         // With those at the start of the next step, in the state and in the one to go back to.
         let stages = self.stages.rates.len() + 2;
-        // Per mass: rates and starred values; five blocks and a right side; row shares and neighbour weights; errors.
-        let by_mass = stages * 6 + 4 + (5 * 4 + 2) + (3 + 3) + 5;
+        // Per mass: rates and starred values; six blocks and a right side; row shares and neighbour weights; errors.
+        let by_mass = stages * 6 + 4 + (6 * 4 + 2) + (3 + 3) + 5;
         let elements = 2 * (self.seven_stages.maxwell.floats() + self.two_stages.maxwell.floats());
         let tangents: usize = self.stages.tangents.iter().map(Tangent::floats).sum();
         (by_mass * masses + stages * links + elements + tangents) * size_of::<f64>()

@@ -45,6 +45,21 @@ impl BlockTridiagonal {
     /// Factors the blocks, so that [`solve`](Self::solve) can take any number of right sides. A singular block leaves
     /// values that are not finite.
     pub fn factor(&mut self) {
+        self.factor_by(|a, b| a * b, inverse_of);
+    }
+
+    /// The same where all blocks are diagonal, for [`solve_uncoupled`](Self::solve_uncoupled).
+    pub fn factor_uncoupled(&mut self) {
+        let diagonal = |x: f64, z: f64| Matrix2::new(x, 0.0, 0.0, z);
+        self.factor_by(|a, b| diagonal(a.m11 * b.m11, a.m22 * b.m22), |m| diagonal(1.0 / m.m11, 1.0 / m.m22));
+    }
+
+    #[inline(always)]
+    fn factor_by(
+        &mut self,
+        times: impl Fn(&Matrix2<f64>, &Matrix2<f64>) -> Matrix2<f64>,
+        inverse_of: impl Fn(&Matrix2<f64>) -> Matrix2<f64>,
+    ) {
         let (middle, mirrored) = self.halves();
         let last = middle + mirrored;
         let Self { lower, diagonal, upper, inverse, share, back, .. } = self;
@@ -54,30 +69,30 @@ impl BlockTridiagonal {
             if step < middle {
                 let into = step + 1;
                 inverse[step] = first_end;
-                back[step] = first_end * upper[step];
-                share[into] = lower[into] * first_end;
+                back[step] = times(&first_end, &upper[step]);
+                share[into] = times(&lower[into], &first_end);
                 // The middle row is reached from both sides.
                 if into < middle {
-                    first_end = inverse_of(&(diagonal[into] - share[into] * upper[step]));
+                    first_end = inverse_of(&(diagonal[into] - times(&share[into], &upper[step])));
                 }
             }
             if step < mirrored {
                 let (from, into) = (last - step, last - step - 1);
                 inverse[from] = second_end;
-                back[from] = second_end * lower[from];
+                back[from] = times(&second_end, &lower[from]);
                 if into > middle {
-                    share[into] = upper[into] * second_end;
-                    second_end = inverse_of(&(diagonal[into] - share[into] * lower[from]));
+                    share[into] = times(&upper[into], &second_end);
+                    second_end = inverse_of(&(diagonal[into] - times(&share[into], &lower[from])));
                 }
             }
         }
         let mut center = diagonal[middle];
         if middle > 0 {
-            center -= share[middle] * upper[middle - 1];
+            center -= times(&share[middle], &upper[middle - 1]);
         }
         if mirrored > 0 {
-            self.share_behind = upper[middle] * inverse[middle + 1];
-            center -= self.share_behind * lower[middle + 1];
+            self.share_behind = times(&upper[middle], &inverse[middle + 1]);
+            center -= times(&self.share_behind, &lower[middle + 1]);
         }
         inverse[middle] = inverse_of(&center);
     }

@@ -149,6 +149,19 @@ impl Forces {
         }
     }
 
+    /// Evaluates the forces F = c e + d ė + `known` of all links, with c (N/m) and d (N s/m) by kind in `laws`, and their
+    /// sums on the masses, but not ė. Only links that the scene does not have are without `known` forces (N).
+    pub fn evaluate_with(&mut self, laws: [(f64, f64); 4], motion: &LinkMotion<'_>, known: &[Vec<f64>; 4]) {
+        let [vertical, horizontal, lateral_x, lateral_z] = &mut self.link;
+        let axis = |carrier: LinkKind, lateral: LinkKind| AxisForces {
+            motion: motion.along(carrier),
+            to_carrier: (laws[carrier as usize], &known[carrier as usize]),
+            lateral: (laws[lateral as usize], &known[lateral as usize]),
+        };
+        axis(LinkKind::Horizontal, LinkKind::LateralX).evaluate(horizontal, lateral_x, &mut self.on_mass_x);
+        axis(LinkKind::Vertical, LinkKind::LateralZ).evaluate(vertical, lateral_z, &mut self.on_mass_z);
+    }
+
     /// f_x,i = -F_x,i + F_lx,i - F_lx,i-1, and alike along z (3), (4).
     pub fn sum_on_masses(&mut self) {
         let [vertical, horizontal, lateral_x, lateral_z] = &self.link;
@@ -255,11 +268,74 @@ impl<'a> LinkMotion<'a> {
         }
     }
 
+    /// Writes ė of the links of a kind, m/s; `rate` is empty where the scene has no such link.
+    pub fn elongation_rates(&self, kind: LinkKind, rate: &mut [f64]) {
+        let (_, velocity, carrier_rate) = self.along(kind);
+        if kind.is_lateral() {
+            let pairs = velocity.iter().zip(&velocity[1..]);
+            rate.iter_mut().zip(pairs).for_each(|(rate, (v, v_next))| *rate = v_next - v);
+        } else {
+            rate.iter_mut().zip(velocity).for_each(|(rate, v)| *rate = v - carrier_rate);
+        }
+    }
+
     fn along(&self, kind: LinkKind) -> (&'a [f64], &'a [f64], f64) {
         if kind.is_along_x() {
             (self.elongation_x, self.velocity_x, self.carrier_rates.0)
         } else {
             (self.elongation_z, self.velocity_z, self.carrier_rates.1)
+        }
+    }
+}
+
+/// What the forces of the links along x or z follow from.
+struct AxisForces<'a> {
+    /// Elongations of the links to the carrier (m), velocities of the masses and of the carrier (m/s).
+    motion: (&'a [f64], &'a [f64], f64),
+    /// c (N/m), d (N s/m) and the known forces (N) of the links to the carrier.
+    to_carrier: ((f64, f64), &'a [f64]),
+    /// The same of the lateral links.
+    lateral: ((f64, f64), &'a [f64]),
+}
+
+impl AxisForces<'_> {
+    /// Writes the forces of the links to the carrier, of the lateral links, and the sums on the masses, N.
+    fn evaluate(&self, to_carrier: &mut [f64], lateral: &mut [f64], on_mass: &mut [f64]) {
+        self.set_lateral(lateral);
+        let k = on_mass.len();
+        if to_carrier.is_empty() || lateral.is_empty() {
+            self.set_to_carrier(to_carrier);
+            return sum_on_masses(on_mass, to_carrier, lateral);
+        }
+        self.set_to_carrier(&mut to_carrier[..1]);
+        (on_mass[0], on_mass[k - 1]) = (lateral[0] - to_carrier[0], -lateral[k - 2]);
+        let (elongation, velocity, carrier_rate) = self.motion;
+        let ((stiffness, damping), known) = self.to_carrier;
+        let between = lateral.iter().zip(&lateral[1..]);
+        let masses = elongation[1..].iter().zip(&velocity[1..]).zip(&known[1..]);
+        let inner = on_mass[1..].iter_mut().zip(&mut to_carrier[1..]).zip(masses.zip(between));
+        for ((sum, force), (((e, v), known), (left, right))) in inner {
+            *force = stiffness * e + damping * (v - carrier_rate) + known;
+            *sum = (right - left) - *force;
+        }
+        let last = stiffness * elongation[k - 1] + damping * (velocity[k - 1] - carrier_rate) + known[k - 1];
+        to_carrier[k - 1] = last;
+        on_mass[k - 1] -= last;
+    }
+
+    fn set_to_carrier(&self, force: &mut [f64]) {
+        let ((elongation, velocity, carrier_rate), ((stiffness, damping), known)) = (self.motion, self.to_carrier);
+        for ((force, (e, v)), known) in force.iter_mut().zip(elongation.iter().zip(velocity)).zip(known) {
+            *force = stiffness * e + damping * (v - carrier_rate) + known;
+        }
+    }
+
+    fn set_lateral(&self, force: &mut [f64]) {
+        let ((elongation, velocity, _), ((stiffness, damping), known)) = (self.motion, self.lateral);
+        let elongations = elongation.iter().zip(&elongation[1..]);
+        let pairs = elongations.zip(velocity.iter().zip(&velocity[1..]));
+        for ((force, ((e, e_next), (v, v_next))), known) in force.iter_mut().zip(pairs).zip(known) {
+            *force = stiffness * (e_next - e) + damping * (v_next - v) + known;
         }
     }
 }

@@ -34,8 +34,32 @@ pub(super) struct StageHistory {
     pub velocity_x: Vec<f64>,
     /// v*_z, m/s.
     pub velocity_z: Vec<f64>,
-    /// H by kind of link, N; empty where the links have no Maxwell elements.
+    /// H by kind of link, N; empty where the scene has no such link.
     pub force: [Vec<f64>; 4],
+}
+
+impl StageHistory {
+    fn new(model: &Model) -> Self {
+        let zero = vec![0.0; model.masses()];
+        Self {
+            elongation_x: zero.clone(),
+            elongation_z: zero.clone(),
+            velocity_x: zero.clone(),
+            velocity_z: zero,
+            force: Forces::new(model).link,
+        }
+    }
+
+    /// Subtracts the forces of the frozen dashpots from H.
+    fn subtract_frozen(&mut self, model: &Model) {
+        for kind in LinkKind::ALL.into_iter().filter(|&kind| model.links[kind as usize].frozen > 0.0) {
+            let force = &mut self.force[kind as usize];
+            if model.rows_of(kind).next().is_none() {
+                force.fill(0.0);
+            }
+            model.subtract_frozen(kind, force);
+        }
+    }
 }
 
 /// A stage's time step and the carrier at it.
@@ -128,18 +152,8 @@ const HELD_FALL: f64 = 0.25;
 impl StageSolver {
     pub(super) fn new(model: &Model) -> Self {
         let k = model.masses();
-        let zero = vec![0.0; k];
-        let by_link = |kind: LinkKind| {
-            if model.rows.iter().any(|row| row.kind == kind) { vec![0.0; kind.count(k)] } else { Vec::new() }
-        };
         Self {
-            history: StageHistory {
-                elongation_x: zero.clone(),
-                elongation_z: zero.clone(),
-                velocity_x: zero.clone(),
-                velocity_z: zero,
-                force: LinkKind::ALL.map(by_link),
-            },
+            history: StageHistory::new(model),
             state: State::new(k, model.maxwell_variables()),
             forces: Forces::new(model),
             laws: [StageLaw::default(); 4],
@@ -169,7 +183,7 @@ impl StageSolver {
         self.assemble_constant_rows(model, beta);
         self.factors = Factors::Outdated;
         if self.slips.is_empty() {
-            self.system.factor();
+            self.system.factor_uncoupled();
         }
     }
 
@@ -217,8 +231,9 @@ impl StageSolver {
         test: ConvergenceTest,
         rates: &mut Rates,
     ) -> Result<(), NoConvergence> {
+        self.history.subtract_frozen(model);
         self.set_positions(model, point);
-        self.set_forces(model, point);
+        self.set_forces(point);
         if self.slips.is_empty() {
             self.solve_linear(model, point)?;
         } else {
@@ -230,12 +245,12 @@ impl StageSolver {
 
     /// Solves the equations without slip, which are linear: their matrix is factored once per step.
     fn solve_linear(&mut self, model: &Model, point: &StagePoint) -> Result<(), NoConvergence> {
-        self.residuals(model, point.beta);
+        self.set_residuals(model, point.beta);
         // Slips alone couple the motions along x and z.
         self.system.solve_uncoupled();
         let change = self.correct();
         self.set_positions(model, point);
-        self.set_forces(model, point);
+        self.set_forces(point);
         if change.is_finite() { Ok(()) } else { Err(NoConvergence) }
     }
 
@@ -255,7 +270,7 @@ impl StageSolver {
             let steep = model.rate_shear.as_ref().map_or(0.0, along_curve);
             let change = self.correct().max(steep);
             self.set_positions(model, point);
-            self.set_forces(model, point);
+            self.set_forces(point);
             let left = self.residuals(model, point.beta);
             let next = change * (left / residual);
             let falls = !held || left <= HELD_FALL * residual;
@@ -308,15 +323,10 @@ impl StageSolver {
     }
 
     /// Computes the forces of the links and on the masses by the stage's law.
-    fn set_forces(&mut self, model: &Model, point: &StagePoint) {
+    fn set_forces(&mut self, point: &StagePoint) {
         let motion = LinkMotion::of(&self.state, &point.carrier);
-        for kind in LinkKind::ALL {
-            let law = &self.laws[kind as usize];
-            let known = &self.history.force[kind as usize];
-            self.forces.spring_and_damper(kind, law.stiffness, law.damping, &motion, known);
-            model.subtract_frozen(kind, &mut self.forces.link[kind as usize]);
-        }
-        self.forces.sum_on_masses();
+        let laws = self.laws.map(|law| (law.stiffness, law.damping));
+        self.forces.evaluate_with(laws, &motion, &self.history.force);
     }
 
     /// Adds the corrections to the velocities, which ends an iteration, and returns the largest, m/s.
@@ -338,7 +348,10 @@ impl StageSolver {
         rates.velocity_z.copy_from_slice(&state.velocity_z);
         rate_of_change(&mut rates.acceleration_x, &state.velocity_x, &history.velocity_x, per_beta);
         rate_of_change(&mut rates.acceleration_z, &state.velocity_z, &history.velocity_z, per_beta);
-        std::mem::swap(&mut rates.elongation_rate, &mut self.forces.rate);
+        let motion = LinkMotion::of(state, &point.carrier);
+        for (kind, rate) in LinkKind::ALL.into_iter().zip(&mut rates.elongation_rate) {
+            motion.elongation_rates(kind, rate);
+        }
         rates.clear_contacts();
         let k = state.mode.len();
         let (modes, velocities, surfaces) = (&state.mode[..k], &state.velocity_x[..k], &state.surface[..k]);

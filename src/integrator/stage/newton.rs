@@ -14,9 +14,15 @@ impl StageSolver {
         }
     }
 
-    /// Writes the negative residuals of the equations of motion at the present velocities to the right sides. Returns
-    /// the largest as the velocity, m/s, that it makes against the inertia alone.
+    /// [Sets](Self::set_residuals) the residuals and returns the largest as the velocity, m/s, that it makes against the
+    /// inertia alone.
     pub(super) fn residuals(&mut self, model: &Model, beta: f64) -> f64 {
+        self.set_residuals(model, beta);
+        largest(&self.system.right) * beta / model.mass
+    }
+
+    /// Writes the negative residuals of the equations of motion at the present velocities to the right sides.
+    pub(super) fn set_residuals(&mut self, model: &Model, beta: f64) {
         let inertia = model.mass / beta;
         let velocities = self.state.velocity_x.iter().zip(&self.state.velocity_z);
         let starred = self.history.velocity_x.iter().zip(&self.history.velocity_z);
@@ -32,7 +38,6 @@ impl StageSolver {
         if let Some(law) = &model.rate_shear {
             self.add_rate_shear(model, law, beta);
         }
-        largest(&self.system.right) / inertia
     }
 
     fn slip_residuals(&mut self, model: &Model, per_beta: f64) {
@@ -75,8 +80,11 @@ impl StageSolver {
             };
             (self.rows[i], self.columns[i], self.system.diagonal[i]) = (row, column, diagonal);
         }
+        let beside = Matrix2::new(-lateral_x, 0.0, 0.0, -lateral_z);
         for i in 1..k {
-            self.couple(i - 1);
+            let free = self.state.mode[i - 1] == Mode::Free && self.state.mode[i] == Mode::Free;
+            let block = if free { beside } else { Matrix2::zeros() };
+            (self.system.upper[i - 1], self.system.lower[i]) = (block, block);
         }
     }
 
