@@ -123,14 +123,15 @@ impl EndCorrection {
 
     /// The lateness of the touch of free mass `i`, if there is one.
     fn detect_touch(&mut self, step: &TwoStageDense<'_>, i: usize) -> Option<Lateness> {
-        let height = step.height(i, 1.0);
-        if height.min(step.height(i, TwoStageDense::FIRST_STAGE)) > self.profile.z_max {
+        let (height, before) = (step.height(i, 1.0), step.height(i, TwoStageDense::FIRST_STAGE));
+        if height.min(before) > self.profile.z_max {
             return None;
         }
-        let surface = step.model.surface_at(step.position(i, 1.0));
+        let x = step.position(i, 1.0);
+        let surface = step.model.surface_at(x);
         let gap = height - surface.height;
         if gap >= 0.0 {
-            return self.detect_dip(step, i, gap);
+            return self.detect_dip(step, i, gap, (x, height - before));
         }
         self.touches.push(i);
         let closing = surface.slope * step.end.velocity_x[i] - step.end.velocity_z[i];
@@ -140,11 +141,10 @@ impl EndCorrection {
         Some(Lateness { length: -gap, time })
     }
 
-    /// A mass that is above the profile at the end, by `gap`, and below it at the first stage has passed through an
-    /// asperity: the whole penetration is an error.
-    fn detect_dip(&self, step: &TwoStageDense<'_>, i: usize, gap: f64) -> Option<Lateness> {
-        let rise = step.height(i, 1.0) - step.height(i, TwoStageDense::FIRST_STAGE);
-        let distance = (step.position(i, 1.0) - step.position(i, TwoStageDense::FIRST_STAGE)).abs();
+    /// A mass that is above the profile at the end, at `x` and by `gap`, and below it at the first stage has passed through
+    /// an asperity: the whole penetration is an error. It has risen by `rise` since.
+    fn detect_dip(&self, step: &TwoStageDense<'_>, i: usize, gap: f64, (x, rise): (f64, f64)) -> Option<Lateness> {
+        let distance = (x - step.position(i, TwoStageDense::FIRST_STAGE)).abs();
         if gap > rise + distance * self.profile.slope_max_abs {
             return None;
         }

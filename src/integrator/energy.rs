@@ -5,12 +5,13 @@
 //! (`maxwell`). So sums over the layer are taken of their products, once per step, and not of every element at every
 //! stage.
 
+use super::Tableau;
 use super::maxwell::{Maxwell, StageCoefficients};
 use super::rates::Rates;
 use crate::math::{dot, sum_of_pairs};
 use crate::model::{ChannelEnergies, Exchange, LinkKind, MaxwellRow, Model};
 
-/// Σ ė_i ė_j over the links of one kind, m²/s², for j ≤ i.
+/// Σ ė_i ė_j over the links of one kind, m²/s², for j ≤ i, where they are needed.
 type RateProducts<const STAGES: usize> = [[f64; STAGES]; STAGES];
 
 /// The sums over the layer from which the energies up to any fraction of a step follow.
@@ -31,7 +32,7 @@ pub(super) struct StepSums<const STAGES: usize> {
 struct ElementSums<const STAGES: usize> {
     /// Σ a_0², m².
     start: f64,
-    /// Σ a_0 ė_j, m²/s.
+    /// Σ a_0 ė_j, m²/s; 0 for stages that do not drive the elements.
     mixed: [f64; STAGES],
     /// Σ l² (m²) and Σ l τė_0 (m²) of l = a_0 - τė_0; `None` for elements slower than the step.
     relaxing: Option<(f64, f64)>,
@@ -56,27 +57,29 @@ impl<const STAGES: usize> StepSums<STAGES> {
 
     /// Takes the sums of the step of length `h` (s) with these `stages`, from the elongations `a` (m) of the elements, unless
     /// they are known.
-    pub(super) fn collect(&mut self, model: &Model, a: &[f64], stages: &[Rates], h: f64) {
+    pub(super) fn collect(&mut self, model: &Model, tableau: &Tableau<STAGES>, a: &[f64], stages: &[Rates], h: f64) {
         if self.known {
             return;
         }
         self.known = true;
+        // The first stage whose rates drive the elements: in most methods the start of the step does not.
+        let first = usize::from(tableau.a.iter().all(|row| row[0] == 0.0));
         for kind in LinkKind::ALL {
             let has_elements = model.rows_of(kind).next().is_some();
             if has_elements || model.links[kind as usize].damping > 0.0 {
-                self.rates[kind as usize] = rate_products(stages, kind, has_elements);
+                self.rates[kind as usize] = rate_products(stages, kind, has_elements.then_some(first));
             }
             let unresolved = model.rows_of(kind).any(|row| h / row.relaxation_time > RESOLVED);
             self.changes[kind as usize] = if unresolved { largest_change(stages, kind) } else { 0.0 };
         }
         for (row, sums) in model.rows.iter().zip(&mut self.elements) {
-            *sums = ElementSums::new(row, &a[row.range.clone()], stages, h);
+            *sums = ElementSums::new(row, &a[row.range.clone()], stages, first, h);
         }
     }
 }
 
 impl<const STAGES: usize> ElementSums<STAGES> {
-    fn new(row: &MaxwellRow, a: &[f64], stages: &[Rates], h: f64) -> Self {
+    fn new(row: &MaxwellRow, a: &[f64], stages: &[Rates], first: usize, h: f64) -> Self {
         let (tau, rate) = (row.relaxation_time, |j: usize| &stages[j].elongation_rate[row.kind as usize][..]);
         let l = |a: f64, rate: f64| a - tau * rate;
         let relaxing = || {
@@ -85,7 +88,7 @@ impl<const STAGES: usize> ElementSums<STAGES> {
         };
         Self {
             start: dot(a, a),
-            mixed: std::array::from_fn(|j| dot(a, rate(j))),
+            mixed: std::array::from_fn(|j| if j < first { 0.0 } else { dot(a, rate(j)) }),
             relaxing: (h / tau > RESOLVED).then(relaxing),
         }
     }
@@ -137,12 +140,12 @@ impl<const STAGES: usize> StepPowers<'_, STAGES> {
     }
 }
 
-/// The products of one kind of link: all of them, or those of each stage with itself alone.
-fn rate_products<const STAGES: usize>(stages: &[Rates], kind: LinkKind, all: bool) -> RateProducts<STAGES> {
+/// The products of one kind of link: of each stage with itself, and of all from the `first` on with each other.
+fn rate_products<const STAGES: usize>(stages: &[Rates], kind: LinkKind, first: Option<usize>) -> RateProducts<STAGES> {
     let mut products = [[0.0; STAGES]; STAGES];
     for i in 0..STAGES {
         let rate = &stages[i].elongation_rate[kind as usize];
-        for j in if all { 0 } else { i }..=i {
+        for j in first.unwrap_or(i).min(i)..=i {
             products[i][j] = dot(rate, &stages[j].elongation_rate[kind as usize]);
         }
     }
@@ -284,7 +287,7 @@ mod tests {
         maxwell.begin(&model, &ESDIRK5, &start, h);
         let weights: [f64; STAGES] = std::array::from_fn(|_| number());
         let mut sums = StepSums::new(&model, true);
-        sums.collect(&model, &start, &stages, h);
+        sums.collect(&model, &ESDIRK5, &start, &stages, h);
         let powers = StepPowers { model: &model, maxwell: &maxwell, sums: &sums, exchange: &[], h, weights: &weights };
         let found = powers.lost();
 

@@ -129,7 +129,7 @@ impl<const N: usize> RungeKutta<N> {
         theta: f64,
     ) -> ChannelEnergies {
         let weights = if theta < 1.0 { &self.continuous_weights.at(theta) } else { self.tableau.weights() };
-        self.sums.collect(model, &start.maxwell, &stages.rates[..N], h);
+        self.sums.collect(model, self.tableau, &start.maxwell, &stages.rates[..N], h);
         let (maxwell, sums) = (&self.maxwell, &self.sums);
         StepPowers { model, maxwell, sums, exchange: &stages.exchange, h, weights }.energies()
     }
@@ -213,12 +213,18 @@ impl Stages {
     fn guess_limited(&mut self, step: &StepInput<'_>, i: usize) {
         let (known, guess, history) = (&self.rates[i - 1], &mut self.solver.state, &self.solver.history);
         let carrier = self.carrier[i].u_rate.abs() + self.carrier[i].w_rate.abs();
-        for (i, mode) in step.start.state.mode.iter().enumerate() {
-            let (v_x, v_z) = (history.velocity_x[i], history.velocity_z[i]);
+        // Slices of one length, so that an index into one of them is one into all.
+        let mode = &step.start.state.mode[..];
+        let k = mode.len();
+        let (star_x, star_z) = (&history.velocity_x[..k], &history.velocity_z[..k]);
+        let (known_x, known_z) = (&known.acceleration_x[..k], &known.acceleration_z[..k]);
+        let (guess_x, guess_z) = (&mut guess.velocity_x[..k], &mut guess.velocity_z[..k]);
+        for i in 0..k {
+            let (v_x, v_z) = (star_x[i], star_z[i]);
             let most = carrier + v_x.abs() + v_z.abs();
-            let moves = if *mode == Mode::Stick { 0.0 } else { 1.0 };
-            guess.velocity_x[i] = moves * (v_x + (step.beta * known.acceleration_x[i]).clamp(-most, most));
-            guess.velocity_z[i] = moves * (v_z + (step.beta * known.acceleration_z[i]).clamp(-most, most));
+            let moves = if mode[i] == Mode::Stick { 0.0 } else { 1.0 };
+            guess_x[i] = moves * (v_x + (step.beta * known_x[i]).clamp(-most, most));
+            guess_z[i] = moves * (v_z + (step.beta * known_z[i]).clamp(-most, most));
         }
     }
 

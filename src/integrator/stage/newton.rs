@@ -66,25 +66,35 @@ impl StageSolver {
         let k = self.state.mode.len();
         let inertia = model.mass / beta;
         let [vertical, horizontal, lateral_x, lateral_z] = self.laws.map(|law| law.weight);
-        for i in 0..k {
-            let (row, column, diagonal) = if self.state.mode[i] == Mode::Free {
-                let neighbours = neighbours(i, k);
-                let weights = (horizontal + neighbours * lateral_x, vertical + neighbours * lateral_z);
-                (
-                    RowShares { x_by_x: 1.0, x_by_z: 0.0, z_by_z: 1.0 },
-                    NeighbourWeights { x: lateral_x, z_by_x: 0.0, z: lateral_z },
-                    Matrix2::new(inertia + weights.0, 0.0, 0.0, inertia + weights.1),
-                )
-            } else {
-                (RowShares::default(), NeighbourWeights::default(), Matrix2::identity())
-            };
-            (self.rows[i], self.columns[i], self.system.diagonal[i]) = (row, column, diagonal);
+        let diagonal = |neighbours: f64| {
+            let weights = (horizontal + neighbours * lateral_x, vertical + neighbours * lateral_z);
+            Matrix2::new(inertia + weights.0, 0.0, 0.0, inertia + weights.1)
+        };
+        self.rows.fill(RowShares { x_by_x: 1.0, x_by_z: 0.0, z_by_z: 1.0 });
+        self.columns.fill(NeighbourWeights { x: lateral_x, z_by_x: 0.0, z: lateral_z });
+        self.system.diagonal.fill(diagonal(2.0));
+        for end in [0, k - 1] {
+            self.system.diagonal[end] = diagonal(neighbours(end, k));
         }
         let beside = Matrix2::new(-lateral_x, 0.0, 0.0, -lateral_z);
-        for i in 1..k {
-            let free = self.state.mode[i - 1] == Mode::Free && self.state.mode[i] == Mode::Free;
-            let block = if free { beside } else { Matrix2::zeros() };
-            (self.system.upper[i - 1], self.system.lower[i]) = (block, block);
+        self.system.upper.fill(beside);
+        self.system.lower.fill(beside);
+        for n in 0..self.contacts.len() {
+            self.hold(self.contacts[n]);
+        }
+    }
+
+    /// Makes the equations of mass `i`, in contact, those of a mass that keeps its velocity.
+    fn hold(&mut self, i: usize) {
+        let system = &mut self.system;
+        (self.rows[i], self.columns[i]) = (RowShares::default(), NeighbourWeights::default());
+        (system.lower[i], system.diagonal[i], system.upper[i]) =
+            (Matrix2::zeros(), Matrix2::identity(), Matrix2::zeros());
+        if i > 0 {
+            system.upper[i - 1] = Matrix2::zeros();
+        }
+        if let Some(lower) = system.lower.get_mut(i + 1) {
+            *lower = Matrix2::zeros();
         }
     }
 
