@@ -65,8 +65,9 @@ fn pass<const ADD: bool, const N: usize>(out: &mut [f64], terms: [(f64, &[f64]);
     let weights = terms.map(|(weight, _)| weight);
     let terms = terms.map(|(_, term)| &term[..out.len()]);
     for i in 0..out.len() {
-        let mut sum = if ADD { out[i] } else { 0.0 };
-        for t in 0..N {
+        let first = weights[0] * terms[0][i];
+        let mut sum = if ADD { out[i] + first } else { first };
+        for t in 1..N {
             sum += weights[t] * terms[t][i];
         }
         out[i] = sum;
