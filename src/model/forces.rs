@@ -434,4 +434,50 @@ mod tests {
             assert!((found - expected).abs() < 1e-13, "{refreshed:?} {evaluated:?}");
         }
     }
+
+    /// Layers of one mass to four, with the forces of the Maxwell elements and of the frozen dashpots as the known ones.
+    #[test]
+    fn forces_with_given_laws_are_those_evaluated() {
+        let horizontal = SCENE.replace("lateral_x =", "horizontal = { stiffness = 4.0, damping = 0.2 },\n lateral_x =");
+        for text in [1, 2, 4]
+            .into_iter()
+            .flat_map(|k| [SCENE, &horizontal].map(|scene| scene.replace("masses = 4", &format!("masses = {k}"))))
+        {
+            let mut model = Model::of_text(&text);
+            model.freeze_dashpots(0.0, -0.3);
+            let mut state = State::new(model.masses(), model.maxwell_variables());
+            let number = |i: usize| (i as f64).sin();
+            for i in 0..model.masses() {
+                (state.elongation_x[i], state.elongation_z[i]) = (number(i), number(i + 10));
+                (state.velocity_x[i], state.velocity_z[i]) = (number(i + 20), number(i + 30));
+            }
+            (0..state.maxwell.len()).for_each(|i| state.maxwell[i] = number(i + 40));
+            let carrier = CarrierPoint { u_rate: 0.2, w_rate: -0.1, ..CarrierPoint::default() };
+            let (mut expected, mut found) = (Forces::new(&model), Forces::new(&model));
+            expected.evaluate(&model, &state, &carrier);
+
+            let mut known = Forces::new(&model).link;
+            for kind in LinkKind::ALL {
+                let elements = model.rows_of(kind).map(|row| (row.stiffness, &state.maxwell[row.range.clone()]));
+                add_weighted_sum(&mut known[kind as usize], elements);
+                model.subtract_frozen(kind, &mut known[kind as usize]);
+            }
+            let motion = LinkMotion::of(&state, &carrier);
+            found.evaluate_with(
+                [0, 1, 2, 3].map(|i| (model.links[i].stiffness, model.links[i].damping)),
+                &motion,
+                &known,
+            );
+            for kind in LinkKind::ALL {
+                motion.elongation_rates(kind, &mut found.rate[kind as usize]);
+            }
+            assert_eq!(found.rate, expected.rate);
+            let all =
+                |forces: &Forces| [forces.on_mass_x.clone(), forces.on_mass_z.clone(), forces.link.concat()].concat();
+            for (a, b) in all(&found).iter().zip(all(&expected)) {
+                // A few roundings of numbers of some tens.
+                assert!((a - b).abs() < 1e-13, "{text}: {found:?} {expected:?}");
+            }
+        }
+    }
 }
