@@ -20,7 +20,7 @@ fn number(row: &Row, column: &str) -> f64 {
 }
 
 fn of_method<'a>(rows: &'a [Row], method: &str) -> Vec<&'a Row> {
-    rows.iter().filter(|row| row["program"] == "asperity" && row["method"] == method).collect()
+    rows.iter().filter(|row| row["timed"] == "run alone" && row["method"] == method).collect()
 }
 
 /// What the program says while it writes the report of `scene` into `folder`, without stress unless that is asked for.
@@ -54,18 +54,94 @@ fn errors(folder: &Path) -> Vec<Row> {
     rows(&folder.join("error-run-time.csv"))
 }
 
+fn judgements(folder: &Path) -> Vec<Row> {
+    rows(&folder.join("tolerance-estimate.csv"))
+}
+
+/// The larger of the errors of F_x and F_z over the tolerance, and the run's own estimate over that error.
+#[test]
+fn runs_are_held_against_tolerance_and_estimate() {
+    let folder = scratch("report-judgements");
+    report(&root().join(SINUSOID), &folder, &["--repeat", "1", "--tolerances", "1e-3..1e-6"]);
+    let (runs, judged) = (errors(&folder), judgements(&folder));
+    assert_eq!(judged.len(), 8);
+    for row in &judged {
+        let same = |run: &&&Row| run["tolerance"] == row["tolerance"];
+        let of = of_method(&runs, &row["method"]);
+        let run = of.iter().find(same).unwrap();
+        let error = number(run, "error_F_x").max(number(run, "error_F_z"));
+        assert_eq!((number(row, "error"), &row["estimate"]), (error, &run["estimate"]), "{row:?}");
+        let ratios = [error / number(row, "tolerance"), number(row, "estimate") / error];
+        for (column, ratio) in ["error_over_tolerance", "estimate_over_error"].into_iter().zip(ratios) {
+            // One rounding each.
+            assert!((number(row, column) / ratio - 1.0).abs() < 1e-15, "{column}: {row:?}");
+        }
+        // A smooth scene, whose errors fall with the tolerance as the estimate takes them to.
+        assert!((0.1..10.0).contains(&ratios[1]) && row["left_out"].is_empty(), "{row:?}");
+    }
+    let page = fs::read_to_string(folder.join("index.html")).unwrap();
+    assert!(page.contains("<h2>Tolerance and estimate</h2>") && page.contains("100 %"));
+}
+
+#[test]
+fn run_times_have_their_spread_and_the_machine() {
+    let folder = scratch("report-timings");
+    report(&root().join(SINUSOID), &folder, &["--repeat", "4", "--tolerances", "1e-3..1e-4"]);
+    let (rows, page) = (errors(&folder), fs::read_to_string(folder.join("index.html")).unwrap());
+    for row in of_method(&rows, "event").into_iter().chain(of_method(&rows, "step")) {
+        // Runs of milliseconds: as many timings as are allowed.
+        assert!(number(row, "runs") == 4.0 && number(row, "most_above_least") >= 0.0, "{row:?}");
+        assert!(row["build"].starts_with(&format!("asperity {}", env!("CARGO_PKG_VERSION"))), "{row:?}");
+        assert!(page.contains(&row["cpu"]) && page.contains(&row["system"]) && number(row, "cores") >= 1.0, "{row:?}");
+    }
+}
+
+/// Each scene has its own folder; the page of all has the runs of all.
+#[test]
+fn several_scenes_have_one_page_of_all() {
+    let folder = scratch("report-several");
+    let absent = changed(&folder, "u_rate = 0.5", "u_rate = 0.4");
+    let scenes = [root().join(SINUSOID), absent];
+    let command = |scenes: &[PathBuf], to: &str| {
+        let options = ["--repeat", "1", "--tolerances", "1e-3..1e-5", "--stress", "0"];
+        asperity().arg("report").args(scenes).arg("-o").arg(folder.join(to)).args(options).output().unwrap()
+    };
+    let output = command(&scenes, "all");
+    assert!(output.status.success(), "{output:?}");
+    let all = judgements(&folder.join("all"));
+    for name in ["sinusoid", "scene"] {
+        let own = judgements(&folder.join("all").join(name));
+        let of_all: Vec<&Row> = all.iter().filter(|row| row["scene"] == name).collect();
+        let errors = |rows: &[&Row]| rows.iter().map(|row| row["error"].clone()).collect::<Vec<_>>();
+        assert_eq!(errors(&of_all), errors(&own.iter().collect::<Vec<_>>()), "{name}");
+        assert!(!own.is_empty() && folder.join("all").join(name).join("index.html").exists(), "{name}");
+    }
+    let page = fs::read_to_string(folder.join("all/index.html")).unwrap();
+    for part in ["<a href=\"scene/index.html\">scene</a>", "<td>all</td>", "<td>sinusoid</td>", "<svg"] {
+        assert!(page.contains(part), "{part}");
+    }
+    let output = command(&[scenes[0].clone(), scenes[0].clone()], "twice");
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(!output.status.success() && text.contains("two scenes have the same folder"), "{text}");
+    assert!(!folder.join("twice").exists());
+}
+
 #[test]
 fn every_file_is_there_and_the_page_is_whole() {
     let folder = scratch("report-files").join("made/if/need/be");
     report(&root().join(SINUSOID), &folder, &["--repeat", "1", "--stress", "1"]);
-    for name in ["error-run-time", "error-communication-step"] {
+    for (name, title) in [
+        ("error-run-time", "error of F_z"),
+        ("error-communication-step", "error of F_z"),
+        ("tolerance-estimate", "error over tolerance"),
+    ] {
         let svg = fs::read_to_string(folder.join(name).with_extension("svg")).unwrap();
-        assert!(svg.starts_with("<svg") && svg.contains("error of F_z"), "{name}");
+        assert!(svg.starts_with("<svg") && svg.contains(title), "{name}");
         let png = fs::read(folder.join(name).with_extension("png")).unwrap();
         assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n");
     }
     let page = fs::read_to_string(folder.join("index.html")).unwrap();
-    assert_eq!(page.matches("<svg").count(), 2);
+    assert_eq!(page.matches("<svg").count(), 3);
     // Nothing from elsewhere: the name of SVG's own language is no address to fetch.
     let elsewhere = page.replace("http://www.w3.org/2000/svg", "");
     for sign in ["http", "<link", "<script", "src=", "@import", "url(", "{{"] {
@@ -147,7 +223,7 @@ fn peers_have_their_lines_and_those_of_other_scenes_none() {
         "sinusoid,CVODE,klu,1e-3,2e-3,3e-4,4e-4,0.25,1234567,1",
         "sinusoid,CVODE,klu,1e-6,2e-6,3e-7,4e-7,0.5,3575,1",
         "sinusoid,scipy,Radau,1e-6,,,,,,",
-        "sinusoid,asperity,event,1e-6,2e-6,3e-7,4e-7,0.5,7654321,1",
+        "sinusoid,asperity,event,1e-6,2e-6,3e-7,4e-7,0.2,2345678,1",
         "another,CVODE,cond,1e-6,2e-6,3e-7,4e-7,0.5,7654321,1",
     ];
     fs::write(&peers, format!("{head}\n{}\n", lines.join("\n"))).unwrap();
@@ -157,10 +233,21 @@ fn peers_have_their_lines_and_those_of_other_scenes_none() {
     let page = fs::read_to_string(folder.join("index.html")).unwrap();
     assert!(page.contains("CVODE klu") && page.contains("1234567") && page.contains("quickest peer"));
     assert!(!page.contains("7654321") && !page.contains("cond"));
+    // Whole process by whole process: 0.5 s over the 0.2 s of asperity in the same file, whatever it takes here.
+    assert!(page.contains("CVODE klu, tolerance 1e-6") && page.contains("asperity event, tolerance 1e-6"));
+    assert_eq!(page.matches("<td class=\"number\">2.5</td>").count(), 2, "bounds 1e-4 and 1e-5");
     let rows = errors(&folder);
     let klu: Vec<&Row> = rows.iter().filter(|row| row["method"] == "klu").collect();
     assert_eq!(klu.iter().map(|row| number(row, "run_time")).collect::<Vec<_>>(), [0.25, 0.5]);
     assert!(rows.iter().any(|row| row["method"] == "Radau" && row["failure"] == "no run time"));
+    // A table written here has whole processes beside its own runs, and gives those alone as peers.
+    let processes = |rows: &[Row]| rows.iter().filter(|row| row["timed"] == "whole process").count();
+    assert_eq!(processes(&rows), 4);
+    let written = folder.join("written.csv");
+    fs::copy(folder.join("error-run-time.csv"), &written).unwrap();
+    let again = ["--repeat", "1", "--tolerances", "1e-3..1e-6", "--peers", written.to_str().unwrap()];
+    assert!(!report(&root().join(SINUSOID), &folder, &again).contains("no lines"));
+    assert_eq!((processes(&errors(&folder)), errors(&folder).len()), (4, rows.len()));
     let none = changed(&folder, "name = \"sinusoid\"", "name = \"unheard-of\"");
     let text = report(&none, &folder, &options);
     assert!(text.contains("no lines of the scene unheard-of; there are sinusoid, another"), "{text}");
@@ -257,6 +344,8 @@ fn where_runs_part_means_are_compared() {
     assert!(page.contains("means of F_x and F_z over 20 windows"));
     let svg = fs::read_to_string(folder.join("error-run-time.svg")).unwrap();
     assert!(svg.contains("error of F_z, means"));
+    let judged = judgements(&folder);
+    assert!(!judged.is_empty() && judged.iter().all(|row| row["left_out"] == "sensitive"), "{judged:?}");
     // Runs that stay together say nothing of it.
     report(&root().join(SINUSOID), &folder, &["--repeat", "1", "--tolerances", "1e-4..1e-7"]);
     let page = fs::read_to_string(folder.join("index.html")).unwrap();
@@ -372,6 +461,13 @@ fn a_scene_under_stress_has_a_cell_for_each_pair_of_factors() {
     for row in &cells {
         assert!(page.contains(&row["reason"]), "{row:?}");
     }
+    // All of them came to their ends, and are held against their tolerance and estimate.
+    let judged = judgements(&folder);
+    let is_scaled = |row: &&Row| {
+        FACTORS.iter().any(|name| !["", "1"].contains(&row[*name].as_str())) || row["communication_step"] == "1"
+    };
+    assert_eq!(judged.iter().filter(is_scaled).count(), cells.len() - 1);
+    assert!(page.contains("<td>event, scaled</td>"));
     assert!(page.contains("<h2>Robustness</h2>") && page.contains("<h3>In pairs</h3>"));
     assert!(page.contains("title=\"stiffness × 10, mass × 10⁻¹: error "));
     assert!(page.contains("stiffness, mass, relaxation times, speed and communication step scaled"));

@@ -179,9 +179,9 @@ pub(crate) struct Material {
 
 #[derive(Debug, Args)]
 pub(crate) struct Report {
-    /// The scene file.
-    #[arg(value_name = "SCENE.toml")]
-    pub(crate) scene: PathBuf,
+    /// The scene files. Of several, each has its report in a folder of its name, and one page shows all.
+    #[arg(value_name = "SCENE.toml", required = true)]
+    pub(crate) scenes: Vec<PathBuf>,
     /// The folder to write to; it is created if it does not exist.
     #[arg(short, long, value_name = "FOLDER")]
     pub(crate) output: PathBuf,
@@ -191,8 +191,9 @@ pub(crate) struct Report {
     /// Number of rows for each phase of the excitation at which runs are compared.
     #[arg(long, value_name = "N", default_value_t = 50, value_parser = count)]
     pub(crate) points: u32,
-    /// Number of timings of each run; the median is reported.
-    #[arg(long, value_name = "N", default_value_t = 3, value_parser = count)]
+    /// Most timings of each run, done for short runs; long ones are timed three times. The least and the spread are
+    /// reported.
+    #[arg(long, value_name = "N", default_value_t = 25, value_parser = count)]
     pub(crate) repeat: u32,
     /// Robustness test: varies the scene's quantities, singly and in pairs, by up to N powers of ten either way. 0
     /// skips the test.

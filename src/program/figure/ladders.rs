@@ -6,7 +6,7 @@ use plotters::prelude::*;
 
 use super::axis::{Axis, is_loggable};
 use super::chart::{Context, Legend, MARKER, Stroke, Symbol, context, draw_axes, draw_line, draw_marker};
-use super::{Backend, Canvas, DrawResult, FINE, Figure, colour, text_style, text_width};
+use super::{Backend, Canvas, DrawResult, FINE, Figure, INK, colour, text_style, text_width};
 
 /// Width and height of a panel, pixels.
 const PANEL: (u32, u32) = (400, 400);
@@ -32,7 +32,8 @@ pub(crate) struct Rung {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Ladder {
     pub(crate) name: String,
-    pub(crate) dashed: bool,
+    /// Rings stand for markers too.
+    pub(crate) stroke: Stroke,
     /// The number of its colour and marker.
     pub(crate) look: usize,
     pub(crate) rungs: Vec<Rung>,
@@ -44,6 +45,8 @@ pub(crate) struct LadderPanel {
     pub(crate) title: String,
     /// The reference's own error: errors below it say nothing.
     pub(crate) floor: Option<f64>,
+    /// Values of the vertical axis with a line across and their numbers.
+    pub(crate) lines: Vec<f64>,
     /// In the order of the legend.
     pub(crate) ladders: Vec<Ladder>,
 }
@@ -79,8 +82,7 @@ impl Ladders {
 
     fn legend(&self) -> Legend {
         let ladders = self.panels.iter().flat_map(|panel| &panel.ladders);
-        let named =
-            ladders.map(|ladder| (ladder.name.as_str(), Symbol::Marker { look: ladder.look, dashed: ladder.dashed }));
+        let named = ladders.map(|ladder| (ladder.name.as_str(), ladder.symbol()));
         let has_floor = self.panels.iter().any(|panel| panel.floor.is_some());
         Legend::new(named.chain(has_floor.then_some((FLOOR_NAME, Symbol::Area(FLOOR)))), self.width() * FINE)
     }
@@ -88,10 +90,10 @@ impl Ladders {
     /// The axes of all panels, the vertical one without a title.
     fn axes(&self) -> (Axis, Axis) {
         let rungs = || self.panels.iter().flat_map(|panel| &panel.ladders).flat_map(|ladder| &ladder.rungs);
-        let floors = self.panels.iter().filter_map(|panel| panel.floor);
+        let marked = self.panels.iter().flat_map(|panel| panel.lines.iter().copied().chain(panel.floor));
         let x = rungs().flat_map(|rung| [rung.x / BESIDE, rung.x * BESIDE]);
         let y = rungs().flat_map(|rung| [rung.y, rung.y * ABOVE]);
-        (Axis::logarithmic(&self.x_title, x), Axis::logarithmic("", y.chain(floors)))
+        (Axis::logarithmic(&self.x_title, x), Axis::logarithmic("", y.chain(marked)))
     }
 }
 
@@ -100,6 +102,7 @@ impl LadderPanel {
         let mut context = context(canvas, "", x, y)?;
         self.draw_floor(&mut context, x, y)?;
         draw_axes(&mut context, x, y)?;
+        self.draw_lines(canvas, &mut context, x)?;
         self.ladders.iter().try_for_each(|ladder| ladder.draw(canvas, &mut context, self.floor))?;
         self.draw_labels(canvas, &context)
     }
@@ -108,6 +111,19 @@ impl LadderPanel {
         let Some(floor) = self.floor.and_then(|floor| y.coordinate(floor)) else { return Ok(()) };
         let corners = [(x.range().start, y.range().start), (x.range().end, floor.min(y.range().end))];
         context.draw_series([Rectangle::new(corners, FLOOR.filled())])?;
+        Ok(())
+    }
+
+    /// Draws the lines across, each with its number above its left end.
+    fn draw_lines<B: Backend>(&self, canvas: &Canvas<B>, context: &mut Context<'_, B>, x: &Axis) -> DrawResult {
+        let (left, top) = canvas.get_base_pixel();
+        for &value in &self.lines {
+            let ends = [(x.range().start, value), (x.range().end, value)];
+            context.draw_series([PathElement::new(ends, INK.mix(0.6).stroke_width(FINE))])?;
+            let start = context.backend_coord(&ends[0]);
+            let corner = (start.0 - left + FINE as i32 * 3, start.1 - top - (LABEL_SIZE + 2 * FINE) as i32);
+            canvas.draw(&Text::new(value.to_string(), corner, text_style(LABEL_SIZE)))?;
+        }
         Ok(())
     }
 
@@ -136,12 +152,21 @@ impl LadderPanel {
 
 impl Ladder {
     fn draw<B: Backend>(&self, canvas: &Canvas<B>, context: &mut Context<'_, B>, floor: Option<f64>) -> DrawResult {
-        let stroke = if self.dashed { Stroke::Dashed } else { Stroke::Line };
-        draw_line(context, self.drawn().map(|rung| (rung.x, rung.y)).collect(), stroke, self.look)?;
+        draw_line(context, self.drawn().map(|rung| (rung.x, rung.y)).collect(), self.stroke, self.look)?;
+        if self.stroke == Stroke::Rings {
+            return Ok(());
+        }
         let rungs = self.drawn().zip(self.points(canvas, context));
         rungs.into_iter().try_for_each(|(rung, point)| {
             draw_marker(canvas, point, self.look, floor.is_some_and(|floor| rung.y < floor))
         })
+    }
+
+    fn symbol(&self) -> Symbol {
+        match self.stroke {
+            Stroke::Rings => Symbol::Line(Stroke::Rings, colour(self.look)),
+            stroke => Symbol::Marker { look: self.look, dashed: stroke == Stroke::Dashed },
+        }
     }
 
     /// The rungs that logarithmic axes can show.

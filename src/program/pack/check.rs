@@ -11,7 +11,7 @@ use asperity::simulation::{Motion, Simulation, Start};
 use rayon::prelude::*;
 
 use crate::program::cli::{Pack, Plot};
-use crate::program::figure::{Figure as _, Ladder, LadderPanel, Ladders, PlotError, Rung, plot_files};
+use crate::program::figure::{Figure as _, Ladder, LadderPanel, Ladders, PlotError, Rung, Stroke, plot_files};
 use crate::program::files::{self, FileError};
 use crate::program::result_file::{CsvWriter, ResultWriter};
 use crate::program::runner::CarrierSample;
@@ -207,11 +207,12 @@ fn errors_plot(checks: &[PointCheck], load: Load) -> Ladders {
         let rung =
             |check: &PointCheck| Some(Rung { x: check.point.speed, y: check.errors()?[i].abs(), label: String::new() });
         let name = format!("{of:.3e} {}", load.unit());
-        Ladder { name, dashed: false, look, rungs: own.filter_map(rung).collect() }
+        Ladder { name, stroke: Stroke::Line, look, rungs: own.filter_map(rung).collect() }
     };
     let panel = |(i, name): (usize, &&str)| LadderPanel {
         title: format!("error of {name}, as a share of it"),
         floor: None,
+        lines: Vec::new(),
         ladders: loads.iter().enumerate().map(|(look, &of)| ladder(look, of, i)).collect(),
     };
     Ladders { x_title: "speed in m/s".into(), panels: COMPARED.iter().enumerate().map(panel).collect() }

@@ -4,7 +4,7 @@ use asperity::robustness::{RunFailure, at_tolerance, exact};
 use asperity::scene::{Method, Scene};
 
 use super::reference::{Comparison, Reference};
-use super::run::{Figures, Given, Measured, Progress, UNLIMITED, drive, follow, weight};
+use super::run::{Figures, Given, Measured, Progress, UNLIMITED, drive, estimated, follow, weight};
 use super::trace::{Errors, Trace};
 use crate::program::runner::Rows;
 
@@ -16,6 +16,12 @@ const REFERENCE: &str = "reference";
 const METHODS: [(Method, &str); 2] = [(Method::Event, "event"), (Method::Step, "step")];
 /// Once a method has taken so many times the Newton iterations of the reference, its tighter runs are left out.
 pub(super) const PATIENCE: u64 = 3;
+/// Runs are timed again and again until that may have taken about this time, s, ...
+const ENOUGH: f64 = 2.0;
+/// ... and at least so often.
+const LEAST_TIMINGS: u32 = 3;
+/// A run that estimates its error takes up to so many times what it takes alone.
+const ESTIMATED: f64 = 3.0;
 
 /// A row of the table of errors and run times.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,19 +29,45 @@ pub(super) struct ToleranceRow {
     pub(super) program: String,
     pub(super) method: String,
     pub(super) tolerance: f64,
+    pub(super) timed: Timed,
     /// Or why there are no figures.
     pub(super) result: Result<Figures, String>,
 }
 
+/// What a run time is that of. Only times of the same are divided by each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Timed {
+    /// The run alone, within this program.
+    RunAlone,
+    /// A process from its start to its end, this program's or a peer's.
+    WholeProcess,
+}
+
+impl Timed {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::RunAlone => "run alone",
+            Self::WholeProcess => "whole process",
+        }
+    }
+}
+
 impl ToleranceRow {
-    /// The method, after the program where that is a peer.
+    /// The method, after the program where that is a process.
     pub(super) fn name(&self) -> String {
-        if self.program == PROGRAM { self.method.clone() } else { format!("{} {}", self.program, self.method) }
+        match self.timed {
+            Timed::RunAlone => self.method.clone(),
+            Timed::WholeProcess => format!("{} {}", self.program, self.method),
+        }
     }
 
     pub(super) fn of_reference(reference: &Reference) -> Self {
         let result = Ok(reference.figures());
-        Self { program: PROGRAM.into(), method: REFERENCE.into(), tolerance: reference.tolerance, result }
+        Self::of_run(REFERENCE, reference.tolerance, result)
+    }
+
+    fn of_run(method: &str, tolerance: f64, result: Result<Figures, String>) -> Self {
+        Self { program: PROGRAM.into(), method: method.into(), tolerance, timed: Timed::RunAlone, result }
     }
 }
 
@@ -46,15 +78,15 @@ pub(super) struct ToleranceLadder<'a> {
     pub(super) tolerances: &'a [f64],
     /// Rows of a phase.
     pub(super) points: u32,
-    /// How often each run is timed.
+    /// How often each run is timed at most.
     pub(super) repeat: u32,
 }
 
 impl ToleranceLadder<'_> {
-    /// As [`weight`].
+    /// As [`weight`], without the timings.
     pub(super) fn weight(&self) -> f64 {
         let rungs = METHODS.iter().flat_map(|&(method, _)| self.tolerances.iter().map(move |&rung| (method, rung)));
-        f64::from(self.repeat) * rungs.map(|(method, rung)| self.rung_weight(method, rung)).sum::<f64>()
+        rungs.map(|(method, rung)| self.rung_weight(method, rung)).sum()
     }
 
     /// The method "step" is of order 2: as quick as the other at a thousandth, its steps follow the square root, until
@@ -62,21 +94,21 @@ impl ToleranceLadder<'_> {
     fn rung_weight(&self, method: Method, tolerance: f64) -> f64 {
         const EVEN: f64 = 1e-3;
         let most = 3.0 * PATIENCE as f64 * self.tolerances.last().map_or(1.0, |&tightest| weight(tightest));
-        match method {
+        let alone = match method {
             Method::Step => (weight(EVEN) * (EVEN / tolerance).sqrt()).min(most),
             _ => weight(tolerance),
-        }
+        };
+        ESTIMATED * alone
     }
 
-    /// Runs all tolerances, method by method.
+    /// Runs all tolerances, method by method, without timing them.
     pub(super) fn run(&self, reference: &Reference, progress: &Progress) -> Vec<ToleranceRow> {
         METHODS.iter().flat_map(|&(method, name)| self.run_method(method, name, reference, progress)).collect()
     }
 
     /// The runs of one method, until they take far more work than the reference.
     fn run_method(&self, method: Method, name: &str, reference: &Reference, progress: &Progress) -> Vec<ToleranceRow> {
-        let mut scene = reference.scene.clone();
-        scene.solver.method = method;
+        let scene = with_method(&reference.scene, method);
         let most = reference.measured.counts.iterations;
         let mut last = 0;
         let mut row = |&tolerance: &f64| {
@@ -86,11 +118,12 @@ impl ToleranceLadder<'_> {
                 self.rung(&at_tolerance(&scene, tolerance), name, reference, progress).map_err(|why| why.to_string())
             };
             last = result.as_ref().ok().and_then(|figures| figures.iterations).unwrap_or(last);
-            ToleranceRow { program: PROGRAM.into(), method: name.into(), tolerance, result }
+            ToleranceRow::of_run(name, tolerance, result)
         };
         self.tolerances.iter().map(&mut row).collect()
     }
 
+    /// A run with its estimate of its own error; its time is that of both.
     fn rung(
         &self,
         scene: &Scene,
@@ -99,33 +132,68 @@ impl ToleranceLadder<'_> {
         progress: &Progress,
     ) -> Result<Figures, RunFailure> {
         let tolerance = scene.solver.relative_tolerance;
+        let message = format!("{method}, tolerance {tolerance:e}, with its estimate");
         let weight = self.rung_weight(scene.solver.method, tolerance);
-        let measure = |rows: Rows, what: &str| {
-            let message = format!("{method}, tolerance {tolerance:e}{what}");
-            progress.during(&message, weight, |tick| follow(scene, rows, 0.0, UNLIMITED, tick))
-        };
-        let mut times = Vec::new();
-        let mut first = None;
-        for i in 1..=self.repeat {
-            let measured = measure(Rows::PerPhase(self.points), &format!(", run {i} of {}", self.repeat))?;
-            times.push(measured.time);
-            first.get_or_insert(measured);
-        }
-        let comparison = reference.comparison;
-        let run = match first {
-            Some(run) if !comparison.is_of_means() => run,
-            _ => measure(comparison.rows(), ", means")?,
-        };
+        let (comparison, scene) = (reference.comparison, estimated(scene));
+        let follow = |tick: &dyn Fn(f64)| follow(&scene, comparison.rows(), 0.0, UNLIMITED, tick);
+        let run = progress.during(&message, weight, follow)?;
         let errors = comparison.errors(&run.trace, &reference.measured.trace);
-        Ok(Figures { time: Some(median(times)), ..run.figures(errors) })
+        Ok(Figures { estimate: Some(run.estimate), ..run.figures(errors) })
+    }
+
+    /// Times the runs of `rows` again without their estimates, in rounds: what disturbs the machine for a while does not
+    /// meet all timings of one run.
+    pub(super) fn time(&self, reference: &Reference, rows: &mut [ToleranceRow]) {
+        let mut runs: Vec<TimedRun<'_>> =
+            rows.iter_mut().filter_map(|row| TimedRun::new(row, &reference.scene, self.repeat)).collect();
+        let progress = Progress::new(runs.iter().map(|run| f64::from(run.repeat) * run.expected).sum());
+        for round in 0..self.repeat {
+            let due = runs.iter_mut().filter(|run| round < run.repeat);
+            due.for_each(|run| run.time(Rows::PerPhase(self.points), &progress));
+        }
     }
 }
 
-/// Of an even number, the mean of the two in the middle.
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let n = values.len();
-    if n == 0 { 0.0 } else { f64::midpoint(values[(n - 1) / 2], values[n / 2]) }
+fn with_method(scene: &Scene, method: Method) -> Scene {
+    let mut scene = scene.clone();
+    scene.solver.method = method;
+    scene
+}
+
+/// A run that is timed several times.
+#[derive(Debug)]
+struct TimedRun<'a> {
+    figures: &'a mut Figures,
+    message: String,
+    scene: Scene,
+    /// What it may take, s.
+    expected: f64,
+    /// How often it is timed.
+    repeat: u32,
+    times: Vec<f64>,
+}
+
+impl<'a> TimedRun<'a> {
+    /// Of a row whose run came to its end; it is timed `most` times at most.
+    fn new(row: &'a mut ToleranceRow, scene: &Scene, most: u32) -> Option<Self> {
+        let (method, _) = METHODS.into_iter().find(|(_, name)| *name == row.method)?;
+        let scene = with_method(&at_tolerance(scene, row.tolerance), method);
+        let message = format!("timing {}, tolerance {:e}", row.method, row.tolerance);
+        let figures = row.result.as_mut().ok()?;
+        let expected = figures.time?;
+        Some(Self { figures, message, scene, expected, repeat: timings(expected, most), times: Vec::new() })
+    }
+
+    fn time(&mut self, rows: Rows, progress: &Progress) {
+        let run = progress.during(&self.message, self.expected, |tick| follow(&self.scene, rows, 0.0, UNLIMITED, tick));
+        self.times.extend(run.ok().map(|run| run.time));
+        *self.figures = self.figures.timed(&self.times);
+    }
+}
+
+/// How often a run is timed that takes up to `time` (s): short ones more often, but none more than `most` times.
+fn timings(time: f64, most: u32) -> u32 {
+    ((ENOUGH / time).ceil() as u32).max(LEAST_TIMINGS).min(most)
 }
 
 /// A row of the table of errors and communication steps.
@@ -235,9 +303,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_median_is_the_middle_one() {
-        assert_eq!(median(vec![3.0, 1.0, 2.0]), 2.0);
-        assert_eq!(median(vec![3.0, 1.0, 2.0, 10.0]), 2.5);
+    fn short_runs_are_timed_more_often() {
+        assert_eq!([1e-4, 0.1, 0.5, 60.0].map(|time| timings(time, 25)), [25, 20, 4, 3]);
+        assert_eq!([1e-4, 60.0].map(|time| timings(time, 1)), [1, 1]);
     }
 
     #[test]

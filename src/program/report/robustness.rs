@@ -12,7 +12,8 @@ use cpu_time::ThreadTime;
 use rayon::prelude::*;
 
 use super::reference::Reference;
-use super::run::{Counts, Given, Measured, drive, follow};
+use super::run::{Counts, Given, Measured, drive, estimated, follow};
+use super::trace::Errors;
 use crate::program::runner::Rows;
 use crate::program::terminal::bar;
 
@@ -65,6 +66,10 @@ enum Outcome {
         /// Each takes a step at least.
         communication_steps: u64,
         accuracy: Accuracy,
+        /// Against the tight run, if there is one.
+        errors: Option<Errors>,
+        /// The run's own estimate of the larger of the errors of F_x and F_z.
+        estimate: f64,
     },
     Failed(RunFailure),
     NotTried,
@@ -76,6 +81,22 @@ impl Trial {
     pub(super) fn accuracy(&self) -> Option<&Accuracy> {
         match &self.outcome {
             Outcome::Ended { accuracy, .. } => Some(accuracy),
+            _ => None,
+        }
+    }
+
+    /// Each over the largest value of its quantity, against the tight run.
+    pub(super) fn errors(&self) -> Option<&Errors> {
+        match &self.outcome {
+            Outcome::Ended { errors, .. } => errors.as_ref(),
+            _ => None,
+        }
+    }
+
+    /// The run's own estimate of the larger of the errors of F_x and F_z.
+    pub(super) fn estimate(&self) -> Option<f64> {
+        match self.outcome {
+            Outcome::Ended { estimate, .. } => Some(estimate),
             _ => None,
         }
     }
@@ -309,31 +330,34 @@ impl PerturbedRunner<'_> {
             Some(points) => drive(scene, Given::Rates, points, u, budget, &|_| ()),
         };
         let budget = self.budget.saturating_add(2 * communication_steps);
-        match along(scene, 0.0, Budget(budget)) {
+        match along(&estimated(scene), 0.0, Budget(budget)) {
             Err(failure) => Outcome::Failed(failure),
             Ok(run) => {
-                let accuracy = accuracy(scene, &run, Budget(self.patience.saturating_mul(budget)), along);
-                Outcome::Ended { counts: run.counts, communication_steps, accuracy }
+                let (accuracy, errors) = accuracy(scene, &run, Budget(self.patience.saturating_mul(budget)), along);
+                Outcome::Ended { counts: run.counts, communication_steps, accuracy, errors, estimate: run.estimate }
             }
         }
     }
 }
 
-/// Compares a run with a tight one.
+/// Compares a run with a tight one; with the errors, if that comes to its end.
 fn accuracy(
     scene: &Scene,
     run: &Measured,
     budget: Budget,
     along: impl Fn(&Scene, f64, Budget) -> Result<Measured, RunFailure>,
-) -> Accuracy {
+) -> (Accuracy, Option<Errors>) {
     let tight_scene = exact(&at_tolerance(scene, scene.solver.relative_tolerance / TIGHTER));
     let tight = match along(&tight_scene, 0.0, budget) {
-        Ok(tight) => tight.trace.forces(),
-        Err(RunFailure::Stopped(reason)) => return Accuracy::Unknown(reason),
-        Err(RunFailure::OverBudget { .. }) => return Accuracy::Unknown(format!("more than {} steps", budget.0)),
+        Ok(tight) => tight.trace,
+        Err(RunFailure::Stopped(reason)) => return (Accuracy::Unknown(reason), None),
+        Err(RunFailure::OverBudget { .. }) => {
+            return (Accuracy::Unknown(format!("more than {} steps", budget.0)), None);
+        }
     };
     let moved = || along(&tight_scene, DISPLACEMENT, budget).ok().map(|moved| moved.trace.forces());
-    Accuracy::judge(scene, &run.trace.forces(), &tight, moved)
+    let accuracy = Accuracy::judge(scene, &run.trace.forces(), &tight.forces(), moved);
+    (accuracy, Some(run.trace.largest(&tight)))
 }
 
 /// The communication points of a master in the phases that are run, s after each begins; `factor` scales the

@@ -26,6 +26,8 @@ pub(super) struct Measured {
     pub(super) time: f64,
     /// Of each phase, s.
     pub(super) durations: Vec<f64>,
+    /// Its own estimate of the larger of the errors of F_x and F_z; 0 unless the scene is [`estimated`].
+    pub(super) estimate: f64,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -43,8 +45,14 @@ pub(super) struct Counts {
 pub(super) struct Figures {
     /// Against the reference.
     pub(super) errors: Errors,
-    /// Processor time, s.
+    /// What the run itself estimates of the larger of the errors of F_x and F_z.
+    pub(super) estimate: Option<f64>,
+    /// Processor time, s: the least of the timings.
     pub(super) time: Option<f64>,
+    /// The largest timing over the least, less 1.
+    pub(super) spread: Option<f64>,
+    /// How many timings there are.
+    pub(super) timings: Option<u64>,
     pub(super) steps: Option<u64>,
     pub(super) rejected: Option<u64>,
     pub(super) events: Option<u64>,
@@ -65,11 +73,13 @@ impl Measured {
         Figures {
             errors,
             time: Some(self.time),
+            timings: Some(1),
             steps: Some(steps),
             rejected: Some(rejected),
             events: Some(events),
             iterations: Some(iterations),
             residual: Some(residual),
+            ..Figures::default()
         }
     }
 }
@@ -78,6 +88,13 @@ impl Figures {
     pub(super) fn error(&self) -> Option<f64> {
         self.errors.into_iter().flatten().reduce(f64::max)
     }
+
+    /// The figures with these timings (s), of which there is one at least.
+    pub(super) fn timed(self, times: &[f64]) -> Self {
+        let [least, largest] = [f64::min, f64::max].map(|pick| times.iter().copied().reduce(pick));
+        let spread = least.zip(largest).map(|(least, largest)| largest / least - 1.0);
+        Self { time: least, spread, timings: Some(times.len() as u64), ..self }
+    }
 }
 
 /// The scene with the output groups that a report needs and no others, so that all runs cost the same: none estimates
@@ -85,6 +102,13 @@ impl Figures {
 pub(super) fn watched(scene: &Scene) -> Scene {
     use OutputGroup::{Dissipation, Energy, Forces};
     Scene { outputs: vec![Forces, Dissipation, Energy], ..scene.clone() }
+}
+
+/// The scene with the estimate of the errors of F_x and F_z: a more accurate run beside each run.
+pub(super) fn estimated(scene: &Scene) -> Scene {
+    let mut scene = watched(scene);
+    scene.outputs.push(OutputGroup::Solver);
+    scene
 }
 
 /// The scene with phases of these durations (s), whatever F_z does: the same motion for all runs.
@@ -232,7 +256,7 @@ fn set_rates(inputs: &mut Inputs, phase: &Phase, s: f64) {
 }
 
 /// What is read at every row, in this order.
-const WATCHED: [Output; 10] = [
+const WATCHED: [Output; 11] = [
     Output::ForceX,
     Output::ForceZ,
     Output::DissipatedEnergy,
@@ -243,6 +267,7 @@ const WATCHED: [Output; 10] = [
     Output::Steps,
     Output::Rejected,
     Output::Events,
+    Output::ForceError,
 ];
 
 /// Records the rows of a run.
@@ -252,6 +277,7 @@ struct TraceRecorder {
     values: [f64; WATCHED.len()],
     trace: Trace,
     counts: Counts,
+    estimate: f64,
     /// The largest of the energies so far, J.
     energy: f64,
     /// The largest residual so far, J.
@@ -261,15 +287,14 @@ struct TraceRecorder {
 impl TraceRecorder {
     /// For a run of `scene`, which is [`watched`].
     fn new(scene: &Scene) -> Self {
-        let mut outputs = scene.outputs.clone();
-        outputs.push(OutputGroup::Solver);
-        let all = variables(&Scene { outputs, ..scene.clone() });
+        let all = variables(&estimated(scene));
         let find = |output: &Output| all.iter().find(|variable| variable.output == *output).cloned();
         Self {
             variables: WATCHED.iter().filter_map(find).collect(),
             values: [0.0; WATCHED.len()],
             trace: Trace::default(),
             counts: Counts::default(),
+            estimate: 0.0,
             energy: 0.0,
             residual: 0.0,
         }
@@ -277,12 +302,13 @@ impl TraceRecorder {
 
     fn row(&mut self, snapshot: &Snapshot<'_>) {
         snapshot.evaluate(&self.variables, &mut self.values);
-        let [x, z, lost, input, kinetic, elastic, residual, steps, rejected, events] = self.values;
+        let [x, z, lost, input, kinetic, elastic, residual, steps, rejected, events, estimate] = self.values;
         self.trace.push(snapshot.time, [x, z, lost]);
         self.energy = [input, kinetic, elastic, lost].iter().fold(self.energy, |most, energy| most.max(energy.abs()));
         self.residual = self.residual.max(residual.abs());
         let [steps, rejected, events] = [steps, rejected, events].map(|count| count as u64);
         self.counts = Counts { steps, rejected, events, ..self.counts };
+        self.estimate = estimate;
     }
 
     fn end_phase(&mut self) {
@@ -297,7 +323,7 @@ impl TraceRecorder {
     fn finish(self, simulation: &Simulation, time: f64, durations: Vec<f64>) -> Measured {
         let residual = if self.energy > 0.0 { self.residual / self.energy } else { 0.0 };
         let counts = Counts { iterations: simulation.newton_iterations(), residual, ..self.counts };
-        Measured { trace: self.trace, counts, time, durations }
+        Measured { trace: self.trace, counts, time, durations, estimate: self.estimate }
     }
 }
 

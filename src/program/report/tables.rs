@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
-use asperity::robustness::ScaledQuantity;
+use asperity::robustness::{Perturbation, ScaledQuantity};
 
-use super::convergence::{CommunicationRow, PROGRAM, ToleranceRow};
+use super::convergence::{CommunicationRow, Timed, ToleranceRow};
+use super::judgement::Judgement;
+use super::machine::{Machine, build};
 use super::reference::Reference;
 use super::robustness::Robustness;
 use super::run::Figures;
@@ -28,11 +30,20 @@ const MEASURED: [&str; 10] = [
     "events",
 ];
 
+/// What those of other programs may have too: what the time is that of, how many timings there are and their spread.
+const TIMED: &str = "timed";
+const SPREAD: &str = "most_above_least";
+const TIMINGS: &str = "runs";
+
 /// What this program adds to them.
-const ADDED: &str = "rejected,newton_iterations,energy_residual,below_reference,failure";
+const ADDED: &str = "timed,most_above_least,runs,rejected,newton_iterations,energy_residual,estimate,below_reference,failure,\
+    cpu,cores,system,build";
 
 const COMMUNICATION: &str = "scene,given,communication_step,error_F_x,error_F_z,error_E_diss,mean_square_error_F_x,\
     mean_square_error_F_z,mean_square_error_E_diss,run_time,steps,events,below_reference,failure";
+
+const JUDGEMENTS: &str = "scene,stiffness,mass,relaxation_times,speed,communication_step,method,tolerance,error,\
+    error_over_tolerance,estimate,estimate_over_error,left_out";
 
 const ROBUSTNESS: &str = "scene,stiffness,mass,relaxation_times,speed,communication_step,status,reason,error,\
     moved_start_changes,energy_residual,steps,times_the_steps,rejected,events,newton_iterations";
@@ -45,17 +56,30 @@ pub(super) fn write_errors(
     rows: &[ToleranceRow],
 ) -> Result<(), FileError> {
     let own = ToleranceRow::of_reference(reference);
+    let machine = Machine::here();
     let records = std::iter::once(&own).chain(rows).map(|row| {
         let figures = row.result.as_ref().copied().unwrap_or_default();
         let mut fields = vec![scene.to_owned(), row.program.clone(), row.method.clone(), real(row.tolerance)];
         fields.extend(figures.errors.map(optional));
         fields.push(optional(figures.time));
-        fields.extend([figures.steps, figures.events, figures.rejected, figures.iterations].map(count));
-        fields.extend([optional(figures.residual), below(reference, &figures.errors)]);
+        fields.extend([figures.steps, figures.events].map(count));
+        fields.extend([row.timed.name().to_owned(), optional(figures.spread.map(short)), count(figures.timings)]);
+        fields.extend([figures.rejected, figures.iterations].map(count));
+        fields.extend([figures.residual, figures.estimate].map(optional));
+        fields.push(below(reference, &figures.errors));
         fields.push(row.result.as_ref().err().cloned().unwrap_or_default());
+        fields.extend(measured_on(row.timed, &machine));
         fields
     });
     write(path, MEASURED.into_iter().chain(ADDED.split(',')), records)
+}
+
+/// The columns on machine and build; those of a file of other programs are in that file.
+fn measured_on(timed: Timed, machine: &Machine) -> [String; 4] {
+    match timed {
+        Timed::RunAlone => [machine.cpu.clone(), machine.cores.to_string(), machine.system.clone(), build()],
+        Timed::WholeProcess => [const { String::new() }; 4],
+    }
 }
 
 pub(super) fn write_communication(
@@ -82,7 +106,7 @@ pub(super) fn write_communication(
 pub(super) fn write_robustness(path: &Path, scene: &str, robustness: &Robustness) -> Result<(), FileError> {
     let records = robustness.trials().map(|(perturbation, trial)| {
         let mut fields = vec![scene.to_owned()];
-        fields.extend(ScaledQuantity::ALL.map(|quantity| optional(perturbation.factor(quantity))));
+        fields.extend(factors(*perturbation));
         fields.extend([robustness.verdict(trial).name().to_owned(), robustness.reason(trial)]);
         let (accuracy, counts) = (trial.accuracy(), trial.counts());
         let error = accuracy.and_then(|accuracy| Some(accuracy.error()?.share));
@@ -97,7 +121,29 @@ pub(super) fn write_robustness(path: &Path, scene: &str, robustness: &Robustness
     write(path, ROBUSTNESS.split(','), records)
 }
 
-/// As many digits as a ratio of counts is worth.
+/// Writes errors over tolerances and estimates over errors of some scenes, each with its name.
+pub(super) fn write_judgements<'a>(
+    path: &Path,
+    scenes: impl IntoIterator<Item = (&'a str, &'a [Judgement])>,
+) -> Result<(), FileError> {
+    let runs = scenes.into_iter().flat_map(|(scene, runs)| runs.iter().map(move |run| (scene, run)));
+    let records = runs.map(|(scene, run)| {
+        let mut fields = vec![scene.to_owned()];
+        fields.extend(factors(run.perturbation.unwrap_or_default()));
+        let ratios = [run.error_over_tolerance(), run.estimate_over_error()];
+        fields.extend([run.method.clone(), real(run.tolerance), real(run.error), real(ratios[0])]);
+        fields.extend([real(run.estimate), real(ratios[1]), run.standing.name().to_owned()]);
+        fields
+    });
+    write(path, JUDGEMENTS.split(','), records)
+}
+
+/// Of everything that is scaled.
+fn factors(perturbation: Perturbation) -> [String; 5] {
+    ScaledQuantity::ALL.map(|quantity| optional(perturbation.factor(quantity)))
+}
+
+/// As many digits as a ratio of counts or times is worth.
 fn short(ratio: f64) -> f64 {
     const DIGITS: f64 = 1e4;
     (ratio * DIGITS).round() / DIGITS
@@ -128,7 +174,7 @@ fn below(reference: &Reference, errors: &Errors) -> String {
     names.collect::<Vec<_>>().join(" ")
 }
 
-/// Runs of other programs, measured elsewhere.
+/// Runs of whole processes, measured elsewhere: other programs, and this one beside them.
 #[derive(Debug, Default)]
 pub(super) struct Peers {
     pub(super) rows: Vec<ToleranceRow>,
@@ -136,22 +182,24 @@ pub(super) struct Peers {
     pub(super) scenes: Vec<String>,
 }
 
-/// Reads the rows of the scene with one of these `names`, without those of this program. The file has the columns of
-/// [`MEASURED`]; others are ignored.
+/// Reads the rows of the scene with one of these `names` whose times are those of whole processes. The file has the
+/// columns of [`MEASURED`], and perhaps [`TIMED`], [`SPREAD`] and [`TIMINGS`]; others are ignored.
 pub(super) fn read_peers(path: &Path, names: &[&str]) -> Result<Peers, ResultFileError> {
     let file = CsvFile::read(path)?;
     let mut columns = [0; MEASURED.len()];
     for (column, name) in columns.iter_mut().zip(MEASURED) {
         *column = file.column(name)?;
     }
+    let optional_columns = [TIMED, SPREAD, TIMINGS].map(|name| file.column(name).ok());
     let mut peers = Peers::default();
     for record in file.records() {
         let fields = columns.map(|column| record.fields[column].as_str());
+        let more = optional_columns.map(|column| column.map_or("", |column| record.fields[column].as_str()));
         if !peers.scenes.iter().any(|scene| scene == fields[0]) {
             peers.scenes.push(fields[0].to_owned());
         }
-        if names.contains(&fields[0]) && fields[1] != PROGRAM {
-            peers.rows.push(row(fields).map_err(|message| file.error(record, message))?);
+        if names.contains(&fields[0]) && more[0] != Timed::RunAlone.name() {
+            peers.rows.push(row(fields, more).map_err(|message| file.error(record, message))?);
         }
     }
     Ok(peers)
@@ -160,18 +208,21 @@ pub(super) fn read_peers(path: &Path, names: &[&str]) -> Result<Peers, ResultFil
 /// A row without a time is that of a run that did not come to its end.
 fn row(
     [_, program, method, tolerance, x, z, lost, time, steps, events]: [&str; MEASURED.len()],
+    [_, spread, timings]: [&str; 3],
 ) -> Result<ToleranceRow, String> {
     let tolerance = number(tolerance)?.ok_or("expected a tolerance, found none")?;
     let time = number(time)?;
     let figures = Figures {
         errors: [number(x)?, number(z)?, number(lost)?],
         time,
+        spread: number(spread)?,
+        timings: number(timings)?.map(|count| count as u64),
         steps: number(steps)?.map(|count| count as u64),
         events: number(events)?.map(|count| count as u64),
         ..Figures::default()
     };
     let result = if time.is_some() { Ok(figures) } else { Err("no run time".into()) };
-    Ok(ToleranceRow { program: program.into(), method: method.into(), tolerance, result })
+    Ok(ToleranceRow { program: program.into(), method: method.into(), tolerance, timed: Timed::WholeProcess, result })
 }
 
 /// A number; `None` where the field is empty or NaN.

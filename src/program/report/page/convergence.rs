@@ -6,11 +6,11 @@ use asperity::robustness::DISPLACEMENT;
 use asperity::scene::{Extrapolation, Scene};
 use quick_xml::escape::escape;
 
-use super::{NOTHING, begin_group, count, errors, head, method, number, reason, seconds, short};
+use super::{NOTHING, begin_group, count, errors, head, method, number, per_cent, reason, seconds, short};
 use crate::program::cli::Report;
-use crate::program::figure::{Ladder, LadderPanel, Ladders, Rung};
+use crate::program::figure::{Ladder, LadderPanel, Ladders, Rung, Stroke};
 use crate::program::html::{Cell, fill, table};
-use crate::program::report::convergence::{CommunicationRow, PATIENCE, PROGRAM, ToleranceRow};
+use crate::program::report::convergence::{CommunicationRow, PATIENCE, PROGRAM, Timed, ToleranceRow};
 use crate::program::report::reference::Reference;
 use crate::program::report::run::{Figures, Given};
 use crate::program::report::trace::{Errors, QUANTITIES, WINDOWS};
@@ -32,8 +32,8 @@ pub(in crate::program::report) fn tolerances(
         ("loosest", tolerance(tolerances.first())),
         ("tightest", tolerance(tolerances.last())),
         ("comparison", comparison(reference)),
-        ("repeat", if command.repeat == 1 { "one run".into() } else { format!("{} runs", command.repeat) }),
-        ("build", build().into()),
+        ("repeat", repeat(command.repeat)),
+        ("warning", warning().into()),
         ("picture", picture.into()),
         ("peers", peers(command)),
         ("patience", PATIENCE.to_string()),
@@ -55,8 +55,17 @@ fn comparison(reference: &Reference) -> String {
     "An error is the largest difference from the reference at the rows of a result file, over the largest value.".into()
 }
 
+fn repeat(most: u32) -> String {
+    match most {
+        1 => "one timing".into(),
+        most => {
+            format!("the least of up to {most} timings, of short runs more than of long ones, in rounds over all runs")
+        }
+    }
+}
+
 /// Times of a build that is not optimised would mislead.
-fn build() -> &'static str {
+fn warning() -> &'static str {
     if cfg!(debug_assertions) {
         " <strong>This program was built without optimisation (no <code>--release</code>): the times mean little.</strong>"
     } else {
@@ -68,36 +77,40 @@ fn peers(command: &Report) -> String {
     let text = |path: &std::path::PathBuf| {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         format!(
-            " Dashed: other programs; their errors, and the times of their whole processes, are read from <code>{}</code>.",
+            " Dashed: whole processes, of other programs and of asperity beside them, with errors and times from \
+             <code>{}</code>; solid: the run alone.",
             escape(&*name)
         )
     };
     command.peers.as_ref().map_or_else(String::new, text)
 }
 
-/// For each bound the quickest run within it, and the quickest of the peers if there are any.
+/// For each bound the quickest run within it; and of whole processes, if there are any, this program's and the peers'.
 fn choices(rows: &[ToleranceRow]) -> io::Result<String> {
-    let with_peers = rows.iter().any(|row| row.program != PROGRAM);
+    let with_peers = rows.iter().any(|row| row.timed == Timed::WholeProcess);
     let mut names = head(&["all errors at most", "setting"], &["largest error", "run time in s", "steps"]);
     if with_peers {
-        names.extend(head(&["quickest peer"], &["run time in s", "times as long"]));
+        names.extend(head(&["quickest peer"], &["whole process in s"]));
+        names.extend(head(&["asperity beside it"], &["whole process in s", "the peer takes times as long"]));
     }
     let cells = BOUNDS.map(|bound| {
         let mut cells = vec![Cell::from(format!("{bound:e}"))];
-        let own = quickest(rows, bound, true);
-        cells.extend(setting(own));
+        cells.extend(setting(quickest(rows, bound, |row| row.timed == Timed::RunAlone)));
         if with_peers {
-            let peer = quickest(rows, bound, false);
-            cells.extend(peer_cells(own, peer));
+            cells.extend(process_cells(rows, bound));
         }
         cells
     });
     table(&names, &cells)
 }
 
-fn quickest(rows: &[ToleranceRow], bound: f64, own: bool) -> Option<(&ToleranceRow, Figures)> {
+fn quickest(
+    rows: &[ToleranceRow],
+    bound: f64,
+    counts: impl Fn(&ToleranceRow) -> bool,
+) -> Option<(&ToleranceRow, Figures)> {
     let within = |figures: &Figures| figures.time.is_some() && figures.error().is_some_and(|error| error <= bound);
-    let rows = rows.iter().filter(|row| (row.program == PROGRAM) == own);
+    let rows = rows.iter().filter(|row| counts(row));
     let rows = rows.filter_map(|row| Some((row, *row.result.as_ref().ok().filter(|figures| within(figures))?)));
     rows.min_by(|(_, a), (_, b)| a.time.unwrap_or(f64::MAX).total_cmp(&b.time.unwrap_or(f64::MAX)))
 }
@@ -108,19 +121,29 @@ fn setting(choice: Option<(&ToleranceRow, Figures)>) -> Vec<Cell> {
     vec![setting.into(), short(figures.error()), seconds(figures.time), count(figures.steps)]
 }
 
-fn peer_cells(own: Option<(&ToleranceRow, Figures)>, peer: Option<(&ToleranceRow, Figures)>) -> Vec<Cell> {
-    let Some((row, figures)) = peer else { return vec![reason("no run", 3)] };
-    let name = format!("{}, tolerance {:e}", row.name(), row.tolerance);
-    let ratio = own.and_then(|(_, own)| Some(figures.time? / own.time?));
+/// The quickest peer and this program, whole process beside whole process.
+fn process_cells(rows: &[ToleranceRow], bound: f64) -> Vec<Cell> {
+    let quickest =
+        |own: bool| quickest(rows, bound, |row| row.timed == Timed::WholeProcess && (row.program == PROGRAM) == own);
+    let (peer, own) = (quickest(false), quickest(true));
+    let ratio = peer.zip(own).and_then(|((_, peer), (_, own))| Some(peer.time? / own.time?));
     let ratio = ratio.map_or_else(|| NOTHING.into(), |ratio| format!("{ratio:.1}"));
-    vec![name.into(), seconds(figures.time), number(ratio)]
+    let cells = [peer, own].into_iter().flat_map(|choice| match choice {
+        Some((row, figures)) => {
+            vec![format!("{}, tolerance {:e}", row.name(), row.tolerance).into(), seconds(figures.time)]
+        }
+        None => vec![reason("no run", 2)],
+    });
+    cells.chain([number(ratio)]).collect()
 }
 
-const TOLERANCE_FIGURES: [&str; 9] = [
+const TOLERANCE_FIGURES: [&str; 11] = [
     "error of F_x",
     "F_z",
     "E_diss",
     "run time in s",
+    "longest, above it",
+    "timings",
     "steps",
     "rejected",
     "events",
@@ -148,7 +171,8 @@ fn runs(reference: &Reference, rows: &[ToleranceRow]) -> io::Result<String> {
 
 fn figure_cells(figures: &Figures, below: [bool; 3]) -> Vec<Cell> {
     let counts = [figures.steps, figures.rejected, figures.events, figures.iterations].map(count);
-    let cells = errors(&figures.errors, below).chain([seconds(figures.time)]).chain(counts);
+    let times = [seconds(figures.time), per_cent(figures.spread), count(figures.timings)];
+    let cells = errors(&figures.errors, below).chain(times).chain(counts);
     cells.chain([short(figures.residual)]).collect()
 }
 
@@ -265,9 +289,10 @@ pub(in crate::program::report) fn tolerance_picture(reference: &Reference, rows:
     let panels = panels(reference, |quantity| {
         let ladders = names.iter().enumerate().map(|(look, name)| {
             let own = rows.iter().filter(|row| row.name() == *name);
-            let dashed = own.clone().all(|row| row.program != PROGRAM);
+            let processes = own.clone().all(|row| row.timed == Timed::WholeProcess);
+            let stroke = if processes { Stroke::Dashed } else { Stroke::Line };
             let rungs: Vec<Rung> = own.filter_map(|row| rung(row, quantity)).collect();
-            Ladder { name: name.clone(), dashed, look, rungs: with_end_labels(rungs) }
+            Ladder { name: name.clone(), stroke, look, rungs: with_end_labels(rungs) }
         });
         ladders.filter(|ladder| !ladder.rungs.is_empty()).collect()
     });
@@ -295,9 +320,9 @@ pub(in crate::program::report) fn communication_picture(reference: &Reference, r
                 let errors: Errors = if mean_square { (*mean_squares)? } else { figures.errors };
                 Some(Rung { x: row.step?, y: errors[quantity]?, label: String::new() })
             };
-            let kind = if mean_square { ", root mean square" } else { "" };
+            let (kind, stroke) = if mean_square { (", root mean square", Stroke::Dashed) } else { ("", Stroke::Line) };
             let rungs = rows.iter().filter(|row| row.given == given).filter_map(pick).collect();
-            Ladder { name: format!("{}{kind}", given.name()), dashed: mean_square, look, rungs }
+            Ladder { name: format!("{}{kind}", given.name()), stroke, look, rungs }
         };
         let lines = [(Given::Rates, 0), (Given::Values, 1)]
             .into_iter()
@@ -317,6 +342,7 @@ fn panels(reference: &Reference, ladders: impl Fn(usize) -> Vec<Ladder>) -> Vec<
     let panel = |quantity: usize| LadderPanel {
         title: title(quantity, reference.comparison.is_of_means()),
         floor: reference.own[quantity].filter(|own| own.is_finite()),
+        lines: Vec::new(),
         ladders: ladders(quantity),
     };
     shown.into_iter().map(panel).collect()

@@ -1,6 +1,7 @@
 //! The page: one file that loads nothing from elsewhere, a section for each part of the report.
 
 mod convergence;
+mod judgement;
 mod robustness;
 
 use std::io;
@@ -8,31 +9,52 @@ use std::io;
 use asperity::scene::{Parameter, Scene};
 use quick_xml::escape::escape;
 
+use super::machine::{Machine, build};
 use super::trace::Errors;
 use crate::program::describe;
 use crate::program::html::{Cell, fill, table};
 
 pub(super) use convergence::{communication, communication_picture, tolerance_picture, tolerances};
+pub(super) use judgement::{SceneJudgements, judgement_picture, judgements};
 pub(super) use robustness::robustness;
 
 const TEMPLATE: &str = include_str!("page.html");
+const SCENE: &str = include_str!("scene.html");
 /// Stands where there is no number.
 const NOTHING: &str = "–";
 
+/// The page of a scene.
 pub(super) fn page(scene: &Scene, sections: &[String]) -> io::Result<String> {
     let rows = describe::rows(scene).into_iter().map(|(name, text)| vec![name.into(), text.into()]);
+    let rows = table(&["", "What is there"].map(Cell::from), &rows.collect::<Vec<_>>())?;
+    let sections = sections.concat() + &fill(SCENE, &[("scene", rows)]);
+    let description = escape(scene.description.as_deref().unwrap_or_default());
+    Ok(whole(&escape(&scene.name), &description, sections))
+}
+
+/// The page of several scenes: their names, each that of the folder with its page, and what they have in common.
+pub(super) fn overview(scenes: &[String], sections: String) -> String {
+    let link = |name: &String| {
+        let name = escape(name.as_str());
+        format!("<a href=\"{name}/index.html\">{name}</a>")
+    };
+    let links: Vec<String> = scenes.iter().map(link).collect();
+    whole(&format!("{} scenes", scenes.len()), &links.join(", "), sections)
+}
+
+fn whole(name: &str, description: &str, sections: String) -> String {
     let fields = [
-        ("name", escape(&scene.name).into_owned()),
-        ("description", escape(scene.description.as_deref().unwrap_or_default()).into_owned()),
-        ("version", env!("CARGO_PKG_VERSION").into()),
-        ("scene", table(&["", "What is there"].map(Cell::from), &rows.collect::<Vec<_>>())?),
-        ("sections", sections.concat()),
+        ("name", name.to_owned()),
+        ("description", description.to_owned()),
+        ("build", build()),
+        ("machine", escape(Machine::here().in_words()).into_owned()),
+        ("sections", sections),
     ];
-    Ok(fill(TEMPLATE, &fields))
+    fill(TEMPLATE, &fields)
 }
 
 /// The method in a word of the scene file.
-fn method(scene: &Scene) -> String {
+pub(super) fn method(scene: &Scene) -> String {
     scene.parameter(Parameter::Method).to_string().replace('"', "")
 }
 
@@ -63,6 +85,11 @@ fn count(value: Option<u64>) -> Cell {
 /// A time with three digits, or nothing.
 fn seconds(value: Option<f64>) -> Cell {
     number(value.map_or_else(|| NOTHING.into(), three_digits))
+}
+
+/// A share in per cent, or nothing.
+fn per_cent(value: Option<f64>) -> Cell {
+    number(value.map_or_else(|| NOTHING.into(), |share| format!("{:.0} %", 100.0 * share)))
 }
 
 /// Errors; those below the reference's own are marked.

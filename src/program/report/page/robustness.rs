@@ -150,7 +150,7 @@ fn outcome(robustness: &Robustness, perturbation: Perturbation) -> String {
 }
 
 /// "stiffness × 10³, speed × 10⁻²".
-fn factors(perturbation: Perturbation) -> String {
+pub(super) fn factors(perturbation: Perturbation) -> String {
     let scaled = ScaledQuantity::ALL.into_iter().filter_map(|quantity| Some((quantity, perturbation.power(quantity)?)));
     let scaled = scaled.filter(|&(quantity, power)| power != 0 || quantity == ScaledQuantity::CommunicationStep);
     let texts: Vec<String> =
