@@ -5,6 +5,7 @@ use asperity::robustness::{KEPT, Perturbation, TIGHTER};
 use super::convergence::{Timed, ToleranceRow};
 use super::reference::Reference;
 use super::robustness::Robustness;
+use super::run::Estimate;
 use super::trace::Errors;
 
 /// A run with its error, the larger of those of F_x and F_z, each over its largest value.
@@ -15,8 +16,7 @@ pub(super) struct Judgement {
     pub(super) method: String,
     pub(super) tolerance: f64,
     pub(super) error: f64,
-    /// What the run itself says of its error.
-    pub(super) estimate: f64,
+    pub(super) estimate: Estimate,
     /// The error below which the reference knows nothing.
     pub(super) floor: f64,
     pub(super) standing: Standing,
@@ -44,11 +44,11 @@ impl Standing {
 }
 
 impl Judgement {
-    fn new(error: f64, estimate: f64, floor: f64, tolerance: f64, sensitive: bool) -> Self {
-        let standing = match sensitive {
-            true => Standing::Sensitive,
-            false if floor <= tolerance => Standing::Counts,
-            false => Standing::BelowReference,
+    fn new(error: f64, estimate: Estimate, floor: f64, tolerance: f64, sensitive: bool) -> Self {
+        let standing = match (sensitive, floor <= tolerance) {
+            (true, _) => Standing::Sensitive,
+            (false, true) => Standing::Counts,
+            (false, false) => Standing::BelowReference,
         };
         Self { perturbation: None, method: String::new(), tolerance, error, estimate, floor, standing }
     }
@@ -80,6 +80,11 @@ impl Judgement {
         })
     }
 
+    /// What the run warns of, as tables have it.
+    pub(super) fn warning(&self) -> &'static str {
+        if self.estimate.warned { "does not converge" } else { "" }
+    }
+
     pub(super) fn counts(&self) -> bool {
         self.standing == Standing::Counts
     }
@@ -90,7 +95,7 @@ impl Judgement {
 
     /// Nothing is known of either below the floor.
     pub(super) fn estimate_over_error(&self) -> f64 {
-        let [estimate, error] = [self.estimate, self.error].map(|error| error.max(self.floor));
+        let [estimate, error] = [self.estimate.error, self.error].map(|error| error.max(self.floor));
         if estimate == error { 1.0 } else { estimate / error }
     }
 }
@@ -153,11 +158,13 @@ mod tests {
 
     #[test]
     fn sensitive_runs_and_those_below_the_reference_do_not_count() {
+        let new = |error: f64, estimate: f64, floor: f64, sensitive: bool| {
+            Judgement::new(error, Estimate { error: estimate, warned: false }, floor, 1e-3, sensitive)
+        };
         let counts = [(0.01, 20.0, 0.0), (0.02, 0.02, 0.0), (1e-9, 1e-4, 1e-5)];
-        let mut runs: Vec<Judgement> =
-            counts.map(|(error, estimate, floor)| Judgement::new(error, estimate, floor, 1e-3, false)).into();
-        runs.push(Judgement::new(7.0, 0.0, 0.0, 1e-3, true));
-        runs.push(Judgement::new(7.0, 0.0, 1e-2, 1e-3, false));
+        let mut runs: Vec<Judgement> = counts.map(|(error, estimate, floor)| new(error, estimate, floor, false)).into();
+        runs.push(new(7.0, 0.0, 0.0, true));
+        runs.push(new(7.0, 0.0, 1e-2, false));
         assert_eq!(
             runs[3..].iter().map(|run| run.standing.name()).collect::<Vec<_>>(),
             ["sensitive", "tolerance below the reference's own error"]

@@ -12,7 +12,7 @@ use cpu_time::ThreadTime;
 use rayon::prelude::*;
 
 use super::reference::Reference;
-use super::run::{Counts, Given, Measured, drive, estimated, follow};
+use super::run::{Counts, Estimate, Given, Measured, drive, estimated, follow};
 use super::trace::Errors;
 use crate::program::runner::Rows;
 use crate::program::terminal::bar;
@@ -68,8 +68,7 @@ enum Outcome {
         accuracy: Accuracy,
         /// Against the tight run, if there is one.
         errors: Option<Errors>,
-        /// The run's own estimate of the larger of the errors of F_x and F_z.
-        estimate: f64,
+        estimate: Estimate,
     },
     Failed(RunFailure),
     NotTried,
@@ -93,8 +92,8 @@ impl Trial {
         }
     }
 
-    /// The run's own estimate of the larger of the errors of F_x and F_z.
-    pub(super) fn estimate(&self) -> Option<f64> {
+    /// What the run says of its own error.
+    pub(super) fn estimate(&self) -> Option<Estimate> {
         match self.outcome {
             Outcome::Ended { estimate, .. } => Some(estimate),
             _ => None,

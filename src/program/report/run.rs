@@ -26,8 +26,17 @@ pub(super) struct Measured {
     pub(super) time: f64,
     /// Of each phase, s.
     pub(super) durations: Vec<f64>,
-    /// Its own estimate of the larger of the errors of F_x and F_z; 0 unless the scene is [`estimated`].
-    pub(super) estimate: f64,
+    /// Of a scene that is [`estimated`].
+    pub(super) estimate: Estimate,
+}
+
+/// What a run says of its own error.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Estimate {
+    /// The larger of the errors of F_x and F_z, each over its largest value.
+    pub(super) error: f64,
+    /// Whether it warns that the run and the more accurate one beside it do not converge.
+    pub(super) warned: bool,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -45,8 +54,7 @@ pub(super) struct Counts {
 pub(super) struct Figures {
     /// Against the reference.
     pub(super) errors: Errors,
-    /// What the run itself estimates of the larger of the errors of F_x and F_z.
-    pub(super) estimate: Option<f64>,
+    pub(super) estimate: Option<Estimate>,
     /// Processor time, s: the least of the timings.
     pub(super) time: Option<f64>,
     /// The largest timing over the least, less 1.
@@ -277,6 +285,7 @@ struct TraceRecorder {
     values: [f64; WATCHED.len()],
     trace: Trace,
     counts: Counts,
+    /// The run's own estimate of its error.
     estimate: f64,
     /// The largest of the energies so far, J.
     energy: f64,
@@ -323,7 +332,8 @@ impl TraceRecorder {
     fn finish(self, simulation: &Simulation, time: f64, durations: Vec<f64>) -> Measured {
         let residual = if self.energy > 0.0 { self.residual / self.energy } else { 0.0 };
         let counts = Counts { iterations: simulation.newton_iterations(), residual, ..self.counts };
-        Measured { trace: self.trace, counts, time, durations, estimate: self.estimate }
+        let estimate = Estimate { error: self.estimate, warned: simulation.divergence().is_some() };
+        Measured { trace: self.trace, counts, time, durations, estimate }
     }
 }
 

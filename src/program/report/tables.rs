@@ -43,7 +43,7 @@ const COMMUNICATION: &str = "scene,given,communication_step,error_F_x,error_F_z,
     mean_square_error_F_z,mean_square_error_E_diss,run_time,steps,events,below_reference,failure";
 
 const JUDGEMENTS: &str = "scene,stiffness,mass,relaxation_times,speed,communication_step,method,tolerance,error,\
-    error_over_tolerance,estimate,estimate_over_error,left_out";
+    error_over_tolerance,estimate,estimate_over_error,warned,left_out";
 
 const ROBUSTNESS: &str = "scene,stiffness,mass,relaxation_times,speed,communication_step,status,reason,error,\
     moved_start_changes,energy_residual,steps,times_the_steps,rejected,events,newton_iterations";
@@ -65,7 +65,7 @@ pub(super) fn write_errors(
         fields.extend([figures.steps, figures.events].map(count));
         fields.extend([row.timed.name().to_owned(), optional(figures.spread.map(short)), count(figures.timings)]);
         fields.extend([figures.rejected, figures.iterations].map(count));
-        fields.extend([figures.residual, figures.estimate].map(optional));
+        fields.extend([figures.residual, figures.estimate.map(|estimate| estimate.error)].map(optional));
         fields.push(below(reference, &figures.errors));
         fields.push(row.result.as_ref().err().cloned().unwrap_or_default());
         fields.extend(measured_on(row.timed, &machine));
@@ -132,7 +132,8 @@ pub(super) fn write_judgements<'a>(
         fields.extend(factors(run.perturbation.unwrap_or_default()));
         let ratios = [run.error_over_tolerance(), run.estimate_over_error()];
         fields.extend([run.method.clone(), real(run.tolerance), real(run.error), real(ratios[0])]);
-        fields.extend([real(run.estimate), real(ratios[1]), run.standing.name().to_owned()]);
+        fields.extend([real(run.estimate.error), real(ratios[1])]);
+        fields.extend([run.warning(), run.standing.name()].map(str::to_owned));
         fields
     });
     write(path, JUDGEMENTS.split(','), records)

@@ -122,7 +122,7 @@ fn all_runs(runs: &[Judgement]) -> io::Result<String> {
         cells
     });
     let figures = ["tolerance", "error", "over the tolerance", "estimate", "over the error"];
-    let names: Vec<Cell> = [head(&["method"], &figures), head(&["left out"], &[])].concat();
+    let names: Vec<Cell> = [head(&["method"], &figures), head(&["warns", "left out"], &[])].concat();
     table(&names, &cells.collect::<Vec<_>>())
 }
 
@@ -134,8 +134,9 @@ fn run_cells(run: &Judgement) -> Vec<Cell> {
         number(format!("{:e}", run.tolerance)),
         short(Some(run.error)),
         ratio(run.error_over_tolerance()),
-        short(Some(run.estimate)),
+        short(Some(run.estimate.error)),
         ratio(run.estimate_over_error()),
+        run.warning().into(),
         run.standing.name().into(),
     ]
 }
@@ -199,10 +200,11 @@ fn medians(runs: &[&Judgement], ratio: Ratio) -> Vec<Rung> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::program::report::run::Estimate;
 
     fn run(method: &str, tolerance: f64, error: f64, standing: Standing) -> Judgement {
-        let method = method.into();
-        Judgement { perturbation: None, method, tolerance, error, estimate: error, floor: 0.0, standing }
+        let (method, estimate) = (method.into(), Estimate { error, warned: false });
+        Judgement { perturbation: None, method, tolerance, error, estimate, floor: 0.0, standing }
     }
 
     #[test]
