@@ -235,7 +235,7 @@ fn peers_have_their_lines_and_those_of_other_scenes_none() {
     assert!(!page.contains("7654321") && !page.contains("cond"));
     // Whole process by whole process: 0.5 s over the 0.2 s of asperity in the same file, whatever it takes here.
     assert!(page.contains("CVODE klu, tolerance 1e-6") && page.contains("asperity event, tolerance 1e-6"));
-    assert_eq!(page.matches("<td class=\"number\">2.5</td>").count(), 2, "bounds 1e-4 and 1e-5");
+    assert_eq!(page.matches("<td class=\"number\">2.5</td>").count(), 3, "bounds 1e-3 to 1e-5");
     let rows = errors(&folder);
     let klu: Vec<&Row> = rows.iter().filter(|row| row["method"] == "klu").collect();
     assert_eq!(klu.iter().map(|row| number(row, "run_time")).collect::<Vec<_>>(), [0.25, 0.5]);

@@ -8,6 +8,9 @@ use super::robustness::Robustness;
 use super::run::Estimate;
 use super::trace::Errors;
 
+/// The reference's own error may be so many tolerances: errors of [`KEPT`] are far enough above it.
+const MOST_FLOOR: f64 = 0.3 * KEPT;
+
 /// A run with its error, the larger of those of F_x and F_z, each over its largest value.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Judgement {
@@ -28,7 +31,7 @@ pub(super) enum Standing {
     Counts,
     /// Two runs as accurate as one likes part: there is no error.
     Sensitive,
-    /// The tolerance is below the reference's own error.
+    /// The reference is not accurate enough to tell errors within ten tolerances.
     BelowReference,
 }
 
@@ -38,14 +41,14 @@ impl Standing {
         match self {
             Self::Counts => "",
             Self::Sensitive => "sensitive",
-            Self::BelowReference => "tolerance below the reference's own error",
+            Self::BelowReference => "reference not accurate enough",
         }
     }
 }
 
 impl Judgement {
     fn new(error: f64, estimate: Estimate, floor: f64, tolerance: f64, sensitive: bool) -> Self {
-        let standing = match (sensitive, floor <= tolerance) {
+        let standing = match (sensitive, floor <= MOST_FLOOR * tolerance) {
             (true, _) => Standing::Sensitive,
             (false, true) => Standing::Counts,
             (false, false) => Standing::BelowReference,
@@ -167,7 +170,7 @@ mod tests {
         runs.push(new(7.0, 0.0, 1e-2, false));
         assert_eq!(
             runs[3..].iter().map(|run| run.standing.name()).collect::<Vec<_>>(),
-            ["sensitive", "tolerance below the reference's own error"]
+            ["sensitive", "reference not accurate enough"]
         );
         let runs: Vec<&Judgement> = runs.iter().collect();
         let errors = Ratios::of_errors(&runs).unwrap();
