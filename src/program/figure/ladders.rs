@@ -114,14 +114,14 @@ impl LadderPanel {
         Ok(())
     }
 
-    /// Draws the lines across, each with its number above its left end.
+    /// Draws the lines across, each with its number beside its right end.
     fn draw_lines<B: Backend>(&self, canvas: &Canvas<B>, context: &mut Context<'_, B>, x: &Axis) -> DrawResult {
         let (left, top) = canvas.get_base_pixel();
         for &value in &self.lines {
             let ends = [(x.range().start, value), (x.range().end, value)];
             context.draw_series([PathElement::new(ends, INK.mix(0.6).stroke_width(FINE))])?;
-            let start = context.backend_coord(&ends[0]);
-            let corner = (start.0 - left + FINE as i32 * 3, start.1 - top - (LABEL_SIZE + 2 * FINE) as i32);
+            let end = context.backend_coord(&ends[1]);
+            let corner = (end.0 - left + FINE as i32 * 3, end.1 - top - (LABEL_SIZE / 2) as i32);
             canvas.draw(&Text::new(value.to_string(), corner, text_style(LABEL_SIZE)))?;
         }
         Ok(())

@@ -165,7 +165,7 @@ fn ladders(runs: &[&Judgement], ratio: Ratio) -> Vec<Ladder> {
         look,
         rungs: runs.into_iter().map(|run| rung(run.tolerance, ratio(run))).collect(),
     };
-    let mut ladders = Vec::new();
+    let (mut ladders, mut lines) = (Vec::new(), Vec::new());
     for group in groups("", runs.iter().copied().filter(|run| run.counts())) {
         let look = METHODS.iter().position(|method| *method == group.runs[0].method).unwrap_or(METHODS.len());
         let medians = medians(&group.runs, ratio);
@@ -175,13 +175,15 @@ fn ladders(runs: &[&Judgement], ratio: Ratio) -> Vec<Ladder> {
             ladders.push(rings(&name, look, group.runs.iter().collect()));
         }
         if !is_scaled {
-            ladders.push(Ladder { name: group.name, stroke: Stroke::Line, look, rungs: medians });
+            lines.push(Ladder { name: group.name, stroke: Stroke::Line, look, rungs: medians });
         }
     }
     let left_out: Vec<&&Judgement> = runs.iter().filter(|run| run.standing == Standing::Sensitive).collect();
     if !left_out.is_empty() {
         ladders.push(rings(LEFT_OUT, METHODS.len() + 1, left_out));
     }
+    // Over the rings.
+    ladders.extend(lines);
     ladders
 }
 
@@ -219,8 +221,8 @@ mod tests {
         ];
         let picture = judgement_picture(&[("a", &runs[..3]), ("b", &runs[3..])]);
         let drawn = picture.panels[0].ladders.iter().map(|ladder| (ladder.name.as_str(), ladder.rungs.len()));
-        let expected = [("event, single runs", 3), ("event", 2), ("step", 1), (LEFT_OUT, 1)];
+        let expected = [("event, single runs", 3), (LEFT_OUT, 1), ("event", 2), ("step", 1)];
         assert_eq!(drawn.collect::<Vec<_>>(), expected);
-        assert!((picture.panels[0].ladders[1].rungs[0].y - 2.0).abs() < 1e-12, "{picture:?}");
+        assert!((picture.panels[0].ladders[2].rungs[0].y - 2.0).abs() < 1e-12, "{picture:?}");
     }
 }
