@@ -3,7 +3,7 @@
 use super::gap::first_touch;
 use crate::integrator::{DenseOutput, DenseWorkspace, METHOD, Rates, STAGES, Tolerance};
 use crate::math::bracketed_root;
-use crate::model::{CarrierPosition, Mode, Model, State};
+use crate::model::{CarrierPosition, LinkKind, Mode, Model, State};
 
 /// How far a quantity may pass its limit before the mode changes. An event is located where the quantity is half as far
 /// past it, so that the limit has been passed for certain.
@@ -15,6 +15,10 @@ pub struct EventTolerance {
     pub velocity: f64,
     /// Of the normal force, and of the tangential force of a sticking mass, N.
     pub force: f64,
+    /// The least of that, by rounding, N.
+    rounding: f64,
+    /// The velocity that such a force makes in a horizontal link, by its damper and against the mass, m/(N s).
+    mobility: f64,
 }
 
 /// Event tolerances as a share of the step tolerances.
@@ -35,11 +39,22 @@ impl EventTolerance {
         // a force in a rod.
         let height = tolerance.position / tolerance.relative;
         let rounding = ROUNDINGS * f64::EPSILON * height * model.rounding_stiffness();
+        let link = LinkKind::Horizontal;
+        let impedance = model.links[link as usize].damping + (model.glassy[link as usize] * model.mass).sqrt();
         Self {
             gap: SHARE * tolerance.position,
             velocity: SHARE * tolerance.velocity,
             force: (SHARE * tolerance.position * stiffness).max(rounding),
+            rounding,
+            mobility: if impedance > 0.0 { 1.0 / impedance } else { f64::MAX },
         }
+    }
+
+    /// The same where the force of one mass may err by no more than `force` (N).
+    #[must_use]
+    pub fn within(&self, force: f64) -> Self {
+        let force = self.force.min(SHARE * force).max(self.rounding);
+        Self { velocity: self.velocity.min(force * self.mobility), force, ..*self }
     }
 
     /// The tolerance of [`Rates::margin`] in `mode`.

@@ -1,10 +1,12 @@
 //! The error test of a step: its tolerances and its embedded error estimate (docs/theory.md, section 9).
 
+use serde::{Deserialize, Serialize};
+
 use super::maxwell::Maxwell;
 use super::rates::Rates;
 use super::tableau::Tableau;
 use crate::math::{sum_of, sum_of_pairs, weighted_sum};
-use crate::model::{CarrierPoint, LinkKind, Mode, Model, State};
+use crate::model::{CarrierPoint, Forces, LinkKind, Mode, Model, State};
 
 /// The tolerances of the local error of a step. The error of each quantity is divided by absolute + relative · size.
 #[derive(Clone, Debug, PartialEq)]
@@ -150,6 +152,44 @@ impl ErrorWorkspace {
     }
 }
 
+/// The largest forces of the layer on the carrier so far, N: what their errors are measured by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct LargestForces {
+    /// |F_x|.
+    pub x: f64,
+    /// |F_z|.
+    pub z: f64,
+}
+
+impl LargestForces {
+    /// Includes the forces of `forces`.
+    #[must_use]
+    pub fn with(self, forces: &Forces) -> Self {
+        Self { x: self.x.max(forces.on_carrier_x().abs()), z: self.z.max(forces.on_carrier_z().abs()) }
+    }
+
+    /// By how much the force of one mass of a layer of `model` may err, N: the errors of all masses, if they are
+    /// independent, make one of F_x or F_z within the relative tolerance.
+    pub fn allowed_of_mass(self, model: &Model, tolerance: &Tolerance) -> f64 {
+        let (x, z) = self.scales(model, tolerance);
+        tolerance.relative * x.min(z) / (model.masses() as f64).sqrt()
+    }
+
+    /// What the errors of F_x and F_z are measured by in a layer of `model`, N. Forces that are still to come, or that
+    /// symmetry makes nothing, are not resolved down to their rounding.
+    fn scales(self, model: &Model, tolerance: &Tolerance) -> (f64, f64) {
+        let expected = LEAST_FORCE.max(EXPECTED_FRICTION * model.friction_coefficient);
+        let least = LEAST_FORCE * tolerance.position / tolerance.relative * model.mass_stiffness_without_rods();
+        (self.x.max(expected * self.z).max(least), self.z.max(LEAST_FORCE * self.x).max(least))
+    }
+}
+
+/// The least scale of the errors of one force, as a share of the other, and as one of the force that the scene's height
+/// makes on a mass.
+const LEAST_FORCE: f64 = 1e-3;
+/// The least scale of the errors of F_x as a share of the friction that a slide under F_z would have.
+const EXPECTED_FRICTION: f64 = 0.5;
+
 /// What the error test of an attempted step needs.
 #[derive(Clone, Copy)]
 pub(super) struct ErrorTest<'a, const STAGES: usize> {
@@ -162,6 +202,8 @@ pub(super) struct ErrorTest<'a, const STAGES: usize> {
     pub end: &'a State,
     /// The masses in contact.
     pub contacts: &'a [usize],
+    /// What the errors of F_x and F_z are measured by, N.
+    pub largest: LargestForces,
 }
 
 impl<const STAGES: usize> ErrorTest<'_, STAGES> {
@@ -192,6 +234,7 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
             + of_velocities(&workspace.v_x, &end.velocity_x, rates.u_rate)
             + of_velocities(&workspace.v_z, &end.velocity_z, rates.w_rate)
             + in_contact;
+        let mut of_forces = 0.0;
         for kind in LinkKind::ALL {
             if let Some(rod) = tolerance.rod(kind) {
                 sum += self.rod_squares(kind, &rod, h, tolerance, workspace);
@@ -199,9 +242,38 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
             if self.maxwell.has_elements(kind) {
                 sum += self.maxwell_squares(model, kind, tolerance, workspace);
             }
+            if !kind.is_lateral() && tolerance.rod(kind).is_none() {
+                of_forces += self.carrier_force_squares(model, kind, tolerance, workspace);
+            }
         }
         let mean = |sum: f64| (sum / model.masses() as f64).sqrt();
-        StepAttempt { error: mean(sum), carrier_error: mean(free) }
+        StepAttempt { error: mean(sum).hypot(self.tableau.force_weight * of_forces.sqrt()), carrier_error: mean(free) }
+    }
+
+    /// The square of the error of F_x or F_z, which the links of `kind` make, over its tolerance: of the sum of their
+    /// errors, and of what the sum would be if these were independent, since some of them cancel by chance.
+    fn carrier_force_squares(
+        &self,
+        model: &Model,
+        kind: LinkKind,
+        tolerance: &Tolerance,
+        workspace: &mut ErrorWorkspace,
+    ) -> f64 {
+        let law = &model.links[kind as usize];
+        let (scale_x, scale_z) = self.largest.scales(model, tolerance);
+        let ErrorWorkspace { x, z, v_x, v_z, force } = workspace;
+        let (position, velocity, scale) = if kind.is_along_x() { (x, v_x, scale_x) } else { (z, v_z, scale_z) };
+        if self.maxwell.has_elements(kind) {
+            self.maxwell.force_error(kind, self.stages, force);
+        } else {
+            force.fill(0.0);
+        }
+        for (force, (position, velocity)) in force.iter_mut().zip(position.iter().zip(velocity)) {
+            *force += law.stiffness * *position + law.damping * *velocity;
+        }
+        let sum = sum_of(force.len(), |i| force[i]);
+        let squares = sum_of(force.len(), |i| force[i] * force[i]);
+        (sum * sum + squares) / square(tolerance.relative * scale)
     }
 
     /// The sums of squares of the error of the carrier's displacement, over the masses in contact and over the free ones.

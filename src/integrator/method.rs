@@ -115,6 +115,7 @@ impl<const N: usize> RungeKutta<N> {
             carrier: &stages.carrier[..N],
             end: &stages.solver.state,
             contacts: stages.solver.contacts(),
+            largest: step.start.largest.with(&stages.solver.forces),
         };
         test.run(step.model, step.span.length, tolerance, workspace)
     }
@@ -262,6 +263,7 @@ impl Stages {
         std::mem::swap(&mut start.state, &mut self.solver.state);
         std::mem::swap(&mut start.rates, &mut self.rates[last]);
         start.exchange = self.exchange[last];
+        start.largest = start.largest.with(&self.solver.forces);
         for tangent in &mut self.tangents {
             tangent.accept(last);
         }

@@ -16,7 +16,7 @@ mod stage;
 mod tableau;
 
 pub use dense::{DenseOutput, DenseWorkspace, StepBoundary, StepSpan, TwoStageDense};
-pub use error::{StepAttempt, Tolerance};
+pub use error::{LargestForces, StepAttempt, Tolerance};
 pub use rates::{NO_LIMIT, Rates, StepStart};
 pub use stage::NoConvergence;
 pub use tableau::{ContinuousWeights, ESDIRK5, METHOD, SDIRK2, STAGES, TWO_STAGES, Tableau};
@@ -136,6 +136,7 @@ impl Integrator {
     /// a run, after an event and at a kink of the carrier's motion.
     pub fn evaluate_start(&self, model: &Model, start: &mut StepStart, carrier: &CarrierPoint, forces: &Forces) {
         start.rates.evaluate(model, &start.state, forces);
+        start.largest = start.largest.with(forces);
         if self.stages.tracks_energy {
             start.exchange = Exchange::evaluate(model, &start.state, carrier, forces);
         }

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::error::LargestForces;
 use crate::model::{
     CarrierPoint, ContactForces, Exchange, Forces, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint,
 };
@@ -170,19 +171,21 @@ pub struct StepStart {
     pub rates: Rates,
     /// The powers through the surface and the carrier there, W; 0 where energies are not computed.
     pub exchange: Exchange,
+    /// The largest forces of the layer on the carrier so far, N.
+    pub largest: LargestForces,
 }
 
 impl StepStart {
     /// A layer of `model` at rest and free.
     pub fn new(model: &Model) -> Self {
         let state = State::new(model.masses(), model.maxwell_variables());
-        Self { state, rates: Rates::new(model), exchange: Exchange::default() }
+        Self { state, rates: Rates::new(model), exchange: Exchange::default(), largest: LargestForces::default() }
     }
 
     /// Copies `other`, of the same model, without allocating.
     pub fn copy_from(&mut self, other: &Self) {
         self.state.copy_from(&other.state);
         self.rates.copy_from(&other.rates);
-        self.exchange = other.exchange;
+        (self.exchange, self.largest) = (other.exchange, other.largest);
     }
 }

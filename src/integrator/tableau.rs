@@ -14,6 +14,9 @@ pub struct Tableau<const STAGES: usize> {
     pub error: [f64; STAGES],
     /// Order of the embedded method. That of the method itself is one higher.
     pub embedded_order: i32,
+    /// Weight of the errors of the forces on the carrier in the error test: what makes the errors of whole runs about
+    /// the relative tolerance.
+    pub force_weight: f64,
 }
 
 impl<const STAGES: usize> Tableau<STAGES> {
@@ -24,6 +27,7 @@ impl<const STAGES: usize> Tableau<STAGES> {
         c: [f64; STAGES],
         embedded: [f64; STAGES],
         embedded_order: i32,
+        force_weight: f64,
     ) -> Self {
         let mut i = 1;
         while i < STAGES - 1 {
@@ -42,7 +46,7 @@ impl<const STAGES: usize> Tableau<STAGES> {
             error[j] -= embedded[j];
             j += 1;
         }
-        Self { a, c, error, embedded_order }
+        Self { a, c, error, embedded_order, force_weight }
     }
 
     /// The weights b.
@@ -160,6 +164,7 @@ pub const ESDIRK5: Tableau<7> = {
         ],
         EMBEDDED,
         4,
+        2.0,
     )
 };
 
@@ -201,6 +206,7 @@ pub const SDIRK2: Tableau<TWO_STAGES> = Tableau {
     c: [0.0, GAMMA, 1.0],
     error: [0.0, -SDIRK2_ESTIMATE, SDIRK2_ESTIMATE],
     embedded_order: 1,
+    force_weight: 0.2,
 };
 
 /// The continuous weights of the two implicit stages of [`SDIRK2`]: the straight line through their rates, integrated

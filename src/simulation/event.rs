@@ -3,8 +3,8 @@
 
 use super::driver::{AFTER_FAILURE, StepBounds, TrialStep, WorkLimit};
 use super::motion::SimulationError;
-use super::run::Run;
-use crate::contact::{first_event, is_due, longest_unstable};
+use super::run::{Run, Settings};
+use crate::contact::{EventTolerance, first_event, is_due, longest_unstable};
 use crate::integrator::{DenseOutput, METHOD, StepAttempt};
 
 /// A new step is this share of what the error estimate allows, so that few are rejected.
@@ -113,10 +113,16 @@ impl Run {
 
     /// The fraction of the step of length `h` tried last at which a mode change is due.
     fn first_event(&mut self, h: f64) -> Option<f64> {
-        let Self { model, settings, state, workspace, .. } = self;
+        let events = self.event_tolerance();
+        let Self { model, state, workspace, .. } = self;
         let integrator = &workspace.integrator;
         let dense = integrator.dense(model, &state.carrier, &state.layer, state.span(h));
-        first_event(&dense, integrator.stages(), &settings.events, &mut workspace.dense)
+        first_event(&dense, integrator.stages(), &events, &mut workspace.dense)
+    }
+
+    fn event_tolerance(&self) -> EventTolerance {
+        let Settings { tolerance, events, .. } = &self.settings;
+        events.within(self.state.layer.largest.allowed_of_mass(&self.model, tolerance))
     }
 
     /// The dense output of the step of length `h` tried last.
@@ -152,7 +158,7 @@ impl Run {
 
     fn change_modes_if_due(&mut self) {
         let (layer, at) = (&self.state.layer, self.state.carrier_position());
-        if is_due(&self.model, &layer.state, &layer.rates, at, &self.settings.events) {
+        if is_due(&self.model, &layer.state, &layer.rates, at, &self.event_tolerance()) {
             self.change_modes(self.settings.events.gap);
         }
     }

@@ -162,7 +162,7 @@ fn check_numbers(run: &RunState) -> Result<(), RestoreError> {
     let RunState {
         carrier,
         s,
-        layer: StepStart { state, rates, exchange },
+        layer: StepStart { state, rates, exchange, largest },
         rates_valid: _,
         energies,
         counters,
@@ -180,6 +180,7 @@ fn check_numbers(run: &RunState) -> Result<(), RestoreError> {
     check_finite("the tangents", tangents)?;
     check_finite("the carrier's displacement at the start", start)?;
     check_finite("the powers", &[exchange.friction, exchange.input])?;
+    check_finite("the largest forces", &[largest.x, largest.z])?;
     let scalars = [
         ("the time since the carrier's last kink", *s),
         ("the step size", *step_size),
