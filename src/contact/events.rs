@@ -1,7 +1,7 @@
 //! The first mode change within a step: touch, lift, stop or break.
 
 use super::gap::first_touch;
-use crate::integrator::{DenseOutput, DenseWorkspace, METHOD, Rates, STAGES, Tolerance};
+use crate::integrator::{DenseOutput, DenseWorkspace, Rates, Tolerance};
 use crate::math::bracketed_root;
 use crate::model::{CarrierPosition, LinkKind, Mode, Model, State};
 
@@ -64,13 +64,8 @@ impl EventTolerance {
 }
 
 /// The fraction of the step at which the first mode change is due; `None` if none is.
-pub fn first_event(
-    step: &DenseOutput<'_>,
-    stages: &[Rates],
-    tolerance: &EventTolerance,
-    workspace: &mut DenseWorkspace,
-) -> Option<f64> {
-    let mut first = Contacts { step, stages, tolerance, workspace }.first_change();
+pub fn first_event(step: &DenseOutput<'_>, tolerance: &EventTolerance, workspace: &mut DenseWorkspace) -> Option<f64> {
+    let mut first = Contacts { step, tolerance, workspace }.first_change();
     for i in 0..step.model.masses() {
         if step.start.state.mode[i] == Mode::Free {
             first =
@@ -91,7 +86,6 @@ fn earlier(a: Option<f64>, b: Option<f64>) -> Option<f64> {
 /// accurate than the stages, and the run continues from it.
 struct Contacts<'a> {
     step: &'a DenseOutput<'a>,
-    stages: &'a [Rates],
     tolerance: &'a EventTolerance,
     workspace: &'a mut DenseWorkspace,
 }
@@ -109,13 +103,13 @@ impl Contacts<'_> {
     fn first_change(&mut self) -> Option<f64> {
         let mut first = None;
         let force = self.tolerance.force;
-        if self.stages[1..].iter().any(|stage| any_below(&stage.normal, -force)) {
+        if self.step.stages[1..].iter().any(|stage| any_below(&stage.normal, -force)) {
             for i in 0..self.step.model.masses() {
                 first = self.fall(i, Limit::Normal, force, first);
             }
         }
         let margin = self.tolerance.velocity.min(force);
-        if self.stages[1..].iter().any(|stage| any_below(&stage.margin, -margin)) {
+        if self.step.stages[1..].iter().any(|stage| any_below(&stage.margin, -margin)) {
             for i in 0..self.step.model.masses() {
                 let mode = self.step.start.state.mode[i];
                 first = self.fall(i, Limit::Margin, self.tolerance.margin(mode), first);
@@ -128,24 +122,30 @@ impl Contacts<'_> {
     /// `first` if it does not before that.
     fn fall(&mut self, i: usize, limit: Limit, tolerance: f64, first: Option<f64>) -> Option<f64> {
         let latest = first.unwrap_or(1.0);
-        let rank = (1..STAGES).find(|&rank| self.at_stage(rank, i, limit) < -tolerance);
-        let Some(rank) = rank.filter(|&rank| METHOD.c[IN_TIME[rank - 1]] < latest) else { return first };
+        let ranks = self.step.stages.len();
+        let rank = (1..ranks).find(|&rank| self.at_stage(rank, i, limit) < -tolerance);
+        let Some(rank) = rank.filter(|&rank| self.node(rank - 1) < latest) else { return first };
         let falls_until = |contacts: &mut Self, rank: usize| {
-            let theta = METHOD.c[IN_TIME[rank]].min(latest);
+            let theta = contacts.node(rank).min(latest);
             contacts.at_stage(rank, i, limit) < -tolerance && contacts.value(i, limit, theta) < -tolerance
         };
-        let Some(below) = (rank..STAGES).find(|&rank| falls_until(self, rank)) else { return first };
+        let Some(below) = (rank..ranks).find(|&rank| falls_until(self, rank)) else { return first };
         let aim = 0.5 * tolerance;
-        let bracket = (METHOD.c[IN_TIME[below - 1]].min(latest), METHOD.c[IN_TIME[below]].min(latest));
+        let bracket = (self.node(below - 1).min(latest), self.node(below).min(latest));
         if self.value(i, limit, bracket.0) <= -aim {
             return Some(bracket.0);
         }
         Some(bracketed_root(|theta| self.value(i, limit, theta) + aim, bracket, LOCATED))
     }
 
+    /// The fraction of the step at which the stage lies that is `rank`-th in time.
+    fn node(&self, rank: usize) -> f64 {
+        self.step.interpolation.node(self.step.interpolation.in_time()[rank])
+    }
+
     /// The quantity at the stage that is `rank`-th in time.
     fn at_stage(&self, rank: usize, i: usize, limit: Limit) -> f64 {
-        let stage = &self.stages[IN_TIME[rank]];
+        let stage = &self.step.stages[self.step.interpolation.in_time()[rank]];
         if limit == Limit::Normal { stage.normal[i] } else { stage.margin[i] }
     }
 
@@ -165,24 +165,6 @@ const LOCATED: f64 = 1e-12;
 
 fn any_below(values: &[f64], limit: f64) -> bool {
     values.iter().fold(f64::MAX, |least, &value| if value < least { value } else { least }) < limit
-}
-
-/// The indices of the stages in the order of time.
-const IN_TIME: [usize; STAGES] = in_time();
-
-const fn in_time() -> [usize; STAGES] {
-    let mut order = [0; STAGES];
-    let mut i = 0;
-    while i < STAGES {
-        let mut rank = i;
-        while rank > 0 && METHOD.c[order[rank - 1]] > METHOD.c[i] {
-            order[rank] = order[rank - 1];
-            rank -= 1;
-        }
-        order[rank] = i;
-        i += 1;
-    }
-    order
 }
 
 /// Share of an event tolerance by which a limit must be passed at the end of a step for an event to be due.

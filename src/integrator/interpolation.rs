@@ -4,10 +4,15 @@
 //! motion is far faster than the step, its stages have settled, and so has any combination of them: nothing is
 //! differentiated, as Hermite's interpolant does with the accelerations at both ends.
 //!
-//! The stages have order 2 each, so w has order 4 for velocities, and order 3 for what depends on the state, where it is
-//! exact for their elementary weights up to these orders: Σ w_j (1, c, c², c³, Ac², Ac³, AAc²)_j = (1, θ, θ², θ³, θ³/3,
-//! θ⁴/4, θ⁴/12). These are as many conditions as stages. The first and the last stage and, integrated, the method's own b
-//! meet them; so w is the first and the last stage at the ends, and the position at the end is the one of the method.
+//! The stages have order 2 each, so w has order q for velocities where it is exact for their elementary weights up to that
+//! order: Σ w_j (1, c, c², Ac², Ac³, AAc²)_j = (1, θ, θ², θ³/3, θ⁴/4, θ⁴/12), and order 3 for what depends on the state
+//! where Σ w_j c_j³ = θ³, too. The first and the last stage and, integrated, the method's own b meet all of these up to the
+//! method's order.
+//!
+//! The seven stages of [`ESDIRK5`](super::ESDIRK5) meet all seven conditions, by one w; so it is the first and the last
+//! stage at the ends, and the position at the end is that of the method. The five of [`ESDIRK4`](super::ESDIRK4) meet
+//! the first four, since the last two stages are alike up to order 3. The direction n that tells these two apart is free,
+//! and w = w_p + φ(θ) n with a parabola φ that makes the ends and the integral so.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -19,6 +24,12 @@ const POWERS: usize = 5;
 /// The weights w_j(θ) of the stages in a value within the step. Those beyond the method's number of stages are 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StageInterpolation {
+    /// c.
+    nodes: [f64; STAGES],
+    /// The indices of the stages in the order of time.
+    in_time: [usize; STAGES],
+    /// Number of stages.
+    stages: usize,
     /// The coefficients of 1, θ, … θ⁴.
     by_power: [[f64; STAGES]; POWERS],
     /// The same in Bernstein's basis of degree 4.
@@ -29,7 +40,20 @@ impl StageInterpolation {
     /// The weights of a method whose stages have order 2.
     pub(super) fn new<const N: usize>(tableau: &Tableau<N>) -> Self {
         let by_power = weights(tableau);
-        Self { bernstein: in_bernstein_basis(&by_power), by_power }
+        let nodes = std::array::from_fn(|stage| tableau.c.get(stage).copied().unwrap_or(1.0));
+        let mut in_time = std::array::from_fn(|stage| stage);
+        in_time[..N].sort_by(|&a, &b| f64::total_cmp(&nodes[a], &nodes[b]));
+        Self { nodes, in_time, stages: N, bernstein: in_bernstein_basis(&by_power), by_power }
+    }
+
+    /// The indices of the stages in the order of time.
+    pub fn in_time(&self) -> &[usize] {
+        &self.in_time[..self.stages]
+    }
+
+    /// The fraction of the step at which a stage lies.
+    pub fn node(&self, stage: usize) -> f64 {
+        self.nodes[stage]
     }
 
     /// w(θ).
@@ -75,26 +99,75 @@ impl StageInterpolation {
 
 /// The right side of every condition: a power of θ and its coefficient.
 const RIGHT: [(usize, f64); STAGES] =
-    [(0, 1.0), (1, 1.0), (2, 1.0), (3, 1.0), (3, 1.0 / 3.0), (4, 0.25), (4, 1.0 / 12.0)];
+    [(0, 1.0), (1, 1.0), (2, 1.0), (3, 1.0 / 3.0), (3, 1.0), (4, 0.25), (4, 1.0 / 12.0)];
 
-/// The solution of the first N conditions by power of θ.
+/// Number of conditions that stages of the method's order can meet.
+fn conditions<const N: usize>(tableau: &Tableau<N>) -> usize {
+    if tableau.embedded_order >= 4 { RIGHT.len() } else { 4 }
+}
+
+/// The weights by power of θ.
 fn weights<const N: usize>(tableau: &Tableau<N>) -> [[f64; STAGES]; POWERS] {
     let a = DMatrix::from_fn(N, N, |i, j| tableau.a[i][j]);
     let c = DVector::from_column_slice(&tableau.c);
     let (square, cube) = (c.component_mul(&c), c.component_mul(&c).component_mul(&c));
     let once = &a * &square;
-    let all = [DVector::repeat(N, 1.0), c, square, cube.clone(), once.clone(), &a * cube, &a * once];
-    let conditions = DMatrix::from_fn(N, N, |row, stage| all[row][stage]);
-    let factored = conditions.clone().lu();
-    std::array::from_fn(|power| {
-        let right = DVector::from_fn(N, |row, _| if RIGHT[row].0 == power { RIGHT[row].1 } else { 0.0 });
+    let all = [DVector::repeat(N, 1.0), c, square, once.clone(), cube.clone(), &a * cube, &a * once];
+    let rows = DMatrix::from_fn(conditions(tableau), N, |row, stage| all[row][stage]);
+    let least = Least::new(rows);
+    let mut weights: [DVector<f64>; POWERS] = std::array::from_fn(|power| {
+        least.solve(&DVector::from_fn(
+            conditions(tableau),
+            |row, _| if RIGHT[row].0 == power { RIGHT[row].1 } else { 0.0 },
+        ))
+    });
+    if let Some(free) = least.free_direction() {
+        // The least weights have no part along it.
+        let integral = free.dot(&DVector::from_column_slice(tableau.weights()));
+        for (weights, coefficient) in weights.iter_mut().zip(parabola(free[0], free[N - 1], integral)) {
+            *weights += coefficient * &free;
+        }
+    }
+    weights.map(|weights| std::array::from_fn(|j| if j < N { weights[j] } else { 0.0 }))
+}
+
+/// Least solutions of R w = r.
+struct Least {
+    rows: DMatrix<f64>,
+    /// Rᵀ(RRᵀ)⁻¹.
+    inverse: DMatrix<f64>,
+}
+
+impl Least {
+    fn new(rows: DMatrix<f64>) -> Self {
         // Not singular: the conditions do not depend on each other.
-        let solve = |right: &DVector<f64>| factored.solve(right).unwrap_or_else(|| DVector::zeros(N));
-        let weights = solve(&right);
-        // The conditions are within rounding then, however large the weights are.
-        let weights = &weights + solve(&(right - &conditions * &weights));
-        std::array::from_fn(|j| if j < N { weights[j] } else { 0.0 })
-    })
+        let normal = (&rows * rows.transpose()).try_inverse();
+        let normal = normal.unwrap_or_else(|| DMatrix::zeros(rows.nrows(), rows.nrows()));
+        Self { inverse: rows.transpose() * normal, rows }
+    }
+
+    fn solve(&self, right: &DVector<f64>) -> DVector<f64> {
+        let mut weights = &self.inverse * right;
+        // The rounding of the normal equations is removed.
+        for _ in 0..2 {
+            weights += &self.inverse * (right - &self.rows * &weights);
+        }
+        weights
+    }
+
+    /// A direction of length 1 with R n = 0; `None` where there is none.
+    fn free_direction(&self) -> Option<DVector<f64>> {
+        let stages = self.rows.ncols();
+        let without_constrained = |vector: DVector<f64>| &vector - self.solve(&(&self.rows * &vector));
+        let unit = DVector::from_fn(stages, |i, _| f64::from(u8::from(i + 1 == stages)));
+        (self.rows.nrows() < stages).then(|| without_constrained(unit).normalize())
+    }
+}
+
+/// The coefficients of the parabola with these values at 0 and 1 and this integral between them.
+fn parabola(start: f64, end: f64, integral: f64) -> [f64; 3] {
+    let bend = 3.0 * (start + end) - 6.0 * integral;
+    [start, end - start - bend, bend]
 }
 
 fn in_bernstein_basis(by_power: &[[f64; STAGES]; POWERS]) -> [[f64; STAGES]; POWERS] {
@@ -114,50 +187,41 @@ fn in_bernstein_basis(by_power: &[[f64; STAGES]; POWERS]) -> [[f64; STAGES]; POW
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::integrator::METHOD;
+    use crate::integrator::{ESDIRK4, ESDIRK5};
 
     /// Roundings of weights of size 1 to 100.
     const ROUNDING: f64 = 1e-13;
 
-    fn elementary(tableau: &Tableau<STAGES>) -> [[f64; STAGES]; 7] {
-        let times = |x: &[f64; STAGES]| std::array::from_fn(|i| (0..STAGES).map(|j| tableau.a[i][j] * x[j]).sum());
+    fn meets_its_conditions<const N: usize>(tableau: &Tableau<N>) {
+        let times =
+            |x: &[f64; N]| -> [f64; N] { std::array::from_fn(|i| (0..N).map(|j| tableau.a[i][j] * x[j]).sum()) };
         let c = tableau.c;
         let (square, cube) = (c.map(|c| c * c), c.map(|c| c * c * c));
-        [[1.0; STAGES], c, square, cube, times(&square), times(&cube), times(&times(&square))]
-    }
-
-    fn sum(weights: &[f64; STAGES], values: &[f64; STAGES]) -> f64 {
-        weights.iter().zip(values).map(|(weight, value)| weight * value).sum()
-    }
-
-    #[test]
-    fn the_weights_have_order_four() {
-        let interpolation = StageInterpolation::new(&METHOD);
+        let elementary = [[1.0; N], c, square, times(&square), cube, times(&cube), times(&times(&square))];
+        let interpolation = StageInterpolation::new(tableau);
         for theta in [0.0, 0.1, 0.45, 0.9, 1.0_f64] {
             let weights = interpolation.values(theta);
-            let expected = [
-                1.0,
-                theta,
-                theta.powi(2),
-                theta.powi(3),
-                theta.powi(3) / 3.0,
-                theta.powi(4) / 4.0,
-                theta.powi(4) / 12.0,
-            ];
-            for (values, expected) in elementary(&METHOD).iter().zip(expected) {
-                assert!((sum(&weights, values) - expected).abs() < ROUNDING, "{theta}: {weights:?}");
+            for (values, (power, coefficient)) in elementary.iter().zip(RIGHT).take(conditions(tableau)) {
+                let found: f64 = weights.iter().zip(values).map(|(weight, value)| weight * value).sum();
+                let expected = coefficient * theta.powi(power as i32);
+                assert!((found - expected).abs() < ROUNDING, "{theta}: {found} {expected}");
             }
         }
     }
 
     #[test]
-    fn both_ends_and_the_whole_step_are_those_of_the_method() {
-        let interpolation = StageInterpolation::new(&METHOD);
+    fn the_weights_meet_their_conditions() {
+        meets_its_conditions(&ESDIRK5);
+        meets_its_conditions(&ESDIRK4);
+    }
+
+    fn has_the_ends_of<const N: usize>(tableau: &Tableau<N>) {
+        let interpolation = StageInterpolation::new(tableau);
         let unit = |at: usize| std::array::from_fn(|j| f64::from(u8::from(j == at)));
-        let ends: [([f64; STAGES], [f64; STAGES]); 3] = [
+        let ends: [([f64; STAGES], [f64; N]); 3] = [
             (interpolation.values(0.0), unit(0)),
-            (interpolation.values(1.0), unit(STAGES - 1)),
-            (interpolation.integral(1.0), *METHOD.weights()),
+            (interpolation.values(1.0), unit(N - 1)),
+            (interpolation.integral(1.0), *tableau.weights()),
         ];
         for (found, expected) in ends {
             assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < ROUNDING), "{found:?} {expected:?}");
@@ -165,8 +229,20 @@ mod tests {
     }
 
     #[test]
+    fn both_ends_and_the_whole_step_are_those_of_the_method() {
+        has_the_ends_of(&ESDIRK5);
+        has_the_ends_of(&ESDIRK4);
+    }
+
+    #[test]
+    fn stages_come_in_the_order_of_time() {
+        assert_eq!(StageInterpolation::new(&ESDIRK4).in_time(), [0, 2, 1, 3, 4]);
+        assert_eq!(StageInterpolation::new(&ESDIRK5).in_time(), [0, 3, 1, 2, 4, 5, 6]);
+    }
+
+    #[test]
     fn slope_integral_and_bernstein_coefficients_belong_to_the_values() {
-        let interpolation = StageInterpolation::new(&METHOD);
+        let interpolation = StageInterpolation::new(&ESDIRK5);
         let (theta, by) = (0.37, 1e-5);
         let of = |theta: f64, j: usize| interpolation.values(theta)[j];
         for j in 0..STAGES {

@@ -1,12 +1,13 @@
 //! The implicit Runge-Kutta methods: attempts and acceptance of single steps of the layer with its contact modes held,
 //! their error tests, dense outputs, energies and sensitivities.
 //!
-//! Two methods share one implementation: [`METHOD`], of order 5 with seven stages, for event-driven runs, and
-//! [`SDIRK2`], of order 2 with two implicit stages, for time-stepping.
+//! Three methods share one implementation: the pairs [`ESDIRK4`] and [`ESDIRK5`] for event-driven runs, and [`SDIRK2`],
+//! of order 2 with two implicit stages, for time-stepping.
 
 mod dense;
 mod energy;
 mod error;
+mod event_method;
 mod interpolation;
 mod maxwell;
 mod method;
@@ -17,23 +18,24 @@ mod tableau;
 
 pub use dense::{DenseOutput, DenseWorkspace, StepBoundary, StepSpan, TwoStageDense};
 pub use error::{LargestForces, StepAttempt, Tolerance};
+pub use event_method::Pair;
+pub use interpolation::StageInterpolation;
 pub use rates::{NO_LIMIT, Rates, StepStart};
 pub use stage::NoConvergence;
-pub use tableau::{ContinuousWeights, ESDIRK5, METHOD, SDIRK2, STAGES, TWO_STAGES, Tableau};
+pub use tableau::{ContinuousWeights, ESDIRK4, ESDIRK5, SDIRK2, STAGES, TWO_STAGES, Tableau};
 
 use crate::model::{Carrier, CarrierPoint, ChannelEnergies, Exchange, Forces, Model, State};
 use dense::piecewise_linear;
 use energy::StepSums;
 use error::ErrorWorkspace;
-use interpolation::StageInterpolation;
+use event_method::EventMethod;
 use maxwell::Maxwell;
 use method::{InitialGuess, RungeKutta, Stages, StepInput};
 use sensitivity::{Tangent, Target};
 use stage::{ConvergenceTest, StageSolver};
 use tableau::{GAMMA, SDIRK2_ESTIMATE};
 
-/// The error tolerance of Newton's iterations in a step of two stages, as a multiple of the one in a step of
-/// [`METHOD`]. Iterations are the cost of such a step, and the error that they leave is known to be smaller than this.
+/// The error tolerance of Newton's iterations in a step of two stages, as a multiple of the one in an event-driven step. Iterations are the cost of such a step, and the error that they leave is known to be smaller than this.
 const NEWTON_SLACK: f64 = 2.0;
 /// The same where friction depends on the speed. Corrections fall slowly there, and the estimate of the step's error
 /// multiplies what they leave by [`SDIRK2_ESTIMATE`] over γ: the step length would follow it and not the motion.
@@ -42,10 +44,11 @@ const STEEP_SLACK: f64 = 0.1;
 /// Attempts and accepts steps: the values at the stages of the last attempted step, and workspace.
 #[derive(Clone, Debug)]
 pub struct Integrator {
-    seven_stages: RungeKutta<STAGES>,
+    pair: Pair,
+    event_method: EventMethod,
     two_stages: RungeKutta<TWO_STAGES>,
     stages: Stages,
-    /// Of [`METHOD`].
+    /// Of the pair.
     interpolation: StageInterpolation,
     error_workspace: ErrorWorkspace,
 }
@@ -73,40 +76,39 @@ pub struct Tracked {
 /// The methods for which an integrator has workspace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Steps {
-    /// [`METHOD`] alone.
-    SevenStages,
+    /// A pair of event-driven steps alone.
+    EventDriven(Pair),
     /// [`SDIRK2`] alone.
     TwoStages,
     /// Both.
-    Both,
+    Both(Pair),
 }
 
 impl Steps {
-    fn seven_stages(self) -> bool {
-        self != Self::TwoStages
+    fn pair(self) -> Option<Pair> {
+        match self {
+            Self::EventDriven(pair) | Self::Both(pair) => Some(pair),
+            Self::TwoStages => None,
+        }
     }
 
     fn two_stages(self) -> bool {
-        self != Self::SevenStages
+        !matches!(self, Self::EventDriven(_))
     }
 
     fn stages(self) -> usize {
-        if self.seven_stages() { STAGES } else { TWO_STAGES }
+        self.pair().map_or(TWO_STAGES, Pair::stages)
     }
 }
 
 impl Integrator {
     /// An integrator for `model` with workspace for `steps`.
     pub fn new(model: &Model, tracked: Tracked, steps: Steps) -> Self {
+        let pair = steps.pair().unwrap_or(Pair::Fifth);
         let targets: &[Target] = if tracked.tangents { &[Target::U, Target::W] } else { &[] };
         Self {
-            seven_stages: RungeKutta {
-                tableau: &METHOD,
-                continuous_weights: ContinuousWeights::new(&METHOD),
-                initial_guess: InitialGuess::extrapolated(&METHOD.c),
-                maxwell: Maxwell::new(model, steps.seven_stages()),
-                sums: StepSums::new(model, steps.seven_stages()),
-            },
+            pair,
+            event_method: EventMethod::new(pair, model, steps.pair().is_some()),
             two_stages: RungeKutta {
                 tableau: &SDIRK2,
                 continuous_weights: ContinuousWeights::sdirk2(),
@@ -122,7 +124,7 @@ impl Integrator {
                 tracks_energy: tracked.energy,
                 tangents: targets.iter().map(|&target| Tangent::new(model, target, steps.stages())).collect(),
             },
-            interpolation: StageInterpolation::new(&METHOD),
+            interpolation: pair.interpolation(),
             error_workspace: ErrorWorkspace::new(model),
         }
     }
@@ -142,7 +144,7 @@ impl Integrator {
         }
     }
 
-    /// Attempts a step of [`METHOD`] from `start`.
+    /// Attempts an event-driven step from `start`.
     ///
     /// # Errors
     /// [`NoConvergence`] where Newton's iterations of a stage did not converge.
@@ -154,10 +156,10 @@ impl Integrator {
         span: StepSpan,
         tolerance: &Tolerance,
     ) -> Result<StepAttempt, NoConvergence> {
-        let step = StepInput { model, start, carrier, span, beta: self.seven_stages.tableau.gamma() * span.length };
+        let step = StepInput { model, start, carrier, span, beta: self.event_method.gamma() * span.length };
         let convergence = ConvergenceTest::new(tolerance, step.beta, 1.0);
-        self.seven_stages.attempt(&mut self.stages, &step, convergence)?;
-        Ok(self.seven_stages.test(&self.stages, &step, tolerance, &mut self.error_workspace))
+        self.event_method.attempt(&mut self.stages, &step, convergence)?;
+        Ok(self.event_method.test(&self.stages, &step, tolerance, &mut self.error_workspace))
     }
 
     /// Attempts a step of two stages from `start`.
@@ -182,10 +184,10 @@ impl Integrator {
     }
 
     /// The ratio of the length of a two-stage step with an error of the tolerance to `h`, the length of the last
-    /// attempted step of [`METHOD`], by the changes of velocities and accelerations over that step.
+    /// attempted event-driven step, by the changes of velocities and accelerations over that step.
     pub fn two_stage_length_ratio(&self, h: f64, tolerance: &Tolerance) -> f64 {
-        let (first, last, end) = (&self.stages.rates[0], &self.stages.rates[STAGES - 1], self.end());
-        let carrier = &self.stages.carrier[STAGES - 1];
+        let (first, last, end) = (&self.stages.rates[0], &self.stages.rates[self.pair.stages() - 1], self.end());
+        let carrier = &self.stages.carrier[self.pair.stages() - 1];
         let mut sum = 0.0;
         for i in 0..end.mode.len() {
             let change = |of: fn(&Rates) -> &[f64]| (SDIRK2_ESTIMATE * h * (of(last)[i] - of(first)[i])).powi(2);
@@ -209,6 +211,11 @@ impl Integrator {
         &self.stages.solver.forces
     }
 
+    /// The pair of its event-driven steps.
+    pub fn pair(&self) -> Pair {
+        self.pair
+    }
+
     /// The rates at the stages of the last attempted step.
     pub fn stages(&self) -> &[Rates] {
         &self.stages.rates
@@ -221,7 +228,7 @@ impl Integrator {
         (StepEnd { state, forces, rates: &mut last[0] }, &earlier[1])
     }
 
-    /// The dense output of the last attempted step of [`METHOD`], from `start`.
+    /// The dense output of the last attempted event-driven step, from `start`.
     pub fn dense<'a>(
         &'a self,
         model: &'a Model,
@@ -229,14 +236,14 @@ impl Integrator {
         start: &'a StepStart,
         span: StepSpan,
     ) -> DenseOutput<'a> {
-        let carriers = &self.stages.carrier;
+        let carriers = &self.stages.carrier[..self.pair.stages()];
         DenseOutput {
             model,
             carrier,
             span,
             start: StepBoundary { state: &start.state, carrier: carriers[0] },
-            end: StepBoundary { state: self.end(), carrier: carriers[STAGES - 1] },
-            stages: self.stages(),
+            end: StepBoundary { state: self.end(), carrier: carriers[carriers.len() - 1] },
+            stages: &self.stages()[..carriers.len()],
             carriers,
             interpolation: &self.interpolation,
         }
@@ -261,10 +268,10 @@ impl Integrator {
         self.two_stages.maxwell.between(model, 1, piecewise_linear(theta), ends, &self.stages.rates, a);
     }
 
-    /// Energies through the channels over the last attempted step of [`METHOD`], of length `h` from `start`, up to its
+    /// Energies through the channels over the last attempted event-driven step, of length `h` from `start`, up to its
     /// fraction `theta`, J.
     pub fn energies(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> ChannelEnergies {
-        self.seven_stages.energies(&self.stages, model, start, h, theta)
+        self.event_method.energies(&self.stages, model, start, h, theta)
     }
 
     /// Energies through the channels over the last attempted two-stage step, of length `h` from `start`, up to its
@@ -273,9 +280,9 @@ impl Integrator {
         self.two_stages.energies(&self.stages, model, start, h, theta)
     }
 
-    /// Accepts the last attempted step of [`METHOD`]: its end becomes the `start` of the next one.
+    /// Accepts the last attempted event-driven step: its end becomes the `start` of the next one.
     pub fn accept(&mut self, start: &mut StepStart) {
-        self.stages.accept(start, STAGES - 1);
+        self.stages.accept(start, self.pair.stages() - 1);
     }
 
     /// Accepts the last attempted two-stage step: its end becomes the `start` of the next one.
@@ -327,7 +334,7 @@ impl Integrator {
         let stages = self.stages.rates.len() + 2;
         // Per mass: rates and starred values; six blocks and a right side; row shares and neighbour weights; errors.
         let by_mass = stages * 6 + 4 + (6 * 4 + 2) + (3 + 3) + 5;
-        let elements = 2 * (self.seven_stages.maxwell.floats() + self.two_stages.maxwell.floats());
+        let elements = 2 * (self.event_method.floats() + self.two_stages.maxwell.floats());
         let tangents: usize = self.stages.tangents.iter().map(Tangent::floats).sum();
         (by_mass * masses + stages * links + elements + tangents) * size_of::<f64>()
     }

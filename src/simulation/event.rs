@@ -5,7 +5,7 @@ use super::driver::{AFTER_FAILURE, StepBounds, TrialStep, WorkLimit};
 use super::motion::SimulationError;
 use super::run::{Run, Settings};
 use crate::contact::{EventTolerance, first_event, is_due, longest_unstable};
-use crate::integrator::{DenseOutput, METHOD, StepAttempt};
+use crate::integrator::{DenseOutput, Pair, StepAttempt};
 
 /// A new step is this share of what the error estimate allows, so that few are rejected.
 const SAFETY: f64 = 0.9;
@@ -84,7 +84,7 @@ impl Run {
             return attempt.ok();
         }
         self.state.counters.rejected += 1;
-        let shorter = h * if error.is_finite() { growth(error).min(SAFETY) } else { AFTER_FAILURE };
+        let shorter = h * if error.is_finite() { growth(self.pair(), error).min(SAFETY) } else { AFTER_FAILURE };
         self.state.step_size = shorter.min(longest);
         None
     }
@@ -92,7 +92,7 @@ impl Run {
     /// The length of the next step after a good one of length `h`. One that was cut short to `limit` by the end of a
     /// piece or by the events says nothing.
     fn proposal(&self, h: f64, limit: f64, error: f64) -> f64 {
-        let grown = h * growth(error);
+        let grown = h * growth(self.pair(), error);
         if h < limit { grown } else { grown.max(self.state.step_size) }
     }
 
@@ -117,7 +117,11 @@ impl Run {
         let Self { model, state, workspace, .. } = self;
         let integrator = &workspace.integrator;
         let dense = integrator.dense(model, &state.carrier, &state.layer, state.span(h));
-        first_event(&dense, integrator.stages(), &events, &mut workspace.dense)
+        first_event(&dense, &events, &mut workspace.dense)
+    }
+
+    fn pair(&self) -> Pair {
+        self.workspace.integrator.pair()
     }
 
     fn event_tolerance(&self) -> EventTolerance {
@@ -165,7 +169,7 @@ impl Run {
 }
 
 /// The ratio of the next step to one with this error over the tolerance.
-fn growth(error: f64) -> f64 {
-    let order = f64::from(METHOD.embedded_order + 1);
+fn growth(pair: Pair, error: f64) -> f64 {
+    let order = f64::from(pair.embedded_order() + 1);
     (SAFETY * error.powf(-1.0 / order)).clamp(GROWTH.0, GROWTH.1)
 }

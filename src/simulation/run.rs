@@ -8,7 +8,7 @@ use super::motion::{MethodSwitch, ModeChange, Motion, Start};
 use crate::contact::{
     EndCorrection, EventTolerance, decide_modes, free_unloaded, impacts_due, place_layer, stop_reversed,
 };
-use crate::integrator::{DenseWorkspace, Integrator, StepSpan, StepStart, Steps, Tolerance, Tracked};
+use crate::integrator::{DenseWorkspace, Integrator, Pair, StepSpan, StepStart, Steps, Tolerance, Tracked};
 use crate::model::{
     Carrier, CarrierPoint, CarrierPosition, Forces, LinkKind, Mode, Model, State, elastic_energy, kinetic_energy,
 };
@@ -203,10 +203,11 @@ impl Run {
     /// A run with the layer placed under the carrier at `start`.
     pub(super) fn new(model: Arc<Model>, settings: Settings, start: &Start) -> Self {
         let tracked = Tracked { energy: settings.accounts.energy, tangents: settings.accounts.tangents };
+        let pair = Pair::at_tolerance(settings.tolerance.relative);
         let steps = match settings.method {
-            Method::Event => Steps::SevenStages,
+            Method::Event => Steps::EventDriven(pair),
             Method::Step => Steps::TwoStages,
-            Method::Auto => Steps::Both,
+            Method::Auto => Steps::Both(pair),
         };
         let state = RunState::new(&model, start, settings.method == Method::Step);
         let workspace = Workspace {

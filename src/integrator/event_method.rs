@@ -1,0 +1,137 @@
+//! The Runge-Kutta pair of event-driven steps.
+
+use super::energy::StepSums;
+use super::error::{ErrorWorkspace, StepAttempt, Tolerance};
+use super::interpolation::StageInterpolation;
+use super::maxwell::Maxwell;
+use super::method::{InitialGuess, RungeKutta, Stages, StepInput};
+use super::stage::{ConvergenceTest, NoConvergence};
+use super::tableau::{ContinuousWeights, ESDIRK4, ESDIRK5, FIVE_STAGES, STAGES, Tableau};
+use crate::model::{ChannelEnergies, Model, State};
+
+/// The pairs of event-driven steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pair {
+    /// [`ESDIRK4`]: order 4 with four implicit stages.
+    Fourth,
+    /// [`ESDIRK5`]: order 5 with six implicit stages.
+    Fifth,
+}
+
+/// The relative tolerance from which on the pair of order 4 is the cheaper one: where mode changes cut the steps short,
+/// its fewer stages count for more than longer steps.
+const FOURTH_FROM: f64 = 3e-4;
+
+impl Pair {
+    /// The cheaper pair at a relative tolerance.
+    pub fn at_tolerance(relative: f64) -> Self {
+        if relative >= FOURTH_FROM { Self::Fourth } else { Self::Fifth }
+    }
+
+    /// Number of stages, the explicit one included.
+    pub fn stages(self) -> usize {
+        match self {
+            Self::Fourth => FIVE_STAGES,
+            Self::Fifth => STAGES,
+        }
+    }
+
+    /// Order of the embedded method. That of the method itself is one higher.
+    pub fn embedded_order(self) -> i32 {
+        match self {
+            Self::Fourth => ESDIRK4.embedded_order,
+            Self::Fifth => ESDIRK5.embedded_order,
+        }
+    }
+
+    pub(super) fn interpolation(self) -> StageInterpolation {
+        match self {
+            Self::Fourth => StageInterpolation::new(&ESDIRK4),
+            Self::Fifth => StageInterpolation::new(&ESDIRK5),
+        }
+    }
+}
+
+/// The pair of a run with its workspace.
+#[derive(Clone, Debug)]
+pub(super) enum EventMethod {
+    Fourth(RungeKutta<FIVE_STAGES>),
+    Fifth(RungeKutta<STAGES>),
+}
+
+impl EventMethod {
+    /// A pair for `model`; without workspace where it is not `used`.
+    pub(super) fn new(pair: Pair, model: &Model, used: bool) -> Self {
+        match pair {
+            Pair::Fourth => Self::Fourth(runge_kutta(&ESDIRK4, model, used)),
+            Pair::Fifth => Self::Fifth(runge_kutta(&ESDIRK5, model, used)),
+        }
+    }
+
+    /// γ of every implicit stage.
+    pub(super) fn gamma(&self) -> f64 {
+        match self {
+            Self::Fourth(method) => method.tableau.gamma(),
+            Self::Fifth(method) => method.tableau.gamma(),
+        }
+    }
+
+    /// Solves all stages of a step.
+    pub(super) fn attempt(
+        &mut self,
+        stages: &mut Stages,
+        step: &StepInput<'_>,
+        convergence: ConvergenceTest,
+    ) -> Result<(), NoConvergence> {
+        match self {
+            Self::Fourth(method) => method.attempt(stages, step, convergence),
+            Self::Fifth(method) => method.attempt(stages, step, convergence),
+        }
+    }
+
+    /// The error test of the step whose stages are solved.
+    pub(super) fn test(
+        &self,
+        stages: &Stages,
+        step: &StepInput<'_>,
+        tolerance: &Tolerance,
+        workspace: &mut ErrorWorkspace,
+    ) -> StepAttempt {
+        match self {
+            Self::Fourth(method) => method.test(stages, step, tolerance, workspace),
+            Self::Fifth(method) => method.test(stages, step, tolerance, workspace),
+        }
+    }
+
+    /// Energies through the channels over the step of length `h` from `start`, up to its fraction `theta`, J.
+    pub(super) fn energies(
+        &mut self,
+        stages: &Stages,
+        model: &Model,
+        start: &State,
+        h: f64,
+        theta: f64,
+    ) -> ChannelEnergies {
+        match self {
+            Self::Fourth(method) => method.energies(stages, model, start, h, theta),
+            Self::Fifth(method) => method.energies(stages, model, start, h, theta),
+        }
+    }
+
+    pub(super) fn floats(&self) -> usize {
+        match self {
+            Self::Fourth(method) => method.maxwell.floats(),
+            Self::Fifth(method) => method.maxwell.floats(),
+        }
+    }
+}
+
+fn runge_kutta<const N: usize>(tableau: &'static Tableau<N>, model: &Model, used: bool) -> RungeKutta<N> {
+    RungeKutta {
+        tableau,
+        continuous_weights: ContinuousWeights::new(tableau),
+        initial_guess: InitialGuess::extrapolated(&tableau.c),
+        maxwell: Maxwell::new(model, used),
+        sums: StepSums::new(model, used),
+    }
+}
