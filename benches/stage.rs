@@ -11,7 +11,7 @@ mod floor;
 
 use std::time::Duration;
 
-use asperity::integrator::{Integrator, STAGES, StepSpan, StepStart, Steps, Tolerance, Tracked};
+use asperity::integrator::{Integrator, Pair, STAGES, StepSpan, StepStart, Steps, Tolerance, Tracked};
 use asperity::model::{Carrier, Forces, Mode, Model, State};
 use asperity::scene::Path;
 use common::{layer, parse, prints_tables, side_by_side};
@@ -62,7 +62,7 @@ impl Stages {
         let carrier = Carrier::new(0.0, (0.0, 0.0), still, &model.profile);
         let mut forces = Forces::new(&model);
         forces.evaluate(&model, &state, &carrier.at(0.0));
-        let integrator = Integrator::new(&model, Tracked::default(), Steps::SevenStages);
+        let integrator = Integrator::new(&model, Tracked::default(), Steps::EventDriven(Pair::Fifth));
         let mut start = StepStart { state, ..StepStart::new(&model) };
         integrator.evaluate_start(&model, &mut start, &carrier.at(0.0), &forces);
         let tolerance = Tolerance::new(&model, 1e-6, 1e-11);

@@ -179,7 +179,8 @@ impl LargestForces {
     /// symmetry makes nothing, are not resolved down to their rounding.
     fn scales(self, model: &Model, tolerance: &Tolerance) -> (f64, f64) {
         let expected = LEAST_FORCE.max(EXPECTED_FRICTION * model.friction_coefficient);
-        let least = LEAST_FORCE * tolerance.position / tolerance.relative * model.mass_stiffness_without_rods();
+        let stiffness = model.mass_stiffness_without_rods().max(model.mass * model.frequency_without_rods().powi(2));
+        let least = LEAST_FORCE * tolerance.position / tolerance.relative * stiffness;
         (self.x.max(expected * self.z).max(least), self.z.max(LEAST_FORCE * self.x).max(least))
     }
 }

@@ -105,10 +105,10 @@ impl Limits {
         (gap < -self.absolute - rounding).then(|| format!("g = {gap:.1e} below -{:.1e}", self.absolute))
     }
 
-    /// |F_T| ≤ T, but for the tolerance within which a break is located and the rounding of T.
+    /// |F_T| ≤ T, but for the tolerance within which a break is located and the row's own error.
     fn friction(&self, normal: f64, friction: f64, mode: f64) -> Option<String> {
         let limit = self.friction.0 * normal.max(0.0) + self.friction.1 + self.rate_limit(mode);
-        let slack = self.force * (1.0 + self.friction.0) + 1e-12 * limit;
+        let slack = self.force * (1.0 + self.friction.0) + self.relative * limit;
         (friction.abs() > limit + slack).then(|| format!("|F_T| = {:.2e} above {limit:.2e}", friction.abs()))
     }
 

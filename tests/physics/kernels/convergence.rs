@@ -119,23 +119,37 @@ pub fn differences(a: &State, b: &State) -> [f64; 3] {
     ]
 }
 
-/// A free chain under a carrier that oscillates, against the matrix exponential: positions, velocities and Maxwell
-/// elongations converge with order 5.
-#[test]
-fn a_free_chain_converges_with_order_five() {
+/// The errors of positions, velocities and Maxwell elongations of a free chain under a carrier that oscillates, after
+/// 20, 40 and 80 steps, against the matrix exponential.
+fn free_errors(method: Method) -> [[f64; 3]; 3] {
     let layer = chain();
     let start = displaced(&layer.model());
     let expected = Exact::new(&layer).at(&start, 1.0);
-    let errors = [20, 40, 80].map(|steps| {
-        let mut stepper = Stepper::new(layer.model(), PATHS, start.clone(), 1e-12);
+    [20, 40, 80].map(|steps| {
+        let mut stepper = method(Stepper::new(layer.model(), PATHS, start.clone(), 1e-12));
         stepper.run(1.0, steps);
         differences(&stepper.start.state, &expected)
-    });
+    })
+}
+
+#[test]
+fn a_free_chain_converges_with_order_five() {
+    let errors = free_errors(SEVEN_STAGES);
     for part in 0..3 {
         let order = last_order(&errors.map(|error| error[part]));
         // Not yet at its limit at steps of a few tenths of the shortest time of the layer, 0.02 s.
         assert!((4.7..5.5).contains(&order), "part {part}: {order} from {errors:?}");
         assert!(errors[2][part] < 1e-7, "part {part}: {errors:?}");
+    }
+}
+
+#[test]
+fn a_free_chain_converges_with_order_four_in_five_stages() {
+    let errors = free_errors(Stepper::by_five_stages);
+    for part in 0..3 {
+        let order = last_order(&errors.map(|error| error[part]));
+        assert!((3.6..4.6).contains(&order), "part {part}: {order} from {errors:?}");
+        assert!(errors[2][part] < 2e-5, "part {part}: {errors:?}");
     }
 }
 
@@ -233,6 +247,18 @@ fn a_slipping_mass_converges_with_order_five() {
                 (last, 5.6)
             };
             assert!((4.5..highest).contains(&order), "part {part}: {order} from {errors:?}");
+        }
+    }
+}
+
+/// Order 4 in five stages, without the shear strength.
+#[test]
+fn a_slipping_mass_converges_with_order_four_in_five_stages() {
+    let errors = slipping_errors([4, 8, 16, 32], 1e-14, Stepper::by_five_stages);
+    for (layer, errors) in errors.into_iter().filter(|(layer, _)| layer.rate_shear.is_none()) {
+        for part in 0..3 {
+            let order = (errors[0][part] / errors[3][part]).log2() / 3.0;
+            assert!((3.5..4.8).contains(&order), "part {part}: {order} from {errors:?} of {:?}", layer.friction);
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::path::Path as FilePath;
 
 use asperity::integrator::{
-    DenseOutput, DenseWorkspace, Integrator, StepAttempt, StepSpan, StepStart, Steps, Tolerance, Tracked,
+    DenseOutput, DenseWorkspace, Integrator, Pair, StepAttempt, StepSpan, StepStart, Steps, Tolerance, Tracked,
 };
 use asperity::model::{Carrier, Forces, LinkKind, Model, State};
 use asperity::outputs::Snapshot;
@@ -132,11 +132,17 @@ impl Stepper {
         let carrier = Carrier::new(0.0, (0.0, 0.0), (u, w), &model.profile);
         let tolerance = Tolerance::new(&model, tolerance, tolerance);
         let mut forces = Forces::new(&model);
-        let integrator = Integrator::new(&model, Tracked::default(), Steps::Both);
+        let integrator = Integrator::new(&model, Tracked::default(), Steps::Both(Pair::Fifth));
         forces.evaluate(&model, &state, &carrier.at(0.0));
         let mut start = StepStart { state, ..StepStart::new(&model) };
         integrator.evaluate_start(&model, &mut start, &carrier.at(0.0), &forces);
         Self { model, carrier, start, integrator, tolerance, s: 0.0, two_stages: false }
+    }
+
+    /// The same by the pair of order 4.
+    pub fn by_five_stages(self) -> Self {
+        let integrator = Integrator::new(&self.model, Tracked::default(), Steps::EventDriven(Pair::Fourth));
+        Self { integrator, ..self }
     }
 
     /// The same by the method of two stages.
