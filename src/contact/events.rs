@@ -68,8 +68,9 @@ pub fn first_event(step: &DenseOutput<'_>, tolerance: &EventTolerance, workspace
     let mut first = Contacts { step, tolerance, workspace }.first_change();
     for i in 0..step.model.masses() {
         if step.start.state.mode[i] == Mode::Free {
-            first =
-                earlier(first, first_touch(&step.model.profile, || step.position(i), step.height(i), tolerance.gap));
+            let (latest, height) = (first.unwrap_or(1.0), step.height(i));
+            let touch = first_touch(&step.model.profile, || step.position(i), height, tolerance.gap, latest);
+            first = earlier(first, touch);
         }
     }
     first

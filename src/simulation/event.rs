@@ -36,8 +36,11 @@ impl Run {
         work: &mut WorkLimit,
     ) -> Result<TrialStep, SimulationError> {
         let limit = bounds.longest.min(OF_SPACING * self.state.event_spacing);
+        // What follows an event or a kink is likely to be as fast as what followed the one before.
+        let starts_anew = self.state.since_event == 0.0 || self.state.s == 0.0;
+        let first = if starts_anew { limit.min(self.state.step_after_event) } else { limit };
         let shortest_cut = self.workspace.stall.shortest_cut(bounds.shortest, self.state.counters.events);
-        let mut h = bounds.fit(self.state.step_size.min(limit));
+        let mut h = bounds.fit(self.state.step_size.min(first));
         let mut cuts = 0;
         // The step that an event cuts short says how long the next may be; the shorter ones need no error test.
         let mut proposal = None;
@@ -54,6 +57,9 @@ impl Run {
             let proposed = *proposal.get_or_insert_with(|| {
                 self.proposal(h, bounds.remaining.min(limit), attempt.error).min(self.longest_unstable())
             });
+            if starts_anew {
+                self.state.step_after_event = h * growth(self.pair(), attempt.error);
+            }
             let event = self.first_event(h);
             let share = event.filter(|_| h > shortest_cut).map_or(1.0, |theta| theta.max(shortest_cut / h));
             if share >= 1.0 || (share >= LEAST_SHARE && self.can_resume_within(h, share)) {

@@ -49,6 +49,8 @@ pub(super) struct RunState {
     pub event_spacing: f64,
     /// Time since the last event, s.
     pub since_event: f64,
+    /// The step that the error allowed right after the last event or kink, s; the largest number before the first.
+    pub step_after_event: f64,
     /// ∂F_x/∂u, ∂F_x/∂w, ∂F_z/∂u, ∂F_z/∂w with respect to the targets of the last motion, N/m; 0 before the first.
     pub tangents: [f64; 4],
     /// u and w at the start of the run, m.
@@ -73,6 +75,7 @@ impl RunState {
             step_size: FIRST_STEP / model.stiffest_frequency(),
             event_spacing: f64::MAX,
             since_event: 0.0,
+            step_after_event: f64::MAX,
             tangents: [0.0; 4],
             start: [start.u, start.w],
             time_stepping,
@@ -92,6 +95,7 @@ impl RunState {
             step_size,
             event_spacing,
             since_event,
+            step_after_event,
             tangents,
             start,
             time_stepping,
@@ -101,6 +105,7 @@ impl RunState {
         (*event_spacing, *since_event) = (other.event_spacing, other.since_event);
         (*step_size, *tangents, *rates_valid) = (other.step_size, other.tangents, other.rates_valid);
         (*start, *time_stepping) = (other.start, other.time_stepping);
+        *step_after_event = other.step_after_event;
         *mode_changes_per_step = other.mode_changes_per_step;
         layer.copy_from(&other.layer);
     }

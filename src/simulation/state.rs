@@ -169,6 +169,7 @@ fn check_numbers(run: &RunState) -> Result<(), RestoreError> {
         step_size,
         event_spacing,
         since_event,
+        step_after_event,
         tangents,
         start,
         time_stepping: _,
@@ -186,6 +187,7 @@ fn check_numbers(run: &RunState) -> Result<(), RestoreError> {
         ("the step size", *step_size),
         ("the time between events", *event_spacing),
         ("the time since the last event", *since_event),
+        ("the step after the last event", *step_after_event),
         ("the mode changes per time step", *mode_changes_per_step),
     ];
     for (what, value) in scalars {
