@@ -1,12 +1,11 @@
 //! The error test of a step: its tolerances and its embedded error estimate (docs/theory.md, section 9).
 
-use serde::{Deserialize, Serialize};
-
+use super::largest::Largest;
 use super::maxwell::Maxwell;
 use super::rates::Rates;
 use super::tableau::Tableau;
-use crate::math::{sum_of, sum_of_pairs, weighted_sum};
-use crate::model::{CarrierPoint, Forces, LinkKind, Mode, Model, State};
+use crate::math::{dot, sum_of, sum_of_pairs, weighted_sum};
+use crate::model::{CarrierPoint, Exchange, LinkKind, Mode, Model, State};
 
 /// The tolerances of the local error of a step. The error of each quantity is divided by absolute + relative · size.
 #[derive(Clone, Debug, PartialEq)]
@@ -152,45 +151,6 @@ impl ErrorWorkspace {
     }
 }
 
-/// The largest forces of the layer on the carrier so far, N: what their errors are measured by.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct LargestForces {
-    /// |F_x|.
-    pub x: f64,
-    /// |F_z|.
-    pub z: f64,
-}
-
-impl LargestForces {
-    /// Includes the forces of `forces`.
-    #[must_use]
-    pub fn with(self, forces: &Forces) -> Self {
-        Self { x: self.x.max(forces.on_carrier_x().abs()), z: self.z.max(forces.on_carrier_z().abs()) }
-    }
-
-    /// By how much the force of one mass of a layer of `model` may err, N: the errors of all masses, if they are
-    /// independent, make one of F_x or F_z within the relative tolerance.
-    pub fn allowed_of_mass(self, model: &Model, tolerance: &Tolerance) -> f64 {
-        let (x, z) = self.scales(model, tolerance);
-        tolerance.relative * x.min(z) / (model.masses() as f64).sqrt()
-    }
-
-    /// What the errors of F_x and F_z are measured by in a layer of `model`, N. Forces that are still to come, or that
-    /// symmetry makes nothing, are not resolved down to their rounding.
-    fn scales(self, model: &Model, tolerance: &Tolerance) -> (f64, f64) {
-        let expected = LEAST_FORCE.max(EXPECTED_FRICTION * model.friction_coefficient);
-        let stiffness = model.mass_stiffness_without_rods().max(model.mass * model.frequency_without_rods().powi(2));
-        let least = LEAST_FORCE * tolerance.position / tolerance.relative * stiffness;
-        (self.x.max(expected * self.z).max(least), self.z.max(LEAST_FORCE * self.x).max(least))
-    }
-}
-
-/// The least scale of the errors of one force, as a share of the other, and as one of the force that the scene's height
-/// makes on a mass.
-const LEAST_FORCE: f64 = 1e-3;
-/// The least scale of the errors of F_x as a share of the friction that a slide under F_z would have.
-const EXPECTED_FRICTION: f64 = 0.5;
-
 /// What the error test of an attempted step needs.
 #[derive(Clone, Copy)]
 pub(super) struct ErrorTest<'a, const STAGES: usize> {
@@ -203,8 +163,10 @@ pub(super) struct ErrorTest<'a, const STAGES: usize> {
     pub end: &'a State,
     /// The masses in contact.
     pub contacts: &'a [usize],
-    /// What the errors of F_x and F_z are measured by, N.
-    pub largest: LargestForces,
+    /// The powers through the surface and the carrier at the stages, where energies are computed.
+    pub exchange: Option<&'a [Exchange]>,
+    /// What the errors of forces and energies are measured by.
+    pub largest: Largest,
 }
 
 impl<const STAGES: usize> ErrorTest<'_, STAGES> {
@@ -247,8 +209,31 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
                 of_forces += self.carrier_force_squares(model, kind, tolerance, workspace);
             }
         }
+        let of_energies = self.exchange.map_or(0.0, |exchange| self.energy_square(model, exchange, h, tolerance));
         let mean = |sum: f64| (sum / model.masses() as f64).sqrt();
-        StepAttempt { error: mean(sum).hypot(self.tableau.force_weight * of_forces.sqrt()), carrier_error: mean(free) }
+        let of_run = self.tableau.run_weight * (of_forces + of_energies).sqrt();
+        StepAttempt { error: mean(sum).hypot(of_run), carrier_error: mean(free) }
+    }
+
+    /// The square of the error of the energies through the dampers, the surface and the carrier over its tolerance.
+    ///
+    /// Just after a kink the dampers' power falls within times far shorter than the step, which the motion forgets: the
+    /// energies alone show that.
+    fn energy_square(&self, model: &Model, exchange: &[Exchange], h: f64, tolerance: &Tolerance) -> f64 {
+        let damper = |stage: &Rates| -> f64 {
+            let links = LinkKind::ALL.into_iter().zip(&model.links).filter(|(_, law)| law.damping > 0.0);
+            let of = |kind: LinkKind| &stage.elongation_rate[kind as usize][..];
+            links.map(|(kind, law)| law.damping * dot(of(kind), of(kind))).sum()
+        };
+        let (mut errors, mut input) = ([0.0; 3], 0.0);
+        let weights = self.tableau.error.iter().zip(self.tableau.weights());
+        for (((error, weight), stage), exchange) in weights.zip(self.stages).zip(exchange) {
+            let powers = [damper(stage), exchange.friction, exchange.input];
+            errors.iter_mut().zip(powers).for_each(|(sum, power)| *sum += h * error * power);
+            input += h * weight * exchange.input;
+        }
+        let allowed = tolerance.relative * self.largest.energy_scale(model, tolerance).max(input.abs());
+        errors.iter().map(|error| square(error / allowed)).sum()
     }
 
     /// The square of the error of F_x or F_z, which the links of `kind` make, over its tolerance: of the sum of their
@@ -261,7 +246,7 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
         workspace: &mut ErrorWorkspace,
     ) -> f64 {
         let law = &model.links[kind as usize];
-        let (scale_x, scale_z) = self.largest.scales(model, tolerance);
+        let (scale_x, scale_z) = self.largest.force_scales(model, tolerance);
         let ErrorWorkspace { x, z, v_x, v_z, force } = workspace;
         let (position, velocity, scale) = if kind.is_along_x() { (x, v_x, scale_x) } else { (z, v_z, scale_z) };
         if self.maxwell.has_elements(kind) {

@@ -115,6 +115,7 @@ impl<const N: usize> RungeKutta<N> {
             carrier: &stages.carrier[..N],
             end: &stages.solver.state,
             contacts: stages.solver.contacts(),
+            exchange: stages.tracks_energy.then_some(&stages.exchange[..]),
             largest: step.start.largest.with(&stages.solver.forces),
         };
         test.run(step.model, step.span.length, tolerance, workspace)

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::error::LargestForces;
+use super::largest::Largest;
 use crate::model::{
     CarrierPoint, ContactForces, Exchange, Forces, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint,
 };
@@ -171,15 +171,15 @@ pub struct StepStart {
     pub rates: Rates,
     /// The powers through the surface and the carrier there, W; 0 where energies are not computed.
     pub exchange: Exchange,
-    /// The largest forces of the layer on the carrier so far, N.
-    pub largest: LargestForces,
+    /// The largest forces and energies so far.
+    pub largest: Largest,
 }
 
 impl StepStart {
     /// A layer of `model` at rest and free.
     pub fn new(model: &Model) -> Self {
         let state = State::new(model.masses(), model.maxwell_variables());
-        Self { state, rates: Rates::new(model), exchange: Exchange::default(), largest: LargestForces::default() }
+        Self { state, rates: Rates::new(model), exchange: Exchange::default(), largest: Largest::default() }
     }
 
     /// Copies `other`, of the same model, without allocating.

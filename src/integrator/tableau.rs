@@ -14,9 +14,9 @@ pub struct Tableau<const STAGES: usize> {
     pub error: [f64; STAGES],
     /// Order of the embedded method. That of the method itself is one higher.
     pub embedded_order: i32,
-    /// Weight of the errors of the forces on the carrier in the error test: what makes the errors of whole runs about
-    /// the relative tolerance.
-    pub force_weight: f64,
+    /// Weight of the errors of the forces on the carrier and of the energies in the error test: what makes the errors of
+    /// whole runs about the relative tolerance.
+    pub run_weight: f64,
 }
 
 impl<const STAGES: usize> Tableau<STAGES> {
@@ -27,7 +27,7 @@ impl<const STAGES: usize> Tableau<STAGES> {
         c: [f64; STAGES],
         embedded: [f64; STAGES],
         embedded_order: i32,
-        force_weight: f64,
+        run_weight: f64,
     ) -> Self {
         let mut i = 1;
         while i < STAGES - 1 {
@@ -46,7 +46,7 @@ impl<const STAGES: usize> Tableau<STAGES> {
             error[j] -= embedded[j];
             j += 1;
         }
-        Self { a, c, error, embedded_order, force_weight }
+        Self { a, c, error, embedded_order, run_weight }
     }
 
     /// The weights b.
@@ -234,7 +234,7 @@ pub const SDIRK2: Tableau<TWO_STAGES> = Tableau {
     c: [0.0, GAMMA, 1.0],
     error: [0.0, -SDIRK2_ESTIMATE, SDIRK2_ESTIMATE],
     embedded_order: 1,
-    force_weight: 0.2,
+    run_weight: 0.2,
 };
 
 /// The continuous weights of the two implicit stages of [`SDIRK2`]: the straight line through their rates, integrated

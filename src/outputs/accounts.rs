@@ -48,6 +48,12 @@ impl Energies {
         self.channels.dissipated() + self.impact
     }
 
+    /// The largest of all energies through the channels and in impacts, J.
+    pub fn largest(&self) -> f64 {
+        let [through_channels @ .., _] = self.numbers();
+        through_channels.iter().fold(0.0, |largest, energy| largest.max(energy.abs()))
+    }
+
     /// All numbers, to check that they are finite.
     pub fn numbers(&self) -> [f64; 6] {
         let Self { channels: ChannelEnergies { damper, maxwell, friction, input }, impact, initial } = *self;

@@ -169,6 +169,8 @@ impl Run {
             }
             self.accept_event_driven_step(step, end);
         }
+        let largest = &mut self.state.layer.largest;
+        largest.energy = largest.energy.max(self.state.energies.largest());
         if auto {
             self.state.mode_changes_per_step *= (-step.share * step.h / (MEMORY * time_step)).exp();
             self.state.mode_changes_per_step += (self.state.counters.events - before) as f64 / MEMORY;

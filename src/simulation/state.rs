@@ -181,7 +181,7 @@ fn check_numbers(run: &RunState) -> Result<(), RestoreError> {
     check_finite("the tangents", tangents)?;
     check_finite("the carrier's displacement at the start", start)?;
     check_finite("the powers", &[exchange.friction, exchange.input])?;
-    check_finite("the largest forces", &[largest.x, largest.z])?;
+    check_finite("the largest forces and energies", &[largest.force_x, largest.force_z, largest.energy])?;
     let scalars = [
         ("the time since the carrier's last kink", *s),
         ("the step size", *step_size),

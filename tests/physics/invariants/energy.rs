@@ -16,14 +16,6 @@ const ALLOWED: f64 = 10.0;
 /// Of what a unit is for each step, that adds up where nothing damps it.
 const OF_EACH_STEP: f64 = 0.1;
 
-/// The relative tolerance above which a step of the event-driven method may pass over what dampers do just after a
-/// kink: they bring the layer to the carrier's new velocity in a time far shorter than the step, which is good at its
-/// end, and the quadrature of what they lose knows the power at the kink and after it alone.
-const COARSE: f64 = 1e-6;
-
-/// What that may amount to, in kinetic energies of the layer at the carrier's jumps.
-const PASSED_OVER: f64 = 4.0;
-
 fn run(case: &Case) -> Result<Record, TestCaseError> {
     let case = case.clone().with_group(OutputGroup::Solver);
     case.run(6).map_err(|error| TestCaseError::fail(format!("{error}")))
@@ -31,11 +23,8 @@ fn run(case: &Case) -> Result<Record, TestCaseError> {
 
 /// The error of energies that a run may have, J.
 fn allowed(case: &Case, record: &Record) -> f64 {
-    let solver = &case.scene.solver;
     let steps = record.largest(Output::Steps);
-    let kinks = solver.method != Method::Step && solver.relative_tolerance > COARSE;
     ALLOWED.max(OF_EACH_STEP * steps) * Units::of(case).energy(largest_energy(case, record))
-        + if kinks { PASSED_OVER * case.kinks() } else { 0.0 }
 }
 
 fn balances(method: Method, cases: u32) {

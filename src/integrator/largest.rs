@@ -1,0 +1,68 @@
+//! The largest forces and energies of a run so far: what their errors are measured by.
+
+use serde::{Deserialize, Serialize};
+
+use super::error::Tolerance;
+use crate::model::{Forces, Model};
+
+/// The least scale of the errors of one force, as a share of the other, and as one of the force that the scene's height
+/// makes on a mass.
+const LEAST_FORCE: f64 = 1e-3;
+/// The elongation whose energy is the least scale of the errors of energies, as a share of the one whose force is that
+/// of forces: a light layer moves with energies far below those of its springs.
+const LEAST_ENERGY: f64 = 1e-6;
+/// The least scale of the errors of F_x as a share of the friction that a slide under F_z would have.
+const EXPECTED_FRICTION: f64 = 0.5;
+
+/// The largest forces of the layer on the carrier and energies so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Largest {
+    /// |F_x|, N.
+    pub force_x: f64,
+    /// |F_z|, N.
+    pub force_z: f64,
+    /// Of the energies through the channels and in impacts, J; 0 where energies are not computed.
+    pub energy: f64,
+}
+
+impl Largest {
+    /// Includes the forces of `forces`.
+    #[must_use]
+    pub fn with(self, forces: &Forces) -> Self {
+        Self {
+            force_x: self.force_x.max(forces.on_carrier_x().abs()),
+            force_z: self.force_z.max(forces.on_carrier_z().abs()),
+            ..self
+        }
+    }
+
+    /// By how much the force of one mass of a layer of `model` may err, N: the errors of all masses, if they are
+    /// independent, make one of F_x or F_z within the relative tolerance.
+    pub fn allowed_of_mass(self, model: &Model, tolerance: &Tolerance) -> f64 {
+        let (x, z) = self.force_scales(model, tolerance);
+        tolerance.relative * x.min(z) / (model.masses() as f64).sqrt()
+    }
+
+    /// What the errors of F_x and F_z are measured by in a layer of `model`, N. Forces that are still to come, or that
+    /// symmetry makes nothing, are not resolved down to their rounding.
+    pub(super) fn force_scales(self, model: &Model, tolerance: &Tolerance) -> (f64, f64) {
+        let expected = LEAST_FORCE.max(EXPECTED_FRICTION * model.friction_coefficient);
+        let least = least_elongation(tolerance) * stiffness(model);
+        (self.force_x.max(expected * self.force_z).max(least), self.force_z.max(LEAST_FORCE * self.force_x).max(least))
+    }
+
+    /// What the errors of energies are measured by, J.
+    pub(super) fn energy_scale(self, model: &Model, tolerance: &Tolerance) -> f64 {
+        self.energy.max((LEAST_ENERGY * least_elongation(tolerance)).powi(2) * stiffness(model))
+    }
+}
+
+/// An elongation that does not matter, m: the scene's height is the absolute tolerance over the relative one.
+fn least_elongation(tolerance: &Tolerance) -> f64 {
+    LEAST_FORCE * tolerance.position / tolerance.relative
+}
+
+/// Of the links on one mass without rods, N/m, or what its damping rate stands for.
+fn stiffness(model: &Model) -> f64 {
+    model.mass_stiffness_without_rods().max(model.mass * model.frequency_without_rods().powi(2))
+}
