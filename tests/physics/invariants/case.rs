@@ -54,18 +54,6 @@ impl Case {
         0.5 * self.scene.layer.masses as f64 * self.scene.mass() * speed * speed
     }
 
-    /// The kinetic energy of the layer at the speeds by which the carrier's velocity jumps, summed, J.
-    pub(crate) fn kinks(&self) -> f64 {
-        let mut before = (self.start.u_rate, self.start.w_rate);
-        let jump = |motion: &Motion| {
-            let (u, w) = (motion.u.velocity(0.0), motion.w.velocity(0.0));
-            let jump = (u - before.0).hypot(w - before.1);
-            before = (motion.u.velocity(motion.duration), motion.w.velocity(motion.duration));
-            self.moving(jump)
-        };
-        self.motions.iter().map(jump).sum()
-    }
-
     /// The run at its start.
     pub(crate) fn started(&self) -> Simulation {
         Simulation::new(&self.scene, &self.start).unwrap_or_else(|error| panic!("{error}"))
