@@ -116,7 +116,33 @@ impl Contacts<'_> {
                 first = self.fall(i, Limit::Margin, self.tolerance.margin(mode), first);
             }
         }
+        // The carrier turns between the stages without the masses' motion telling the error test.
+        if self.step.carrier.shortest_period() < f64::INFINITY {
+            for i in (0..self.step.model.masses()).filter(|&i| self.step.start.state.mode[i].in_contact()) {
+                first = self.dip(i, Limit::Normal, force, first);
+                first = self.dip(i, Limit::Margin, self.tolerance.margin(self.step.start.state.mode[i]), first);
+            }
+        }
         first
+    }
+
+    /// The same as [`fall`](Self::fall) where a quantity falls below its tolerance between the stages alone: at the vertex
+    /// of the parabola through its least value at a stage and those before and after.
+    fn dip(&mut self, i: usize, limit: Limit, tolerance: f64, first: Option<f64>) -> Option<f64> {
+        let inner = 1..self.step.stages.len() - 1;
+        let least = inner.min_by(|&a, &b| f64::total_cmp(&self.at_stage(a, i, limit), &self.at_stage(b, i, limit)));
+        let Some(rank) = least else { return first };
+        let [before, here, after] =
+            [rank - 1, rank, rank + 1].map(|rank| (self.node(rank), self.at_stage(rank, i, limit)));
+        let Some((theta, value)) = vertex(before, here, after) else { return first };
+        if value >= -tolerance || theta >= first.unwrap_or(1.0) || self.value(i, limit, theta) >= -tolerance {
+            return first;
+        }
+        let aim = 0.5 * tolerance;
+        if self.value(i, limit, before.0) <= -aim {
+            return Some(before.0);
+        }
+        Some(bracketed_root(|theta| self.value(i, limit, theta) + aim, (before.0, theta), LOCATED))
     }
 
     /// The fraction at which a quantity of mass `i` first falls below -`tolerance`, located where it is -`tolerance`/2;
@@ -164,6 +190,16 @@ impl Contacts<'_> {
 /// Accuracy of an event's instant as a share of the step: far below the resolution of the tolerances.
 const LOCATED: f64 = 1e-12;
 
+/// The vertex of the parabola through three points, place and value, if it is a minimum between the outer ones.
+fn vertex(before: (f64, f64), here: (f64, f64), after: (f64, f64)) -> Option<(f64, f64)> {
+    let slope = |a: (f64, f64), b: (f64, f64)| (b.1 - a.1) / (b.0 - a.0);
+    let (left, right) = (slope(before, here), slope(here, after));
+    let bend = (right - left) / (after.0 - before.0);
+    let place = 0.5 * (before.0 + here.0 - left / bend);
+    let value = before.1 + (place - before.0) * (left + bend * (place - here.0));
+    (bend > 0.0 && place > before.0 && place < after.0 && value.is_finite()).then_some((place, value))
+}
+
 fn any_below(values: &[f64], limit: f64) -> bool {
     values.iter().fold(f64::MAX, |least, &value| if value < least { value } else { least }) < limit
 }
@@ -184,4 +220,18 @@ pub fn is_due(model: &Model, state: &State, rates: &Rates, at: CarrierPosition, 
                 || (model.has_friction && rates.margin[i] < -PASSED * tolerance.margin(mode))
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::vertex;
+
+    #[test]
+    fn a_parabola_has_its_vertex() {
+        let at = |x: f64| (x, 3.0 * (x - 0.4) * (x - 0.4) - 0.25);
+        let (place, value) = vertex(at(0.1), at(0.3), at(0.9)).unwrap();
+        assert!((place - 0.4).abs() < 1e-15 && (value + 0.25).abs() < 1e-15, "{place} {value}");
+        assert_eq!(vertex(at(0.5), at(0.6), at(0.9)), None);
+        assert_eq!(vertex((0.0, f64::MAX), (0.1, f64::MAX), (0.2, f64::MAX)), None);
+    }
 }
