@@ -6,32 +6,32 @@ use super::interpolation::StageInterpolation;
 use super::maxwell::Maxwell;
 use super::method::{InitialGuess, RungeKutta, Stages, StepInput};
 use super::stage::{ConvergenceTest, NoConvergence};
-use super::tableau::{ContinuousWeights, ESDIRK4, ESDIRK5, FIVE_STAGES, STAGES, Tableau};
+use super::tableau::{ContinuousWeights, ESDIRK3, ESDIRK5, FOUR_STAGES, STAGES, Tableau};
 use crate::model::{ChannelEnergies, Model, State};
 
 /// The pairs of event-driven steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pair {
-    /// [`ESDIRK4`]: order 4 with four implicit stages.
-    Fourth,
+    /// [`ESDIRK3`]: order 3 with three implicit stages.
+    Third,
     /// [`ESDIRK5`]: order 5 with six implicit stages.
     Fifth,
 }
 
-/// The relative tolerance from which on the pair of order 4 is the cheaper one: where mode changes cut the steps short,
+/// The relative tolerance from which on the pair of order 3 is the cheaper one: where mode changes cut the steps short,
 /// its fewer stages count for more than longer steps.
-const FOURTH_FROM: f64 = 3e-4;
+const THIRD_FROM: f64 = 3e-3;
 
 impl Pair {
     /// The cheaper pair at a relative tolerance.
     pub fn at_tolerance(relative: f64) -> Self {
-        if relative >= FOURTH_FROM { Self::Fourth } else { Self::Fifth }
+        if relative >= THIRD_FROM { Self::Third } else { Self::Fifth }
     }
 
     /// Number of stages, the explicit one included.
     pub fn stages(self) -> usize {
         match self {
-            Self::Fourth => FIVE_STAGES,
+            Self::Third => FOUR_STAGES,
             Self::Fifth => STAGES,
         }
     }
@@ -39,14 +39,14 @@ impl Pair {
     /// Order of the embedded method. That of the method itself is one higher.
     pub fn embedded_order(self) -> i32 {
         match self {
-            Self::Fourth => ESDIRK4.embedded_order,
+            Self::Third => ESDIRK3.embedded_order,
             Self::Fifth => ESDIRK5.embedded_order,
         }
     }
 
     pub(super) fn interpolation(self) -> StageInterpolation {
         match self {
-            Self::Fourth => StageInterpolation::new(&ESDIRK4),
+            Self::Third => StageInterpolation::new(&ESDIRK3),
             Self::Fifth => StageInterpolation::new(&ESDIRK5),
         }
     }
@@ -55,7 +55,7 @@ impl Pair {
 /// The pair of a run with its workspace.
 #[derive(Clone, Debug)]
 pub(super) enum EventMethod {
-    Fourth(RungeKutta<FIVE_STAGES>),
+    Third(RungeKutta<FOUR_STAGES>),
     Fifth(RungeKutta<STAGES>),
 }
 
@@ -63,7 +63,7 @@ impl EventMethod {
     /// A pair for `model`; without workspace where it is not `used`.
     pub(super) fn new(pair: Pair, model: &Model, used: bool) -> Self {
         match pair {
-            Pair::Fourth => Self::Fourth(runge_kutta(&ESDIRK4, model, used)),
+            Pair::Third => Self::Third(runge_kutta(&ESDIRK3, model, used)),
             Pair::Fifth => Self::Fifth(runge_kutta(&ESDIRK5, model, used)),
         }
     }
@@ -71,7 +71,7 @@ impl EventMethod {
     /// γ of every implicit stage.
     pub(super) fn gamma(&self) -> f64 {
         match self {
-            Self::Fourth(method) => method.tableau.gamma(),
+            Self::Third(method) => method.tableau.gamma(),
             Self::Fifth(method) => method.tableau.gamma(),
         }
     }
@@ -84,7 +84,7 @@ impl EventMethod {
         convergence: ConvergenceTest,
     ) -> Result<(), NoConvergence> {
         match self {
-            Self::Fourth(method) => method.attempt(stages, step, convergence),
+            Self::Third(method) => method.attempt(stages, step, convergence),
             Self::Fifth(method) => method.attempt(stages, step, convergence),
         }
     }
@@ -98,7 +98,7 @@ impl EventMethod {
         workspace: &mut ErrorWorkspace,
     ) -> StepAttempt {
         match self {
-            Self::Fourth(method) => method.test(stages, step, tolerance, workspace),
+            Self::Third(method) => method.test(stages, step, tolerance, workspace),
             Self::Fifth(method) => method.test(stages, step, tolerance, workspace),
         }
     }
@@ -113,14 +113,14 @@ impl EventMethod {
         theta: f64,
     ) -> ChannelEnergies {
         match self {
-            Self::Fourth(method) => method.energies(stages, model, start, h, theta),
+            Self::Third(method) => method.energies(stages, model, start, h, theta),
             Self::Fifth(method) => method.energies(stages, model, start, h, theta),
         }
     }
 
     pub(super) fn floats(&self) -> usize {
         match self {
-            Self::Fourth(method) => method.maxwell.floats(),
+            Self::Third(method) => method.maxwell.floats(),
             Self::Fifth(method) => method.maxwell.floats(),
         }
     }

@@ -10,9 +10,9 @@
 //! method's order.
 //!
 //! The seven stages of [`ESDIRK5`](super::ESDIRK5) meet all seven conditions, by one w; so it is the first and the last
-//! stage at the ends, and the position at the end is that of the method. The five of [`ESDIRK4`](super::ESDIRK4) meet
-//! the first four, since the last two stages are alike up to order 3. The direction n that tells these two apart is free,
-//! and w = w_p + φ(θ) n with a parabola φ that makes the ends and the integral so.
+//! stage at the ends, and the position at the end is that of the method. The four of [`ESDIRK3`](super::ESDIRK3) meet the
+//! first three. One direction n is left to them, and w = w_p + φ(θ) n with a parabola φ that makes the ends and the integral
+//! so.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -103,7 +103,7 @@ const RIGHT: [(usize, f64); STAGES] =
 
 /// Number of conditions that stages of the method's order can meet.
 fn conditions<const N: usize>(tableau: &Tableau<N>) -> usize {
-    if tableau.embedded_order >= 4 { RIGHT.len() } else { 4 }
+    if tableau.embedded_order >= 4 { RIGHT.len() } else { 3 }
 }
 
 /// The weights by power of θ.
@@ -187,7 +187,7 @@ fn in_bernstein_basis(by_power: &[[f64; STAGES]; POWERS]) -> [[f64; STAGES]; POW
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::integrator::{ESDIRK4, ESDIRK5};
+    use crate::integrator::{ESDIRK3, ESDIRK5};
 
     /// Roundings times the condition of the equations for the weights, some 1e4.
     const ROUNDING: f64 = 1e-11;
@@ -212,7 +212,7 @@ mod tests {
     #[test]
     fn the_weights_meet_their_conditions() {
         meets_its_conditions(&ESDIRK5);
-        meets_its_conditions(&ESDIRK4);
+        meets_its_conditions(&ESDIRK3);
     }
 
     fn has_the_ends_of<const N: usize>(tableau: &Tableau<N>) {
@@ -231,12 +231,12 @@ mod tests {
     #[test]
     fn both_ends_and_the_whole_step_are_those_of_the_method() {
         has_the_ends_of(&ESDIRK5);
-        has_the_ends_of(&ESDIRK4);
+        has_the_ends_of(&ESDIRK3);
     }
 
     #[test]
     fn stages_come_in_the_order_of_time() {
-        assert_eq!(StageInterpolation::new(&ESDIRK4).in_time(), [0, 2, 1, 3, 4]);
+        assert_eq!(StageInterpolation::new(&ESDIRK3).in_time(), [0, 2, 1, 3]);
         assert_eq!(StageInterpolation::new(&ESDIRK5).in_time(), [0, 3, 1, 2, 4, 5, 6]);
     }
 

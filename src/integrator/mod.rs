@@ -1,7 +1,7 @@
 //! The implicit Runge-Kutta methods: attempts and acceptance of single steps of the layer with its contact modes held,
 //! their error tests, dense outputs, energies and sensitivities.
 //!
-//! Three methods share one implementation: the pairs [`ESDIRK4`] and [`ESDIRK5`] for event-driven runs, and [`SDIRK2`],
+//! Three methods share one implementation: the pairs [`ESDIRK3`] and [`ESDIRK5`] for event-driven runs, and [`SDIRK2`],
 //! of order 2 with two implicit stages, for time-stepping.
 
 mod dense;
@@ -24,7 +24,7 @@ pub use interpolation::StageInterpolation;
 pub use largest::Largest;
 pub use rates::{NO_LIMIT, Rates, StepStart};
 pub use stage::NoConvergence;
-pub use tableau::{ContinuousWeights, ESDIRK4, ESDIRK5, SDIRK2, STAGES, TWO_STAGES, Tableau};
+pub use tableau::{ContinuousWeights, ESDIRK3, ESDIRK5, SDIRK2, STAGES, TWO_STAGES, Tableau};
 
 use crate::model::{Carrier, CarrierPoint, ChannelEnergies, Exchange, Forces, Model, State};
 use dense::piecewise_linear;

@@ -168,31 +168,24 @@ pub const ESDIRK5: Tableau<7> = {
     )
 };
 
-/// ESDIRK4(3) of A. Kværnø, *Singly diagonally implicit Runge-Kutta methods with an explicit first stage* (BIT Numer.
-/// Math. 44, 2004): five stages of which the last two are both at the end of the step, and both methods L-stable.
-pub const ESDIRK4: Tableau<FIVE_STAGES> = {
-    const GAMMA: f64 = 0.435_866_521_508_458_999_416_019;
-    const EMBEDDED: [f64; FIVE_STAGES] =
-        complete([0.0, -0.376_878_452_255_556_106_088_697, 0.838_612_530_127_186_108_990_398, GAMMA, 0.0]);
-    const B: [f64; FIVE_STAGES] = complete([
+/// ESDIRK3(2)4L[2]SA of C. A. Kennedy and M. H. Carpenter, *Diagonally implicit Runge-Kutta methods for ordinary
+/// differential equations: a review* (NASA/TM-2016-219173).
+pub const ESDIRK3: Tableau<FOUR_STAGES> = {
+    const GAMMA: f64 = 1767732205903.0 / 4055673282236.0;
+    const B: [f64; FOUR_STAGES] =
+        complete([0.0, -4482444167858.0 / 7529755066697.0, 11266239266428.0 / 11593286722821.0, GAMMA]);
+    const EMBEDDED: [f64; FOUR_STAGES] = complete([
         0.0,
-        0.117_330_441_370_438_848_696_818,
-        0.616_678_030_392_121_464_348_388,
-        -0.326_899_891_131_344_249_562_015,
-        GAMMA,
+        -10771552573575.0 / 22201958757719.0,
+        9247589265047.0 / 10645013368117.0,
+        2193209047091.0 / 5459859503100.0,
     ]);
     Tableau::new(
-        [
-            [0.0; FIVE_STAGES],
-            [0.0, GAMMA, 0.0, 0.0, 0.0],
-            [0.0, -0.108_365_551_381_320_799_978_225, GAMMA, 0.0, 0.0],
-            EMBEDDED,
-            B,
-        ],
-        [0.0, 2.0 * GAMMA, 0.468_238_744_851_844_395_624_207, 1.0, 1.0],
+        [[0.0; FOUR_STAGES], [0.0, GAMMA, 0.0, 0.0], [0.0, -640167445237.0 / 6845629431997.0, GAMMA, 0.0], B],
+        [0.0, 2.0 * GAMMA, 0.6, 1.0],
         EMBEDDED,
-        3,
-        0.7,
+        2,
+        8.0,
     )
 };
 
@@ -211,8 +204,8 @@ const fn complete<const N: usize>(mut weights: [f64; N]) -> [f64; N] {
 /// Number of stages of [`ESDIRK5`], the explicit one included: the most of any method.
 pub const STAGES: usize = ESDIRK5.c.len();
 
-/// Number of stages of [`ESDIRK4`], the explicit one included.
-pub(super) const FIVE_STAGES: usize = 5;
+/// Number of stages of [`ESDIRK3`], the explicit one included.
+pub(super) const FOUR_STAGES: usize = 4;
 
 /// Number of stages of [`SDIRK2`]; the first is the start of the step, which serves as a guess alone.
 pub const TWO_STAGES: usize = 3;

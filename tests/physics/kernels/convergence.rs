@@ -144,12 +144,12 @@ fn a_free_chain_converges_with_order_five() {
 }
 
 #[test]
-fn a_free_chain_converges_with_order_four_in_five_stages() {
-    let errors = free_errors(Stepper::by_five_stages);
+fn a_free_chain_converges_with_order_three() {
+    let errors = free_errors(Stepper::by_four_stages);
     for part in 0..3 {
         let order = last_order(&errors.map(|error| error[part]));
-        assert!((3.6..4.6).contains(&order), "part {part}: {order} from {errors:?}");
-        assert!(errors[2][part] < 2e-5, "part {part}: {errors:?}");
+        assert!((2.6..3.6).contains(&order), "part {part}: {order} from {errors:?}");
+        assert!(errors[2][part] < 2e-4, "part {part}: {errors:?}");
     }
 }
 
@@ -251,14 +251,14 @@ fn a_slipping_mass_converges_with_order_five() {
     }
 }
 
-/// Order 4 in five stages, without the shear strength.
+/// Order 3 in four stages, without the shear strength.
 #[test]
-fn a_slipping_mass_converges_with_order_four_in_five_stages() {
-    let errors = slipping_errors([4, 8, 16, 32], 1e-14, Stepper::by_five_stages);
+fn a_slipping_mass_converges_with_order_three() {
+    let errors = slipping_errors([4, 8, 16, 32], 1e-14, Stepper::by_four_stages);
     for (layer, errors) in errors.into_iter().filter(|(layer, _)| layer.rate_shear.is_none()) {
         for part in 0..3 {
             let order = (errors[0][part] / errors[3][part]).log2() / 3.0;
-            assert!((3.5..4.8).contains(&order), "part {part}: {order} from {errors:?} of {:?}", layer.friction);
+            assert!((2.4..4.0).contains(&order), "part {part}: {order} from {errors:?} of {:?}", layer.friction);
         }
     }
 }
@@ -272,9 +272,9 @@ fn the_error_estimate_falls_with_the_fifth_power() {
     let sliding = sliding(&slider.model(), 2.0, 0.0);
     for (layer, start) in [(layer, start), (slider, sliding.clone()), (rate_slider(4.0), sliding)] {
         let mut stepper = Stepper::new(layer.model(), PATHS, start, 1e-12);
-        // The norm divides by (absolute + relative · size): without the relative part by a constant.
+        // The norm divides by absolute + relative · size, nearly a constant for sizes far below 1.
         let tolerance = &mut stepper.tolerance;
-        (tolerance.relative, tolerance.position, tolerance.velocity) = (0.0, 1e-12, 1e-12);
+        (tolerance.relative, tolerance.position, tolerance.velocity) = (1e-12, 1e-12, 1e-12);
         let attempts = [4e-3, 2e-3, 1e-3].map(|h| stepper.attempt(h));
         let order = last_order(&attempts.map(|attempt| attempt.error));
         assert!((4.7..5.3).contains(&order), "{order} from {attempts:?}");

@@ -139,9 +139,9 @@ impl Stepper {
         Self { model, carrier, start, integrator, tolerance, s: 0.0, two_stages: false }
     }
 
-    /// The same by the pair of order 4.
-    pub fn by_five_stages(self) -> Self {
-        let integrator = Integrator::new(&self.model, Tracked::default(), Steps::EventDriven(Pair::Fourth));
+    /// The same by the pair of order 3.
+    pub fn by_four_stages(self) -> Self {
+        let integrator = Integrator::new(&self.model, Tracked::default(), Steps::EventDriven(Pair::Third));
         Self { integrator, ..self }
     }
 
