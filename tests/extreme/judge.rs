@@ -234,7 +234,7 @@ fn relative_error(outcome: &Outcome, tight: &Outcome, name: &str, rounding: f64)
 
 /// Below this share of the larger force, differences of the other one are roundings.
 const ROUNDING: f64 = 1e-13;
-/// No estimate is below the true error by more than this factor: the worst was 15, and of those of the forces 9.
+/// No estimate is below the true error by more than this factor: the worst was 63.
 const BELOW: f64 = 100.0;
 /// How many times their estimates two methods may differ: each is to be within a factor of ten of the truth.
 const OF_ESTIMATES: f64 = 10.0;
