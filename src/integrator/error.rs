@@ -132,6 +132,8 @@ const SHORTEST_RESOLVED: f64 = 1e-9;
 pub struct StepAttempt {
     /// The error estimate over the tolerance: at most 1 for a step that passes the error test.
     pub error: f64,
+    /// The same without the energies.
+    pub motion_error: f64,
     /// The error estimate of the carrier's displacement over the tolerance, taken over the free masses. It counts only
     /// where one of them may touch.
     pub carrier_error: f64,
@@ -216,8 +218,9 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
         let resolvable = self.exchange.filter(|_| h * model.stiffest_frequency() > SHORTEST_RESOLVED);
         let of_energies = resolvable.map_or(0.0, |exchange| self.energy_square(model, exchange, h, tolerance));
         let mean = |sum: f64| (sum / model.masses() as f64).sqrt();
-        let of_run = self.tableau.run_weight * (of_forces + of_energies).sqrt();
-        StepAttempt { error: mean(sum).hypot(of_run), carrier_error: mean(free) }
+        let motion_error = mean(sum).hypot(self.tableau.run_weight * of_forces.sqrt());
+        let error = motion_error.hypot(self.tableau.run_weight * of_energies.sqrt());
+        StepAttempt { error, motion_error, carrier_error: mean(free) }
     }
 
     /// The square of the error of the energies through the dampers, the surface and the carrier over its tolerance.

