@@ -234,6 +234,27 @@ mod tests {
         has_the_ends_of(&ESDIRK3);
     }
 
+    /// The largest error of the sine from its rates at the stages, with a quarter of its period in the step.
+    fn error_of_a_sine<const N: usize>(tableau: &Tableau<N>) -> f64 {
+        let interpolation = StageInterpolation::new(tableau);
+        let quarter = std::f64::consts::FRAC_PI_2;
+        let error = |theta: f64, phase: f64| {
+            let rates = tableau.c.map(|c| (phase + quarter * c).cos());
+            let integral: f64 =
+                interpolation.integral(theta).iter().zip(rates).map(|(weight, rate)| weight * rate).sum();
+            (phase.sin() + quarter * integral - (phase + quarter * theta).sin()).abs()
+        };
+        let phases = (0..40).map(|i| 0.05 * std::f64::consts::PI * f64::from(i));
+        phases.flat_map(|phase| (0..=20).map(move |i| error(0.05 * f64::from(i), phase))).fold(0.0, f64::max)
+    }
+
+    /// What the search for touches relies on.
+    #[test]
+    fn a_quarter_of_a_sine_is_seen_to_two_percent() {
+        let errors = [error_of_a_sine(&ESDIRK5), error_of_a_sine(&ESDIRK3)];
+        assert!(errors.iter().all(|&error| error > 1e-6 && error < 2e-2), "{errors:?}");
+    }
+
     #[test]
     fn stages_come_in_the_order_of_time() {
         assert_eq!(StageInterpolation::new(&ESDIRK3).in_time(), [0, 2, 1, 3]);

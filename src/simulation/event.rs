@@ -24,9 +24,8 @@ const OF_SPACING: f64 = 2.0;
 /// Steps up to this multiple of the shortest are not shortened for the sake of energies: what friction or a damper does
 /// in less than the resolution of time is over within it.
 const RESOLVED: f64 = 5.0;
-/// Share of a sine's amplitude by which the quintic of the dense output may be off it: (ωh)⁶/46080 with h a quarter of
-/// the period at most.
-const UNSEEN: f64 = 5e-4;
+/// Share of a sine's amplitude by which the dense output may be off it with a quarter of the period in a step.
+const UNSEEN: f64 = 2e-2;
 /// Cuts of one step at events after which each further cut leaves at most half of it. By rounding, an event can be found
 /// at the very end of the shortened step again and again.
 const MOST_CUTS: u32 = 50;
