@@ -261,7 +261,8 @@ fn disagreement(case: &Case, event: &Outcome, step: &Outcome) -> Option<String> 
     let larger = event.largest("F_x").max(event.largest("F_z"));
     let known = event.known * event.masses + relative_tolerance(case) * larger;
     let of = |force: Force| {
-        let (difference, largest) = (largest_difference(step, event, force.name()), event.largest(force.name()));
+        let largest = event.largest(force.name()).max(step.largest(force.name()));
+        let difference = largest_difference(step, event, force.name());
         let allowed = (OF_ESTIMATES * (one + other) + FLOOR) * largest + known;
         (difference > allowed).then(|| {
             let (name, share) = (force.name(), difference / largest);
