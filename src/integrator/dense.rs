@@ -1,6 +1,6 @@
 //! Dense output of both methods: the motion and the state within a step (docs/theory.md, section 5).
 //!
-//! [`DenseOutput`] belongs to the method of seven stages. Velocities are combinations of those at the stages
+//! [`DenseOutput`] belongs to event-driven steps. Velocities are combinations of those at the stages
 //! ([`StageInterpolation`]), positions their integrals. The Maxwell elements follow these velocities by the exact
 //! solution of ȧ = ė - a/τ, for any τ; its difference from the step's own end is distributed linearly over the step.
 //!
