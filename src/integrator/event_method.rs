@@ -55,16 +55,16 @@ impl Pair {
 /// The pair of a run with its workspace.
 #[derive(Clone, Debug)]
 pub(super) enum EventMethod {
-    Third(RungeKutta<FOUR_STAGES>),
-    Fifth(RungeKutta<STAGES>),
+    Third(Box<RungeKutta<FOUR_STAGES>>),
+    Fifth(Box<RungeKutta<STAGES>>),
 }
 
 impl EventMethod {
     /// A pair for `model`; without workspace where it is not `used`.
     pub(super) fn new(pair: Pair, model: &Model, used: bool) -> Self {
         match pair {
-            Pair::Third => Self::Third(runge_kutta(&ESDIRK3, model, used)),
-            Pair::Fifth => Self::Fifth(runge_kutta(&ESDIRK5, model, used)),
+            Pair::Third => Self::Third(Box::new(runge_kutta(&ESDIRK3, model, used))),
+            Pair::Fifth => Self::Fifth(Box::new(runge_kutta(&ESDIRK5, model, used))),
         }
     }
 
