@@ -132,9 +132,10 @@ type EstimateOf = fn(&Judged) -> &Estimate;
 /// The estimates: of the forces and of E_diss.
 const ESTIMATES: [EstimateOf; 2] = [|run| &run.forces, |run| &run.losses];
 
-/// The least share of the library's runs whose estimated error is within a factor of ten of the true one: 99 % of 495
-/// were. Where that can differ between machines, in the last digits of sensitive motions, is room for a few runs more.
-const WITHIN_TEN: f64 = 0.98;
+/// The least share of the library's runs whose estimated error is within a factor of ten of the true one: 99 % of 494
+/// were, and 98 % of the 89 whose error of E_diss is above what can be known. Where that can differ between machines, in
+/// the last digits of sensitive motions, is room for a few runs more.
+const WITHIN_TEN: f64 = 0.96;
 
 /// Prints how the estimated errors compare with the true ones.
 pub fn print_ratios(runs: &[Judged]) {
