@@ -174,8 +174,8 @@ fn errors_fall_with_the_tolerance_down_to_what_the_reference_knows() {
     for (i, row) in event.iter().enumerate() {
         assert_eq!(number(row, "tolerance"), format!("1e-{}", i + 2).parse::<f64>().unwrap());
         assert!(number(row, "run_time") > 0.0 && row["failure"].is_empty());
-        // Each step has six implicit stages, of which each is solved by one iteration at least.
-        assert!(number(row, "newton_iterations") >= 6.0 * number(row, "steps") && number(row, "steps") > 0.0);
+        // Each step has three or six implicit stages, of which each is solved by one iteration at least.
+        assert!(number(row, "newton_iterations") >= 3.0 * number(row, "steps") && number(row, "steps") > 0.0);
     }
     for column in ["error_F_x", "error_F_z", "error_E_diss"] {
         // Eight powers of ten of the tolerance; half of them at least in the error, whatever the scene's constant.
@@ -410,7 +410,9 @@ fn what_a_scene_does_not_have_has_no_error() {
     fs::write(&scene, text).unwrap();
     report(&scene, &folder, &["--repeat", "1", "--tolerances", "1e-4..1e-6"]);
     let rows = errors(&folder);
-    assert!(rows.iter().all(|row| row["error_F_x"].is_empty() && !row["error_F_z"].is_empty()), "{rows:?}");
+    // By time-stepping a tolerance may be left out: the event-driven reference takes six steps.
+    let mut ran = rows.iter().filter(|row| row["failure"].is_empty());
+    assert!(ran.all(|row| row["error_F_x"].is_empty() && !row["error_F_z"].is_empty()), "{rows:?}");
     let svg = fs::read_to_string(folder.join("error-run-time.svg")).unwrap();
     assert!(!svg.contains("error of F_x") && svg.contains("error of F_z"));
 }
