@@ -60,7 +60,7 @@ impl Run {
             let proposed = *proposal.get_or_insert_with(|| {
                 self.proposal(h, bounds.remaining.min(limit), attempt.error).min(self.longest_unstable())
             });
-            if starts_anew {
+            if starts_anew && cuts == 0 {
                 self.state.step_after_event = h * growth(self.pair(), attempt.error);
             }
             let event = self.first_event(h);
