@@ -57,6 +57,10 @@ pub(super) struct StepInput<'a> {
     pub beta: f64,
 }
 
+/// The most by which the speed of a slip may be guessed to grow where friction depends on it. Where friction falls with the
+/// speed there may be several solutions: the one that the motion reaches first is found from its present speed.
+const MOST_GUESSED: f64 = 2.0;
+
 impl<const N: usize> InitialGuess<N> {
     /// With the weights of Lagrange's polynomials through the latest three stages, which lie at `c`.
     pub(super) fn extrapolated(c: &[f64; N]) -> Self {
@@ -209,7 +213,11 @@ impl Stages {
         solver.state.velocity_x.copy_from_slice(&state.velocity_x);
         solver.state.velocity_z.copy_from_slice(&state.velocity_z);
         let earlier = self.rates.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
-        solver.guess_slips(earlier.map(|(stage, weight)| (step.beta * weight, &stage.acceleration_x[..])));
+        let accelerations = earlier.map(|(stage, weight)| (step.beta * weight, &stage.acceleration_x[..]));
+        solver.guess_slips(accelerations);
+        if step.model.rate_shear.is_some() {
+            solver.limit_guess(&state.velocity_x, MOST_GUESSED);
+        }
     }
 
     fn guess_limited(&mut self, step: &StepInput<'_>, i: usize) {

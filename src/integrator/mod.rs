@@ -137,9 +137,16 @@ impl Integrator {
     }
 
     /// Evaluates the rates and the powers at the start of a step from the `forces` in its state: needed at the start of
-    /// a run, after an event and at a kink of the carrier's motion.
-    pub fn evaluate_start(&self, model: &Model, start: &mut StepStart, carrier: &CarrierPoint, forces: &Forces) {
-        start.rates.evaluate(model, &start.state, forces);
+    /// a run, after an event and at a kink of the carrier's motion. The step will have some length `h` (s).
+    pub fn evaluate_start(
+        &self,
+        model: &Model,
+        start: &mut StepStart,
+        carrier: &CarrierPoint,
+        forces: &Forces,
+        h: f64,
+    ) {
+        start.rates.evaluate(model, &start.state, forces, self.event_method.gamma() * h);
         start.largest = start.largest.with(forces);
         if self.stages.tracks_energy {
             start.exchange = Exchange::evaluate(model, &start.state, carrier, forces);

@@ -4,8 +4,13 @@ use serde::{Deserialize, Serialize};
 
 use super::largest::Largest;
 use crate::model::{
-    CarrierPoint, ContactForces, Exchange, Forces, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint,
+    CarrierPoint, ContactForces, Exchange, Forces, LinkKind, MaxwellRow, Mode, Model, RateShear, State, SurfacePoint,
 };
+
+/// The share of an explicit acceleration that friction may take away within the step without the implicit one in its
+/// place. Where friction is not steep that share is of the order of the step's length, and the explicit one has the
+/// method's order.
+const STEEP: f64 = 0.5;
 
 /// The margin of a quantity that has no limit.
 pub const NO_LIMIT: f64 = f64::MAX;
@@ -71,14 +76,36 @@ impl Rates {
         }
     }
 
-    /// Computes the rates that the forces give in `state`: the explicit first stage.
-    pub fn evaluate(&mut self, model: &Model, state: &State, forces: &Forces) {
+    /// Computes the rates that the forces give in `state`: the explicit first stage of a step whose implicit stages have
+    /// β = `beta` (s).
+    pub fn evaluate(&mut self, model: &Model, state: &State, forces: &Forces, beta: f64) {
         self.clear_contacts();
         for i in 0..model.masses() {
             self.evaluate_mass(model, state, forces, i);
+            if let Some(law) = &model.rate_shear
+                && state.mode[i].slips()
+            {
+                self.soften(model, law, state, i, beta);
+            }
         }
         for (mine, rate) in self.elongation_rate.iter_mut().zip(&forces.rate) {
             mine.copy_from_slice(rate);
+        }
+    }
+
+    /// Replaces the acceleration of slipping mass `i` by the mean one of an implicit step of `beta` (s) with the other forces
+    /// held, where the two differ much: friction is then so steep over the speed that its value at the start says nothing
+    /// of the step.
+    fn soften(&mut self, model: &Model, law: &RateShear, state: &State, i: usize, beta: f64) {
+        let (v, surface) = (state.velocity_x[i], &state.surface[i]);
+        let per_velocity = state.mode[i].direction() * surface.slope.hypot(1.0);
+        let (speed, gain, weight) = (per_velocity * v, per_velocity * self.acceleration_x[i], model.mass / beta);
+        let after = law.balance(speed, law.excess(speed) + model.mass * gain, weight);
+        let slowed = (law.excess(after) - law.excess(speed)).abs() / model.mass;
+        if slowed > STEEP * gain.abs() {
+            let mean = (after - speed) / beta;
+            self.acceleration_x[i] = mean / per_velocity;
+            self.acceleration_z[i] = surface.slope * self.acceleration_x[i] + surface.curvature * v * v;
         }
     }
 

@@ -117,19 +117,20 @@ impl RateShear {
         (self.largest * (-self.sharpness * y * y).exp(), -2.0 * self.sharpness * y)
     }
 
-    /// A τ_f(v) - A τ_f(v_c), N, at the `speed` in the direction of slip, m/s; 0 up to the creep speed and for negative
-    /// speeds.
+    /// A τ_f(v) - A τ_f(v_c), N, at the `speed` in the direction of slip, m/s: 0 up to the creep speed, and odd, so that a
+    /// mass that turns round is braked before its mode changes.
     pub fn excess(&self, speed: f64) -> f64 {
-        if speed <= self.creep_speed { 0.0 } else { self.whole(speed).0 - self.plateau }
+        self.with_slope(speed).0
     }
 
     /// The [excess](Self::excess), N, and its derivative A τ_f'(v), N s/m.
     pub fn with_slope(&self, speed: f64) -> (f64, f64) {
-        if speed <= self.creep_speed {
+        let size = speed.abs();
+        if size <= self.creep_speed {
             return (0.0, 0.0);
         }
-        let (force, slope) = self.whole(speed);
-        (force - self.plateau, slope * force / speed)
+        let (force, slope) = self.whole(size);
+        ((force - self.plateau) * 1.0_f64.copysign(speed), slope * force / size)
     }
 
     /// A correction `by` (m/s) of Newton's method at `speed`, taken along the curve and not along its tangent: the speed
@@ -139,8 +140,8 @@ impl RateShear {
     /// corrections along it would alternate between both ends of the decades.
     pub fn along_curve(&self, speed: f64, by: f64, weight: f64) -> f64 {
         let linear = speed + by;
-        let constant = linear <= self.creep_speed && speed <= self.creep_speed;
-        if constant || by.abs() <= STRAIGHT * speed || weight.is_nan() || weight <= 0.0 {
+        let constant = linear.abs() <= self.creep_speed && speed.abs() <= self.creep_speed;
+        if constant || by.abs() <= STRAIGHT * speed.abs() || weight.is_nan() || weight <= 0.0 {
             return linear;
         }
         let (here, slope) = self.with_slope(speed);
@@ -151,6 +152,9 @@ impl RateShear {
     /// faster than the weight there may be three: then it is the first one from `from`, as the motion reaches it.
     pub fn balance(&self, from: f64, force: f64, weight: f64) -> f64 {
         let free = from + force / weight;
+        if free < 0.0 {
+            return -self.balance(-from, -force, weight);
+        }
         if free <= self.creep_speed {
             return free;
         }
@@ -231,8 +235,12 @@ mod tests {
                 let whole = found.plateau() + found.excess(speed);
                 assert!((whole - expected(speed)).abs() < 1e-12 * FORCE, "{speed:e}: {whole:e}");
             }
-            for speed in [6.0e-9, 1.0e-9, 0.0, -1.0] {
+            for speed in [6.0e-9, 1.0e-9, 0.0, -6.0e-9] {
                 assert_eq!((found.excess(speed), found.with_slope(speed)), (0.0, (0.0, 0.0)));
+            }
+            for speed in speeds().skip(1) {
+                let (force, slope) = found.with_slope(speed);
+                assert_eq!(found.with_slope(-speed), (-force, slope));
             }
         }
     }
@@ -252,12 +260,13 @@ mod tests {
         }
     }
 
-    /// From any speed to any other, back to rest and beyond it.
+    /// From any speed to any other, in the same direction and in the other.
     #[test]
     fn a_correction_ends_on_the_curve() {
         for law in laws() {
             for weight in [1e-3, 1.0, 1e3] {
-                for (from, to) in speeds().flat_map(|from| speeds().map(move |to| (from, to))) {
+                let pairs = speeds().flat_map(|from| speeds().map(move |to| (from, to)));
+                for (from, to) in pairs.flat_map(|(from, to)| [(from, to), (from, -to)]) {
                     let (here, slope) = law.with_slope(from);
                     let force = weight * (to - from) + law.excess(to) - here;
                     // More than one speed may have this friction where it falls faster than the weight.

@@ -95,8 +95,11 @@ impl Run {
             return attempt.ok();
         }
         self.state.counters.rejected += 1;
-        let shorter = h * if error.is_finite() { growth(self.pair(), error).min(SAFETY) } else { AFTER_FAILURE };
-        self.state.step_size = shorter.min(longest);
+        self.state.step_size = if error.is_finite() {
+            (h * growth(self.pair(), error).min(SAFETY)).min(longest)
+        } else {
+            AFTER_FAILURE * h
+        };
         None
     }
 

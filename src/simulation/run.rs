@@ -309,7 +309,7 @@ impl Run {
         run.energies.channels.friction += stop_reversed(model, layer);
         forces.evaluate(model, layer, &carrier);
         decide_modes(model, layer, forces);
-        workspace.integrator.evaluate_start(model, &mut run.layer, &carrier, forces);
+        workspace.integrator.evaluate_start(model, &mut run.layer, &carrier, forces, run.step_size);
         run.rates_valid = true;
         self.refresh_tangents();
         self.count_mode_changes();
@@ -350,7 +350,7 @@ impl Run {
         if !self.state.rates_valid {
             let carrier = self.evaluate_forces();
             let Self { model, state, workspace, .. } = self;
-            workspace.integrator.evaluate_start(model, &mut state.layer, &carrier, &workspace.forces);
+            workspace.integrator.evaluate_start(model, &mut state.layer, &carrier, &workspace.forces, state.step_size);
         }
         let (layer, carrier) = (&self.state.layer, self.state.carrier.at(self.state.s));
         layer.rates.on_carrier(&self.model, &layer.state.maxwell, &carrier)

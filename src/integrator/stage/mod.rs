@@ -220,6 +220,16 @@ impl StageSolver {
         }
     }
 
+    /// Guesses those slips that were to be faster than `most` times their speed at the start of the step to go on with
+    /// the velocity there, m/s.
+    pub(super) fn limit_guess(&mut self, start: &[f64], most: f64) {
+        for &i in &self.slips {
+            if self.state.velocity_x[i].abs() > most * start[i].abs() {
+                self.state.velocity_x[i] = start[i];
+            }
+        }
+    }
+
     /// Solves the stage, whose history is set, and writes its rates.
     ///
     /// # Errors

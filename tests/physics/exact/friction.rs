@@ -32,6 +32,24 @@ fn pressed(horizontal: &Law, u_rate: f64) -> Run {
     Run::new(&text, Start { w: -PRESSED, u_rate, ..Start::default() })
 }
 
+/// Pulled slowly by a spring, a mass breaks loose at T whatever force the tolerance of its position is: here 2 mN.
+#[test]
+fn a_coarse_tolerance_of_positions_holds_no_mass() {
+    let links = link("vertical", &Law::new(STIFFNESS, 0.0)) + &link("horizontal", &Law::new(STIFFNESS, 0.0));
+    let relative = 1e-3;
+    let text = format!(
+        "[layer]\nmasses = 1\nspacing = 1e-4\nmass = {MASS:?}\n{links}[surface]\nkind = \"flat\"\n\
+         [friction]\ncoulomb = {COULOMB:?}\n{}",
+        solver(relative, 1e-5)
+    );
+    let mut run = Run::new(&text, Start { w: -PRESSED, ..Start::default() });
+    let (limit, speed) = (COULOMB * STIFFNESS * PRESSED, 1e-3);
+    run.drive(2.0 * limit / (STIFFNESS * speed), rate(speed), REST);
+    let broke = run.events()[0].time * speed * STIFFNESS;
+    // An event lies where the limit is passed by half of its tolerance, a share of F_N.
+    assert_near("break", broke, limit, relative * limit / COULOMB);
+}
+
 fn sequence(events: &[ModeChange]) -> Vec<(i8, i8)> {
     events.iter().map(|event| (event.from, event.to)).collect()
 }

@@ -132,7 +132,7 @@ fn rates_agree_with_the_dense_matrices() {
         let carrier = CarrierPoint { u_rate: motion.1.x, w_rate: motion.1.y, ..CarrierPoint::default() };
         let (mut forces, mut rates) = (Forces::new(&model), Rates::new(&model));
         forces.evaluate(&model, &state, &carrier);
-        rates.evaluate(&model, &state, &forces);
+        rates.evaluate(&model, &state, &forces, 1e-12);
         state.mode.iter().for_each(|&mode| modes[(mode.number() + 1) as usize] += 1);
         // Some twenty terms are added in another order, and the dense system has condition numbers of some 10.
         let worst = difference(&matrices, &model, &state, &rates, motion);
