@@ -10,7 +10,9 @@ use asperity::simulation::{Simulation, SimulationError, Start};
 use serde::Serialize;
 
 use super::cli::Describe;
-use super::files::{FileError, load, print};
+use super::figure::Figure as _;
+use super::files::{FileError, check_outputs, load, print, sources};
+use super::foundation;
 use super::terminal::{LabelledLine, decimal, labelled, lines, rounded};
 
 /// `asperity describe` failed.
@@ -18,6 +20,8 @@ use super::terminal::{LabelledLine, decimal, labelled, lines, rounded};
 pub(crate) enum DescribeError {
     #[error(transparent)]
     File(#[from] FileError),
+    #[error("--plot: the scene has no [material], so its links stand for no body to compare them with")]
+    NothingToPlot,
     #[error("the run cannot start: {0}")]
     Start(#[from] SimulationError),
     #[error("cannot be written as JSON: {0}")]
@@ -29,6 +33,11 @@ const LEFT_OUT: &str = "left out";
 
 pub(crate) fn describe(command: &Describe) -> Result<(), DescribeError> {
     let scene = load(&command.scene)?;
+    if let Some(path) = &command.plot {
+        let picture = foundation::picture(&scene).ok_or(DescribeError::NothingToPlot)?;
+        check_outputs([path], sources(&command.scene, &scene))?;
+        picture.write(path)?;
+    }
     let text = if command.json { json(&scene)? } else { text(&scene)? };
     Ok(print(&text)?)
 }
@@ -51,6 +60,7 @@ pub(super) fn rows(scene: &Scene) -> Vec<LabelledLine> {
         rows.extend(labelled("Material", [body(scene, material), series(material), temperature(material)]));
     }
     rows.extend(labelled("Links", links(scene).map(link)));
+    rows.extend(labelled("Foundation", foundation::rows(scene)));
     rows.extend(labelled("Order", [paper_order(scene), order_as_coded(scene)]));
     rows.push(("Profile", profile(&scene.surface)));
     rows.extend(friction(scene));
@@ -98,11 +108,11 @@ fn roughness(scene: &Scene) -> String {
 }
 
 fn body(scene: &Scene, material: &Material) -> String {
-    let size = |value: Option<f64>| number(value.unwrap_or(0.0));
+    let thickness =
+        scene.layer.thickness.map_or_else(|| "a half-space".into(), |size| format!("{} m thick", number(size)));
     format!(
-        "{} m thick, {} m wide, density {} kg/m³, Poisson's ratio {}",
-        size(scene.layer.thickness),
-        size(scene.layer.width),
+        "{thickness}, {} m wide, density {} kg/m³, Poisson's ratio {}",
+        number(scene.layer.width.unwrap_or(0.0)),
         number(material.density),
         number(material.poisson_ratio)
     )
@@ -361,7 +371,8 @@ impl JsonScene {
         let phases = direct.excitation.into_iter().zip(&given.excitation);
         let scene = Scene {
             material: given.material.clone(),
-            layer: Layer { thickness, width, ..direct.layer },
+            foundation: given.foundation.clone(),
+            layer: Layer { thickness, width, foundation: given.layer.foundation, ..direct.layer },
             friction: direct.friction.map(|friction| Friction { shear_strength, ..friction }),
             excitation: phases.map(|(phase, given)| Phase { until_pressure: given.until_pressure, ..phase }).collect(),
             ..direct

@@ -5,6 +5,7 @@ mod describe;
 mod figure;
 mod files;
 mod fit;
+mod foundation;
 mod html;
 mod material;
 mod pack;

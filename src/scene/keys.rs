@@ -4,7 +4,9 @@
 use std::fmt;
 
 use super::values::{ANY, NOT_NEGATIVE, NumberRange, POSITIVE, WholeRange, Word, words};
-use super::{Extrapolation, Initial, LengthUnit, Method, Missing, OutputGroup, ThirdColumn, Tilt, Unit};
+use super::{
+    Extrapolation, FoundationKind, Initial, LengthUnit, Method, Missing, OutputGroup, ThirdColumn, Tilt, Unit,
+};
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Key {
@@ -120,6 +122,7 @@ const LAYER: &[Key] = &[
     table("horizontal", LINK).direct(),
     table("lateral_x", LINK).direct(),
     table("lateral_z", LINK).direct(),
+    word::<FoundationKind>("foundation", "What the links stand for: springs, half_space or layer").material(),
     number("thickness", POSITIVE, Unit::Meter, "Thickness of the layer").material(),
     number("width", POSITIVE, Unit::Meter, "Width of the layer").material(),
 ];

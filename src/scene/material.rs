@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::error::{ContentError, ParameterError, Problem};
 use super::keys;
 use super::text_table::{Columns, decode};
-use super::{Layer, Link, LinkKind, MaxwellElement, RateShear, Scene};
+use super::{FoundationKind, Layer, Link, LinkKind, MaxwellElement, RateShear, Scene};
 
 /// A linear viscoelastic solid: a spring, a dashpot and Maxwell elements in parallel, as moduli.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -116,6 +116,11 @@ impl Material {
         )
     }
 
+    /// M = E/(1 - ν²), Pa: the plane modulus of the modulus E, Pa.
+    pub fn plane_modulus(&self, modulus: f64) -> f64 {
+        modulus / (1.0 - self.poisson_ratio * self.poisson_ratio)
+    }
+
     /// A link whose constants are the moduli times `size`, m (docs/model.md, section 7).
     fn link(&self, size: f64) -> Link {
         let shift = self.shift_factor();
@@ -142,9 +147,9 @@ impl Layer {
         self.element_area().map(|area| area * self.masses as f64)
     }
 
-    /// What turns a modulus into the stiffness of a link, m: A/H to the carrier, H B/Δx to the neighbour; times
+    /// What turns a modulus into the stiffness of a link of springs, m: A/H to the carrier, H B/Δx to the neighbour; times
     /// G/E = 1/(2(1 + ν)) where the link is sheared.
-    fn link_size(&self, kind: LinkKind, poisson_ratio: f64) -> Option<f64> {
+    fn spring_size(&self, kind: LinkKind, poisson_ratio: f64) -> Option<f64> {
         let (thickness, width) = (self.thickness?, self.width?);
         let size = if kind.is_lateral() { thickness * width / self.spacing } else { self.spacing * width / thickness };
         let sheared = matches!(kind, LinkKind::Horizontal | LinkKind::LateralZ);
@@ -156,16 +161,28 @@ impl Scene {
     /// The link of a kind, if the scene has it: given, or following from the material.
     pub fn link(&self, kind: LinkKind) -> Option<Link> {
         match &self.material {
-            Some(material) => self.layer.link_size(kind, material.poisson_ratio).map(|size| material.link(size)),
+            Some(material) => self.link_size(kind, material.poisson_ratio).map(|size| material.link(size)),
             None => self.layer.link(kind).cloned(),
         }
     }
 
-    /// The mass of one point mass, kg: given, or ρ A H.
+    /// What turns a modulus into the stiffness of a link, m.
+    fn link_size(&self, kind: LinkKind, poisson_ratio: f64) -> Option<f64> {
+        match &self.foundation {
+            Some(foundation) => {
+                let size = foundation.link_size(kind, &self.layer, self.layer.width?);
+                Some(size / (1.0 - poisson_ratio * poisson_ratio))
+            }
+            None => self.layer.spring_size(kind, poisson_ratio),
+        }
+    }
+
+    /// The mass of one point mass, kg: given, or ρ A H, or ρ A ℓ of a fitted [`Foundation`].
     pub fn mass(&self) -> f64 {
+        let depth = || self.foundation.as_ref().map(|foundation| foundation.depth).or(self.layer.thickness);
         let of_material = || {
             let area = self.layer.element_area()?;
-            Some(self.material.as_ref()?.density * area * self.layer.thickness?)
+            Some(self.material.as_ref()?.density * area * depth()?)
         };
         self.layer.mass.or_else(of_material).unwrap_or(0.0)
     }
@@ -195,11 +212,21 @@ impl Scene {
     pub fn direct_form(&self) -> Self {
         let mut scene = self.clone();
         if scene.material.take().is_some() {
+            scene.foundation = None;
             let [vertical, horizontal, lateral_x, lateral_z] = LinkKind::ALL.map(|kind| self.link(kind));
             let mass = Some(self.mass());
             let layer = self.layer.clone();
-            scene.layer =
-                Layer { mass, vertical, horizontal, lateral_x, lateral_z, thickness: None, width: None, ..layer };
+            scene.layer = Layer {
+                mass,
+                vertical,
+                horizontal,
+                lateral_x,
+                lateral_z,
+                thickness: None,
+                width: None,
+                foundation: FoundationKind::Springs,
+                ..layer
+            };
             if let Some(friction) = &mut scene.friction {
                 (friction.shear_force, friction.shear_strength) = (self.shear_force(), None);
                 friction.rate_shear = self.rate_shear();

@@ -8,11 +8,13 @@
 
 mod error;
 mod excitation;
+mod foundation;
 mod keys;
 mod material;
 mod parameters;
 mod profile;
 mod reader;
+mod spectrum;
 mod surface;
 pub mod text_table;
 mod values;
@@ -30,10 +32,12 @@ use values::Word;
 
 pub use error::{ParameterError, Problem, SceneError};
 pub use excitation::{Path, Phase};
+pub use foundation::{Body, Foundation, FoundationKind, Quality, Stiffness, Wave, Waves};
 pub use material::{Material, PronyTerm, Wlf, complex_stiffness};
 pub use parameters::{Parameter, Value};
 pub use profile::{Extract, LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt, UnknownWord};
-pub use surface::{MeanLine, Surface};
+pub use spectrum::{Band, PowerLaw, Spectrum};
+pub use surface::{MeanLine, SelfAffine, Surface};
 pub use values::{LARGEST, SMALLEST, Unit, is_possible};
 
 /// A whole scene, checked. Serialised, it is every number of it: what the scene does not name is null or empty.
@@ -47,6 +51,8 @@ pub struct Scene {
     pub layer: Layer,
     /// What the layer is made of, in the material form; `None`: its masses and links are given (direct form).
     pub material: Option<Material>,
+    /// The links fitted to the material's surface; `None` where they follow from the thickness alone or are given.
+    pub foundation: Option<Foundation>,
     /// The rigid surface below it.
     pub surface: Surface,
     /// Friction in the contacts; `None` is frictionless.
@@ -84,7 +90,9 @@ pub struct Layer {
     pub clearance: f64,
     /// Mass of one point mass, kg; in the direct form alone, see [`Scene::mass`].
     pub mass: Option<f64>,
-    /// Thickness H, m; in the material form alone.
+    /// How the links follow from the material; in the material form alone.
+    pub foundation: FoundationKind,
+    /// Thickness H, m; in the material form alone, and not of a half-space.
     pub thickness: Option<f64>,
     /// Width B, m; in the material form alone.
     pub width: Option<f64>,

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::error::{ParameterError, Problem};
 use super::keys::{self, Allowed, Key};
 use super::values::{Word, words};
-use super::{Link, LinkKind, Scene, Unit};
+use super::{Foundation, Link, LinkKind, Scene, Unit};
 
 /// One settable number or word of a scene. Elements of lists are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -31,6 +31,8 @@ pub enum Parameter {
     MaxwellStiffness(LinkKind, usize),
     /// `layer.vertical.maxwell[1].relaxation_time` and so on
     RelaxationTime(LinkKind, usize),
+    /// `layer.thickness`
+    Thickness,
     /// `material.density`
     Density,
     /// `material.poisson_ratio`
@@ -115,6 +117,7 @@ impl Parameter {
             Self::RelaxationTime(link, j) => {
                 return format!("layer.{}.maxwell[{}].relaxation_time", link.name(), j + 1);
             }
+            Self::Thickness => "layer.thickness",
             Self::Density => "material.density",
             Self::PoissonRatio => "material.poisson_ratio",
             Self::EquilibriumModulus => "material.equilibrium_modulus",
@@ -194,6 +197,7 @@ macro_rules! field {
             Damping(kind) => scene.layer.$link(kind)?.damping.$as_ref(),
             MaxwellStiffness(kind, j) => Some(&$($mut)? scene.layer.$link(kind)?.maxwell.$get(j)?.stiffness),
             RelaxationTime(kind, j) => Some(&$($mut)? scene.layer.$link(kind)?.maxwell.$get(j)?.relaxation_time),
+            Thickness => scene.layer.thickness.$as_ref(),
             Density => Some(&$($mut)? scene.material.$as_ref()?.density),
             PoissonRatio => Some(&$($mut)? scene.material.$as_ref()?.poisson_ratio),
             EquilibriumModulus => Some(&$($mut)? scene.material.$as_ref()?.equilibrium_modulus),
@@ -231,7 +235,7 @@ impl Scene {
         let terms = self.material.as_ref().map_or(0, |material| material.prony.len());
         let mut parameters = vec![Clearance, Mass, Initial];
         parameters.extend(LinkKind::ALL.into_iter().flat_map(link));
-        parameters.extend([Density, PoissonRatio, EquilibriumModulus, Viscosity]);
+        parameters.extend([Thickness, Density, PoissonRatio, EquilibriumModulus, Viscosity]);
         parameters.extend((0..terms).flat_map(|j| [PronyModulus(j), PronyRelaxationTime(j)]));
         parameters.extend([WlfC1, WlfC2, ReferenceTemperature, Temperature]);
         parameters.extend([Coulomb, ShearForce, ShearStrength, RateShearForce, RateShearStrength]);
@@ -300,9 +304,18 @@ impl Scene {
             // These follow others until they are set themselves.
             Parameter::CreepSpeed => self.friction.as_mut()?.rate_shear.as_mut()?.creep_speed = Some(number),
             Parameter::AbsoluteTolerance => self.solver.absolute_tolerance = Some(number),
-            _ => *field!(self, parameter, as_mut, get_mut, link_mut, mut)? = number,
+            _ => *field!(&mut *self, parameter, as_mut, get_mut, link_mut, mut)? = number,
+        }
+        if matches!(parameter, Parameter::Thickness | Parameter::PoissonRatio) {
+            self.refit();
         }
         Some(())
+    }
+
+    /// Fits the links to the body anew, for it has changed.
+    fn refit(&mut self) {
+        let refitted = |foundation: &Foundation| foundation.refitted(&self.layer, self.material.as_ref()?);
+        self.foundation = self.foundation.as_ref().and_then(refitted);
     }
 
     fn set_max_steps(&mut self, number: i32) -> Result<(), ParameterError> {

@@ -20,11 +20,14 @@ pub struct Surface {
     pub z: Vec<f64>,
     /// Whether the profile is repeated without end, or else continued along its end tangents.
     pub periodic: bool,
+    /// The power law that it was made of; `None` for every other profile.
+    #[serde(skip)]
+    pub self_affine: Option<SelfAffine>,
 }
 
 impl Surface {
     pub(super) fn flat() -> Self {
-        Self { x: vec![0.0, 1.0], z: vec![0.0, 0.0], periodic: false }
+        Self { x: vec![0.0, 1.0], z: vec![0.0, 0.0], periodic: false, self_affine: None }
     }
 
     /// One wavelength of a sine, by `points` intervals.
@@ -33,7 +36,7 @@ impl Surface {
         let x = (0..=points).map(|i| wavelength * phase(i)).collect();
         // The last point is the first one again: without the rounding of sin 2π.
         let z = (0..=points).map(|i| amplitude * (TAU * phase(i % points)).sin()).collect();
-        Self { x, z, periodic: true }
+        Self { x, z, periodic: true, self_affine: None }
     }
 
     /// The cubic spline through the data points.
@@ -61,7 +64,7 @@ pub struct MeanLine {
 
 impl MeanLine {
     /// The line through points; about their means, so that no digits are lost far from x = 0.
-    fn through(x: &[f64], z: &[f64]) -> Self {
+    pub(super) fn through(x: &[f64], z: &[f64]) -> Self {
         let step = |i: usize| x[i + 1] - x[i];
         let weight = |i: usize| if i == 0 { 0.0 } else { step(i - 1) } + if i + 1 < x.len() { step(i) } else { 0.0 };
         let sum = |term: &dyn Fn(usize) -> f64| (0..x.len()).map(|i| weight(i) * term(i)).sum::<f64>();
@@ -155,20 +158,21 @@ const WHOLE: f64 = 1.0e-9;
 /// seed gives the same bits everywhere, and more points the same profile with more points; a shorter cut-off adds modes
 /// and leaves the phases of the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct SelfAffine {
+pub struct SelfAffine {
     /// Period, m.
-    pub(super) length: f64,
+    pub length: f64,
     /// Even intervals of a period.
-    pub(super) points: usize,
+    pub points: usize,
     /// Hurst exponent H, 1.
-    pub(super) hurst: f64,
+    pub hurst: f64,
     /// Root mean square height over one period, about a mean of 0, m.
-    pub(super) rms: f64,
+    pub rms: f64,
     /// Wavelength above which the spectrum is constant, m.
-    pub(super) roll_off: f64,
+    pub roll_off: f64,
     /// The shortest wavelength, m.
-    pub(super) cut_off: f64,
-    pub(super) seed: u64,
+    pub cut_off: f64,
+    /// Seed of the random phases.
+    pub seed: u64,
 }
 
 impl SelfAffine {
@@ -177,7 +181,7 @@ impl SelfAffine {
         let x = (0..=self.points).map(|i| self.length * share(i)).collect();
         let mut z = self.heights();
         z.push(z[0]);
-        Surface { x, z, periodic: true }
+        Surface { x, z, periodic: true, self_affine: Some(*self) }
     }
 
     /// The heights at the points of one period, m.

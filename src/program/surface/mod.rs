@@ -1,17 +1,14 @@
 //! `asperity surface`: analyses a profile.
 
-mod spectrum;
-
 use std::path::{Path, PathBuf};
 
-use asperity::scene;
+use asperity::scene::{self, Band, PowerLaw, Spectrum};
 use serde::Serialize;
 
 use super::cli::{Reading, Surface};
 use super::figure::{Figure as _, ProfilePicture};
 use super::files::{self, FileError, check_outputs, ends_in, load, name_of, print, sources};
 use super::terminal::{lines, note, real, warn};
-use spectrum::{Band, PowerLaw, Spectrum};
 
 /// `asperity surface` failed.
 #[derive(Debug, thiserror::Error)]
@@ -222,7 +219,7 @@ mod tests {
     fn a_cosine_has_its_known_numbers() {
         let x: Vec<f64> = (0..=1000).map(|i| f64::from(i) * 1e-6).collect();
         let z: Vec<f64> = (0..=1000).map(|i| 2e-6 * (TAU * f64::from(i % 250) / 250.0).cos() + 1e-6).collect();
-        let numbers = Statistics::of(&scene::Surface { x, z, periodic: true });
+        let numbers = Statistics::of(&scene::Surface { x, z, periodic: true, self_affine: None });
         let slope = 2e-6 * TAU / 250e-6;
         // The spline through 250 points a wavelength is wrong by some 1e-8 of its slope.
         let near = |found: f64, exact: f64| assert!((found / exact - 1.0).abs() < 1e-7, "{found} {exact}");
@@ -238,7 +235,7 @@ mod tests {
     fn a_ramp_is_all_tilt() {
         let x = vec![0.0, 1.0, 4.0, 5.0];
         let z = x.iter().map(|x| 0.25 * x).collect();
-        let numbers = Statistics::of(&scene::Surface { x, z, periodic: false });
+        let numbers = Statistics::of(&scene::Surface { x, z, periodic: false, self_affine: None });
         assert!((numbers.tilt - 0.25).abs() < 1e-15 && (numbers.rms_slope - 0.25).abs() < 1e-15);
         assert!(numbers.rms_height_without_tilt < 1e-15 && !numbers.is_even());
     }

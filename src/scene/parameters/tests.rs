@@ -259,6 +259,7 @@ fn a_material_has_its_own_and_none_of_the_links() {
     let expected = [
         ("layer.clearance", Unit::Meter),
         ("layer.initial", Unit::One),
+        ("layer.thickness", Unit::Meter),
         ("material.density", Unit::KilogramPerCubicMeter),
         ("material.poisson_ratio", Unit::One),
         ("material.equilibrium_modulus", Unit::Pascal),

@@ -134,7 +134,7 @@ fn finish(mut raw: MeasuredPoints, options: &ProfileOptions) -> Result<Parsed, C
         remove_tilt(&raw.x, &mut raw.z);
     }
     check(&mut raw, options.periodic)?;
-    let surface = Surface { x: raw.x, z: raw.z, periodic: options.periodic };
+    let surface = Surface { x: raw.x, z: raw.z, periodic: options.periodic, self_affine: None };
     Ok(Parsed { surface, warnings: raw.warnings, extract: None })
 }
 

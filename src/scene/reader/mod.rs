@@ -8,8 +8,8 @@ use std::path::Path as FilePath;
 
 use super::keys::Form;
 use super::{
-    Extrapolation, Friction, Initial, Layer, Link, Material, MaxwellElement, OutputGroup, Path, Phase, PronyTerm,
-    RateShear, Scene, SceneError, Solver, Wlf, warnings,
+    Extrapolation, Foundation, FoundationKind, Friction, Initial, Layer, Link, Material, MaxwellElement, OutputGroup,
+    Path, Phase, PronyTerm, RateShear, Scene, SceneError, Solver, Wlf, warnings,
 };
 use surface::Found;
 use table::{Entry, Result, Source, TableReader};
@@ -61,11 +61,13 @@ fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
     let Found { files, extracts, mut warnings } = found;
     warnings.extend(warnings::short_profile(&layer, &surface, &excitation));
     warnings.extend(material.as_ref().and_then(warnings::cold_temperatures));
-    let scene = Scene {
+    let foundation = material.as_ref().and_then(|material| Foundation::new(&layer, material, &surface));
+    let mut scene = Scene {
         name,
         description,
         layer,
         material,
+        foundation,
         surface,
         friction,
         solver,
@@ -76,6 +78,8 @@ fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
         extracts,
         warnings,
     };
+    let warnings = scene.foundation_warnings();
+    scene.warnings.extend(warnings);
     match (scene.check(), material_entry) {
         (Err(error), Some(entry)) => Err(SceneError::new(entry.location(), error.name(), error.problem().clone())),
         _ => Ok(scene),
@@ -100,13 +104,15 @@ fn read_description(entry: &Entry<'_>) -> Result<String> {
 }
 
 fn read_layer(table: &mut TableReader<'_>, found: &mut Found) -> Result<Layer> {
+    let foundation = table.optional_choice("foundation")?.unwrap_or_default();
     let mut layer = Layer {
         masses: usize::try_from(table.whole("masses")?).unwrap_or(usize::MAX),
         spacing: table.number("spacing")?,
         origin: table.optional_number("origin")?.unwrap_or(0.0),
         clearance: table.optional_number("clearance")?.unwrap_or(0.0),
         mass: table.number_of_form("mass")?,
-        thickness: table.number_of_form("thickness")?,
+        foundation,
+        thickness: read_thickness(table, foundation)?,
         width: table.number_of_form("width")?,
         initial: table.optional_choice("initial")?.unwrap_or(Initial::Relaxed),
         roughness: Vec::new(),
@@ -119,6 +125,17 @@ fn read_layer(table: &mut TableReader<'_>, found: &mut Found) -> Result<Layer> {
         layer.roughness = surface::read_roughness(&entry, &layer, found)?;
     }
     Ok(layer)
+}
+
+/// A half-space has no thickness.
+fn read_thickness(table: &mut TableReader<'_>, foundation: FoundationKind) -> Result<Option<f64>> {
+    if foundation != FoundationKind::HalfSpace {
+        return table.number_of_form("thickness");
+    }
+    match table.entry("thickness") {
+        Some(entry) => Err(entry.refuse("no such key with foundation = \"half_space\", which has no end")),
+        None => Ok(None),
+    }
 }
 
 fn read_link(table: &mut TableReader<'_>) -> Result<Link> {

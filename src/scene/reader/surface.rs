@@ -101,7 +101,7 @@ fn read_points(table: &mut TableReader<'_>) -> Result<Surface> {
             None => entry.refuse_count(x.len(), &error.expected),
         }
     })?;
-    Ok(Surface { x, z, periodic })
+    Ok(Surface { x, z, periodic, self_affine: None })
 }
 
 fn read_file(table: &mut TableReader<'_>, found: &mut Found) -> Result<Surface> {

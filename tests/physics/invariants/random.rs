@@ -7,7 +7,8 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 use asperity::scene::{
-    Extrapolation, Friction, Initial, Layer, Link, MaxwellElement, Method, Path, RateShear, Scene, Solver, Surface,
+    Extrapolation, FoundationKind, Friction, Initial, Layer, Link, MaxwellElement, Method, Path, RateShear, Scene,
+    Solver, Surface,
 };
 use asperity::simulation::{Motion, Start};
 use proptest::collection::vec;
@@ -75,6 +76,7 @@ pub(crate) fn cases_by(method: Method) -> impl Strategy<Value = Case> {
                     description: None,
                     layer,
                     material: None,
+                    foundation: None,
                     surface,
                     friction,
                     solver,
@@ -102,6 +104,7 @@ fn layer(scales: Scales) -> impl Strategy<Value = Layer> {
                 origin: origin * scales.spacing,
                 clearance: clearance * scales.height,
                 mass: Some(scales.mass),
+                foundation: FoundationKind::Springs,
                 thickness: None,
                 width: None,
                 initial,
@@ -141,12 +144,12 @@ fn link(scales: Scales, share: f64) -> impl Strategy<Value = Option<Link>> {
 
 /// Flat, a sine, or points: even or not, coarse or fine, periodic or natural.
 fn surface(scales: Scales) -> impl Strategy<Value = Surface> {
-    let flat = Just(Surface { x: vec![0.0, 1.0], z: vec![0.0, 0.0], periodic: false });
+    let flat = Just(Surface { x: vec![0.0, 1.0], z: vec![0.0, 0.0], periodic: false, self_affine: None });
     let sine = (decades(-0.5..1.5), 4_usize..=48).prop_map(move |(wavelength, points)| {
         let phase = |i: usize| i as f64 / points as f64;
         let x = (0..=points).map(|i| wavelength * scales.spacing * phase(i)).collect();
         let z = (0..=points).map(|i| 0.5 * scales.height * (TAU * phase(i % points)).sin()).collect();
-        Surface { x, z, periodic: true }
+        Surface { x, z, periodic: true, self_affine: None }
     });
     let point = (0.3..1.7_f64, -0.5..0.5_f64);
     let points = (decades(-1.0..0.7), vec(point, 3..=40), any::<bool>(), any::<bool>(), -1.0..0.0_f64).prop_map(
@@ -164,7 +167,7 @@ fn surface(scales: Scales) -> impl Strategy<Value = Surface> {
             if periodic {
                 z[points.len() - 1] = z[0];
             }
-            Surface { x, z, periodic }
+            Surface { x, z, periodic, self_affine: None }
         },
     );
     prop_oneof![1 => flat, 2 => sine, 5 => points]

@@ -57,7 +57,7 @@ fn one_mass_over_a_plane_is_mirrored_to_the_last_bit() {
     check("one mass mirrored", 150, cases(), |mut case| {
         case.scene.layer.masses = 1;
         case.scene.layer.roughness.truncate(1);
-        case.scene.surface = Surface { x: vec![0.0, 1.0], z: vec![0.0, 0.0], periodic: false };
+        case.scene.surface = Surface { x: vec![0.0, 1.0], z: vec![0.0, 0.0], periodic: false, self_affine: None };
         let run = |case: &Case| case.run(4).map_err(|error| TestCaseError::fail(format!("{error}")));
         let (one, other) = (run(&case)?, run(&mirrored(&case))?);
         let turns = [Output::ForceX, Output::Hysteresis, Output::Adhesion, Output::ContactForceX, Output::ElementX(0)];
@@ -91,7 +91,7 @@ fn with_exact_u(case: &Case) -> Case {
         let x: Vec<f64> = (0..=8).map(|i| 0.4 * f64::from(i) * case.scene.layer.spacing).collect();
         let height = 0.1 * case.scene.layer.spacing;
         let z = [0.0, 0.7, 0.2, -0.3, 0.5, 0.1, -0.9, -0.4, 0.0].map(|z| z * height).to_vec();
-        case.scene.surface = Surface { x, z, periodic: true };
+        case.scene.surface = Surface { x, z, periodic: true, self_affine: None };
     }
     let surface = &mut case.scene.surface;
     let width = surface.x.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);

@@ -3,14 +3,15 @@
 use std::f64::consts::{PI, TAU};
 use std::ops::RangeInclusive;
 
-use asperity::math::{Direction, fourier};
-use asperity::scene::Surface;
 use nalgebra::Complex;
 use serde::Serialize;
 
+use super::{MeanLine, Surface};
+use crate::math::{Direction, fourier};
+
 /// The one-sided power spectrum C(q), whose integral over q is the mean square height.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Spectrum {
+pub struct Spectrum {
     /// Spacing 2π/length of the wave numbers, rad/m.
     step: f64,
     /// C at 0, 1, 2, … steps, m³.
@@ -21,12 +22,13 @@ pub(super) struct Spectrum {
 
 /// The mean of a spectrum over a range of wave numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(super) struct Band {
+pub struct Band {
     /// Geometric mean of the wave numbers, rad/m.
-    pub(super) wave_number: f64,
+    pub wave_number: f64,
     /// Mean of C, m³.
-    pub(super) density: f64,
-    pub(super) modes: usize,
+    pub density: f64,
+    /// Number of wave numbers.
+    pub modes: usize,
 }
 
 /// Maximum number of even points: finer detail is neither drawn nor fitted.
@@ -37,24 +39,46 @@ impl Spectrum {
     /// The spectrum of a profile at as many even points as it has intervals. A periodic profile needs no preparation. From
     /// any other the tilt is removed, and a Hann window is applied and its loss of power (3/8) corrected; the longest
     /// wavelength is then unreliable.
-    pub(super) fn of(surface: &Surface) -> Self {
+    pub fn of(surface: &Surface) -> Self {
         let x = &surface.x;
         let (start, length) = (x[0], x[x.len() - 1] - x[0]);
         let n = (x.len() - 1).clamp(4, MOST_POINTS);
         let (spline, line) = (surface.spline(), surface.line());
         let position = |i: usize| start + length * (i as f64 / n as f64);
-        let window = |i: usize| if surface.periodic { 1.0 } else { (PI * i as f64 / n as f64).sin().powi(2) };
         let tilt = |x: f64| if surface.periodic { line.z } else { line.at(x) };
-        let heights = (0..n).map(|i| Complex::from(window(i) * (spline.evaluate(position(i)).0 - tilt(position(i)))));
-        let sums = fourier(&heights.collect::<Vec<_>>(), Direction::Forward);
+        let heights = (0..n).map(|i| spline.evaluate(position(i)).0 - tilt(position(i))).collect();
+        Self::of_heights(heights, length, surface.periodic)
+    }
+
+    /// The spectrum of the roughness of a layer of this length (m): heights at its masses, m, as of a profile that is not
+    /// periodic.
+    pub(super) fn of_roughness(heights: &[f64], length: f64) -> Self {
+        let x: Vec<f64> = (0..heights.len()).map(|i| i as f64 * length / heights.len() as f64).collect();
+        let line = MeanLine::through(&x, heights);
+        let level = |(x, z): (&f64, &f64)| if heights.len() > 1 { z - line.at(*x) } else { 0.0 };
+        Self::of_heights(x.iter().zip(heights).map(level).collect(), length, false)
+    }
+
+    /// The spectrum of heights without mean and tilt, m, at even points of a length, m.
+    fn of_heights(heights: Vec<f64>, length: f64, periodic: bool) -> Self {
+        let n = heights.len();
+        let window = |i: usize| if periodic { 1.0 } else { (PI * i as f64 / n as f64).sin().powi(2) };
+        let windowed: Vec<_> = (0..n).map(|i| Complex::from(window(i) * heights[i])).collect();
+        let sums = fourier(&windowed, Direction::Forward);
         let step = TAU / length;
-        let scale = 2.0 / (n as f64).powi(2) / step / if surface.periodic { 1.0 } else { 0.375 };
+        let scale = 2.0 / (n as f64).powi(2) / step / if periodic { 1.0 } else { 0.375 };
         let density = sums[..n / 2].iter().map(|sum| scale * sum.norm_sqr()).collect();
-        Self { step, density, first: if surface.periodic { 1 } else { 2 } }
+        Self { step, density, first: if periodic { 1 } else { 2 } }
+    }
+
+    /// The wave numbers (rad/m) of the reliable modes below half the points, and their mean square heights, m².
+    pub fn modes(&self) -> impl Iterator<Item = (f64, f64)> {
+        let reliable = self.density.iter().enumerate().skip(self.first);
+        reliable.map(|(m, density)| (m as f64 * self.step, density * self.step))
     }
 
     /// The means over bands that are even in the logarithm; a band without a wave number is omitted.
-    pub(super) fn bands(&self) -> Vec<Band> {
+    pub fn bands(&self) -> Vec<Band> {
         let mut bands = Vec::new();
         let mut start = self.first;
         for i in 1.. {
@@ -81,17 +105,17 @@ impl Spectrum {
 
 /// A spectrum that is constant up to the roll-off and falls as q^(-1-2H) above it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(super) struct PowerLaw {
+pub struct PowerLaw {
     /// Hurst exponent H, 1.
-    pub(super) hurst: f64,
+    pub hurst: f64,
     /// Standard error of H, from the scatter of the bands.
-    pub(super) hurst_error: f64,
+    pub hurst_error: f64,
     /// Wavelength 2π/q above which the spectrum is constant, m; none without a roll-off.
-    pub(super) roll_off_wavelength: Option<f64>,
+    pub roll_off_wavelength: Option<f64>,
     /// Shortest and longest wavelength of the power law, m.
-    pub(super) wavelengths: [f64; 2],
+    pub wavelengths: [f64; 2],
     /// Whether shorter wavelengths exist but deviate from the law: a cut-off, a filter or noise.
-    pub(super) ends: bool,
+    pub ends: bool,
     /// ln of the constant part, or of C at the longest wavelength (m³).
     level: f64,
 }
@@ -134,7 +158,7 @@ struct LawFit {
 impl PowerLaw {
     /// The law that fits the bands best, over as many of them as possible; where `wavelengths` (m) are given, over exactly
     /// these and without a roll-off. `None` where no part follows a power law.
-    pub(super) fn of(bands: &[Band], wavelengths: Option<&RangeInclusive<f64>>) -> Option<Self> {
+    pub fn of(bands: &[Band], wavelengths: Option<&RangeInclusive<f64>>) -> Option<Self> {
         let inside = |band: &&Band| wavelengths.is_none_or(|range| range.contains(&(TAU / band.wave_number)));
         let seen = bands.iter().filter(inside).filter(|band| band.density > 0.0);
         let bands: Vec<Point> = seen.map(Point::of).collect();
@@ -153,7 +177,7 @@ impl PowerLaw {
     }
 
     /// C of the law at `wave_number` (rad/m), m³.
-    pub(super) fn density(&self, wave_number: f64) -> f64 {
+    pub fn density(&self, wave_number: f64) -> f64 {
         let longest = self.roll_off_wavelength.unwrap_or(self.wavelengths[1]);
         let fallen = (wave_number * longest / TAU).ln().max(0.0);
         (self.level - (1.0 + 2.0 * self.hurst) * fallen).exp()
@@ -209,14 +233,13 @@ fn knee_at(bands: &[Point], knee: usize) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use asperity::math::SplitMix64;
-
     use super::*;
+    use crate::math::SplitMix64;
 
     fn cosine(periodic: bool, amplitude: f64) -> Surface {
         let x = (0..=1000).map(|i| f64::from(i) * 1e-6).collect();
         let z = (0..=1000).map(|i| amplitude * (TAU * f64::from(i % 25) / 25.0).cos()).collect();
-        Surface { x, z, periodic }
+        Surface { x, z, periodic, self_affine: None }
     }
 
     /// The integral of the spectrum is the mean square height, with a window or without one.

@@ -1,0 +1,78 @@
+//! How well the links meet the stiffness of the surface that they stand for.
+
+use std::f64::consts::TAU;
+
+use super::{Body, Stiffness, Waves};
+use crate::scene::{LinkKind, Scene};
+
+/// The stiffness of the links over that of the surface, r(q), over the waves of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quality {
+    /// r at five wavelengths (m) that are even in their logarithms, from the longest to the shortest of the waves that
+    /// carry 5 to 95 % of the weight.
+    pub ratios: [(f64, f64); 5],
+    /// The least r of these waves.
+    pub least: f64,
+    /// The largest r of these waves.
+    pub largest: f64,
+    /// Root mean square of r - 1 over the weights of all waves.
+    pub rms: f64,
+    /// r at every wave: wavelength (m) and r.
+    pub curve: Vec<(f64, f64)>,
+}
+
+impl Quality {
+    fn new(waves: &Waves, ratio: impl Fn(f64) -> f64) -> Option<Self> {
+        let carrying = waves.carrying();
+        let (first, last) = (carrying.first()?.wave_number, carrying.last()?.wave_number);
+        let at = |part: f64| first * (last / first).powf(part);
+        let of_carrying = || carrying.iter().map(|wave| ratio(wave.wave_number));
+        let whole: f64 = waves.resolved.iter().map(|wave| wave.weight).sum();
+        let missed = |q: f64| (ratio(q) - 1.0).powi(2);
+        let square: f64 = waves.resolved.iter().map(|wave| wave.weight * missed(wave.wave_number)).sum();
+        Some(Self {
+            ratios: [0.0, 0.25, 0.5, 0.75, 1.0].map(|part| (TAU / at(part), ratio(at(part)))),
+            least: of_carrying().fold(f64::INFINITY, f64::min),
+            largest: of_carrying().fold(0.0, f64::max),
+            rms: (square / whole).sqrt(),
+            curve: waves.resolved.iter().map(|wave| (TAU / wave.wave_number, ratio(wave.wave_number))).collect(),
+        })
+    }
+}
+
+impl Scene {
+    /// How well the links along the direction of `kind` meet the surface of a half-plane or of a layer of their
+    /// thickness; `None` in the direct form.
+    pub fn quality(&self, kind: LinkKind) -> Option<Quality> {
+        let material = self.material.as_ref()?;
+        let (body, springs) = match &self.foundation {
+            Some(_) => (self.layer.fitted_body(material)?, None),
+            None => (self.layer.bonded_body(material)?, self.layer.springs(material)),
+        };
+        let of_springs;
+        let waves = match &self.foundation {
+            Some(foundation) => &foundation.waves,
+            None => {
+                of_springs = Waves::of(&self.layer, &self.surface);
+                &of_springs
+            }
+        };
+        let along_x = kind.is_along_x();
+        let fitted = self.foundation.as_ref().map(|fit| if along_x { fit.tangential } else { fit.normal });
+        let stiffness = fitted.or(springs.map(|[normal, tangential]| if along_x { tangential } else { normal }))?;
+        Quality::new(waves, |q| stiffness.of_wave(waves, q) / body.stiffness_along(along_x, q))
+    }
+}
+
+impl Stiffness {
+    /// α + βD², 1/m.
+    fn of_wave(&self, waves: &Waves, wave_number: f64) -> f64 {
+        self.alpha + self.beta * waves.difference_square(wave_number)
+    }
+}
+
+impl Body {
+    fn stiffness_along(self, along_x: bool, wave_number: f64) -> f64 {
+        if along_x { self.tangential(wave_number) } else { self.normal(wave_number) }
+    }
+}

@@ -1,0 +1,117 @@
+//! Warnings of a fitted foundation: where area and friction would not be those of rubber on this surface.
+
+use super::Foundation;
+use crate::scene::{LinkKind, Phase, PowerLaw, Scene, Spectrum, Surface};
+
+/// Root mean square of r - 1 above which area and friction are off.
+const WIDE: f64 = 0.5;
+/// Masses that the shortest wavelength of weight needs.
+const MASSES_PER_WAVE: f64 = 8.0;
+/// Part of the weight that may lie below the spacing.
+const ALIASED: f64 = 0.01;
+/// Root mean square slope above which friction is too large.
+const STEEP: f64 = 0.3;
+/// Part of the plane modulus above which pressures move masses along.
+const HARD: f64 = 0.1;
+/// Roll-off wavelengths that a layer should be long.
+const ROLL_OFFS: f64 = 2.0;
+/// A layer is as long as the period if it is but for rounding.
+const ROUNDING: f64 = 1.0e-9;
+
+impl Scene {
+    /// What of this scene is outside the range in which the links stand for the rubber's surface; nothing for springs.
+    pub(in crate::scene) fn foundation_warnings(&self) -> Vec<String> {
+        let Some(foundation) = &self.foundation else { return Vec::new() };
+        let found = [
+            self.wide_band(),
+            self.coarse_spacing(foundation),
+            self.waves_below_the_spacing(foundation),
+            steep_slopes(foundation),
+            self.hard_pressure(),
+            self.short_layer(),
+        ];
+        found.into_iter().flatten().collect()
+    }
+
+    fn wide_band(&self) -> Option<String> {
+        let rms = self.quality(LinkKind::Vertical)?.rms;
+        (rms > WIDE).then(|| {
+            format!(
+                "band too wide: the links miss the stiffness of the surface by {rms:.2} (root mean square over the waves), \
+                 more than {WIDE}: areas come out 10 to 35 % too large, friction 10 to 20 % off"
+            )
+        })
+    }
+
+    fn coarse_spacing(&self, foundation: &Foundation) -> Option<String> {
+        let (spacing, shortest) = (self.layer.spacing, foundation.waves.shortest);
+        (spacing > shortest / MASSES_PER_WAVE).then(|| {
+            format!(
+                "spacing too coarse: layer.spacing = {spacing:?} m is more than an eighth of {shortest:.3e} m, the \
+                 wavelength beyond which 1 % of the slopes' power lies: areas come out some {:.0} % too large",
+                50.0 * spacing / shortest
+            )
+        })
+    }
+
+    fn waves_below_the_spacing(&self, foundation: &Foundation) -> Option<String> {
+        let beyond = foundation.waves.beyond;
+        (beyond > ALIASED).then(|| {
+            format!(
+                "waves below the spacing: {:.1} % of the slopes' power is in wavelengths below twice layer.spacing = {:?} m, \
+                 which the masses see as longer ones: smooth the profile, and give the waves to friction.real_area",
+                100.0 * beyond,
+                self.layer.spacing
+            )
+        })
+    }
+
+    fn hard_pressure(&self) -> Option<String> {
+        let modulus = self.material.as_ref()?.plane_modulus(self.material.as_ref()?.equilibrium_modulus);
+        let pressures = self.excitation.iter().filter_map(|phase: &Phase| phase.until_pressure);
+        let pressure = pressures.fold(0.0, f64::max);
+        (pressure > HARD * modulus).then(|| {
+            format!(
+                "pressed too hard: until_pressure = {pressure:?} Pa is more than a tenth of the plane modulus at rest, \
+                 {modulus:.3e} Pa: in full contact friction comes out {:.0} % too large",
+                100.0 * (2.0 * pressure / modulus).powi(2)
+            )
+        })
+    }
+
+    fn short_layer(&self) -> Option<String> {
+        let length = self.layer.spacing * self.layer.masses as f64;
+        let end = "open ends and chance count";
+        if let Some(period) = self.surface.period().filter(|period| length < period * (1.0 - ROUNDING)) {
+            return Some(format!("short layer: {length:.3e} m are less than the period of {period:.3e} m: {end}"));
+        }
+        let roll_off = self.surface.roll_off_wavelength()?;
+        (length < ROLL_OFFS * roll_off).then(|| {
+            format!("short layer: {length:.3e} m are less than two roll-off wavelengths of {roll_off:.3e} m: {end}")
+        })
+    }
+}
+
+fn steep_slopes(foundation: &Foundation) -> Option<String> {
+    let slope = foundation.waves.slope;
+    (slope > STEEP).then(|| {
+        format!(
+            "small slopes only: the root mean square slope of {slope:.2} is above {STEEP}: friction comes out too large, by \
+             10 % at 0.3, by 30 % at 0.6 and by a factor at 1"
+        )
+    })
+}
+
+impl Surface {
+    /// The period of a profile that is not level, m.
+    fn period(&self) -> Option<f64> {
+        let level = self.z.windows(2).all(|pair| pair[0] == pair[1]);
+        (self.periodic && !level).then(|| self.x[self.x.len() - 1] - self.x[0])
+    }
+
+    /// The wavelength above which the spectrum is constant, m: as given, or of the law that the spectrum follows.
+    fn roll_off_wavelength(&self) -> Option<f64> {
+        let given = self.self_affine.map(|law| law.roll_off);
+        given.or_else(|| PowerLaw::of(&Spectrum::of(self).bands(), None)?.roll_off_wavelength)
+    }
+}
