@@ -15,6 +15,7 @@
 mod common;
 mod exact;
 mod figure_7;
+mod foundation;
 mod invariants;
 mod kernels;
 mod leaving_out;

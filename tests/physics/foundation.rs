@@ -1,0 +1,145 @@
+//! Fitted foundations against an independent program's half-planes and layer (tests/reference/half-plane): plane strain,
+//! contact by active sets on up to 8192 points of a period, without friction and inertia.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use asperity::scene::{LinkKind, Scene};
+
+use crate::common::{Table, asperity, root, run, scratch, simulate};
+
+const CASES: [&str; 3] = ["sine", "rough", "layer"];
+/// Masses of the cases as they are given.
+const MASSES: usize = 128;
+
+fn file(name: &str, extension: &str) -> PathBuf {
+    root().join(format!("tests/reference/half-plane/{name}.{extension}"))
+}
+
+/// The scene of a case with `finer` times the masses, at the same length.
+fn text(name: &str, finer: usize) -> String {
+    let text = fs::read_to_string(file(name, "toml")).unwrap();
+    let replaced = |line: &str| match line.split_once(" = ") {
+        Some(("masses", _)) => format!("masses = {}\n", finer * MASSES),
+        Some(("spacing", spacing)) => format!("spacing = {:?}\n", spacing.parse::<f64>().unwrap() / finer as f64),
+        _ => format!("{line}\n"),
+    };
+    text.lines().map(replaced).collect()
+}
+
+/// Writes a scene beside a copy of its profile.
+fn write(name: &str, text: &str, folder: &Path) -> PathBuf {
+    fs::copy(file(name, "profile.csv"), folder.join(format!("{name}.profile.csv"))).unwrap();
+    let path = folder.join(format!("{name}.toml"));
+    fs::write(&path, text).unwrap();
+    path
+}
+
+#[track_caller]
+fn near(what: &str, found: f64, expected: f64, tolerance: f64) {
+    assert!((found / expected - 1.0).abs() <= tolerance, "{what}: {found:e} for {expected:e}");
+}
+
+/// α, β, what the fit misses and the mass, at the spacing of each case, half and a quarter of it.
+#[test]
+fn the_links_are_those_of_the_independent_fit() {
+    for name in CASES {
+        let expected = fs::read_to_string(file(name, "fit.csv")).unwrap();
+        for line in expected.lines().skip(1) {
+            let fields: Vec<&str> = line.split(',').collect();
+            let number = |i: usize| fields[i].parse::<f64>().unwrap();
+            let finer = fields[0].parse::<usize>().unwrap() / MASSES;
+            let scene = Scene::parse(&text(name, finer), &file(name, "toml")).unwrap();
+            let foundation = scene.foundation.as_ref().unwrap();
+            let (fit, kind) = match fields[2] {
+                "vertical" => (foundation.normal, LinkKind::Vertical),
+                _ => (foundation.tangential, LinkKind::Horizontal),
+            };
+            let quality = scene.quality(kind).unwrap();
+            let found = [fit.alpha, fit.beta, quality.rms, quality.least, quality.largest, scene.mass()];
+            for (i, found) in found.into_iter().enumerate() {
+                // The files have nine digits; the rms of a sine is the small difference of r to 1.
+                near(&format!("{name} {line}: column {}", i + 3), found, number(i + 3), 1e-7);
+            }
+        }
+    }
+}
+
+/// The relaxed rubber, pressed a thousand times slower than its own small viscosity relaxes.
+fn area_ratio(name: &str, finer: usize, pressure: f64, folder: &Path) -> f64 {
+    let scene = text(name, finer);
+    let (before, after) = scene.split_once("prony = [").unwrap();
+    let (_, after) = after.split_once("\n]\n").unwrap();
+    let modulus: f64 = before.split_once("equilibrium_modulus = ").unwrap().1.trim().parse().unwrap();
+    let scene = format!(
+        "{before}prony = []\nviscosity = {:?}\n{after}[fmu]\noutputs = [\"forces\", \"contact\"]\n[[excitation]]\n\
+         duration = 1.0\nw_rate = -3e-4\nuntil_pressure = {pressure:?}\n",
+        1e-4 * modulus
+    );
+    let run = simulate(&write(name, &scene, folder), folder, &["--points", "10"]);
+    *run.column("contact.ratio").last().unwrap()
+}
+
+/// At half the spacing of the files within 17 % (12 % at a quarter, where the chain's own resolution is left).
+#[test]
+fn static_areas_are_those_of_the_body() {
+    for name in CASES {
+        let folder = scratch(&format!("half-plane-area-{name}"));
+        let expected = Table::read(&file(name, "area.csv"));
+        let [pressures, ratios] = ["pressure [Pa]", "area_ratio [1]"].map(|column| expected.column(column));
+        for (pressure, ratio) in pressures.into_iter().zip(ratios) {
+            for (finer, tolerance) in [(2, 0.17), (4, 0.12)] {
+                let found = area_ratio(name, finer, pressure, &folder);
+                near(&format!("{name} by {finer} at {pressure:e} Pa"), found, ratio, tolerance);
+            }
+        }
+    }
+}
+
+/// Sliding friction and area at half the spacing of the files, within 13 and 17 %.
+fn slides(name: &str, speeds: &str) {
+    let folder = scratch(&format!("half-plane-slide-{name}"));
+    let scene = write(name, &text(name, 2), &folder);
+    let table = folder.join("table.csv");
+    let expected = Table::read(&file(name, "slide.csv"));
+    let columns = ["pressure [Pa]", "speed [m/s]", "area_ratio [1]", "friction [1]"];
+    let [pressures, of_speeds, areas, frictions] = columns.map(|column| expected.column(column));
+    let mut asked: Vec<String> = pressures.iter().map(|pressure| format!("{pressure:?}")).collect();
+    asked.dedup();
+    run(asperity()
+        .arg("sweep")
+        .arg(&scene)
+        .args(["--speeds", speeds, "--pressures", &asked.join(",")])
+        .arg("-o")
+        .arg(&table));
+    let found = fs::read_to_string(&table).unwrap();
+    let mut lines = found.lines().filter(|line| !line.starts_with('#'));
+    let names: Vec<&str> = lines.next().unwrap().split(',').collect();
+    for line in lines {
+        let fields: Vec<&str> = line.split(',').collect();
+        let value =
+            |name: &str| -> f64 { fields[names.iter().position(|other| *other == name).unwrap()].parse().unwrap() };
+        let same = |i: &usize| pressures[*i] == value("pressure [Pa]") && of_speeds[*i] == value("speed [m/s]");
+        let i = (0..pressures.len()).find(same).unwrap();
+        let what = |quantity: &str| format!("{quantity} of {name} at {:e} Pa, {:e} m/s", pressures[i], of_speeds[i]);
+        near(&what("friction"), value("friction [1]"), frictions[i], 0.13);
+        near(&what("area"), value("contact_ratio [1]"), areas[i], 0.17);
+    }
+}
+
+#[test]
+fn friction_on_a_sine_is_the_half_planes() {
+    slides("sine", "0.01,0.1,1,10");
+}
+
+/// Five decades of relaxation times; 1 mm/s alone would take ten times as long as all of these.
+#[test]
+fn friction_on_a_rough_layer_is_the_layers() {
+    slides("layer", "0.01,0.1,1,10");
+}
+
+/// The 16 terms of a tread's rubber.
+#[test]
+fn friction_on_a_rough_half_plane_is_the_half_planes() {
+    slides("rough", "1,10");
+}
