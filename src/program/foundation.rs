@@ -16,14 +16,14 @@ pub(super) fn rows(scene: &Scene) -> Vec<String> {
         rows.push(mean_stiffness(material, foundation));
     }
     rows.extend(quality_rows("vertical", &quality));
-    if scene.layer.foundation != FoundationKind::HalfSpace {
+    if scene.layer.foundation != Some(FoundationKind::HalfSpace) {
         rows.extend(scene.quality(LinkKind::Horizontal).iter().flat_map(|quality| quality_rows("horizontal", quality)));
     }
     rows
 }
 
 fn title(scene: &Scene) -> String {
-    match scene.layer.foundation {
+    match scene.layer.foundation.unwrap_or_default() {
         FoundationKind::Springs => {
             "springs: links by thickness and spacing; r, their stiffness against a wave over that \
                                     of a bonded layer of this thickness:"
@@ -46,7 +46,7 @@ fn constants(scene: &Scene, foundation: &Foundation) -> Vec<String> {
         number(normal.beta),
         number(*depth)
     )];
-    if scene.layer.foundation == FoundationKind::Layer {
+    if scene.layer.foundation == Some(FoundationKind::Layer) {
         rows.push(format!("α_t = {} 1/m, β_t = {} m, along x", number(tangential.alpha), number(tangential.beta)));
     }
     rows
@@ -78,7 +78,7 @@ pub(super) fn picture(scene: &Scene) -> Option<Stacked> {
         Some(Curve { name: name.into(), look, stroke: Stroke::Line, points })
     };
     let kinds: &[(&str, LinkKind)] = match scene.layer.foundation {
-        FoundationKind::HalfSpace => &[("along z and along x", LinkKind::Vertical)],
+        Some(FoundationKind::HalfSpace) => &[("along z and along x", LinkKind::Vertical)],
         _ => &[("along z", LinkKind::Vertical), ("along x", LinkKind::Horizontal)],
     };
     let mut curves: Vec<Curve> = kinds.iter().copied().enumerate().filter_map(curve).collect();

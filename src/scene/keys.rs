@@ -122,9 +122,9 @@ const LAYER: &[Key] = &[
     table("horizontal", LINK).direct(),
     table("lateral_x", LINK).direct(),
     table("lateral_z", LINK).direct(),
-    word::<FoundationKind>("foundation", "What the links stand for: springs, half_space or layer").material(),
     number("thickness", POSITIVE, Unit::Meter, "Thickness of the layer").material(),
     number("width", POSITIVE, Unit::Meter, "Width of the layer").material(),
+    word::<FoundationKind>("foundation", "What the links stand for: springs, half_space or layer").material(),
 ];
 
 const LINK: &[Key] = &[

@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::error::{ContentError, ParameterError, Problem};
 use super::keys;
 use super::text_table::{Columns, decode};
-use super::{FoundationKind, Layer, Link, LinkKind, MaxwellElement, RateShear, Scene};
+use super::{Layer, Link, LinkKind, MaxwellElement, RateShear, Scene};
 
 /// A linear viscoelastic solid: a spring, a dashpot and Maxwell elements in parallel, as moduli.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -224,7 +224,7 @@ impl Scene {
                 lateral_z,
                 thickness: None,
                 width: None,
-                foundation: FoundationKind::Springs,
+                foundation: None,
                 ..layer
             };
             if let Some(friction) = &mut scene.friction {

@@ -91,7 +91,7 @@ pub struct Layer {
     /// Mass of one point mass, kg; in the direct form alone, see [`Scene::mass`].
     pub mass: Option<f64>,
     /// How the links follow from the material; in the material form alone.
-    pub foundation: FoundationKind,
+    pub foundation: Option<FoundationKind>,
     /// Thickness H, m; in the material form alone, and not of a half-space.
     pub thickness: Option<f64>,
     /// Width B, m; in the material form alone.

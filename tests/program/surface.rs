@@ -88,7 +88,8 @@ fn a_measured_surface_is_found_as_it_was_made() {
     run(asperity().arg("surface").arg(&source).arg("--write").arg(&written));
     let surface = Scene::load(&source).unwrap().surface;
     fs::write(&source, scene("kind = 'file'\npath = 'plain.csv'\nperiodic = true")).unwrap();
-    assert_eq!(Scene::load(&source).unwrap().surface, surface, "what is written is the same profile to the last bit");
+    let read = Scene::load(&source).unwrap().surface;
+    assert_eq!((read.x, read.z), (surface.x.clone(), surface.z.clone()), "what is written is the same to the last bit");
 
     let mut text = "Profile 1\r\nx [mm];z [µm]\r\n".to_owned();
     for (i, (x, z)) in surface.x.iter().zip(&surface.z).enumerate() {

@@ -94,7 +94,7 @@ impl Waves {
 impl Layer {
     /// The body that the links are fitted to; `None` for springs.
     fn fitted_body(&self, material: &Material) -> Option<Body> {
-        match self.foundation {
+        match self.foundation? {
             FoundationKind::Springs => None,
             FoundationKind::HalfSpace => Some(Body::HalfPlane),
             FoundationKind::Layer => self.bonded_body(material),

@@ -111,7 +111,7 @@ fn read_layer(table: &mut TableReader<'_>, found: &mut Found) -> Result<Layer> {
         origin: table.optional_number("origin")?.unwrap_or(0.0),
         clearance: table.optional_number("clearance")?.unwrap_or(0.0),
         mass: table.number_of_form("mass")?,
-        foundation,
+        foundation: table.is_material().then_some(foundation),
         thickness: read_thickness(table, foundation)?,
         width: table.number_of_form("width")?,
         initial: table.optional_choice("initial")?.unwrap_or(Initial::Relaxed),

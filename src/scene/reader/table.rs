@@ -199,6 +199,11 @@ impl<'a> TableReader<'a> {
         Self { source, path: String::new(), offset: 0, table, keys: keys::ROOT, asked: Vec::new() }
     }
 
+    /// Whether the scene has a material.
+    pub(super) fn is_material(&self) -> bool {
+        self.source.form == Form::Material
+    }
+
     /// From now on the table has these keys; they are checked.
     pub(super) fn use_keys(&mut self, keys: &'static [Key]) -> Result<()> {
         self.keys = keys;

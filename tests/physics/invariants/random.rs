@@ -7,8 +7,7 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 use asperity::scene::{
-    Extrapolation, FoundationKind, Friction, Initial, Layer, Link, MaxwellElement, Method, Path, RateShear, Scene,
-    Solver, Surface,
+    Extrapolation, Friction, Initial, Layer, Link, MaxwellElement, Method, Path, RateShear, Scene, Solver, Surface,
 };
 use asperity::simulation::{Motion, Start};
 use proptest::collection::vec;
@@ -104,7 +103,7 @@ fn layer(scales: Scales) -> impl Strategy<Value = Layer> {
                 origin: origin * scales.spacing,
                 clearance: clearance * scales.height,
                 mass: Some(scales.mass),
-                foundation: FoundationKind::Springs,
+                foundation: None,
                 thickness: None,
                 width: None,
                 initial,

@@ -55,7 +55,7 @@ fn the_base_is_a_scene() {
 
 #[test]
 fn keys_of_the_direct_form_beside_a_material() {
-    let layer = "expected no such key beside [material]; instead: thickness, width";
+    let layer = "expected no such key beside [material]; instead: thickness, width, foundation";
     assert_refused(
         "material-mixed",
         &[
