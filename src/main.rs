@@ -11,7 +11,7 @@ use program::{Arguments, run};
 #[expect(clippy::print_stderr, reason = "the one place where the program prints the error that ended it")]
 fn main() -> ExitCode {
     match run(Arguments::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(status) => status,
         Err(error) => {
             eprintln!("asperity: {error}");
             ExitCode::FAILURE

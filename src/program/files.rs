@@ -1,8 +1,9 @@
 //! Scenes and other files that commands read and write.
 
-use std::io::Write as _;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
-use std::{fs, io};
+use std::sync::Mutex;
 
 use asperity::scene::{ParameterError, Scene, SceneError};
 
@@ -85,6 +86,44 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
 
 pub(crate) fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), FileError> {
     fs::write(path, content).map_err(FileError::io("write", path))
+}
+
+/// Writes a file at once: what is at `path` is the one before or this one, whole.
+pub(crate) fn replace(path: &Path, text: &str) -> Result<(), FileError> {
+    let mut part = path.as_os_str().to_owned();
+    part.push(".part");
+    let part = PathBuf::from(part);
+    let write = || {
+        let mut file = File::create(&part)?;
+        file.write_all(text.as_bytes())?;
+        file.sync_all()?;
+        fs::rename(&part, path)
+    };
+    write().map_err(FileError::io("write", path))
+}
+
+/// A file to which lines are added, from any thread.
+#[derive(Debug)]
+pub(crate) struct LineFile {
+    path: PathBuf,
+    /// A line is written at once, so that one that is cut off has no end.
+    file: Mutex<File>,
+}
+
+impl LineFile {
+    /// A file that begins with `text`, in the place of what was at `path`.
+    pub(crate) fn create(path: &Path, text: &str) -> Result<Self, FileError> {
+        replace(path, text)?;
+        let file = OpenOptions::new().append(true).open(path).map_err(FileError::io("write", path))?;
+        Ok(Self { path: path.to_owned(), file: Mutex::new(file) })
+    }
+
+    /// Adds a line, its end included; it is in the file when this returns.
+    pub(crate) fn add(&self, line: &str) -> Result<(), FileError> {
+        let mut file = self.file.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let written = file.write_all(line.as_bytes()).and_then(|()| file.sync_data());
+        written.map_err(FileError::io("write", &self.path))
+    }
 }
 
 pub(crate) fn print(text: &str) -> Result<(), FileError> {

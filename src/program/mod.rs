@@ -1,6 +1,7 @@
 //! The commands of the program, one module each, and what they share.
 
 mod cli;
+mod converge;
 mod describe;
 mod figure;
 mod files;
@@ -18,14 +19,16 @@ mod sweep;
 mod terminal;
 
 use std::error::Error;
+use std::process::ExitCode;
 
 pub(crate) use cli::Arguments;
 use cli::Command;
 
 /// Executes the command of the command line.
-pub(crate) fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
+pub(crate) fn run(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
     match arguments.command {
         Command::Simulate(command) => simulate::simulate(&command)?,
+        Command::Converge(command) => return Ok(converge::converge(&command)?),
         Command::Plot(command) => figure::plot_files(&command)?,
         Command::Describe(command) => describe::describe(&command)?,
         Command::Pack(command) => pack::pack(&command)?,
@@ -35,5 +38,5 @@ pub(crate) fn run(arguments: Arguments) -> Result<(), Box<dyn Error>> {
         Command::Surface(command) => surface::surface(&command)?,
         Command::Sweep(command) => sweep::sweep(&command)?,
     }
-    Ok(())
+    Ok(ExitCode::SUCCESS)
 }

@@ -13,6 +13,7 @@
 #[path = "../common/mod.rs"]
 #[allow(dead_code, unreachable_pub, reason = "shared by several tests")]
 mod common;
+mod converge;
 mod element;
 mod fit;
 mod peers;

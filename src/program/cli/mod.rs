@@ -12,7 +12,7 @@ use clap::{ArgGroup, Args, Parser, Subcommand};
 use super::sweep::values::{Shard, Values};
 use values::{
     Frequencies, Tolerances, count, fit_error, key_and_value, picture, picture_or_table, positive, powers, seconds,
-    share, temperature, wavelengths,
+    seeds, share, temperature, wavelengths,
 };
 pub(crate) use values::{WlfConstants, tenth};
 
@@ -44,6 +44,9 @@ pub(crate) enum Command {
     Surface(Surface),
     /// Computes the friction coefficient over speed, pressure and temperature, as a table and a plot.
     Sweep(Sweep),
+    /// Tests whether friction and contact area depend on a scene's spacing, length and seed. Exit status 0: all within
+    /// the error; 3: not all.
+    Converge(Converge),
 }
 
 #[derive(Debug, Args)]
@@ -320,6 +323,46 @@ pub(crate) struct Sweep {
     #[arg(long, value_name = "TABLE.csv", num_args = 1.., group = "input", requires = "output")]
     #[arg(conflicts_with_all = OF_A_SCENE)]
     pub(crate) merge: Vec<PathBuf>,
+    /// Replaces an existing table instead of continuing it.
+    #[arg(long)]
+    pub(crate) force: bool,
+    /// Overrides a parameter of the scene, such as friction.coulomb=0.5. May be repeated.
+    #[arg(long, value_name = "KEY=VALUE", value_parser = key_and_value)]
+    pub(crate) set: Vec<(String, String)>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Converge {
+    /// The scene file, in the material form; its excitation and outputs are not used.
+    #[arg(value_name = "SCENE.toml")]
+    pub(crate) scene: PathBuf,
+    /// Mean pressure in Pa.
+    #[arg(long, value_name = "PASCAL", value_parser = positive, allow_negative_numbers = true)]
+    pub(crate) pressure: f64,
+    /// Sliding speed in m/s.
+    #[arg(long, value_name = "SPEED", value_parser = positive, allow_negative_numbers = true)]
+    pub(crate) speed: f64,
+    /// Admissible change of friction and area, as a share of them, with the spacing halved, the length doubled or another
+    /// seed.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.05, value_parser = share)]
+    pub(crate) error: f64,
+    /// Number of seeds of a self-affine surface or roughness, the scene's own included.
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = seeds)]
+    pub(crate) seeds: u32,
+    /// Most masses that the halved spacing may come to; with twice the length there are twice as many.
+    #[arg(long, value_name = "N", default_value_t = 4096, value_parser = count)]
+    pub(crate) most_masses: u32,
+    /// The table to write; an existing table of the same study is continued. Default: the scene's file name with
+    /// .converge.csv.
+    #[arg(short, long, value_name = "TABLE.csv")]
+    pub(crate) output: Option<PathBuf>,
+    /// The plot to write, as SVG or PNG according to the file name. Default: the table's name with .svg.
+    #[arg(long, value_name = "OUT.svg", value_parser = picture())]
+    pub(crate) plot: Option<PathBuf>,
+    /// Maximum sliding distance in m for a run to become steady. Default: 100 blocks; a block is a whole number of
+    /// profile periods or layer lengths.
+    #[arg(long, value_name = "METRES", value_parser = positive, allow_negative_numbers = true)]
+    pub(crate) distance: Option<f64>,
     /// Replaces an existing table instead of continuing it.
     #[arg(long)]
     pub(crate) force: bool,

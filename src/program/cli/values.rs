@@ -22,6 +22,11 @@ pub(super) fn count(text: &str) -> Result<u32, String> {
     number.ok_or_else(|| "expected a whole number, 1 or more".into())
 }
 
+pub(super) fn seeds(text: &str) -> Result<u32, String> {
+    let number = text.trim().parse().ok().filter(|number| (2..=1000).contains(number));
+    number.ok_or_else(|| "expected a whole number from 2 to 1000".into())
+}
+
 /// Powers of ten of the robustness test.
 pub(super) fn powers(text: &str) -> Result<u32, String> {
     text.trim().parse().ok().filter(|&powers| powers <= 12).ok_or_else(|| "expected a whole number from 0 to 12".into())

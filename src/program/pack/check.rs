@@ -15,7 +15,7 @@ use crate::program::figure::{Figure as _, Ladder, LadderPanel, Ladders, PlotErro
 use crate::program::files::{self, FileError};
 use crate::program::result_file::{CsvWriter, ResultWriter};
 use crate::program::runner::CarrierSample;
-use crate::program::sweep::{SteadySliding, steady_sliding};
+use crate::program::sweep::{Bounds, SteadySliding, steady_sliding};
 use crate::program::terminal::{self, LabelledLine, labelled, real};
 
 /// Standard error of the layer's friction coefficient, relative to it.
@@ -81,7 +81,7 @@ fn check_points(contact: &PointContact, scene: &Scene, count: usize) -> Vec<Poin
     let points = selected(&centres(&table.grid), count);
     let bar = terminal::bar(points.len() as u64);
     let check = |&point: &OperatingPoint| {
-        let layer = steady_sliding(scene, &point, table.load, ERROR);
+        let layer = steady_sliding(scene, &point, table.load, Bounds { error: ERROR, distance: None });
         let element = layer.as_ref().ok().map(|layer| element_sliding(contact, &point, layer.w));
         bar.inc(1);
         PointCheck { point, layer, element }

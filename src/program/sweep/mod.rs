@@ -19,8 +19,8 @@ use super::cli::Sweep;
 use super::files::{FileError, check_output, load, set_parameters, sources};
 use super::terminal;
 use load_search::{heights, rest_separation};
-use point::Bounds;
-pub(crate) use point::SteadySliding;
+pub(crate) use point::{Bounds, SMALL as SMALL_FRICTION, SteadySliding};
+pub(crate) use table_file::fingerprint as table_fingerprint;
 use table_file::{SweepTable, TableFile, TableFileError};
 use values::Values;
 
@@ -160,7 +160,7 @@ fn with_temperature(scene: &Scene, temperature: f64) -> Scene {
 }
 
 /// The scene without what a sweep does not depend on, and with the outputs that it reads.
-fn relevant(scene: Scene) -> Scene {
+pub(crate) fn relevant(scene: Scene) -> Scene {
     use OutputGroup::{Contact, Dissipation, Energy, Forces, Friction};
     let outputs = vec![Forces, Dissipation, Friction, Contact, Energy];
     let mut scene = Scene { outputs, excitation: Vec::new(), description: None, ..scene };
@@ -192,16 +192,15 @@ fn fingerprint(scene: &Scene, command: &Sweep, load: Load) -> Result<String, ser
     table_file::fingerprint(&scene, &format!("{} {:?} {:?}", load.name(), command.error, command.distance))
 }
 
-/// Steady sliding at one point, the friction coefficient known to `error` relative to it; where the layer does not
-/// become steady, the status of the point.
+/// Steady sliding at one point, known to `bounds`; where the layer does not become steady, the status of the point.
 pub(crate) fn steady_sliding(
     scene: &Scene,
     point: &OperatingPoint,
     load: Load,
-    error: f64,
+    bounds: Bounds,
 ) -> Result<SteadySliding, String> {
     let scene = scene_at(&relevant(scene.clone()), point);
-    let result = point::find(&scene, point.speed, load.force(point.load), Bounds { error, distance: None });
+    let result = point::sliding(&scene, point.speed, load.force(point.load), bounds);
     match result.sliding {
         Some(sliding) if result.status == asperity::element::STEADY => Ok(sliding),
         _ => Err(result.status),

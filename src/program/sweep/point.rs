@@ -36,17 +36,17 @@ const CALM: f64 = 0.125;
 /// A window of so many blocks whose load has a trend is abandoned: the dashpots are not yet at rest.
 const ABANDONED: usize = 6;
 /// The relative error of a friction coefficient smaller than this is taken relative to this.
-const SMALL: f64 = 1e-2;
+pub(crate) const SMALL: f64 = 1e-2;
 /// Longest distance in blocks where none is given.
 const BLOCKS: f64 = 100.0;
 
 /// When a point ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Bounds {
+pub(crate) struct Bounds {
     /// Standard error of the friction coefficient over its mean.
-    pub(super) error: f64,
+    pub(crate) error: f64,
     /// Longest distance, m; `None`: [`BLOCKS`] blocks.
-    pub(super) distance: Option<f64>,
+    pub(crate) distance: Option<f64>,
 }
 
 /// What a layer does in steady sliding.
@@ -59,9 +59,11 @@ pub(crate) struct SteadySliding {
     /// Friction coefficient and its parts, 1.
     friction: Friction,
     /// Standard error of the friction coefficient, 1.
-    friction_error: f64,
+    pub(crate) friction_error: f64,
     /// Masses in contact over all masses, 1.
-    contact_ratio: f64,
+    pub(crate) contact_ratio: f64,
+    /// Standard error of that, 1.
+    pub(crate) contact_error: f64,
     /// Power lost in dampers, Maxwell elements, friction and impacts, W; `None` for a channel that the scene cannot have.
     channels: [Option<f64>; 4],
     /// Number of displacements w that were tried.
@@ -71,6 +73,11 @@ pub(crate) struct SteadySliding {
 }
 
 impl SteadySliding {
+    /// Friction coefficient, 1.
+    pub(crate) fn friction(&self) -> f64 {
+        self.friction.whole
+    }
+
     /// Mean force against the motion, N.
     pub(crate) fn drag(&self) -> f64 {
         self.friction.whole * self.force_z
@@ -134,6 +141,7 @@ struct Average {
     means: BlockMeans,
     friction: Window,
     load: Window,
+    contact: Window,
     steady: bool,
     /// F_z has a trend.
     drifts: bool,
@@ -154,15 +162,20 @@ struct Search<'a> {
 }
 
 /// Steady sliding of the layer of `scene` at `speed` (m/s) under the force `load` (N).
+pub(super) fn sliding(scene: &Scene, speed: f64, load: f64, bounds: Bounds) -> PointResult {
+    let load = LoadSearch::estimated(load, scene, &Model::new(scene));
+    let search = Search::new(scene, Blocks::new(scene, speed), bounds, load);
+    search.and_then(Search::finish).unwrap_or_else(|error| PointResult::failed(error.to_string()))
+}
+
+/// Steady sliding, and the tangential stiffness at its start.
 pub(super) fn find(scene: &Scene, speed: f64, load: f64, bounds: Bounds) -> PointResult {
-    let failed = |error: SimulationError| PointResult::failed(error.to_string());
-    let model = Model::new(scene);
-    let load = LoadSearch::estimated(load, scene, &model);
-    let blocks = Blocks::new(scene, speed);
-    let result = Search::new(scene, blocks, bounds, load).and_then(Search::finish).unwrap_or_else(failed);
+    let result = sliding(scene, speed, load, bounds);
     if result.sliding.is_none() {
         return result;
     }
+    let model = Model::new(scene);
+    let (load, blocks) = (LoadSearch::estimated(load, scene, &model), Blocks::new(scene, speed));
     let stiffness = model.links[LinkKind::Vertical as usize].stiffness;
     let frequency = if stiffness > 0.0 { (stiffness / model.mass).sqrt() } else { model.stiffest_frequency() };
     match tangential_stiffness(scene, blocks, load, frequency) {
@@ -264,10 +277,11 @@ impl<'a> Search<'a> {
         let used = &blocks[window(blocks.len())..];
         let of = |value: fn(&BlockMeans) -> f64| Window::new(&used.iter().map(value).collect::<Vec<_>>());
         let (friction, load) = (of(|means| means.drag / means.load), of(|means| means.load));
+        let contact = of(|means| means.contact);
         let steady = friction.is_steady(self.error * friction.mean.abs().max(SMALL))
             && load.is_steady(LOAD_ERROR * self.load.target);
         let drifts = load.has_trend(LOAD_ERROR * self.load.target);
-        Average { means: BlockMeans::mean(used), friction, load, steady, drifts }
+        Average { means: BlockMeans::mean(used), friction, load, contact, steady, drifts }
     }
 
     fn result(&self, average: &Average) -> PointResult {
@@ -279,6 +293,7 @@ impl<'a> Search<'a> {
             friction: Friction::new(means),
             friction_error: average.friction.error,
             contact_ratio: means.contact,
+            contact_error: average.contact.error,
             channels: [damper, maxwell, friction, Some(impact.unwrap_or(0.0))],
             runs: self.runs,
             time: self.slide.time(),

@@ -1,14 +1,13 @@
 //! The file of a sweep: points are added as they are done and not computed again; shards are merged into one.
 
-use std::fs::{self, File, OpenOptions};
-use std::io::{ErrorKind, Write};
+use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
 
 use asperity::element::{FORMAT, OperatingPoint, TableError, TableHeader, TableRow, TableText};
 use asperity::scene::Scene;
 
-use crate::program::files::FileError;
+use crate::program::files::{FileError, LineFile, replace};
 
 /// A table cannot be read, continued or merged.
 #[derive(Debug, thiserror::Error)]
@@ -88,19 +87,13 @@ impl SweepTable {
         self.rows.sort_by_key(|stored| grid.index(&stored.row.point));
     }
 
+    fn text(&self) -> String {
+        self.header.text() + &self.rows.iter().map(|stored| stored.text.as_str()).collect::<String>()
+    }
+
     /// Writes the table at once: what is at `path` is the one before or this one, whole.
     pub(super) fn write(&self, path: &Path) -> Result<(), FileError> {
-        let mut part = path.as_os_str().to_owned();
-        part.push(".part");
-        let part = PathBuf::from(part);
-        let text = self.header.text() + &self.rows.iter().map(|stored| stored.text.as_str()).collect::<String>();
-        let write = || {
-            let mut file = File::create(&part)?;
-            file.write_all(text.as_bytes())?;
-            file.sync_all()?;
-            fs::rename(&part, path)
-        };
-        write().map_err(FileError::io("write", path))
+        replace(path, &self.text())
     }
 
     /// Merges the tables at `paths` and writes the result at `output`.
@@ -158,9 +151,7 @@ fn difference(first: &TableHeader, other: &TableHeader) -> Option<String> {
 /// A table to which rows are added.
 #[derive(Debug)]
 pub(super) struct TableFile {
-    path: PathBuf,
-    /// A line is written at once, so that one that is cut off has no end.
-    file: Mutex<File>,
+    file: LineFile,
     /// The rows that were there.
     pub(super) done: Vec<StoredRow>,
 }
@@ -170,16 +161,12 @@ impl TableFile {
     pub(super) fn open(path: &Path, header: &TableHeader, replace: bool) -> Result<Self, TableFileError> {
         let done = if replace { Vec::new() } else { rows_done(path, header)? };
         let table = SweepTable { header: header.clone(), rows: done };
-        table.write(path)?;
-        let file = OpenOptions::new().append(true).open(path).map_err(FileError::io("write", path))?;
-        Ok(Self { path: path.to_owned(), file: Mutex::new(file), done: table.rows })
+        Ok(Self { file: LineFile::create(path, &table.text())?, done: table.rows })
     }
 
     /// Adds a row; it is in the file when this returns.
     pub(super) fn add(&self, row: &TableRow) -> Result<(), FileError> {
-        let mut file = self.file.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        let written = file.write_all(row.line().as_bytes()).and_then(|()| file.sync_data());
-        written.map_err(FileError::io("write", &self.path))
+        self.file.add(&row.line())
     }
 }
 
@@ -208,7 +195,7 @@ fn rows_done(path: &Path, header: &TableHeader) -> Result<Vec<StoredRow>, TableF
 }
 
 /// Tells one sweep from another: depends on everything in the scene that its points depend on, and on the settings.
-pub(super) fn fingerprint(scene: &Scene, settings: &str) -> Result<String, serde_json::Error> {
+pub(crate) fn fingerprint(scene: &Scene, settings: &str) -> Result<String, serde_json::Error> {
     let text = format!("{FORMAT}\n{}\n{settings}\n{}", env!("CARGO_PKG_VERSION"), serde_json::to_string(scene)?);
     Ok(uuid::Uuid::new_v5(&uuid::Uuid::NAMESPACE_OID, text.as_bytes()).simple().to_string())
 }

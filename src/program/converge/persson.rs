@@ -1,0 +1,214 @@
+//! Persson's theory of contact and friction beside the runs, as an orientation.
+//!
+//! B. N. J. Persson, J. Chem. Phys. 115, 2001, 3840. Waves of the profile are added in the order of their wave numbers q.
+//! Those up to m press with the mean square σ_m² = Σ z_n² <|K M(q_n v cos φ)|²>, so the part P_m = erf(p/(√2 σ_m)) of the
+//! surface is in contact, and μ = (1/p) Σ q_m z_m² K <cos φ Im M(q_m v cos φ)> P_m S_m. S is 1, or ½ + ½P² for contacts
+//! that deform less than the whole surface would.
+
+use std::f64::consts::{FRAC_PI_2, PI, SQRT_2, TAU};
+
+use asperity::scene::{Body, FoundationKind, Layer, Material, Scene, Spectrum};
+
+/// Area and friction by the theory.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Theory {
+    /// In contact over the whole, 1.
+    pub(super) area: f64,
+    /// Friction coefficient with S = 1.
+    pub(super) friction: f64,
+    /// Friction coefficient with S = ½ + ½P².
+    pub(super) friction_reduced: f64,
+}
+
+/// Whether the waves of the profile are those of ridges across the motion, or those of a line on an isotropic surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Dimension {
+    One,
+    Two,
+}
+
+/// Angles between 0 and π/2 at whose middles the waves of an isotropic surface are taken.
+const ANGLES: u32 = 32;
+/// Waves of less than this part of the largest mean square slope are roundings of the transform.
+const ROUNDING: f64 = 1e-20;
+/// A wave lies within the band if it does but for rounding.
+const EDGE: f64 = 1e-9;
+
+impl Theory {
+    /// Of the waves that the layer of `scene` resolves, sliding at `speed` (m/s) under `pressure` (Pa); `None` in the
+    /// direct form.
+    pub(super) fn of(scene: &Scene, pressure: f64, speed: f64, dimension: Dimension) -> Option<Self> {
+        let material = scene.material.as_ref()?;
+        let body = body(&scene.layer, material)?;
+        let waves = resolved(&scene.layer, Spectrum::of(&scene.surface).modes());
+        Some(Self::of_waves(&waves, material, body, (pressure, speed), dimension))
+    }
+
+    /// Area, friction and friction reduced.
+    pub(super) fn values(&self) -> [f64; 3] {
+        [self.area, self.friction, self.friction_reduced]
+    }
+
+    /// Of waves (q in rad/m, mean square height in m²) in the order of q.
+    fn of_waves(
+        waves: &[(f64, f64)],
+        material: &Material,
+        body: Body,
+        (pressure, speed): (f64, f64),
+        dimension: Dimension,
+    ) -> Self {
+        let (mut variance, mut theory) = (0.0, Self { area: 1.0, friction: 0.0, friction_reduced: 0.0 });
+        for &(wave_number, mean_square) in waves {
+            let (stiffness, square) = (body.normal(wave_number), dimension.factor() * mean_square);
+            let (modulus_square, loss) = dimension.means(material, wave_number * speed);
+            variance += square * stiffness * stiffness * modulus_square;
+            theory.area = libm::erf(pressure / (SQRT_2 * variance.sqrt()));
+            let friction = wave_number * square * stiffness * loss * theory.area / pressure;
+            theory.friction += friction;
+            theory.friction_reduced += friction * 0.5 * (1.0 + theory.area * theory.area);
+        }
+        theory
+    }
+}
+
+impl Dimension {
+    /// An isotropic surface has twice the mean square height that is in a wave of its lines, by the angles.
+    fn factor(self) -> f64 {
+        match self {
+            Self::One => 1.0,
+            Self::Two => 2.0,
+        }
+    }
+
+    /// <|M(ω cos φ)|²> (Pa²) and <cos φ Im M(ω cos φ)> (Pa).
+    fn means(self, material: &Material, omega: f64) -> (f64, f64) {
+        let at = |cosine: f64| {
+            let (storage, loss) = material.complex_modulus(omega * cosine);
+            let (storage, loss) = (material.plane_modulus(storage), material.plane_modulus(loss));
+            (storage * storage + loss * loss, cosine * loss)
+        };
+        match self {
+            Self::One => at(1.0),
+            Self::Two => {
+                let middles = (0..ANGLES).map(|i| at((FRAC_PI_2 * (f64::from(i) + 0.5) / f64::from(ANGLES)).cos()));
+                let (square, loss) = middles.fold((0.0, 0.0), |sum, one| (sum.0 + one.0, sum.1 + one.1));
+                (square / f64::from(ANGLES), loss / f64::from(ANGLES))
+            }
+        }
+    }
+}
+
+/// The body that the links stand for; springs are held against a layer of their thickness.
+fn body(layer: &Layer, material: &Material) -> Option<Body> {
+    if layer.foundation == Some(FoundationKind::HalfSpace) {
+        return Some(Body::HalfPlane);
+    }
+    Some(Body::Bonded { thickness: layer.thickness?, poisson_ratio: material.poisson_ratio })
+}
+
+/// Those of `modes` between 2π/(kΔx) and π/Δx.
+fn resolved(layer: &Layer, modes: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
+    let (low, high) = (TAU / (layer.spacing * layer.masses as f64), PI / layer.spacing);
+    let within = |q: f64| low <= q * (1.0 + EDGE) && q <= high * (1.0 + EDGE);
+    let mut waves: Vec<(f64, f64)> = modes.filter(|mode| within(mode.0)).collect();
+    let slope = |&(q, square): &(f64, f64)| q * q * square;
+    let largest = waves.iter().map(slope).fold(0.0, f64::max);
+    waves.retain(|wave| slope(wave) > ROUNDING * largest);
+    waves
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_2_PI;
+
+    use asperity::scene::PronyTerm;
+
+    use super::*;
+
+    fn rubber(prony: Vec<PronyTerm>) -> Material {
+        let (density, poisson_ratio, equilibrium_modulus) = (1e3, 0.5, 3e6);
+        Material { density, poisson_ratio, equilibrium_modulus, viscosity: None, prony, wlf: None }
+    }
+
+    fn viscoelastic() -> Material {
+        rubber(vec![PronyTerm { modulus: 2e7, relaxation_time: 1e-4 }])
+    }
+
+    #[track_caller]
+    fn near(found: f64, exact: f64, tolerance: f64) {
+        assert!((found / exact - 1.0).abs() < tolerance, "{found:e} for {exact:e}");
+    }
+
+    /// A self-affine spectrum of 200 waves.
+    fn rough() -> Vec<(f64, f64)> {
+        (1..=200_u32).map(|m| (1e3 * f64::from(m), 1e-12 * f64::from(m).powf(-2.6))).collect()
+    }
+
+    fn on_half_plane(waves: &[(f64, f64)], material: &Material, pressure: f64, dimension: Dimension) -> Theory {
+        Theory::of_waves(waves, material, Body::HalfPlane, (pressure, 0.3), dimension)
+    }
+
+    /// One wave a cos qx in full contact, as Westergaard's: μ = (qa)² Im M(qv)/(4p).
+    #[test]
+    fn one_wave_in_full_contact_loses_what_westergaard_says() {
+        let (q, a, material) = (5e3, 1e-5, viscoelastic());
+        let wave = [(q, 0.5 * a * a)];
+        // Im M of one Maxwell element, by its own formula.
+        let x = q * 0.3 * 1e-4;
+        let loss = 2e7 / 0.75 * x / (1.0 + x * x);
+        let pressure = 1e8;
+        let theory = on_half_plane(&wave, &material, pressure, Dimension::One);
+        let exact = (q * a).powi(2) * loss / (4.0 * pressure);
+        // σ is some 5e5 Pa: erf is 1 to the last digit.
+        near(theory.area, 1.0, 1e-15);
+        near(theory.friction, exact, 1e-14);
+        near(theory.friction_reduced, exact, 1e-14);
+    }
+
+    /// At low pressure erf x = 2x/√π: A/A_0 = √(8/π) p/(M h'), with h' the slope of the profile in one dimension and √2
+    /// times that, the gradient, in two.
+    #[test]
+    fn the_area_at_low_pressure_is_a_straight_line() {
+        let (waves, material) = (rough(), rubber(Vec::new()));
+        let slope = waves.iter().map(|(q, square)| q * q * square).sum::<f64>().sqrt();
+        let (pressure, modulus) = (10.0, 3e6 / 0.75);
+        let line = 2.0 * FRAC_2_PI.sqrt() * pressure / (modulus * slope);
+        // erf x = 2x/√π (1 - x²/3), x some 1e-4.
+        near(on_half_plane(&waves, &material, pressure, Dimension::One).area, line, 1e-6);
+        near(on_half_plane(&waves, &material, pressure, Dimension::Two).area, line / SQRT_2, 1e-6);
+    }
+
+    /// At low pressure friction does not depend on it, and contacts that are small have S = ½.
+    #[test]
+    fn friction_at_low_pressure_does_not_depend_on_it() {
+        let (waves, material) = (rough(), viscoelastic());
+        let at = |pressure: f64| on_half_plane(&waves, &material, pressure, Dimension::Two);
+        let (low, lower) = (at(10.0), at(1.0));
+        near(low.friction, lower.friction, 1e-4);
+        near(low.friction, 2.0 * low.friction_reduced, 1e-4);
+    }
+
+    /// A dashpot alone, Im M = ωη': <|M|²> = <cos² φ> = ½ of that along the motion, and the same half of the loss.
+    #[test]
+    fn an_isotropic_surface_is_the_mean_over_all_directions() {
+        let material = Material { equilibrium_modulus: 1e-30, viscosity: Some(1e3), ..rubber(Vec::new()) };
+        let (one, two) = (Dimension::One.means(&material, 50.0), Dimension::Two.means(&material, 50.0));
+        // The rule of middles is exact for cos² φ.
+        near(two.0, 0.5 * one.0, 1e-14);
+        near(two.1, 0.5 * one.1, 1e-14);
+        // In full contact twice the heights make up for it: a surface loses what its lines do.
+        let waves = rough();
+        let loss = |dimension| on_half_plane(&waves, &material, 1e9, dimension).friction;
+        near(loss(Dimension::Two), loss(Dimension::One), 1e-12);
+    }
+
+    #[test]
+    fn waves_below_the_spacing_and_beyond_the_length_are_left_out() {
+        let text = "name = 'w'\nlayer = { masses = 8, spacing = 1.0, mass = 1.0 }\nsurface = { kind = 'flat' }";
+        let scene = Scene::parse(text, "w.toml".as_ref()).unwrap();
+        let modes = (1..20).map(|m| (TAU * f64::from(m) / 16.0, if m == 5 { 1e-30 } else { 1.0 }));
+        let kept: Vec<i32> =
+            resolved(&scene.layer, modes).iter().map(|(q, _)| (q * 16.0 / TAU).round() as i32).collect();
+        assert_eq!(kept, [2, 3, 4, 6, 7, 8]);
+    }
+}

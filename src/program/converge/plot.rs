@@ -1,0 +1,53 @@
+//! The picture of a study: friction and area over the spacing.
+
+use super::persson::Theory;
+use super::table::Run;
+use super::verdict::Pair;
+use crate::program::figure::{Curve, Panel, Stacked, Stroke};
+
+/// A curve of Persson's theory: its name, which of the two surfaces, and its value.
+type TheoryCurve = (&'static str, usize, fn(&Theory) -> f64);
+
+const FRICTIONS: [TheoryCurve; 4] = [
+    ("Persson, ridges", 0, |theory| theory.friction),
+    ("reduced", 0, |theory| theory.friction_reduced),
+    ("Persson, isotropic", 1, |theory| theory.friction),
+    ("reduced", 1, |theory| theory.friction_reduced),
+];
+const AREAS: [TheoryCurve; 2] =
+    [("Persson, ridges", 0, |theory| theory.area), ("Persson, isotropic", 1, |theory| theory.area)];
+
+/// The runs of the study `title`, those with another length or seed as circles.
+pub(super) fn picture(title: &str, runs: &[Run]) -> Stacked {
+    let panel = |title: &str, value: fn(&Pair) -> f64, theories: &[TheoryCurve]| {
+        let mut curves = measured(runs, value).to_vec();
+        curves.extend(theories.iter().map(|theory| of_theory(runs, *theory)));
+        curves.retain(|curve| !curve.points.is_empty());
+        Panel { title: title.into(), curves }
+    };
+    let panels = vec![
+        panel("friction coefficient", |pair| pair.friction, &FRICTIONS),
+        panel("area in contact over the whole", |pair| pair.area, &AREAS),
+    ];
+    Stacked { title: title.to_owned(), x_title: "spacing in m".into(), panels }
+}
+
+fn measured(runs: &[Run], value: fn(&Pair) -> f64) -> [Curve; 3] {
+    let curve = |name: &str, look: usize, stroke: Stroke, has: fn(&Run) -> bool| {
+        let point = |run: &Run| Some((run.dimensions.spacing, value(&run.mean()?)));
+        let points = runs.iter().filter(|run| has(run)).filter_map(point).collect();
+        Curve { name: name.into(), look, stroke, points }
+    };
+    [
+        curve("this scene", 0, Stroke::Line, |run| run.variant.is_of_ladder()),
+        curve("twice the length", 1, Stroke::Rings, |run| run.variant.doubled),
+        curve("other seeds", 2, Stroke::Rings, |run| run.variant.seed_shift > 0),
+    ]
+}
+
+fn of_theory(runs: &[Run], (name, surface, value): TheoryCurve) -> Curve {
+    let ladder = runs.iter().filter(|run| run.variant.is_of_ladder());
+    let points = ladder.map(|run| (run.dimensions.spacing, value(&run.theories[surface]))).collect();
+    let stroke = if name == "reduced" { Stroke::Dotted } else { Stroke::Dashed };
+    Curve { name: name.into(), look: 5 + surface, stroke, points }
+}

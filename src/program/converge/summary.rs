@@ -1,0 +1,160 @@
+//! A study as text: a row for each run, what is left open, and what will do.
+
+use super::persson::Theory;
+use super::table::Run;
+use super::verdict::{Largest, Open, Pair, Source, Verdict};
+use crate::program::terminal::{LabelledLine, decimal, labelled, lines, rounded};
+
+const TITLES: [&str; 12] = [
+    "masses",
+    "spacing, m",
+    "length, m",
+    "seed",
+    "r rms",
+    "friction",
+    "std. error",
+    "change",
+    "area",
+    "std. error",
+    "change",
+    "time, s",
+];
+
+/// The runs, each with the change of its values from the one that it is compared with.
+pub(super) type Rows<'a> = [(&'a Run, Option<Pair>)];
+
+/// The rows as a table with a line for each.
+pub(super) fn table(rows: &Rows<'_>) -> String {
+    let mut cells = vec![TITLES.map(str::to_owned).to_vec()];
+    cells.extend(rows.iter().map(|(run, change)| fields(run, *change)));
+    let widths: Vec<usize> = (0..TITLES.len())
+        .map(|i| cells.iter().filter_map(|row| row.get(i)).map(|cell| cell.chars().count()).max().unwrap_or_default())
+        .collect();
+    let line = |row: &Vec<String>| {
+        let padded: Vec<String> = row.iter().zip(&widths).map(|(cell, &width)| format!("{cell:>width$}")).collect();
+        // The status of a run that is not steady takes the place of its values.
+        let status = row.get(TITLES.len()).map(|status| format!("  {status}")).unwrap_or_default();
+        padded.join("  ").trim_end().to_owned() + &status + "\n"
+    };
+    cells.iter().map(line).collect()
+}
+
+fn fields(run: &Run, change: Option<Pair>) -> Vec<String> {
+    let dimensions = &run.dimensions;
+    let mut fields = vec![
+        dimensions.masses.to_string(),
+        number(dimensions.spacing),
+        number(dimensions.length()),
+        dimensions.seed.map_or_else(|| "-".into(), |seed| seed.to_string()),
+        format!("{:.3}", run.fit_rms),
+    ];
+    let of = |value: fn(&Pair) -> f64| match &run.outcome {
+        Ok(measured) => [
+            number(value(&measured.mean)),
+            format!("{:.1e}", value(&measured.error)),
+            change.map_or_else(String::new, |change| format!("{:+.1} %", 100.0 * value(&change))),
+        ],
+        Err(_) => ["-", "", ""].map(str::to_owned),
+    };
+    fields.extend(of(|pair| pair.friction));
+    fields.extend(of(|pair| pair.area));
+    fields.push(seconds(run.run_time));
+    fields.extend(run.outcome.as_ref().err().cloned());
+    fields
+}
+
+fn number(value: f64) -> String {
+    decimal(rounded(value, 4), 1e-3..1e5)
+}
+
+fn seconds(time: f64) -> String {
+    format!("{:.*}", if time < 10.0 { 2 } else { 0 }, time)
+}
+
+fn percent(share: f64) -> String {
+    format!("{} %", decimal(rounded(100.0 * share, 2), 1e-3..1e6))
+}
+
+/// Persson's theory, what each source leaves open, the coarsest spacing, and the verdict. `ladder` holds the runs with
+/// the scene's length and seed.
+pub(super) fn judgement(ladder: &[&Run], verdict: &Verdict, error: f64, seeds: Option<u32>) -> String {
+    let mut all: Vec<LabelledLine> = Vec::new();
+    all.extend(labelled("Persson", ladder.last().iter().flat_map(|run| theories(&run.theories))));
+    all.extend(labelled("Open", verdict.open.iter().map(|open| open_line(open, seeds))));
+    all.extend(labelled("Coarsest", coarsest(ladder, verdict, error)));
+    all.push(("Verdict", sentence(verdict, error)));
+    lines(&all)
+}
+
+fn theories(theories: &[Theory; 2]) -> [String; 2] {
+    let line = |theory: &Theory, surface: &str| {
+        let [area, friction, reduced] = theory.values().map(number);
+        format!("area {area}, friction {reduced} to {friction}: {surface}, an orientation")
+    };
+    [line(&theories[0], "ridges across the motion"), line(&theories[1], "an isotropic surface of this profile")]
+}
+
+fn open_line(open: &Open, seeds: Option<u32>) -> String {
+    let name = open.source.name();
+    let Some(shares) = open.shares else { return format!("{name:<9}not known: a run is missing or not steady") };
+    let of = match open.source {
+        Source::Spacing => "the last change; an area is of first order, as much again is left of it".to_owned(),
+        Source::Length => "the change with twice the length".to_owned(),
+        Source::Chance => format!("the standard deviation over {} seeds", seeds.unwrap_or_default()),
+    };
+    format!("{name:<9}friction {}, area {}: {of}", percent(shares.friction), percent(shares.area))
+}
+
+fn coarsest(ladder: &[&Run], verdict: &Verdict, error: f64) -> [String; 2] {
+    let line = |name: &str, halvings: Option<usize>| {
+        let Some(run) = halvings.and_then(|halvings| ladder.get(halvings)) else {
+            return format!("{name:<9}none of these spacings is within {}", percent(error));
+        };
+        let times = [Some(run), ladder.first(), ladder.last()].map(|run| run.map_or(0.0, |run| run.run_time));
+        let [own, first, last] = times.map(seconds);
+        let (masses, spacing) = (run.dimensions.masses, number(run.dimensions.spacing));
+        format!(
+            "{name:<9}masses = {masses}, spacing = {spacing} m within {}: {own} s (the scene's own {first} s, the finest \
+             {last} s)",
+            percent(error)
+        )
+    };
+    [line("friction", verdict.coarsest[0]), line("area", verdict.coarsest[1])]
+}
+
+/// The verdict in a sentence.
+pub(super) fn sentence(verdict: &Verdict, error: f64) -> String {
+    let start = if verdict.is_converged() { "converged" } else { "not converged" };
+    match verdict.largest() {
+        Some(Largest { source, share: Some((quantity, share)) }) => {
+            let against = if share <= error { "within" } else { "more than" };
+            let (name, share, error) = (source.name(), percent(share), percent(error));
+            format!("{start}: {name} leaves most open, {share} of the {quantity}, {against} {error}")
+        }
+        Some(Largest { source, share: None }) => format!("{start}: what {} leaves open is not known", source.name()),
+        None => start.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::verdict::Study;
+    use super::*;
+
+    #[test]
+    fn the_verdict_names_what_leaves_most_open() {
+        let pair = |friction: f64, area: f64| Pair { friction, area };
+        let ladder = vec![pair(0.5, 0.102), pair(0.5, 0.1)];
+        let study = Study { ladder, length: Some(pair(0.5, 0.1)), seeds: None };
+        assert_eq!(
+            sentence(&Verdict::new(&study, 0.05), 0.05),
+            "converged: spacing leaves most open, 2 % of the area, within 5 %"
+        );
+        assert_eq!(
+            sentence(&Verdict::new(&study, 0.01), 0.01),
+            "not converged: spacing leaves most open, 2 % of the area, more than 1 %"
+        );
+        let study = Study { length: None, ..study };
+        assert_eq!(sentence(&Verdict::new(&study, 0.05), 0.05), "not converged: what length leaves open is not known");
+    }
+}

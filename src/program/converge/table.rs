@@ -1,0 +1,241 @@
+//! The table of a study: rows are added as their runs are done and not computed again.
+
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use asperity::scene::text_table;
+
+use super::ConvergeError;
+use super::persson::Theory;
+use super::variants::{Dimensions, Variant};
+use super::verdict::Pair;
+use crate::program::files::{FileError, LineFile, replace};
+use crate::program::terminal::real;
+
+/// The first line of a table; its number grows when readers have to know of a change.
+const FORMAT: &str = "# asperity converge = 1";
+
+const COLUMNS: [&str; 22] = [
+    "halvings [1]",
+    "length_factor [1]",
+    "seed_shift [1]",
+    "masses [1]",
+    "spacing [m]",
+    "length [m]",
+    "seed [1]",
+    "status",
+    "fit_rms [1]",
+    "friction [1]",
+    "friction_standard_error [1]",
+    "friction_change [1]",
+    "area [1]",
+    "area_standard_error [1]",
+    "area_change [1]",
+    "persson_area_1d [1]",
+    "persson_friction_1d [1]",
+    "persson_friction_1d_reduced [1]",
+    "persson_area_2d [1]",
+    "persson_friction_2d [1]",
+    "persson_friction_2d_reduced [1]",
+    "run_time [s]",
+];
+/// The status of a run whose values can be relied on.
+const STEADY: &str = "steady";
+
+/// What a run measured, with the standard errors of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Measured {
+    pub(super) mean: Pair,
+    pub(super) error: Pair,
+}
+
+/// A run that was made.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Run {
+    pub(super) variant: Variant,
+    pub(super) dimensions: Dimensions,
+    /// Root mean square of r - 1, 1: how far the links miss the surface that they stand for.
+    pub(super) fit_rms: f64,
+    /// What was measured, or why nothing was.
+    pub(super) outcome: Result<Measured, String>,
+    /// Persson's theory of ridges and of an isotropic surface.
+    pub(super) theories: [Theory; 2],
+    /// Processor time, s.
+    pub(super) run_time: f64,
+}
+
+impl Run {
+    /// Friction and area; `None` of a run that did not become steady.
+    pub(super) fn mean(&self) -> Option<Pair> {
+        self.outcome.as_ref().ok().map(|measured| measured.mean)
+    }
+
+    /// The row's line, its end included; `change` is that of the values from another run to this one.
+    fn line(&self, change: Option<Pair>) -> String {
+        let Dimensions { masses, spacing, seed } = self.dimensions;
+        let status = self.outcome.as_ref().err().map_or(STEADY, String::as_str);
+        let measured = self.outcome.as_ref().ok();
+        let text = |value: Option<f64>| value.map(real).unwrap_or_default();
+        let of = |value: fn(&Pair) -> f64| {
+            [
+                measured.map(|run| value(&run.mean)),
+                measured.map(|run| value(&run.error)),
+                change.map(|pair| value(&pair)),
+            ]
+        };
+        let Variant { halvings, doubled, seed_shift } = self.variant;
+        let dimensions = [
+            halvings.to_string(),
+            if doubled { "2" } else { "1" }.to_owned(),
+            seed_shift.to_string(),
+            masses.to_string(),
+            real(spacing),
+            real(self.dimensions.length()),
+            seed.map(|seed| seed.to_string()).unwrap_or_default(),
+            text_table::quoted(status),
+            real(self.fit_rms),
+        ];
+        let values = [of(|pair| pair.friction), of(|pair| pair.area)].concat();
+        let theories = self.theories.iter().flat_map(|theory| theory.values().map(Some));
+        let numbers = values.into_iter().chain(theories).chain([Some(self.run_time)]).map(text);
+        dimensions.into_iter().chain(numbers).collect::<Vec<_>>().join(",") + "\n"
+    }
+
+    /// The run of a row; `None` where a field is not what it should be.
+    fn of_fields(fields: &[impl AsRef<str>]) -> Option<Self> {
+        let text = |i: usize| fields.get(i).map(AsRef::as_ref).unwrap_or_default();
+        let number = |i: usize| text(i).parse::<f64>().ok().filter(|number| number.is_finite());
+        let theory =
+            |i: usize| Some(Theory { area: number(i)?, friction: number(i + 1)?, friction_reduced: number(i + 2)? });
+        let whole = |i: usize| text(i).parse::<u64>().ok();
+        let small = |i: usize| text(i).parse::<u32>().ok();
+        let seed = if text(6).is_empty() { None } else { Some(whole(6)?) };
+        let pair = |friction: usize, area: usize| Some(Pair { friction: number(friction)?, area: number(area)? });
+        let outcome = match text(7) {
+            STEADY => Ok(Measured { mean: pair(9, 12)?, error: pair(10, 13)? }),
+            status => Err(status.to_owned()),
+        };
+        Some(Self {
+            variant: Variant { halvings: small(0)?, doubled: text(1) == "2", seed_shift: small(2)? },
+            dimensions: Dimensions { masses: whole(3)?, spacing: number(4)?, seed },
+            fit_rms: number(8)?,
+            outcome,
+            theories: [theory(15)?, theory(18)?],
+            run_time: number(21)?,
+        })
+    }
+}
+
+/// What a table says before its rows.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Header {
+    /// The name of the scene.
+    pub(super) scene: String,
+    /// What tells this study from others.
+    pub(super) fingerprint: String,
+    /// Pa
+    pub(super) pressure: f64,
+    /// m/s
+    pub(super) speed: f64,
+    pub(super) error: f64,
+}
+
+impl Header {
+    /// The lines of the header, the names of the columns included; once there is one, the verdict.
+    fn text(&self, verdict: Option<&str>) -> String {
+        let mut lines = vec![
+            FORMAT.to_owned(),
+            format!("# scene = {}", self.scene),
+            format!("# fingerprint = {}", self.fingerprint),
+            format!("# pressure = {} Pa", real(self.pressure)),
+            format!("# speed = {} m/s", real(self.speed)),
+            format!("# error = {}", real(self.error)),
+        ];
+        lines.extend(verdict.map(|verdict| format!("# verdict = {verdict}")));
+        lines.push(COLUMNS.join(","));
+        lines.join("\n") + "\n"
+    }
+}
+
+/// A table to which rows are added.
+#[derive(Debug)]
+pub(super) struct Table {
+    path: PathBuf,
+    header: Header,
+    file: LineFile,
+}
+
+impl Table {
+    /// Begins a table or, unless it is to be replaced, continues the one that is there. Returns the runs that it has.
+    pub(super) fn open(path: &Path, header: Header, force: bool) -> Result<(Self, Vec<Run>), ConvergeError> {
+        let runs = if force { Vec::new() } else { runs_done(path, &header)? };
+        let rows = runs.iter().map(|run| run.line(None));
+        let file = LineFile::create(path, &(header.text(None) + &rows.collect::<String>()))?;
+        Ok((Self { path: path.to_owned(), header, file }, runs))
+    }
+
+    /// Adds a row; it is in the file when this returns.
+    pub(super) fn add(&self, run: &Run) -> Result<(), FileError> {
+        self.file.add(&run.line(None))
+    }
+
+    /// Writes the whole table with the changes of the values, which rows that were added do not have.
+    pub(super) fn finish(&self, verdict: &str, rows: &[(&Run, Option<Pair>)]) -> Result<(), FileError> {
+        let rows: String = rows.iter().map(|(run, change)| run.line(*change)).collect();
+        replace(&self.path, &(self.header.text(Some(verdict)) + &rows))
+    }
+}
+
+/// The runs of the table at `path`; none where there is no file, or only the beginning of a header.
+fn runs_done(path: &Path, header: &Header) -> Result<Vec<Run>, ConvergeError> {
+    let text = match fs::read(path) {
+        Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(error) => return Err(FileError::io("read", path)(error).into()),
+    };
+    if header.text(None).starts_with(&text) {
+        return Ok(Vec::new());
+    }
+    // A last line without an end was cut off as its writer was stopped.
+    let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
+    let not_a_table = |problem: String| ConvergeError::NotATable { path: path.to_owned(), problem };
+    let mut rows = text_table::rows(whole, Some(','));
+    if !whole.starts_with(FORMAT) || rows.next().is_none_or(|names| names.fields != COLUMNS) {
+        return Err(not_a_table(format!("expected the line `{FORMAT}` and the columns {}", COLUMNS.join(", "))));
+    }
+    let key = format!("# fingerprint = {}", header.fingerprint);
+    if !whole.lines().any(|line| line == key) {
+        return Err(ConvergeError::OtherStudy { path: path.to_owned() });
+    }
+    rows.map(|row| Run::of_fields(&row.fields).ok_or_else(|| not_a_table(format!("line {} is no row", row.line))))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run(outcome: Result<Measured, String>) -> Run {
+        let theory = |area: f64| Theory { area, friction: 0.1 / 3.0, friction_reduced: 1e-7 };
+        let dimensions = Dimensions { masses: 64, spacing: 1e-4 / 3.0, seed: Some(u64::MAX) };
+        let variant = Variant { halvings: 3, doubled: true, seed_shift: 2 };
+        Run { variant, dimensions, fit_rms: 0.25, outcome, theories: [theory(0.1), theory(0.2)], run_time: 12.5 }
+    }
+
+    #[test]
+    fn rows_read_back_as_they_were_written() {
+        let pair = |friction: f64, area: f64| Pair { friction, area };
+        let steady = run(Ok(Measured { mean: pair(0.1 + 0.2, 0.125), error: pair(1e-9, 0.0) }));
+        let failed = run(Err("not steady after 0.5 m, at all: \"never\"".into()));
+        let seedless = Dimensions { seed: None, ..steady.dimensions };
+        for run in [steady.clone(), failed, Run { dimensions: seedless, ..steady }] {
+            for change in [None, Some(pair(-0.5, 0.25))] {
+                let line = run.line(change);
+                let row = text_table::rows(&line, Some(',')).next().unwrap();
+                assert_eq!((row.fields.len(), Run::of_fields(&row.fields)), (COLUMNS.len(), Some(run.clone())));
+            }
+        }
+        assert_eq!(Run::of_fields(&["64"; COLUMNS.len() - 1]), None);
+    }
+}

@@ -1,0 +1,280 @@
+//! Variants of a scene: another spacing, length or seed. Values of its text are replaced and it is read anew, so
+//! roughness is sampled and links are fitted as for any scene.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use asperity::scene::Scene;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::ConvergeError;
+use crate::program::files::{self, FileError, set_parameters};
+
+/// What a run differs in from the scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Variant {
+    /// How often the spacing is halved, at the same length.
+    pub(super) halvings: u32,
+    /// Whether layer and self-affine surface are twice as long.
+    pub(super) doubled: bool,
+    /// What is added to the seeds.
+    pub(super) seed_shift: u32,
+}
+
+impl Variant {
+    pub(super) fn halved(halvings: u32) -> Self {
+        Self { halvings, ..Self::default() }
+    }
+
+    /// Whether nothing but the spacing differs.
+    pub(super) fn is_of_ladder(self) -> bool {
+        !self.doubled && self.seed_shift == 0
+    }
+
+    /// The one that its values are compared with: twice the spacing, or the same one.
+    pub(super) fn reference(self) -> Option<Self> {
+        if self.is_of_ladder() {
+            Some(Self::halved(self.halvings.checked_sub(1)?))
+        } else {
+            Some(Self::halved(self.halvings))
+        }
+    }
+
+    /// The place in a table: halvings, then lengths, then seeds.
+    pub(super) fn place(self) -> (bool, bool, u32, u32) {
+        (self.seed_shift > 0, self.doubled, self.halvings, self.seed_shift)
+    }
+}
+
+/// The layer of a run, and its seed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Dimensions {
+    /// Number of masses k.
+    pub(super) masses: u64,
+    /// Δx, m.
+    pub(super) spacing: f64,
+    /// The seed of the surface, else that of the layer's roughness; `None`: neither has one.
+    pub(super) seed: Option<u64>,
+}
+
+impl Dimensions {
+    /// Length kΔx of the layer, m.
+    pub(super) fn length(&self) -> f64 {
+        self.masses as f64 * self.spacing
+    }
+}
+
+/// A number of the scene's text.
+#[derive(Clone, Debug, PartialEq)]
+struct Number {
+    span: Range<usize>,
+    value: Value,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Value {
+    Whole(u64),
+    Real(f64),
+}
+
+/// The numbers of a self-affine surface that change.
+#[derive(Clone, Debug, PartialEq)]
+struct SelfAffine {
+    length: Number,
+    points: Number,
+    seed: Number,
+}
+
+/// A scene in the material form of which variants are made.
+#[derive(Clone, Debug)]
+pub(super) struct Template {
+    path: PathBuf,
+    text: String,
+    set: Vec<(String, String)>,
+    masses: Number,
+    spacing: Number,
+    /// The surface, then the roughness of the layer.
+    self_affine: Vec<SelfAffine>,
+    /// The dimensions of the scene itself.
+    own: Dimensions,
+}
+
+impl Template {
+    /// The scene at `path`, its parameters overridden by `set`, and what variants of it are made of.
+    pub(super) fn read(path: &Path, set: &[(String, String)]) -> Result<(Self, Scene), ConvergeError> {
+        let scene = files::load(path)?;
+        if scene.material.is_none() {
+            return Err(ConvergeError::DirectForm { path: path.to_owned() });
+        }
+        let bytes = files::read(path)?;
+        let text = String::from_utf8_lossy(&bytes);
+        let text = text.strip_prefix('\u{feff}').unwrap_or(&text).to_owned();
+        let template = Self::of(path, text, set)?;
+        let scene = template.scene(Variant::default())?;
+        Ok((template, scene))
+    }
+
+    fn of(path: &Path, text: String, set: &[(String, String)]) -> Result<Self, ConvergeError> {
+        let unclear = || ConvergeError::Unclear { path: path.to_owned() };
+        let document = DeTable::parse(&text).map_err(|_| unclear())?;
+        let document = document.get_ref();
+        let layer = table(document, "layer").ok_or_else(unclear)?;
+        let surfaces = [table(document, "surface"), table(layer, "roughness")];
+        if surfaces[1].is_some_and(|roughness| roughness.contains_key("z") && !roughness.contains_key("x")) {
+            return Err(ConvergeError::HeightsAtMasses { path: path.to_owned() });
+        }
+        let self_affine: Vec<SelfAffine> = surfaces.into_iter().flatten().filter_map(SelfAffine::of).collect();
+        let (masses, spacing) = (number(layer, "masses"), number(layer, "spacing"));
+        let (masses, spacing) = masses.zip(spacing).ok_or_else(unclear)?;
+        let seed = self_affine.first().map(|surface| surface.seed.value.whole());
+        let own = Dimensions { masses: masses.value.whole(), spacing: spacing.value.real(), seed };
+        let (path, set) = (path.to_owned(), set.to_vec());
+        Ok(Self { path, text, set, masses, spacing, self_affine, own })
+    }
+
+    /// Whether there are other seeds.
+    pub(super) fn has_seed(&self) -> bool {
+        self.own.seed.is_some()
+    }
+
+    /// Number of masses of the scene itself.
+    pub(super) fn masses(&self) -> u64 {
+        self.own.masses
+    }
+
+    pub(super) fn dimensions(&self, variant: Variant) -> Dimensions {
+        Dimensions {
+            masses: (self.own.masses << variant.halvings) << u32::from(variant.doubled),
+            spacing: self.own.spacing / f64::from(variant.halvings).exp2(),
+            seed: self.own.seed.map(|seed| shifted(seed, variant.seed_shift)),
+        }
+    }
+
+    /// The scene of a variant.
+    pub(super) fn scene(&self, variant: Variant) -> Result<Scene, FileError> {
+        let mut scene = Scene::parse(&self.text_of(variant), &self.path)?;
+        set_parameters(&mut scene, &self.set)?;
+        Ok(scene)
+    }
+
+    /// The scene's text with the numbers of a variant.
+    fn text_of(&self, variant: Variant) -> String {
+        let Dimensions { masses, spacing, .. } = self.dimensions(variant);
+        let factor = 1_u32 << u32::from(variant.doubled);
+        let mut changes = vec![(&self.masses, Value::Whole(masses)), (&self.spacing, Value::Real(spacing))];
+        for SelfAffine { length, points, seed } in &self.self_affine {
+            changes.push((length, Value::Real(f64::from(factor) * length.value.real())));
+            changes.push((points, Value::Whole(u64::from(factor) * points.value.whole())));
+            changes.push((seed, Value::Whole(shifted(seed.value.whole(), variant.seed_shift))));
+        }
+        changes.retain(|(number, value)| number.value != *value);
+        // From the end, so that those before stay where they are.
+        changes.sort_by_key(|(number, _)| std::cmp::Reverse(number.span.start));
+        let mut text = self.text.clone();
+        changes.into_iter().for_each(|(number, value)| text.replace_range(number.span.clone(), &value.text()));
+        text
+    }
+}
+
+/// A seed so much further on, within what TOML can write.
+fn shifted(seed: u64, shift: u32) -> u64 {
+    seed.wrapping_add(u64::from(shift)) & i64::MAX.unsigned_abs()
+}
+
+impl SelfAffine {
+    /// That of a table of a surface; `None` for every other kind.
+    fn of(surface: &DeTable<'_>) -> Option<Self> {
+        if surface.get("kind")?.get_ref().as_str() != Some("self_affine") {
+            return None;
+        }
+        Some(Self {
+            length: number(surface, "length")?,
+            points: number(surface, "points")?,
+            seed: number(surface, "seed")?,
+        })
+    }
+}
+
+fn table<'a>(table: &'a DeTable<'a>, key: &str) -> Option<&'a DeTable<'a>> {
+    table.get(key)?.get_ref().as_table()
+}
+
+fn number(table: &DeTable<'_>, key: &str) -> Option<Number> {
+    let entry: &Spanned<DeValue<'_>> = table.get(key)?;
+    let value = match entry.get_ref() {
+        DeValue::Float(float) => Value::Real(float.as_str().parse().ok()?),
+        other => {
+            let whole = other.as_integer()?;
+            Value::Whole(u64::from_str_radix(whole.as_str(), whole.radix()).ok()?)
+        }
+    };
+    Some(Number { span: entry.span(), value })
+}
+
+impl Value {
+    fn whole(self) -> u64 {
+        match self {
+            Self::Whole(number) => number,
+            Self::Real(number) => number as u64,
+        }
+    }
+
+    fn real(self) -> f64 {
+        match self {
+            Self::Whole(number) => number as f64,
+            Self::Real(number) => number,
+        }
+    }
+
+    fn text(self) -> String {
+        match self {
+            Self::Whole(number) => number.to_string(),
+            Self::Real(number) => format!("{number:?}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "name = 'v' # 16 masses\n\
+        layer = { masses = 0x10, spacing = 1e-4, thickness = 1e-3, width = 1e-2, \
+        roughness = { kind = 'self_affine', seed = 9223372036854775807, length = 1.0, points = 1_000, hurst = 0.8, \
+        rms = 1e-7, roll_off_wavelength = 0.5, cut_off_wavelength = 0.01 } }\n\
+        material = { density = 1e3, poisson_ratio = 0.49, equilibrium_modulus = 1e6, prony = [] }\n\
+        [surface]\nkind = 'self_affine'\nlength = 1.6e-3\npoints = 64\nhurst = 0.8\nrms = 1e-6\n\
+        roll_off_wavelength = 1e-3\ncut_off_wavelength = 2e-4\nseed = 5\n[solver]\nabsolute_tolerance = 1e-4\n";
+
+    fn template(text: &str) -> Result<Template, ConvergeError> {
+        Template::of("scene.toml".as_ref(), text.into(), &[])
+    }
+
+    #[test]
+    fn nothing_changed_is_the_same_text() {
+        assert_eq!(template(TEXT).unwrap().text_of(Variant::default()), TEXT);
+    }
+
+    #[test]
+    fn variants_change_spacing_length_and_seeds_alone() {
+        let template = template(TEXT).unwrap();
+        let variant = Variant { halvings: 2, doubled: true, seed_shift: 3 };
+        let expected = TEXT
+            .replace("0x10, spacing = 1e-4", "128, spacing = 2.5e-5")
+            .replace("9223372036854775807, length = 1.0, points = 1_000", "2, length = 2.0, points = 2000")
+            .replace("length = 1.6e-3\npoints = 64", "length = 0.0032\npoints = 128")
+            .replace("seed = 5", "seed = 8");
+        assert_eq!(template.text_of(variant), expected);
+        let scene = template.scene(variant).unwrap();
+        assert_eq!((scene.layer.masses, scene.layer.roughness.len(), scene.surface.x.len()), (128, 128, 129));
+        assert_eq!(template.dimensions(variant), Dimensions { masses: 128, spacing: 2.5e-5, seed: Some(8) });
+        assert!(scene.layer.roughness.iter().any(|height| *height != 0.0));
+    }
+
+    #[test]
+    fn heights_at_the_masses_have_no_variants() {
+        let text = TEXT.replace("kind = 'self_affine', seed", "kind = 'points', z = [0.0], seed");
+        assert!(matches!(template(&text), Err(ConvergeError::HeightsAtMasses { .. })));
+    }
+}
