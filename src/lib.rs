@@ -14,7 +14,7 @@
 //! | [`math`] | splines, tridiagonal systems, roots, Fourier sums and other numerical methods |
 //! | [`scene`] | a scene as data: reading TOML, profiles and materials; parameters; checks and warnings |
 //! | [`model`] | the mechanical model: links and their forces, contact laws, state, energies, stiffness scales, reduction |
-//! | [`integrator`] | implicit Runge-Kutta steps with fixed contact modes: stages, dense output, error, sensitivities |
+//! | [`integrator`] | implicit Runge-Kutta steps, with modes held or set-valued friction: stages, dense output, error, sensitivities |
 //! | [`contact`] | the rules of mode changes and the impact, event location, the end-of-step correction |
 //! | [`outputs`] | the table of the outputs: names, units, values, derivatives, dependencies |
 //! | [`simulation`] | a run: its state, the event-driven and the time-stepping driver, error-estimation run |
@@ -32,7 +32,7 @@
 //! | a key of the scene, a parameter | a line in `scene/keys.rs`, a field in `scene/mod.rs`, a line in `scene/reader`; a parameter also in `scene/parameters.rs` |
 //! | an output | a variant of [`outputs::Output`] and a row in `outputs/table.rs` |
 //! | a column of a sweep's table | `element/table_format.rs`; its value in `program/sweep/point.rs` and `slide.rs` |
-//! | the rules of mode changes, the impact | `contact/laws.rs`, for both methods |
+//! | the rules of mode changes, the impact | `contact/laws.rs`, for both methods; stops and breaks within a time step also in `integrator/stage/modes.rs` |
 //! | what an FMU state holds | `FmuState` in `fmi/state.rs`, `RunState` in `simulation/run.rs` |
 //! | the carrier's motion as an unknown | `model/carrier.rs`; `integrator/method.rs` and `stage` (a border of the block tridiagonal system), `integrator/dense.rs`, `integrator/error.rs`; impulses in `contact/correction.rs`; `RunState` |
 //!

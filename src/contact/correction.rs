@@ -1,14 +1,13 @@
-//! The end-of-step contact correction of the time-stepping driver: mode changes within a step are made at its end.
+//! The end-of-step contact correction of the time-stepping driver: touches and lifts within a step are made at its end.
 //!
-//! A step keeps its modes, and the state at its end shows which of them were violated on the way: a free mass is below
-//! the profile, a contact has F_N < 0, a slip has reversed, a stick is beyond T. The step is not repeated with other
-//! modes. Only the masses concerned are corrected:
+//! A step finds stops and breaks by itself (`integrator`), but free masses stay free in it and contacts in contact. The
+//! state at its end shows where that was wrong: a free mass is below the profile, a contact has F_N < 0; or a mass that
+//! stopped on the way is not held by the forces alone. The step is not repeated. Only the masses concerned are corrected:
 //!
 //! - A mass below the profile goes back to the instant of its touch, has its impact there, and moves along the profile
 //!   for the remaining time of the step. Its dashpots follow, and the lateral dampers pass its displacement on to the
 //!   neighbours as impulses.
-//! - A slip that has reversed stops.
-//! - Lifts and breaks begin at the end of the step, since only the forces went past their limits.
+//! - Lifts and such breaks begin at the end of the step, since only the forces went past their limits.
 //!
 //! Then the rules of docs/model.md decide on these masses and their neighbours by the forces as they are.
 //!
@@ -21,7 +20,7 @@
 //! count each impulse with the mean of the velocities before and after it: so the energy balance is closed however
 //! strong a damper or the friction is.
 
-use super::laws::{collision, decide_mode, energy_at, has_reversed};
+use super::laws::{collision, decide_mode};
 use crate::integrator::{Rates, StepEnd, StepSpan, Tolerance, TwoStageDense};
 use crate::math::{Bounds, bracketed_root};
 use crate::model::{Carrier, CarrierPoint, ChannelEnergies, LinkKind, Mode, Model, State, SurfacePoint};
@@ -39,7 +38,7 @@ const REACH: usize = 2;
 /// Accuracy of the instant of a touch, as a share of the step: the error of the parabola is larger.
 const INSTANT: f64 = 1e-4;
 
-/// A step that was tried with its modes kept: what the correction does not change.
+/// A step that was tried with its contacts kept: what the correction does not change.
 #[derive(Clone, Copy, Debug)]
 pub struct FixedModeStep<'a> {
     /// The model.
@@ -68,15 +67,13 @@ pub struct CorrectionEnergies {
 pub struct EndCorrection {
     /// Free masses that are below the profile at the end.
     touches: Vec<usize>,
-    /// Contacts that are past a limit at the end.
-    contacts: Vec<usize>,
+    /// Contacts whose mode is to be decided anew at the end: F_N < 0, or a stick beyond T(0).
+    changed: Vec<usize>,
     /// Bound of the change of the forces on the carrier by the correction, N.
     force: f64,
     /// By mass: whether a correction changes its forces.
     concerned: Vec<bool>,
     profile: Bounds,
-    /// [`Model::long_term_stiffness`], N/m: it relates a friction force past its limit to an elongation.
-    long_term: Option<f64>,
 }
 
 impl EndCorrection {
@@ -85,11 +82,10 @@ impl EndCorrection {
         let k = model.masses();
         Self {
             touches: Vec::with_capacity(k),
-            contacts: Vec::with_capacity(k),
+            changed: Vec::with_capacity(k),
             force: 0.0,
             concerned: vec![false; k],
             profile: model.profile.bounds(),
-            long_term: model.long_term_stiffness(),
         }
     }
 
@@ -97,7 +93,7 @@ impl EndCorrection {
     /// a mean over all masses.
     pub fn detect(&mut self, step: &TwoStageDense<'_>, tolerance: &Tolerance) -> f64 {
         self.touches.clear();
-        self.contacts.clear();
+        self.changed.clear();
         self.force = 0.0;
         let frequency = step.model.frequency_without_rods();
         let stiffness = step.model.mass * frequency * frequency;
@@ -105,7 +101,7 @@ impl EndCorrection {
         for i in 0..step.model.masses() {
             let late = match step.end.mode[i] {
                 Mode::Free => self.detect_touch(step, i),
-                _ => self.detect_limit(step, i, stiffness),
+                _ => self.detect_lift(step, i, stiffness).or_else(|| self.detect_stop(step, i)),
             };
             if let Some(late) = late {
                 let error = LATENESS * late.error(frequency);
@@ -152,39 +148,45 @@ impl EndCorrection {
         (gap_at_first < 0.0).then_some(Lateness { length: -gap_at_first, time: f64::INFINITY })
     }
 
-    /// The lateness of contact `i` past a limit, if it is past one: by the elongation that makes such a force, or by the
-    /// distance that it slipped back.
-    fn detect_limit(&mut self, step: &TwoStageDense<'_>, i: usize, stiffness: f64) -> Option<Lateness> {
-        let (first, last) = (step.first, step.last);
-        let late = if last.normal[i] < 0.0 {
-            let time = step.time_below(first.normal[i], last.normal[i]);
-            Lateness { length: -last.normal[i] / stiffness, time }
-        } else if step.model.has_friction && last.margin[i] < 0.0 {
-            let time = step.time_below(first.margin[i], last.margin[i]);
-            let long_term = self.long_term.unwrap_or(stiffness);
-            let unit = if step.end.mode[i] == Mode::Stick { 1.0 / long_term } else { 0.5 * time };
-            Lateness { length: -last.margin[i] * unit, time }
-        } else {
+    /// The lateness of the lift of contact `i`, if F_N < 0, by the elongation that makes such a force.
+    fn detect_lift(&mut self, step: &TwoStageDense<'_>, i: usize, stiffness: f64) -> Option<Lateness> {
+        let (first, last) = (step.first.normal[i], step.last.normal[i]);
+        if last >= 0.0 {
             return None;
-        };
-        self.contacts.push(i);
-        self.force += stiffness * late.length;
-        Some(late)
+        }
+        self.changed.push(i);
+        self.force -= last;
+        Some(Lateness { length: -last / stiffness, time: step.time_below(first, last) })
+    }
+
+    /// The lateness of a contact that slipped at the start and sticks at the first stage already: none of the way of its
+    /// stop is seen. One that the forces alone would no longer hold breaks loose at the end.
+    fn detect_stop(&mut self, step: &TwoStageDense<'_>, i: usize) -> Option<Lateness> {
+        if step.end.mode[i] != Mode::Stick {
+            return None;
+        }
+        if step.last.margin[i] < 0.0 {
+            self.changed.push(i);
+        }
+        let speed = step.start.velocity_x[i].hypot(step.start.velocity_z[i]);
+        if speed == 0.0 || step.first.velocity_x[i] != 0.0 {
+            return None;
+        }
+        let stopping = step.model.mass * speed / step.first.margin[i];
+        let time = if stopping >= 0.0 { stopping.min(step.span.length) } else { step.span.length };
+        Some(Lateness { length: 0.5 * speed * time, time: f64::INFINITY })
     }
 
     /// Corrects the masses that [`detect`](Self::detect) found; `None` where there are none.
     pub fn apply(&mut self, step: FixedModeStep<'_>, end: StepEnd<'_>) -> Option<CorrectionEnergies> {
-        if self.touches.is_empty() && self.contacts.is_empty() {
+        if self.touches.is_empty() && self.changed.is_empty() {
             return None;
         }
         let mut correction = Correction::new(step, end);
         for &i in &self.touches {
             correction.touch(i);
         }
-        for &i in &self.contacts {
-            correction.stop_reversed(i);
-        }
-        for &i in self.touches.iter().chain(&self.contacts) {
+        for &i in self.touches.iter().chain(&self.changed) {
             let end = (i + REACH + 1).min(self.concerned.len());
             self.concerned[i.saturating_sub(REACH)..end].fill(true);
         }
@@ -435,16 +437,6 @@ impl<'a> Correction<'a> {
             model.rest_x[i] + (self.step.carrier.profile_position + (self.carrier.du + self.end.state.elongation_x[i]));
         let from = (x, self.end.state.surface[i].height);
         self.move_to(i, from, x + distance, model.surface_at(x + distance), time);
-    }
-
-    /// Stops mass `i` if its slip has reversed, so that the rule for *stop* decides on it.
-    fn stop_reversed(&mut self, i: usize) {
-        let (model, state) = (self.step.model, &*self.end.state);
-        let v = state.velocity_x[i];
-        if model.has_friction && has_reversed(state.mode[i], v) {
-            self.energies.channels.friction += energy_at(model, (v, state.surface[i].slope * v));
-            self.set_slip_velocity(i, 0.0);
-        }
     }
 
     /// Sets ẋ of mass `i`, and ż along the profile.

@@ -108,12 +108,12 @@ pub fn stop_reversed(model: &Model, state: &mut State) -> f64 {
 }
 
 /// Whether a slip with ẋ = `v` goes against its direction.
-pub(super) fn has_reversed(mode: Mode, v: f64) -> bool {
+fn has_reversed(mode: Mode, v: f64) -> bool {
     mode.slips() && mode.direction() * v < 0.0
 }
 
 /// Kinetic energy of one mass, J.
-pub(super) fn energy_at(model: &Model, (v_x, v_z): (f64, f64)) -> f64 {
+fn energy_at(model: &Model, (v_x, v_z): (f64, f64)) -> f64 {
     0.5 * model.mass * (v_x * v_x + v_z * v_z)
 }
 

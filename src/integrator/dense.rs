@@ -502,7 +502,10 @@ impl<'a> TwoStageDense<'a> {
         let StepSpan { start: s, length: h } = self.span;
         let (from, first, to) = (self.start, self.first, self.end);
         let ((u, w), (end_u, end_w)) = (self.carrier.moved(s, theta * h), self.carrier_moved);
-        state.mode.copy_from_slice(&from.mode);
+        for (mode, (from, to)) in state.mode.iter_mut().zip(from.mode.iter().zip(&to.mode)) {
+            // A mass that stops or breaks loose on the way moves within the step.
+            *mode = if from.slips() { *from } else { *to };
+        }
         state.surface.copy_from_slice(&from.surface);
         let elongations = |out: &mut [f64], start: &[f64], velocity: &[f64], end: &[f64], moved: f64, in_step: f64| {
             for (out, ((start, end), velocity)) in out.iter_mut().zip(start.iter().zip(end).zip(velocity)) {
@@ -530,11 +533,11 @@ impl<'a> TwoStageDense<'a> {
         if mode == Mode::Free {
             return;
         }
-        if mode.slips() {
+        if mode == Mode::Stick {
+            state.velocity_x[i] = 0.0;
+        } else {
             let x = self.model.rest_x[i] + (self.carrier.profile_position + (here.du + state.elongation_x[i]));
             state.surface[i] = self.model.surface_at(x);
-        } else {
-            state.velocity_x[i] = 0.0;
         }
         state.velocity_z[i] = state.surface[i].slope * state.velocity_x[i];
         state.elongation_z[i] = state.surface[i].height - self.model.rest_z[i] - (self.carrier.w + here.dw);

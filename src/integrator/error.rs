@@ -286,8 +286,8 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
         (in_contact, free)
     }
 
-    /// Collects the errors of positions and velocities relative to the carrier. A sticking mass has none along x, and
-    /// along z those of a contact follow its slope.
+    /// Collects the errors of positions and velocities relative to the carrier. A mass that sticks through the step has none
+    /// along x, and along z those of a contact follow its slope.
     fn collect(&self, h: f64, carrier_error: &CarrierError, workspace: &mut ErrorWorkspace) {
         let CarrierError { position, velocity } = carrier_error;
         let weights = &self.tableau.error;
@@ -301,7 +301,7 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
         sum(&mut workspace.v_x, |stage| &stage.acceleration_x, velocity.0);
         sum(&mut workspace.v_z, |stage| &stage.acceleration_z, velocity.1);
         for &i in self.contacts {
-            if self.end.mode[i] == Mode::Stick {
+            if self.end.mode[i] == Mode::Stick && self.stages[1].velocity_x[i] == 0.0 {
                 (workspace.x[i], workspace.v_x[i]) = (0.0, 0.0);
             }
             let slope = self.end.surface[i].slope;

@@ -5,7 +5,7 @@ use super::error::{ErrorWorkspace, StepAttempt, Tolerance};
 use super::interpolation::StageInterpolation;
 use super::maxwell::Maxwell;
 use super::method::{InitialGuess, RungeKutta, Stages, StepInput};
-use super::stage::{ConvergenceTest, NoConvergence};
+use super::stage::{ConvergenceTest, Friction, NoConvergence};
 use super::tableau::{ContinuousWeights, ESDIRK3, ESDIRK5, FOUR_STAGES, STAGES, Tableau};
 use crate::model::{ChannelEnergies, Model, State};
 
@@ -133,5 +133,6 @@ fn runge_kutta<const N: usize>(tableau: &'static Tableau<N>, model: &Model, used
         initial_guess: InitialGuess::extrapolated(&tableau.c),
         maxwell: Maxwell::new(model, used),
         sums: StepSums::new(model, used),
+        friction: Friction::Held,
     }
 }

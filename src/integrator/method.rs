@@ -6,7 +6,7 @@ use super::error::{ErrorTest, ErrorWorkspace, StepAttempt, Tolerance};
 use super::maxwell::Maxwell;
 use super::rates::{Rates, StepStart};
 use super::sensitivity::{SolvedStage, Tangent};
-use super::stage::{ConvergenceTest, NoConvergence, StagePoint, StageSolver};
+use super::stage::{ConvergenceTest, Friction, NoConvergence, StagePoint, StageSolver};
 use super::tableau::{ContinuousWeights, STAGES, Tableau};
 use crate::math::weighted_sum;
 use crate::model::{Carrier, CarrierPoint, ChannelEnergies, Exchange, Mode, Model, State};
@@ -20,6 +20,8 @@ pub(super) struct RungeKutta<const N: usize> {
     pub maxwell: Maxwell<N>,
     /// For the energies over the last attempted step.
     pub sums: StepSums<N>,
+    /// How friction is treated within a step.
+    pub friction: Friction,
 }
 
 /// The values at the stages of the last attempted step, of either method. Stage 0 is the start of the step.
@@ -88,7 +90,7 @@ impl<const N: usize> RungeKutta<N> {
         stages.rates[0].copy_from(&start.rates);
         stages.exchange[0] = start.exchange;
         stages.carrier[0] = carrier.at(span.start);
-        stages.solver.begin(model, state, beta);
+        stages.solver.begin(model, state, beta, self.friction);
         self.maxwell.begin(model, self.tableau, &state.maxwell, span.length);
         self.sums.forget();
         for i in 1..N {
@@ -224,7 +226,7 @@ impl Stages {
         let (known, guess, history) = (&self.rates[i - 1], &mut self.solver.state, &self.solver.history);
         let carrier = self.carrier[i].u_rate.abs() + self.carrier[i].w_rate.abs();
         // Slices of one length, so that an index into one of them is one into all.
-        let mode = &step.start.state.mode[..];
+        let mode = &guess.mode[..];
         let k = mode.len();
         let (star_x, star_z) = (&history.velocity_x[..k], &history.velocity_z[..k]);
         let (known_x, known_z) = (&known.acceleration_x[..k], &known.acceleration_z[..k]);

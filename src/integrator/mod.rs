@@ -1,8 +1,9 @@
-//! The implicit Runge-Kutta methods: attempts and acceptance of single steps of the layer with its contact modes held,
-//! their error tests, dense outputs, energies and sensitivities.
+//! The implicit Runge-Kutta methods: attempts and acceptance of single steps of the layer, their error tests, dense outputs,
+//! energies and sensitivities.
 //!
 //! Three methods share one implementation: the pairs [`ESDIRK3`] and [`ESDIRK5`] for event-driven runs, and [`SDIRK2`],
-//! of order 2 with two implicit stages, for time-stepping.
+//! of order 2 with two implicit stages, for time-stepping. The pairs hold the contact modes through a step; in the steps of
+//! two stages contacts stop and break loose as the forces at the stages say.
 
 mod dense;
 mod energy;
@@ -34,7 +35,7 @@ use event_method::EventMethod;
 use maxwell::Maxwell;
 use method::{InitialGuess, RungeKutta, Stages, StepInput};
 use sensitivity::{Tangent, Target};
-use stage::{ConvergenceTest, StageSolver};
+use stage::{ConvergenceTest, Friction, StageSolver};
 use tableau::{GAMMA, SDIRK2_ESTIMATE};
 
 /// The error tolerance of Newton's iterations in a step of two stages, as a multiple of the one in an event-driven step. Iterations are the cost of such a step, and the error that they leave is known to be smaller than this.
@@ -117,6 +118,7 @@ impl Integrator {
                 initial_guess: InitialGuess::Limited,
                 maxwell: Maxwell::new(model, steps.two_stages()),
                 sums: StepSums::new(model, steps.two_stages()),
+                friction: Friction::SetValued,
             },
             stages: Stages {
                 rates: vec![Rates::new(model); steps.stages()],
@@ -287,6 +289,25 @@ impl Integrator {
     /// fraction `theta`, J.
     pub fn two_stage_energies(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> ChannelEnergies {
         self.two_stages.energies(&self.stages, model, start, h, theta)
+    }
+
+    /// The energy of friction, J, that the powers at the stages of the last attempted two-stage step, of length `h` from
+    /// `start`, miss as contacts stop or break loose within it: what these lose of their kinetic energy and the stages do
+    /// not show.
+    pub fn friction_between_stages(&self, model: &Model, start: &State, h: f64) -> f64 {
+        let end = self.end();
+        let kinetic =
+            |state: &State, i: usize| 0.5 * model.mass * (state.velocity_x[i].powi(2) + state.velocity_z[i].powi(2));
+        let gain = |stage: &Rates, i: usize| {
+            model.mass * (stage.acceleration_x[i] * stage.velocity_x[i] + stage.acceleration_z[i] * stage.velocity_z[i])
+        };
+        let shown = |i: usize| {
+            let stages = self.stages().iter().zip(SDIRK2.weights());
+            h * stages.map(|(stage, weight)| weight * gain(stage, i)).sum::<f64>()
+        };
+        let contacts = self.stages.solver.contacts().iter().copied();
+        let changed = contacts.filter(|&i| start.mode[i] != end.mode[i] || self.stages()[1].velocity_x[i] == 0.0);
+        changed.map(|i| kinetic(start, i) - kinetic(end, i) + shown(i)).sum()
     }
 
     /// Accepts the last attempted event-driven step: its end becomes the `start` of the next one.

@@ -309,7 +309,8 @@ impl Tangent {
                 None => end.z[i] += beta * found.y,
             }
             (rates.v_x[i], rates.v_z[i]) = (end.v_x[i], end.v_z[i]);
-            rates.a_x[i] = (end.v_x[i] - history.0) / beta;
+            let sticks = solver.state.mode[i] == Mode::Stick;
+            rates.a_x[i] = if sticks { 0.0 } else { (end.v_x[i] - history.0) / beta };
             rates.a_z[i] = (end.v_z[i] - history.1) / beta;
         }
     }

@@ -284,8 +284,8 @@ const RATE_SHEAR: &[Key] = &[
 const SOLVER: &[Key] = &[
     word::<Method>(
         "method",
-        "event: locate each mode change; step: correct mode changes at the end of each step; auto: switch between the \
-         two",
+        "event: locate each mode change; step: correct touches and lifts at the end of each step; auto: switch between \
+         the two",
     ),
     number("relative_tolerance", POSITIVE.up_to(0.1), Unit::One, "Relative tolerance of the local error"),
     number(

@@ -86,7 +86,7 @@ impl Run {
     }
 
     /// Whether the dense output of the step of length `h` tried last is good enough to be shown at its fraction
-    /// `theta`. A time step's mode changes are corrected at its end, and its dense output is not: it is shown where
+    /// `theta`. A time step's touches and lifts are corrected at its end, and its dense output is not: it is shown where
     /// that changes F_z little.
     pub(super) fn can_show_within(&mut self, h: f64, theta: f64) -> bool {
         if self.state.time_stepping {

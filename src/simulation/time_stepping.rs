@@ -1,5 +1,5 @@
-//! The time-stepping method: steps of two stages with their modes held, any number of mode changes corrected at the end
-//! of each.
+//! The time-stepping method: steps of two stages, in which contacts stop and break loose; any number of touches and lifts
+//! is corrected at the end of each.
 
 use super::driver::{AFTER_FAILURE, StepBounds, TrialStep, WorkLimit};
 use super::motion::SimulationError;
@@ -75,7 +75,11 @@ impl Run {
         let Self { model, settings, state, workspace, .. } = self;
         let integrator = &mut workspace.integrator;
         let start = &state.layer.state;
-        let gain = settings.accounts.energy.then(|| integrator.two_stage_energies(model, start, h, 1.0));
+        let gain = settings.accounts.energy.then(|| {
+            let missed = integrator.friction_between_stages(model, start, h);
+            let shown = integrator.two_stage_energies(model, start, h, 1.0);
+            ChannelEnergies { friction: shown.friction + missed, ..shown }
+        });
         workspace.interpolated_at = None;
         workspace.modes_before.copy_from_slice(&start.mode);
         let span = state.span(h);
@@ -91,7 +95,7 @@ impl Run {
         integrator.accept_two_stages(&mut state.layer);
         state.counters.steps += 1;
         state.s = end;
-        if corrected.is_some() {
+        if workspace.modes_before != state.layer.state.mode {
             integrator.refresh_tangents_after(model, &state.layer, end);
             self.count_mode_changes();
         }

@@ -5,7 +5,7 @@ use std::path::Path as FilePath;
 
 use crate::common::{Table, difference, largest, root};
 use asperity::outputs::{Snapshot, variables};
-use asperity::scene::{Path, Scene};
+use asperity::scene::{OutputGroup, Path, Phase, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
 
 /// The cases of tests/reference.
@@ -105,6 +105,34 @@ fn a_percent_takes_few_steps() {
         let steps = run.last("solver.steps") + run.last("solver.rejected");
         assert!(steps < 250.0, "{name}: {steps}");
     }
+}
+
+/// The mean friction coefficient and the mode changes of the tread block in rubber over 0.25 mm of a slow slide, after
+/// as much to settle.
+fn slow_slide(method: &str, tolerance: &str) -> (f64, f64) {
+    let mut scene = Scene::load(&root().join("scenes/tread-block-rubber/tread-block-rubber.toml")).unwrap();
+    scene.set_by_name("solver.method", method).unwrap();
+    scene.set_by_name("solver.relative_tolerance", tolerance).unwrap();
+    scene.outputs.push(OutputGroup::Solver);
+    let phase = |duration: f64, u: f64, w: f64| {
+        let path = |rate: f64| Path { rate, ..Path::default() };
+        Phase { duration, u: path(u), w: path(w), until_force: None, until_pressure: None }
+    };
+    scene.excitation = vec![phase(2e-3, 0.0, -0.05), phase(0.025, 0.01, 0.0), phase(0.025, 0.01, 0.0)];
+    let run = Run::of(&scene);
+    let mean = |name: &str| run.column(name).iter().rev().take(50).sum::<f64>();
+    (-mean("F_x") / mean("F_z"), run.last("solver.events"))
+}
+
+/// Steps far longer than the time in which a mass stops: masses that went back until their ends would vibrate, and
+/// change their modes a hundred times as often.
+#[test]
+fn a_slow_slide_does_not_vibrate_at_a_percent() {
+    let (friction, changes) = slow_slide("step", "1e-2");
+    let (exact, located) = slow_slide("event", "1e-4");
+    // A third of the tolerance: errors of single masses cancel in the mean.
+    assert!((friction / exact - 1.0).abs() < 3e-3, "{friction}, exact {exact}");
+    assert!(changes < 2.0 * located, "{changes} mode changes, {located} located");
 }
 
 /// Forces by auto are as near to the event-driven ones as the tolerance of both lets them.

@@ -7,8 +7,10 @@
 //!   F = H + c e + D ė,   D = d + h Q_ii.
 //!
 //! This leaves one 2×2 block per mass in the velocities, block tridiagonal along the chain. A contact is the same block
-//! projected onto (1, s)ᵀ: its second row is the identity; for a sticking mass both are.
+//! projected onto (1, s)ᵀ: its second row is the identity; for a sticking mass both are. So a contact that stops or
+//! breaks loose changes rows, not the shape of the system.
 
+mod modes;
 mod newton;
 
 use super::error::{NEWTON_SHARE, Tolerance};
@@ -116,6 +118,24 @@ enum Factors {
     Single,
 }
 
+/// How the friction of the contacts is treated within a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Friction {
+    /// Slips go on in their direction, sticks hold, whatever the forces.
+    Held,
+    /// A slip that would reverse stops, a stick that would need more than T(0) breaks loose.
+    SetValued,
+}
+
+impl Friction {
+    fn most_iterations(self) -> usize {
+        match self {
+            Self::Held => MAX_ITERATIONS,
+            Self::SetValued => MAX_WITH_CHANGES,
+        }
+    }
+}
+
 /// Solver of the stages of one model.
 #[derive(Clone, Debug)]
 pub(super) struct StageSolver {
@@ -125,6 +145,7 @@ pub(super) struct StageSolver {
     pub state: State,
     /// The forces at the stage.
     pub forces: Forces,
+    friction: Friction,
     /// By kind of link.
     pub laws: [StageLaw; 4],
     /// The masses in contact, in their order.
@@ -144,6 +165,9 @@ pub(super) struct StageSolver {
 
 /// Iterations after which Newton's method has failed; one or two are usual.
 const MAX_ITERATIONS: usize = 10;
+/// The same where modes change between the iterations, some masses at a time. They may also change to and fro: then a
+/// shorter step decides, in which the momentum of the masses does.
+const MAX_WITH_CHANGES: usize = 30;
 
 /// With the factors of another stage the error falls by a constant ratio, so that the next correction bounds it only where
 /// that is small.
@@ -156,6 +180,7 @@ impl StageSolver {
             history: StageHistory::new(model),
             state: State::new(k, model.maxwell_variables()),
             forces: Forces::new(model),
+            friction: Friction::Held,
             laws: [StageLaw::default(); 4],
             contacts: Vec::with_capacity(k),
             slips: Vec::with_capacity(k),
@@ -168,18 +193,26 @@ impl StageSolver {
         }
     }
 
-    /// Prepares the stages of a step from `state`, whose modes are held through the step.
-    pub(super) fn begin(&mut self, model: &Model, state: &State, beta: f64) {
+    /// Prepares the stages of a step from `state`. Its modes are held through the step, but where `friction` is of
+    /// [`Friction::SetValued`] contacts may stop and break loose.
+    pub(super) fn begin(&mut self, model: &Model, state: &State, beta: f64, friction: Friction) {
+        self.friction = friction;
         self.state.mode.copy_from_slice(&state.mode);
         self.contacts.clear();
         self.contacts.extend((0..state.mode.len()).filter(|&i| state.mode[i].in_contact()));
         self.state.surface.copy_from_slice(&state.surface);
+        self.set_laws(model, beta);
+        self.collect_slips(model, beta);
+    }
+
+    /// Lists the slipping masses and assembles what is constant while these modes are held.
+    fn collect_slips(&mut self, model: &Model, beta: f64) {
+        let state = &self.state;
         self.slips.clear();
         self.slips.extend(self.contacts.iter().filter(|&&i| state.mode[i].slips()));
         if model.rate_shear.is_some() {
             self.rate.resize(self.slips.len(), RateFriction::default());
         }
-        self.set_laws(model, beta);
         self.assemble_constant_rows(model, beta);
         self.factors = Factors::Outdated;
         if self.slips.is_empty() {
@@ -242,11 +275,13 @@ impl StageSolver {
         rates: &mut Rates,
     ) -> Result<(), NoConvergence> {
         self.history.subtract_frozen(model);
+        self.start_sticks_from_rest();
         self.set_positions(model, point);
         self.set_forces(point);
         if self.slips.is_empty() {
             self.solve_linear(model, point)?;
-        } else {
+        }
+        if !self.slips.is_empty() || self.change_modes(model, point) {
             self.iterate(model, point, test)?;
         }
         self.write_rates(model, point, rates);
@@ -270,7 +305,7 @@ impl StageSolver {
     fn iterate(&mut self, model: &Model, point: &StagePoint, test: ConvergenceTest) -> Result<(), NoConvergence> {
         let mut residual = self.residuals(model, point.beta);
         let mut last = f64::INFINITY;
-        for _ in 0..MAX_ITERATIONS {
+        for _ in 0..self.friction.most_iterations() {
             let held = self.factors == Factors::Held;
             if !held {
                 self.factor_slips(model, point.beta);
@@ -289,6 +324,10 @@ impl StageSolver {
             let stalled = change >= 0.25 * last && change <= test.stalled;
             if !(change.is_finite() && left.is_finite()) {
                 return Err(NoConvergence);
+            }
+            if self.change_modes(model, point) {
+                (last, residual) = (f64::INFINITY, self.residuals(model, point.beta));
+                continue;
             }
             if converged || stalled || change == 0.0 {
                 return Ok(());
