@@ -1,8 +1,8 @@
 //! The first mode change within a step: touch, lift, stop or break.
 
 use super::gap::first_touch;
-use crate::integrator::{DenseOutput, DenseWorkspace, Rates, Tolerance};
-use crate::math::bracketed_root;
+use crate::integrator::{DenseOutput, DenseWorkspace, Motions, Rates, Tolerance};
+use crate::math::{Spline, bracketed_root};
 use crate::model::{CarrierPosition, LinkKind, Mode, Model, State};
 
 /// How far a quantity may pass its limit before the mode changes. An event is located where the quantity is half as far
@@ -33,8 +33,7 @@ const ROUNDINGS: f64 = 4.0;
 impl EventTolerance {
     /// The event tolerances that belong to the step tolerances.
     pub fn new(model: &Model, tolerance: &Tolerance) -> Self {
-        let usual = || model.mass_stiffness_without_rods().max(model.mass * model.frequency_without_rods().powi(2));
-        let stiffness = model.long_term_stiffness().unwrap_or_else(usual);
+        let stiffness = model.long_term_stiffness().unwrap_or_else(|| model.effective_stiffness());
         // The rounding of a position, at most of the layer's height (the absolute tolerance over the relative one), is
         // a force in a rod.
         let height = tolerance.position / tolerance.relative;
@@ -66,14 +65,25 @@ impl EventTolerance {
 /// The fraction of the step at which the first mode change is due; `None` if none is.
 pub fn first_event(step: &DenseOutput<'_>, tolerance: &EventTolerance, workspace: &mut DenseWorkspace) -> Option<f64> {
     let mut first = Contacts { step, tolerance, workspace }.first_change();
+    let (motions, profile) = (Motions::new(step), &step.model.profile);
     for i in 0..step.model.masses() {
-        if step.start.state.mode[i] == Mode::Free {
-            let (latest, height) = (first.unwrap_or(1.0), step.height(i));
-            let touch = first_touch(&step.model.profile, || step.position(i), height, tolerance.gap, latest);
-            first = earlier(first, touch);
+        if step.start.state.mode[i] == Mode::Free && may_touch(&motions, i, profile, tolerance.gap) {
+            let motion = (motions.position(i), motions.height(i));
+            first = earlier(first, first_touch(profile, motion, tolerance.gap, first.unwrap_or(1.0)));
         }
     }
     first
+}
+
+/// Whether mass `i` may come below -`tolerance` (m) above the profile. Bounds that are nearly free are enough for most.
+fn may_touch(motions: &Motions<'_>, i: usize, profile: &Spline, tolerance: f64) -> bool {
+    let least = motions.least_height(i);
+    let clear = |top: f64| least - top > -tolerance;
+    let clear_near = || {
+        let (low, high) = motions.position_bounds(i);
+        clear(profile.top_near(low, high))
+    };
+    !(clear(profile.bounds().z_max) || clear_near())
 }
 
 fn earlier(a: Option<f64>, b: Option<f64>) -> Option<f64> {
@@ -98,6 +108,13 @@ enum Limit {
     Normal,
     /// [`Rates::margin`] ≥ 0.
     Margin,
+}
+
+impl Limit {
+    /// The quantity of all masses at one stage.
+    fn of(self, stage: &Rates) -> &[f64] {
+        if self == Self::Normal { &stage.normal } else { &stage.margin }
+    }
 }
 
 impl Contacts<'_> {
@@ -148,6 +165,9 @@ impl Contacts<'_> {
     /// The fraction at which a quantity of mass `i` first falls below -`tolerance`, located where it is -`tolerance`/2;
     /// `first` if it does not before that.
     fn fall(&mut self, i: usize, limit: Limit, tolerance: f64, first: Option<f64>) -> Option<f64> {
+        if !self.step.stages[1..].iter().any(|stage| limit.of(stage)[i] < -tolerance) {
+            return first;
+        }
         let latest = first.unwrap_or(1.0);
         let ranks = self.step.stages.len();
         let rank = (1..ranks).find(|&rank| self.at_stage(rank, i, limit) < -tolerance);
@@ -172,8 +192,7 @@ impl Contacts<'_> {
 
     /// The quantity at the stage that is `rank`-th in time.
     fn at_stage(&self, rank: usize, i: usize, limit: Limit) -> f64 {
-        let stage = &self.step.stages[self.step.interpolation.in_time()[rank]];
-        if limit == Limit::Normal { stage.normal[i] } else { stage.margin[i] }
+        limit.of(&self.step.stages[self.step.interpolation.in_time()[rank]])[i]
     }
 
     /// The quantity at the fraction `theta` of the step.

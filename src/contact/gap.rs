@@ -18,7 +18,7 @@ const MOST_HALVINGS: u32 = 40;
 const MOST_PARTS: u32 = 10_000;
 
 /// The first fraction of a step at which the gap between a mass and the profile falls below -`tolerance` (m), located
-/// where it is -`tolerance`/2; `None` if it does not. `position` (along x, evaluated only if it matters) and `height`
+/// where it is -`tolerance`/2; `None` if it does not. `position` (along x) and `height`
 /// are the mass's motion through the step, m. What comes after the fraction `latest` does not matter.
 ///
 /// Nothing is sampled: a part of the step is skipped only if bounds of the motion and of the profile there show that the
@@ -26,22 +26,12 @@ const MOST_PARTS: u32 = 10_000;
 /// fraction up to which there is no touch is returned: the step is to be cut there, too.
 pub fn first_touch(
     profile: &Spline,
-    position: impl FnOnce() -> Quintic,
-    height: Quintic,
+    (position, height): (Quintic, Quintic),
     tolerance: f64,
     latest: f64,
 ) -> Option<f64> {
-    // The bounds of the whole profile are known already, and for most masses they are enough.
-    let bounds = profile.bounds();
-    if height.range().0 - bounds.z_max > -tolerance {
-        return None;
-    }
     let mut search = Search { profile, tolerance, latest, parts: 0 };
-    let whole = Part { position: position(), height, start: 0.0, length: 1.0 };
-    let Ends { start, end, bend } = search.ends(&whole, &bounds);
-    if search.stays_above(start, end, bend) {
-        return None;
-    }
+    let whole = Part { position, height, start: 0.0, length: 1.0 };
     search.first_touch(&whole, 0)
 }
 
@@ -90,7 +80,7 @@ impl Search<'_> {
         let negligible = (NEGLIGIBLE_BEND * self.tolerance).max(self.rounding(part, &profile));
         if monotone || bend <= negligible || halvings == MOST_HALVINGS {
             let crosses = start >= -self.tolerance && end < -self.tolerance;
-            return crosses.then(|| self.locate(part));
+            return (crosses && !self.is_late(part)).then(|| self.locate(part));
         }
         let (first, second) = part.halves();
         self.first_touch(&first, halvings + 1).or_else(|| self.first_touch(&second, halvings + 1))
@@ -115,6 +105,12 @@ impl Search<'_> {
         }
         let (x_low, x_high) = part.position.range();
         ROUNDINGS * f64::EPSILON * x_low.abs().max(x_high.abs()) * profile.slope_max_abs
+    }
+
+    /// Whether the gap of a part, which closes through it, is still open at the latest fraction that matters.
+    fn is_late(&self, part: &Part) -> bool {
+        let latest = (self.latest - part.start) / part.length;
+        latest < 1.0 && self.gap(part, latest) > -0.5 * self.tolerance
     }
 
     fn stays_above(&self, start: f64, end: f64, bend: f64) -> bool {
@@ -170,7 +166,7 @@ mod tests {
     #[test]
     fn finds_the_root_of_a_known_fall() {
         let flat = Spline::natural(&[0.0, 1.0], &[0.0, 0.0]);
-        let theta = first_touch(&flat, || straight(0.0, 0.5), straight(0.3, -0.7), 1e-12, 1.0).unwrap();
+        let theta = first_touch(&flat, (straight(0.0, 0.5), straight(0.3, -0.7)), 1e-12, 1.0).unwrap();
         // Located half a tolerance below the surface.
         assert!((theta - 0.3).abs() < 1e-12, "{theta}");
     }
@@ -182,9 +178,9 @@ mod tests {
         // A parabola whose part below 0 is a thousandth of the step: depth_below = depth (1/1000)².
         let depth = 1e-9 * 1e6;
         let motion = dip(depth - 1e-9, depth);
-        let theta = first_touch(&flat, || straight(0.0, 0.5), motion, 1e-12, 1.0).unwrap();
+        let theta = first_touch(&flat, (straight(0.0, 0.5), motion), 1e-12, 1.0).unwrap();
         assert!((theta - 0.4995).abs() < 1e-6, "{theta}");
-        assert_eq!(first_touch(&flat, || straight(0.0, 0.5), dip(depth + 1e-9, depth), 1e-12, 1.0), None);
+        assert_eq!(first_touch(&flat, (straight(0.0, 0.5), dip(depth + 1e-9, depth)), 1e-12, 1.0), None);
     }
 
     /// The same by the profile: a spike a thousandth of the way wide that reaches 1e-9 m into the mass's straight path.
@@ -195,7 +191,7 @@ mod tests {
         let z = x.map(|x| if x == 0.5 { 1e-6 } else { 0.0 });
         let profile = Spline::periodic(&x, &z);
         let top = profile.local_bounds(0.499, 0.501).z_max;
-        let over = |height: f64| first_touch(&profile, || straight(0.0, 1.0), straight(height, height), 1e-12, 1.0);
+        let over = |height: f64| first_touch(&profile, (straight(0.0, 1.0), straight(height, height)), 1e-12, 1.0);
         let theta = over(top - 1e-9).unwrap();
         assert!((0.4995..0.5).contains(&theta), "{theta}");
         assert_eq!(over(top + 1e-9), None);
@@ -206,14 +202,14 @@ mod tests {
     fn a_mass_may_glide_along_the_limit() {
         let flat = Spline::natural(&[0.0, 1.0], &[0.0, 0.0]);
         let gliding = dip(-1e-12 + 1e-16, 1e-16);
-        assert_eq!(first_touch(&flat, || straight(0.0, 0.5), gliding, 1e-12, 1.0), None);
+        assert_eq!(first_touch(&flat, (straight(0.0, 0.5), gliding), 1e-12, 1.0), None);
     }
 
     /// Over a million waves the first one is found; where no bounds hold, the search ends where it got to.
     #[test]
     fn a_search_ends_however_far_the_mass_goes() {
         let wave = Spline::periodic(&[0.0, 1e-4, 2e-4], &[0.0, 1e-6, 0.0]);
-        let over = |far: f64| first_touch(&wave, || straight(0.0, far), straight(0.5e-6, 0.5e-6), 1e-12, 1.0);
+        let over = |far: f64| first_touch(&wave, (straight(0.0, far), straight(0.5e-6, 0.5e-6)), 1e-12, 1.0);
         let theta = over(2e2).unwrap();
         assert!((2e-7..3e-7).contains(&theta), "{theta}");
         let known = over(f64::MAX).unwrap();
@@ -243,6 +239,6 @@ mod tests {
         // A lift: the gap opens with the third power of time.
         let still = Jet::default();
         let lifted = Jet { position: 1e-9, speed: 3e-9, acceleration: 6e-9 };
-        assert_eq!(first_touch(&flat, || straight(0.0, 0.1), Quintic::hermite(still, lifted, 1.0), 1e-13, 1.0), None);
+        assert_eq!(first_touch(&flat, (straight(0.0, 0.1), Quintic::hermite(still, lifted, 1.0)), 1e-13, 1.0), None);
     }
 }

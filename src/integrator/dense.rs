@@ -13,7 +13,7 @@ use super::error::Tolerance;
 use super::interpolation::StageInterpolation;
 use super::rates::Rates;
 use super::tableau::{GAMMA, STAGES, sdirk2_weights};
-use crate::math::{Jet, Quintic, Relaxation, weighted_sum};
+use crate::math::{Relaxation, weighted_sum};
 use crate::model::{
     Carrier, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint,
 };
@@ -65,37 +65,6 @@ pub struct DenseOutput<'a> {
 }
 
 impl DenseOutput<'_> {
-    /// The position of mass `i` on the profile through the step, m.
-    pub fn position(&self, i: usize) -> Quintic {
-        let at = |at: &StepBoundary<'_>| Jet {
-            position: self.model.rest_x[i] + (self.carrier.profile_position + at.carrier.du),
-            speed: at.carrier.u_rate,
-            acceleration: at.carrier.u_acceleration,
-        };
-        let carrier = Quintic::hermite(at(&self.start), at(&self.end), self.span.length);
-        let rate = |j: usize| self.stages[j].velocity_x[i] - self.carriers[j].u_rate;
-        carrier.plus(&self.elongation(self.start.state.elongation_x[i], rate))
-    }
-
-    /// The height of mass `i` above the profile's datum through the step, m.
-    pub fn height(&self, i: usize) -> Quintic {
-        let at = |at: &StepBoundary<'_>| Jet {
-            position: self.model.rest_z[i] + (self.carrier.w + at.carrier.dw),
-            speed: at.carrier.w_rate,
-            acceleration: at.carrier.w_acceleration,
-        };
-        let carrier = Quintic::hermite(at(&self.start), at(&self.end), self.span.length);
-        let rate = |j: usize| self.stages[j].velocity_z[i] - self.carriers[j].w_rate;
-        carrier.plus(&self.elongation(self.start.state.elongation_z[i], rate))
-    }
-
-    /// The elongation of a link to the carrier through the step, m: `start` at first, with the rate `rate(j)` (m/s) at
-    /// stage j.
-    fn elongation(&self, start: f64, rate: impl Fn(usize) -> f64) -> Quintic {
-        let change = self.interpolation.bernstein(self.stages.len(), rate).map(|rate| self.span.length * rate);
-        Quintic::from_derivative(start, change)
-    }
-
     /// Writes the state at the fraction `theta` of the step.
     pub fn state_at(&self, theta: f64, workspace: &mut DenseWorkspace, state: &mut State) {
         workspace.set_weights(self, theta);

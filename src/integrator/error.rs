@@ -4,7 +4,7 @@ use super::largest::Largest;
 use super::maxwell::Maxwell;
 use super::rates::Rates;
 use super::tableau::Tableau;
-use crate::math::{dot, sum_of, sum_of_pairs, weighted_sum};
+use crate::math::{dot, sum_of, sum_of_pairs, sum_of_triples, weighted_sum};
 use crate::model::{CarrierPoint, Exchange, LinkKind, Mode, Model, State};
 
 /// The tolerances of the local error of a step. The error of each quantity is divided by absolute + relative · size.
@@ -205,13 +205,20 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
             + in_contact;
         let mut of_forces = 0.0;
         for kind in LinkKind::ALL {
-            if let Some(rod) = tolerance.rod(kind) {
-                sum += self.rod_squares(kind, &rod, h, tolerance, workspace);
+            let rod = tolerance.rod(kind);
+            if let Some(rod) = &rod {
+                sum += self.rod_squares(kind, rod, h, tolerance, workspace);
             }
-            if self.maxwell.has_elements(kind) {
-                sum += self.maxwell_squares(model, kind, tolerance, workspace);
+            let has_elements = self.maxwell.has_elements(kind);
+            if has_elements {
+                let force = &mut workspace.force[..kind.count(model.masses())];
+                self.maxwell.force_error(kind, self.stages, force);
+                sum += self.maxwell_squares(model, kind, tolerance, force);
             }
-            if !kind.is_lateral() && tolerance.rod(kind).is_none() {
+            if !kind.is_lateral() && rod.is_none() {
+                if !has_elements {
+                    workspace.force.fill(0.0);
+                }
                 of_forces += self.carrier_force_squares(model, kind, tolerance, workspace);
             }
         }
@@ -245,28 +252,23 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
     }
 
     /// The square of the error of F_x or F_z, which the links of `kind` make, over its tolerance: of the sum of their
-    /// errors, and of what the sum would be if these were independent, since some of them cancel by chance.
+    /// errors, and of what the sum would be if these were independent, since some of them cancel by chance. Those of the
+    /// Maxwell elements are in the workspace.
     fn carrier_force_squares(
         &self,
         model: &Model,
         kind: LinkKind,
         tolerance: &Tolerance,
-        workspace: &mut ErrorWorkspace,
+        workspace: &ErrorWorkspace,
     ) -> f64 {
         let law = &model.links[kind as usize];
         let (scale_x, scale_z) = self.largest.force_scales(model, tolerance);
         let ErrorWorkspace { x, z, v_x, v_z, force } = workspace;
         let (position, velocity, scale) = if kind.is_along_x() { (x, v_x, scale_x) } else { (z, v_z, scale_z) };
-        if self.maxwell.has_elements(kind) {
-            self.maxwell.force_error(kind, self.stages, force);
-        } else {
-            force.fill(0.0);
-        }
-        for (force, (position, velocity)) in force.iter_mut().zip(position.iter().zip(velocity)) {
-            *force += law.stiffness * *position + law.damping * *velocity;
-        }
-        let sum = sum_of(force.len(), |i| force[i]);
-        let squares = sum_of(force.len(), |i| force[i] * force[i]);
+        let error =
+            |force: f64, position: f64, velocity: f64| force + law.stiffness * position + law.damping * velocity;
+        let sum = sum_of_triples(force, position, velocity, error);
+        let squares = sum_of_triples(force, position, velocity, |f, x, v| square(error(f, x, v)));
         (sum * sum + squares) / square(tolerance.relative * scale)
     }
 
@@ -309,26 +311,18 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
         }
     }
 
-    /// The sum of squares of the errors of the Maxwell elements' forces of the links of `kind`.
-    fn maxwell_squares(
-        &self,
-        model: &Model,
-        kind: LinkKind,
-        tolerance: &Tolerance,
-        workspace: &mut ErrorWorkspace,
-    ) -> f64 {
+    /// The sum of squares of the errors `force` (N) of the Maxwell elements' forces of the links of `kind`.
+    fn maxwell_squares(&self, model: &Model, kind: LinkKind, tolerance: &Tolerance, force: &[f64]) -> f64 {
         let e = if kind.is_along_x() { &self.end.elongation_x } else { &self.end.elongation_z };
-        let force = &mut workspace.force[..kind.count(e.len())];
-        self.maxwell.force_error(kind, self.stages, force);
         if let Some(per_force) = tolerance.per_contact_force(kind) {
             return self.contact_force_squares(model, per_force, tolerance, force);
         }
         let per_force = tolerance.per_force(kind);
-        let error = |i: usize| per_force * force[i];
+        let square = |force: f64, e: f64| square(per_force * force) / tolerance.of_position(e);
         if kind.is_lateral() {
-            sum_of(force.len(), |i| error(i) * error(i) / tolerance.of_position(e[i + 1] - e[i]))
+            sum_of_triples(force, e, &e[1..], |force, e, e_next| square(force, e_next - e))
         } else {
-            sum_of(force.len(), |i| error(i) * error(i) / tolerance.of_position(e[i]))
+            sum_of_pairs(force, e, square)
         }
     }
 

@@ -32,8 +32,8 @@ pub struct StageInterpolation {
     stages: usize,
     /// The coefficients of 1, θ, … θ⁴.
     by_power: [[f64; STAGES]; POWERS],
-    /// The same in Bernstein's basis of degree 4.
-    bernstein: [[f64; STAGES]; POWERS],
+    /// By stage: the integrals in Bernstein's basis of degree 5.
+    bernstein_integral: [[f64; POWERS + 1]; STAGES],
 }
 
 impl StageInterpolation {
@@ -43,7 +43,7 @@ impl StageInterpolation {
         let nodes = std::array::from_fn(|stage| tableau.c.get(stage).copied().unwrap_or(1.0));
         let mut in_time = std::array::from_fn(|stage| stage);
         in_time[..N].sort_by(|&a, &b| f64::total_cmp(&nodes[a], &nodes[b]));
-        Self { nodes, in_time, stages: N, bernstein: in_bernstein_basis(&by_power), by_power }
+        Self { nodes, in_time, stages: N, bernstein_integral: integral_in_bernstein_basis(&by_power), by_power }
     }
 
     /// The indices of the stages in the order of time.
@@ -78,16 +78,9 @@ impl StageInterpolation {
         std::array::from_fn(|j| factors.iter().zip(&self.by_power).map(|(factor, weights)| factor * weights[j]).sum())
     }
 
-    /// The coefficients of Σ_j w_j(θ) `value(j)` in Bernstein's basis of degree 4, for the `stages` of the step.
-    pub fn bernstein(&self, stages: usize, value: impl Fn(usize) -> f64) -> [f64; POWERS] {
-        let mut coefficients = [0.0; POWERS];
-        for j in 0..stages {
-            let value = value(j);
-            for (coefficient, weights) in coefficients.iter_mut().zip(&self.bernstein) {
-                *coefficient += weights[j] * value;
-            }
-        }
-        coefficients
+    /// By stage: the coefficients of ∫_0^θ w in Bernstein's basis of degree 5.
+    pub fn bernstein_integral(&self) -> &[[f64; POWERS + 1]; STAGES] {
+        &self.bernstein_integral
     }
 
     fn horner(&self, factor: impl Fn(usize) -> f64, theta: f64) -> [f64; STAGES] {
@@ -170,7 +163,8 @@ fn parabola(start: f64, end: f64, integral: f64) -> [f64; 3] {
     [start, end - start - bend, bend]
 }
 
-fn in_bernstein_basis(by_power: &[[f64; STAGES]; POWERS]) -> [[f64; STAGES]; POWERS] {
+/// The integrals of the weights from 0 on, by stage.
+fn integral_in_bernstein_basis(by_power: &[[f64; STAGES]; POWERS]) -> [[f64; POWERS + 1]; STAGES] {
     // binomial(k, m)/binomial(4, m).
     const SHARE: [[f64; POWERS]; POWERS] = [
         [1.0, 0.0, 0.0, 0.0, 0.0],
@@ -179,8 +173,13 @@ fn in_bernstein_basis(by_power: &[[f64; STAGES]; POWERS]) -> [[f64; STAGES]; POW
         [1.0, 0.75, 0.5, 0.25, 0.0],
         [1.0, 1.0, 1.0, 1.0, 1.0],
     ];
-    SHARE.map(|shares| {
-        std::array::from_fn(|j| shares.iter().zip(by_power).map(|(share, weights)| share * weights[j]).sum())
+    std::array::from_fn(|stage| {
+        let mut integral = [0.0; POWERS + 1];
+        for (k, shares) in SHARE.iter().enumerate() {
+            let coefficient: f64 = shares.iter().zip(by_power).map(|(share, weights)| share * weights[stage]).sum();
+            integral[k + 1] = integral[k] + coefficient / POWERS as f64;
+        }
+        integral
     })
 }
 
@@ -272,12 +271,12 @@ mod tests {
             assert!((interpolation.slope(theta)[j] - slope).abs() < 1e-6);
             let integral = interpolation.integral(theta + by)[j] - interpolation.integral(theta - by)[j];
             assert!((integral / (2.0 * by) - of(theta, j)).abs() < 1e-6);
-            let coefficients = interpolation.bernstein(STAGES, |stage| f64::from(u8::from(stage == j)));
-            let binomial = [1.0, 4.0, 6.0, 4.0, 1.0];
-            let value: f64 = (0..5_i32)
-                .map(|k| binomial[k as usize] * coefficients[k as usize] * theta.powi(k) * (1.0 - theta).powi(4 - k))
+            let coefficients = interpolation.bernstein_integral()[j];
+            let binomial = [1.0, 5.0, 10.0, 10.0, 5.0, 1.0];
+            let value: f64 = (0..6_i32)
+                .map(|k| binomial[k as usize] * coefficients[k as usize] * theta.powi(k) * (1.0 - theta).powi(5 - k))
                 .sum();
-            assert!((value - of(theta, j)).abs() < ROUNDING);
+            assert!((value - interpolation.integral(theta)[j]).abs() < ROUNDING);
         }
     }
 }

@@ -47,22 +47,17 @@ impl Largest {
     /// symmetry makes nothing, are not resolved down to their rounding.
     pub(super) fn force_scales(self, model: &Model, tolerance: &Tolerance) -> (f64, f64) {
         let expected = LEAST_FORCE.max(EXPECTED_FRICTION * model.friction_coefficient);
-        let least = least_elongation(tolerance) * stiffness(model);
+        let least = least_elongation(tolerance) * model.effective_stiffness();
         (self.force_x.max(expected * self.force_z).max(least), self.force_z.max(LEAST_FORCE * self.force_x).max(least))
     }
 
     /// What the errors of energies are measured by, J.
     pub(super) fn energy_scale(self, model: &Model, tolerance: &Tolerance) -> f64 {
-        self.energy.max((LEAST_ENERGY * least_elongation(tolerance)).powi(2) * stiffness(model))
+        self.energy.max((LEAST_ENERGY * least_elongation(tolerance)).powi(2) * model.effective_stiffness())
     }
 }
 
 /// An elongation that does not matter, m: the scene's height is the absolute tolerance over the relative one.
 fn least_elongation(tolerance: &Tolerance) -> f64 {
     LEAST_FORCE * tolerance.position / tolerance.relative
-}
-
-/// Of the links on one mass without rods, N/m, or what its damping rate stands for.
-fn stiffness(model: &Model) -> f64 {
-    model.mass_stiffness_without_rods().max(model.mass * model.frequency_without_rods().powi(2))
 }

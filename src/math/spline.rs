@@ -18,6 +18,8 @@ pub struct Spline {
     pieces: Vec<Piece>,
     grid: Grid,
     ends: Ends,
+    /// The highest z, by interval, m.
+    tops: Vec<f64>,
     inside: Bounds,
 }
 
@@ -67,8 +69,10 @@ impl Spline {
 
     fn assemble(pieces: Vec<Piece>, ends: Ends) -> Self {
         let grid = Grid::new(&pieces);
-        let inside = pieces.iter().map(|piece| piece.extent(piece.start, piece.end)).fold(Bounds::EMPTY, Bounds::and);
-        Self { pieces, grid, ends, inside }
+        let extents: Vec<Bounds> = pieces.iter().map(|piece| piece.extent(piece.start, piece.end)).collect();
+        let inside = extents.iter().copied().fold(Bounds::EMPTY, Bounds::and);
+        let tops = extents.iter().map(|extent| extent.z_max).collect();
+        Self { pieces, grid, ends, tops, inside }
     }
 
     /// Height z (m), slope z' (1), curvature z'' (1/m) and z''' (1/m², constant between two points) at `x`.
@@ -286,6 +290,21 @@ impl Spline {
             }
             Ends::Tangents { .. } => self.inside,
         }
+    }
+
+    /// The highest z over all of the intervals that the range from `x_low` to `x_high` (m) meets: nearly free, and no
+    /// lower than that of the [`local_bounds`](Self::local_bounds). The highest of all where the range spans many intervals
+    /// or the end of a period.
+    pub fn top_near(&self, x_low: f64, x_high: f64) -> f64 {
+        let low = self.reduce(x_low);
+        let high = low + (x_high - x_low);
+        if !(low >= self.first() && high < self.last()) {
+            return self.bounds().z_max;
+        }
+        let (from, to) = (self.grid.interval(&self.pieces, low), self.grid.interval(&self.pieces, high));
+        let tops = self.tops.get(from..=to).filter(|tops| tops.len() <= INTERVALS_SCANNED);
+        let highest = |tops: &[f64]| tops.iter().fold(f64::NEG_INFINITY, |top, &z| if z > top { z } else { top });
+        tops.map_or_else(|| self.bounds().z_max, highest)
     }
 
     /// Bounds over the range from `x_low` to `x_high`, m: the true extremes over a few intervals, those of all

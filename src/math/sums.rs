@@ -94,6 +94,23 @@ pub fn sum_of_pairs(a: &[f64], b: &[f64], term: impl Fn(f64, f64) -> f64) -> f64
     sums.iter().sum::<f64>() + rest
 }
 
+/// Σ_i term(a_i, b_i, c_i) over the shortest of the three, in `LANES` partial sums.
+#[inline]
+pub fn sum_of_triples(a: &[f64], b: &[f64], c: &[f64], term: impl Fn(f64, f64, f64) -> f64) -> f64 {
+    let n = a.len().min(b.len()).min(c.len());
+    let (a, a_rest) = a[..n].as_chunks::<LANES>();
+    let (b, b_rest) = b[..n].as_chunks::<LANES>();
+    let (c, c_rest) = c[..n].as_chunks::<LANES>();
+    let mut sums = [0.0; LANES];
+    for ((a, b), c) in a.iter().zip(b).zip(c) {
+        for lane in 0..LANES {
+            sums[lane] += term(a[lane], b[lane], c[lane]);
+        }
+    }
+    let rest: f64 = a_rest.iter().zip(b_rest).zip(c_rest).map(|((&a, &b), &c)| term(a, b, c)).sum();
+    sums.iter().sum::<f64>() + rest
+}
+
 /// Σ_i term(i) for i = 0 … n-1, in `LANES` partial sums.
 #[inline]
 pub fn sum_of(n: usize, term: impl Fn(usize) -> f64) -> f64 {
@@ -139,6 +156,7 @@ mod tests {
             assert_eq!(dot(&a, &b), expected);
             assert_eq!(sum_of_pairs(&a, &b, |a, b| a * b), expected);
             assert_eq!(sum_of(n, |i| a[i] * b[i]), expected);
+            assert_eq!(sum_of_triples(&a, &b, &a, |a, b, c| a * b + c), expected + a.iter().sum::<f64>());
         }
     }
 }

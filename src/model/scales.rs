@@ -77,6 +77,12 @@ impl Model {
         self.frequency_of(self.mass_stiffness_without_rods())
     }
 
+    /// The stiffness that makes [`frequency_without_rods`](Self::frequency_without_rods), N/m: of the links on one mass
+    /// without rods, or what the damping rate stands for.
+    pub fn effective_stiffness(&self) -> f64 {
+        self.mass_stiffness_without_rods().max(self.mass * self.frequency_without_rods().powi(2))
+    }
+
     /// The frequency, 1/s, of a mass on its horizontal link, and the damping of the link at that frequency, N s/m.
     ///
     /// m ω² = c + Σ c_j ω²τ_j²/(1 + ω²τ_j²), and the damping is d + Σ c_j τ_j/(1 + ω²τ_j²).

@@ -5,7 +5,7 @@ use super::driver::{AFTER_FAILURE, StepBounds, TrialStep, WorkLimit};
 use super::motion::SimulationError;
 use super::run::{Run, Settings};
 use crate::contact::{EventTolerance, first_event, is_due, longest_unstable};
-use crate::integrator::{DenseOutput, Pair, StepAttempt};
+use crate::integrator::{DenseOutput, Motions, Pair, StepAttempt};
 
 /// A new step is this share of what the error estimate allows, so that few are rejected.
 const SAFETY: f64 = 0.9;
@@ -17,10 +17,11 @@ const GROWTH: (f64, f64) = (0.2, 5.0);
 /// step, and the energies up to the event would be the difference of powers as many times squared: with 1e-6 they keep
 /// some digits.
 const LEAST_SHARE: f64 = 1e-6;
-/// The longest step, as a multiple of the mean time between events: a longer one would be cut.
+/// The longest step, as a multiple of the mean time between events: a longer one would be cut, after a search through
+/// all of it.
 ///
-/// Recommended 1.5 to 3: shorter ones end before there is an event, longer ones are less accurate where they are cut.
-const OF_SPACING: f64 = 2.0;
+/// Recommended 2 to 5: shorter ones end before there is an event, longer ones are less accurate where they are cut.
+const OF_SPACING: f64 = 4.0;
 /// Steps up to this multiple of the shortest are not shortened for the sake of energies: what friction or a damper does
 /// in less than the resolution of time is over within it.
 const RESOLVED: f64 = 5.0;
@@ -57,14 +58,9 @@ impl Run {
                 h = self.state.step_size;
                 continue;
             };
-            let proposed = *proposal.get_or_insert_with(|| {
-                self.proposal(h, bounds.remaining.min(limit), attempt.error).min(self.longest_unstable())
-            });
-            if starts_anew && cuts == 0 {
-                self.state.step_after_event = h * growth(self.pair(), attempt.error);
-            }
-            let event = self.first_event(h);
-            let share = event.filter(|_| h > shortest_cut).map_or(1.0, |theta| theta.max(shortest_cut / h));
+            let limit = bounds.remaining.min(limit);
+            let proposed = *proposal.get_or_insert_with(|| self.propose(h, limit, attempt.error, starts_anew));
+            let share = self.share_before_event(h, shortest_cut);
             if share >= 1.0 || (share >= LEAST_SHARE && self.can_resume_within(h, share)) {
                 self.state.step_size = proposed;
                 self.workspace.stall.note_step(share * h, cuts > 0, self.state.counters.events);
@@ -104,10 +100,21 @@ impl Run {
     }
 
     /// The length of the next step after a good one of length `h`. One that was cut short to `limit` by the end of a
-    /// piece or by the events says nothing.
-    fn proposal(&self, h: f64, limit: f64, error: f64) -> f64 {
+    /// piece or by the events says nothing; one that `starts_anew` says how long the first after the next event may be.
+    fn propose(&mut self, h: f64, limit: f64, error: f64, starts_anew: bool) -> f64 {
         let grown = h * growth(self.pair(), error);
-        if h < limit { grown } else { grown.max(self.state.step_size) }
+        if starts_anew {
+            self.state.step_after_event = grown;
+        }
+        let next = if h < limit { grown } else { grown.max(self.state.step_size) };
+        next.min(self.longest_unstable())
+    }
+
+    /// The share of the step of length `h` tried last that lies before its first event, 1 where there is none. A cut
+    /// leaves `shortest_cut` (s) or more of it.
+    fn share_before_event(&mut self, h: f64, shortest_cut: f64) -> f64 {
+        let event = if h > shortest_cut { self.first_event(h) } else { None };
+        event.map_or(1.0, |theta| theta.max(shortest_cut / h))
     }
 
     /// The longest step, s, that lets unstable contacts move away, as they are at the end of the step tried last.
@@ -121,8 +128,8 @@ impl Run {
     fn may_touch(&self, h: f64) -> bool {
         let dense = self.dense_output(h);
         let reach = self.model.profile.bounds().z_max + UNSEEN * self.state.carrier.amplitude_w();
-        let modes = self.state.layer.state.mode.iter().enumerate();
-        modes.into_iter().any(|(i, mode)| !mode.in_contact() && dense.height(i).range().0 <= reach)
+        let (motions, modes) = (Motions::new(&dense), &self.state.layer.state.mode);
+        (0..modes.len()).any(|i| !modes[i].in_contact() && motions.height(i).range().0 <= reach)
     }
 
     /// The fraction of the step of length `h` tried last at which a mode change is due.

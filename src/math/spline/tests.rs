@@ -233,7 +233,11 @@ fn bounds_are_the_true_extremes() {
     assert_bounds(&spline, spline.bounds(), -1.0, 3.0);
     for (low, high) in [(0.3, 0.5), (0.5, 0.6), (1.0, 1.0), (-0.99, 2.9), (2.0, 3.5), (-7.0, -6.0), (41.0, 41.01)] {
         assert_bounds(&spline, spline.local_bounds(low, high), low, high);
+        // A range beyond the end of a period may end a rounding below the interval that it starts in.
+        assert!(spline.top_near(low, high) >= spline.local_bounds(low, high).z_max - 1e-15);
     }
+    // Of the intervals that a range meets, and not of others.
+    assert!(spline.top_near(1.5, 1.6) < spline.bounds().z_max);
 }
 
 #[test]
@@ -246,6 +250,7 @@ fn a_natural_end_that_rises_outwards_has_no_highest_place() {
     for (low, high) in [(-9.0, -8.0), (-8.0, 0.0), (2.0, 5.0), (-2.0, 5.0), (3.5, 5.0), (0.2, 0.3)] {
         assert_bounds(&falling, falling.local_bounds(low, high), low, high);
         assert_bounds(&rising, rising.local_bounds(low, high), low, high);
+        assert!(rising.top_near(low, high) >= rising.local_bounds(low, high).z_max);
     }
 }
 

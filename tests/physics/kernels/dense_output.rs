@@ -1,6 +1,6 @@
 //! The dense output of the method of seven stages, against exact solutions.
 
-use asperity::integrator::DenseWorkspace;
+use asperity::integrator::{DenseWorkspace, Motions};
 use asperity::model::{Forces, State};
 use nalgebra::Vector2;
 
@@ -133,6 +133,30 @@ fn one_contact_within_a_step_is_that_of_the_whole_state() {
             // Sums of some twenty forces up to 1e3 N in another order.
             let error = (found.normal - expected.normal).abs().max((found.tangential - expected.tangential).abs());
             assert!(error < 1e-11, "case {case}, mass {i}: {found:?} {expected:?}");
+        }
+    }
+}
+
+/// The polynomials of a free mass are its motion within the step, and its speeds bound them.
+#[test]
+fn motions_are_those_of_the_state_within_the_step() {
+    let layer = chain();
+    let start = displaced(&layer.model());
+    let mut stepper = Stepper::new(layer.model(), PATHS, start, 1e-12);
+    let h = 1e-3;
+    stepper.attempt(h);
+    let (dense, rest) = (stepper.dense(h), (&stepper.model.rest_x, &stepper.model.rest_z));
+    let motions = Motions::new(&dense);
+    for theta in THETAS {
+        let (within, at) = (stepper.within(h, theta), stepper.carrier.at(theta * h));
+        for i in 0..within.mode.len() {
+            let x = rest.0[i] + stepper.carrier.profile_position + at.du + within.elongation_x[i];
+            let z = rest.1[i] + stepper.carrier.w + at.dw + within.elongation_z[i];
+            let found = (motions.position(i).evaluate(theta).position, motions.height(i).evaluate(theta).position);
+            // Some roundings of positions of the size of 1 m.
+            assert!((found.0 - x).abs() < 1e-14 && (found.1 - z).abs() < 1e-14, "{theta}, mass {i}: {found:?} {x} {z}");
+            let (low, high) = motions.position_bounds(i);
+            assert!(low <= x && x <= high && motions.least_height(i) <= z, "{theta}, mass {i}: {low} {high} {x} {z}");
         }
     }
 }

@@ -1,0 +1,80 @@
+//! The motions of masses through an event-driven step as polynomials.
+
+use super::dense::DenseOutput;
+use super::rates::Rates;
+use super::tableau::STAGES;
+use crate::math::{Jet, Quintic};
+use crate::model::CarrierPoint;
+
+/// The motions of the masses by the [`DenseOutput`] of one step.
+#[derive(Clone, Debug)]
+pub struct Motions<'a> {
+    step: &'a DenseOutput<'a>,
+    /// By stage: the Bernstein coefficients of a position by the rate there, s.
+    weights: [[f64; 6]; STAGES],
+    /// The largest distance from the start that rates of 1 m/s at all stages, of any signs, can make, s.
+    reach: f64,
+    /// The carrier's position on the profile, less its displacement since the start by the stages' rates, m.
+    x: Quintic,
+    /// The same of its height.
+    z: Quintic,
+    /// The least and the largest x, and the least z, m.
+    bounds: (f64, f64, f64),
+}
+
+impl<'a> Motions<'a> {
+    /// The motions through `step`.
+    pub fn new(step: &'a DenseOutput<'a>) -> Self {
+        let weights =
+            step.interpolation.bernstein_integral().map(|stage| stage.map(|weight| step.span.length * weight));
+        let quintic = |jet: fn(&CarrierPoint) -> Jet, start: f64| {
+            let carrier = Quintic::hermite(jet(&step.start.carrier), jet(&step.end.carrier), step.span.length);
+            carrier.plus(start, step.carriers.iter().map(|at| -jet(at).speed).zip(&weights))
+        };
+        let x = quintic(
+            |at| Jet { position: at.du, speed: at.u_rate, acceleration: at.u_acceleration },
+            step.carrier.profile_position,
+        );
+        let z =
+            quintic(|at| Jet { position: at.dw, speed: at.w_rate, acceleration: at.w_acceleration }, step.carrier.w);
+        let reach = (0..6).map(|k| weights.iter().map(|stage| stage[k].abs()).sum()).fold(0.0, f64::max);
+        let ((x_low, x_high), (z_low, _)) = (x.range(), z.range());
+        Self { step, weights, reach, bounds: (x_low, x_high, z_low), x, z }
+    }
+
+    /// Bounds of the position of mass `i` on the profile, m, by its speeds at the stages.
+    pub fn position_bounds(&self, i: usize) -> (f64, f64) {
+        let start = self.step.model.rest_x[i] + self.step.start.state.elongation_x[i];
+        let distance = self.distance(|stage| stage.velocity_x[i]);
+        (self.bounds.0 + start - distance, self.bounds.1 + start + distance)
+    }
+
+    /// A bound of the least height of mass `i` above the profile's datum, m, by its speeds at the stages.
+    pub fn least_height(&self, i: usize) -> f64 {
+        let start = self.step.model.rest_z[i] + self.step.start.state.elongation_z[i];
+        self.bounds.2 + start - self.distance(|stage| stage.velocity_z[i])
+    }
+
+    #[inline]
+    fn distance(&self, rate: impl Fn(&Rates) -> f64) -> f64 {
+        let speeds = self.step.stages.iter().map(|stage| rate(stage).abs());
+        self.reach * speeds.fold(0.0, |most, speed| if speed > most { speed } else { most })
+    }
+
+    /// The position of mass `i` on the profile, m.
+    pub fn position(&self, i: usize) -> Quintic {
+        let start = self.step.model.rest_x[i] + self.step.start.state.elongation_x[i];
+        self.motion(&self.x, start, |stage| stage.velocity_x[i])
+    }
+
+    /// The height of mass `i` above the profile's datum, m.
+    pub fn height(&self, i: usize) -> Quintic {
+        let start = self.step.model.rest_z[i] + self.step.start.state.elongation_z[i];
+        self.motion(&self.z, start, |stage| stage.velocity_z[i])
+    }
+
+    #[inline]
+    fn motion(&self, carrier: &Quintic, start: f64, rate: impl Fn(&Rates) -> f64) -> Quintic {
+        carrier.plus(start, self.step.stages.iter().map(rate).zip(&self.weights))
+    }
+}
