@@ -155,11 +155,7 @@ impl Contacts<'_> {
         if value >= -tolerance || theta >= first.unwrap_or(1.0) || self.value(i, limit, theta) >= -tolerance {
             return first;
         }
-        let aim = 0.5 * tolerance;
-        if self.value(i, limit, before.0) <= -aim {
-            return Some(before.0);
-        }
-        Some(bracketed_root(|theta| self.value(i, limit, theta) + aim, (before.0, theta), LOCATED))
+        Some(self.locate(i, limit, tolerance, (before.0, theta)))
     }
 
     /// The fraction at which a quantity of mass `i` first falls below -`tolerance`, located where it is -`tolerance`/2;
@@ -177,12 +173,22 @@ impl Contacts<'_> {
             contacts.at_stage(rank, i, limit) < -tolerance && contacts.value(i, limit, theta) < -tolerance
         };
         let Some(below) = (rank..ranks).find(|&rank| falls_until(self, rank)) else { return first };
-        let aim = 0.5 * tolerance;
         let bracket = (self.node(below - 1).min(latest), self.node(below).min(latest));
+        Some(self.locate(i, limit, tolerance, bracket))
+    }
+
+    /// Where a quantity of mass `i` is -`tolerance`/2, between two fractions at the second of which it is below
+    /// -`tolerance`; the first if it is that far below there.
+    fn locate(&mut self, i: usize, limit: Limit, tolerance: f64, bracket: (f64, f64)) -> f64 {
+        let aim = 0.5 * tolerance;
         if self.value(i, limit, bracket.0) <= -aim {
-            return Some(bracket.0);
+            return bracket.0;
         }
-        Some(bracketed_root(|theta| self.value(i, limit, theta) + aim, bracket, LOCATED))
+        let beyond = |theta: f64| {
+            let beyond = self.value(i, limit, theta) + aim;
+            if beyond.abs() < NEAR * tolerance { 0.0 } else { beyond }
+        };
+        bracketed_root(beyond, bracket, LOCATED)
     }
 
     /// The fraction of the step at which the stage lies that is `rank`-th in time.
@@ -206,6 +212,9 @@ impl Contacts<'_> {
     }
 }
 
+/// How near to half its tolerance a quantity is where an event is located, as a share of the tolerance: any place where
+/// the limit has been passed for certain serves, and each evaluation costs.
+const NEAR: f64 = 0.1;
 /// Accuracy of an event's instant as a share of the step: far below the resolution of the tolerances.
 const LOCATED: f64 = 1e-12;
 
