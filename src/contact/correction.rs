@@ -23,7 +23,9 @@
 use super::laws::{collision, decide_mode};
 use crate::integrator::{Rates, StepEnd, StepSpan, Tolerance, TwoStageDense};
 use crate::math::{Bounds, bracketed_root};
-use crate::model::{Carrier, CarrierPoint, ChannelEnergies, LinkKind, Mode, Model, State, SurfacePoint};
+use crate::model::{
+    Carrier, CarrierPoint, ChannelEnergies, FrictionCurve, LinkKind, Mode, Model, SlipCurve, State, SurfacePoint,
+};
 
 /// Weight of the lateness of mode changes in the error of a step.
 ///
@@ -359,8 +361,9 @@ impl<'a> Correction<'a> {
         let slowing = time * (damping / (q * q) + time * model.mass_stiffness()) / model.mass;
         // No term in κ: v_t contains already how the profile bends from the touch to here.
         let driving = contact.tangential + self.not_passed(i, rest);
-        let excess =
-            if contact.normal < 0.0 { 0.0 } else { rate_excess(model, mode, v_t, driving - at_rest, time, slowing) };
+        let curve = model.slip_curve(contact.normal).filter(|_| contact.normal >= 0.0 && time > 0.0);
+        let weight = model.mass * (1.0 + slowing) / time;
+        let excess = curve.map_or(0.0, |curve| rate_excess(&curve, mode.direction(), v_t, driving - at_rest, weight));
         let friction = at_rest + excess;
         let acceleration = (driving - friction) / model.mass;
         let after = v_t + time * acceleration / (1.0 + slowing);
@@ -458,15 +461,12 @@ impl<'a> Correction<'a> {
     }
 }
 
-/// The excess of the rate-dependent friction over that at rest, N, of a mass in `mode` that starts with v_t (m/s) and is
-/// driven by a force (N) for a `time` (s): at the end of that time, since the law is steep at creep speeds. The speed
-/// changes by `slowing` as much less as the force alone would change it.
-fn rate_excess(model: &Model, mode: Mode, v_t: f64, driving: f64, time: f64, slowing: f64) -> f64 {
-    let Some(law) = model.rate_shear.filter(|_| time > 0.0) else { return 0.0 };
-    let sigma = mode.direction();
-    let weight = model.mass * (1.0 + slowing) / time;
+/// The excess of the friction in slip over that at rest, N, of a mass that slips along `sigma`, starts with v_t (m/s) and is
+/// driven by a force (N) against its inertia over the time, `weight` (kg/s): at the end of that time, since the law is
+/// steep at creep speeds.
+fn rate_excess(curve: &SlipCurve<'_>, sigma: f64, v_t: f64, driving: f64, weight: f64) -> f64 {
     let (from, driving) = (sigma * v_t, sigma * driving);
-    sigma * (driving - weight * (law.balance(from, driving, weight) - from))
+    sigma * (driving - weight * (curve.balance(from, driving, weight) - from))
 }
 
 /// The indices beside mass `i`; one of them may be out of range.

@@ -1,6 +1,6 @@
 //! The longest step where a contact is unstable: on a crest of the profile, and where friction weakens with the speed.
 
-use crate::model::{Forces, LinkKind, Model, RateShear, State};
+use crate::model::{Forces, FrictionCurve, LinkKind, Model, State};
 
 /// Largest product of a step's length and the growth rate of an unstable contact.
 ///
@@ -11,32 +11,34 @@ const LARGEST_GROWTH: f64 = 2.0;
 
 /// The longest step that resolves the growth of unstable contacts, s; the largest number if there are none.
 pub fn longest_unstable(model: &Model, state: &State, forces: &Forces) -> f64 {
-    let weakening = weakening(model, state);
+    let weakening = weakening(model, state, forces);
     if model.profile.bounds().curvature_max_abs == 0.0 {
         return longest(weakening);
     }
     let slipping = state.mode.iter().enumerate().filter(|(_, mode)| mode.slips());
-    let fastest = slipping.map(|(i, _)| growth(model, state, forces.on_mass_z[i], i)).fold(0.0, f64::max);
+    let fastest = slipping.map(|(i, _)| growth(model, state, forces, i)).fold(0.0, f64::max);
     longest(weakening + fastest)
 }
 
 /// The longest step that resolves the growth of stick-slip vibrations where friction weakens with the speed, s; the
 /// largest number if there are none.
-pub fn longest_weakening(model: &Model, state: &State) -> f64 {
-    longest(weakening(model, state))
+pub fn longest_weakening(model: &Model, state: &State, forces: &Forces) -> f64 {
+    longest(weakening(model, state, forces))
 }
 
 /// The growth rate, 1/s, of vibrations of contacts whose friction weakens with the speed, or up to twice that rate; 0
 /// if there are none. Slopes, the vertical links and the other masses only reduce it.
-fn weakening(model: &Model, state: &State) -> f64 {
-    let Some(law) = &model.rate_shear else { return 0.0 };
+fn weakening(model: &Model, state: &State, forces: &Forces) -> f64 {
+    if !model.friction_depends_on_speed() {
+        return 0.0;
+    }
     let slipping = (0..model.masses()).filter(|&i| state.mode[i].slips());
-    let steepest = slipping.map(|i| slope(law, state, i)).fold(0.0, f64::min);
+    let steepest = slipping.map(|i| slope(model, state, forces, i)).fold(0.0, f64::min);
     if steepest >= 0.0 {
         return 0.0;
     }
     let (frequency, damping) = model.horizontal_oscillation();
-    let chain = Chain { model, state, law, damping };
+    let chain = Chain { model, state, forces, damping };
     let mut rate = -(damping + steepest) / model.mass;
     if rate <= 0.0 || chain.decays(0.0) {
         return 0.0;
@@ -51,17 +53,19 @@ fn longest(fastest: f64) -> f64 {
     if fastest > 0.0 { LARGEST_GROWTH / fastest } else { f64::MAX }
 }
 
-/// q² A τ_f'(v_t) of slipping mass `i`, N s/m: its friction as a damper along x.
-fn slope(law: &RateShear, state: &State, i: usize) -> f64 {
+/// q² ∂T/∂v_t of slipping mass `i`, N s/m: its friction as a damper along x; 0 where friction does not depend on the speed.
+fn slope(model: &Model, state: &State, forces: &Forces, i: usize) -> f64 {
+    let normal = forces.contact(model, i, state.velocity_x[i], &state.surface[i]).normal;
+    let Some(curve) = model.slip_curve(normal) else { return 0.0 };
     let square = 1.0 + state.surface[i].slope * state.surface[i].slope;
-    square * law.with_slope(state.mode[i].direction() * state.velocity_x[i] * square.sqrt()).1
+    square * curve.with_slope(state.mode[i].direction() * state.velocity_x[i] * square.sqrt()).1
 }
 
 /// The slipping masses, coupled by dampers: these may take from one mass the energy that friction feeds to another.
 struct Chain<'a> {
     model: &'a Model,
     state: &'a State,
-    law: &'a RateShear,
+    forces: &'a Forces,
     /// Damping of a horizontal link, N s/m.
     damping: f64,
 }
@@ -99,7 +103,10 @@ impl Chain<'_> {
         let vertical = self.model.links[LinkKind::Vertical as usize].damping;
         let neighbours = [i.wrapping_sub(1), i + 1].into_iter().filter_map(|j| self.state.mode.get(j));
         let count = neighbours.filter(|mode| mode.in_contact()).count() as f64;
-        self.damping + self.slopes(i, i) * vertical + count * self.coupling(i, i) + slope(self.law, self.state, i)
+        self.damping
+            + self.slopes(i, i) * vertical
+            + count * self.coupling(i, i)
+            + slope(self.model, self.state, self.forces, i)
     }
 }
 
@@ -108,9 +115,9 @@ impl Chain<'_> {
 /// From (6)-(9) linearised in the displacement along x, with the part of friction that depends on the speed:
 /// m q² λ² + D λ = K, with D = d_x + s² d_z + q² A τ_f' and K = κ f_z - c_x - s² c_z of the links to the carrier. The
 /// other links and the Maxwell elements only reduce the rate. Where D < 0, D counts as 0: [`weakening`] accounts for it.
-fn growth(model: &Model, state: &State, f_z: f64, i: usize) -> f64 {
+fn growth(model: &Model, state: &State, forces: &Forces, i: usize) -> f64 {
     let surface = &state.surface[i];
-    let driving = surface.curvature * f_z;
+    let driving = surface.curvature * forces.on_mass_z[i];
     if driving <= 0.0 {
         return 0.0;
     }
@@ -121,6 +128,6 @@ fn growth(model: &Model, state: &State, f_z: f64, i: usize) -> f64 {
         return 0.0;
     }
     let (inertia, links) = (model.mass * (1.0 + square), x.damping + square * z.damping);
-    let damping = (links + model.rate_shear.map_or(0.0, |law| slope(&law, state, i))).max(0.0);
+    let damping = (links + slope(model, state, forces, i)).max(0.0);
     2.0 * excess / (damping + (damping * damping + 4.0 * inertia * excess).sqrt())
 }

@@ -188,7 +188,7 @@ impl Integrator {
         tolerance: &Tolerance,
     ) -> Result<StepAttempt, NoConvergence> {
         let step = StepInput { model, start, carrier, span, beta: self.two_stages.tableau.gamma() * span.length };
-        let slack = if model.rate_shear.is_some() { STEEP_SLACK } else { NEWTON_SLACK };
+        let slack = if model.friction_depends_on_speed() { STEEP_SLACK } else { NEWTON_SLACK };
         let convergence = ConvergenceTest::new(tolerance, step.beta, slack);
         self.two_stages.attempt(&mut self.stages, &step, convergence)?;
         let attempt = self.two_stages.test(&self.stages, &step, tolerance, &mut self.error_workspace);

@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::largest::Largest;
 use crate::model::{
-    CarrierPoint, ContactForces, Exchange, Forces, LinkKind, MaxwellRow, Mode, Model, RateShear, State, SurfacePoint,
+    CarrierPoint, ContactForces, Exchange, Forces, FrictionCurve, LinkKind, MaxwellRow, Mode, Model, SlipCurve, State,
+    SurfacePoint,
 };
 
 /// The share of an explicit acceleration that friction may take away within the step without the implicit one in its
@@ -82,10 +83,10 @@ impl Rates {
         self.clear_contacts();
         for i in 0..model.masses() {
             self.evaluate_mass(model, state, forces, i);
-            if let Some(law) = &model.rate_shear
-                && state.mode[i].slips()
+            if state.mode[i].slips()
+                && let Some(curve) = model.slip_curve(self.normal[i])
             {
-                self.soften(model, law, state, i, beta);
+                self.soften(model, &curve, state, i, beta);
             }
         }
         for (mine, rate) in self.elongation_rate.iter_mut().zip(&forces.rate) {
@@ -96,7 +97,7 @@ impl Rates {
     /// Replaces the acceleration of slipping mass `i` by the mean one of an implicit step of `beta` (s) with the other forces
     /// held, where the two differ much: friction is then so steep over the speed that its value at the start says nothing
     /// of the step.
-    fn soften(&mut self, model: &Model, law: &RateShear, state: &State, i: usize, beta: f64) {
+    fn soften(&mut self, model: &Model, law: &SlipCurve<'_>, state: &State, i: usize, beta: f64) {
         let (v, surface) = (state.velocity_x[i], &state.surface[i]);
         let per_velocity = state.mode[i].direction() * surface.slope.hypot(1.0);
         let (speed, gain, weight) = (per_velocity * v, per_velocity * self.acceleration_x[i], model.mass / beta);

@@ -189,7 +189,7 @@ impl Tangent {
                 Mode::Free => on_mass.0 / model.mass,
                 Mode::Stick => 0.0,
                 Mode::Forward | Mode::Backward => {
-                    let slip = SlippingMass::of(model, state, i, accelerations[i]);
+                    let slip = SlippingMass::of(model, state, forces, i, accelerations[i]);
                     let forces = (forces.on_mass_x[i], forces.on_mass_z[i]);
                     slip.variation(model, x, v_x, on_mass, forces) / (model.mass * slip.q2())
                 }
@@ -288,7 +288,7 @@ impl Tangent {
             Mode::Free => Vector2::new(on_mass.0 + inertia * v_x, on_mass.1 + inertia * v_z),
             Mode::Stick => Vector2::zeros(),
             Mode::Forward | Mode::Backward => {
-                let slip = SlippingMass::of(model, &solver.state, i, acceleration);
+                let slip = SlippingMass::of(model, &solver.state, &solver.forces, i, acceleration);
                 let forces = (solver.forces.on_mass_x[i], solver.forces.on_mass_z[i]);
                 let varied = slip.variation(model, self.end.x[i], 0.0, on_mass, forces);
                 Vector2::new(varied + inertia * slip.q2() * v_x, 0.0)

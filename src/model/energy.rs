@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::math::dot;
 
-use super::{CarrierPoint, Forces, LinkKind, Model, State};
+use super::{CarrierPoint, Forces, FrictionCurve, LinkKind, Model, State};
 
 /// Power through the channels, W.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -101,21 +101,17 @@ fn friction(model: &Model, state: &State, forces: &Forces) -> f64 {
     if !model.has_friction {
         return 0.0;
     }
-    let slipping = || (0..model.masses()).filter(|&i| state.mode[i].slips());
-    let at_rest: f64 = slipping()
-        .map(|i| {
-            let v = state.velocity_x[i];
-            let contact = forces.contact(model, i, v, &state.surface[i]);
-            state.mode[i].direction() * contact.limit * v * contact.q
-        })
-        .sum();
-    let Some(law) = &model.rate_shear else { return at_rest };
-    let excess = slipping().map(|i| {
-        let s = state.surface[i].slope;
-        let speed = state.mode[i].direction() * state.velocity_x[i] * (1.0 + s * s).sqrt();
-        law.excess(speed) * speed
-    });
-    at_rest + excess.sum::<f64>()
+    let (mut at_rest, mut excess) = (0.0, 0.0);
+    for i in (0..model.masses()).filter(|&i| state.mode[i].slips()) {
+        let (sigma, v) = (state.mode[i].direction(), state.velocity_x[i]);
+        let contact = forces.contact(model, i, v, &state.surface[i]);
+        at_rest += sigma * contact.limit * v * contact.q;
+        if let Some(curve) = model.slip_curve(contact.normal) {
+            let speed = sigma * v * contact.q;
+            excess += curve.excess(speed) * speed;
+        }
+    }
+    at_rest + excess
 }
 
 /// A carrier at rest does no work, whatever the forces.

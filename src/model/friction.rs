@@ -6,11 +6,14 @@
 //!
 //! The last is the shear strength of rubber, τ_f(v) = τ_f0 exp(-c [log10(v/v_0)]²) above a creep speed v_c and constant
 //! below it (B. Lorenz et al., J. Phys.: Condens. Matter 25, 2013). Its plateau A τ_f(v_c) acts at rest too and is
-//! counted in [`Model::shear_force`]; a contact that slips has the [excess](RateShear::excess) over it.
+//! counted in [`Model::shear_force`]; a contact that slips has the [excess](FrictionCurve::excess) over it.
+//!
+//! With roughness below the profile's the shear forces act on the part A_r/A of the area alone, which depends on F_N and on
+//! the speed ([`RealArea`](super::RealArea)): at rest on A_r(F_N, v_c).
 
 use std::f64::consts::LN_10;
 
-use super::{Forces, Mode, Model, SurfacePoint};
+use super::{Forces, Mode, Model, RealArea, SurfacePoint};
 use crate::math::bracketed_root;
 use crate::scene;
 
@@ -36,8 +39,13 @@ impl ContactForces {
         let q = (1.0 + s * s).sqrt();
         // From (6)-(9): the normal force needs no acceleration.
         let normal = (model.mass * surface.curvature * velocity_x * velocity_x - f_z + s * f_x) / q;
-        let limit = model.friction_coefficient * normal + model.shear_force;
+        let limit = model.friction_coefficient * normal + model.shear_at_rest(normal);
         Self { normal, tangential: (f_x + s * f_z) / q, limit, q }
+    }
+
+    /// ∂T/∂F_N, 1, at the `speed` of slip, m/s.
+    pub fn limit_by_normal(&self, model: &Model, speed: f64) -> f64 {
+        model.friction_coefficient + SlipCurve { model, normal: self.normal }.by_normal(speed)
     }
 
     /// F_T on a mass in `mode` at the velocity ẋ, N, positive against +t: f·t of a sticking mass, T(v_t) sign(v_t) of a
@@ -49,7 +57,7 @@ impl ContactForces {
             Mode::Stick => self.tangential,
             Mode::Forward | Mode::Backward => {
                 let sigma = mode.direction();
-                let excess = model.rate_shear.map_or(0.0, |law| law.excess(sigma * velocity_x * self.q));
+                let excess = model.slip_curve(self.normal).map_or(0.0, |law| law.excess(sigma * velocity_x * self.q));
                 sigma * (self.limit + excess)
             }
         }
@@ -116,31 +124,36 @@ impl RateShear {
         let y = (speed * self.per_reference).ln();
         (self.largest * (-self.sharpness * y * y).exp(), -2.0 * self.sharpness * y)
     }
+}
 
-    /// A τ_f(v) - A τ_f(v_c), N, at the `speed` in the direction of slip, m/s: 0 up to the creep speed, and odd, so that a
-    /// mass that turns round is braked before its mode changes.
-    pub fn excess(&self, speed: f64) -> f64 {
+/// The excess of the friction in slip over that at rest, over the speed in the direction of slip. It is odd, so that a mass
+/// that turns round is braked before its mode changes.
+pub trait FrictionCurve {
+    /// The speed up to which there is no excess, m/s.
+    fn creep_speed(&self) -> f64;
+
+    /// Bounds of the excess, N.
+    fn bounds(&self) -> (f64, f64);
+
+    /// Speeds that divide the curve into parts in which it bends one way, m/s.
+    fn marks(&self) -> [f64; 2];
+
+    /// The excess, N, and its derivative by the speed, N s/m, at the `speed` in the direction of slip, m/s.
+    fn with_slope(&self, speed: f64) -> (f64, f64);
+
+    /// The excess, N.
+    fn excess(&self, speed: f64) -> f64 {
         self.with_slope(speed).0
     }
 
-    /// The [excess](Self::excess), N, and its derivative A τ_f'(v), N s/m.
-    pub fn with_slope(&self, speed: f64) -> (f64, f64) {
-        let size = speed.abs();
-        if size <= self.creep_speed {
-            return (0.0, 0.0);
-        }
-        let (force, slope) = self.whole(size);
-        ((force - self.plateau) * 1.0_f64.copysign(speed), slope * force / size)
-    }
-
     /// A correction `by` (m/s) of Newton's method at `speed`, taken along the curve and not along its tangent: the speed
-    /// v, m/s, at which `weight` (v - `speed`) + A τ_f(v) - A τ_f(`speed`) has the value that the tangent predicts.
+    /// v, m/s, at which `weight` (v - `speed`) and the change of the excess have the value that the tangent predicts.
     ///
     /// The curve is nearly a logarithm: at creep speeds its tangent is steep and valid over a short range only, and
     /// corrections along it would alternate between both ends of the decades.
-    pub fn along_curve(&self, speed: f64, by: f64, weight: f64) -> f64 {
+    fn along_curve(&self, speed: f64, by: f64, weight: f64) -> f64 {
         let linear = speed + by;
-        let constant = linear.abs() <= self.creep_speed && speed.abs() <= self.creep_speed;
+        let constant = linear.abs() <= self.creep_speed() && speed.abs() <= self.creep_speed();
         if constant || by.abs() <= STRAIGHT * speed.abs() || weight.is_nan() || weight <= 0.0 {
             return linear;
         }
@@ -148,47 +161,153 @@ impl RateShear {
         self.balance(speed, here + (weight + slope) * by, weight)
     }
 
-    /// The speed v, m/s, at which `weight` (v - `from`) + A τ_f(v) - A τ_f(v_c) is `force` (N). Where friction falls
-    /// faster than the weight there may be three: then it is the first one from `from`, as the motion reaches it.
-    pub fn balance(&self, from: f64, force: f64, weight: f64) -> f64 {
+    /// The speed v, m/s, at which `weight` (v - `from`) and the excess add up to `force` (N). Where friction falls faster than
+    /// the weight there may be three: then it is the first one from `from`, as the motion reaches it.
+    fn balance(&self, from: f64, force: f64, weight: f64) -> f64 {
         let free = from + force / weight;
         if free < 0.0 {
             return -self.balance(-from, -force, weight);
         }
-        if free <= self.creep_speed {
+        let creep_speed = self.creep_speed();
+        if free <= creep_speed {
             return free;
         }
-        // A τ_f(v) - A τ_f(v_c) lies between these.
-        let (least, most) = (-self.plateau, self.largest - self.plateau);
-        let [low, high] = [most, least].map(|excess| (free - excess / weight).max(self.creep_speed));
+        let (least, most) = self.bounds();
+        let [low, high] = [most, least].map(|excess| (free - excess / weight).max(creep_speed));
         let residual = |v: f64| (v - from) * weight + self.excess(v) - force;
         if residual(low) >= 0.0 || !high.is_finite() {
             return low;
         }
-        let (low, high) = self.first_bracket(residual, from.clamp(low, high), (low, high));
-        let speed = |y: f64| self.creep_speed * y.exp();
-        let bracket = [low, high].map(|v| (v / self.creep_speed).ln());
+        let (low, high) = first_bracket(self.marks(), residual, from.clamp(low, high), (low, high));
+        let speed = |y: f64| creep_speed * y.exp();
+        let bracket = [low, high].map(|v| (v / creep_speed).ln());
         speed(bracketed_root(|y| residual(speed(y)), (bracket[0], bracket[1]), SPEED_ACCURACY))
     }
+}
 
-    /// The part of the bracket (m/s) with the first zero of `residual` from the speed `from`. The largest strength and
-    /// the steepest fall divide the speeds into three parts: in each there is one zero at most if the signs at its ends
-    /// differ.
-    fn first_bracket(&self, residual: impl Fn(f64) -> f64, from: f64, (mut low, mut high): (f64, f64)) -> (f64, f64) {
-        let marks = [1.0, self.fastest_fall].map(|share| share / self.per_reference);
-        let faster = residual(from) < 0.0;
-        *(if faster { &mut low } else { &mut high }) = from;
-        for mark in if faster { marks } else { [marks[1], marks[0]] } {
-            if !(low < mark && mark < high) {
-                continue;
-            }
-            let above = residual(mark) >= 0.0;
-            *(if above { &mut high } else { &mut low }) = mark;
-            if above == faster {
-                break;
+/// The part of the bracket (m/s) with the first zero of `residual` from the speed `from`. The `marks` divide the speeds
+/// into three parts: in each there is one zero at most if the signs at its ends differ.
+fn first_bracket(
+    marks: [f64; 2],
+    residual: impl Fn(f64) -> f64,
+    from: f64,
+    (mut low, mut high): (f64, f64),
+) -> (f64, f64) {
+    let faster = residual(from) < 0.0;
+    *(if faster { &mut low } else { &mut high }) = from;
+    for mark in if faster { marks } else { [marks[1], marks[0]] } {
+        if !(low < mark && mark < high) {
+            continue;
+        }
+        let above = residual(mark) >= 0.0;
+        *(if above { &mut high } else { &mut low }) = mark;
+        if above == faster {
+            break;
+        }
+    }
+    (low, high)
+}
+
+impl FrictionCurve for RateShear {
+    fn creep_speed(&self) -> f64 {
+        self.creep_speed
+    }
+
+    fn bounds(&self) -> (f64, f64) {
+        (-self.plateau, self.largest - self.plateau)
+    }
+
+    /// The largest strength and the steepest fall.
+    fn marks(&self) -> [f64; 2] {
+        [1.0, self.fastest_fall].map(|share| share / self.per_reference)
+    }
+
+    fn with_slope(&self, speed: f64) -> (f64, f64) {
+        let size = speed.abs();
+        if size <= self.creep_speed {
+            return (0.0, 0.0);
+        }
+        let (force, slope) = self.whole(size);
+        ((force - self.plateau) * 1.0_f64.copysign(speed), slope * force / size)
+    }
+}
+
+/// The friction of one contact under a normal force that is held.
+#[derive(Clone, Copy, Debug)]
+pub struct SlipCurve<'a> {
+    model: &'a Model,
+    /// F_N, N.
+    normal: f64,
+}
+
+impl Model {
+    /// The curve of a contact under the normal force F_N, N; `None` where friction does not depend on the speed.
+    #[inline]
+    pub fn slip_curve(&self, normal: f64) -> Option<SlipCurve<'_>> {
+        self.friction_depends_on_speed().then_some(SlipCurve { model: self, normal })
+    }
+
+    /// Whether friction depends on the speed of slip.
+    pub fn friction_depends_on_speed(&self) -> bool {
+        self.rate_shear.is_some() || self.real_area.as_ref().is_some_and(RealArea::depends_on_speed)
+    }
+
+    /// Whether friction is linear in the normal force and does not depend on the speed.
+    pub fn friction_is_linear(&self) -> bool {
+        self.rate_shear.is_none() && self.real_area.is_none()
+    }
+
+    /// The shear force at rest under F_N (N), A_r(F_N, v_c) (τ_0 + τ_f(v_c)), N.
+    #[inline]
+    fn shear_at_rest(&self, normal: f64) -> f64 {
+        match &self.real_area {
+            None => self.shear_force,
+            Some(area) => area.at_rest(normal).value * self.shear_force,
+        }
+    }
+}
+
+impl SlipCurve<'_> {
+    /// The derivative of the whole shear force by F_N, 1, at the `speed` of slip, m/s: 0 where it acts on the whole area.
+    pub fn by_normal(&self, speed: f64) -> f64 {
+        let strength = |law: &RateShear| law.with_slope(speed.abs()).0;
+        let force = self.model.shear_force + self.model.rate_shear.as_ref().map_or(0.0, strength);
+        self.model.real_area.as_ref().map_or(0.0, |area| area.share(self.normal, speed).by_normal * force)
+    }
+}
+
+impl FrictionCurve for SlipCurve<'_> {
+    fn creep_speed(&self) -> f64 {
+        match (&self.model.rate_shear, &self.model.real_area) {
+            (Some(law), _) => law.creep_speed,
+            (None, Some(area)) => area.creep_speed(),
+            (None, None) => 0.0,
+        }
+    }
+
+    fn bounds(&self) -> (f64, f64) {
+        let (least, most) = self.model.rate_shear.as_ref().map_or((0.0, 0.0), RateShear::bounds);
+        match &self.model.real_area {
+            None => (least, most),
+            Some(area) => {
+                let (share, at_rest) = (area.at_rest(self.normal).value, self.model.shear_force);
+                (-share * at_rest, share * most)
             }
         }
-        (low, high)
+    }
+
+    fn marks(&self) -> [f64; 2] {
+        self.model.rate_shear.as_ref().map_or([self.creep_speed(); 2], RateShear::marks)
+    }
+
+    fn with_slope(&self, speed: f64) -> (f64, f64) {
+        let of_rate = self.model.rate_shear.as_ref().map_or((0.0, 0.0), |law| law.with_slope(speed));
+        let Some(area) = &self.model.real_area else { return of_rate };
+        let sign = 1.0_f64.copysign(speed);
+        let (share, at_rest) = (area.share(self.normal, speed), area.at_rest(self.normal).value);
+        let force = self.model.shear_force + sign * of_rate.0;
+        let by_size = share.by_speed * sign * force + share.value * of_rate.1;
+        (sign * (share.value * force - at_rest * self.model.shear_force), by_size)
     }
 }
 

@@ -6,6 +6,7 @@ mod carrier;
 mod energy;
 mod forces;
 mod friction;
+mod real_area;
 mod reduction;
 mod scales;
 mod state;
@@ -13,7 +14,8 @@ mod state;
 pub use carrier::{Carrier, CarrierPoint, CarrierPosition};
 pub use energy::{ChannelEnergies, Exchange, Powers, elastic_energy, kinetic_energy};
 pub use forces::{Forces, LinkLaw, LinkMotion, MaxwellRow};
-pub use friction::{ContactForces, RateShear};
+pub use friction::{ContactForces, FrictionCurve, RateShear, SlipCurve};
+pub use real_area::{AreaShare, RealArea};
 pub use reduction::{Reduction, Replaced, Replacement};
 pub use state::{Mode, State};
 
@@ -64,6 +66,8 @@ pub struct Model {
     pub shear_force: f64,
     /// The law of the excess over it in slip; `None` where the shear force does not depend on the speed.
     pub rate_shear: Option<RateShear>,
+    /// The part of a contact's area that the shear force acts on; `None`: all of it.
+    pub real_area: Option<RealArea>,
     /// Whether contacts can stick: whether a part of the friction law is not zero.
     pub has_friction: bool,
     /// How the dashpots start.
@@ -100,6 +104,7 @@ impl Model {
             friction_coefficient: coulomb,
             shear_force: shear_force + rate_shear.map_or(0.0, |rate_shear| rate_shear.plateau()),
             rate_shear,
+            real_area: RealArea::new(scene),
             has_friction: coulomb > 0.0 || shear_force > 0.0 || rate_shear.is_some(),
             initial: layer.initial,
         }

@@ -242,7 +242,7 @@ impl Snapshot<'_> {
         (x.signum() * dx - x.abs() * dz / z) / z
     }
 
-    /// δF_N = (s δf_x - δf_z)/q; δF_T = (δf_x + s δf_z)/q where the mass sticks, σ μ δF_N where it slips.
+    /// δF_N = (s δf_x - δf_z)/q; δF_T = (δf_x + s δf_z)/q where the mass sticks, σ ∂T/∂F_N δF_N where it slips.
     pub(super) fn contact_change(&self, i: usize, shift: &CarrierShift) -> ContactChange {
         let mode = self.state.mode[i];
         if !mode.in_contact() {
@@ -254,9 +254,19 @@ impl Snapshot<'_> {
         let normal = (slope * f_x - f_z) / q;
         let friction = match mode {
             Mode::Stick => (f_x + slope * f_z) / q,
-            _ => mode.direction() * self.model.friction_coefficient * normal,
+            _ => mode.direction() * self.friction_by_normal(i) * normal,
         };
         ContactChange { normal, friction, slope, q }
+    }
+
+    /// ∂T/∂F_N of slipping mass `i`, 1.
+    fn friction_by_normal(&self, i: usize) -> f64 {
+        if self.model.real_area.is_none() {
+            return self.model.friction_coefficient;
+        }
+        let (v, surface) = (self.state.velocity_x[i], &self.state.surface[i]);
+        let contact = self.forces.contact(self.model, i, v, surface);
+        contact.limit_by_normal(self.model, v.abs() * contact.q)
     }
 
     pub(super) fn contact_sum(&self, shift: &CarrierShift, part: impl Fn(ContactChange) -> f64) -> f64 {

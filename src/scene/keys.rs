@@ -254,8 +254,16 @@ pub(super) const PATH: &str = "a relative path of a file beside or below the sce
 const FRICTION: &[Key] = &[
     number("coulomb", NOT_NEGATIVE, Unit::One, "Coulomb's friction coefficient"),
     table("rate_shear", RATE_SHEAR),
+    table("real_area", REAL_AREA).material(),
     number("shear_force", NOT_NEGATIVE, Unit::Newton, "Adhesive shear force of one mass in contact").direct(),
     number("shear_strength", NOT_NEGATIVE, Unit::Pascal, "Adhesive shear strength of the contact").material(),
+];
+
+const REAL_AREA: &[Key] = &[
+    number("rms_slope", NOT_NEGATIVE, Unit::One, "Root mean square gradient of the roughness that the profile lacks"),
+    number("wavelength", POSITIVE, Unit::Meter, "Wavelength of the roughness that the profile lacks"),
+    number("modulus", POSITIVE, Unit::Pascal, "Plane modulus at which that roughness is pressed flat, at every speed"),
+    number("cut_off_wavelength", POSITIVE, Unit::Meter, "Wavelength down to which the law of the surface goes on"),
 ];
 
 const RATE_SHEAR: &[Key] = &[

@@ -8,6 +8,7 @@
 
 mod error;
 mod excitation;
+mod fine_roughness;
 mod foundation;
 mod keys;
 mod material;
@@ -32,6 +33,7 @@ use values::Word;
 
 pub use error::{ParameterError, Problem, SceneError};
 pub use excitation::{Path, Phase};
+pub use fine_roughness::FineRoughness;
 pub use foundation::{Body, Foundation, FoundationKind, Quality, Stiffness, Wave, Waves};
 pub use material::{Material, PronyTerm, Wlf, complex_stiffness};
 pub use parameters::{Parameter, Value};
@@ -234,6 +236,21 @@ pub struct Friction {
     pub shear_strength: Option<f64>,
     /// Rate-dependent shear strength.
     pub rate_shear: Option<RateShear>,
+    /// Roughness below the profile's, by which contacts touch on a part of their area alone; in the material form alone.
+    pub real_area: Option<RealArea>,
+}
+
+/// The roughness that the profile lacks: `rms_slope` with `wavelength` or `modulus`, or `cut_off_wavelength`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct RealArea {
+    /// Root mean square gradient h'_s, 1.
+    pub rms_slope: Option<f64>,
+    /// Wavelength λ_s of that roughness, m.
+    pub wavelength: Option<f64>,
+    /// Modulus M_c at every speed, Pa.
+    pub modulus: Option<f64>,
+    /// Wavelength down to which the law of a self-affine surface goes on, m.
+    pub cut_off_wavelength: Option<f64>,
 }
 
 /// Shear strength that depends on the speed: A τ_f(v) = A τ_f0 exp(-c [log10(v/v_0)]²) of one mass in contact, constant

@@ -218,6 +218,12 @@ impl SelfAffine {
         (modes as usize).min(self.points / 2)
     }
 
+    /// The spectrum below the roll-off, m³.
+    pub(super) fn plateau(&self) -> f64 {
+        let powers: f64 = (1..=self.modes()).map(|m| self.power(m)).sum();
+        self.rms * self.rms / powers / (TAU / self.length)
+    }
+
     /// The power of mode m over that of a mode below the roll-off.
     fn power(&self, m: usize) -> f64 {
         let ratio = m as f64 * self.roll_off / self.length;

@@ -42,7 +42,8 @@ impl Run {
     /// The longest step, s, that resolves the instability of contacts whose friction falls with the speed that they
     /// have at the end of the step tried last.
     fn longest_weakening(&self) -> f64 {
-        longest_weakening(&self.model, self.workspace.integrator.end())
+        let integrator = &self.workspace.integrator;
+        longest_weakening(&self.model, integrator.end(), integrator.end_forces())
     }
 
     /// Tries a step of length `h`; `None` where it is rejected: the run's step size is then a better length.

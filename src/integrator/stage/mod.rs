@@ -184,7 +184,7 @@ impl StageSolver {
             laws: [StageLaw::default(); 4],
             contacts: Vec::with_capacity(k),
             slips: Vec::with_capacity(k),
-            rate: Vec::with_capacity(if model.rate_shear.is_some() { k } else { 0 }),
+            rate: Vec::with_capacity(if model.friction_depends_on_speed() { k } else { 0 }),
             rows: vec![RowShares::default(); k],
             columns: vec![NeighbourWeights::default(); k],
             system: BlockTridiagonal::new(k),
@@ -210,7 +210,7 @@ impl StageSolver {
         let state = &self.state;
         self.slips.clear();
         self.slips.extend(self.contacts.iter().filter(|&&i| state.mode[i].slips()));
-        if model.rate_shear.is_some() {
+        if model.friction_depends_on_speed() {
             self.rate.resize(self.slips.len(), RateFriction::default());
         }
         self.assemble_constant_rows(model, beta);
@@ -311,8 +311,11 @@ impl StageSolver {
                 self.factor_slips(model, point.beta);
             }
             self.system.solve();
-            let along_curve = |law| self.correct_along_friction_curve(model, law, point.beta);
-            let steep = model.rate_shear.as_ref().map_or(0.0, along_curve);
+            let steep = if model.friction_depends_on_speed() {
+                self.correct_along_friction_curve(model, point.beta)
+            } else {
+                0.0
+            };
             let change = self.correct().max(steep);
             self.set_positions(model, point);
             self.set_forces(point);
@@ -338,12 +341,12 @@ impl StageSolver {
         Err(NoConvergence)
     }
 
-    /// Factors the Jacobian at the velocities of the last residuals. Friction that depends on the speed changes it too much
-    /// for another stage.
+    /// Factors the Jacobian at the velocities of the last residuals. Friction that is not linear changes it too much for
+    /// another stage.
     fn factor_slips(&mut self, model: &Model, beta: f64) {
         self.assemble_slips(model, beta);
         self.system.factor();
-        if self.factors == Factors::Outdated && model.rate_shear.is_none() {
+        if self.factors == Factors::Outdated && model.friction_is_linear() {
             self.factors = Factors::Held;
         }
     }

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::{StageLaw, StageSolver};
-use crate::model::{Mode, Model, RateShear, State, SurfacePoint};
+use crate::model::{ContactForces, Forces, FrictionCurve, Mode, Model, State, SurfacePoint};
 
 impl StageSolver {
     /// Factors the Jacobian at the solution, for the tangents of the stage.
@@ -35,8 +35,8 @@ impl StageSolver {
             self.system.right[i] = Vector2::zeros();
         }
         self.slip_residuals(model, 1.0 / beta);
-        if let Some(law) = &model.rate_shear {
-            self.add_rate_shear(model, law, beta);
+        if model.friction_depends_on_speed() {
+            self.add_rate_shear(model, beta);
         }
     }
 
@@ -49,15 +49,16 @@ impl StageSolver {
         let (f_x, f_z) = (&self.forces.on_mass_x[..k], &self.forces.on_mass_z[..k]);
         for &i in &self.slips {
             let acceleration = (velocity[i] - star[i]) * per_beta;
-            let slip = SlippingMass::new(model, mode[i], &surface[i], velocity[i], acceleration);
-            right[i].x = -slip.residual(model, (f_x[i], f_z[i]));
+            let forces = (f_x[i], f_z[i]);
+            let slip = SlippingMass::new(model, mode[i], &surface[i], (velocity[i], acceleration), forces);
+            right[i].x = -slip.residual(model, forces);
         }
     }
 
     /// The equation of mass `i`, which slips, at the present velocities.
     fn slipping_mass(&self, model: &Model, i: usize, beta: f64) -> SlippingMass {
         let acceleration = (self.state.velocity_x[i] - self.history.velocity_x[i]) / beta;
-        SlippingMass::of(model, &self.state, i, acceleration)
+        SlippingMass::of(model, &self.state, &self.forces, i, acceleration)
     }
 
     /// Assembles the part of the Jacobian that is constant through a step: all but the rows and columns of slipping
@@ -116,7 +117,7 @@ impl StageSolver {
             self.rows[i] = RowShares { x_by_x: slip.share_x, x_by_z: slip.share_z, z_by_z: 0.0 };
             self.columns[i] = NeighbourWeights { x: lateral_x.weight, z_by_x: weight(&lateral_z), z: 0.0 };
         }
-        if model.rate_shear.is_some() {
+        if model.friction_depends_on_speed() {
             self.assemble_rate_shear(model, beta);
         }
         for slip in 0..self.slips.len() {
@@ -180,7 +181,11 @@ pub(in crate::integrator) struct SlippingMass {
     velocity: f64,
     acceleration: f64,
     sigma: f64,
-    /// σ (A τ_0 + A τ_f(v_c)).
+    /// F_N, N; 0 where no law needs it.
+    normal: f64,
+    /// σμ; with a real area σ ∂T/∂F_N.
+    sigma_mu: f64,
+    /// σ (A τ_0 + A τ_f(v_c)); with a real area what σ ∂T/∂F_N F_N leaves of it.
     sigma_shear: f64,
     /// 1 - σμs, the factor of f_x.
     share_x: f64,
@@ -191,12 +196,22 @@ pub(in crate::integrator) struct SlippingMass {
 }
 
 impl SlippingMass {
-    /// A mass that slips in `mode` over `surface`, with ẋ = `velocity` and ẍ = `acceleration`.
-    fn new(model: &Model, mode: Mode, surface: &SurfacePoint, velocity: f64, acceleration: f64) -> Self {
-        let s = surface.slope;
+    /// A mass that slips in `mode` over `surface` with ẋ and ẍ (`motion`), under the links' `forces` (f_x, f_z), N.
+    ///
+    /// A friction law that is not linear in F_N is taken along its tangent at F_N: the value and the derivatives there are
+    /// the law's.
+    fn new(model: &Model, mode: Mode, surface: &SurfacePoint, motion: (f64, f64), forces: (f64, f64)) -> Self {
+        let (s, (velocity, acceleration)) = (surface.slope, motion);
         let sigma = mode.direction();
-        let sigma_mu = sigma * model.friction_coefficient;
         let q2 = 1.0 + s * s;
+        let (normal, mu, shear) = if model.real_area.is_some() {
+            let contact = ContactForces::new(model, forces, velocity, surface);
+            let mu = contact.limit_by_normal(model, sigma * velocity * contact.q);
+            (contact.normal, mu, contact.limit - mu * contact.normal)
+        } else {
+            (0.0, model.friction_coefficient, model.shear_force)
+        };
+        let sigma_mu = sigma * mu;
         Self {
             s,
             kappa: surface.curvature,
@@ -204,7 +219,9 @@ impl SlippingMass {
             velocity,
             acceleration,
             sigma,
-            sigma_shear: sigma * model.shear_force,
+            normal,
+            sigma_mu,
+            sigma_shear: sigma * shear,
             share_x: 1.0 - sigma_mu * s,
             share_z: s + sigma_mu,
             q: q2.sqrt(),
@@ -212,9 +229,17 @@ impl SlippingMass {
         }
     }
 
-    /// Mass `i` of `state`, which slips, with ẍ = `acceleration`.
-    pub(in crate::integrator) fn of(model: &Model, state: &State, i: usize, acceleration: f64) -> Self {
-        Self::new(model, state.mode[i], &state.surface[i], state.velocity_x[i], acceleration)
+    /// Mass `i` of `state`, which slips, with ẍ = `acceleration` under the `forces` of the links.
+    pub(in crate::integrator) fn of(
+        model: &Model,
+        state: &State,
+        forces: &Forces,
+        i: usize,
+        acceleration: f64,
+    ) -> Self {
+        let motion = (state.velocity_x[i], acceleration);
+        let forces = (forces.on_mass_x[i], forces.on_mass_z[i]);
+        Self::new(model, state.mode[i], &state.surface[i], motion, forces)
     }
 
     /// m q² ẍ + m s κ ẋ² - f_x - s f_z + F_T q with F_T = σ (μ F_N + A τ_0), from (6)-(9), where A τ_0 stands for the
@@ -238,7 +263,7 @@ impl SlippingMass {
         model.mass * inertia
             + self.share_x * weight_x
             + share_z * weight_z
-            + ds * (self.sigma * model.friction_coefficient * f_x - f_z)
+            + ds * (self.sigma_mu * f_x - f_z)
             + self.sigma_shear * s * ds / self.q
     }
 
@@ -261,9 +286,9 @@ impl SlippingMass {
         let (ds, dkappa) = (kappa * x, self.third * x);
         let centripetal = dkappa * v * v * share_z + 2.0 * kappa * v * v_x * share_z + kappa * v * v * ds;
         let rate_shear = model
-            .rate_shear
-            .map_or(0.0, |law| self.rate_variation(law.with_slope(self.sigma * self.speed()), v_x, s * ds));
-        share_x * varied.0 + share_z * varied.1 + ds * (f_z - self.sigma * model.friction_coefficient * f_x)
+            .slip_curve(self.normal)
+            .map_or(0.0, |curve| self.rate_variation(curve.with_slope(self.sigma * self.speed()), v_x, s * ds));
+        share_x * varied.0 + share_z * varied.1 + ds * (f_z - self.sigma_mu * f_x)
             - model.mass * (centripetal + 2.0 * s * ds * self.acceleration)
             - self.sigma_shear * s * ds / self.q
             - rate_shear
@@ -335,11 +360,12 @@ pub(super) struct RateFriction {
 
 impl StageSolver {
     /// Subtracts σ q (A τ_f(v) - A τ_f(v_c)) at the present velocities from the right sides.
-    fn add_rate_shear(&mut self, model: &Model, law: &RateShear, beta: f64) {
+    fn add_rate_shear(&mut self, model: &Model, beta: f64) {
         for n in 0..self.slips.len() {
             let i = self.slips[n];
             let slip = self.slipping_mass(model, i, beta);
-            self.rate[n].excess = law.with_slope(slip.sigma * slip.speed());
+            let curve = model.slip_curve(slip.normal);
+            self.rate[n].excess = curve.map_or((0.0, 0.0), |curve| curve.with_slope(slip.sigma * slip.speed()));
             self.system.right[i].x -= slip.sigma * slip.q * self.rate[n].excess.0;
         }
     }
@@ -358,16 +384,17 @@ impl StageSolver {
     /// Replaces the corrections of slipping masses, which follow the tangent of the friction curve, by those along the
     /// curve itself. Returns the largest of them as the velocity, m/s, that the same force would change if friction did
     /// not depend on the speed: where the curve is steep, a small correction may still mean a large force.
-    pub(super) fn correct_along_friction_curve(&mut self, model: &Model, law: &RateShear, beta: f64) -> f64 {
+    pub(super) fn correct_along_friction_curve(&mut self, model: &Model, beta: f64) -> f64 {
         let mut largest: f64 = 0.0;
         for (n, rate) in self.rate.iter().enumerate() {
             let i = self.slips[n];
             let slip = self.slipping_mass(model, i, beta);
+            let Some(curve) = model.slip_curve(slip.normal) else { return largest };
             let right = &mut self.system.right[i].x;
             let per_velocity = slip.sigma * slip.q;
             let (speed, by) = (slip.sigma * slip.speed(), per_velocity * *right);
             let steepness = 1.0 + (slip.q2 * rate.excess.1 / rate.derivative_without).max(0.0);
-            let corrected = law.along_curve(speed, by, rate.derivative_without / slip.q2);
+            let corrected = curve.along_curve(speed, by, rate.derivative_without / slip.q2);
             *right = (corrected - speed) / per_velocity;
             largest = largest.max(steepness * right.abs());
         }

@@ -9,7 +9,7 @@ use std::path::Path as FilePath;
 use super::keys::Form;
 use super::{
     Extrapolation, Foundation, FoundationKind, Friction, Initial, Layer, Link, Material, MaxwellElement, OutputGroup,
-    Path, Phase, PronyTerm, RateShear, Scene, SceneError, Solver, Wlf, warnings,
+    Path, Phase, PronyTerm, RateShear, RealArea, Scene, SceneError, Solver, Surface, Wlf, warnings,
 };
 use surface::Found;
 use table::{Entry, Result, Source, TableReader};
@@ -52,7 +52,7 @@ fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
     let read_material = |entry: &Entry<'_>| entry.table(|table| read_material(table, &mut found));
     let material = material_entry.as_ref().map(read_material).transpose()?;
     let surface = surface::read(&root.required("surface")?, &mut found)?;
-    let friction = root.optional_table("friction", read_friction)?;
+    let friction = root.optional_table("friction", |table| read_friction(table, &surface))?;
     let solver = root.optional_table("solver", read_solver)?.unwrap_or_default();
     let extrapolation = root.optional_table("input", read_input)?.unwrap_or_default();
     let outputs = root.optional_table("fmu", read_fmu)?.unwrap_or_else(default_outputs);
@@ -190,13 +190,37 @@ fn read_wlf(table: &mut TableReader<'_>) -> Result<Wlf> {
     Ok(wlf)
 }
 
-fn read_friction(table: &mut TableReader<'_>) -> Result<Friction> {
+fn read_friction(table: &mut TableReader<'_>, surface: &Surface) -> Result<Friction> {
     Ok(Friction {
         coulomb: table.optional_number("coulomb")?,
         shear_force: table.optional_number("shear_force")?,
         shear_strength: table.optional_number("shear_strength")?,
         rate_shear: table.optional_table("rate_shear", read_rate_shear)?,
+        real_area: table.entry("real_area").map(|entry| read_real_area(&entry, surface)).transpose()?,
     })
+}
+
+fn read_real_area(entry: &Entry<'_>, surface: &Surface) -> Result<RealArea> {
+    let roughness = entry.table(|table| {
+        Ok(RealArea {
+            rms_slope: table.optional_number("rms_slope")?,
+            wavelength: table.optional_number("wavelength")?,
+            modulus: table.optional_number("modulus")?,
+            cut_off_wavelength: table.optional_number("cut_off_wavelength")?,
+        })
+    })?;
+    let RealArea { rms_slope, wavelength, modulus, cut_off_wavelength } = roughness;
+    match (rms_slope, wavelength, modulus, cut_off_wavelength) {
+        (Some(_), Some(_), None, None) | (Some(_), None, Some(_), None) => Ok(roughness),
+        (None, None, None, Some(cut_off)) => match surface.self_affine {
+            Some(law) if cut_off < law.cut_off => Ok(roughness),
+            Some(law) => {
+                Err(entry.refuse(format_args!("a cut_off_wavelength < {:?} m, the surface's own", law.cut_off)))
+            }
+            None => Err(entry.refuse("cut_off_wavelength with a self_affine surface alone, whose law it continues")),
+        },
+        _ => Err(entry.refuse("rms_slope and wavelength, or rms_slope and modulus, or cut_off_wavelength alone")),
+    }
 }
 
 fn read_rate_shear(table: &mut TableReader<'_>) -> Result<RateShear> {
