@@ -1,7 +1,7 @@
 //! The rules of mode changes, at the start and during a run: impact, lift, stop, stick, break. They are those of
 //! docs/model.md.
 
-use crate::model::{CarrierPoint, CarrierPosition, Forces, Mode, Model, State, SurfacePoint};
+use crate::model::{CarrierPoint, CarrierPosition, ChannelEnergies, Forces, Mode, Model, State, SurfacePoint};
 use crate::scene::Initial;
 
 /// Places every mass at its rest position, moving with the carrier. A mass that would lie under the profile is lifted
@@ -93,18 +93,17 @@ pub(super) fn collision(model: &Model, (v_x, v_z): (f64, f64), s: f64) -> (f64, 
     (after, 0.5 * model.mass * (v_n * v_n + v_t * v_t - after * after))
 }
 
-/// Stops slipping masses whose velocity has passed 0, so that the rule for *stop* decides on them. Returns the kinetic
-/// energy that this takes from them, J: friction did that much work on them past the stop.
-pub fn stop_reversed(model: &Model, state: &mut State) -> f64 {
-    let mut work = 0.0;
+/// Stops slipping masses whose velocity has passed 0, so that the rule for *stop* decides on them. Adds the kinetic
+/// energy that this takes from them to the `energies`: friction did that much work on them past the stop.
+pub fn stop_reversed(model: &Model, state: &mut State, forces: &Forces, energies: &mut ChannelEnergies) {
     for i in 0..if model.has_friction { model.masses() } else { 0 } {
         let velocity = (state.velocity_x[i], state.velocity_z[i]);
         if has_reversed(state.mode[i], velocity.0) {
-            work += energy_at(model, velocity);
+            let contact = forces.contact(model, i, velocity.0, &state.surface[i]);
+            energies.add_friction(energy_at(model, velocity), contact.shear_share(model));
             (state.velocity_x[i], state.velocity_z[i]) = (0.0, 0.0);
         }
     }
-    work
 }
 
 /// Whether a slip with ẋ = `v` goes against its direction.

@@ -114,6 +114,7 @@ impl<const STAGES: usize> StepPowers<'_, STAGES> {
         let mut energy = self.lost();
         for (weight, exchange) in self.weights.iter().zip(self.exchange) {
             energy.friction += self.h * weight * exchange.friction;
+            energy.shear += self.h * weight * exchange.shear;
             energy.input += self.h * weight * exchange.input;
         }
         energy

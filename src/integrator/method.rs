@@ -217,7 +217,7 @@ impl Stages {
         let earlier = self.rates.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
         let accelerations = earlier.map(|(stage, weight)| (step.beta * weight, &stage.acceleration_x[..]));
         solver.guess_slips(accelerations);
-        if step.model.rate_shear.is_some() {
+        if step.model.friction_depends_on_speed() {
             solver.limit_guess(&state.velocity_x, MOST_GUESSED);
         }
     }

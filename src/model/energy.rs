@@ -26,7 +26,7 @@ impl Powers {
         Self {
             damper: LinkKind::ALL.map(|kind| damper(model, forces, kind)).iter().sum(),
             maxwell: maxwell(model, state),
-            friction: friction(model, state, forces),
+            friction: friction(model, state, forces).0,
             input: input(forces, carrier),
         }
     }
@@ -46,6 +46,8 @@ pub struct ChannelEnergies {
     pub maxwell: f64,
     /// E_friction.
     pub friction: f64,
+    /// E_shear, the part of E_friction against the shear force.
+    pub shear: f64,
     /// E_in, of the carrier into the layer.
     pub input: f64,
 }
@@ -56,11 +58,18 @@ impl ChannelEnergies {
         self.damper + self.maxwell + self.friction
     }
 
+    /// Adds an `energy` lost in friction, J, of which the shear force has a share.
+    pub fn add_friction(&mut self, energy: f64, shear_share: f64) {
+        self.friction += energy;
+        self.shear += shear_share * energy;
+    }
+
     /// Adds `other`.
     pub fn add(&mut self, other: &Self) {
         self.damper += other.damper;
         self.maxwell += other.maxwell;
         self.friction += other.friction;
+        self.shear += other.shear;
         self.input += other.input;
     }
 }
@@ -70,6 +79,8 @@ impl ChannelEnergies {
 pub struct Exchange {
     /// P_friction = Σ F_T v_t, W.
     pub friction: f64,
+    /// P_shear = Σ (F_T - μ F_N) v_t, W: the part of the shear force.
+    pub shear: f64,
     /// P_in = -(F_x u̇ + F_z ẇ), W.
     pub input: f64,
 }
@@ -77,7 +88,8 @@ pub struct Exchange {
 impl Exchange {
     /// The powers in `state` with the forces there.
     pub fn evaluate(model: &Model, state: &State, carrier: &CarrierPoint, forces: &Forces) -> Self {
-        Self { friction: friction(model, state, forces), input: input(forces, carrier) }
+        let (friction, shear) = friction(model, state, forces);
+        Self { friction, shear, input: input(forces, carrier) }
     }
 }
 
@@ -97,21 +109,23 @@ fn maxwell(model: &Model, state: &State) -> f64 {
     model.rows.iter().map(row_power).sum()
 }
 
-fn friction(model: &Model, state: &State, forces: &Forces) -> f64 {
+/// P_friction and P_shear, W.
+fn friction(model: &Model, state: &State, forces: &Forces) -> (f64, f64) {
     if !model.has_friction {
-        return 0.0;
+        return (0.0, 0.0);
     }
-    let (mut at_rest, mut excess) = (0.0, 0.0);
+    let (mut at_rest, mut coulomb, mut excess) = (0.0, 0.0, 0.0);
     for i in (0..model.masses()).filter(|&i| state.mode[i].slips()) {
         let (sigma, v) = (state.mode[i].direction(), state.velocity_x[i]);
         let contact = forces.contact(model, i, v, &state.surface[i]);
         at_rest += sigma * contact.limit * v * contact.q;
+        coulomb += sigma * (model.friction_coefficient * contact.normal) * v * contact.q;
         if let Some(curve) = model.slip_curve(contact.normal) {
             let speed = sigma * v * contact.q;
             excess += curve.excess(speed) * speed;
         }
     }
-    at_rest + excess
+    (at_rest + excess, (at_rest - coulomb) + excess)
 }
 
 /// A carrier at rest does no work, whatever the forces.

@@ -48,6 +48,19 @@ impl ContactForces {
         model.friction_coefficient + SlipCurve { model, normal: self.normal }.by_normal(speed)
     }
 
+    /// The part of T(0) that is shear force, 1: what a sticking force is shared out by.
+    pub fn shear_share(&self, model: &Model) -> f64 {
+        let coulomb = model.friction_coefficient * self.normal.max(0.0);
+        if self.limit > coulomb { 1.0 - coulomb / self.limit } else { 0.0 }
+    }
+
+    /// The derivative of the [share](Self::shear_share) by F_N, 1/N, where that of T(0) is `limit_by_normal`.
+    pub fn shear_share_by_normal(&self, model: &Model, limit_by_normal: f64) -> f64 {
+        let mu = model.friction_coefficient;
+        let has_share = self.normal > 0.0 && self.limit > mu * self.normal;
+        if has_share { mu * (self.normal * limit_by_normal / self.limit - 1.0) / self.limit } else { 0.0 }
+    }
+
     /// F_T on a mass in `mode` at the velocity ẋ, N, positive against +t: f·t of a sticking mass, T(v_t) sign(v_t) of a
     /// slipping one.
     #[inline]

@@ -55,9 +55,9 @@ impl Energies {
     }
 
     /// All numbers, to check that they are finite.
-    pub fn numbers(&self) -> [f64; 6] {
-        let Self { channels: ChannelEnergies { damper, maxwell, friction, input }, impact, initial } = *self;
-        [damper, maxwell, friction, input, impact, initial]
+    pub fn numbers(&self) -> [f64; 7] {
+        let Self { channels: ChannelEnergies { damper, maxwell, friction, shear, input }, impact, initial } = *self;
+        [damper, maxwell, friction, shear, input, impact, initial]
     }
 }
 

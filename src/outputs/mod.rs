@@ -28,12 +28,20 @@ pub enum Output {
     MaxwellEnergy,
     /// Energy dissipated in friction, J.
     FrictionEnergy,
+    /// The part of it against Coulomb's friction, J.
+    CoulombEnergy,
+    /// The part of it against the shear force, J.
+    ShearEnergy,
     /// Energy dissipated in impacts, J.
     ImpactEnergy,
     /// Σ -F_N s/q, N.
     Hysteresis,
     /// Σ -F_T/q, N.
     Adhesion,
+    /// The part of it by Coulomb's friction, N.
+    CoulombForce,
+    /// The part of it by the shear force, N.
+    ShearForce,
     /// |F_x|/F_z, 0 where F_z ≤ 0.
     FrictionCoefficient,
     /// Number of masses in contact.
@@ -44,6 +52,8 @@ pub enum Output {
     ContactRatio,
     /// Area of the masses in contact, m².
     ContactArea,
+    /// Area that touches below the profile's resolution, m².
+    RealArea,
     /// Sum of the contact forces on the masses along x, N.
     ContactForceX,
     /// Sum of the contact forces on the masses along z, N.

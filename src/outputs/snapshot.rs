@@ -9,7 +9,7 @@ use std::cell::OnceCell;
 
 use super::{Counters, Energies, Monitored, Variable};
 use crate::model::{
-    CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, Powers, State, elastic_energy,
+    AreaShare, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, Powers, State, elastic_energy,
     kinetic_energy,
 };
 
@@ -47,12 +47,16 @@ pub(super) struct Evaluation<'a> {
     elastic_energy: OnceCell<f64>,
 }
 
-/// Sums over the masses in contact, N.
+/// Sums over the masses in contact, forces in N.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ContactSums {
     pub(super) hysteresis: f64,
     pub(super) adhesion: f64,
+    /// The part of the adhesion that is shear force.
+    pub(super) shear: f64,
     pub(super) force_z: f64,
+    /// Area that touches, m².
+    pub(super) real_area: f64,
 }
 
 impl<'a> Evaluation<'a> {
@@ -152,6 +156,8 @@ impl Snapshot<'_> {
             let friction = self.friction(i, &contact);
             sums.hysteresis -= contact.normal * s / contact.q;
             sums.adhesion -= friction / contact.q;
+            sums.shear -= self.shear(i, &contact, friction) / contact.q;
+            sums.real_area += self.area_share(i, &contact).value * self.model.element_area;
             sums.force_z += (contact.normal - friction * s) / contact.q;
         }
         sums
@@ -166,6 +172,24 @@ impl Snapshot<'_> {
     fn friction(&self, i: usize, contact: &ContactForces) -> f64 {
         let (mode, v) = (self.state.mode[i], self.state.velocity_x[i]);
         if self.model.has_friction { contact.friction(self.model, mode, v) } else { 0.0 }
+    }
+
+    /// The part of the `friction` on mass `i` (N) that is shear force, N: of a sticking mass, as the two limits share it.
+    fn shear(&self, i: usize, contact: &ContactForces, friction: f64) -> f64 {
+        match self.state.mode[i] {
+            Mode::Stick => contact.shear_share(self.model) * friction,
+            _ if self.model.has_friction => {
+                friction - self.state.mode[i].direction() * self.model.friction_coefficient * contact.normal
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// The share of the area of mass `i`, in contact, that touches: all of it without a law.
+    fn area_share(&self, i: usize, contact: &ContactForces) -> AreaShare {
+        let whole = AreaShare { value: 1.0, ..AreaShare::default() };
+        let speed = self.state.velocity_x[i] * contact.q;
+        self.model.real_area.as_ref().map_or(whole, |area| area.share(contact.normal, speed))
     }
 
     /// The mode of mass `i`; without friction a contact slips in the direction of its velocity.
@@ -202,6 +226,10 @@ impl CarrierShift {
 pub(super) struct ContactChange {
     pub(super) normal: f64,
     pub(super) friction: f64,
+    /// Of the part of the friction that is shear force.
+    shear: f64,
+    /// Of the area that touches, m².
+    real_area: f64,
     slope: f64,
     q: f64,
 }
@@ -213,6 +241,18 @@ impl ContactChange {
 
     pub(super) fn adhesion(self) -> f64 {
         -self.friction / self.q
+    }
+
+    pub(super) fn shear(self) -> f64 {
+        -self.shear / self.q
+    }
+
+    pub(super) fn coulomb(self) -> f64 {
+        -(self.friction - self.shear) / self.q
+    }
+
+    pub(super) fn real_area(self) -> f64 {
+        self.real_area
     }
 
     pub(super) fn force_x(self) -> f64 {
@@ -252,21 +292,19 @@ impl Snapshot<'_> {
         let q = (1.0 + slope * slope).sqrt();
         let (f_x, f_z) = shift.on_mass;
         let normal = (slope * f_x - f_z) / q;
-        let friction = match mode {
-            Mode::Stick => (f_x + slope * f_z) / q,
-            _ => mode.direction() * self.friction_by_normal(i) * normal,
+        let contact = self.forces.contact(self.model, i, self.state.velocity_x[i], &self.state.surface[i]);
+        let by_normal = contact.limit_by_normal(self.model, self.state.velocity_x[i].abs() * q);
+        let mu = self.model.friction_coefficient;
+        let (friction, shear) = match mode {
+            Mode::Stick => {
+                let friction = (f_x + slope * f_z) / q;
+                let of_share = contact.tangential * contact.shear_share_by_normal(self.model, by_normal) * normal;
+                (friction, contact.shear_share(self.model) * friction + of_share)
+            }
+            _ => (mode.direction() * by_normal * normal, mode.direction() * (by_normal - mu) * normal),
         };
-        ContactChange { normal, friction, slope, q }
-    }
-
-    /// ∂T/∂F_N of slipping mass `i`, 1.
-    fn friction_by_normal(&self, i: usize) -> f64 {
-        if self.model.real_area.is_none() {
-            return self.model.friction_coefficient;
-        }
-        let (v, surface) = (self.state.velocity_x[i], &self.state.surface[i]);
-        let contact = self.forces.contact(self.model, i, v, surface);
-        contact.limit_by_normal(self.model, v.abs() * contact.q)
+        let real_area = self.area_share(i, &contact).by_normal * normal * self.model.element_area;
+        ContactChange { normal, friction, shear, real_area, slope, q }
     }
 
     pub(super) fn contact_sum(&self, shift: &CarrierShift, part: impl Fn(ContactChange) -> f64) -> f64 {

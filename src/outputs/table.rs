@@ -169,7 +169,7 @@ const fn mass(
 
 /// All outputs, in the order of the result files within their groups.
 #[rustfmt::skip]
-pub(super) static TABLE: [OutputRow; 36] = {
+pub(super) static TABLE: [OutputRow; 41] = {
     use Kind::{Integer, Real};
     use OutputGroup::{Contact, Dissipation, Energy, Forces, Friction, Solver, Tangent};
     use Unit::{Joule, Meter, Newton, NewtonPerMeter, One, Second, SquareMeter, Watt};
@@ -194,6 +194,12 @@ pub(super) static TABLE: [OutputRow; 36] = {
         layer(Output::FrictionEnergy, Dissipation, "dissipation.E_friction", Real, Joule, "Energy dissipated in friction",
             |now| now.at.energies.channels.friction)
             .only_where(|scene| scene.friction.is_some()),
+        layer(Output::CoulombEnergy, Dissipation, "dissipation.E_coulomb", Real, Joule, "Energy dissipated in friction: the part of Coulomb's law",
+            |now| now.at.energies.channels.friction - now.at.energies.channels.shear)
+            .only_where(has_both_frictions),
+        layer(Output::ShearEnergy, Dissipation, "dissipation.E_shear", Real, Joule, "Energy dissipated in friction: the part of the shear strength",
+            |now| now.at.energies.channels.shear)
+            .only_where(has_both_frictions),
         layer(Output::ImpactEnergy, Dissipation, "dissipation.E_impact", Real, Joule, "Energy dissipated in impacts",
             |now| now.at.energies.impact),
         layer(Output::Hysteresis, Friction, "friction.F_hysteresis", Real, Newton, "Tangential force by hysteresis: the tangential part of the normal contact forces on the slopes",
@@ -202,6 +208,14 @@ pub(super) static TABLE: [OutputRow; 36] = {
         layer(Output::Adhesion, Friction, "friction.F_adhesion", Real, Newton, "Tangential force by adhesion: the tangential part of the friction forces in the contacts",
             |now| now.contact_sums().adhesion)
             .depending(elastic_friction, |now, shift| now.at.contact_sum(shift, ContactChange::adhesion)),
+        layer(Output::CoulombForce, Friction, "friction.F_coulomb", Real, Newton, "Tangential force by adhesion: the part of Coulomb's law",
+            |now| now.contact_sums().adhesion - now.contact_sums().shear)
+            .depending(elastic, |now, shift| now.at.contact_sum(shift, ContactChange::coulomb))
+            .only_where(has_both_frictions),
+        layer(Output::ShearForce, Friction, "friction.F_shear", Real, Newton, "Tangential force by adhesion: the part of the shear strength",
+            |now| now.contact_sums().shear)
+            .depending(elastic, |now, shift| now.at.contact_sum(shift, ContactChange::shear))
+            .only_where(has_both_frictions),
         layer(Output::FrictionCoefficient, Friction, "friction.coefficient", Real, One, "|F_x|/F_z, 0 where F_z <= 0",
             |now| now.at.friction_coefficient())
             .depending(elastic, |now, shift| now.at.friction_coefficient_change(shift)),
@@ -214,6 +228,10 @@ pub(super) static TABLE: [OutputRow; 36] = {
         layer(Output::ContactArea, Contact, "contact.area", Real, SquareMeter, "Area of the masses in contact",
             |now| now.at.count(Mode::in_contact) * now.at.model.element_area)
             .only_where(|scene| scene.layer.element_area().is_some()),
+        layer(Output::RealArea, Contact, "contact.area_real", Real, SquareMeter, "Area that touches, with the roughness below the profile's",
+            |now| now.contact_sums().real_area)
+            .depending(elastic, |now, shift| now.at.contact_sum(shift, ContactChange::real_area))
+            .only_where(|scene| scene.fine_roughness().is_some()),
         layer(Output::ContactForceX, Contact, "contact.F_x", Real, Newton, "Sum of the contact forces on the masses along x",
             |now| now.contact_sums().hysteresis + now.contact_sums().adhesion)
             .depending(elastic, |now, shift| now.at.contact_sum(shift, ContactChange::force_x)),
@@ -286,6 +304,12 @@ fn has_maxwell_elements(scene: &Scene) -> bool {
 /// `solver.reduce` may replace a Maxwell element by a damper.
 fn has_dampers(scene: &Scene) -> bool {
     any_link(scene, |link| link.damping.is_some()) || (scene.solver.reduce > 0.0 && has_maxwell_elements(scene))
+}
+
+/// Coulomb's friction and a shear strength, whose parts are told apart.
+fn has_both_frictions(scene: &Scene) -> bool {
+    let has_shear = scene.shear_force().is_some() || scene.rate_shear().is_some();
+    has_shear && scene.friction.as_ref().is_some_and(|friction| friction.coulomb.is_some())
 }
 
 fn none(_: &Scene) -> Dependencies {

@@ -1,6 +1,6 @@
 //! `asperity describe`: summarises a scene.
 
-use asperity::model::{Model, Reduction, Replaced, Replacement};
+use asperity::model::{Model, RealArea, Reduction, Replaced, Replacement};
 use asperity::outputs::variables;
 use asperity::scene::{
     Extrapolation, Friction, Initial, Layer, Link, LinkKind, Material, OutputGroup, Parameter, Path, Phase, RateShear,
@@ -220,7 +220,34 @@ fn friction(scene: &Scene) -> Vec<LabelledLine> {
         None => format!("shear_force  {}", or_left_out(friction.shear_force, " N a mass in contact")),
     };
     let rate_shear = scene.rate_shear().map_or_else(|| LEFT_OUT.into(), |law| rate_shear_text(&law));
-    labelled("Friction", [coulomb, shear, format!("rate_shear   {rate_shear}")])
+    let real_area = real_area_texts(scene);
+    labelled("Friction", [coulomb, shear, format!("rate_shear   {rate_shear}")].into_iter().chain(real_area))
+}
+
+/// The roughness below the profile's, the part of a contact that touches on it, and the hysteresis that it adds.
+fn real_area_texts(scene: &Scene) -> Vec<String> {
+    let (Some(roughness), Some(law), Some(material)) = (scene.fine_roughness(), RealArea::new(scene), &scene.material)
+    else {
+        return Vec::new();
+    };
+    let rest = roughness.stress(material, 0.0) / roughness.gradient();
+    let mut texts = vec![format!(
+        "real_area    gradient {:.4} below the profile's waves, M_c {rest:.4e} Pa at rest",
+        roughness.gradient()
+    )];
+    let pressures = scene.excitation.iter().filter_map(|phase| phase.until_pressure);
+    let pressure = pressures.fold(0.0, f64::max);
+    if pressure > 0.0 {
+        let area = scene.layer.element_area().unwrap_or(0.0);
+        let share = |ratio: f64| law.at_rest(pressure / ratio * area).value;
+        texts.push(format!(
+            "             A_r/A {:.4} at rest under {} Pa where all masses touch, {:.4} where a tenth does",
+            share(1.0),
+            number(pressure),
+            share(0.1)
+        ));
+    }
+    texts
 }
 
 /// The law of the contacts, for a material at its temperature.

@@ -306,7 +306,7 @@ impl Run {
         let (layer, forces) = (&mut run.layer.state, &mut workspace.forces);
         workspace.modes_before.copy_from_slice(&layer.mode);
         run.energies.impact += impacts_due(model, layer, at, reach);
-        run.energies.channels.friction += stop_reversed(model, layer);
+        stop_reversed(model, layer, forces, &mut run.energies.channels);
         forces.evaluate(model, layer, &carrier);
         decide_modes(model, layer, forces);
         workspace.integrator.evaluate_start(model, &mut run.layer, &carrier, forces, run.step_size);

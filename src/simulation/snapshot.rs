@@ -144,7 +144,7 @@ impl Run {
 mod tests {
     use std::collections::BTreeSet;
 
-    use super::super::tests::{WAVE, scene, scene_with_rate_shear};
+    use super::super::tests::{WAVE, scene, scene_with_rate_shear, scene_with_real_area};
     use super::*;
     use crate::model::Mode;
     use crate::outputs::{Output, dependencies, variables};
@@ -193,7 +193,9 @@ mod tests {
     /// Central: exact for all but the friction coefficient, being squares at most. That one has a kink at F_x = 0.
     #[test]
     fn directional_derivatives_are_those_of_a_difference_quotient() {
-        [scene(), scene_with_rate_shear()].iter().for_each(directional_derivatives_are_quotients);
+        [scene(), scene_with_rate_shear(), scene_with_real_area()]
+            .iter()
+            .for_each(directional_derivatives_are_quotients);
     }
 
     fn directional_derivatives_are_quotients(scene: &Scene) {

@@ -180,7 +180,7 @@ fn check_numbers(run: &RunState) -> Result<(), RestoreError> {
     check_finite("the largest error or force", &counters.numbers())?;
     check_finite("the tangents", tangents)?;
     check_finite("the carrier's displacement at the start", start)?;
-    check_finite("the powers", &[exchange.friction, exchange.input])?;
+    check_finite("the powers", &[exchange.friction, exchange.shear, exchange.input])?;
     check_finite("the largest forces and energies", &[largest.force_x, largest.force_z, largest.energy])?;
     let scalars = [
         ("the time since the carrier's last kink", *s),
@@ -234,7 +234,7 @@ fn check_modes(modes: &[Mode], has_friction: bool) -> Result<(), RestoreError> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{WAVE, scene, scene_with_rate_shear, variables_of};
+    use super::super::tests::{WAVE, scene, scene_with_rate_shear, scene_with_real_area, variables_of};
     use super::*;
     use crate::scene::Path;
     use crate::scene::Scene;
@@ -253,7 +253,7 @@ mod tests {
 
     #[test]
     fn a_saved_run_goes_on_bit_for_bit() {
-        for scene in [scene(), scene_with_rate_shear()] {
+        for scene in [scene(), scene_with_rate_shear(), scene_with_real_area()] {
             let mut first = run(&scene);
             let bytes = postcard::to_stdvec(&first.state()).unwrap();
             let mut second = Simulation::restore(&scene, &postcard::from_bytes(&bytes).unwrap()).unwrap();

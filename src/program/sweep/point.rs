@@ -113,6 +113,19 @@ impl PointResult {
         Self { status, sliding: None, tangential_stiffness: None }
     }
 
+    /// The result with the tangential stiffness found, N/m. A force that falls as motion starts is none: the masses at rest
+    /// do not hold what the load asks of them, and an element could not use the point.
+    fn with_stiffness(self, found: Option<f64>) -> Self {
+        match found {
+            Some(falling) if falling <= 0.0 && self.status == STEADY => {
+                let status =
+                    format!("tangential stiffness: {falling:.4e} N/m, expected a number above 0: refine the layer");
+                Self { status, ..self }
+            }
+            tangential_stiffness => Self { tangential_stiffness, ..self },
+        }
+    }
+
     pub(super) fn row(&self, point: OperatingPoint, header: &TableHeader) -> TableRow {
         let mut row = TableRow::new(point, self.status.clone());
         row.set(Quantity::Stiffness, self.tangential_stiffness);
@@ -179,7 +192,7 @@ pub(super) fn find(scene: &Scene, speed: f64, load: f64, bounds: Bounds) -> Poin
     let stiffness = model.links[LinkKind::Vertical as usize].stiffness;
     let frequency = if stiffness > 0.0 { (stiffness / model.mass).sqrt() } else { model.stiffest_frequency() };
     match tangential_stiffness(scene, blocks, load, frequency) {
-        Ok(tangential_stiffness) => PointResult { tangential_stiffness, ..result },
+        Ok(found) => result.with_stiffness(found),
         Err(error) if result.status == STEADY => {
             PointResult { status: format!("tangential stiffness: {error}"), ..result }
         }
@@ -334,6 +347,15 @@ impl Friction {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_force_that_falls_as_motion_starts_is_no_stiffness() {
+        let steady = || PointResult { status: STEADY.into(), sliding: None, tangential_stiffness: None };
+        assert_eq!(steady().with_stiffness(Some(2e4)).tangential_stiffness, Some(2e4));
+        let marked = steady().with_stiffness(Some(-2.8e4));
+        assert_eq!(marked.tangential_stiffness, None);
+        assert!(marked.status.starts_with("tangential stiffness: -2.8000e4 N/m"), "{}", marked.status);
+    }
 
     /// The parts add up, and one that is absent stays absent.
     #[test]

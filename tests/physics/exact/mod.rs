@@ -13,6 +13,7 @@ mod material;
 mod mode_changes;
 mod modulus;
 mod rate_shear;
+mod real_area;
 mod run;
 mod start;
 mod symmetry;

@@ -1,0 +1,138 @@
+//! The real area of contact: A_r = A erf(√π F_N/(A M_c h'_s)) in T = μ F_N + A_r (τ_0 + τ_f(v)).
+
+use asperity::simulation::Start;
+
+use crate::exact::run::{REST, Run, assert_near, rate};
+
+const MASSES: f64 = 4.0;
+/// m²
+const AREA: f64 = 1e-4 * 1e-2;
+const COULOMB: f64 = 0.2;
+/// τ_0, Pa.
+const SHEAR: f64 = 3e5;
+/// τ_f0 (Pa), v_0 (m/s), sharpness, v_c (m/s).
+const RATE: (f64, f64, f64, f64) = (6e5, 1e-3, 0.1, 1e-6);
+const SLOPE: f64 = 0.6;
+const WAVELENGTH: f64 = 2e-5;
+/// E_∞ (Pa), and one term (Pa, s).
+const RUBBER: (f64, f64, f64) = (3e6, 2e7, 1e-4);
+
+fn scene(friction: &str, temperature: &str, method: &str) -> String {
+    let (rest, modulus, time) = RUBBER;
+    format!(
+        "[layer]\nmasses = 4\nspacing = 1e-4\nfoundation = \"half_space\"\nwidth = 1e-2\n[surface]\nkind = \"flat\"\n\
+         [material]\ndensity = 1100\npoisson_ratio = 0.5\nequilibrium_modulus = {rest:?}\n\
+         prony = [{{ modulus = {modulus:?}, relaxation_time = {time:?} }}]\n{temperature}\n\
+         [friction]\n{friction}\n[solver]\nmethod = \"{method}\"\nrelative_tolerance = 1e-7\n"
+    )
+}
+
+fn law(real_area: &str) -> String {
+    let (strength, reference, sharpness, creep) = RATE;
+    format!(
+        "coulomb = {COULOMB:?}\nshear_strength = {SHEAR:?}\nrate_shear = {{ strength = {strength:?}, reference_speed = \
+         {reference:?}, sharpness = {sharpness:?}, creep_speed = {creep:?} }}\n{real_area}"
+    )
+}
+
+fn band() -> String {
+    format!("real_area = {{ rms_slope = {SLOPE:?}, wavelength = {WAVELENGTH:?} }}")
+}
+
+/// τ_0 + τ_f(v), Pa.
+fn strength(speed: f64) -> f64 {
+    let (strength, reference, sharpness, creep) = RATE;
+    SHEAR + strength * (-sharpness * (speed.max(creep) / reference).log10().powi(2)).exp()
+}
+
+/// A_r/A of a mass under `normal`, N.
+fn share(normal: f64, speed: f64) -> f64 {
+    let (rest, modulus, time) = RUBBER;
+    let x = std::f64::consts::TAU / WAVELENGTH * speed.max(RATE.3) * time;
+    let (storage, loss) = (rest + modulus * x * x / (1.0 + x * x), modulus * x / (1.0 + x * x));
+    let stress = storage.hypot(loss) / 0.75 * SLOPE;
+    libm::erf(std::f64::consts::PI.sqrt() * normal / (AREA * stress))
+}
+
+/// The layer pressed into the flat and drawn along it until all is steady.
+fn slid(friction: &str, temperature: &str, method: &str, depth: f64, speed: f64) -> Run {
+    let mut run =
+        Run::new(&scene(friction, temperature, method), Start { w: -depth, u_rate: speed, ..Start::default() });
+    // Ten times the relaxation time, and several times the way on which the links come to the friction.
+    run.drive(2e-3_f64.max(1e-3 / speed), rate(speed), REST);
+    run
+}
+
+#[test]
+fn steady_slip_has_the_shear_of_the_area_that_touches() {
+    for method in ["event", "step"] {
+        for depth in [1e-6, 3e-5] {
+            for speed in [1e-5, 1e-3, 0.1, 10.0] {
+                let mut run = slid(&law(&band()), "", method, depth, speed);
+                let normal = run.get("F_z") / MASSES;
+                let shear = AREA * share(normal, speed) * strength(speed);
+                let drag = MASSES * (COULOMB * normal + shear);
+                // The table of moduli is right to 2e-4.
+                assert_near("F_x", run.get("F_x"), -drag, 2e-4 * drag);
+                assert_near("F_shear", run.get("friction.F_shear"), -MASSES * shear, 2e-4 * drag);
+                assert_near("F_coulomb", run.get("friction.F_coulomb"), -MASSES * COULOMB * normal, 1e-6 * drag);
+                assert_near(
+                    "area",
+                    run.get("contact.area_real"),
+                    MASSES * AREA * share(normal, speed),
+                    2e-4 * AREA * MASSES,
+                );
+                let before = ["dissipation.E_shear", "dissipation.E_friction"].map(|name| run.get(name));
+                run.drive(1e-3 / speed, rate(speed), REST);
+                let after = ["dissipation.E_shear", "dissipation.E_friction"].map(|name| run.get(name));
+                let part = (after[0] - before[0]) / (after[1] - before[1]);
+                assert_near("share of E_shear", part, MASSES * shear / drag, 4e-4);
+                let split = run.get("dissipation.E_coulomb") + run.get("dissipation.E_shear");
+                assert_near("E_friction", split, run.get("dissipation.E_friction"), 1e-12 * split);
+            }
+        }
+    }
+}
+
+/// A layer drawn so slowly that it sticks: it breaks at T(F_N, v_c), and not before.
+#[test]
+fn a_stuck_layer_breaks_at_the_limit_of_the_creep_speed() {
+    let text = scene(&law(&band()), "", "event");
+    let mut run = Run::new(&text, Start { w: -1e-5, ..Start::default() });
+    let normal = run.get("F_z") / MASSES;
+    let limit = COULOMB * normal + AREA * share(normal, 0.0) * strength(0.0);
+    let mut largest: f64 = 0.0;
+    while run.events().is_empty() {
+        largest = run.get("F_x").abs() / MASSES;
+        assert!(largest <= limit * (1.0 + 1e-3));
+        // 0.1 µm at a time.
+        run.drive(1e-2, rate(1e-5), REST);
+    }
+    // Within the way of one motion; the table is right to 2e-4.
+    assert!(largest > 0.97 * limit, "{largest} {limit}");
+}
+
+#[test]
+fn without_slopes_below_the_profile_it_is_the_law_of_the_whole_area() {
+    for speed in [1e-4, 0.1] {
+        let [whole, flat] = ["", "real_area = { rms_slope = 1e-9, wavelength = 1e-5 }"]
+            .map(|real_area| slid(&law(real_area), "", "event", 1e-5, speed).get("F_x"));
+        assert_near("F_x", flat, whole, 1e-9 * whole.abs());
+    }
+}
+
+/// μ(v, T) = μ(a_T v, T_ref).
+#[test]
+fn temperature_shifts_the_speeds() {
+    let wlf = |temperature: f64| {
+        format!("wlf = {{ c1 = 8.0, c2 = 120.0, reference_temperature = 293.15, temperature = {temperature:?} }}")
+    };
+    let shift = 10.0_f64.powf(-8.0 * 10.0 / 130.0);
+    for speed in [1e-3, 0.3] {
+        let mut warm = slid(&law(&band()), &wlf(303.15), "event", 1e-5, speed);
+        let mut cold = slid(&law(&band()), &wlf(293.15), "event", 1e-5, shift * speed);
+        let friction = cold.get("friction.coefficient");
+        // Both tables have their entries elsewhere.
+        assert_near("μ", warm.get("friction.coefficient"), friction, 3e-4 * friction);
+    }
+}
