@@ -20,4 +20,4 @@ pub use law::{LeftOut, left_out};
 pub use point_contact::{PointContact, dependencies, variables};
 pub use run::{Element, ElementError, ElementState, RestoreError};
 pub use table::{Node, Table};
-pub use table_format::{FORMAT, Quantity, STEADY, TableError, TableHeader, TableRow, TableText};
+pub use table_format::{Basis, CONVERGED, FORMAT, Quantity, STEADY, TableError, TableHeader, TableRow, TableText};

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use super::grid::{Load, OperatingPoint, SweepGrid};
-use super::table_format::{Quantity, STEADY, TableError, TableRow, TableText};
+use super::table_format::{Basis, Quantity, STEADY, TableError, TableRow, TableText};
 
 /// A table, checked: every point of the grid has a row and was steady.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,6 +15,8 @@ pub struct Table {
     pub load: Load,
     /// Separation at w = 0, m.
     pub rest_separation: f64,
+    /// What the numbers rest on.
+    pub basis: Basis,
     /// The points, at least two loads.
     pub grid: SweepGrid,
     /// By quantity, where the table has it, and point.
@@ -91,7 +93,7 @@ impl Table {
         for quantity in Quantity::ALL {
             values[quantity as usize] = text.values(load, quantity, &order)?;
         }
-        let table = Self { scene: text.scene(), load, rest_separation, grid, values };
+        let table = Self { scene: text.scene(), load, rest_separation, basis: text.basis(), grid, values };
         table.check_separations().map_err(|problem| text.error(problem))?;
         Ok(table)
     }

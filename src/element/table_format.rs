@@ -142,9 +142,39 @@ pub struct TableHeader {
     pub load: Load,
     /// Separation at w = 0, m.
     pub rest_separation: f64,
+    /// What the numbers rest on.
+    pub basis: Basis,
     /// The points that the table is to have.
     pub grid: SweepGrid,
 }
+
+/// What the numbers of a table rest on, in words; a line of the header each, where there is something to say.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Basis {
+    /// What the links stand for.
+    pub foundation: Option<String>,
+    /// The roughness below the profile's.
+    pub real_area: Option<String>,
+    /// What a study of convergence found; `None` without one.
+    pub convergence: Option<String>,
+}
+
+/// What [`Basis::convergence`] begins with where all is within the error of the study.
+pub const CONVERGED: &str = "converged";
+
+impl Basis {
+    fn lines(&self) -> impl Iterator<Item = String> {
+        let named = BASIS_KEYS.into_iter().zip([&self.foundation, &self.real_area, &self.convergence]);
+        named.filter_map(|(key, text)| Some(format!("# {key} = {}", one_line(text.as_ref()?))))
+    }
+
+    /// Whether a study found friction and area converged.
+    pub fn is_converged(&self) -> bool {
+        self.convergence.as_ref().is_some_and(|text| text.starts_with(CONVERGED))
+    }
+}
+
+const BASIS_KEYS: [&str; 3] = ["foundation", "real_area", "convergence"];
 
 impl TableHeader {
     /// The lines of the header, the names of the columns included.
@@ -159,6 +189,7 @@ impl TableHeader {
             lines.push(format!("# nominal_area = {} m2", number(area)));
         }
         lines.push(format!("# rest_separation = {} m", number(self.rest_separation)));
+        lines.extend(self.basis.lines());
         lines.push(format!("# speeds = {} m/s", list(&grid.speeds)));
         lines.push(format!("# {}s = {} {}", self.load.name(), list(&grid.loads), self.load.unit()));
         if !grid.temperatures.is_empty() {
@@ -323,6 +354,12 @@ impl TableText {
         self.header_value("rest_separation", "a length in m", |text| quantity(text, "m"))
     }
 
+    /// What the numbers rest on, as far as the table says.
+    pub(super) fn basis(&self) -> Basis {
+        let [foundation, real_area, convergence] = BASIS_KEYS.map(|key| self.header.get(key).cloned());
+        Basis { foundation, real_area, convergence }
+    }
+
     /// The header of a table as a sweep writes it.
     ///
     /// # Errors
@@ -339,6 +376,7 @@ impl TableText {
             fingerprint: self.header_value("fingerprint", "such a line", |text| Some(text.to_owned()))?,
             load,
             rest_separation: self.rest_separation()?,
+            basis: self.basis(),
             grid: SweepGrid {
                 speeds: self.header_numbers("speeds", "m/s")?,
                 loads: self.header_numbers(&format!("{}s", load.name()), load.unit())?,
@@ -476,7 +514,8 @@ mod tests {
         for (load, temperatures) in [(Load::Force, vec![]), (Load::Pressure { area: 2e-5 }, vec![273.15, 293.15])] {
             let grid = SweepGrid { speeds: vec![1e-5, 0.1 + 0.2], loads: vec![2e5, 1e30], temperatures };
             let (scene, fingerprint) = ("a = b, c".to_owned(), "00ff".to_owned());
-            let header = TableHeader { scene, fingerprint, load, rest_separation: -1.5e-5, grid };
+            let basis = Basis { foundation: Some("half_space".into()), ..Basis::default() };
+            let header = TableHeader { scene, fingerprint, load, rest_separation: -1.5e-5, basis, grid };
             let row = |(i, point): (usize, OperatingPoint)| {
                 let mut row = TableRow::new(point, if i == 0 { STEADY } else { "not steady, \"by far\"" }.into());
                 let values = Quantity::ALL.iter().zip(1..).filter(|(_, number)| number % 3 != 0);

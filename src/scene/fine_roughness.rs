@@ -29,6 +29,21 @@ impl Scene {
     }
 }
 
+impl RealArea {
+    /// What it is, in a few words.
+    pub fn describe(&self) -> String {
+        let Self { rms_slope, wavelength, modulus, cut_off_wavelength } = self;
+        let part = |name: &str, value: &Option<f64>, unit: &str| value.map(|value| format!("{name} {value:?}{unit}"));
+        let parts = [
+            part("rms_slope", rms_slope, ""),
+            part("wavelength", wavelength, " m"),
+            part("modulus", modulus, " Pa"),
+            part("cut_off_wavelength", cut_off_wavelength, " m"),
+        ];
+        parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+    }
+}
+
 impl FineRoughness {
     /// h'_s, 1: the root mean square gradient.
     pub fn gradient(&self) -> f64 {

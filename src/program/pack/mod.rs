@@ -9,13 +9,13 @@ mod picture;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
-use asperity::element::{PointContact, Table, TableError};
+use asperity::element::{Basis, PointContact, Table, TableError};
 use asperity::fmi::{Catalogue, Definition, Sources, guid};
 
 use super::cli::Pack;
 use super::describe;
 use super::files::{self, FileError, check_output, print, read, write};
-use super::terminal::{LabelledLine, lines};
+use super::terminal::{LabelledLine, lines, warn};
 use archive::{ArchiveError, Entry};
 use check::CheckError;
 
@@ -52,11 +52,23 @@ pub(crate) fn pack(command: &Pack) -> Result<(), PackError> {
 /// What is packed, and the file that it is read from.
 fn load(command: &Pack) -> Result<(Definition, PathBuf), PackError> {
     match (&command.table, &command.scene) {
-        (Some(table), _) => Ok((PointContact::new(Table::load(table)?).into(), table.clone())),
+        (Some(path), _) => {
+            let table = Table::load(path)?;
+            warn_of(&table.basis);
+            Ok((PointContact::new(table).into(), path.clone()))
+        }
         (None, scene) => {
             let path = scene.clone().unwrap_or_default();
             Ok((files::load(&path)?.into(), path))
         }
+    }
+}
+
+/// A table of links that stand for a material says whether its numbers still depend on the spacing.
+fn warn_of(basis: &Basis) {
+    if let Some(foundation) = basis.foundation.as_ref().filter(|_| !basis.is_converged()) {
+        let found = basis.convergence.as_deref().unwrap_or("no study of it: see asperity converge");
+        warn(&format!("the table (foundation {foundation}) is not known to be converged: {found}"));
     }
 }
 

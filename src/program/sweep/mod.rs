@@ -10,7 +10,7 @@ pub(super) mod values;
 
 use std::path::{Path, PathBuf};
 
-use asperity::element::{Load, OperatingPoint, SweepGrid, TableHeader};
+use asperity::element::{Basis, Load, OperatingPoint, SweepGrid, TableHeader};
 use asperity::model::Model;
 use asperity::scene::{Initial, OutputGroup, ParameterError, Path as Displacement, Phase, Scene};
 use rayon::prelude::*;
@@ -78,6 +78,7 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepErr
         scene: scene.name.clone(),
         load,
         rest_separation: rest_separation(&model, &heights(&scene, &model)),
+        basis: basis(&scene),
         grid,
     };
     let file = TableFile::open(&output, &header, command.force)?;
@@ -86,6 +87,13 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepErr
     table.sort();
     table.write(&output)?;
     finish(command, &output, &table)
+}
+
+/// What the table rests on, for those who use it.
+fn basis(scene: &Scene) -> Basis {
+    let foundation = scene.layer.foundation.map(|kind| kind.word().to_owned());
+    let real_area = scene.friction.as_ref().and_then(|friction| friction.real_area).map(|area| area.describe());
+    Basis { foundation, real_area, convergence: None }
 }
 
 /// Computes the points that are not done yet, on all cores.

@@ -34,6 +34,13 @@ impl Word for FoundationKind {
         &[("springs", Self::Springs), ("half_space", Self::HalfSpace), ("layer", Self::Layer)];
 }
 
+impl FoundationKind {
+    /// The word for it in a scene file.
+    pub fn word(self) -> &'static str {
+        self.as_word()
+    }
+}
+
 /// The links of a layer fitted to the surface of a body, weighted by the waves of the profile and of the roughness.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Foundation {

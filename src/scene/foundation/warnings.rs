@@ -45,7 +45,7 @@ impl Scene {
 
     fn coarse_spacing(&self, foundation: &Foundation) -> Option<String> {
         let (spacing, shortest) = (self.layer.spacing, foundation.waves.shortest);
-        (spacing > shortest / MASSES_PER_WAVE).then(|| {
+        (shortest > 0.0 && spacing > shortest / MASSES_PER_WAVE).then(|| {
             format!(
                 "spacing too coarse: layer.spacing = {spacing:?} m is more than an eighth of {shortest:.3e} m, the \
                  wavelength beyond which 1 % of the slopes' power lies: areas come out some {:.0} % too large",

@@ -16,13 +16,15 @@ const SLOPE: f64 = 0.6;
 const WAVELENGTH: f64 = 2e-5;
 /// E_∞ (Pa), and one term (Pa, s).
 const RUBBER: (f64, f64, f64) = (3e6, 2e7, 1e-4);
+/// Pa s: enough to damp the layer's own swings.
+const VISCOSITY: f64 = 20.0;
 
 fn scene(friction: &str, temperature: &str, method: &str) -> String {
     let (rest, modulus, time) = RUBBER;
     format!(
         "[layer]\nmasses = 4\nspacing = 1e-4\nfoundation = \"half_space\"\nwidth = 1e-2\n[surface]\nkind = \"flat\"\n\
          [material]\ndensity = 1100\npoisson_ratio = 0.5\nequilibrium_modulus = {rest:?}\n\
-         prony = [{{ modulus = {modulus:?}, relaxation_time = {time:?} }}]\n{temperature}\n\
+         viscosity = {VISCOSITY:?}\nprony = [{{ modulus = {modulus:?}, relaxation_time = {time:?} }}]\n{temperature}\n\
          [friction]\n{friction}\n[solver]\nmethod = \"{method}\"\nrelative_tolerance = 1e-7\n"
     )
 }
@@ -48,8 +50,10 @@ fn strength(speed: f64) -> f64 {
 /// A_r/A of a mass under `normal`, N.
 fn share(normal: f64, speed: f64) -> f64 {
     let (rest, modulus, time) = RUBBER;
-    let x = std::f64::consts::TAU / WAVELENGTH * speed.max(RATE.3) * time;
-    let (storage, loss) = (rest + modulus * x * x / (1.0 + x * x), modulus * x / (1.0 + x * x));
+    let omega = std::f64::consts::TAU / WAVELENGTH * speed.max(RATE.3);
+    let x = omega * time;
+    let storage = rest + modulus * x * x / (1.0 + x * x);
+    let loss = modulus * x / (1.0 + x * x) + VISCOSITY * omega;
     let stress = storage.hypot(loss) / 0.75 * SLOPE;
     libm::erf(std::f64::consts::PI.sqrt() * normal / (AREA * stress))
 }

@@ -140,7 +140,7 @@ fn roughness(heights: &[f64]) -> String {
 }
 
 fn friction(friction: &Friction) -> String {
-    let Friction { coulomb, shear_force, shear_strength: _, rate_shear } = friction;
+    let Friction { coulomb, shear_force, shear_strength: _, rate_shear, real_area: _ } = friction;
     let rate_shear = rate_shear.map_or(String::new(), |law| {
         let RateShear { force, strength: _, reference_speed, sharpness, creep_speed } = law;
         let numbers = [

@@ -184,6 +184,7 @@ fn friction(scales: Scales) -> impl Strategy<Value = Friction> {
         shear_force,
         shear_strength: None,
         rate_shear,
+        real_area: None,
     })
 }
 

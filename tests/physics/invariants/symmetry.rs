@@ -60,7 +60,15 @@ fn one_mass_over_a_plane_is_mirrored_to_the_last_bit() {
         case.scene.surface = Surface { x: vec![0.0, 1.0], z: vec![0.0, 0.0], periodic: false, self_affine: None };
         let run = |case: &Case| case.run(4).map_err(|error| TestCaseError::fail(format!("{error}")));
         let (one, other) = (run(&case)?, run(&mirrored(&case))?);
-        let turns = [Output::ForceX, Output::Hysteresis, Output::Adhesion, Output::ContactForceX, Output::ElementX(0)];
+        let turns = [
+            Output::ForceX,
+            Output::Hysteresis,
+            Output::Adhesion,
+            Output::CoulombForce,
+            Output::ShearForce,
+            Output::ContactForceX,
+            Output::ElementX(0),
+        ];
         for (column, variable) in one.variables.iter().enumerate() {
             for (row, (a, b)) in one.rows.iter().zip(&other.rows).enumerate() {
                 let slips = matches!(variable.output, Output::ElementMode(_)) && a[column].abs() == 1.0;
