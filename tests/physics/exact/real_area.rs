@@ -16,8 +16,8 @@ const SLOPE: f64 = 0.6;
 const WAVELENGTH: f64 = 2e-5;
 /// E_∞ (Pa), and one term (Pa, s).
 const RUBBER: (f64, f64, f64) = (3e6, 2e7, 1e-4);
-/// Pa s: enough to damp the layer's own swings.
-const VISCOSITY: f64 = 20.0;
+/// Pa s: enough for no swings to grow where friction falls with the speed.
+const VISCOSITY: f64 = 2e3;
 
 fn scene(friction: &str, temperature: &str, method: &str) -> String {
     let (rest, modulus, time) = RUBBER;
@@ -118,7 +118,7 @@ fn a_stuck_layer_breaks_at_the_limit_of_the_creep_speed() {
 
 #[test]
 fn without_slopes_below_the_profile_it_is_the_law_of_the_whole_area() {
-    for speed in [1e-4, 0.1] {
+    for speed in [1e-5, 1e-4] {
         let [whole, flat] = ["", "real_area = { rms_slope = 1e-9, wavelength = 1e-5 }"]
             .map(|real_area| slid(&law(real_area), "", "event", 1e-5, speed).get("F_x"));
         assert_near("F_x", flat, whole, 1e-9 * whole.abs());
