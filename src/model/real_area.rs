@@ -10,8 +10,11 @@
 
 use std::f64::consts::PI;
 
-use crate::math::{cubic, interval_of, monotone_slopes};
+use crate::math::{cubic, interval_of};
 use crate::scene::Scene;
+
+/// Distance of ln v over which the slopes of the table are taken: its square and the roundings over it are small.
+const NEARBY: f64 = 1.0e-4;
 
 /// The law of one mass in contact.
 #[derive(Clone, Debug)]
@@ -56,8 +59,9 @@ impl RealArea {
         };
         let stress = |log_speed: &f64| roughness.stress(material, log_speed.exp()).max(f64::MIN_POSITIVE).ln();
         let log_stresses: Vec<f64> = log_speeds.iter().map(stress).collect();
-        let mut slopes = vec![0.0; log_speeds.len()];
-        monotone_slopes(&log_speeds, &log_stresses, &mut slopes);
+        let slope = |log_speed: &f64| (stress(&(log_speed + NEARBY)) - stress(&(log_speed - NEARBY))) / (2.0 * NEARBY);
+        let mut slopes: Vec<f64> = log_speeds.iter().map(slope).collect();
+        keep_monotone(&log_speeds, &log_stresses, &mut slopes);
         Some(Self { area, creep_speed, log_speeds, log_stresses, slopes })
     }
 
@@ -112,6 +116,16 @@ impl RealArea {
     }
 }
 
+/// Limits the slopes so that no cubic between two entries falls: to three times the secants beside (F. N. Fritsch and R. E.
+/// Carlson, SIAM J. Numer. Anal. 17, 1980).
+fn keep_monotone(x: &[f64], y: &[f64], slopes: &mut [f64]) {
+    let secant = |i: usize| (y[i + 1] - y[i]) / (x[i + 1] - x[i]);
+    for i in 0..slopes.len().saturating_sub(1) {
+        let most = 3.0 * secant(i).max(0.0);
+        (slopes[i], slopes[i + 1]) = (slopes[i].clamp(0.0, most), slopes[i + 1].clamp(0.0, most));
+    }
+}
+
 /// Even steps of ln v from `low` to `high`, m/s.
 fn log_speeds(low: f64, high: f64) -> Vec<f64> {
     let decades = (high / low).log10();
@@ -162,8 +176,8 @@ mod tests {
             let storage = 3e6 + terms.iter().map(|&term| part(term).0).sum::<f64>();
             let loss: f64 = terms.iter().map(|&term| part(term).1).sum();
             let expected = storage.hypot(loss) / 0.75 * 0.8;
-            // The error of a monotone cubic at 16 entries a decade.
-            assert!((law.stress(speed).0 / expected - 1.0).abs() < 2e-4, "{speed}");
+            // The error of a cubic at 16 entries a decade, h⁴/384 times the fourth derivative, which is of the order of one.
+            assert!((law.stress(speed).0 / expected - 1.0).abs() < 5e-6, "{speed}");
         }
     }
 

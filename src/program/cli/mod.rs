@@ -282,7 +282,8 @@ impl Reading {
 }
 
 /// Options of a sweep that --merge does not take.
-const OF_A_SCENE: [&str; 8] = ["speeds", "pressures", "forces", "temperatures", "distance", "shard", "force", "set"];
+const OF_A_SCENE: [&str; 9] =
+    ["speeds", "pressures", "forces", "temperatures", "distance", "shard", "converged", "force", "set"];
 
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("input").required(true)))]
@@ -323,6 +324,10 @@ pub(crate) struct Sweep {
     #[arg(long, value_name = "TABLE.csv", num_args = 1.., group = "input", requires = "output")]
     #[arg(conflicts_with_all = OF_A_SCENE)]
     pub(crate) merge: Vec<PathBuf>,
+    /// The table of an asperity converge of the scene: what it found goes into the header. Default: the scene's file name
+    /// with .converge.csv, if there is such a file.
+    #[arg(long, value_name = "STUDY.csv")]
+    pub(crate) converged: Option<PathBuf>,
     /// Replaces an existing table instead of continuing it.
     #[arg(long)]
     pub(crate) force: bool,

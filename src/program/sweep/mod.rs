@@ -1,5 +1,6 @@
 //! `asperity sweep`: the friction coefficient over speed, load and temperature, as a table and a plot.
 
+mod convergence;
 mod load_search;
 mod plot;
 mod point;
@@ -44,6 +45,8 @@ pub(crate) enum SweepError {
     NoWlf,
     #[error("--temperatures: {0}")]
     Temperature(ParameterError),
+    #[error("{}: not a study of this scene's convergence: {problem}", .path.display())]
+    NotAStudy { path: PathBuf, problem: String },
     #[error("{failed} of {total} points are not steady or failed: the column status in {} says why", .path.display())]
     NotSteady { failed: usize, total: usize, path: PathBuf },
 }
@@ -78,7 +81,7 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepErr
         scene: scene.name.clone(),
         load,
         rest_separation: rest_separation(&model, &heights(&scene, &model)),
-        basis: basis(&scene),
+        basis: basis(&scene, convergence::found(command.converged.as_ref(), path, &scene.name)?),
         grid,
     };
     let file = TableFile::open(&output, &header, command.force)?;
@@ -90,10 +93,10 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepErr
 }
 
 /// What the table rests on, for those who use it.
-fn basis(scene: &Scene) -> Basis {
+fn basis(scene: &Scene, convergence: Option<String>) -> Basis {
     let foundation = scene.layer.foundation.map(|kind| kind.word().to_owned());
     let real_area = scene.friction.as_ref().and_then(|friction| friction.real_area).map(|area| area.describe());
-    Basis { foundation, real_area, convergence: None }
+    Basis { foundation, real_area, convergence }
 }
 
 /// Computes the points that are not done yet, on all cores.

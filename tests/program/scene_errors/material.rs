@@ -65,7 +65,7 @@ fn keys_of_the_direct_form_beside_a_material() {
                 17,
                 "shear_force = 1.0",
                 17,
-                "friction.shear_force = 1.0: expected no such key beside [material]; instead: shear_strength",
+                "friction.shear_force = 1.0: expected no such key beside [material]; instead: real_area, shear_strength",
             ),
             (
                 17,
@@ -226,4 +226,46 @@ fn files_of_a_prony_series() {
     let scene = Scene::load(&folder.0.join("scene.toml")).unwrap();
     assert_eq!(scene.files, [std::path::PathBuf::from("compound.csv")]);
     assert_eq!(scene.material.map(|material| material.prony[1].modulus), Some(1e6));
+}
+
+#[test]
+fn foundations() {
+    assert_refused(
+        "material-foundation",
+        &[
+            (
+                6,
+                "width = 1.0e-2\nfoundation = \"mattress\"",
+                7,
+                "layer.foundation = \"mattress\": expected one of \"springs\", \"half_space\", \"layer\"",
+            ),
+            (
+                6,
+                "width = 1.0e-2\nfoundation = \"half_space\"",
+                5,
+                "layer.thickness = 5.0e-3: expected no such key with foundation = \"half_space\", which has no end",
+            ),
+            (5, "foundation = \"layer\"", 2, "layer.thickness: missing; expected a number from 1e-30 to 1e30"),
+        ],
+    );
+}
+
+#[test]
+fn real_areas() {
+    let one = "expected rms_slope and wavelength, or rms_slope and modulus, or cut_off_wavelength alone";
+    let of = |keys: &str| format!("coulomb = 0.3\nreal_area = {{ {keys} }}");
+    let refused = |keys: &str, expected: &str| format!("friction.real_area = {{ {keys} }}: {expected}");
+    for (keys, expected) in [
+        ("rms_slope = 1.0", one),
+        ("rms_slope = 1.0, wavelength = 1e-5, modulus = 1e6", one),
+        ("wavelength = 1e-5", one),
+        (
+            "cut_off_wavelength = 1e-6",
+            "expected cut_off_wavelength with a self_affine surface alone, whose law it continues",
+        ),
+    ] {
+        assert_refused("material-real-area", &[(16, &of(keys), 17, &refused(keys, expected))]);
+    }
+    let negative = "friction.real_area.rms_slope = -1.0: expected 0 or a number from 1e-30 to 1e30";
+    assert_refused("material-real-area", &[(16, &of("rms_slope = -1.0, modulus = 1e6"), 17, negative)]);
 }

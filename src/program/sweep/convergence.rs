@@ -1,0 +1,60 @@
+//! What a study of convergence says of a sweep's scene, for the header of the table.
+
+use std::path::{Path, PathBuf};
+
+use asperity::scene::text_table;
+
+use super::SweepError;
+use crate::program::files::read;
+
+/// The verdict of the study named, or of the one that `asperity converge` would have written for the scene; `None`
+/// without one.
+pub(super) fn found(named: Option<&PathBuf>, scene_file: &Path, scene: &str) -> Result<Option<String>, SweepError> {
+    let usual = PathBuf::from(scene_file.file_stem().unwrap_or(scene_file.as_os_str())).with_extension("converge.csv");
+    let Some(path) = named.or(Some(&usual).filter(|usual| usual.exists())) else { return Ok(None) };
+    let text = String::from_utf8_lossy(&read(path)?).into_owned();
+    match verdict(&text, scene) {
+        Ok(verdict) => Ok(Some(verdict)),
+        Err(problem) => Err(SweepError::NotAStudy { path: path.clone(), problem }),
+    }
+}
+
+/// The verdict and the point that it was found at, from the header of a study's table.
+fn verdict(text: &str, scene: &str) -> Result<String, String> {
+    let value = |key: &str| {
+        let found = text_table::comments(text).find_map(|(_, comment)| {
+            let (name, value) = comment.split_once('=')?;
+            (name.trim() == key).then(|| value.trim().to_owned())
+        });
+        found.ok_or_else(|| format!("expected a line `# {key} = ...`"))
+    };
+    value("asperity converge")?;
+    let studied = value("scene")?;
+    if studied != scene {
+        return Err(format!("it is of the scene {studied}, the sweep of {scene}"));
+    }
+    let verdict = value("verdict").map_err(|missing| format!("{missing}: the study is not finished"))?;
+    Ok(format!("{verdict} (at {}, {})", value("pressure")?, value("speed")?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STUDY: &str = "# asperity converge = 1\n# scene = block\n# pressure = 100000 Pa\n# speed = 0.1 m/s\n\
+                         # verdict = converged: spacing leaves most open\nmasses\n";
+
+    #[test]
+    fn a_verdict_says_where_it_was_found() {
+        let found = verdict(STUDY, "block");
+        assert_eq!(found.as_deref(), Ok("converged: spacing leaves most open (at 100000 Pa, 0.1 m/s)"));
+    }
+
+    #[test]
+    fn another_scene_or_an_unfinished_study_is_refused() {
+        assert!(verdict(STUDY, "seal").is_err_and(|problem| problem.contains("of the scene block")));
+        let unfinished = STUDY.replace("# verdict", "# other");
+        assert!(verdict(&unfinished, "block").is_err_and(|problem| problem.contains("not finished")));
+        assert!(verdict("speed,friction\n", "block").is_err());
+    }
+}
