@@ -88,6 +88,7 @@ impl ContactForces {
 
 impl Forces {
     /// The contact forces on mass `i`, which is in contact with `surface` and has the velocity ẋ.
+    #[inline]
     pub fn contact(&self, model: &Model, i: usize, velocity_x: f64, surface: &SurfacePoint) -> ContactForces {
         ContactForces::new(model, (self.on_mass_x[i], self.on_mass_z[i]), velocity_x, surface)
     }
@@ -275,7 +276,7 @@ impl Model {
     fn shear_at_rest(&self, normal: f64) -> f64 {
         match &self.real_area {
             None => self.shear_force,
-            Some(area) => area.at_rest(normal).value * self.shear_force,
+            Some(area) => area.share_at_rest(normal) * self.shear_force,
         }
     }
 }

@@ -80,6 +80,12 @@ impl RealArea {
         self.share(normal, 0.0)
     }
 
+    /// A_r/A at rest under F_N (N): out of the way of contacts that touch on all of their area.
+    #[inline(never)]
+    pub fn share_at_rest(&self, normal: f64) -> f64 {
+        self.at_rest(normal).value
+    }
+
     /// The share under F_N (N) at a `speed` of either sign, m/s.
     pub fn share(&self, normal: f64, speed: f64) -> AreaShare {
         if normal <= 0.0 {

@@ -13,6 +13,7 @@ use super::cli::Describe;
 use super::figure::Figure as _;
 use super::files::{FileError, check_outputs, load, print, sources};
 use super::foundation;
+use super::persson::Theory;
 use super::terminal::{LabelledLine, decimal, labelled, lines, rounded};
 
 /// `asperity describe` failed.
@@ -246,6 +247,15 @@ fn real_area_texts(scene: &Scene) -> Vec<String> {
             number(pressure),
             share(0.1)
         ));
+        let speed = scene.excitation.iter().map(|phase| phase.u.rate.abs()).fold(0.0, f64::max);
+        let added = Theory::friction_of_fine_waves(scene, pressure, speed).filter(|_| speed > 0.0);
+        texts.extend(added.map(|friction| {
+            format!(
+                "             its waves would add a hysteresis friction of some {friction:.3} at {} m/s (Persson's theory), which the \
+                 forces do not have",
+                number(speed)
+            )
+        }));
     }
     texts
 }

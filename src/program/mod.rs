@@ -10,6 +10,7 @@ mod foundation;
 mod html;
 mod material;
 mod pack;
+mod persson;
 mod report;
 mod result_file;
 mod runner;

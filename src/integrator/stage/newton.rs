@@ -200,14 +200,13 @@ impl SlippingMass {
     ///
     /// A friction law that is not linear in F_N is taken along its tangent at F_N: the value and the derivatives there are
     /// the law's.
+    #[inline]
     fn new(model: &Model, mode: Mode, surface: &SurfacePoint, motion: (f64, f64), forces: (f64, f64)) -> Self {
         let (s, (velocity, acceleration)) = (surface.slope, motion);
         let sigma = mode.direction();
         let q2 = 1.0 + s * s;
         let (normal, mu, shear) = if model.real_area.is_some() {
-            let contact = ContactForces::new(model, forces, velocity, surface);
-            let mu = contact.limit_by_normal(model, sigma * velocity * contact.q);
-            (contact.normal, mu, contact.limit - mu * contact.normal)
+            tangent_of_friction(model, &ContactForces::new(model, forces, velocity, surface), sigma * velocity)
         } else {
             (0.0, model.friction_coefficient, model.shear_force)
         };
@@ -312,6 +311,13 @@ impl SlippingMass {
     fn climb(&self, beta: f64) -> Climb {
         Climb { height: beta * self.s, rate: self.s + beta * self.kappa * self.velocity }
     }
+}
+
+/// F_N, ∂T/∂F_N at the `speed` σẋ, and what these leave of T(0), N: out of the way of the usual, linear law.
+#[inline(never)]
+fn tangent_of_friction(model: &Model, contact: &ContactForces, speed: f64) -> (f64, f64, f64) {
+    let mu = contact.limit_by_normal(model, speed * contact.q);
+    (contact.normal, mu, contact.limit - mu * contact.normal)
 }
 
 /// The factors with which the forces f_x, f_z on a mass enter its two equations.

@@ -1,6 +1,5 @@
 //! `asperity converge`: whether area and friction of a scene depend on its spacing, its length or on chance.
 
-mod persson;
 mod plan;
 mod plot;
 mod summary;
@@ -23,7 +22,7 @@ use super::figure::Figure as _;
 use super::files::{FileError, check_outputs, print, sources};
 use super::sweep::{Bounds, relevant, steady_sliding, table_fingerprint};
 use super::terminal;
-use persson::{Dimension, Theory};
+use crate::program::persson::{Dimension, Theory};
 use plan::{Next, Plan};
 use table::{Header, Measured, Run, Table};
 use variants::{Template, Variant};

@@ -1,9 +1,9 @@
 //! The picture of a study: friction and area over the spacing.
 
-use super::persson::Theory;
 use super::table::Run;
 use super::verdict::Pair;
 use crate::program::figure::{Curve, Panel, Stacked, Stroke};
+use crate::program::persson::Theory;
 
 /// A curve of Persson's theory: its name, which of the two surfaces, and its value.
 type TheoryCurve = (&'static str, usize, fn(&Theory) -> f64);

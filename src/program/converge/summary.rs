@@ -1,8 +1,8 @@
 //! A study as text: a row for each run, what is left open, and what will do.
 
-use super::persson::Theory;
 use super::table::Run;
 use super::verdict::{Largest, Open, Pair, Source, Verdict};
+use crate::program::persson::Theory;
 use crate::program::terminal::{LabelledLine, decimal, labelled, lines, rounded};
 
 const TITLES: [&str; 12] = [

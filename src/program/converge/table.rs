@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use asperity::scene::text_table;
 
 use super::ConvergeError;
-use super::persson::Theory;
 use super::variants::{Dimensions, Variant};
 use super::verdict::Pair;
 use crate::program::files::{FileError, LineFile, replace};
+use crate::program::persson::Theory;
 use crate::program::terminal::real;
 
 /// The first line of a table; its number grows when readers have to know of a change.

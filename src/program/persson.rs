@@ -44,6 +44,19 @@ impl Theory {
         Some(Self::of_waves(&waves, material, body, (pressure, speed), dimension))
     }
 
+    /// The friction that the roughness below the profile's adds by hysteresis, on an isotropic surface; `None` where the
+    /// scene has no such waves.
+    pub(super) fn friction_of_fine_waves(scene: &Scene, pressure: f64, speed: f64) -> Option<f64> {
+        let (roughness, material) = (scene.fine_roughness()?, scene.material.as_ref()?);
+        let body = body(&scene.layer, material)?;
+        // Half of the mean square height of an isotropic surface is in the waves of its lines.
+        let fine = roughness.bands().map(|(q, gradient_square)| (q, 0.5 * gradient_square / (q * q)));
+        let coarse = resolved(&scene.layer, Spectrum::of(&scene.surface).modes());
+        let all: Vec<(f64, f64)> = coarse.iter().copied().chain(fine).collect();
+        let friction = |waves| Self::of_waves(waves, material, body, (pressure, speed), Dimension::Two).friction;
+        (all.len() > coarse.len()).then(|| friction(&all) - friction(&coarse))
+    }
+
     /// Area, friction and friction reduced.
     pub(super) fn values(&self) -> [f64; 3] {
         [self.area, self.friction, self.friction_reduced]
