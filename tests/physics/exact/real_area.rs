@@ -9,10 +9,10 @@ const MASSES: f64 = 4.0;
 const AREA: f64 = 1e-4 * 1e-2;
 const COULOMB: f64 = 0.2;
 /// τ_0, Pa.
-const SHEAR: f64 = 3e5;
+const SHEAR: f64 = 3e3;
 /// τ_f0 (Pa), v_0 (m/s), sharpness, v_c (m/s).
-const RATE: (f64, f64, f64, f64) = (6e5, 1e-3, 0.1, 1e-6);
-const SLOPE: f64 = 0.6;
+const RATE: (f64, f64, f64, f64) = (6e3, 1e-3, 0.1, 1e-6);
+const SLOPE: f64 = 0.02;
 const WAVELENGTH: f64 = 2e-5;
 /// E_∞ (Pa), and one term (Pa, s).
 const RUBBER: (f64, f64, f64) = (3e6, 2e7, 1e-4);
@@ -63,7 +63,7 @@ fn slid(friction: &str, temperature: &str, method: &str, depth: f64, speed: f64)
     let mut run =
         Run::new(&scene(friction, temperature, method), Start { w: -depth, u_rate: speed, ..Start::default() });
     // Ten times the relaxation time, and several times the way on which the links come to the friction.
-    run.drive(2e-3_f64.max(1e-3 / speed), rate(speed), REST);
+    run.drive(2e-2_f64.max(1e-3 / speed), rate(speed), REST);
     run
 }
 
@@ -76,15 +76,15 @@ fn steady_slip_has_the_shear_of_the_area_that_touches() {
                 let normal = run.get("F_z") / MASSES;
                 let shear = AREA * share(normal, speed) * strength(speed);
                 let drag = MASSES * (COULOMB * normal + shear);
-                // The table of moduli is right to some 1e-5.
-                assert_near("F_x", run.get("F_x"), -drag, 5e-5 * drag);
-                assert_near("F_shear", run.get("friction.F_shear"), -MASSES * shear, 5e-5 * drag);
+                // The table of moduli is right to some 1e-6, the runs to less.
+                assert_near("F_x", run.get("F_x"), -drag, 1e-5 * drag);
+                assert_near("F_shear", run.get("friction.F_shear"), -MASSES * shear, 1e-5 * drag);
                 assert_near("F_coulomb", run.get("friction.F_coulomb"), -MASSES * COULOMB * normal, 1e-6 * drag);
                 assert_near(
                     "area",
                     run.get("contact.area_real"),
                     MASSES * AREA * share(normal, speed),
-                    5e-5 * AREA * MASSES,
+                    1e-5 * AREA * MASSES,
                 );
                 let before = ["dissipation.E_shear", "dissipation.E_friction"].map(|name| run.get(name));
                 run.drive(1e-3 / speed, rate(speed), REST);

@@ -264,8 +264,8 @@ fn real_areas() {
             "expected cut_off_wavelength with a self_affine surface alone, whose law it continues",
         ),
     ] {
-        assert_refused("material-real-area", &[(16, &of(keys), 17, &refused(keys, expected))]);
+        assert_refused("material-real-area", &[(17, &of(keys), 18, &refused(keys, expected))]);
     }
     let negative = "friction.real_area.rms_slope = -1.0: expected 0 or a number from 1e-30 to 1e30";
-    assert_refused("material-real-area", &[(16, &of("rms_slope = -1.0, modulus = 1e6"), 17, negative)]);
+    assert_refused("material-real-area", &[(17, &of("rms_slope = -1.0, modulus = 1e6"), 18, negative)]);
 }
