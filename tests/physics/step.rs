@@ -107,10 +107,10 @@ fn a_percent_takes_few_steps() {
     }
 }
 
-/// The mean friction coefficient and the mode changes of the tread block in rubber over 0.25 mm of a slow slide, after
+/// The mean friction coefficient and the mode changes of a tread block in rubber over 0.25 mm of a slow slide, after
 /// as much to settle.
 fn slow_slide(method: &str, tolerance: &str) -> (f64, f64) {
-    let mut scene = Scene::load(&root().join("scenes/tread-block-rubber/tread-block-rubber.toml")).unwrap();
+    let mut scene = Scene::load(&root().join("tests/physics/scenes/block/block.toml")).unwrap();
     scene.set_by_name("solver.method", method).unwrap();
     scene.set_by_name("solver.relative_tolerance", tolerance).unwrap();
     scene.outputs.push(OutputGroup::Solver);

@@ -244,11 +244,9 @@ fn points_that_fail_are_rows() {
 }
 
 /// The scene of the README: adhesion's maximum at low speed, hysteresis' at high speed, and both move with the
-/// temperature as the shift says, μ(v, T) = μ(a_T v, T_ref), the rate-dependent shear strength included. Below v_0
-/// `tests/physics/exact` holds that to 1 %. Above v_0 the strength falls as the speed rises, and masses chatter where it falls
-/// faster than dampers hold them, which does not shift: warmer, it falls less steeply over the speed, and the inertia
-/// stays. At 0.1 m/s they chatter at 293 K and not at 303 K (friction 0.095 and 0.093 at tolerances of 1e-5 by both
-/// methods), so of that point hysteresis alone is compared.
+/// temperature as the shift says, μ(v, T) = μ(a_T v, T_ref), the shear strength and the real area included. Between 1 mm/s and
+/// 0.2 m/s the adhesion falls so steeply that masses stick and slip, which does not shift, for the inertia stays: points
+/// on both sides of it are compared.
 #[test]
 fn two_maxima_move_with_the_temperature() {
     let folder = scratch("sweep-two-maxima");
@@ -256,27 +254,27 @@ fn two_maxima_move_with_the_temperature() {
     let friction = |temperature: &str, speeds: &[f64]| {
         let table = folder.join(format!("{temperature}.csv"));
         let list = speeds.iter().map(|speed| format!("{speed:e}")).collect::<Vec<_>>().join(",");
-        let options = ["--speeds", &list, "--pressures", "4e5", "--temperatures", temperature, "--error", "2e-3"];
+        let options = ["--speeds", &list, "--pressures", "4e5", "--temperatures", temperature, "--error", "5e-3", "--distance", "0.5"];
         sweep(&scene, &table, &options);
         let rows = Rows::read(&table);
         let parts = ["friction", "friction_hysteresis", "friction_adhesion"];
         (0..speeds.len()).map(|row| parts.map(|name| rows.number(row, name))).collect::<Vec<_>>()
     };
-    let speeds = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0];
+    let speeds = [1e-5, 1e-4, 8e-4, 1e-2, 3e-1, 1.0, 3.0, 8.0];
     let reference = friction("293.15", &speeds);
     let peaks = |part: usize| -> Vec<usize> {
         let of = |i: usize| reference[i][part];
         (1..speeds.len() - 1).filter(|&i| of(i) > of(i - 1) && of(i) > of(i + 1)).collect()
     };
+    // Hysteresis has a lower one where adhesion has its own, whose shear tilts what the rubber presses on.
     let (whole, hysteresis, adhesion) = (peaks(0), peaks(1), peaks(2));
-    assert_eq!((whole.len(), hysteresis.len(), adhesion.len()), (2, 1, 1), "{reference:?}");
-    assert_eq!([whole[0], whole[1]], [adhesion[0], hysteresis[0]], "{reference:?}");
-    // a_T at 10 K above; both maxima and a place between.
+    assert_eq!((whole, hysteresis, adhesion), (vec![2, 6], vec![2, 6], vec![2]), "{reference:?}");
+    // a_T at 10 K above; below adhesion's maximum, behind the fall, and hysteresis' maximum.
     let shift = 10_f64.powf(-7.52 * 10.0 / (119.75 + 10.0));
-    let shifted = friction("303.15", &[1e-5, 1e-3, 1e-1].map(|speed| speed / shift));
-    for (here, (i, part)) in shifted.iter().zip([(1, 0), (3, 0), (5, 1)]) {
+    let shifted = friction("303.15", &[1e-4, 1.0, 3.0].map(|speed| speed / shift));
+    // The sweep's own error of 0.5 % in either; at 11 m/s the inertia adds 3 %.
+    for (here, (i, bound)) in shifted.iter().zip([(1, 0.01), (5, 0.01), (6, 0.04)]) {
         let there = reference[i];
-        // The sweep's own error of 0.2 %, and what chatter leaves, 0.4 % at the last one.
-        assert!((here[part] - there[part]).abs() <= 0.01 * there[part], "{} m/s: {here:?}, {there:?}", speeds[i]);
+        assert!((here[0] - there[0]).abs() <= bound * there[0], "{} m/s: {here:?}, {there:?}", speeds[i]);
     }
 }
