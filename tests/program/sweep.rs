@@ -254,7 +254,18 @@ fn two_maxima_move_with_the_temperature() {
     let friction = |temperature: &str, speeds: &[f64]| {
         let table = folder.join(format!("{temperature}.csv"));
         let list = speeds.iter().map(|speed| format!("{speed:e}")).collect::<Vec<_>>().join(",");
-        let options = ["--speeds", &list, "--pressures", "4e5", "--temperatures", temperature, "--error", "5e-3", "--distance", "0.5"];
+        let options = [
+            "--speeds",
+            &list,
+            "--pressures",
+            "4e5",
+            "--temperatures",
+            temperature,
+            "--error",
+            "5e-3",
+            "--distance",
+            "0.5",
+        ];
         sweep(&scene, &table, &options);
         let rows = Rows::read(&table);
         let parts = ["friction", "friction_hysteresis", "friction_adhesion"];
