@@ -27,6 +27,7 @@
 //!
 //! | change | files |
 //! |---|---|
+//! | what the links stand for | `scene/foundation` (kernels, weights, fit, warnings); `program/foundation.rs` prints it |
 //! | a friction law | `model/friction.rs` (limit at rest, force in slip) and its constants in `model/mod.rs`; its derivative in `integrator/stage/newton.rs`, power in `model/energy.rs`, directional derivative in `outputs/snapshot.rs`; the impact in `contact/laws.rs`; its keys as below |
 //! | a kind of link | `LinkKind` in `scene/mod.rs`; `model/forces.rs`, `model/energy.rs`, `model/scales.rs`; its blocks in `integrator/stage/newton.rs`, its force in `integrator/dense.rs` and `contact/correction.rs`; its keys and its size in `scene/material.rs` |
 //! | a key of the scene, a parameter | a line in `scene/keys.rs`, a field in `scene/mod.rs`, a line in `scene/reader`; a parameter also in `scene/parameters.rs` |
@@ -86,6 +87,9 @@
 //! | E_∞, E_j, η | `Material::equilibrium_modulus`, `prony`, `viscosity` | Pa, Pa, Pa s | material form |
 //! | ν, ρ | `Material::poisson_ratio`, `density` | 1, kg/m³ | material form |
 //! | H, B, A = B Δx | `Layer::thickness`, `width`, `element_area()` | m, m² | material form |
+//! | K(q), M = E/(1 - ν²) | `Body::normal()`, `tangential()`, `Material::plane_modulus()` | 1/m, Pa | stiffness of a surface against a wave over the plane modulus |
+//! | α, β, ℓ | `Foundation::normal`, `tangential`, `depth` | 1/m, m, m | links and mass fitted to a body |
+//! | A_r, h'_s, M_c | `RealArea`, `FineRoughness` | m², 1, Pa | area that touches below the profile's resolution, the gradient there, and the modulus it meets |
 //! | a_T | `Material::shift_factor()` | 1 | shift of all times with temperature (Williams, Landel and Ferry) |
 //! | E', E'' | `Material::complex_modulus()` | Pa | storage and loss modulus (2) |
 //! | f_x,i, f_z,i | `Forces::on_mass_x`, `on_mass_z` | N | forces of the links on mass i (3), (4) |
