@@ -78,9 +78,14 @@ impl Foundation {
         Self { normal, tangential, depth, waves }
     }
 
+    /// What moves along the direction of `kind`.
+    fn stiffness(&self, kind: LinkKind) -> Stiffness {
+        if kind.is_along_x() { self.tangential } else { self.normal }
+    }
+
     /// What turns the plane modulus M into the stiffness of a link, m; `width` is that of the layer, m.
     pub(super) fn link_size(&self, kind: LinkKind, layer: &Layer, width: f64) -> f64 {
-        let stiffness = if kind.is_along_x() { self.tangential } else { self.normal };
+        let stiffness = self.stiffness(kind);
         if kind.is_lateral() { stiffness.beta * width / layer.spacing } else { stiffness.alpha * width * layer.spacing }
     }
 }
@@ -108,13 +113,16 @@ impl Layer {
         }
     }
 
-    /// What springs are along z and along x, over the plane modulus (docs/model.md, section 7).
-    fn springs(&self, material: &Material) -> Option<[Stiffness; 2]> {
+    /// What springs are along the direction of `kind`, over the plane modulus (docs/model.md, section 7).
+    fn springs(&self, material: &Material, kind: LinkKind) -> Option<Stiffness> {
         let (thickness, nu) = (self.thickness?, material.poisson_ratio);
         // E/M and G/M
         let (modulus, shear) = (1.0 - nu * nu, 0.5 * (1.0 - nu));
-        let normal = Stiffness { alpha: modulus / thickness, beta: shear * thickness };
-        Some([normal, Stiffness { alpha: shear / thickness, beta: modulus * thickness }])
+        Some(if kind.is_along_x() {
+            Stiffness { alpha: shear / thickness, beta: modulus * thickness }
+        } else {
+            Stiffness { alpha: modulus / thickness, beta: shear * thickness }
+        })
     }
 
     /// The body that the layer is by its thickness.

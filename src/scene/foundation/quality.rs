@@ -22,7 +22,9 @@ pub struct Quality {
 }
 
 impl Quality {
-    fn new(waves: &Waves, ratio: impl Fn(f64) -> f64) -> Option<Self> {
+    /// How the `stiffness` of the links lies to that of the `body` along the direction of `kind`.
+    fn new(waves: &Waves, stiffness: Stiffness, body: Body, kind: LinkKind) -> Option<Self> {
+        let ratio = |q: f64| stiffness.of_wave(waves, q) / body.stiffness_along(kind, q);
         let carrying = waves.carrying();
         let (first, last) = (carrying.first()?.wave_number, carrying.last()?.wave_number);
         let at = |part: f64| first * (last / first).powf(part);
@@ -44,23 +46,14 @@ impl Scene {
     /// How well the links along the direction of `kind` meet the surface of a half-plane or of a layer of their
     /// thickness; `None` in the direct form.
     pub fn quality(&self, kind: LinkKind) -> Option<Quality> {
-        let material = self.material.as_ref()?;
-        let (body, springs) = match &self.foundation {
-            Some(_) => (self.layer.fitted_body(material)?, None),
-            None => (self.layer.bonded_body(material)?, self.layer.springs(material)),
-        };
-        let of_springs;
-        let waves = match &self.foundation {
-            Some(foundation) => &foundation.waves,
+        let (layer, material) = (&self.layer, self.material.as_ref()?);
+        match &self.foundation {
+            Some(fit) => Quality::new(&fit.waves, fit.stiffness(kind), layer.fitted_body(material)?, kind),
             None => {
-                of_springs = Waves::of(&self.layer, &self.surface);
-                &of_springs
+                let waves = Waves::of(layer, &self.surface);
+                Quality::new(&waves, layer.springs(material, kind)?, layer.bonded_body(material)?, kind)
             }
-        };
-        let along_x = kind.is_along_x();
-        let fitted = self.foundation.as_ref().map(|fit| if along_x { fit.tangential } else { fit.normal });
-        let stiffness = fitted.or(springs.map(|[normal, tangential]| if along_x { tangential } else { normal }))?;
-        Quality::new(waves, |q| stiffness.of_wave(waves, q) / body.stiffness_along(along_x, q))
+        }
     }
 }
 
@@ -72,7 +65,7 @@ impl Stiffness {
 }
 
 impl Body {
-    fn stiffness_along(self, along_x: bool, wave_number: f64) -> f64 {
-        if along_x { self.tangential(wave_number) } else { self.normal(wave_number) }
+    fn stiffness_along(self, kind: LinkKind, wave_number: f64) -> f64 {
+        if kind.is_along_x() { self.tangential(wave_number) } else { self.normal(wave_number) }
     }
 }
