@@ -20,7 +20,7 @@ TABLE = ["time", "u", "w", "F_x", "F_z", "contact.count", "contact.sticking", "P
 UNITS = {"time": "s", "u": "m", "w": "m", "F_x": "N", "F_z": "N", "P_diss": "W", "E_diss": "J"}
 TABLE_ROWS = 12
 # Okabe and Ito's colours, told apart by colour-blind readers too.
-COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00"]
+COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#464646"]
 
 
 def read(path):
