@@ -7,7 +7,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2, TAU};
 
-use asperity::scene::{Body, FoundationKind, Layer, Material, Scene, Spectrum};
+use asperity::scene::{Body, Layer, Material, Scene, Spectrum};
 
 /// Area and friction by the theory.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -39,7 +39,7 @@ impl Theory {
     /// direct form.
     pub(super) fn of(scene: &Scene, pressure: f64, speed: f64, dimension: Dimension) -> Option<Self> {
         let material = scene.material.as_ref()?;
-        let body = body(&scene.layer, material)?;
+        let body = scene.layer.body(material)?;
         let waves = resolved(&scene.layer, Spectrum::of(&scene.surface).modes());
         Some(Self::of_waves(&waves, material, body, (pressure, speed), dimension))
     }
@@ -48,7 +48,7 @@ impl Theory {
     /// scene has no such waves.
     pub(super) fn friction_of_fine_waves(scene: &Scene, pressure: f64, speed: f64) -> Option<f64> {
         let (roughness, material) = (scene.fine_roughness()?, scene.material.as_ref()?);
-        let body = body(&scene.layer, material)?;
+        let body = scene.layer.body(material)?;
         // Half of the mean square height of an isotropic surface is in the waves of its lines.
         let fine = roughness.bands().map(|(q, gradient_square)| (q, 0.5 * gradient_square / (q * q)));
         let coarse = resolved(&scene.layer, Spectrum::of(&scene.surface).modes());
@@ -109,14 +109,6 @@ impl Dimension {
             }
         }
     }
-}
-
-/// The body that the links stand for; springs are held against a layer of their thickness.
-fn body(layer: &Layer, material: &Material) -> Option<Body> {
-    if layer.foundation == Some(FoundationKind::HalfSpace) {
-        return Some(Body::HalfPlane);
-    }
-    Some(Body::Bonded { thickness: layer.thickness?, poisson_ratio: material.poisson_ratio })
 }
 
 /// Those of `modes` between 2π/(kΔx) and π/Δx.

@@ -58,13 +58,15 @@ pub struct Foundation {
 impl Foundation {
     /// The foundation of a layer of `material` on `surface`; `None` for springs, which are not fitted.
     pub(super) fn new(layer: &Layer, material: &Material, surface: &Surface) -> Option<Self> {
-        let body = layer.fitted_body(material)?;
-        Some(Self::fitted(Waves::of(layer, surface), body, material.poisson_ratio))
+        if layer.foundation == Some(FoundationKind::Springs) {
+            return None;
+        }
+        Some(Self::fitted(Waves::of(layer, surface), layer.body(material)?, material.poisson_ratio))
     }
 
     /// The same waves, fitted anew.
     pub(super) fn refitted(&self, layer: &Layer, material: &Material) -> Option<Self> {
-        Some(Self::fitted(self.waves.clone(), layer.fitted_body(material)?, material.poisson_ratio))
+        Some(Self::fitted(self.waves.clone(), layer.body(material)?, material.poisson_ratio))
     }
 
     fn fitted(waves: Waves, body: Body, poisson_ratio: f64) -> Self {
@@ -104,12 +106,13 @@ impl Waves {
 }
 
 impl Layer {
-    /// The body that the links are fitted to; `None` for springs.
-    fn fitted_body(&self, material: &Material) -> Option<Body> {
+    /// The body that the links stand for: springs are held against a layer of their thickness. `None` in the direct form.
+    pub fn body(&self, material: &Material) -> Option<Body> {
         match self.foundation? {
-            FoundationKind::Springs => None,
             FoundationKind::HalfSpace => Some(Body::HalfPlane),
-            FoundationKind::Layer => self.bonded_body(material),
+            FoundationKind::Springs | FoundationKind::Layer => {
+                Some(Body::Bonded { thickness: self.thickness?, poisson_ratio: material.poisson_ratio })
+            }
         }
     }
 
@@ -123,10 +126,5 @@ impl Layer {
         } else {
             Stiffness { alpha: modulus / thickness, beta: shear * thickness }
         })
-    }
-
-    /// The body that the layer is by its thickness.
-    fn bonded_body(&self, material: &Material) -> Option<Body> {
-        Some(Body::Bonded { thickness: self.thickness?, poisson_ratio: material.poisson_ratio })
     }
 }

@@ -47,11 +47,12 @@ impl Scene {
     /// thickness; `None` in the direct form.
     pub fn quality(&self, kind: LinkKind) -> Option<Quality> {
         let (layer, material) = (&self.layer, self.material.as_ref()?);
+        let body = layer.body(material)?;
         match &self.foundation {
-            Some(fit) => Quality::new(&fit.waves, fit.stiffness(kind), layer.fitted_body(material)?, kind),
+            Some(fit) => Quality::new(&fit.waves, fit.stiffness(kind), body, kind),
             None => {
                 let waves = Waves::of(layer, &self.surface);
-                Quality::new(&waves, layer.springs(material, kind)?, layer.bonded_body(material)?, kind)
+                Quality::new(&waves, layer.springs(material, kind)?, body, kind)
             }
         }
     }
