@@ -19,6 +19,7 @@
 //! | [`outputs`] | the table of the outputs: names, units, values, derivatives, dependencies |
 //! | [`simulation`] | a run: its state, the event-driven and the time-stepping driver, error-estimation run |
 //! | [`element`] | a point-contact element: the forces of a layer, looked up in a table of a sweep |
+//! | [`patch`] | a contact patch: many point-contact elements on a rigid face, in three dimensions |
 //! | [`fmi`] | the FMI 2.0 co-simulation interface |
 //! | `robustness` | catalogue of perturbations of a scene and the judge of their runs, for reports and tests |
 //! | program | the command line program: simulate, sweep, converge, fit, pack, report, plot |
@@ -119,6 +120,7 @@ pub mod integrator;
 pub mod math;
 pub mod model;
 pub mod outputs;
+pub mod patch;
 #[cfg(feature = "program")]
 pub mod robustness;
 pub mod scene;

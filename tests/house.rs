@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 /// The rooms of the library in their order, and which others each may use: only those to its left.
-const ROOMS: [(&str, &[&str]); 10] = [
+const ROOMS: [(&str, &[&str]); 11] = [
     ("math", &[]),
     ("scene", &["math"]),
     ("model", &["math", "scene"]),
@@ -15,7 +15,8 @@ const ROOMS: [(&str, &[&str]); 10] = [
     ("simulation", &["math", "scene", "model", "integrator", "contact", "outputs"]),
     ("robustness", &["scene", "simulation"]),
     ("element", &["math", "scene", "model", "outputs", "simulation"]),
-    ("fmi", &["math", "scene", "model", "integrator", "contact", "outputs", "simulation", "element"]),
+    ("patch", &["math", "scene", "outputs", "element"]),
+    ("fmi", &["math", "scene", "model", "integrator", "contact", "outputs", "simulation", "element", "patch"]),
 ];
 
 /// The two files of the C interface; and the C types, which name unsafe functions but call none.

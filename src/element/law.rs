@@ -48,6 +48,10 @@ pub(super) struct Law {
     pub(super) nominal_area: f64,
     /// Separation at w = 0, m.
     pub(super) rest_separation: f64,
+    /// Temperatures, K.
+    temperatures: Vec<f64>,
+    /// Along temperature: by quantity, where the table has it, pressure and speed.
+    cells: [Option<Vec<Series>>; Quantity::ALL.len()],
     /// Logarithms of the speeds.
     speeds: Vec<f64>,
     /// The least and the largest speed, m/s.
@@ -65,24 +69,62 @@ impl Law {
     /// The table at `temperature` (K), where it has temperatures.
     pub(super) fn new(table: &Table, temperature: f64) -> Self {
         let grid = &table.grid;
-        let speeds: Vec<f64> = grid.speeds.iter().map(|speed| speed.ln()).collect();
-        let rows = Quantity::ALL.map(|quantity| {
-            let row = |load| {
-                let at = |speed| at_temperature(table, quantity, Node { temperature: 0, load, speed }, temperature);
-                Series::new(&speeds, (0..speeds.len()).map(at).collect())
-            };
-            table.has(quantity).then(|| (0..grid.loads.len()).map(row).collect())
-        });
-        Self {
+        let (speeds, loads) = (grid.speeds.len(), grid.loads.len());
+        let cell = |quantity, index: usize| {
+            let node = Node { temperature: 0, load: index / speeds, speed: index % speeds };
+            along_temperature(table, quantity, node)
+        };
+        let cells = Quantity::ALL
+            .map(|quantity| table.has(quantity).then(|| (0..loads * speeds).map(|i| cell(quantity, i)).collect()));
+        let row = Series { values: vec![0.0; speeds], slopes: vec![0.0; speeds] };
+        let mut law = Self {
             nominal_area: table.load.area(),
             rest_separation: table.rest_separation,
-            speed_range: (grid.speeds[0], grid.speeds[grid.speeds.len() - 1]),
-            speeds,
+            temperatures: grid.temperatures.clone(),
+            rows: Quantity::ALL.map(|quantity| table.has(quantity).then(|| vec![row.clone(); loads])),
+            cells,
+            speed_range: (grid.speeds[0], grid.speeds[speeds - 1]),
+            speeds: grid.speeds.iter().map(|speed| speed.ln()).collect(),
             pressures: grid.loads.iter().map(|pressure| pressure.ln()).collect(),
             load: table.load,
-            largest_pressure: grid.loads[grid.loads.len() - 1],
-            rows,
+            largest_pressure: grid.loads[loads - 1],
+        };
+        law.set_temperature(temperature);
+        law
+    }
+
+    /// Changes the temperature, K; allocates nothing.
+    pub(super) fn set_temperature(&mut self, kelvin: f64) {
+        let (speeds, temperatures) = (&self.speeds, &self.temperatures);
+        let at = |cell: &Series| match temperatures.len() {
+            0 | 1 => cell.values[0],
+            _ => cell.at(temperatures, interval_of(temperatures, kelvin), kelvin).value,
+        };
+        for (rows, cells) in self.rows.iter_mut().zip(&self.cells) {
+            let (Some(rows), Some(cells)) = (rows, cells) else { continue };
+            for (row, cells) in rows.iter_mut().zip(cells.chunks(speeds.len())) {
+                row.values.iter_mut().zip(cells).for_each(|(value, cell)| *value = at(cell));
+                monotone_slopes(speeds, &row.values, &mut row.slopes);
+            }
         }
+    }
+
+    /// Approaches (m) at which there is no contact at any speed reach up to here.
+    pub(super) fn earliest_touch(&self) -> f64 {
+        let Some(rows) = &self.rows[Quantity::Separation as usize] else { return f64::NEG_INFINITY };
+        let step = self.pressures[1] - self.pressures[0];
+        // Between two speeds a difference of separations is no larger than at one of them.
+        let touch = |j: usize| {
+            let larger = |row: &Series| row.values[j].max(row.values[(j + 1).min(self.speeds.len() - 1)]);
+            let widest = 2.0 * larger(&rows[0]) / (LEAST_END_SLOPE * step);
+            -rows.iter().map(larger).sum::<f64>() - widest
+        };
+        (0..self.speeds.len()).map(touch).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The logarithms of the speeds.
+    pub(super) fn speeds(&self) -> &[f64] {
+        &self.speeds
     }
 
     /// Writes the values of a quantity at all pressures, at a speed between those of the table.
@@ -106,15 +148,11 @@ fn interpolated(table: &Table, quantity: Quantity, node: Node) -> f64 {
     }
 }
 
-/// The same at a temperature between those of the table, whatever that of `node` is.
-fn at_temperature(table: &Table, quantity: Quantity, node: Node, kelvin: f64) -> f64 {
+/// The same at all temperatures of the table, whatever that of `node` is.
+fn along_temperature(table: &Table, quantity: Quantity, node: Node) -> Series {
     let temperatures = &table.grid.temperatures;
     let of = |temperature| interpolated(table, quantity, Node { temperature, ..node });
-    if temperatures.len() < 2 {
-        return of(0);
-    }
-    let series = Series::new(temperatures, (0..temperatures.len()).map(of).collect());
-    series.at(temperatures, interval_of(temperatures, kelvin), kelvin).value
+    Series::new(temperatures, (0..temperatures.len().max(1)).map(of).collect())
 }
 
 #[derive(Clone, Debug)]
@@ -172,6 +210,11 @@ impl Curve {
         self.divide();
     }
 
+    /// The law has changed: the speed set next is computed even if it is the present one.
+    pub(super) fn forget_speed(&mut self) {
+        self.speed = f64::NAN;
+    }
+
     fn find_approaches(&mut self) {
         let Some(differences) = &self.columns[Quantity::Separation as usize] else { return };
         let mut separation = 0.0;
@@ -210,6 +253,16 @@ impl Curve {
             let next = self.ends.partition_point(|&end| end < approach);
             if next == 0 { f64::NEG_INFINITY } else { self.ends[next - 1] }
         }
+    }
+
+    /// y = ln p at the pressures, the approaches (m) there and dy/da (1/m).
+    pub(super) fn points(&self) -> [&[f64]; 3] {
+        [&self.pressures, &self.approaches, &self.slopes]
+    }
+
+    /// The values of a quantity at the pressures and its slopes over y, where the table has it.
+    pub(super) fn column(&self, quantity: Quantity) -> Option<[&[f64]; 2]> {
+        self.columns[quantity as usize].as_ref().map(|column| [&column.values[..], &column.slopes])
     }
 
     /// The approach at the largest pressure of the table, m.

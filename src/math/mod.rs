@@ -2,6 +2,7 @@
 
 mod fourier;
 mod monotone;
+mod number;
 mod quintic;
 mod random;
 mod relaxation;
@@ -12,6 +13,7 @@ mod tridiagonal;
 
 pub use fourier::{Direction, fourier};
 pub use monotone::{Expansion, cubic, interval_of, monotone_slopes};
+pub use number::{Dual, Number};
 pub use quintic::{Jet, Quintic};
 pub use random::SplitMix64;
 pub use relaxation::Relaxation;

@@ -10,6 +10,7 @@ mod foundation;
 mod html;
 mod material;
 mod pack;
+mod patch;
 mod persson;
 mod report;
 mod result_file;
@@ -28,7 +29,7 @@ use cli::Command;
 /// Executes the command of the command line.
 pub(crate) fn run(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
     match arguments.command {
-        Command::Simulate(command) => simulate::simulate(&command)?,
+        Command::Simulate(command) => run_simulate(&command)?,
         Command::Converge(command) => return Ok(converge::converge(&command)?),
         Command::Plot(command) => figure::plot_files(&command)?,
         Command::Describe(command) => describe::describe(&command)?,
@@ -40,4 +41,15 @@ pub(crate) fn run(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
         Command::Sweep(command) => sweep::sweep(&command)?,
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// A scene along its excitation, or a patch along a motion file.
+fn run_simulate(command: &cli::Simulate) -> Result<(), Box<dyn Error>> {
+    match (&command.scene, &command.patch, &command.motion) {
+        (Some(scene), _, _) => simulate::simulate(command, scene)?,
+        (None, Some(patch), Some(motion)) => patch::simulate(command, patch, motion)?,
+        // The command line has a scene, or a patch and its motion.
+        (None, _, _) => (),
+    }
+    Ok(())
 }

@@ -78,7 +78,8 @@ impl ResultWriter {
     }
 }
 
-fn field(kind: Kind, value: f64) -> String {
+/// A value as files have it.
+pub(crate) fn field(kind: Kind, value: f64) -> String {
     match kind {
         Kind::Real => real(value),
         Kind::Integer => format!("{value:.0}"),
@@ -127,6 +128,16 @@ impl CsvFile {
             name: name.to_owned(),
             columns: self.names.clone(),
         })
+    }
+
+    /// The names of the columns.
+    pub(crate) fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// The error `message` about the names of the columns.
+    pub(crate) fn header_error(&self, message: String) -> ResultFileError {
+        ResultFileError::Line { path: self.path.clone(), line: 1, message }
     }
 
     pub(crate) fn records(&self) -> &[Record] {

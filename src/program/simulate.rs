@@ -1,6 +1,6 @@
 //! `asperity simulate`: runs a scene along its excitation and writes a result file.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use asperity::outputs::{Snapshot, Variable, variables};
 use asperity::scene::Scene;
@@ -26,10 +26,10 @@ pub(crate) enum SimulateError {
 }
 
 /// Runs the scene, writes the rows and draws the plot.
-pub(crate) fn simulate(command: &Simulate) -> Result<(), SimulateError> {
-    let mut scene = load(&command.scene)?;
+pub(crate) fn simulate(command: &Simulate, path: &Path) -> Result<(), SimulateError> {
+    let mut scene = load(path)?;
     set_parameters(&mut scene, &command.set)?;
-    check_outputs([&command.output].into_iter().chain(&command.plot), sources(&command.scene, &scene))?;
+    check_outputs([&command.output].into_iter().chain(&command.plot), sources(path, &scene))?;
     if scene.excitation.is_empty() {
         warn("the scene has no [[excitation]]: the carrier rests, and the result file has the initial row only");
     }

@@ -1,12 +1,16 @@
 //! The keys of a scene file: the one table of their names, of what they may hold and of what they mean. The reader
 //! checks scenes against it, and the parameters of an FMU take their ranges, units and descriptions from it.
 
+mod patch;
+
 use std::fmt;
 
 use super::values::{ANY, NOT_NEGATIVE, NumberRange, POSITIVE, WholeRange, Word, words};
 use super::{
     Extrapolation, FoundationKind, Initial, LengthUnit, Method, Missing, OutputGroup, ThirdColumn, Tilt, Unit,
 };
+
+pub(super) use patch::{AREA, COORDINATE, PATCH_ROOT, REFINE, ShapeKind};
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Key {

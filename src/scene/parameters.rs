@@ -79,8 +79,10 @@ pub enum Parameter {
     MaxSteps,
     /// `input.extrapolation`
     Extrapolation,
-    /// `table.extrapolation`, of an element from a table
+    /// `table.extrapolation`, of an element from a table and of a patch
     TableExtrapolation,
+    /// `solver.refine`, of a patch
+    Refine,
 }
 
 /// A parameter's value.
@@ -142,6 +144,7 @@ impl Parameter {
             Self::MaxSteps => "solver.max_steps",
             Self::Extrapolation => "input.extrapolation",
             Self::TableExtrapolation => "table.extrapolation",
+            Self::Refine => "solver.refine",
         };
         name.to_owned()
     }
@@ -149,6 +152,7 @@ impl Parameter {
     fn key(self) -> &'static Key {
         match self {
             Self::TableExtrapolation => &keys::TABLE_EXTRAPOLATION,
+            Self::Refine => &keys::REFINE,
             _ => keys::at(&self.name()).unwrap_or(&keys::NONE),
         }
     }
@@ -218,7 +222,7 @@ macro_rules! field {
             RelativeTolerance => Some(&$($mut)? scene.solver.relative_tolerance),
             // They follow others until they are set: see `real` and `write_real`.
             CreepSpeed | AbsoluteTolerance => None,
-            Initial | Method | MaxSteps | Extrapolation | TableExtrapolation => None,
+            Initial | Method | MaxSteps | Extrapolation | TableExtrapolation | Refine => None,
         }
     }};
 }

@@ -126,6 +126,14 @@ pub enum Unit {
     Joule,
     /// W.
     Watt,
+    /// rad.
+    Radian,
+    /// N m.
+    NewtonMeter,
+    /// N/rad.
+    NewtonPerRadian,
+    /// N m/rad.
+    NewtonMeterPerRadian,
 }
 
 impl Unit {
@@ -157,6 +165,10 @@ impl Unit {
             Self::PascalSecond => ("Pa.s", [1, -1, -1, 0]),
             Self::Joule => ("J", [1, 2, -2, 0]),
             Self::Watt => ("W", [1, 2, -3, 0]),
+            Self::Radian => ("rad", [0, 0, 0, 0]),
+            Self::NewtonMeter => ("N.m", [1, 2, -2, 0]),
+            Self::NewtonPerRadian => ("N/rad", [1, 1, -2, 0]),
+            Self::NewtonMeterPerRadian => ("N.m/rad", [1, 2, -2, 0]),
         }
     }
 }

@@ -19,6 +19,7 @@ mod foundation;
 mod invariants;
 mod kernels;
 mod leaving_out;
+mod patch;
 mod reduce;
 mod reference;
 mod rows;

@@ -50,15 +50,23 @@ pub(crate) enum Command {
 }
 
 #[derive(Debug, Args)]
+#[command(group(ArgGroup::new("simulated").required(true).args(["scene", "patch"])))]
 pub(crate) struct Simulate {
     /// The scene file.
     #[arg(value_name = "SCENE.toml")]
-    pub(crate) scene: PathBuf,
+    pub(crate) scene: Option<PathBuf>,
+    /// A patch file: moves a contact patch along the motion instead.
+    #[arg(long, value_name = "PATCH.toml", requires = "motion")]
+    pub(crate) patch: Option<PathBuf>,
+    /// The motion of the patch: columns time, x, y, z, roll, pitch, yaw, with a tread transport.speed, and temperature;
+    /// one step from row to row.
+    #[arg(long, value_name = "MOTION.csv", requires = "patch")]
+    pub(crate) motion: Option<PathBuf>,
     /// The result file to write.
     #[arg(short, long, value_name = "OUT.csv")]
     pub(crate) output: PathBuf,
     /// Number of result rows for each phase of the excitation.
-    #[arg(long, value_name = "N", default_value_t = 50, value_parser = count)]
+    #[arg(long, value_name = "N", default_value_t = 50, value_parser = count, conflicts_with = "patch")]
     pub(crate) points: u32,
     /// Overrides a parameter of the scene, such as solver.relative_tolerance=1e-9. May be repeated.
     #[arg(long, value_name = "KEY=VALUE", value_parser = key_and_value)]

@@ -4,6 +4,7 @@ mod axis;
 mod chart;
 mod ladders;
 mod panels;
+mod patch;
 mod plot;
 
 use std::convert::Infallible;
@@ -20,6 +21,7 @@ use plotters_backend::{BackendColor, BackendCoord, BackendStyle, BackendTextStyl
 pub(crate) use chart::{Curve, Stroke};
 pub(crate) use ladders::{Ladder, LadderPanel, Ladders, Rung};
 pub(crate) use panels::{History, Panel, ProfilePicture, SideBySide, Stacked};
+pub(crate) use patch::PatchHistory;
 pub(crate) use plot::{PlotError, plot_files};
 
 use super::files::{self, FileError, ends_in};

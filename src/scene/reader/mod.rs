@@ -1,5 +1,6 @@
 //! From TOML text to a [`Scene`].
 
+mod patch;
 mod surface;
 mod table;
 
@@ -7,6 +8,7 @@ use std::fs;
 use std::path::Path as FilePath;
 
 use super::keys::Form;
+use super::values::Word;
 use super::{
     Extrapolation, Foundation, FoundationKind, Friction, Initial, Layer, Link, Material, MaxwellElement, OutputGroup,
     Path, Phase, PronyTerm, RateShear, RealArea, Scene, SceneError, Solver, Surface, Wlf, warnings,
@@ -252,10 +254,13 @@ fn default_outputs() -> Vec<OutputGroup> {
     vec![OutputGroup::Forces, OutputGroup::Dissipation]
 }
 
-/// The groups in the order of the variables, whatever their order in the scene.
 fn read_fmu(table: &mut TableReader<'_>) -> Result<Vec<OutputGroup>> {
-    let Some(entry) = table.entry("outputs") else { return Ok(default_outputs()) };
-    let mut groups: Vec<OutputGroup> = Vec::new();
+    table.entry("outputs").map_or_else(|| Ok(default_outputs()), |entry| read_groups(&entry))
+}
+
+/// The groups in the order of the variables, whatever their order in the file.
+fn read_groups<G: Word + Ord>(entry: &Entry<'_>) -> Result<Vec<G>> {
+    let mut groups: Vec<G> = Vec::new();
     for element in entry.elements()? {
         let group = element.choice()?;
         if groups.contains(&group) {

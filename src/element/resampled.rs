@@ -1,0 +1,303 @@
+//! The law of an element, per unit area and precomputed along the speed: for many elements of different speeds.
+//!
+//! Between two speeds of the table ln v is divided into even intervals. At four speeds of each the law is a [`Curve`];
+//! the coefficients of its cubics over the approach and over ln p are interpolated by cubics of ln v. So an evaluation
+//! takes one logarithm, one exponential and cubics, no division. Intervals are computed when they are first needed at a
+//! temperature.
+
+use super::law::{Curve, Law};
+use super::table::Table;
+use super::table_format::Quantity;
+use crate::math::Number;
+
+/// Intervals between two speeds of a table.
+///
+/// What the table gives is a cubic there and is met exactly; slopes along the pressure are not, to 1e-6 with so many.
+const INTERVALS: usize = 12;
+
+/// Most bins in which the place of a speed among those of the table is looked up.
+const MOST_BINS: f64 = 1e5;
+
+/// Coefficients of a piece, and how many numbers are kept: a multiple of what a processor takes at once.
+const COEFFICIENTS: usize = 13;
+const PADDED: usize = 16;
+
+/// The law at one speed and approach, of numbers or of numbers with their derivatives.
+#[derive(Clone, Copy, Debug)]
+pub struct LawPoint<T> {
+    /// ln p limited to the pressures of the table, p in Pa.
+    pub log_pressure: T,
+    /// What e to that power is multiplied with: other than 1 beyond the pressures of the table, 0 without contact.
+    pub factor: T,
+    /// Friction coefficient, 1.
+    pub friction: T,
+    /// Tangential stiffness per area, N/m³.
+    pub stiffness: T,
+}
+
+impl<T: Number> LawPoint<T> {
+    /// p, Pa.
+    #[inline(always)]
+    pub fn pressure(&self) -> T {
+        self.log_pressure.exp() * self.factor
+    }
+}
+
+/// The law between two pressures of the table: the approach where it begins, ln p over the approach from there, μ and κ
+/// over ln p from there. Above the last pressure: constants, and the slope of ln p. By power of the share of the interval.
+type Piece = [[f64; PADDED]; 4];
+
+/// Of the same piece hysteresis and contact ratio over ln p.
+type Shares = [[f64; 8]; 4];
+
+/// Where a speed lies: an interval, and the share of it as a straight function of ln v.
+#[derive(Clone, Copy, Debug)]
+pub struct Spot {
+    interval: usize,
+    /// ln v where the interval begins, and intervals per unit of ln v.
+    start: f64,
+    density: f64,
+}
+
+/// The precomputed law of a table at one temperature.
+#[derive(Clone, Debug)]
+pub struct ResampledLaw {
+    law: Law,
+    curve: Curve,
+    temperature: f64,
+    /// The area that a layer stands for, m².
+    area: f64,
+    /// ln p at the pressures, p in Pa.
+    log_pressures: Vec<f64>,
+    /// Of the table, as logarithms.
+    speeds: Vec<f64>,
+    /// Even bins of ln v: the last speed of the table at or below where each begins; at most one more lies in it.
+    bins: Vec<u32>,
+    bin_density: f64,
+    /// By interval and pressure the approaches at both ends, m.
+    approaches: Vec<[f64; 2]>,
+    /// By interval and pressure.
+    pieces: Vec<Piece>,
+    shares: Vec<Shares>,
+    /// By interval the temperature's count at which it was computed.
+    computed: Vec<u32>,
+    temperatures: u32,
+    earliest_touch: f64,
+}
+
+impl ResampledLaw {
+    /// The law of `table` at `temperature` (K), of a layer that stands for `area` (m²).
+    pub fn new(table: &Table, area: f64, temperature: f64) -> Self {
+        let law = Law::new(table, temperature);
+        let curve = Curve::new(&law, 0.0);
+        let shift = (table.load.area() / area).ln();
+        let speeds = law.speeds().to_vec();
+        let (bins, bin_density) = bins(&speeds);
+        let (intervals, pressures) = ((speeds.len() - 1).max(1) * INTERVALS, table.grid.loads.len());
+        Self {
+            temperature,
+            area,
+            log_pressures: curve.points()[0].iter().map(|y| y + shift).collect(),
+            speeds,
+            bins,
+            bin_density,
+            approaches: vec![[0.0; 2]; intervals * pressures],
+            pieces: vec![[[0.0; PADDED]; 4]; intervals * pressures],
+            shares: vec![[[0.0; 8]; 4]; intervals * pressures],
+            computed: vec![0; intervals],
+            temperatures: 1,
+            earliest_touch: law.earliest_touch(),
+            law,
+            curve,
+        }
+    }
+
+    /// The temperature, K.
+    pub fn temperature(&self) -> f64 {
+        self.temperature
+    }
+
+    /// Changes the temperature, K; allocates nothing.
+    pub fn set_temperature(&mut self, kelvin: f64) {
+        if kelvin == self.temperature {
+            return;
+        }
+        self.temperature = kelvin;
+        self.law.set_temperature(kelvin);
+        self.curve.forget_speed();
+        self.temperatures = self.temperatures.wrapping_add(1);
+        self.earliest_touch = self.law.earliest_touch();
+    }
+
+    /// Up to this approach (m) there is no contact at any speed.
+    pub fn earliest_touch(&self) -> f64 {
+        self.earliest_touch
+    }
+
+    /// The least and the largest speed of the table, m/s.
+    pub fn speed_range(&self) -> (f64, f64) {
+        self.law.speed_range
+    }
+
+    /// The largest pressure of the table, Pa.
+    pub fn largest_pressure(&self) -> f64 {
+        self.log_pressures.last().map_or(0.0, |y| y.exp())
+    }
+
+    /// ln v of a speed (m/s), limited to those of the table.
+    #[inline(always)]
+    pub fn log_speed<T: Number>(&self, speed: T) -> T {
+        let (least, largest) = self.law.speed_range;
+        let (first, last) = (self.speeds[0], self.speeds[self.speeds.len() - 1]);
+        let speed = speed.larger(T::constant(least)).smaller(T::constant(largest));
+        // Rounding may lead out again.
+        speed.ln().larger(T::constant(first)).smaller(T::constant(last))
+    }
+
+    /// The interval of a [`log_speed`](Self::log_speed), computed if it was not yet.
+    #[inline(always)]
+    pub fn spot(&mut self, log_speed: f64) -> Spot {
+        let last = self.speeds.len() - 1;
+        let spot = if last == 0 {
+            Spot { interval: 0, start: log_speed, density: 0.0 }
+        } else {
+            let bin = ((log_speed - self.speeds[0]) * self.bin_density) as usize;
+            let below = self.bins[bin.min(self.bins.len() - 1)] as usize;
+            let below = (below + usize::from(log_speed >= self.speeds[below + 1])).min(last - 1);
+            let (from, to) = (self.speeds[below], self.speeds[below + 1]);
+            let density = INTERVALS as f64 / (to - from);
+            let interval = (((log_speed - from) * density) as usize).min(INTERVALS - 1);
+            Spot { interval: below * INTERVALS + interval, start: from + interval as f64 / density, density }
+        };
+        if self.computed[spot.interval] != self.temperatures {
+            self.compute(&spot);
+        }
+        spot
+    }
+
+    #[cold]
+    fn compute(&mut self, spot: &Spot) {
+        let width = if spot.density > 0.0 { 1.0 / spot.density } else { 0.0 };
+        let pressures = self.log_pressures.len();
+        let rows = spot.interval * pressures..(spot.interval + 1) * pressures;
+        self.pieces[rows.clone()].fill([[0.0; PADDED]; 4]);
+        self.shares[rows].fill([[0.0; 8]; 4]);
+        for (sample, weights) in LAGRANGE.iter().enumerate() {
+            self.curve.set_speed(&self.law, (spot.start + width * sample as f64 / 3.0).exp());
+            (0..pressures).for_each(|i| self.add_sample(spot.interval * pressures + i, i, sample, weights));
+        }
+        self.computed[spot.interval] = self.temperatures;
+    }
+
+    /// Adds one of the four samples of an interval to the piece `row`, which begins at pressure `i`.
+    fn add_sample(&mut self, row: usize, i: usize, sample: usize, weights: &[f64; 4]) {
+        let [_, approaches, slopes] = self.curve.points();
+        let along = |quantity| cubic_over(&self.log_pressures, self.curve.column(quantity), i);
+        let mut now = [0.0; COEFFICIENTS];
+        now[0] = approaches[i];
+        now[1..5].copy_from_slice(&cubic_over(approaches, Some([&self.log_pressures, slopes]), i));
+        now[5..9].copy_from_slice(&along(Quantity::Friction));
+        now[9..13].copy_from_slice(&along(Quantity::Stiffness).map(|k| k / self.area));
+        let shares = [along(Quantity::Hysteresis), along(Quantity::ContactRatio)];
+        for (power, weight) in weights.iter().enumerate() {
+            let piece = &mut self.pieces[row][power];
+            piece.iter_mut().zip(now).for_each(|(sum, value)| *sum += weight * value);
+            let kept = &mut self.shares[row][power];
+            kept.iter_mut().zip(shares.as_flattened()).for_each(|(sum, value)| *sum += weight * value);
+        }
+        if sample == 0 {
+            self.approaches[row][0] = approaches[i];
+        } else if sample + 1 == LAGRANGE.len() {
+            self.approaches[row][1] = approaches[i];
+        }
+    }
+
+    /// The index of the piece at an approach: near the ends of pieces one or the other, which agree there.
+    #[inline(always)]
+    fn piece_at(&self, interval: usize, share: f64, approach: f64) -> usize {
+        let n = self.log_pressures.len();
+        let rows = &self.approaches[interval * n..(interval + 1) * n];
+        rows.iter().skip(1).map(|[l, r]| usize::from(approach >= l + share * (r - l))).sum()
+    }
+
+    /// The coefficients of a piece at a share of the interval.
+    #[inline(always)]
+    fn coefficients<T: Number>(&self, interval: usize, share: T, piece: usize) -> [T; PADDED] {
+        let powers = &self.pieces[interval * self.log_pressures.len() + piece];
+        let at = |power: usize, k: usize| T::constant(powers[power][k]);
+        std::array::from_fn(|k| at(0, k) + share * (at(1, k) + share * (at(2, k) + share * at(3, k))))
+    }
+
+    /// The law at a [`log_speed`](Self::log_speed), whose [`spot`](Self::spot) is given, and an approach (m).
+    #[inline(always)]
+    pub fn at<T: Number>(&self, spot: &Spot, log_speed: T, approach: T) -> LawPoint<T> {
+        let share = (log_speed - T::constant(spot.start)).times(spot.density);
+        let i = self.piece_at(spot.interval, share.value(), approach.value());
+        let c = self.coefficients(spot.interval, share, i);
+        let from = approach - c[0];
+        let y = self.log_pressures[i];
+        if i + 1 == self.log_pressures.len() {
+            let factor = T::constant(1.0) + from * c[2];
+            LawPoint { log_pressure: T::constant(y), factor, friction: c[5], stiffness: c[9] }
+        } else if from.value() < 0.0 {
+            let root = (T::constant(1.0) + (from * c[2]).times(0.5)).larger(T::constant(0.0));
+            let factor = root * root;
+            LawPoint { log_pressure: T::constant(y), factor, friction: c[5], stiffness: c[9] * factor }
+        } else {
+            let log_pressure = c[1] + from * (c[2] + from * (c[3] + from * c[4]));
+            let t = log_pressure - T::constant(y);
+            let along = |c: &[T]| c[0] + t * (c[1] + t * (c[2] + t * c[3]));
+            LawPoint { log_pressure, factor: T::constant(1.0), friction: along(&c[5..9]), stiffness: along(&c[9..13]) }
+        }
+    }
+
+    /// The approaches (m) at a speed where the contact begins and where it reaches the least pressure of the table.
+    pub fn beginning<T: Number>(&self, spot: &Spot, log_speed: T) -> (T, T) {
+        let share = (log_speed - T::constant(spot.start)).times(spot.density);
+        let c = self.coefficients(spot.interval, share, 0);
+        (c[0] - T::constant(2.0) / c[2], c[0])
+    }
+
+    /// The share of hysteresis in the friction coefficient, and the contact ratio, at a speed and an approach (m).
+    pub fn shares(&self, spot: &Spot, log_speed: f64, approach: f64) -> (f64, f64) {
+        let share = (log_speed - spot.start) * spot.density;
+        let i = self.piece_at(spot.interval, share, approach);
+        let point = self.at(spot, log_speed, approach);
+        let t = point.log_pressure - self.log_pressures[i];
+        let powers = &self.shares[spot.interval * self.log_pressures.len() + i];
+        let at = |k: usize| (0..4).rev().fold(0.0, |sum, power| sum * share + powers[power][k]);
+        let along = |first: usize| (0..4).rev().fold(0.0, |sum, k| sum * t + at(first + k));
+        let (hysteresis, ratio) = (along(0), along(4) * point.factor.min(1.0));
+        (if point.friction > 0.0 { hysteresis / point.friction } else { 0.0 }, ratio)
+    }
+}
+
+/// The polynomials that are 1 at one of 0, 1/3, 2/3 and 1, and 0 at the others, by power.
+const LAGRANGE: [[f64; 4]; 4] =
+    [[1.0, -5.5, 9.0, -4.5], [0.0, 9.0, -22.5, 13.5], [0.0, -4.5, 18.0, -13.5], [0.0, 1.0, -4.5, 4.5]];
+
+/// Bins over the logarithms of the speeds, none wider than the narrowest step, and how many there are per unit.
+fn bins(speeds: &[f64]) -> (Vec<u32>, f64) {
+    let range = speeds[speeds.len() - 1] - speeds[0];
+    if range <= 0.0 {
+        return (vec![0], 0.0);
+    }
+    let narrowest = speeds.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+    let count = (range / narrowest).ceil().min(MOST_BINS);
+    let start = |bin: usize| speeds[0] + range * bin as f64 / count;
+    let below = |bin: usize| speeds.partition_point(|&speed| speed <= start(bin)).clamp(1, speeds.len() - 1) - 1;
+    ((0..count as usize).map(|bin| below(bin) as u32).collect(), count / range)
+}
+
+/// The coefficients of the cubic that follows point `i` of a column over `x`, from there; after the last point its value
+/// and its slope. 0 where there is no column.
+fn cubic_over(x: &[f64], column: Option<[&[f64]; 2]>, i: usize) -> [f64; 4] {
+    let Some([values, slopes]) = column else { return [0.0; 4] };
+    if i + 1 == x.len() {
+        return [values[i], slopes[i], 0.0, 0.0];
+    }
+    let h = x[i + 1] - x[i];
+    let secant = (values[i + 1] - values[i]) / h;
+    let quadratic = (3.0 * secant - 2.0 * slopes[i] - slopes[i + 1]) / h;
+    [values[i], slopes[i], quadratic, (slopes[i] + slopes[i + 1] - 2.0 * secant) / (h * h)]
+}

@@ -1,0 +1,456 @@
+//! A block of elements that a step is done for together: structure of arrays, loops without branches where it can be.
+
+use super::cut::{End, half_turn, pass_in_pieces, size};
+use super::face::{Column, Face};
+use super::motion::{Instant, Parts, Path, Run};
+use super::spring::{Hold, Piece, leap, pass};
+use crate::element::ResampledLaw;
+use crate::math::Number;
+
+/// Elements of a block.
+pub(super) const BLOCK: usize = 64;
+
+/// e^½: an element whose pressure changes by a larger factor in a part is cut for itself.
+const LARGEST_RATIO: f64 = 1.648_721_270_700_128_2;
+
+type Lanes<T> = [T; BLOCK];
+
+/// A step of the whole patch.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Step<'a, T> {
+    pub(super) face: &'a Face,
+    pub(super) path: Path<T>,
+    pub(super) run: Run,
+    pub(super) parts: Parts,
+    /// The velocity at which the tread runs, m/s.
+    pub(super) tread_speed: f64,
+}
+
+/// What the blocks add up to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sums<T> {
+    /// Force (N) and moment (N m) on the body at the end, in the ground's axes about the pose's point.
+    pub(super) wrench: [T; 6],
+    /// Force on the tread, N.
+    pub(super) transport: T,
+    /// Lost in the step by slip and by release, J.
+    pub(super) slip: f64,
+    pub(super) release: f64,
+    /// The first element found beyond the table.
+    pub(super) beyond: Option<Beyond>,
+}
+
+/// An element beyond the table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Beyond {
+    /// As it is counted in the step.
+    pub(super) element: usize,
+    /// Of the step.
+    pub(super) share: f64,
+    /// Pa.
+    pub(super) pressure: f64,
+    /// m/s.
+    pub(super) speed: f64,
+    /// Whether it is the speed that is beyond.
+    pub(super) by_speed: bool,
+}
+
+impl<T> Step<'_, T> {
+    /// The index of the first element of the step as elements were counted before it, the number of elements, and by how
+    /// much indices grow.
+    pub(super) fn elements(&self) -> (isize, usize, isize) {
+        match self.face {
+            Face::Points(_) => (0, self.face.count(), 0),
+            Face::Tread(tread) => {
+                let (rows, (first, columns)) = (tread.rows.len(), tread.columns_of(self.run));
+                let indices = |columns: f64| columns as isize * rows as isize;
+                (indices(first), columns * rows, indices(self.run.entered()))
+            }
+        }
+    }
+
+    /// Whether some of the `count` elements from `start` on are on the face in a part.
+    #[inline(always)]
+    fn is_inside(&self, start: usize, count: usize, (from, to): (f64, f64)) -> bool {
+        let Face::Tread(tread) = self.face else { return true };
+        let (rows, first) = (tread.rows.len(), tread.columns_of(self.run).0);
+        let [front, rear] = [start, start + count - 1].map(|element| first + (element / rows) as f64);
+        let (least, most) = (self.run.at(from), self.run.at(to));
+        // Column i is inside while it and the cells that have entered are between 0 and one more than the columns.
+        rear + least.max(most) > 0.0 && front + least.min(most) < tread.columns as f64 + 1.0
+    }
+}
+
+impl<T: Number> Sums<T> {
+    pub(super) fn zero() -> Self {
+        let zero = T::constant(0.0);
+        Self { wrench: [zero; 6], transport: zero, slip: 0.0, release: 0.0, beyond: None }
+    }
+
+    /// The same without derivatives.
+    pub(super) fn plain(&self) -> Sums<f64> {
+        let Self { wrench, transport, slip, release, beyond } = *self;
+        Sums { wrench: wrench.map(T::value), transport: transport.value(), slip, release, beyond }
+    }
+}
+
+/// The elements at an instant: where they are and the law there.
+#[derive(Clone, Debug)]
+struct Side<T> {
+    /// Positions in the body's axes, m.
+    place: [Lanes<f64>; 3],
+    /// Of a tread: the direction of the arc in x and z, and where on it the middle is, m.
+    direction: [Lanes<f64>; 2],
+    arc: Lanes<f64>,
+    /// m².
+    area: Lanes<f64>,
+    /// From the pose's point, in the ground's axes, m.
+    arm: [Lanes<T>; 3],
+    /// Of a tread: the direction of the arc in the ground's axes.
+    along: [Lanes<T>; 3],
+    approach: Lanes<T>,
+    velocity: [Lanes<T>; 2],
+    log_speed: Lanes<T>,
+    pressure: Lanes<T>,
+    limit: Lanes<T>,
+    stiffness: Lanes<T>,
+}
+
+/// The workspace of a block.
+#[derive(Clone, Debug)]
+pub(super) struct Block<T> {
+    /// The first element as it is counted in the step, and how many there are.
+    start: usize,
+    count: usize,
+    /// G, N.
+    pub(super) force: [Lanes<T>; 2],
+    /// K, N/m.
+    pub(super) stiffness: Lanes<T>,
+    /// As of [`modes`](super::run).
+    pub(super) mode: Lanes<u8>,
+    begin: Box<Side<T>>,
+    end: Box<Side<T>>,
+    slips: Lanes<bool>,
+    slip: Lanes<f64>,
+    release: Lanes<f64>,
+}
+
+impl<T: Number> Side<T> {
+    fn new() -> Self {
+        let zero = [T::constant(0.0); BLOCK];
+        Self {
+            place: [[0.0; BLOCK]; 3],
+            direction: [[0.0; BLOCK]; 2],
+            arc: [0.0; BLOCK],
+            area: [0.0; BLOCK],
+            arm: [zero; 3],
+            along: [zero; 3],
+            approach: zero,
+            velocity: [zero; 2],
+            log_speed: zero,
+            pressure: zero,
+            limit: zero,
+            stiffness: zero,
+        }
+    }
+
+    /// Places the elements from `start` on when `entered` cells of a tread have entered since the start of the step.
+    #[inline(always)]
+    fn place(&mut self, step: &Step<'_, T>, start: usize, count: usize, entered: f64) {
+        match step.face {
+            Face::Points(points) => {
+                let range = start..start + count;
+                let [x, y, z] = &mut self.place;
+                x[..count].copy_from_slice(&points.x[range.clone()]);
+                y[..count].copy_from_slice(&points.y[range.clone()]);
+                z[..count].copy_from_slice(&points.z[range.clone()]);
+                self.area[..count].copy_from_slice(&points.area[range]);
+                self.area[count..].fill(0.0);
+            }
+            Face::Tread(tread) => {
+                let (rows, first) = (tread.rows.len(), tread.columns_of(step.run).0);
+                let mut column = Column::default();
+                self.area[count..].fill(0.0);
+                for i in 0..count {
+                    let row = (start + i) % rows;
+                    if i == 0 || row == 0 {
+                        column = tread.column(first + ((start + i) / rows) as f64, entered);
+                    }
+                    let Column { arc, place: [x, z], direction, share } = column;
+                    (self.place[0][i], self.place[1][i], self.place[2][i]) = (x, tread.rows[row], z);
+                    (self.direction[0][i], self.direction[1][i]) = (direction[0], direction[1]);
+                    (self.arc[i], self.area[i]) = (arc, tread.area * share);
+                }
+            }
+        }
+    }
+
+    /// Moves the elements to an instant.
+    #[inline(always)]
+    fn move_to(&mut self, now: &Instant<T>, tread: Option<f64>) {
+        for i in 0..BLOCK {
+            let arm = now.turned([self.place[0][i], self.place[1][i], self.place[2][i]]);
+            let velocity = now.velocity(arm);
+            self.approach[i] = -(now.height + arm[2]);
+            (self.arm[0][i], self.arm[1][i], self.arm[2][i]) = (arm[0], arm[1], arm[2]);
+            (self.velocity[0][i], self.velocity[1][i]) = (velocity[0], velocity[1]);
+        }
+        let Some(speed) = tread else { return };
+        for i in 0..BLOCK {
+            let along = now.turned([self.direction[0][i], 0.0, self.direction[1][i]]);
+            (self.along[0][i], self.along[1][i], self.along[2][i]) = (along[0], along[1], along[2]);
+            self.velocity[0][i] = self.velocity[0][i] - along[0].times(speed);
+            self.velocity[1][i] = self.velocity[1][i] - along[1].times(speed);
+        }
+    }
+
+    /// Whether no element can be in contact.
+    #[inline(always)]
+    fn is_free(&self, law: &ResampledLaw) -> bool {
+        let touch = law.earliest_touch();
+        self.approach.iter().fold(f64::NEG_INFINITY, |most, a| if a.value() > most { a.value() } else { most }) <= touch
+    }
+
+    /// Looks the law up.
+    #[inline(always)]
+    fn look_up(&mut self, law: &mut ResampledLaw) {
+        for i in 0..BLOCK {
+            self.log_speed[i] = law.log_speed(size([self.velocity[0][i], self.velocity[1][i]]));
+        }
+        let mut factor = [T::constant(0.0); BLOCK];
+        let mut friction = factor;
+        for i in 0..BLOCK {
+            let spot = law.spot(self.log_speed[i].value());
+            let point = law.at(&spot, self.log_speed[i], self.approach[i]);
+            (self.pressure[i], factor[i]) = (point.log_pressure, point.factor);
+            (friction[i], self.stiffness[i]) = (point.friction, point.stiffness);
+        }
+        for i in 0..BLOCK {
+            let pressure = self.pressure[i].exp() * factor[i];
+            self.pressure[i] = pressure;
+            self.limit[i] = (pressure * friction[i]).times(self.area[i]);
+            self.stiffness[i] = self.stiffness[i].times(self.area[i]);
+        }
+    }
+
+    fn let_go(&mut self) {
+        let zero = [T::constant(0.0); BLOCK];
+        (self.pressure, self.limit, self.stiffness) = (zero, zero, zero);
+    }
+
+    #[inline(always)]
+    fn hold(&self, i: usize) -> Hold<T> {
+        Hold { stiffness: self.stiffness[i], limit: self.limit[i] }
+    }
+
+    fn end(&self, i: usize) -> End<T> {
+        End { approach: self.approach[i], velocity: [self.velocity[0][i], self.velocity[1][i]], area: self.area[i] }
+    }
+}
+
+impl<T: Number> Block<T> {
+    pub(super) fn new() -> Self {
+        let zero = [T::constant(0.0); BLOCK];
+        Self {
+            start: 0,
+            count: 0,
+            force: [zero; 2],
+            stiffness: zero,
+            mode: [0; BLOCK],
+            begin: Box::new(Side::new()),
+            end: Box::new(Side::new()),
+            slips: [false; BLOCK],
+            slip: [0.0; BLOCK],
+            release: [0.0; BLOCK],
+        }
+    }
+
+    /// Turns to the `count` elements from `start` on, as they are counted in the step; their springs are set afterwards.
+    pub(super) fn turn_to(&mut self, start: usize, count: usize) {
+        (self.start, self.count) = (start, count);
+        let zero = [T::constant(0.0); BLOCK];
+        (self.force, self.stiffness) = ([zero; 2], zero);
+        self.slips = [false; BLOCK];
+        (self.slip, self.release) = ([0.0; BLOCK], [0.0; BLOCK]);
+        for side in [&mut self.begin, &mut self.end] {
+            (side.place, side.area) = ([[0.0; BLOCK]; 3], [0.0; BLOCK]);
+            side.let_go();
+        }
+    }
+
+    /// Does the step for the block's elements and adds to the sums.
+    #[inline(always)]
+    pub(super) fn advance(&mut self, step: &Step<'_, T>, law: &mut ResampledLaw, sums: &mut Sums<T>) {
+        let mut now = step.path.at(0.0);
+        let mut stands = false;
+        for (from, to) in step.parts.iter() {
+            if !step.is_inside(self.start, self.count, (from, to)) {
+                stands = false;
+                continue;
+            }
+            if !stands {
+                now = step.path.at(from);
+                self.stand(step, law, &now, from);
+                self.check(law, from, sums);
+                stands = true;
+            }
+            let next = step.path.at(to);
+            std::mem::swap(&mut self.begin, &mut self.end);
+            self.stand(step, law, &next, to);
+            self.pass_part(step, law, (&now, &next), to - from);
+            self.check(law, to, sums);
+            now = next;
+        }
+        self.add_up(step, sums);
+    }
+
+    /// Lets the springs, relaxed, take the stiffness of their contacts at the start of a step.
+    pub(super) fn settle(&mut self, step: &Step<'_, T>, law: &mut ResampledLaw, sums: &mut Sums<T>) {
+        self.stand(step, law, &step.path.at(0.0), 0.0);
+        self.check(law, 0.0, sums);
+        self.stiffness = self.end.stiffness;
+        self.add_up(step, sums);
+    }
+
+    /// Puts the elements where they are after a share of the step: the side `end`.
+    #[inline(always)]
+    fn stand(&mut self, step: &Step<'_, T>, law: &mut ResampledLaw, now: &Instant<T>, share: f64) {
+        let is_tread = matches!(step.face, Face::Tread(_));
+        self.end.place(step, self.start, self.count, step.run.at(share));
+        self.end.move_to(now, is_tread.then_some(step.tread_speed));
+        if self.end.is_free(law) { self.end.let_go() } else { self.end.look_up(law) }
+    }
+
+    /// Takes the springs through a part.
+    #[inline(always)]
+    fn pass_part(
+        &mut self,
+        step: &Step<'_, T>,
+        law: &mut ResampledLaw,
+        (now, next): (&Instant<T>, &Instant<T>),
+        part: f64,
+    ) {
+        let (begin, end) = (&*self.begin, &*self.end);
+        let displacement = self.displacements(step, (now, next), part);
+        for i in 0..BLOCK {
+            let (force, lost) = leap([self.force[0][i], self.force[1][i]], self.stiffness[i], &begin.hold(i));
+            (self.force[0][i], self.force[1][i]) = (force[0], force[1]);
+            self.release[i] += lost;
+        }
+        let before = self.force;
+        for i in 0..BLOCK {
+            let velocity = |side: &Side<T>| [side.velocity[0][i], side.velocity[1][i]];
+            let piece = Piece {
+                begin: begin.hold(i),
+                end: end.hold(i),
+                displacement: [displacement[0][i], displacement[1][i]],
+                half_turn: half_turn(velocity(begin), velocity(end)),
+            };
+            let cut = is_cut(begin.pressure[i].value(), end.pressure[i].value());
+            let passed = pass([self.force[0][i], self.force[1][i]], &piece);
+            (self.force[0][i], self.force[1][i]) = (passed.force[0], passed.force[1]);
+            self.slips[i] = passed.slips;
+            self.slip[i] += if cut { 0.0 } else { passed.slip };
+            self.release[i] += if cut { 0.0 } else { passed.release };
+        }
+        for i in 0..self.count {
+            if is_cut(begin.pressure[i].value(), end.pressure[i].value()) {
+                let displacement = [displacement[0][i], displacement[1][i]];
+                let ends = (&begin.end(i), &end.end(i));
+                let passed = pass_in_pieces(law, [before[0][i], before[1][i]], ends, displacement);
+                (self.force[0][i], self.force[1][i]) = (passed.force[0], passed.force[1]);
+                self.slips[i] = passed.slips;
+                self.slip[i] += passed.slip;
+                self.release[i] += passed.release;
+            }
+        }
+        self.stiffness = end.stiffness;
+    }
+
+    /// How far the face's material goes along the plane in a part, m.
+    #[inline(always)]
+    fn displacements(&self, step: &Step<'_, T>, (now, next): (&Instant<T>, &Instant<T>), part: f64) -> [Lanes<T>; 2] {
+        let (begin, end) = (&*self.begin, &*self.end);
+        let mut displacement = [[T::constant(0.0); BLOCK]; 2];
+        for axis in 0..2 {
+            let moved = next.moved[axis] - now.moved[axis];
+            for i in 0..BLOCK {
+                displacement[axis][i] = moved + (end.arm[axis][i] - begin.arm[axis][i]);
+            }
+        }
+        if let Face::Tread(tread) = step.face {
+            // Where a cell is partly inside, its middle does not go as far as its material.
+            let run = step.run.by * part * tread.cell;
+            for axis in 0..2 {
+                for i in 0..BLOCK {
+                    let rest = run + (end.arc[i] - begin.arc[i]);
+                    let along = (begin.along[axis][i] + end.along[axis][i]).times(0.5 * rest);
+                    displacement[axis][i] = displacement[axis][i] - along;
+                }
+            }
+        }
+        displacement
+    }
+
+    /// Takes note of an element beyond the table.
+    #[inline(always)]
+    fn check(&self, law: &ResampledLaw, share: f64, sums: &mut Sums<T>) {
+        let (pressure, speed) = (law.largest_pressure() * (1.0 + ROUNDING), law.speed_range().1 * (1.0 + ROUNDING));
+        let speed_of = |i: usize| {
+            let [x, y] = [0, 1].map(|axis| self.end.velocity[axis][i].value());
+            x * x + y * y
+        };
+        let mut found = false;
+        for i in 0..BLOCK {
+            let p = self.end.pressure[i].value();
+            found |= p > pressure || (p > 0.0 && speed_of(i) > speed * speed);
+        }
+        if !found || sums.beyond.is_some_and(|beyond| beyond.share <= share) {
+            return;
+        }
+        let beyond = |i: usize| {
+            let (p, v) = (self.end.pressure[i].value(), speed_of(i).sqrt());
+            let by_speed = p > 0.0 && v > speed;
+            let bears = self.end.area[i] > 0.0;
+            let element = self.start + i;
+            (bears && (p > pressure || by_speed)).then_some(Beyond { element, share, pressure: p, speed: v, by_speed })
+        };
+        sums.beyond = (0..self.count).find_map(beyond).or(sums.beyond);
+    }
+
+    /// Adds to the wrench on the body and to the losses.
+    #[inline(always)]
+    fn add_up(&mut self, step: &Step<'_, T>, sums: &mut Sums<T>) {
+        let end = &*self.end;
+        let mut wrench = [T::constant(0.0); 6];
+        for i in 0..BLOCK {
+            let (f_x, f_y) = (-self.force[0][i], -self.force[1][i]);
+            let f_z = end.pressure[i].times(end.area[i]);
+            let [x, y, z] = [end.arm[0][i], end.arm[1][i], end.arm[2][i]];
+            let loads = [f_x, f_y, f_z, y * f_z - z * f_y, z * f_x - x * f_z, x * f_y - y * f_x];
+            wrench.iter_mut().zip(loads).for_each(|(sum, load)| *sum = *sum + load);
+            sums.slip += self.slip[i];
+            sums.release += self.release[i];
+            let mode = if self.slips[i] { 1 } else { 2 };
+            self.mode[i] = if end.stiffness[i].value() > 0.0 { mode } else { 0 };
+        }
+        sums.wrench.iter_mut().zip(wrench).for_each(|(sum, load)| *sum = *sum + load);
+        if let Face::Tread(_) = step.face {
+            for i in 0..BLOCK {
+                let f_z = end.pressure[i].times(end.area[i]);
+                let along =
+                    end.along[2][i] * f_z - end.along[0][i] * self.force[0][i] - end.along[1][i] * self.force[1][i];
+                sums.transport = sums.transport - along;
+            }
+        }
+    }
+}
+
+/// Share of the table's speeds and pressures by which an element may exceed them: rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Whether an element is cut for itself in a part with these pressures at its ends.
+#[inline(always)]
+fn is_cut(before: f64, after: f64) -> bool {
+    before > LARGEST_RATIO * after || after > LARGEST_RATIO * before
+}

@@ -1,0 +1,123 @@
+//! An element whose pressure changes much in a part of a step: its passage, cut where it touches or lifts, at the least
+//! pressure of the table, and each stretch between into pieces.
+
+use super::spring::{Hold, Passed, Piece, leap, pass};
+use crate::element::ResampledLaw;
+use crate::math::Number;
+
+/// Pieces of a stretch, at least.
+const FEWEST_PIECES: f64 = 4.0;
+/// Change of ln p over a piece, at most.
+const LARGEST_CHANGE: f64 = 0.125;
+/// So that quotients of vanishing speeds are none.
+const TINY: f64 = 1e-300;
+
+/// An element at the beginning or the end of a part.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct End<T> {
+    /// m.
+    pub(super) approach: T,
+    /// m/s.
+    pub(super) velocity: [T; 2],
+    /// m².
+    pub(super) area: f64,
+}
+
+/// An element between two ends, at the share `share` of the way.
+struct Between<T> {
+    share: T,
+    velocity: [T; 2],
+    pressure: f64,
+    hold: Hold<T>,
+}
+
+/// Takes the spring of an element through a part with the displacement `displacement` (m).
+pub(super) fn pass_in_pieces<T: Number>(
+    law: &mut ResampledLaw,
+    force: [T; 2],
+    (begin, end): (&End<T>, &End<T>),
+    displacement: [T; 2],
+) -> Passed<T> {
+    let stops = stops(law, begin, end);
+    let mut here = between(law, begin, end, T::constant(0.0));
+    let mut passed = Passed { force, slips: false, slip: 0.0, release: 0.0 };
+    for stop in stops {
+        if stop.value() <= here.share.value() {
+            continue;
+        }
+        let (start, there) = (here.share, between(law, begin, end, stop));
+        let pieces = pieces(here.pressure, there.pressure);
+        for piece in 1..=pieces as u32 {
+            let share = start + (stop - start).times(f64::from(piece) / pieces);
+            let next = between(law, begin, end, share);
+            let part = share - here.share;
+            let (force, lost) = leap(passed.force, here.hold.stiffness, &here.hold);
+            let this = Piece {
+                begin: here.hold,
+                end: next.hold,
+                displacement: displacement.map(|d| d * part),
+                half_turn: half_turn(here.velocity, next.velocity),
+            };
+            let further = pass(force, &this);
+            passed = Passed {
+                slip: passed.slip + further.slip,
+                release: passed.release + further.release + lost,
+                ..further
+            };
+            here = next;
+        }
+    }
+    passed
+}
+
+/// The shares of the part at which the element touches or lifts and at which it is at the least pressure of the table,
+/// in their order, and 1.
+fn stops<T: Number>(law: &mut ResampledLaw, begin: &End<T>, end: &End<T>) -> [T; 3] {
+    let mut beginning = |end: &End<T>| {
+        let speed = law.log_speed(size(end.velocity));
+        let spot = law.spot(speed.value());
+        let (touch, least) = law.beginning(&spot, speed);
+        (end.approach - touch, end.approach - least)
+    };
+    let (before, after) = (beginning(begin), beginning(end));
+    let crossing = |from: T, to: T| {
+        let crosses = from.value() * to.value() < 0.0;
+        (from / (from - to)).or(crosses, T::constant(0.0))
+    };
+    let (touch, least) = (crossing(before.0, after.0), crossing(before.1, after.1));
+    [touch.smaller(least), touch.larger(least), T::constant(1.0)]
+}
+
+fn pieces(before: f64, after: f64) -> f64 {
+    let change = if before > 0.0 && after > 0.0 { (after / before).ln().abs() } else { 0.0 };
+    (change / LARGEST_CHANGE).ceil().clamp(FEWEST_PIECES, 1e3)
+}
+
+fn between<T: Number>(law: &mut ResampledLaw, begin: &End<T>, end: &End<T>, share: T) -> Between<T> {
+    let straight = |from: T, to: T| from + (to - from) * share;
+    let velocity = [0, 1].map(|i| straight(begin.velocity[i], end.velocity[i]));
+    let area = straight(T::constant(begin.area), T::constant(end.area));
+    let speed = law.log_speed(size(velocity));
+    let spot = law.spot(speed.value());
+    let point = law.at(&spot, speed, straight(begin.approach, end.approach));
+    let pressure = point.pressure();
+    let hold = Hold { stiffness: area * point.stiffness, limit: area * pressure * point.friction };
+    Between { share, velocity, pressure: pressure.value(), hold }
+}
+
+/// The size of a vector.
+#[inline(always)]
+pub(super) fn size<T: Number>(v: [T; 2]) -> T {
+    (v[0] * v[0] + v[1] * v[1]).sqrt()
+}
+
+/// The tangent of half the angle between two velocities, at most 1.
+#[inline(always)]
+pub(super) fn half_turn<T: Number>(from: [T; 2], to: [T; 2]) -> T {
+    let cross = from[0] * to[1] - from[1] * to[0];
+    let dot = from[0] * to[0] + from[1] * to[1];
+    let square = |v: [T; 2]| v[0] * v[0] + v[1] * v[1];
+    let sizes = (square(from) * square(to)).sqrt();
+    let tangent = cross / (dot + sizes + T::constant(TINY));
+    tangent.larger(T::constant(-1.0)).smaller(T::constant(1.0))
+}

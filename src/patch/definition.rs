@@ -1,0 +1,277 @@
+//! The definition of a patch: its table, its face and the parameters that a master may set.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::face::{Arc as Section, Face, Points, Tread};
+use super::motion::Run;
+use crate::element::{Load, ResampledLaw, Table, TableError};
+use crate::scene::{
+    Extrapolation, FaceShape, Grid, Parameter, ParameterError, PatchFile, PatchGroup, Problem, SceneError,
+    TableExtrapolation, Value,
+};
+
+/// Why a patch is refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PatchError {
+    /// The patch file or the file of points.
+    #[error(transparent)]
+    File(#[from] SceneError),
+    /// The table.
+    #[error(transparent)]
+    Table(#[from] TableError),
+}
+
+/// The definition of a patch.
+#[derive(Clone, Debug)]
+pub struct Patch {
+    file: Arc<PatchFile>,
+    table: Arc<Table>,
+    pub(super) face: Arc<Face>,
+    pub(super) nominal_area: f64,
+    temperature: f64,
+    pub(super) table_extrapolation: TableExtrapolation,
+    pub(super) refine: u32,
+    /// How the body moves on when a master gives no rates.
+    pub extrapolation: Extrapolation,
+}
+
+impl Patch {
+    /// Reads the patch file at `path` and the files that it names.
+    ///
+    /// # Errors
+    /// [`PatchError`] with the file, the line, the key, what was given and what is allowed.
+    pub fn load(path: &Path) -> Result<Self, PatchError> {
+        Self::of(PatchFile::load(path)?, path)
+    }
+
+    /// Reads a patch from `text` as if it were the content of the file at `path`.
+    ///
+    /// # Errors
+    /// As for [`load`](Self::load).
+    pub fn parse(text: &str, path: &Path) -> Result<Self, PatchError> {
+        Self::of(PatchFile::parse(text, path)?, path)
+    }
+
+    fn of(file: PatchFile, path: &Path) -> Result<Self, PatchError> {
+        let table = Table::load(&path.parent().unwrap_or(Path::new("")).join(&file.table))?;
+        Ok(Self {
+            nominal_area: nominal_area(&file, &table)?,
+            temperature: temperature(&file, &table)?,
+            face: Arc::new(face(&file)),
+            table_extrapolation: file.table_extrapolation,
+            refine: file.refine,
+            extrapolation: file.extrapolation,
+            table: Arc::new(table),
+            file: Arc::new(file),
+        })
+    }
+
+    /// The patch's name.
+    pub fn name(&self) -> &str {
+        &self.file.name
+    }
+
+    /// What it is, in a sentence.
+    pub fn description(&self) -> String {
+        let (count, table) = (self.face.count(), &self.table.scene);
+        format!("Contact patch of {count} elements from {} points swept of {table}", self.table.grid.count())
+    }
+
+    /// The table.
+    pub fn table(&self) -> &Table {
+        &self.table
+    }
+
+    /// The number of elements; of a tread with those that are partly inside.
+    pub fn count(&self) -> usize {
+        self.face.count()
+    }
+
+    /// Whether a tread runs through.
+    pub fn has_tread(&self) -> bool {
+        matches!(*self.face, Face::Tread(_))
+    }
+
+    /// Whether the temperature is an input.
+    pub fn has_temperatures(&self) -> bool {
+        self.table.grid.temperatures.len() > 1
+    }
+
+    /// The temperature at the start, K; 0 where the table has none.
+    pub fn temperature(&self) -> f64 {
+        self.temperature
+    }
+
+    /// The groups of variables, in their order.
+    pub fn groups(&self) -> &[PatchGroup] {
+        &self.file.outputs
+    }
+
+    /// Elements across the face, of a grid.
+    pub fn rows(&self) -> Option<usize> {
+        match &self.file.shape {
+            FaceShape::Flat(grid) | FaceShape::Cylinder { grid, .. } => Some(grid.ny),
+            FaceShape::Points { .. } => None,
+        }
+    }
+
+    /// Paths of the files that it reads besides its own, relative to that one's folder.
+    pub fn files(&self) -> Vec<PathBuf> {
+        self.file.files()
+    }
+
+    /// A height (m) at which nothing touches when the body is level.
+    pub fn clear_height(&self) -> f64 {
+        let law = self.law();
+        let lowest = match &*self.face {
+            Face::Points(points) => points.z.iter().copied().fold(f64::INFINITY, f64::min),
+            Face::Tread(tread) => tread.arc.at(0.0).0[1] + tread.offset[2],
+        };
+        let step = law.earliest_touch().abs().max(1e-6);
+        // A round number is easier to read, and a little higher.
+        let digits = 10.0_f64.powf(step.log10().floor() - 1.0);
+        ((-law.earliest_touch() - lowest) / digits).ceil() * digits
+    }
+
+    pub(super) fn law(&self) -> ResampledLaw {
+        ResampledLaw::new(&self.table, self.nominal_area, self.temperature)
+    }
+
+    /// An element's place in the body's axes (m), its area (m²) and the direction of the arc there in x and z, where the
+    /// tread stands `place` cells on.
+    pub(super) fn element(&self, i: usize, place: f64) -> ([f64; 3], f64, [f64; 2]) {
+        match &*self.face {
+            Face::Points(points) => ([points.x[i], points.y[i], points.z[i]], points.area[i], [1.0, 0.0]),
+            Face::Tread(tread) => {
+                let rows = tread.rows.len();
+                let column = tread.column((i / rows) as f64, place);
+                let place = [column.place[0], tread.rows[i % rows], column.place[1]];
+                (place, tread.area * column.share, column.direction)
+            }
+        }
+    }
+
+    /// The parameters.
+    pub fn parameters(&self) -> Vec<Parameter> {
+        vec![Parameter::TableExtrapolation, Parameter::Extrapolation, Parameter::Refine]
+    }
+
+    /// The value of a parameter.
+    pub fn parameter(&self, parameter: Parameter) -> Value {
+        match parameter {
+            Parameter::TableExtrapolation => Value::Text(self.table_extrapolation.word().into()),
+            Parameter::Refine => Value::Integer(i32::try_from(self.refine).unwrap_or(i32::MAX)),
+            _ => Value::Text(self.extrapolation.word().into()),
+        }
+    }
+
+    /// Gives the parameter called `name` the value that `text` stands for.
+    ///
+    /// # Errors
+    /// [`ParameterError`] as for [`set_parameter`](Self::set_parameter), and for an unknown name.
+    pub fn set_by_name(&mut self, name: &str, text: &str) -> Result<(), ParameterError> {
+        let names = || self.parameters().into_iter().map(Parameter::name).collect();
+        let parameter = self.parameters().into_iter().find(|parameter| parameter.name() == name);
+        let parameter = parameter.ok_or_else(|| ParameterError::new(name, Problem::Unknown { allowed: names() }))?;
+        let text = text.trim();
+        let number = if parameter == Parameter::Refine { text.parse().ok() } else { None };
+        self.set_parameter(parameter, number.map_or_else(|| Value::Text(text.to_owned()), Value::Integer))
+    }
+
+    /// Gives a parameter a value.
+    ///
+    /// # Errors
+    /// [`ParameterError`] where the value is none of those allowed; the patch is then as it was.
+    pub fn set_parameter(&mut self, parameter: Parameter, value: Value) -> Result<(), ParameterError> {
+        let refused = || {
+            let expected = match parameter {
+                Parameter::TableExtrapolation => "one of \"refuse\", \"hold\"",
+                Parameter::Refine => "a whole number from 1 to 1000",
+                _ => "one of \"linear\", \"hold\"",
+            };
+            let problem = Problem::Value { given: value.to_string(), expected: expected.into() };
+            ParameterError::new(parameter.name(), problem)
+        };
+        match (parameter, &value) {
+            (Parameter::TableExtrapolation, Value::Text(word)) => {
+                self.table_extrapolation = TableExtrapolation::of_word(word).ok_or_else(refused)?;
+            }
+            (Parameter::Extrapolation, Value::Text(word)) => {
+                self.extrapolation = Extrapolation::of_word(word).ok_or_else(refused)?;
+            }
+            (Parameter::Refine, &Value::Integer(refine)) => {
+                let allowed = u32::try_from(refine).ok().filter(|refine| (1..=1000).contains(refine));
+                self.refine = allowed.ok_or_else(refused)?;
+            }
+            _ => return Err(refused()),
+        }
+        Ok(())
+    }
+}
+
+/// A table of pressures says the area itself, one of forces does not.
+fn nominal_area(file: &PatchFile, table: &Table) -> Result<f64, PatchError> {
+    match (table.load, file.nominal_area) {
+        (Load::Pressure { area }, None) => Ok(area),
+        (Load::Force, Some(area)) => Ok(area),
+        (Load::Pressure { .. }, Some(_)) => Err(file.refuse_nominal_area("none: the table says its area").into()),
+        (Load::Force, None) => Err(file.refuse_nominal_area("the area of a layer: the table is one of forces").into()),
+    }
+}
+
+fn temperature(file: &PatchFile, table: &Table) -> Result<f64, PatchError> {
+    let all = &table.grid.temperatures;
+    let (Some(low), Some(high)) = (all.first(), all.last()) else {
+        let refused = || file.refuse_temperature("none: the table has no temperatures".into());
+        return if file.temperature.is_some() { Err(refused().into()) } else { Ok(0.0) };
+    };
+    let kelvin = file.temperature.unwrap_or(all[all.len() / 2]);
+    if (low..=high).contains(&&kelvin) {
+        return Ok(kelvin);
+    }
+    Err(file.refuse_temperature(format!("a number from {low:?} to {high:?}, the temperatures of the table")).into())
+}
+
+/// The middles of `count` even parts of a length about its middle, the last one first.
+fn middles(length: f64, count: usize) -> impl Iterator<Item = f64> {
+    (0..count).map(move |i| length * (0.5 - (i as f64 + 0.5) / count as f64))
+}
+
+fn face(file: &PatchFile) -> Face {
+    let (radius, grid) = match &file.shape {
+        FaceShape::Flat(grid) => (None, grid),
+        FaceShape::Cylinder { radius, grid } => (Some(*radius), grid),
+        FaceShape::Points { points, .. } => return Face::Points(single_points(points, file.offset)),
+    };
+    let Grid { length, width, nx, ny } = *grid;
+    let tread = Tread {
+        arc: Section { radius },
+        length,
+        cell: length / nx as f64,
+        columns: nx,
+        rows: middles(width, ny).map(|y| file.offset[1] - y).collect(),
+        area: length / nx as f64 * (width / ny as f64),
+        offset: file.offset,
+    };
+    if file.transport { Face::Tread(tread) } else { Face::Points(standing(&tread)) }
+}
+
+fn single_points(points: &[[f64; 4]], offset: [f64; 3]) -> Points {
+    let axis = |i: usize| points.iter().map(|point| point[i] + offset[i]).collect();
+    Points { x: axis(0), y: axis(1), z: axis(2), area: points.iter().map(|point| point[3]).collect() }
+}
+
+/// The cells of a tread that does not run.
+fn standing(tread: &Tread) -> Points {
+    let mut points = Points::default();
+    for column in (1..=tread.columns).map(|i| tread.column(i as f64, Run::default().at(0.0))) {
+        for &y in &tread.rows {
+            points.x.push(column.place[0]);
+            points.y.push(y);
+            points.z.push(column.place[1]);
+            points.area.push(tread.area);
+        }
+    }
+    points
+}

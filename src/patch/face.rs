@@ -1,0 +1,105 @@
+//! Where the elements of a patch sit on its face: fixed points, or the cells of a tread that runs through.
+//!
+//! Elements are in columns across the face: column i from the front, in it the elements from -y to y. A tread has one
+//! column more than the face is divided into; the cells at both ends are partly inside.
+
+use super::motion::Run;
+
+/// The elements of a patch.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Face {
+    Points(Points),
+    Tread(Tread),
+}
+
+/// Elements that stay where they are.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Points {
+    /// Positions in the body's axes, m.
+    pub(super) x: Vec<f64>,
+    pub(super) y: Vec<f64>,
+    pub(super) z: Vec<f64>,
+    /// Areas, m².
+    pub(super) area: Vec<f64>,
+}
+
+/// A grid of cells that moves along -x.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Tread {
+    pub(super) arc: Arc,
+    /// Of the contact along the arc, m.
+    pub(super) length: f64,
+    /// Of a cell along the arc, m.
+    pub(super) cell: f64,
+    /// The number of cells that the length holds.
+    pub(super) columns: usize,
+    /// Positions of the rows, m.
+    pub(super) rows: Vec<f64>,
+    /// Of a cell, m².
+    pub(super) area: f64,
+    /// The face's origin in the body's axes, m.
+    pub(super) offset: [f64; 3],
+}
+
+/// The section of a face: flat, or an arc about an axis along y.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Arc {
+    /// m; `None`: flat.
+    pub(super) radius: Option<f64>,
+}
+
+impl Arc {
+    /// x and z (m) at an arc length from the middle (m), and the direction of the arc there.
+    #[inline(always)]
+    pub(super) fn at(self, arc: f64) -> ([f64; 2], [f64; 2]) {
+        match self.radius {
+            None => ([arc, 0.0], [1.0, 0.0]),
+            Some(radius) => {
+                let (sin, cos) = (arc / radius).sin_cos();
+                ([radius * sin, -radius * cos], [cos, sin])
+            }
+        }
+    }
+}
+
+/// A column of a tread at an instant.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Column {
+    /// The middle of what is inside, m along the arc.
+    pub(super) arc: f64,
+    /// x and z of it in the body's axes, m.
+    pub(super) place: [f64; 2],
+    /// The direction of the arc.
+    pub(super) direction: [f64; 2],
+    /// The share of the cells' area that is inside.
+    pub(super) share: f64,
+}
+
+impl Tread {
+    /// Column `i` (from the front, as counted at the start of the step) when `entered` cells have entered since.
+    #[inline(always)]
+    pub(super) fn column(&self, i: f64, entered: f64) -> Column {
+        let half = 0.5 * self.length;
+        let rear = half - (entered + i) * self.cell;
+        let (low, high) = (rear.clamp(-half, half), (rear + self.cell).clamp(-half, half));
+        let arc = 0.5 * (low + high);
+        let ([x, z], direction) = self.arc.at(arc);
+        Column { arc, place: [self.offset[0] + x, self.offset[2] + z], direction, share: (high - low) / self.cell }
+    }
+
+    /// The first column of a step, as counted at its start, and the number of columns that are inside at some time.
+    pub(super) fn columns_of(&self, run: Run) -> (f64, usize) {
+        let entered = run.entered();
+        (-entered.max(0.0), self.columns + 1 + entered.abs() as usize)
+    }
+}
+
+impl Face {
+    /// The number of elements.
+    pub(super) fn count(&self) -> usize {
+        match self {
+            Self::Points(points) => points.x.len(),
+            Self::Tread(tread) => (tread.columns + 1) * tread.rows.len(),
+        }
+    }
+}

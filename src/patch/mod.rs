@@ -1,0 +1,34 @@
+//! A contact patch: many point-contact elements on one rigid face in three dimensions, and their wrench on its body.
+//!
+//! The ground is the plane z = 0. A body moves in six coordinates; each element of its face has the law of the
+//! point-contact element at its own separation and speed, and a spring in two dimensions. A tread may run through the
+//! face, as that of a wheel does.
+//!
+//! | file | what it holds |
+//! |------|---------------|
+//! | `motion` | path of the body and of the tread over a step, parts of a step |
+//! | `face` | where elements sit |
+//! | `spring` | spring and slider of an element through a piece of a motion, in closed form |
+//! | `cut` | an element that touches or lifts |
+//! | `block` | a step of a block of elements |
+//! | `definition` | a patch: face, table, parameters |
+//! | `state` | motions, errors, what a run holds |
+//! | `run` | a run |
+//! | `survey` | elements one by one, and sums over them |
+//! | `variables` | output variables |
+
+mod block;
+mod cut;
+mod definition;
+mod face;
+mod motion;
+mod run;
+mod spring;
+mod state;
+mod survey;
+mod variables;
+
+pub use definition::{Patch, PatchError};
+pub use run::PatchRun;
+pub use state::{MotionError, PatchMotion, PatchStart, PatchState, Pose, RestoreError};
+pub use variables::{COORDINATES, PatchOutput, PatchVariable};

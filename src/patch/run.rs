@@ -1,0 +1,253 @@
+//! A run of a patch: steps over all its elements.
+
+use super::block::{BLOCK, Beyond, Block, Step, Sums};
+use super::definition::Patch;
+use super::face::Face;
+use super::motion::{Parts, Path, Run};
+use super::state::{MOST_PARTS, MotionError, PatchMotion, PatchStart, PatchState, Pose, RestoreError, Springs, Totals};
+use crate::element::ResampledLaw;
+use crate::math::{Dual, Number};
+use crate::scene::{PatchGroup, TableExtrapolation};
+
+/// A run of a patch. A clone continues as the original does, bit for bit.
+#[derive(Clone, Debug)]
+pub struct PatchRun {
+    pub(super) patch: Patch,
+    pub(super) law: ResampledLaw,
+    pub(super) totals: Totals,
+    pub(super) springs: Springs,
+    /// Of the step under way.
+    next: Springs,
+    pub(super) tangents: Option<Box<[[f64; 6]; 6]>>,
+    workspace: Workspace,
+    warning: Option<String>,
+}
+
+/// One block, with derivatives where tangents are asked for.
+#[derive(Clone, Debug)]
+enum Workspace {
+    Plain(Box<Block<f64>>),
+    Tangent(Box<Block<Dual<6>>>),
+}
+
+impl PatchRun {
+    /// A patch at its start, its springs relaxed.
+    ///
+    /// # Errors
+    /// [`MotionError`] where a number is out of range, or an element is beyond the table and that is refused.
+    pub fn new(patch: &Patch, start: &PatchStart) -> Result<Self, MotionError> {
+        start.check()?;
+        let mut run = Self::at(patch, start.temperature);
+        run.totals = Totals {
+            time: start.time,
+            pose: start.pose,
+            rates: start.rates,
+            transport_speed: start.transport_speed,
+            tread_speed: start.transport_speed,
+            temperature: start.temperature,
+            ..Totals::default()
+        };
+        run.settle()?;
+        Ok(run)
+    }
+
+    /// A run with nothing set.
+    fn at(patch: &Patch, temperature: f64) -> Self {
+        let tangents = patch.groups().contains(&PatchGroup::Tangent);
+        let mut law = patch.law();
+        if patch.has_temperatures() {
+            law.set_temperature(temperature);
+        }
+        let workspace = if tangents {
+            Workspace::Tangent(Box::new(Block::new()))
+        } else {
+            Workspace::Plain(Box::new(Block::new()))
+        };
+        let springs = Springs::new(patch.count());
+        Self {
+            law,
+            totals: Totals::default(),
+            next: springs.clone(),
+            springs,
+            tangents: tangents.then(|| Box::new([[0.0; 6]; 6])),
+            workspace,
+            warning: None,
+            patch: patch.clone(),
+        }
+    }
+
+    /// Lets relaxed springs take the stiffness of their contacts.
+    fn settle(&mut self) -> Result<(), MotionError> {
+        let Totals { time, rates, tread_speed, place, .. } = self.totals;
+        let run = Run { from: place, by: 0.0 };
+        // The rates alone count.
+        let path = Path { start: self.totals.pose.coordinates(), change: rates, duration: 1.0 };
+        let face = &self.patch.face;
+        let step = Step { face, path, run, parts: Parts::new(run, 0.0, 1), tread_speed };
+        let mut block = Box::new(Block::new());
+        let sums = over_blocks(&step, &self.springs, &mut self.next, &mut block, |block, sums| {
+            block.settle(&step, &mut self.law, sums);
+        });
+        self.accept(sums.beyond, time, 0.0)?;
+        self.springs.clone_from(&self.next);
+        self.totals.add(&sums, 0.0);
+        Ok(())
+    }
+
+    /// The time reached, s.
+    pub fn time(&self) -> f64 {
+        self.totals.time
+    }
+
+    /// The pose reached.
+    pub fn pose(&self) -> Pose {
+        self.totals.pose
+    }
+
+    /// The speed of the tread, m/s.
+    pub fn transport_speed(&self) -> f64 {
+        self.totals.transport_speed
+    }
+
+    /// What the run has to say about elements beyond the table, once a run.
+    pub fn take_warning(&mut self) -> Option<String> {
+        self.warning.take()
+    }
+
+    /// Follows a motion.
+    ///
+    /// # Errors
+    /// [`MotionError`]; the patch is then as it was.
+    pub fn advance(&mut self, motion: &PatchMotion) -> Result<(), MotionError> {
+        let PatchMotion { duration, rates, transport_speed, temperature } = *motion;
+        let Totals { time, pose, place, temperature: temperature_before, .. } = self.totals;
+        let start = pose.coordinates();
+        let change = rates.map(|rate| rate * duration);
+        let end = Pose::of(std::array::from_fn(|i| start[i] + change[i]));
+        PatchStart { time: time + duration, pose: end, rates, transport_speed, temperature }.check()?;
+        let tread_speed = 0.5 * (self.totals.transport_speed + transport_speed);
+        let run = self.run(place, tread_speed * duration);
+        let path = Path { start, change, duration };
+        let parts = Parts::new(run, path.turn(), self.patch.refine);
+        let most = parts.most();
+        if most > MOST_PARTS || most.is_nan() {
+            return Err(MotionError::TooManyParts { time, parts: most });
+        }
+        self.set_temperature(temperature);
+        let Self { patch, law, springs, next, workspace, .. } = self;
+        let face = &*patch.face;
+        let (sums, tangents) = match workspace {
+            Workspace::Plain(block) => {
+                let step = Step { face, path, run, parts, tread_speed };
+                (over_blocks(&step, springs, next, block, |block, sums| block.advance(&step, law, sums)), None)
+            }
+            Workspace::Tangent(block) => {
+                let path = Path { start, change: std::array::from_fn(|i| Dual::variable(change[i], i)), duration };
+                let step = Step { face, path, run, parts, tread_speed };
+                let sums = over_blocks(&step, springs, next, block, |block, sums| block.advance(&step, law, sums));
+                (sums.plain(), Some(sums.wrench.map(|load| load.slopes)))
+            }
+        };
+        if let Err(error) = self.accept(sums.beyond, time, duration) {
+            self.set_temperature(temperature_before);
+            return Err(error);
+        }
+        std::mem::swap(&mut self.springs, &mut self.next);
+        if let (Some(kept), Some(found)) = (&mut self.tangents, tangents) {
+            **kept = found;
+        }
+        let totals = &mut self.totals;
+        totals.add(&sums, duration);
+        (totals.time, totals.pose, totals.rates) = (time + duration, end, rates);
+        (totals.transport_speed, totals.tread_speed, totals.temperature) = (transport_speed, tread_speed, temperature);
+        // Just below a whole number, rounding may give 1.
+        totals.place = (run.at(1.0) - run.entered()).min(1.0_f64.next_down());
+        Ok(())
+    }
+
+    fn set_temperature(&mut self, kelvin: f64) {
+        if self.patch.has_temperatures() {
+            self.law.set_temperature(kelvin);
+        }
+    }
+
+    /// A tread that goes on by a length (m).
+    fn run(&self, place: f64, length: f64) -> Run {
+        match &*self.patch.face {
+            Face::Tread(tread) => Run { from: place, by: length / tread.cell },
+            Face::Points(_) => Run::default(),
+        }
+    }
+
+    /// Refuses an element beyond the table, or takes note of the first.
+    fn accept(&mut self, beyond: Option<Beyond>, time: f64, duration: f64) -> Result<(), MotionError> {
+        let Some(Beyond { element, share, pressure, speed, by_speed }) = beyond else { return Ok(()) };
+        let (element, within) = (element + 1, share > 0.0 && !by_speed);
+        let error = MotionError::BeyondTable { element, time: time + share * duration, pressure, speed, within };
+        if self.patch.table_extrapolation == TableExtrapolation::Refuse {
+            return Err(error);
+        }
+        if !std::mem::replace(&mut self.totals.beyond, true) {
+            self.warning = Some(format!("{error}: its ends hold from here on"));
+        }
+        Ok(())
+    }
+
+    /// All that changes in the run.
+    pub fn save(&self) -> PatchState {
+        PatchState { totals: self.totals, springs: self.springs.clone(), tangents: self.tangents.clone() }
+    }
+
+    /// A run that continues from `saved`, bit for bit as the run that was saved.
+    ///
+    /// # Errors
+    /// [`RestoreError`] where `saved` is no valid state of a run of this patch.
+    pub fn restore(patch: &Patch, saved: &PatchState) -> Result<Self, RestoreError> {
+        let mut run = Self::at(patch, saved.totals.temperature);
+        run.set_state(saved)?;
+        Ok(run)
+    }
+
+    /// Continues from `saved`, of the same patch.
+    ///
+    /// # Errors
+    /// As for [`restore`](Self::restore); the run is then as it was.
+    pub fn set_state(&mut self, saved: &PatchState) -> Result<(), RestoreError> {
+        let wanted = self.tangents.is_some();
+        saved.check(self.patch.count(), wanted)?;
+        let before = self.totals.temperature;
+        self.set_temperature(saved.totals.temperature);
+        if let Err(error) = self.check_limits(saved) {
+            self.set_temperature(before);
+            return Err(error);
+        }
+        self.totals = saved.totals;
+        self.springs.clone_from(&saved.springs);
+        if let (Some(own), Some(saved)) = (&mut self.tangents, &saved.tangents) {
+            **own = **saved;
+        }
+        self.warning = None;
+        Ok(())
+    }
+}
+
+/// Does something for every block of a step and stores its springs.
+fn over_blocks<T: Number>(
+    step: &Step<'_, T>,
+    springs: &Springs,
+    next: &mut Springs,
+    block: &mut Block<T>,
+    mut work: impl FnMut(&mut Block<T>, &mut Sums<T>),
+) -> Sums<T> {
+    let mut sums = Sums::zero();
+    let (first, count, entered) = step.elements();
+    for start in (0..count).step_by(BLOCK) {
+        let size = BLOCK.min(count - start);
+        let index = first + start as isize;
+        block.turn_to(start, size);
+        springs.load(block, index, size);
+        work(block, &mut sums);
+        next.store(block, index + entered, size);
+    }
+    sums
+}

@@ -1,0 +1,164 @@
+//! The spring and slider of an element in two dimensions: its passage through a piece of a motion, in closed form.
+//!
+//! G is the force of the spring on the ground, K its stiffness, L the limit, Δ the displacement of the face along the
+//! plane, e = G/K. While the stiffness grows, contacts that are made carry no force yet; while it falls, contacts that
+//! are lost take their share along. In slip G follows the motion: with α the angle from the displacement to G,
+//! tan(α/2) falls as e^-λ with λ the displacement over the radius L/K.
+
+use crate::math::Number;
+
+/// Keeps quotients of numbers that vanish together finite.
+const TINY: f64 = 1e-300;
+/// Share of a stiffness by which it may change and stay the same.
+const ROUNDING: f64 = 1e-9;
+/// Below this λ the series of [`lag`] serves.
+const SHORT: f64 = 1e-2;
+/// Beyond this λ nothing is left of e^-λ.
+const LONG: f64 = 300.0;
+
+/// What an element's spring is held by: its stiffness (N/m) and its limit (N); both 0 without contact.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hold<T> {
+    pub(super) stiffness: T,
+    pub(super) limit: T,
+}
+
+/// A piece of a motion as an element sees it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Piece<T> {
+    pub(super) begin: Hold<T>,
+    pub(super) end: Hold<T>,
+    /// Δ, m.
+    pub(super) displacement: [T; 2],
+    /// The tangent of half the angle that the velocity turns by.
+    pub(super) half_turn: T,
+}
+
+/// What a piece makes of a spring.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Passed<T> {
+    /// G at its end, N.
+    pub(super) force: [T; 2],
+    /// Whether it slips there.
+    pub(super) slips: bool,
+    /// Lost by slip and by release, J.
+    pub(super) slip: f64,
+    pub(super) release: f64,
+}
+
+/// Whether a stiffness stays, but for rounding. Where it grows and where it falls springs differ, with one value and two
+/// slopes between: there the mean of both is taken, as a difference quotient to both sides finds it.
+#[inline(always)]
+fn is_level<T: Number>(before: T, after: T) -> bool {
+    let (before, after) = (before.value(), after.value());
+    (after - before).abs() <= ROUNDING * before && before > 0.0
+}
+
+#[inline(always)]
+fn falls<T: Number>(before: T, after: T) -> bool {
+    after.value() < before.value() * (1.0 - ROUNDING)
+}
+
+/// The law has leapt: G falls with K where K falls, then is cut to L. Returns G and the energy that it took, J.
+#[inline(always)]
+pub(super) fn leap<T: Number>(force: [T; 2], stiffness: T, hold: &Hold<T>) -> ([T; 2], f64) {
+    let square = |g: [T; 2]| g[0] * g[0] + g[1] * g[1];
+    let (k, limit) = (hold.stiffness, hold.limit);
+    let before = square(force).value() / (stiffness.value() + TINY);
+    let one = T::constant(1.0);
+    let share = k / (stiffness + T::constant(TINY));
+    let kept = share.or(falls(stiffness, k), (share + one).times(0.5).or(is_level(stiffness, k), one));
+    let force = force.map(|g| g * kept);
+    let size = square(force);
+    let cut = limit / (size + T::constant(TINY)).sqrt();
+    let cut = cut.or(size.value() > limit.value() * limit.value(), T::constant(1.0));
+    let force = force.map(|g| g * cut);
+    let after = square(force).value() / (k.value() + TINY);
+    let lost = 0.5 * (before - after);
+    (force, if lost > 0.0 { lost } else { 0.0 })
+}
+
+/// Takes a spring with |G| ≤ L through a piece.
+#[inline(always)]
+pub(super) fn pass<T: Number>(force: [T; 2], piece: &Piece<T>) -> Passed<T> {
+    let (tiny, one) = (T::constant(TINY), T::constant(1.0));
+    let (begin, end) = (piece.begin, piece.end);
+    let (falls, level) = (falls(begin.stiffness, end.stiffness), is_level(begin.stiffness, end.stiffness));
+    let middle = (begin.stiffness + end.stiffness).times(0.5);
+    let growing = |k: T| (k + middle).times(0.5).or(level, middle);
+    let (k_a, k_b) =
+        (begin.stiffness.or(falls, growing(begin.stiffness)), end.stiffness.or(falls, growing(end.stiffness)));
+    let per = one / (k_a + tiny);
+    let [dx, dy] = piece.displacement;
+    let (ex, ey) = (force[0] * per, force[1] * per);
+    let l0 = begin.limit * per;
+    let l1 = (end.limit / (k_b + tiny)).or(k_b.value() > 0.0, l0);
+    let growth = l1 - l0;
+    let (tx, ty) = (ex + dx, ey + dy);
+    let slips = (tx * tx + ty * ty).value() > (l1 * l1).value();
+
+    let square = dx * dx + dy * dy;
+    let t = share_of_stick([ex, ey], [dx, dy], l0, growth);
+    let rest = one - t;
+    let distance = square.sqrt() + tiny;
+    let radius = l0 + growth * t;
+    let mean = (radius + l1).times(0.5) + tiny;
+    let travel = distance * rest;
+    let lambda = travel / mean;
+    let decay = (-lambda.smaller(T::constant(LONG))).exp();
+
+    let share = t.times(0.5) + rest * lag(lambda, decay);
+    let [ux, uy] = turned([dx / distance, dy / distance], piece.half_turn * share);
+    let (nx, ny) = (ex + dx * t, ey + dy * t);
+    let size = one / (nx * nx + ny * ny + tiny).sqrt();
+    let (nx, ny) = (nx * size, ny * size);
+    let (cos, sin) = (nx * ux + ny * uy, ux * ny - uy * nx);
+    let decay_2 = decay * decay;
+    let whole = (one + cos) + (one - cos) * decay_2 + tiny;
+    let (cos_1, sin_1) = (((one + cos) - (one - cos) * decay_2) / whole, (sin * decay).times(2.0) / whole);
+    let slipped = [l1 * (cos_1 * ux - sin_1 * uy), l1 * (cos_1 * uy + sin_1 * ux)];
+
+    let along = travel + mean * whole.times(0.5).ln() - (l1 - radius);
+    let limit = begin.limit + (end.limit - begin.limit) * t;
+    let by_slip = 0.5 * (limit + end.limit).value() * along.value();
+    let (x, y) = (slipped[0].or(slips, tx), slipped[1].or(slips, ty));
+    let (k_0, k_1, k_m) = (begin.stiffness.value(), end.stiffness.value(), middle.value());
+    let (before, after) = ((ex * ex + ey * ey).value(), (x * x + y * y).value());
+    let (share_0, share_1) = if falls { (1.0, 1.0) } else { (k_m / (k_0 + TINY), k_m / (k_1 + TINY)) };
+    let release = 0.25 * (k_1 - k_0).abs() * (before * share_0 + after * share_1);
+    Passed { force: [k_b * x, k_b * y], slips, slip: if slips && by_slip > 0.0 { by_slip } else { 0.0 }, release }
+}
+
+/// The share of a displacement after which |e| reaches the radius, which grows straight from `radius` by `growth`.
+#[inline(always)]
+fn share_of_stick<T: Number>(e: [T; 2], d: [T; 2], radius: T, growth: T) -> T {
+    let (tiny, zero, one) = (T::constant(TINY), T::constant(0.0), T::constant(1.0));
+    let a = d[0] * d[0] + d[1] * d[1] - growth * growth;
+    let b = e[0] * d[0] + e[1] * d[1] - radius * growth;
+    let c = (e[0] * e[0] + e[1] * e[1] - radius * radius).smaller(zero);
+    let root = (b * b - a * c).larger(zero).sqrt();
+    let outwards = b.value() > 0.0;
+    let share = (-c).or(outwards, root - b) / ((b + root).or(outwards, a) + tiny);
+    share.larger(zero).smaller(one)
+}
+
+/// The share of a turn during slip that the direction lags behind by: 1/(1 - e^-λ) - 1/λ - ½.
+#[inline(always)]
+fn lag<T: Number>(lambda: T, decay: T) -> T {
+    let one = T::constant(1.0);
+    let long = lambda.larger(T::constant(SHORT));
+    let decay = decay.smaller(T::constant(1.0 - 0.5 * SHORT));
+    let exact = one / (one - decay) - one / long - T::constant(0.5);
+    exact.or(lambda.value() > SHORT, lambda.times(1.0 / 12.0))
+}
+
+/// A direction turned by the angle whose half has this tangent.
+#[inline(always)]
+fn turned<T: Number>(direction: [T; 2], tangent: T) -> [T; 2] {
+    let one = T::constant(1.0);
+    let square = tangent * tangent;
+    let per = one / (one + square);
+    let (cos, sin) = ((one - square) * per, tangent.times(2.0) * per);
+    let [x, y] = direction;
+    [cos * x - sin * y, sin * x + cos * y]
+}

@@ -1,0 +1,272 @@
+//! What a run of a patch is told, what it may refuse, and what it holds.
+
+use serde::{Deserialize, Serialize};
+
+use super::block::{Block, Sums};
+use crate::math::Number;
+use crate::scene::is_possible;
+
+/// Most parts of a step.
+pub(super) const MOST_PARTS: f64 = 1e5;
+
+/// Where a body is and how it moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Pose {
+    /// x, y, z, m.
+    pub place: [f64; 3],
+    /// Roll, pitch, yaw, rad.
+    pub angles: [f64; 3],
+}
+
+impl Pose {
+    /// x, y, z, roll, pitch, yaw.
+    pub fn coordinates(&self) -> [f64; 6] {
+        let ([x, y, z], [roll, pitch, yaw]) = (self.place, self.angles);
+        [x, y, z, roll, pitch, yaw]
+    }
+
+    /// The pose with these coordinates.
+    pub fn of([x, y, z, roll, pitch, yaw]: [f64; 6]) -> Self {
+        Self { place: [x, y, z], angles: [roll, pitch, yaw] }
+    }
+}
+
+/// How a patch moves over a step: straight from where it stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PatchMotion {
+    /// s.
+    pub duration: f64,
+    /// The rates of the pose's coordinates, m/s and rad/s.
+    pub rates: [f64; 6],
+    /// The speed of the tread at the end, m/s; 0 without one.
+    pub transport_speed: f64,
+    /// K; 0 where the table has no temperatures.
+    pub temperature: f64,
+}
+
+/// Where a run begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PatchStart {
+    /// s.
+    pub time: f64,
+    /// The pose.
+    pub pose: Pose,
+    /// The rates of its coordinates, m/s and rad/s.
+    pub rates: [f64; 6],
+    /// The speed of the tread, m/s; 0 without one.
+    pub transport_speed: f64,
+    /// K; 0 where the table has no temperatures.
+    pub temperature: f64,
+}
+
+/// Why a motion of a patch is refused; the patch is then as it was.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MotionError {
+    /// A number is not one, or out of range.
+    #[error("{what} is {value:?} at t = {time} s, which is out of range; the step was not done")]
+    OutOfRange {
+        /// Which number.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// s.
+        time: f64,
+    },
+    /// The step would take too many parts.
+    #[error("the step from t = {time} s takes {parts:.0} parts or fewer, more than {MOST_PARTS:.0}")]
+    TooManyParts {
+        /// s.
+        time: f64,
+        /// How many, at most.
+        parts: f64,
+    },
+    /// An element is beyond the table.
+    #[error(
+        "element {element} is beyond the table at t = {time} s: {pressure} Pa at {speed} m/s (table.extrapolation = \
+         \"hold\" extrapolates)"
+    )]
+    BeyondTable {
+        /// Its number, from 1.
+        element: usize,
+        /// s.
+        time: f64,
+        /// Pa.
+        pressure: f64,
+        /// m/s.
+        speed: f64,
+        /// Whether a shorter step may end before.
+        within: bool,
+    },
+}
+
+/// Why a run cannot be continued from a saved state.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RestoreError {
+    /// A number that is not valid in any run.
+    #[error("invalid state: {what} = {value}")]
+    Invalid {
+        /// Which number.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// The state is of another number of elements.
+    #[error("invalid state: {found} elements, expected {expected}")]
+    Count {
+        /// In the state.
+        found: usize,
+        /// In the patch.
+        expected: usize,
+    },
+}
+
+/// The springs of all elements.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Springs {
+    /// G, N.
+    pub(super) x: Vec<f64>,
+    pub(super) y: Vec<f64>,
+    /// K, N/m.
+    pub(super) stiffness: Vec<f64>,
+    /// 0 free, 1 slips, 2 sticks.
+    pub(super) mode: Vec<u8>,
+}
+
+impl Springs {
+    pub(super) fn new(count: usize) -> Self {
+        Self { x: vec![0.0; count], y: vec![0.0; count], stiffness: vec![0.0; count], mode: vec![0; count] }
+    }
+
+    /// Sets the springs of a block; its first element is the one at `start` here. Those that are not here are relaxed.
+    pub(super) fn load<T: Number>(&self, block: &mut Block<T>, start: isize, count: usize) {
+        for (lane, i) in self.indices(start, count) {
+            block.force[0][lane] = T::constant(self.x[i]);
+            block.force[1][lane] = T::constant(self.y[i]);
+            block.stiffness[lane] = T::constant(self.stiffness[i]);
+        }
+    }
+
+    /// Takes the springs of a block over; its first element is the one at `start` here. Those that are not here are lost.
+    pub(super) fn store<T: Number>(&mut self, block: &Block<T>, start: isize, count: usize) {
+        for (lane, i) in self.indices(start, count) {
+            self.x[i] = block.force[0][lane].value();
+            self.y[i] = block.force[1][lane].value();
+            self.stiffness[i] = block.stiffness[lane].value();
+            self.mode[i] = block.mode[lane];
+        }
+    }
+
+    /// The lanes of a block whose elements are here, and their indices.
+    fn indices(&self, start: isize, count: usize) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let skipped = start.min(0).unsigned_abs().min(count);
+        let first = start.max(0).unsigned_abs();
+        let shared = (count - skipped).min(self.x.len().saturating_sub(first));
+        (0..shared).map(move |i| (skipped + i, first + i))
+    }
+}
+
+/// All of a run that changes, but for the springs. SI units.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Totals {
+    pub(super) time: f64,
+    pub(super) pose: Pose,
+    /// The rates of the pose in the last step, or at the start.
+    pub(super) rates: [f64; 6],
+    /// At the end of the last step.
+    pub(super) transport_speed: f64,
+    /// At which the tread ran in the last step, on average.
+    pub(super) tread_speed: f64,
+    /// Of the tread, in cells: from 0 to below 1.
+    pub(super) place: f64,
+    pub(super) temperature: f64,
+    pub(super) wrench: [f64; 6],
+    pub(super) transport_force: f64,
+    /// Since the start, by slip and by release.
+    pub(super) lost: [f64; 2],
+    /// Mean over the last step, W.
+    pub(super) power: f64,
+    /// Whether an element has been beyond the table.
+    pub(super) beyond: bool,
+}
+
+/// All that changes in a run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PatchState {
+    pub(super) totals: Totals,
+    pub(super) springs: Springs,
+    /// `None` where they are not asked for.
+    pub(super) tangents: Option<Box<[[f64; 6]; 6]>>,
+}
+
+impl PatchStart {
+    pub(super) fn check(&self) -> Result<(), MotionError> {
+        check(self.time, "the time", &[self.time])?;
+        check(self.time, "a coordinate of the pose", &self.pose.coordinates())?;
+        check(self.time, "a rate of the pose", &self.rates)?;
+        check(self.time, "the speed of the tread", &[self.transport_speed])?;
+        check(self.time, "the temperature", &[self.temperature])
+    }
+}
+
+fn check(time: f64, what: &'static str, values: &[f64]) -> Result<(), MotionError> {
+    match values.iter().find(|value| !is_possible(**value)) {
+        Some(&value) => Err(MotionError::OutOfRange { what, value, time }),
+        None => Ok(()),
+    }
+}
+
+impl Totals {
+    /// Takes the loads at the end of a step and its losses over.
+    pub(super) fn add<T: Number>(&mut self, sums: &Sums<T>, duration: f64) {
+        self.wrench = sums.wrench.map(T::value);
+        self.transport_force = sums.transport.value();
+        self.lost[0] += sums.slip;
+        self.lost[1] += sums.release;
+        self.power = if duration > 0.0 { (sums.slip + sums.release) / duration } else { 0.0 };
+    }
+
+    fn numbers(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        let poses = self.pose.coordinates().into_iter().chain([self.time]).map(|value| ("a coordinate", value));
+        let rates = self.rates.into_iter().chain([self.transport_speed, self.tread_speed, self.temperature]);
+        let loads = self.wrench.into_iter().chain([self.transport_force, self.power]).chain(self.lost);
+        poses.chain(rates.map(|value| ("a rate", value))).chain(loads.map(|value| ("a load or a loss", value)))
+    }
+}
+
+impl PatchState {
+    /// Refuses numbers that no run can have reached.
+    pub(super) fn check(&self, count: usize, has_tangents: bool) -> Result<(), RestoreError> {
+        let Springs { x, y, stiffness, mode } = &self.springs;
+        for found in [x.len(), y.len(), stiffness.len(), mode.len()] {
+            if found != count {
+                return Err(RestoreError::Count { found, expected: count });
+            }
+        }
+        let invalid = |what, value| Err(RestoreError::Invalid { what, value });
+        if let Some((what, value)) = self.totals.numbers().find(|(_, value)| !is_possible(*value)) {
+            return invalid(what, value);
+        }
+        if let Some(value) = x.iter().chain(y).find(|value| !is_possible(**value)) {
+            return invalid("the force of a spring", *value);
+        }
+        if let Some(value) = stiffness.iter().find(|value| !(is_possible(**value) && **value >= 0.0)) {
+            return invalid("the stiffness of a spring", *value);
+        }
+        if let Some(value) = mode.iter().find(|value| **value > 2) {
+            return invalid("a mode", f64::from(*value));
+        }
+        let place = self.totals.place;
+        if !(0.0..1.0).contains(&place) {
+            return invalid("the place of the tread", place);
+        }
+        if self.tangents.is_some() != has_tangents {
+            return invalid("the number of tangents", 0.0);
+        }
+        if let Some(value) =
+            self.tangents.iter().flat_map(|rows| rows.iter().flatten()).find(|value| !value.is_finite())
+        {
+            return invalid("a tangent", *value);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,268 @@
+//! The output variables of a patch: names, units and values.
+
+use super::definition::Patch;
+use super::run::PatchRun;
+use super::survey::Survey;
+use crate::outputs::Kind;
+use crate::scene::{PatchGroup, Unit};
+
+/// The quantity behind a variable of a patch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PatchOutput {
+    /// Force along x, y or z, N.
+    Force(usize),
+    /// Moment about x, y or z, N m.
+    Moment(usize),
+    /// Force on the tread, N.
+    TransportForce,
+    /// Dissipated power, mean over the last step, W.
+    Power,
+    /// Dissipated energy, J.
+    Energy,
+    /// Of that, by slip, J.
+    SlipEnergy,
+    /// Of that, by release, J.
+    ReleaseEnergy,
+    /// Elements that bear.
+    Count,
+    /// Elements that stick.
+    Sticking,
+    /// Area of the elements that bear, m².
+    NominalArea,
+    /// Real area of contact, m².
+    RealArea,
+    /// The largest pressure, Pa.
+    Pressure,
+    /// Share of the normal force that is borne beyond the table.
+    Beyond,
+    /// Tangential over normal force.
+    Friction,
+    /// Share of hysteresis in it.
+    Hysteresis,
+    /// Energy stored in the springs, J.
+    ElasticEnergy,
+    /// Change of a component of the wrench with the target of a coordinate.
+    Tangent(usize, usize),
+    /// Pressure of an element, Pa.
+    ElementPressure(usize),
+    /// Traction on an element along x or y, Pa.
+    ElementTraction(usize, usize),
+    /// Mode of an element: 0 free, 1 slips, 2 sticks.
+    ElementMode(usize),
+}
+
+/// An output variable of a patch: a column of the result file, a variable of the FMU.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PatchVariable {
+    /// The quantity.
+    pub output: PatchOutput,
+    /// The group that it belongs to.
+    pub group: PatchGroup,
+    /// The variable's name.
+    pub name: String,
+    /// The unit of its values.
+    pub unit: Unit,
+    /// Real or Integer.
+    pub kind: Kind,
+    /// What it is, in a few words.
+    pub description: String,
+}
+
+/// The names of the coordinates of a pose, in the order of the inputs.
+pub const COORDINATES: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+impl PatchVariable {
+    fn real(group: PatchGroup, output: PatchOutput, name: &str, unit: Unit, description: &str) -> Self {
+        Self { output, group, name: name.into(), unit, kind: Kind::Real, description: description.into() }
+    }
+
+    fn count(group: PatchGroup, output: PatchOutput, name: &str, description: &str) -> Self {
+        Self { kind: Kind::Integer, ..Self::real(group, output, name, Unit::One, description) }
+    }
+
+    /// Whether it is an output of the FMU; the fields of the elements are local variables.
+    pub fn is_output(&self) -> bool {
+        self.group != PatchGroup::Elements
+    }
+}
+
+impl Patch {
+    /// The output variables of the groups asked for, in their order.
+    pub fn variables(&self) -> Vec<PatchVariable> {
+        self.groups().iter().flat_map(|&group| self.variables_of(group)).collect()
+    }
+
+    /// The variables that the patch would have with every group but that of the elements and the tangents.
+    pub fn all_variables(&self) -> Vec<PatchVariable> {
+        use PatchGroup::{Contact, Dissipation, Energy, Forces, Friction};
+        [Forces, Dissipation, Contact, Friction, Energy]
+            .into_iter()
+            .flat_map(|group| self.variables_of(group))
+            .collect()
+    }
+
+    fn variables_of(&self, group: PatchGroup) -> Vec<PatchVariable> {
+        let real = |output, name, unit, description| PatchVariable::real(group, output, name, unit, description);
+        let count = |output, name, description| PatchVariable::count(group, output, name, description);
+        match group {
+            PatchGroup::Forces => self.loads(),
+            PatchGroup::Dissipation => vec![
+                real(PatchOutput::Power, "P_diss", Unit::Watt, "Dissipated power, mean over the last step"),
+                real(PatchOutput::Energy, "E_diss", Unit::Joule, "Energy dissipated since the start"),
+                real(PatchOutput::SlipEnergy, "dissipation.E_slip", Unit::Joule, "Energy dissipated by slip"),
+                real(
+                    PatchOutput::ReleaseEnergy,
+                    "dissipation.E_release",
+                    Unit::Joule,
+                    "Energy lost with contacts that were released",
+                ),
+            ],
+            PatchGroup::Contact => vec![
+                count(PatchOutput::Count, "contact.count", "Elements that bear"),
+                count(PatchOutput::Sticking, "contact.sticking", "Elements that stick"),
+                real(
+                    PatchOutput::NominalArea,
+                    "contact.nominal_area",
+                    Unit::SquareMeter,
+                    "Area of the elements that bear",
+                ),
+                real(
+                    PatchOutput::RealArea,
+                    "contact.area",
+                    Unit::SquareMeter,
+                    "Real area of contact by the table's contact ratio",
+                ),
+                real(PatchOutput::Pressure, "contact.pressure", Unit::Pascal, "Largest pressure on an element"),
+                real(
+                    PatchOutput::Beyond,
+                    "contact.beyond",
+                    Unit::One,
+                    "Share of force.z that is borne beyond the table",
+                ),
+            ],
+            PatchGroup::Friction => vec![
+                real(PatchOutput::Friction, "friction.coefficient", Unit::One, "Tangential force over force.z"),
+                real(
+                    PatchOutput::Hysteresis,
+                    "friction.hysteresis",
+                    Unit::One,
+                    "Share of hysteresis in friction.coefficient",
+                ),
+            ],
+            PatchGroup::Energy => {
+                vec![real(
+                    PatchOutput::ElasticEnergy,
+                    "energy.elastic",
+                    Unit::Joule,
+                    "Energy stored in the springs of the elements",
+                )]
+            }
+            PatchGroup::Tangent => tangents(),
+            PatchGroup::Elements => (0..self.count()).flat_map(|i| self.fields(i)).collect(),
+        }
+    }
+
+    fn loads(&self) -> Vec<PatchVariable> {
+        let load = |output, kind: &str, axis: usize, unit, of: &str| {
+            let (name, description) = (format!("{kind}.{}", AXES[axis]), format!("{of} {}", AXES[axis]));
+            PatchVariable::real(PatchGroup::Forces, output, &name, unit, &description)
+        };
+        let force = |axis| load(PatchOutput::Force(axis), "force", axis, Unit::Newton, "Force on the body along");
+        let about = "Moment on the body about the pose's point along";
+        let moment = |axis| load(PatchOutput::Moment(axis), "moment", axis, Unit::NewtonMeter, about);
+        let description = "Force on the tread, positive where the ground drives it to the rear";
+        let transport = || {
+            PatchVariable::real(
+                PatchGroup::Forces,
+                PatchOutput::TransportForce,
+                "transport.force",
+                Unit::Newton,
+                description,
+            )
+        };
+        (0..3).map(force).chain((0..3).map(moment)).chain(self.has_tread().then(transport)).collect()
+    }
+
+    fn fields(&self, i: usize) -> [PatchVariable; 4] {
+        let element = match self.rows() {
+            Some(rows) => format!("element[{},{}]", i / rows + 1, i % rows + 1),
+            None => format!("element[{}]", i + 1),
+        };
+        let name = |field: &str| format!("{element}.{field}");
+        let real = |output, field: &str, unit, what: &str| {
+            PatchVariable::real(PatchGroup::Elements, output, &name(field), unit, &format!("{what} {element}"))
+        };
+        let traction = |axis: usize| {
+            let (field, what) = (format!("traction.{}", AXES[axis]), format!("Traction along {} on", AXES[axis]));
+            real(PatchOutput::ElementTraction(i, axis), &field, Unit::Pascal, &what)
+        };
+        let modes = format!("Mode (0 free, 1 slipping, 2 sticking) of {element}");
+        [
+            real(PatchOutput::ElementPressure(i), "pressure", Unit::Pascal, "Pressure on"),
+            traction(0),
+            traction(1),
+            PatchVariable::count(PatchGroup::Elements, PatchOutput::ElementMode(i), &name("mode"), &modes),
+        ]
+    }
+}
+
+fn tangents() -> Vec<PatchVariable> {
+    let variable = |i: usize| {
+        let (row, column) = (i / 6, i % 6);
+        let load = format!("{}.{}", if row < 3 { "force" } else { "moment" }, AXES[row % 3]);
+        let coordinate = COORDINATES[column];
+        let unit = match (row < 3, column < 3) {
+            (true, true) => Unit::NewtonPerMeter,
+            (true, false) => Unit::NewtonPerRadian,
+            (false, true) => Unit::Newton,
+            (false, false) => Unit::NewtonMeterPerRadian,
+        };
+        let description = format!("Change of {load} at the end of a step with the target of {coordinate} in it");
+        let name = format!("tangent.{load}.{coordinate}");
+        PatchVariable::real(PatchGroup::Tangent, PatchOutput::Tangent(row, column), &name, unit, &description)
+    };
+    (0..36).map(variable).collect()
+}
+
+impl PatchRun {
+    /// Writes the values of `variables`, in their order, into `values`; allocates nothing.
+    pub fn evaluate(&mut self, variables: &[PatchVariable], values: &mut [f64]) {
+        let of_all = |group| matches!(group, PatchGroup::Contact | PatchGroup::Friction | PatchGroup::Energy);
+        let survey =
+            if variables.iter().any(|variable| of_all(variable.group)) { self.survey() } else { Survey::default() };
+        for (variable, value) in variables.iter().zip(values) {
+            *value = self.value(variable.output, &survey);
+        }
+    }
+
+    fn value(&mut self, output: PatchOutput, survey: &Survey) -> f64 {
+        let totals = &self.totals;
+        match output {
+            PatchOutput::Force(axis) => totals.wrench[axis],
+            PatchOutput::Moment(axis) => totals.wrench[3 + axis],
+            PatchOutput::TransportForce => totals.transport_force,
+            PatchOutput::Power => totals.power,
+            PatchOutput::Energy => totals.lost[0] + totals.lost[1],
+            PatchOutput::SlipEnergy => totals.lost[0],
+            PatchOutput::ReleaseEnergy => totals.lost[1],
+            PatchOutput::Count => survey.count as f64,
+            PatchOutput::Sticking => survey.sticking as f64,
+            PatchOutput::NominalArea => survey.nominal_area,
+            PatchOutput::RealArea => survey.real_area,
+            PatchOutput::Pressure => survey.pressure,
+            PatchOutput::Beyond => share(survey.beyond, survey.normal),
+            PatchOutput::Friction => share(totals.wrench[0].hypot(totals.wrench[1]), totals.wrench[2]),
+            PatchOutput::Hysteresis => share(survey.hysteresis, survey.tangential),
+            PatchOutput::ElasticEnergy => survey.elastic,
+            PatchOutput::Tangent(row, column) => self.tangents.as_ref().map_or(0.0, |rows| rows[row][column]),
+            PatchOutput::ElementPressure(i) => self.pressure_on(i),
+            PatchOutput::ElementTraction(i, axis) => self.traction_on(i, axis),
+            PatchOutput::ElementMode(i) => f64::from(self.springs.mode[i]),
+        }
+    }
+}
+
+fn share(part: f64, whole: f64) -> f64 {
+    if whole > 0.0 { part / whole } else { 0.0 }
+}

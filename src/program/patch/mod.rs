@@ -1,0 +1,16 @@
+//! Contact patches on the command line.
+
+mod motion;
+mod simulate;
+
+pub(crate) use simulate::simulate;
+
+use std::path::{Path, PathBuf};
+
+use asperity::patch::Patch;
+
+/// The files that a patch is read from.
+pub(crate) fn sources(path: &Path, patch: &Patch) -> Vec<PathBuf> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    std::iter::once(path.to_owned()).chain(patch.files().iter().map(|file| folder.join(file))).collect()
+}

@@ -1,0 +1,136 @@
+//! The motion of a patch as a file: the pose at times, which it goes through straight from row to row.
+
+use std::path::Path;
+
+use asperity::patch::{COORDINATES, Patch, PatchMotion, PatchStart, Pose};
+
+use crate::program::result_file::{CsvFile, Record, ResultFileError};
+
+const TIME: &str = "time";
+const TRANSPORT: &str = "transport.speed";
+const TEMPERATURE: &str = "temperature";
+
+/// A motion, row by row.
+#[derive(Debug)]
+pub(crate) struct MotionFile {
+    rows: Vec<MotionRow>,
+    has_transport: bool,
+    has_temperature: bool,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MotionRow {
+    /// s.
+    pub(crate) time: f64,
+    pose: [f64; 6],
+    /// m/s; 0 without a tread.
+    transport_speed: f64,
+    /// K.
+    temperature: f64,
+}
+
+impl MotionFile {
+    /// Reads the motion of a patch: the columns `time` and those of the pose, `transport.speed` with a tread, and
+    /// `temperature` where it is an input and is to change.
+    pub(crate) fn read(path: &Path, patch: &Patch) -> Result<Self, ResultFileError> {
+        let file = CsvFile::read(path)?;
+        let names = file.names();
+        let has = |name: &str| names.iter().any(|other| other == name);
+        let (has_transport, has_temperature) = (patch.has_tread(), patch.has_temperatures() && has(TEMPERATURE));
+        let optional = [(TRANSPORT, has_transport), (TEMPERATURE, has_temperature)];
+        let wanted: Vec<&str> = std::iter::once(TIME)
+            .chain(COORDINATES)
+            .chain(optional.iter().filter(|(_, is_there)| *is_there).map(|(name, _)| *name))
+            .collect();
+        let indices = wanted.iter().map(|name| file.column(name)).collect::<Result<Vec<_>, _>>()?;
+        if let Some(name) = names.iter().find(|name| !wanted.contains(&name.as_str())) {
+            return Err(file.header_error(format!("column {name}: expected {} alone", wanted.join(", "))));
+        }
+        let motion = Self { rows: rows(&file, &indices, patch, has_transport)?, has_transport, has_temperature };
+        if motion.rows.is_empty() { Err(ResultFileError::NoRows { path: path.to_owned() }) } else { Ok(motion) }
+    }
+
+    pub(crate) fn rows(&self) -> &[MotionRow] {
+        &self.rows
+    }
+
+    /// The names of its columns.
+    pub(crate) fn names(&self) -> Vec<&'static str> {
+        let mut names = vec![TIME];
+        names.extend(COORDINATES);
+        names.extend(self.has_transport.then_some(TRANSPORT));
+        names.extend(self.has_temperature.then_some(TEMPERATURE));
+        names
+    }
+
+    /// The values of its columns.
+    pub(crate) fn values(&self, row: &MotionRow) -> Vec<f64> {
+        let mut values = vec![row.time];
+        values.extend(row.pose);
+        values.extend(self.has_transport.then_some(row.transport_speed));
+        values.extend(self.has_temperature.then_some(row.temperature));
+        values
+    }
+
+    /// The start, at the rates of the first interval.
+    pub(crate) fn start(&self) -> PatchStart {
+        let first = &self.rows[0];
+        let rates = self.rows.get(1).map_or([0.0; 6], |next| first.rates_to(next));
+        PatchStart {
+            time: first.time,
+            pose: Pose::of(first.pose),
+            rates,
+            transport_speed: first.transport_speed,
+            temperature: first.temperature,
+        }
+    }
+
+    /// The motions from row to row.
+    pub(crate) fn motions(&self) -> impl Iterator<Item = (PatchMotion, &MotionRow)> {
+        self.rows.windows(2).map(|pair| {
+            let motion = PatchMotion {
+                duration: pair[1].time - pair[0].time,
+                rates: pair[0].rates_to(&pair[1]),
+                transport_speed: pair[1].transport_speed,
+                temperature: pair[0].temperature,
+            };
+            (motion, &pair[1])
+        })
+    }
+}
+
+impl MotionRow {
+    fn rates_to(&self, next: &Self) -> [f64; 6] {
+        std::array::from_fn(|i| (next.pose[i] - self.pose[i]) / (next.time - self.time))
+    }
+}
+
+fn rows(
+    file: &CsvFile,
+    indices: &[usize],
+    patch: &Patch,
+    has_transport: bool,
+) -> Result<Vec<MotionRow>, ResultFileError> {
+    let mut rows: Vec<MotionRow> = Vec::new();
+    for record in file.records() {
+        let values = indices.iter().map(|&i| number(file, record, i)).collect::<Result<Vec<_>, _>>()?;
+        let mut optional = values.iter().skip(1 + COORDINATES.len()).copied();
+        let row = MotionRow {
+            time: values[0],
+            pose: std::array::from_fn(|i| values[1 + i]),
+            transport_speed: if has_transport { optional.next().unwrap_or_default() } else { 0.0 },
+            temperature: optional.next().unwrap_or(patch.temperature()),
+        };
+        if let Some(before) = rows.last().filter(|before| row.time <= before.time) {
+            return Err(file.error(record, format!("time = {}: expected one after {} s", row.time, before.time)));
+        }
+        rows.push(row);
+    }
+    Ok(rows)
+}
+
+fn number(file: &CsvFile, record: &Record, column: usize) -> Result<f64, ResultFileError> {
+    let text = &record.fields[column];
+    let finite = text.parse().ok().filter(|number: &f64| number.is_finite());
+    finite.ok_or_else(|| file.error(record, format!("{} = {text:?}: expected a number", file.names()[column])))
+}

@@ -1,0 +1,95 @@
+//! `asperity simulate --patch`: moves a patch along a motion file and writes a result file.
+
+use std::path::{Path, PathBuf};
+
+use asperity::patch::{MotionError, Patch, PatchError, PatchRun, PatchVariable};
+use asperity::scene::ParameterError;
+
+use super::motion::MotionFile;
+use super::sources;
+use crate::program::cli::Simulate;
+use crate::program::figure::{Figure as _, PatchHistory};
+use crate::program::files::{FileError, check_outputs};
+use crate::program::result_file::{CsvWriter, ResultFileError, field};
+use crate::program::terminal::{real, warn};
+
+/// `asperity simulate --patch` failed.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum PatchSimulateError {
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error(transparent)]
+    Patch(#[from] PatchError),
+    #[error("--set: {0}")]
+    Parameter(#[from] ParameterError),
+    #[error(transparent)]
+    Motion(#[from] ResultFileError),
+    #[error("the run cannot start: {0}")]
+    Start(MotionError),
+    #[error("{source}; the rows so far, up to t = {time} s, are in {}", .output.display())]
+    Run { source: MotionError, time: f64, output: PathBuf },
+}
+
+/// Moves the patch, writes the rows and draws the plot.
+pub(crate) fn simulate(command: &Simulate, patch_file: &Path, motion_file: &Path) -> Result<(), PatchSimulateError> {
+    let mut patch = Patch::load(patch_file)?;
+    command.set.iter().try_for_each(|(key, value)| patch.set_by_name(key, value))?;
+    let mut taken = sources(patch_file, &patch);
+    taken.push(motion_file.to_owned());
+    check_outputs([&command.output].into_iter().chain(&command.plot), taken)?;
+    let motion = MotionFile::read(motion_file, &patch)?;
+    let mut recorder = Recorder::new(&patch, &motion, command)?;
+    let mut run = PatchRun::new(&patch, &motion.start()).map_err(PatchSimulateError::Start)?;
+    recorder.row(&mut run, motion.values(&motion.rows()[0]))?;
+    let mut result = Ok(());
+    for (step, row) in motion.motions() {
+        if let Err(source) = run.advance(&step) {
+            result = Err(PatchSimulateError::Run { source, time: run.time(), output: command.output.clone() });
+            break;
+        }
+        run.take_warning().iter().for_each(|warning| warn(warning));
+        recorder.row(&mut run, motion.values(row))?;
+    }
+    let history = recorder.finish()?;
+    result?;
+    match (&command.plot, history) {
+        (Some(path), Some(history)) => Ok(history.write(path)?),
+        _ => Ok(()),
+    }
+}
+
+/// Writes the rows of a run to the file and keeps them for the plot.
+struct Recorder {
+    variables: Vec<PatchVariable>,
+    values: Vec<f64>,
+    writer: CsvWriter,
+    history: Option<PatchHistory>,
+}
+
+impl Recorder {
+    fn new(patch: &Patch, motion: &MotionFile, command: &Simulate) -> Result<Self, FileError> {
+        let variables = patch.variables();
+        let names = motion.names().into_iter().chain(variables.iter().map(|variable| variable.name.as_str()));
+        Ok(Self {
+            values: vec![0.0; variables.len()],
+            writer: CsvWriter::create(&command.output, names)?,
+            history: command.plot.is_some().then(|| PatchHistory::new(patch)),
+            variables,
+        })
+    }
+
+    fn row(&mut self, run: &mut PatchRun, motion: Vec<f64>) -> Result<(), FileError> {
+        run.evaluate(&self.variables, &mut self.values);
+        let variables = self.variables.iter().zip(&self.values).map(|(variable, &value)| field(variable.kind, value));
+        self.writer.write(motion.into_iter().map(real).chain(variables))?;
+        if let Some(history) = &mut self.history {
+            history.add(run);
+        }
+        Ok(())
+    }
+
+    fn finish(self) -> Result<Option<PatchHistory>, FileError> {
+        self.writer.finish()?;
+        Ok(self.history)
+    }
+}

@@ -1,0 +1,72 @@
+//! The keys of a patch file.
+
+use super::{Allowed, POSITIVE, Word, words};
+use super::{INPUT, Key, PATH, key, number, table, whole, word};
+use crate::scene::patch_file::{MOST_ELEMENTS, PatchGroup, TableExtrapolation};
+use crate::scene::{Unit, values::ANY};
+
+pub(in crate::scene) const PATCH_ROOT: &[Key] = &[
+    key("name", Allowed::Text("a text"), "Name of the patch"),
+    table("table", TABLE),
+    table("patch", &[SHAPE]),
+    table("input", INPUT),
+    table("solver", SOLVER),
+    table("fmu", FMU),
+];
+
+const TABLE: &[Key] = &[
+    key("path", Allowed::Text(PATH), "Table of a sweep"),
+    number("temperature", POSITIVE, Unit::Kelvin, "Temperature"),
+    word::<TableExtrapolation>(
+        "extrapolation",
+        "What happens beyond the table's pressures and speeds: refuse, or hold its ends' coefficients and stiffnesses",
+    ),
+    number("nominal_area", POSITIVE, Unit::SquareMeter, "Area that one layer stands for"),
+];
+
+/// What a face is like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::scene) enum ShapeKind {
+    Flat,
+    Cylinder,
+    Points,
+}
+
+impl Word for ShapeKind {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("flat", Self::Flat), ("cylinder", Self::Cylinder), ("points", Self::Points)];
+}
+
+impl ShapeKind {
+    /// The keys of a face of this shape.
+    pub(in crate::scene) fn keys(self) -> &'static [Key] {
+        match self {
+            Self::Flat => FLAT,
+            Self::Cylinder => CYLINDER,
+            Self::Points => POINTS,
+        }
+    }
+}
+
+const SHAPE: Key = word::<ShapeKind>("shape", "Shape of the face");
+const LENGTH: Key = number("length", POSITIVE, Unit::Meter, "Length along x");
+const WIDTH: Key = number("width", POSITIVE, Unit::Meter, "Width along y");
+const NX: Key = whole("nx", 1, MOST_ELEMENTS, "Elements along x");
+const NY: Key = whole("ny", 1, MOST_ELEMENTS, "Elements along y");
+const TRANSPORT: Key = key("transport", Allowed::Flag, "Whether a tread runs through");
+const OFFSET: Key = key("offset", Allowed::Numbers(ANY), "The face's origin in the body's axes, m");
+
+const FLAT: &[Key] = &[SHAPE, LENGTH, WIDTH, NX, NY, TRANSPORT, OFFSET];
+const CYLINDER: &[Key] =
+    &[SHAPE, number("radius", POSITIVE, Unit::Meter, "Radius"), LENGTH, WIDTH, NX, NY, TRANSPORT, OFFSET];
+const POINTS: &[Key] = &[SHAPE, key("path", Allowed::Text(PATH), "File of the points"), OFFSET];
+
+pub(in crate::scene) const REFINE: Key = whole("refine", 1, 1000, "How many times finer a step is cut than it need be");
+
+const SOLVER: &[Key] = &[REFINE];
+
+const FMU: &[Key] = &[key("outputs", Allowed::Words(words::<PatchGroup>), "Groups of output variables")];
+
+/// The range of a coordinate of a point and of its area.
+pub(in crate::scene) const COORDINATE: Key = number("", ANY, Unit::Meter, "");
+pub(in crate::scene) const AREA: Key = number("area", POSITIVE, Unit::SquareMeter, "");

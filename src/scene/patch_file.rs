@@ -1,0 +1,160 @@
+//! A patch file as data: which table, which elements on which face, which outputs.
+
+use std::path::PathBuf;
+
+use super::Extrapolation;
+use super::error::{Location, Problem, SceneError};
+use super::values::Word;
+
+/// The most elements of a patch.
+pub(super) const MOST_ELEMENTS: i64 = 1_000_000;
+
+/// The content of a patch file, and of the file of points that it names.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PatchFile {
+    /// Name of the patch.
+    pub name: String,
+    /// Path of the table, relative to the folder of the patch file.
+    pub table: PathBuf,
+    /// Temperature at the start, K.
+    pub temperature: Option<f64>,
+    /// What elements do where the table ends.
+    pub table_extrapolation: TableExtrapolation,
+    /// The area that a layer of the table stands for, m², where the table is one of forces.
+    pub nominal_area: Option<f64>,
+    /// The face.
+    pub shape: FaceShape,
+    /// Whether a tread runs through.
+    pub transport: bool,
+    /// The face's origin in the body's axes, m.
+    pub offset: [f64; 3],
+    /// How the body moves when a master gives no rates.
+    pub extrapolation: Extrapolation,
+    /// How many times finer a step is cut than it need be.
+    pub refine: u32,
+    /// Groups of outputs, in the order of the variables.
+    pub outputs: Vec<PatchGroup>,
+    /// Where the keys are that only the table can judge: `temperature` and `nominal_area`, or the table.
+    pub(super) places: [Location; 2],
+}
+
+/// The elements of a face.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FaceShape {
+    /// A grid in the plane z = 0 of the face.
+    Flat(Grid),
+    /// A grid on a cylinder about the y axis.
+    Cylinder {
+        /// m.
+        radius: f64,
+        /// Along the arc and the axis.
+        grid: Grid,
+    },
+    /// Single elements.
+    Points {
+        /// The file, relative to the folder of the patch file.
+        path: PathBuf,
+        /// x, y, z (m) and area (m²) of each.
+        points: Vec<[f64; 4]>,
+    },
+}
+
+/// A grid of elements about the middle of a face.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    /// Along x, m.
+    pub length: f64,
+    /// Along y, m.
+    pub width: f64,
+    /// Elements along x.
+    pub nx: usize,
+    /// Elements along y.
+    pub ny: usize,
+}
+
+/// What elements do beyond the pressures and speeds of their table.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TableExtrapolation {
+    /// They go on: the pressure along its tangent, all else as at the table's end.
+    #[default]
+    Hold,
+    /// The step is refused.
+    Refuse,
+}
+
+impl Word for TableExtrapolation {
+    const WORDS: &'static [(&'static str, Self)] = &[("refuse", Self::Refuse), ("hold", Self::Hold)];
+}
+
+impl TableExtrapolation {
+    /// The word for it in a patch file.
+    pub fn word(self) -> &'static str {
+        self.as_word()
+    }
+
+    /// What a word stands for.
+    pub fn of_word(word: &str) -> Option<Self> {
+        Self::of(word)
+    }
+}
+
+/// The groups of variables that a patch may be asked for, in the order of the variables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum PatchGroup {
+    /// The wrench, and the force on the tread.
+    Forces,
+    /// Dissipated power and energy.
+    Dissipation,
+    /// Counts, areas, pressure.
+    Contact,
+    /// The friction coefficient of the wrench.
+    Friction,
+    /// The energy stored.
+    Energy,
+    /// Change of the wrench with the targets of the pose.
+    Tangent,
+    /// Pressure, traction and mode of each element.
+    Elements,
+}
+
+impl Word for PatchGroup {
+    const WORDS: &'static [(&'static str, Self)] = &[
+        ("forces", Self::Forces),
+        ("dissipation", Self::Dissipation),
+        ("contact", Self::Contact),
+        ("friction", Self::Friction),
+        ("energy", Self::Energy),
+        ("tangent", Self::Tangent),
+        ("elements", Self::Elements),
+    ];
+}
+
+impl PatchGroup {
+    /// The group's name in a patch file.
+    pub fn word(self) -> &'static str {
+        self.as_word()
+    }
+}
+
+impl PatchFile {
+    /// The error of a temperature that the table does not reach.
+    pub fn refuse_temperature(&self, expected: String) -> SceneError {
+        let given = self.temperature.map_or_else(String::new, |kelvin| format!("{kelvin:?}"));
+        SceneError::new(self.places[0].clone(), "table.temperature", Problem::Value { given, expected })
+    }
+
+    /// The error of a nominal area that is given with a table of pressures, or is missing with one of forces.
+    pub fn refuse_nominal_area(&self, expected: &str) -> SceneError {
+        let problem = match self.nominal_area {
+            Some(area) => Problem::value(format_args!("{area:?}"), expected),
+            None => Problem::Missing { expected: expected.to_owned() },
+        };
+        SceneError::new(self.places[1].clone(), "table.nominal_area", problem)
+    }
+
+    /// Paths of the files that it reads, relative to its folder.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let points = if let FaceShape::Points { path, .. } = &self.shape { Some(path.clone()) } else { None };
+        std::iter::once(self.table.clone()).chain(points.filter(|path| *path != self.table)).collect()
+    }
+}

@@ -1,0 +1,163 @@
+//! From TOML text to a [`PatchFile`].
+
+use std::f64::consts::PI;
+use std::fs;
+use std::path::Path as FilePath;
+
+use super::table::{Entry, Result, Source, TableReader};
+use super::{read_input, read_name, surface};
+use crate::scene::SceneError;
+use crate::scene::error::ContentError;
+use crate::scene::keys::{AREA, COORDINATE, Form, Key, PATCH_ROOT, ShapeKind};
+use crate::scene::patch_file::{FaceShape, Grid, MOST_ELEMENTS, PatchFile, PatchGroup, TableExtrapolation};
+use crate::scene::text_table::{self, Row, decode};
+
+/// The columns of a file of points.
+const COLUMNS: [&str; 4] = ["x", "y", "z", "area"];
+
+impl PatchFile {
+    /// Reads the patch file at `path` and the file of points that it names; the table is not read.
+    ///
+    /// # Errors
+    /// [`SceneError`] with the file, the line, the key, what was given and what is allowed.
+    pub fn load(path: &FilePath) -> Result<Self> {
+        let text = fs::read_to_string(path).map_err(|error| SceneError::unreadable(path, &error))?;
+        Self::parse(&text, path)
+    }
+
+    /// Reads a patch from `text` as if it were the content of `file`; the files that it names are looked for in the same
+    /// folder.
+    ///
+    /// # Errors
+    /// As for [`load`](Self::load).
+    pub fn parse(text: &str, file: &FilePath) -> Result<Self> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let source = Source { file, text, form: Form::Direct };
+        let document = source.parse()?;
+        let mut root = TableReader::root(source, document.get_ref());
+        root.use_keys(PATCH_ROOT)?;
+        let name = read_name(&root.required("name")?)?;
+        let table_entry = root.required("table")?;
+        let mut table = table_entry.open()?;
+        table.check_keys()?;
+        let temperature = table.entry("temperature");
+        let nominal_area = table.entry("nominal_area");
+        let place = |entry: &Option<Entry<'_>>| entry.as_ref().unwrap_or(&table_entry).location();
+        let places = [place(&temperature), place(&nominal_area)];
+        let path = surface::read_path(&table.required("path")?)?;
+        let table_extrapolation = table.optional_choice("extrapolation")?.unwrap_or(TableExtrapolation::Hold);
+        table.finish()?;
+        let (shape, transport, offset) = read_face(&root.required("patch")?)?;
+        let extrapolation = root.optional_table("input", read_input)?.unwrap_or_default();
+        let refine = root.optional_table("solver", |table| table.optional_whole("refine"))?.flatten().unwrap_or(1);
+        let outputs = root.optional_table("fmu", read_outputs)?.unwrap_or_else(default_outputs);
+        root.finish()?;
+        Ok(Self {
+            name,
+            table: path,
+            temperature: temperature.map(|entry| entry.number()).transpose()?,
+            table_extrapolation,
+            nominal_area: nominal_area.map(|entry| entry.number()).transpose()?,
+            shape,
+            transport,
+            offset,
+            extrapolation,
+            refine: u32::try_from(refine).unwrap_or(1),
+            outputs,
+            places,
+        })
+    }
+}
+
+fn read_face(entry: &Entry<'_>) -> Result<(FaceShape, bool, [f64; 3])> {
+    let mut table = entry.open()?;
+    let kind = table.required("shape")?.choice::<ShapeKind>()?;
+    table.use_keys(kind.keys())?;
+    let shape = match kind {
+        ShapeKind::Flat => FaceShape::Flat(read_grid(&mut table)?),
+        ShapeKind::Cylinder => read_cylinder(&mut table)?,
+        ShapeKind::Points => read_points(&table.required("path")?)?,
+    };
+    let transport = kind != ShapeKind::Points && table.flag("transport")?;
+    let offset = table.entry("offset").map(|entry| read_offset(&entry)).transpose()?.unwrap_or_default();
+    table.finish()?;
+    Ok((shape, transport, offset))
+}
+
+fn read_grid(table: &mut TableReader<'_>) -> Result<Grid> {
+    let (length, width) = (table.number("length")?, table.number("width")?);
+    let (nx, ny) = (table.whole("nx")?, table.required("ny")?);
+    let rows = ny.whole()?;
+    if nx * rows > MOST_ELEMENTS {
+        return Err(ny.refuse(format_args!("nx ny up to {MOST_ELEMENTS}; nx = {nx}")));
+    }
+    let count = |number: i64| usize::try_from(number).unwrap_or(1);
+    Ok(Grid { length, width, nx: count(nx), ny: count(rows) })
+}
+
+fn read_cylinder(table: &mut TableReader<'_>) -> Result<FaceShape> {
+    let radius = table.number("radius")?;
+    let length = table.required("length")?;
+    let grid = read_grid(table)?;
+    if grid.length >= PI * radius {
+        return Err(length.refuse(format_args!("a number < {:?}, half of the cylinder", PI * radius)));
+    }
+    Ok(FaceShape::Cylinder { radius, grid })
+}
+
+fn read_offset(entry: &Entry<'_>) -> Result<[f64; 3]> {
+    let numbers = entry.numbers()?;
+    let count = numbers.len();
+    numbers.try_into().map_err(|_| entry.refuse_count(count, "three numbers"))
+}
+
+fn read_points(entry: &Entry<'_>) -> Result<FaceShape> {
+    let path = surface::read_path(entry)?;
+    let file = entry.source().folder().join(&path);
+    let bytes = fs::read(&file).map_err(|error| entry.unreadable(&error))?;
+    let points = parse_points(&bytes);
+    let points = points.map_err(|error| error.in_file(file).named_by(entry.location(), entry.path()))?;
+    Ok(FaceShape::Points { path, points })
+}
+
+fn parse_points(bytes: &[u8]) -> std::result::Result<Vec<[f64; 4]>, ContentError> {
+    let text = decode(bytes).map_err(|error| ContentError::new(Some(1), "", error))?;
+    let mut rows = text_table::rows(&text, Some(','));
+    let header = rows.next();
+    let line = header.as_ref().map(|row| row.line);
+    if header.as_ref().is_none_or(|row| row.fields != COLUMNS) {
+        let given = header.map_or_else(String::new, |row| row.fields.join(","));
+        return Err(ContentError::value(line, "columns", &given, "x,y,z,area"));
+    }
+    let points: Vec<[f64; 4]> = rows.map(|row| point(&row)).collect::<std::result::Result<_, _>>()?;
+    if points.is_empty() || points.len() as i64 > MOST_ELEMENTS {
+        let expected = format!("1 to {MOST_ELEMENTS}, one an element");
+        return Err(ContentError::value(line, "rows", &points.len().to_string(), &expected));
+    }
+    Ok(points)
+}
+
+fn point(row: &Row<'_>) -> std::result::Result<[f64; 4], ContentError> {
+    if row.fields.len() != COLUMNS.len() {
+        let given = row.fields.len().to_string();
+        return Err(ContentError::value(Some(row.line), "columns", &given, "four numbers"));
+    }
+    let mut numbers = [0.0; 4];
+    for (i, (number, field)) in numbers.iter_mut().zip(&row.fields).enumerate() {
+        let key: &Key = if i == 3 { &AREA } else { &COORDINATE };
+        let range = key.range();
+        let read = field.parse().ok().filter(|&value| range.is_some_and(|range| range.holds(value)));
+        let expected = || range.map_or_else(String::new, |range| range.to_string());
+        let given = || format!("\"{}\"", field.chars().take(60).collect::<String>());
+        *number = read.ok_or_else(|| ContentError::value(Some(row.line), COLUMNS[i], &given(), &expected()))?;
+    }
+    Ok(numbers)
+}
+
+fn default_outputs() -> Vec<PatchGroup> {
+    vec![PatchGroup::Forces, PatchGroup::Dissipation]
+}
+
+fn read_outputs(table: &mut TableReader<'_>) -> Result<Vec<PatchGroup>> {
+    table.entry("outputs").map_or_else(|| Ok(default_outputs()), |entry| super::read_groups(&entry))
+}

@@ -1,0 +1,327 @@
+//! Exact results: discs that spin, full slip, springs at rest, a rolling brush; and what must hold for every patch.
+
+use std::f64::consts::PI;
+use std::fs;
+use std::path::PathBuf;
+
+use crate::common::{root, scratch};
+use asperity::patch::{Patch, PatchMotion, PatchOutput, PatchRun, PatchStart, Pose};
+
+/// A bed of springs: p = 5e9 Pa/m of approach, μ = 0.9, κ = 1.5e9 N/m³, the same at all speeds. From 2e3 Pa.
+const WINKLER: &str = "winkler.table.csv";
+const SLOPE: f64 = 5e9;
+const FRICTION: f64 = 0.9;
+/// N/m³.
+const STIFFNESS: f64 = 1.5e9;
+/// A pressure of the table, Pa: what lies between is interpolated.
+const PRESSURE: f64 = 199_648.95;
+
+const GROUPS: &str =
+    "[fmu]\noutputs = [\"forces\", \"dissipation\", \"contact\", \"friction\", \"energy\", \"tangent\"]\n";
+
+fn folder(name: &str) -> PathBuf {
+    let folder = scratch(&format!("patch-{name}"));
+    for table in [WINKLER, "block.table.csv"] {
+        fs::copy(root().join("tests/reference/patch").join(table), folder.join(table)).unwrap();
+    }
+    folder
+}
+
+fn parse(name: &str, table: &str, face: &str) -> Patch {
+    let text = format!("name = \"{name}\"\n[table]\npath = \"{table}\"\n[patch]\n{face}\n{GROUPS}");
+    Patch::parse(&text, &folder(name).join("patch.toml")).unwrap()
+}
+
+/// A patch of points: x, y, z and area.
+fn points(name: &str, table: &str, points: &[[f64; 4]]) -> Patch {
+    let lines: Vec<String> = points.iter().map(|[x, y, z, a]| format!("{x:e},{y:e},{z:e},{a:e}")).collect();
+    let folder = folder(name);
+    fs::write(folder.join("points.csv"), format!("x,y,z,area\n{}\n", lines.join("\n"))).unwrap();
+    let face = "shape = \"points\"\npath = \"points.csv\"";
+    let text = format!("name = \"{name}\"\n[table]\npath = \"{table}\"\n[patch]\n{face}\n{GROUPS}");
+    Patch::parse(&text, &folder.join("patch.toml")).unwrap()
+}
+
+fn run_at(patch: &Patch, pose: [f64; 6], rates: [f64; 6], transport_speed: f64) -> PatchRun {
+    let start =
+        PatchStart { time: 0.0, pose: Pose::of(pose), rates, transport_speed, temperature: patch.temperature() };
+    PatchRun::new(patch, &start).unwrap()
+}
+
+fn go(run: &mut PatchRun, patch: &Patch, duration: f64, rates: [f64; 6], transport_speed: f64) {
+    run.advance(&PatchMotion { duration, rates, transport_speed, temperature: patch.temperature() }).unwrap();
+}
+
+fn value(run: &mut PatchRun, patch: &Patch, output: PatchOutput) -> f64 {
+    let variables: Vec<_> = patch.variables().into_iter().filter(|variable| variable.output == output).collect();
+    let mut values = [f64::NAN];
+    run.evaluate(&variables, &mut values);
+    values[0]
+}
+
+fn wrench(run: &mut PatchRun, patch: &Patch) -> [f64; 6] {
+    std::array::from_fn(|i| value(run, patch, if i < 3 { PatchOutput::Force(i) } else { PatchOutput::Moment(i - 3) }))
+}
+
+/// A disc of rings of equal width; `height` of each radius as a share of the disc's. Returns points and areas.
+fn disc(radius: f64, rings: usize, height: impl Fn(f64) -> f64) -> Vec<[f64; 4]> {
+    let mut points = Vec::new();
+    for ring in 0..rings {
+        let (inner, outer) = (ring as f64 / rings as f64, (ring + 1) as f64 / rings as f64);
+        let (middle, count) = (0.5 * (inner + outer), 6 * (2 * ring + 1));
+        let area = PI * radius * radius * (outer * outer - inner * inner) / count as f64;
+        for i in 0..count {
+            let angle = 2.0 * PI * (i as f64 + 0.5) / count as f64;
+            points.push([radius * middle * angle.cos(), radius * middle * angle.sin(), height(middle), area]);
+        }
+    }
+    points
+}
+
+/// Separation at a pressure.
+fn separation(pressure: f64) -> f64 {
+    -pressure / SLOPE
+}
+
+#[test]
+fn a_disc_under_even_pressure_that_spins_has_two_thirds_of_mu_n_r() {
+    let radius = 0.01;
+    let patch = points("disc", WINKLER, &disc(radius, 40, |_| 0.0));
+    let spin = [0.0, 0.0, 0.0, 0.0, 0.0, 10.0];
+    // So low that L/K, by which springs lag behind the motion, is small against the radius.
+    let low = 19_982.44;
+    let mut run = run_at(&patch, [0.0, 0.0, separation(low), 0.0, 0.0, 0.0], spin, 0.0);
+    (0..40).for_each(|_| go(&mut run, &patch, 0.01, spin, 0.0));
+    let [_, _, normal, _, _, moment] = wrench(&mut run, &patch);
+    let expected = -2.0 / 3.0 * FRICTION * normal * radius;
+    // The midpoint rule over 40 rings: 1/(12·40²) relative to ∫ r² dr.
+    assert!((moment / expected - 1.0).abs() < 2e-4, "{moment} {expected}");
+}
+
+#[test]
+fn a_disc_under_hertz_pressure_that_spins_has_3_pi_16_mu_n_a() {
+    let (radius, most) = (0.01, 4e5);
+    let height = |share: f64| separation(most * (1.0 - share * share).sqrt());
+    let patch = points("hertz", WINKLER, &disc(radius, 100, height));
+    let spin = [0.0, 0.0, 0.0, 0.0, 0.0, 10.0];
+    let mut run = run_at(&patch, [0.0; 6], spin, 0.0);
+    (0..40).for_each(|_| go(&mut run, &patch, 0.01, spin, 0.0));
+    let [_, _, normal, _, _, moment] = wrench(&mut run, &patch);
+    let expected = -3.0 * PI / 16.0 * FRICTION * normal * radius;
+    // Rings, the root at the rim, and the parabola below the table's least pressure.
+    assert!((moment / expected - 1.0).abs() < 2e-3, "{moment} {expected}");
+}
+
+#[test]
+fn in_full_slip_the_force_is_mu_n_against_the_motion() {
+    let patch = parse("slip", WINKLER, "shape = \"flat\"\nlength = 0.02\nwidth = 0.01\nnx = 5\nny = 3");
+    let rates = [0.3, -0.4, 0.0, 0.0, 0.0, 0.0];
+    let mut run = run_at(&patch, [0.0, 0.0, separation(PRESSURE), 0.0, 0.0, 0.0], rates, 0.0);
+    go(&mut run, &patch, 0.01, rates, 0.0);
+    let [x, y, z, ..] = wrench(&mut run, &patch);
+    assert!((z / (PRESSURE * 2e-4) - 1.0).abs() < 1e-9, "{z}");
+    for (force, direction) in [(x, 0.6), (y, -0.8)] {
+        assert!((force + FRICTION * z * direction).abs() < 1e-9 * z, "{x} {y} {z}");
+    }
+    assert!((value(&mut run, &patch, PatchOutput::Friction) - FRICTION).abs() < 1e-9);
+}
+
+/// Springs K = κA along the plane and kA across, and their moments of area about the pose's point.
+#[test]
+fn tangents_at_rest_are_those_of_springs() {
+    let (length, width, nx, ny) = (0.02_f64, 0.01_f64, 5.0_f64, 4.0_f64);
+    let patch = parse("rest", WINKLER, "shape = \"flat\"\nlength = 0.02\nwidth = 0.01\nnx = 5\nny = 4");
+    let mut run = run_at(&patch, [0.0, 0.0, separation(PRESSURE), 0.0, 0.0, 0.0], [0.0; 6], 0.0);
+    go(&mut run, &patch, 1.0, [0.0; 6], 0.0);
+    let area = length * width;
+    // Σ x² A over the middles of n cells.
+    let second = |length: f64, n: f64| area * length * length / 12.0 * (1.0 - 1.0 / (n * n));
+    let (about_y, about_x) = (second(length, nx), second(width, ny));
+    let mut tangent = |row: usize, column: usize| value(&mut run, &patch, PatchOutput::Tangent(row, column));
+    let slope = -tangent(2, 2) / area;
+    // The slope of a monotone interpolant of few points.
+    assert!((slope / SLOPE - 1.0).abs() < 1e-2, "{slope}");
+    let cases = [
+        ((0, 0), -STIFFNESS * area),
+        ((1, 1), -STIFFNESS * area),
+        ((3, 3), -slope * about_x),
+        ((4, 4), -slope * about_y),
+        ((5, 5), -STIFFNESS * (about_x + about_y)),
+        ((0, 1), 0.0),
+        ((2, 0), 0.0),
+    ];
+    // The face turns about a point in its own plane.
+    for ((row, column), expected) in cases {
+        let found = tangent(row, column);
+        assert!((found - expected).abs() <= 1e-6 * expected.abs().max(1e-9), "{row} {column}: {found} {expected}");
+    }
+}
+
+/// The brush model on a parabola of pressure, of half length a: forces against the slip, the moment of side slip.
+#[test]
+fn a_rolling_wheel_is_the_brush_model() {
+    let (radius, width, depth, speed) = (0.3_f64, 0.01_f64, 6e-5_f64, 2.0_f64);
+    let half = (radius * radius - (radius - depth) * (radius - depth)).sqrt();
+    let (rows, cells) = (1, 160);
+    let length = 2.4 * half;
+    let face = format!(
+        "shape = \"cylinder\"\nradius = {radius}\nlength = {length}\nwidth = {width}\nnx = {cells}\nny = {rows}\ntransport = true"
+    );
+    let patch = parse("brush", WINKLER, &face);
+    for (slip, side) in [(0.01, 0.0), (0.03, 0.0), (0.0, 0.03), (0.0, 0.045)] {
+        let (slip, side): (f64, f64) = (slip, side);
+        // Carrier velocity v, tread speed v_c: the slip speed v - v_c over v_c is the slip.
+        let rates = [speed * (1.0 + slip), speed * side, 0.0, 0.0, 0.0, 0.0];
+        let mut run = run_at(&patch, [0.0, 0.0, radius - depth, 0.0, 0.0, 0.0], rates, speed);
+        (0..30).for_each(|_| go(&mut run, &patch, 1e-3, rates, speed));
+        let [x, y, normal, _, _, moment] = wrench(&mut run, &patch);
+        let sigma = slip.hypot(side);
+        let q = (2.0 * STIFFNESS * half * half * width * sigma / (3.0 * FRICTION * normal)).min(1.0);
+        let force = FRICTION * normal * (3.0 * q - 3.0 * q * q + q * q * q);
+        let found = if side > 0.0 { -y } else { -x };
+        // 160 cells, and a rim of low pressure that bears a little more than the parabola.
+        assert!((found / force - 1.0).abs() < 1e-2, "slip {slip} {side}: {found} {force}");
+        if side > 0.0 {
+            let expected = FRICTION * normal * half * q * (1.0 - q).powi(3);
+            let most = FRICTION * normal * half * 0.105;
+            assert!((moment - expected).abs() < 2e-2 * most, "{moment} {expected}");
+        }
+    }
+}
+
+/// In steady rolling and sliding what the body and the tread put in is what is lost.
+#[test]
+fn the_power_of_body_and_tread_is_lost() {
+    let face = "shape = \"cylinder\"\nradius = 0.3\nlength = 0.0144\nwidth = 0.01\nnx = 24\nny = 2\ntransport = true";
+    let patch = parse("power", WINKLER, face);
+    let (speed, rates) = (2.0, [2.05, 0.03, 0.0, 0.0, 0.0, 0.0]);
+    let mut run = run_at(&patch, [0.0, 0.0, 0.29994, 0.0, 0.0, 0.0], rates, speed);
+    // A whole number of cells a step, so that every step is as the last.
+    let h = 3.0 * 0.0006 / speed;
+    (0..30).for_each(|_| go(&mut run, &patch, h, rates, speed));
+    let [x, y, ..] = wrench(&mut run, &patch);
+    let tread = value(&mut run, &patch, PatchOutput::TransportForce);
+    let power = x * rates[0] + y * rates[1] + tread * speed;
+    let lost = value(&mut run, &patch, PatchOutput::Power);
+    // Forces ripple as cells pass; P_diss is a mean.
+    assert!((power + lost).abs() < 0.02 * lost && lost > 0.1, "{power} {lost}");
+}
+
+/// Work put in by the springs is stored or lost, along a path that touches, turns and slides.
+#[test]
+fn no_energy_is_won() {
+    let patch = parse("energy", "block.table.csv", "shape = \"flat\"\nlength = 0.02\nwidth = 0.01\nnx = 6\nny = 4");
+    let mut run = run_at(&patch, [0.0, 0.0, 2e-5, 0.0, 0.0, 0.0], [0.0; 6], 0.0);
+    let (mut work, mut before) = (0.0, wrench(&mut run, &patch));
+    let h = 1e-4;
+    for step in 0..2000 {
+        let t = f64::from(step) * h;
+        let rates = [
+            0.02 * (30.0 * t).cos(),
+            0.01 * (47.0 * t).sin(),
+            -6e-4 * (40.0 * t).cos(),
+            0.0,
+            0.0,
+            3.0 * (20.0 * t).sin(),
+        ];
+        go(&mut run, &patch, h, rates, 0.0);
+        let after = wrench(&mut run, &patch);
+        for i in [0, 1, 5] {
+            work -= 0.5 * (before[i] + after[i]) * rates[i] * h;
+        }
+        before = after;
+    }
+    let stored = value(&mut run, &patch, PatchOutput::ElasticEnergy);
+    let lost = value(&mut run, &patch, PatchOutput::Energy);
+    // The trapezium rule over steps in which elements begin to slip.
+    assert!((work - stored - lost).abs() < 5e-3 * lost, "{work} {stored} {lost}");
+}
+
+fn turned(angle: f64, [x, y]: [f64; 2]) -> [f64; 2] {
+    [angle.cos() * x - angle.sin() * y, angle.sin() * x + angle.cos() * y]
+}
+
+/// A path of a tilted block: rates of steps of 5 ms.
+const PATH: [[f64; 6]; 5] = [
+    [0.01, 0.0, -1e-3, 0.02, 0.0, 0.0],
+    [0.05, 0.02, -2e-4, 0.0, 0.03, 1.5],
+    [-0.02, 0.04, 0.0, 0.0, 0.0, -2.0],
+    [0.0, 0.0, 6e-4, -0.05, 0.01, 3.0],
+    [0.1, -0.1, 8e-4, 0.1, 0.0, 0.0],
+];
+
+/// Everything turned about z: the wrench turns with it.
+#[test]
+fn turned_about_z_the_wrench_turns() {
+    let patch = parse("turned", "block.table.csv", "shape = \"flat\"\nlength = 0.02\nwidth = 0.01\nnx = 6\nny = 4");
+    let angle = 0.7;
+    let path = |turn: f64| {
+        let mut run = run_at(&patch, [0.0, 0.0, 1e-5, 1e-3, 5e-4, turn], [0.0; 6], 0.0);
+        let step = |rates: [f64; 6]| {
+            let [x, y] = turned(turn, [rates[0], rates[1]]);
+            go(&mut run, &patch, 5e-3, [x, y, rates[2], rates[3], rates[4], rates[5]], 0.0);
+            wrench(&mut run, &patch)
+        };
+        PATH.map(step)
+    };
+    for (here, there) in path(0.0).into_iter().zip(path(angle)) {
+        let largest = here.iter().fold(0.0_f64, |most, load| most.max(load.abs()));
+        for pair in [0, 3] {
+            let [x, y] = turned(angle, [here[pair], here[pair + 1]]);
+            assert!((x - there[pair]).abs() < 1e-8 * largest && (y - there[pair + 1]).abs() < 1e-8 * largest);
+            assert!((here[pair + 2] - there[pair + 2]).abs() < 1e-8 * largest, "{here:?} {there:?}");
+        }
+    }
+}
+
+/// The motion mirrored at the plane y = 0, and the tread and the motion at x = 0.
+#[test]
+fn a_mirrored_motion_gives_the_mirrored_wrench() {
+    let face = "shape = \"cylinder\"\nradius = 0.3\nlength = 0.0144\nwidth = 0.01\nnx = 12\nny = 3\ntransport = true";
+    let patch = parse("mirror", "block.table.csv", face);
+    let run = |signs: [f64; 6], tread: f64| {
+        let mut run = run_at(&patch, [0.0, 0.0, 0.3 - 1e-5, 0.0, 0.0, 0.0], [0.0; 6], 0.0);
+        let mut speed = 0.0;
+        PATH.map(|rates| {
+            speed += 0.03 * tread;
+            go(&mut run, &patch, 5e-3, std::array::from_fn(|i| signs[i] * rates[i]), speed);
+            wrench(&mut run, &patch)
+        })
+    };
+    let same = run([1.0; 6], 1.0);
+    for (signs, tread, loads) in [
+        ([1.0, -1.0, 1.0, -1.0, 1.0, -1.0], 1.0, [1.0, -1.0, 1.0, -1.0, 1.0, -1.0]),
+        ([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0], -1.0, [-1.0, 1.0, 1.0, 1.0, -1.0, -1.0]),
+    ] {
+        for (here, there) in same.iter().zip(run(signs, tread)) {
+            let largest = here.iter().fold(0.0_f64, |most, load| most.max(load.abs()));
+            for i in 0..6 {
+                assert!((here[i] * loads[i] - there[i]).abs() < 1e-7 * largest, "{i}: {here:?} {there:?}");
+            }
+        }
+    }
+}
+
+/// A straight path at constant height, in one step and in many uneven ones.
+#[test]
+fn a_straight_path_may_be_cut_anyhow() {
+    let patch = parse("split", "block.table.csv", "shape = \"flat\"\nlength = 0.02\nwidth = 0.01\nnx = 6\nny = 4");
+    let rates = [0.02, 0.013, 0.0, 0.0, 0.0, 0.0];
+    let run = |first: [f64; 6], steps: &[f64]| {
+        let mut run = run_at(&patch, [0.0, 0.0, 8e-6, 2e-3, 0.0, 0.3], first, 0.0);
+        go(&mut run, &patch, 3e-4, first, 0.0);
+        steps.iter().for_each(|&h| go(&mut run, &patch, h, rates, 0.0));
+        (wrench(&mut run, &patch), value(&mut run, &patch, PatchOutput::Energy))
+    };
+    // Loaded across first, so that the springs turn into the motion.
+    for first in [[0.0; 6], [-0.02, 0.013, 0.0, 0.0, 0.0, 0.0]] {
+        for total in [2e-4, 1e-3, 4e-3] {
+            let (whole, lost) = run(first, &[total]);
+            let (cut, lost_in_cuts) = run(first, &[0.1 * total, 0.37 * total, 0.03 * total, 0.5 * total]);
+            for i in 0..6 {
+                assert!((whole[i] - cut[i]).abs() < 1e-10 * whole[2], "{whole:?} {cut:?}");
+            }
+            assert!((lost - lost_in_cuts).abs() < 1e-10 * lost.max(1e-6), "{lost} {lost_in_cuts}");
+        }
+    }
+}

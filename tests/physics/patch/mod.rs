@@ -1,0 +1,4 @@
+//! The contact patch: exact results, given cases.
+
+mod exact;
+mod reference;
