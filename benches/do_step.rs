@@ -128,7 +128,7 @@ impl SteppingLibrary {
         let mut simulation = self.start.clone();
         let u = scene::Path { rate: U_RATE, ..scene::Path::default() };
         for _ in 0..STEPS as u32 {
-            simulation.advance(&Motion { duration: STEP, u, w: scene::Path::default() }).unwrap();
+            simulation.advance(&Motion { duration: STEP, u, w: scene::Path::default(), ..Motion::default() }).unwrap();
         }
     }
 }
@@ -201,6 +201,8 @@ fn library(motion: &Path, points: usize) {
     let mut simulation = Simulation::new(&Scene::load(&root().join(SCENE)).unwrap(), &start).unwrap();
     for i in 0..points - 1 {
         let path = |values: &[f64]| scene::Path { rate: rate(values, i), ..scene::Path::default() };
-        simulation.advance(&Motion { duration: time[i + 1] - time[i], u: path(&u), w: path(&w) }).unwrap();
+        simulation
+            .advance(&Motion { duration: time[i + 1] - time[i], u: path(&u), w: path(&w), ..Motion::default() })
+            .unwrap();
     }
 }

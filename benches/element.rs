@@ -48,7 +48,7 @@ fn layer() -> Simulation {
 /// One communication step of the layer.
 fn slide() -> Motion {
     let u = scene::Path { rate: SPEED, ..scene::Path::default() };
-    Motion { duration: STEP, u, w: scene::Path::default() }
+    Motion { duration: STEP, u, w: scene::Path::default(), ..Motion::default() }
 }
 
 /// The cost of an element depends only on the number of pressures in its table: 4.

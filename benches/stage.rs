@@ -64,7 +64,7 @@ impl Stages {
         forces.evaluate(&model, &state, &carrier.at(0.0));
         let integrator = Integrator::new(&model, Tracked::default(), Steps::EventDriven(Pair::Fifth));
         let mut start = StepStart { state, ..StepStart::new(&model) };
-        integrator.evaluate_start(&model, &mut start, &carrier.at(0.0), &forces, 1e-6);
+        integrator.evaluate_start(&model, &mut start, (&carrier, 0.0), &forces, 1e-6);
         let tolerance = Tolerance::new(&model, 1e-6, 1e-11);
         Self { model, start, carrier, integrator, tolerance }
     }

@@ -58,7 +58,7 @@
 //! let scene = Scene::parse(text, "one-mass.toml".as_ref())?;
 //! let mut simulation = Simulation::new(&scene, &Start::default())?;
 //! let press = Path { rate: -0.01, ..Path::default() };
-//! simulation.advance(&Motion { duration: 1e-3, u: Path::default(), w: press })?;
+//! simulation.advance(&Motion { duration: 1e-3, u: Path::default(), w: press, ..Motion::default() })?;
 //!
 //! let variables = variables(&scene);
 //! let mut values = vec![0.0; variables.len()];

@@ -84,6 +84,7 @@ const SWING: Motion = Motion {
     duration: 1e-4,
     u: Path { rate: 1.0, amplitude: 2e-4, frequency: 5000.0 },
     w: Path { rate: 0.0, amplitude: 1e-6, frequency: 9000.0 },
+    ..Motion::REST
 };
 
 fn rattling() -> (Simulation, Vec<Variable>, Vec<f64>) {

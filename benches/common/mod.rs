@@ -113,7 +113,7 @@ pub fn layer(masses: usize, elements: usize, clearance: f64) -> String {
 /// The carrier slides and swings.
 pub fn slide(duration: f64) -> Motion {
     let w = Path { amplitude: 2e-6, frequency: 3000.0, ..Path::default() };
-    Motion { duration, u: Path { rate: 0.5, ..Path::default() }, w }
+    Motion { duration, u: Path { rate: 0.5, ..Path::default() }, w, ..Motion::default() }
 }
 
 /// A run of `scene` whose carrier stands at `w` (m).

@@ -27,6 +27,8 @@ use crate::model::{
     Carrier, CarrierPoint, ChannelEnergies, FrictionCurve, LinkKind, Mode, Model, SlipCurve, State, SurfacePoint,
 };
 
+use crate::scene::Axis;
+
 /// Weight of the lateness of mode changes in the error of a step.
 ///
 /// Recommended 3 to 10. With 5, masses that touch and lift at a relative tolerance of 1e-2 add errors of some 1e-2 to
@@ -62,6 +64,8 @@ pub struct CorrectionEnergies {
     pub impact: f64,
     /// Through the channels from the instants of the impacts on: the difference that contact makes against free motion.
     pub channels: ChannelEnergies,
+    /// Impulses on the carrier along x and z, N s, that the step as tried does not know: they change the speeds of bodies.
+    pub impulse: [f64; 2],
 }
 
 /// The end-of-step correction: the masses whose modes were violated in a step, and workspace.
@@ -318,11 +322,24 @@ impl<'a> Correction<'a> {
             }
         }
         self.end.forces.refresh(self.step.model, self.end.state, &self.carrier, i);
+        for (axis, moved) in Axis::ALL.into_iter().zip([moved.0, moved.1]) {
+            self.pass_impulse_to_body(axis, moved, time);
+        }
         for j in neighbours(i) {
             if j < self.step.model.masses() {
                 self.pass_impulse_to(j, moved, time);
             }
         }
+    }
+
+    /// The impulse d Δ of the damper to the carrier of a mass that was displaced by Δ (m), on a body along `axis`; `time` (s)
+    /// bounds the velocity that it makes where the dampers are faster than that.
+    fn pass_impulse_to_body(&mut self, axis: Axis, displacement: f64, time: f64) {
+        let model = self.step.model;
+        let Some(body) = &model.bodies[axis as usize] else { return };
+        let damping = self.damping(axis.link());
+        let passing = damping * body.mass / (body.mass + time * model.masses() as f64 * damping);
+        self.energies.impulse[axis as usize] += passing * displacement;
     }
 
     /// The impulse d Δ of the lateral dampers on neighbour `j` of a mass that was displaced by Δ (m); `time` (s) bounds
@@ -419,7 +436,9 @@ impl<'a> Correction<'a> {
             if !kind.is_lateral() {
                 let more = (at_end - carrier) * (mean - carrier) - (free - carrier).powi(2);
                 self.energies.channels.damper += damping * more;
-                self.energies.channels.input -= damping * (at_end - free) * carrier;
+                if self.step.model.bodies[usize::from(!kind.is_along_x())].is_none() {
+                    self.energies.channels.input -= damping * (at_end - free) * carrier;
+                }
                 continue;
             }
             for (j, before) in neighbours(i).into_iter().zip(rest.neighbours) {

@@ -163,7 +163,14 @@ impl Element {
     /// [`ElementError`] where the carrier leaves the table; the element is then as it was.
     pub fn advance(&mut self, duration: f64, u_rate: f64, w_rate: f64) -> Result<(), ElementError> {
         let ElementState { time, u, w, .. } = self.state;
-        let end = Start { time: time + duration, u: u + u_rate * duration, w: w + w_rate * duration, u_rate, w_rate };
+        let end = Start {
+            time: time + duration,
+            u: u + u_rate * duration,
+            w: w + w_rate * duration,
+            u_rate,
+            w_rate,
+            ..Start::default()
+        };
         end.check()?;
         self.check_speed(u_rate)?;
         let before = self.curve.speed();

@@ -55,7 +55,14 @@ impl Inputs {
     /// The derivatives remain those of the first step unless the master sets others.
     pub fn start(&self, time: f64) -> Start {
         let [u, w] = &self.displacements;
-        Start { time, u: u.value, w: w.value, u_rate: u.rate.unwrap_or_default(), w_rate: w.rate.unwrap_or_default() }
+        Start {
+            time,
+            u: u.value,
+            w: w.value,
+            u_rate: u.rate.unwrap_or_default(),
+            w_rate: w.rate.unwrap_or_default(),
+            ..Start::default()
+        }
     }
 
     /// The motion over a step of `h` (s) from `time` (s): straight from û = `u` and ŵ = `w` (m) to their targets. Rounding
@@ -78,7 +85,7 @@ impl Inputs {
                 ..Path::default()
             })
         };
-        Ok(Motion { duration: h, u: path(Input::U, u)?, w: path(Input::W, w)? })
+        Ok(Motion { duration: h, u: path(Input::U, u)?, w: path(Input::W, w)?, ..Motion::default() })
     }
 
     /// Whether a run can have reached these inputs: the values of past steps are finite. Values and rates of the next step

@@ -15,7 +15,7 @@ use super::rates::Rates;
 use super::tableau::{GAMMA, STAGES, sdirk2_weights};
 use crate::math::{Relaxation, weighted_sum};
 use crate::model::{
-    Carrier, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint,
+    BodyStep, Carrier, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint,
 };
 
 /// Where a step lies in time.
@@ -520,6 +520,15 @@ fn parabola(theta: f64, middle: f64, end: f64) -> f64 {
     let (first, last) = sdirk2_weights(theta);
     let (of_middle, of_end) = ((first - last * ((1.0 - GAMMA) / GAMMA)) / GAMMA, last / GAMMA);
     of_middle * middle + of_end * end
+}
+
+/// The motion of a body through a step of length `h` (s), from its displacement, speed and acceleration at the start, at
+/// the first stage and at the end.
+pub(super) fn two_stage_body_step(h: f64, [start, first, end]: [[f64; 3]; 3]) -> BodyStep {
+    let (middle, moved) = (GAMMA * h * first[1], end[0] - start[0]);
+    let half = parabola(0.5, middle, moved);
+    let displacement = [4.0 * half - moved, 2.0 * moved - 4.0 * half];
+    BodyStep::TwoStages { length: h, node: GAMMA, displacement, speed: [first[1], end[1]] }
 }
 
 /// Weights of the values at the start, at the first stage and at the end in their piecewise linear interpolant.

@@ -116,6 +116,7 @@ impl<const STAGES: usize> StepPowers<'_, STAGES> {
             energy.friction += self.h * weight * exchange.friction;
             energy.shear += self.h * weight * exchange.shear;
             energy.input += self.h * weight * exchange.input;
+            energy.carrier += self.h * weight * exchange.carrier;
         }
         energy
     }

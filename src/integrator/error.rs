@@ -6,6 +6,7 @@ use super::rates::Rates;
 use super::tableau::Tableau;
 use crate::math::{dot, sum_of, sum_of_pairs, sum_of_triples, weighted_sum};
 use crate::model::{CarrierPoint, Exchange, LinkKind, Mode, Model, State};
+use crate::scene::Axis;
 
 /// The tolerances of the local error of a step. The error of each quantity is divided by absolute + relative · size.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,6 +24,9 @@ pub struct Tolerance {
     rods: [Option<Rod>; 4],
     /// [`Model::long_term_stiffness`], N/m.
     long_term_stiffness: Option<f64>,
+    /// Absolute tolerance of the speed of a body along x and z, m/s: that of positions times its natural frequency on the
+    /// layer and the drive.
+    body_velocity: [f64; 2],
 }
 
 /// A kind of link that is stiff enough to act as a rod.
@@ -73,6 +77,7 @@ impl Tolerance {
             force_scale: LinkKind::ALL.map(force_scale),
             rods: LinkKind::ALL.map(rod),
             long_term_stiffness: model.long_term_stiffness(),
+            body_velocity: Axis::ALL.map(|axis| absolute * model.body_frequency(axis)),
         }
     }
 
@@ -225,12 +230,29 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
         let resolvable = self.exchange.filter(|_| h * model.stiffest_frequency() > SHORTEST_RESOLVED);
         let of_energies = resolvable.map_or(0.0, |exchange| self.energy_square(model, exchange, h, tolerance));
         let mean = |sum: f64| (sum / model.masses() as f64).sqrt();
-        let motion_error = mean(sum).hypot(self.tableau.run_weight * of_forces.sqrt());
+        let of_bodies = if model.has_bodies() { self.body_squares(model, &carrier_error, tolerance) } else { 0.0 };
+        let motion_error = mean(sum).hypot(of_bodies.sqrt()).hypot(self.tableau.run_weight * of_forces.sqrt());
         let error = motion_error.hypot(self.tableau.run_weight * of_energies.sqrt());
         StepAttempt { error, motion_error, carrier_error: mean(free) }
     }
 
-    /// The square of the error of the energies through the dampers, the surface and the carrier over its tolerance.
+    /// The sum of squares of the errors of the bodies' displacements and speeds over their tolerances, relative to the way
+    /// since the start of the piece.
+    fn body_squares(&self, model: &Model, error: &CarrierError, tolerance: &Tolerance) -> f64 {
+        let of = |axis: Axis| {
+            let [way, rate, _] = self.carrier[STAGES - 1].along(axis);
+            let (position, velocity) = match axis {
+                Axis::X => (error.position.0, error.velocity.0),
+                Axis::Z => (error.position.1, error.velocity.1),
+            };
+            let allowed = tolerance.body_velocity[axis as usize] + tolerance.relative * rate.abs();
+            position * position / tolerance.of_position(way) + square(velocity / allowed)
+        };
+        Axis::ALL.into_iter().filter(|&axis| model.bodies[axis as usize].is_some()).map(of).sum()
+    }
+
+    /// The square of the error of the energies through the dampers, those to drives included, the surface and the carrier over
+    /// its tolerance.
     ///
     /// Just after a kink the dampers' power falls within times far shorter than the step, which the motion forgets: the
     /// energies alone show that.
@@ -243,7 +265,7 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
         let (mut errors, mut input) = ([0.0; 3], 0.0);
         let weights = self.tableau.error.iter().zip(self.tableau.weights());
         for (((error, weight), stage), exchange) in weights.zip(self.stages).zip(exchange) {
-            let powers = [damper(stage), exchange.friction, exchange.input];
+            let powers = [damper(stage) + exchange.carrier, exchange.friction, exchange.input];
             errors.iter_mut().zip(powers).for_each(|(sum, power)| *sum += h * error * power);
             input += h * weight * exchange.input;
         }

@@ -78,6 +78,12 @@ impl StageInterpolation {
         std::array::from_fn(|j| factors.iter().zip(&self.by_power).map(|(factor, weights)| factor * weights[j]).sum())
     }
 
+    /// The coefficients of 1, θ, … θ⁴ of a value by those at the stages.
+    pub fn polynomial(&self, values: impl Fn(usize) -> f64) -> [f64; POWERS] {
+        let values: [f64; STAGES] = std::array::from_fn(|stage| if stage < self.stages { values(stage) } else { 0.0 });
+        self.by_power.map(|weights| weights.iter().zip(values).map(|(weight, value)| weight * value).sum())
+    }
+
     /// By stage: the coefficients of ∫_0^θ w in Bernstein's basis of degree 5.
     pub fn bernstein_integral(&self) -> &[[f64; POWERS + 1]; STAGES] {
         &self.bernstein_integral

@@ -6,10 +6,11 @@ use super::error::{ErrorTest, ErrorWorkspace, StepAttempt, Tolerance};
 use super::maxwell::Maxwell;
 use super::rates::{Rates, StepStart};
 use super::sensitivity::{SolvedStage, Tangent};
-use super::stage::{ConvergenceTest, Friction, NoConvergence, StagePoint, StageSolver};
+use super::stage::{BodyHistory, ConvergenceTest, Friction, NoConvergence, StagePoint, StageSolver};
 use super::tableau::{ContinuousWeights, STAGES, Tableau};
 use crate::math::weighted_sum;
 use crate::model::{Carrier, CarrierPoint, ChannelEnergies, Exchange, Mode, Model, State};
+use crate::scene::Axis;
 
 /// One Runge-Kutta method with its workspace.
 #[derive(Clone, Debug)]
@@ -96,10 +97,10 @@ impl<const N: usize> RungeKutta<N> {
         for i in 1..N {
             let (weights, s) = (&self.tableau.a[i][..], span.at(self.tableau.c[i]));
             let moved = carrier.moved(span.start, self.tableau.c[i] * span.length).0;
-            let point = stages.prepare(step, i, s, moved, weights);
+            let mut point = stages.prepare(step, i, s, moved, weights);
             self.maxwell.known_forces(i, &stages.rates[..i], &mut stages.solver.history.force);
             stages.guess(step, i, &self.initial_guess);
-            stages.solve(model, &point, i, convergence)?;
+            stages.solve(step, &mut point, i, s, convergence)?;
             stages.vary(step, &point, i, s, weights);
         }
         self.maxwell.at_stage(model, N - 1, &state.maxwell, &stages.rates, &mut stages.solver.state.maxwell);
@@ -148,16 +149,39 @@ impl Stages {
     /// since the start of the step: the history of the masses' motion with the `weights` of the stages, and its point.
     fn prepare(&mut self, step: &StepInput<'_>, i: usize, s: f64, moved: f64, weights: &[f64]) -> StagePoint {
         let (carrier, h) = (step.carrier, step.span.length);
-        let at = carrier.at(s);
+        let mut at = carrier.at(s);
+        if carrier.has_bodies() {
+            self.prepare_bodies(step, i, s, weights, &mut at);
+        }
         self.carrier[i] = at;
         self.collect_history(&step.start.state, h, &weights[..i]);
         StagePoint {
             beta: step.beta,
             carrier: at,
-            integrated: self.integrate_carrier(h, weights, i),
+            integrated: self.integrate_carrier(carrier, h, weights, i),
             moved,
-            profile_position: carrier.profile_position + at.du,
-            w: carrier.w + at.dw,
+            piece: (carrier.profile_position, carrier.w),
+        }
+    }
+
+    /// Sets what stage `i` knows of the bodies, and guesses that they move as at the stage before: `at` is the carrier.
+    fn prepare_bodies(&mut self, step: &StepInput<'_>, i: usize, s: f64, weights: &[f64], at: &mut CarrierPoint) {
+        let (carrier, h) = (step.carrier, step.span.length);
+        for axis in Axis::ALL.into_iter().filter(|&axis| carrier.is_body(axis)) {
+            let [start, start_rate, _] = self.carrier[0].along(axis);
+            let mut star = BodyHistory { rate: start_rate, moved: 0.0, start };
+            for (earlier, weight) in self.carrier[..i].iter().zip(weights) {
+                let [_, rate, acceleration] = earlier.along(axis);
+                star.rate += h * weight * acceleration;
+                star.moved += h * weight * rate;
+            }
+            let rate = self.carrier[i - 1].along(axis)[1];
+            let displacement = start + (star.moved + step.beta * rate);
+            at.set_along(axis, [displacement, rate, (rate - star.rate) / step.beta]);
+            let outside = carrier.outside_at(step.model, axis, s, [displacement, rate]);
+            if let (Some((_, outside)), Some(border)) = (outside, &mut self.solver.border) {
+                border.prepare(axis, star, outside);
+            }
         }
     }
 
@@ -182,7 +206,7 @@ impl Stages {
     /// So the elongations are integrated as the differences that they are, ė = ẋ - u̇, and the velocities relative to the
     /// carrier's, with -ü as a load: a carrier that oscillates widely causes no error in a layer that moves with it. The
     /// starred velocities take up the error of the quadrature of ü for u̇.
-    fn integrate_carrier(&mut self, h: f64, weights: &[f64], i: usize) -> (f64, f64) {
+    fn integrate_carrier(&mut self, carrier: &Carrier, h: f64, weights: &[f64], i: usize) -> (f64, f64) {
         let (mut moved, mut gained) = ((0.0, 0.0), (0.0, 0.0));
         for (at, weight) in self.carrier[..=i].iter().zip(weights) {
             let step = h * weight;
@@ -193,9 +217,10 @@ impl Stages {
         let history = &mut self.solver.history;
         let error_x = here.u_rate - start.u_rate - gained.0;
         let error_z = here.w_rate - start.w_rate - gained.1;
-        // On straight paths the quadrature is exact.
-        for (star, error) in [(&mut history.velocity_x, error_x), (&mut history.velocity_z, error_z)] {
-            if error != 0.0 {
+        // On straight paths the quadrature is exact, and so it is of a body, which is integrated.
+        let errors = [(Axis::X, &mut history.velocity_x, error_x), (Axis::Z, &mut history.velocity_z, error_z)];
+        for (axis, star, error) in errors {
+            if error != 0.0 && !carrier.is_body(axis) {
                 star.iter_mut().for_each(|star| *star += error);
             }
         }
@@ -240,18 +265,23 @@ impl Stages {
         }
     }
 
-    /// Solves stage `i`, which is prepared, and computes the powers at it.
+    /// Solves stage `i`, which is prepared, at `s` seconds after the start of the carrier's piece, and computes the powers at
+    /// it.
     fn solve(
         &mut self,
-        model: &Model,
-        point: &StagePoint,
+        step: &StepInput<'_>,
+        point: &mut StagePoint,
         i: usize,
+        s: f64,
         convergence: ConvergenceTest,
     ) -> Result<(), NoConvergence> {
+        let StepInput { model, carrier, .. } = *step;
         self.solver.solve(model, point, convergence, &mut self.rates[i])?;
+        self.carrier[i] = point.carrier;
         if self.tracks_energy {
             let solver = &self.solver;
             self.exchange[i] = Exchange::evaluate(model, &solver.state, &point.carrier, &solver.forces);
+            self.exchange[i].add_bodies(model, carrier, s, &point.carrier);
         }
         Ok(())
     }

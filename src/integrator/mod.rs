@@ -29,8 +29,9 @@ pub use rates::{NO_LIMIT, Rates, StepStart};
 pub use stage::NoConvergence;
 pub use tableau::{ContinuousWeights, ESDIRK3, ESDIRK5, SDIRK2, STAGES, TWO_STAGES, Tableau};
 
-use crate::model::{Carrier, CarrierPoint, ChannelEnergies, Exchange, Forces, Model, State};
-use dense::piecewise_linear;
+use crate::model::{BodyStep, Carrier, CarrierPoint, ChannelEnergies, Exchange, Forces, Model, State};
+use crate::scene::Axis;
+use dense::{piecewise_linear, two_stage_body_step};
 use energy::StepSums;
 use error::ErrorWorkspace;
 use event_method::EventMethod;
@@ -141,19 +142,22 @@ impl Integrator {
     }
 
     /// Evaluates the rates and the powers at the start of a step from the `forces` in its state: needed at the start of
-    /// a run, after an event and at a kink of the carrier's motion. The step will have some length `h` (s).
+    /// a run, after an event and at a kink of the carrier's motion. The step starts at the time `s` of the carrier's piece and
+    /// will have some length `h` (s).
     pub fn evaluate_start(
         &self,
         model: &Model,
         start: &mut StepStart,
-        carrier: &CarrierPoint,
+        (carrier, s): (&Carrier, f64),
         forces: &Forces,
         h: f64,
     ) {
         start.rates.evaluate(model, &start.state, forces, self.event_method.gamma() * h);
         start.largest = start.largest.with(forces);
         if self.stages.tracks_energy {
-            start.exchange = Exchange::evaluate(model, &start.state, carrier, forces);
+            let point = carrier.at(s);
+            start.exchange = Exchange::evaluate(model, &start.state, &point, forces);
+            start.exchange.add_bodies(model, carrier, s, &point);
         }
     }
 
@@ -212,6 +216,22 @@ impl Integrator {
         let error = (sum / end.mode.len() as f64).sqrt();
         // The two stages lie 1 - γ of a step apart, and the error grows with the square of the step length.
         1.0 / (error * (1.0 - GAMMA)).sqrt()
+    }
+
+    /// The motion of a body along `axis` through the last attempted step, of length `h` (s): event-driven, or of two stages
+    /// where it is a `time_step`.
+    pub fn body_step(&self, axis: Axis, h: f64, time_step: bool) -> BodyStep {
+        let at = |stage: usize| self.stages.carrier[stage].along(axis);
+        if time_step {
+            two_stage_body_step(h, [at(0), at(1), at(TWO_STAGES - 1)])
+        } else {
+            BodyStep::Polynomial { length: h, speed: self.interpolation.polynomial(|stage| at(stage)[1]) }
+        }
+    }
+
+    /// The carrier at the end of the last attempted step: event-driven, or of two stages where it is a `time_step`.
+    pub fn end_carrier(&self, time_step: bool) -> CarrierPoint {
+        self.stages.carrier[if time_step { TWO_STAGES } else { self.pair.stages() } - 1]
     }
 
     /// The state at the end of the last attempted step.

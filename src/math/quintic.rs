@@ -18,6 +18,11 @@ pub struct Jet {
 }
 
 impl Quintic {
+    /// The same position through the whole step.
+    pub fn constant(position: f64) -> Self {
+        Self { coefficients: [position; 6] }
+    }
+
     /// The Hermite interpolant over a step of length `h`: error O(h⁶) of the position.
     pub fn hermite(start: Jet, end: Jet, h: f64) -> Self {
         let (v0, v1) = (h / 5.0 * start.speed, h / 5.0 * end.speed);

@@ -99,18 +99,32 @@ impl BlockTridiagonal {
 
     /// The solution for the right sides in `right`, in their place, once the blocks are factored.
     pub fn solve(&mut self) {
-        self.solve_by(|block, vector| block * vector);
+        let mut right = std::mem::take(&mut self.right);
+        self.solve_for(&mut right);
+        self.right = right;
     }
 
-    /// The same where all blocks are diagonal.
+    /// The solution for other right sides, one for each row, in their place.
+    pub fn solve_for(&self, right: &mut [Vector2<f64>]) {
+        self.solve_by(right, |block, vector| block * vector);
+    }
+
+    /// The same as [`solve`](Self::solve) where all blocks are diagonal.
     pub fn solve_uncoupled(&mut self) {
-        self.solve_by(|block, vector| Vector2::new(block.m11 * vector.x, block.m22 * vector.y));
+        let mut right = std::mem::take(&mut self.right);
+        self.solve_uncoupled_for(&mut right);
+        self.right = right;
+    }
+
+    /// The same as [`solve_for`](Self::solve_for) where all blocks are diagonal.
+    pub fn solve_uncoupled_for(&self, right: &mut [Vector2<f64>]) {
+        self.solve_by(right, |block, vector| Vector2::new(block.m11 * vector.x, block.m22 * vector.y));
     }
 
     #[inline(always)]
-    fn solve_by(&mut self, times: impl Fn(&Matrix2<f64>, &Vector2<f64>) -> Vector2<f64>) {
+    fn solve_by(&self, right: &mut [Vector2<f64>], times: impl Fn(&Matrix2<f64>, &Vector2<f64>) -> Vector2<f64>) {
         let (middle, mirrored) = self.halves();
-        let Self { right, inverse, share, share_behind, back, .. } = self;
+        let Self { inverse, share, share_behind, back, .. } = self;
         let (left, behind) = right.split_at_mut(middle);
         let Some((center, behind)) = behind.split_first_mut() else { return };
         let eliminate = |carried: &mut Vector2<f64>, right: &mut Vector2<f64>, share, inverse| {

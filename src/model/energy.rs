@@ -4,8 +4,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::math::dot;
+use crate::scene::Axis;
 
-use super::{CarrierPoint, Forces, FrictionCurve, LinkKind, Model, State};
+use super::{Carrier, CarrierPoint, Forces, FrictionCurve, LinkKind, Model, State};
 
 /// Power through the channels, W.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -16,7 +17,7 @@ pub struct Powers {
     pub maxwell: f64,
     /// P_friction = Σ F_T v_t.
     pub friction: f64,
-    /// P_in = -(F_x u̇ + F_z ẇ), of the carrier into the layer.
+    /// P_in: -F_x u̇ and -F_z ẇ of a prescribed carrier, the power of loads and drives on a body.
     pub input: f64,
 }
 
@@ -27,7 +28,7 @@ impl Powers {
             damper: LinkKind::ALL.map(|kind| damper(model, forces, kind)).iter().sum(),
             maxwell: maxwell(model, state),
             friction: friction(model, state, forces).0,
-            input: input(forces, carrier),
+            input: input(model, forces, carrier),
         }
     }
 
@@ -48,8 +49,10 @@ pub struct ChannelEnergies {
     pub friction: f64,
     /// E_shear, the part of E_friction against the shear force.
     pub shear: f64,
-    /// E_in, of the carrier into the layer.
+    /// E_in, of a prescribed carrier into the layer, of loads and drives into a body.
     pub input: f64,
+    /// E_c, lost in the dampers from bodies to their drives; no part of the dissipated energy.
+    pub carrier: f64,
 }
 
 impl ChannelEnergies {
@@ -71,6 +74,7 @@ impl ChannelEnergies {
         self.friction += other.friction;
         self.shear += other.shear;
         self.input += other.input;
+        self.carrier += other.carrier;
     }
 }
 
@@ -81,15 +85,28 @@ pub struct Exchange {
     pub friction: f64,
     /// P_shear = Σ (F_T - μ F_N) v_t, W: the part of the shear force.
     pub shear: f64,
-    /// P_in = -(F_x u̇ + F_z ẇ), W.
+    /// P_in: -F_x u̇ and -F_z ẇ of a prescribed carrier, the power of loads and drives on a body, W.
     pub input: f64,
+    /// P_c = D (u̇ - u̇_d)² and likewise along z, lost in the dampers from bodies to their drives, W.
+    pub carrier: f64,
 }
 
 impl Exchange {
     /// The powers in `state` with the forces there.
     pub fn evaluate(model: &Model, state: &State, carrier: &CarrierPoint, forces: &Forces) -> Self {
         let (friction, shear) = friction(model, state, forces);
-        Self { friction, shear, input: input(forces, carrier) }
+        Self { friction, shear, input: input(model, forces, carrier), carrier: 0.0 }
+    }
+
+    /// Adds the powers of what acts on the bodies from outside, at the time `s` after the start of the `carrier`'s piece (s).
+    pub fn add_bodies(&mut self, model: &Model, carrier: &Carrier, s: f64, point: &CarrierPoint) {
+        for axis in Axis::ALL {
+            let [displacement, rate, _] = point.along(axis);
+            if let Some((body, outside)) = carrier.outside_at(model, axis, s, [displacement, rate]) {
+                self.input += outside.input(body);
+                self.carrier += outside.lost(body);
+            }
+        }
     }
 }
 
@@ -128,10 +145,11 @@ fn friction(model: &Model, state: &State, forces: &Forces) -> (f64, f64) {
     (at_rest + excess, (at_rest - coulomb) + excess)
 }
 
-/// A carrier at rest does no work, whatever the forces.
-fn input(forces: &Forces, carrier: &CarrierPoint) -> f64 {
-    let along_x = if carrier.u_rate == 0.0 { 0.0 } else { forces.on_carrier_x() * carrier.u_rate };
-    let along_z = if carrier.w_rate == 0.0 { 0.0 } else { forces.on_carrier_z() * carrier.w_rate };
+/// The power of a prescribed carrier into the layer, W. One at rest does no work, whatever the forces.
+fn input(model: &Model, forces: &Forces, carrier: &CarrierPoint) -> f64 {
+    let [body_x, body_z] = &model.bodies;
+    let along_x = if carrier.u_rate == 0.0 || body_x.is_some() { 0.0 } else { forces.on_carrier_x() * carrier.u_rate };
+    let along_z = if carrier.w_rate == 0.0 || body_z.is_some() { 0.0 } else { forces.on_carrier_z() * carrier.w_rate };
     -(along_x + along_z)
 }
 

@@ -11,7 +11,7 @@ mod reduction;
 mod scales;
 mod state;
 
-pub use carrier::{Carrier, CarrierPoint, CarrierPosition};
+pub use carrier::{Body, BodyEnergy, BodyStart, BodyStep, Carrier, CarrierPoint, CarrierPosition, Outside, Piece};
 pub use energy::{ChannelEnergies, Exchange, Powers, elastic_energy, kinetic_energy};
 pub use forces::{Forces, LinkLaw, LinkMotion, MaxwellRow};
 pub use friction::{ContactForces, FrictionCurve, RateShear, SlipCurve};
@@ -60,6 +60,8 @@ pub struct Model {
     pub glassy: [f64; 4],
     /// The rigid profile z_r(x).
     pub profile: Spline,
+    /// The carrier as a body along x and z; `None` where its displacement is prescribed.
+    pub bodies: [Option<Body>; 2],
     /// Coulomb's coefficient μ.
     pub friction_coefficient: f64,
     /// Shear force A τ_0 + A τ_f(v_c) of a mass in contact, at rest or slower than the creep speed, N.
@@ -101,6 +103,7 @@ impl Model {
             relaxation_times,
             glassy: LinkKind::ALL.map(|kind| scene.link(kind).as_ref().map_or(0.0, scales::glassy)),
             profile: scene.surface.spline(),
+            bodies: Body::of(scene),
             friction_coefficient: coulomb,
             shear_force: shear_force + rate_shear.map_or(0.0, |rate_shear| rate_shear.plateau()),
             rate_shear,
@@ -143,6 +146,11 @@ impl Model {
     /// y of the frozen dashpots of one link of a kind that has some, m.
     pub fn frozen_dashpot(&self, kind: LinkKind, link: usize) -> f64 {
         if kind.is_lateral() { self.frozen[link + 1] - self.frozen[link] } else { self.frozen[link] }
+    }
+
+    /// Whether the carrier is a body along an axis.
+    pub fn has_bodies(&self) -> bool {
+        self.bodies.iter().any(Option::is_some)
     }
 
     /// Number of masses k.

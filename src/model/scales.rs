@@ -3,7 +3,7 @@
 //! All start from the glassy stiffness c + Σ c_j of each kind of link ([`Model::glassy`]), with every dashpot at rest.
 
 use super::{LinkKind, Model};
-use crate::scene::Link;
+use crate::scene::{Axis, Link};
 
 impl Model {
     /// Stiffness of all links on one mass while the dashpots are at rest, N/m, lateral links counted twice: along x or
@@ -107,6 +107,16 @@ impl Model {
             }
         }
         (square.sqrt(), damping)
+    }
+
+    /// The frequency of the body along `axis` on the glassy springs of the layer and on its drive, rad/s; the rate of its
+    /// dampers, 1/s, where there are no springs, and 1 where there are no dampers either, or no body.
+    pub fn body_frequency(&self, axis: Axis) -> f64 {
+        let Some(body) = &self.bodies[axis as usize] else { return 1.0 };
+        let (kind, masses) = (axis.link() as usize, self.masses() as f64);
+        let frequency = ((masses * self.glassy[kind] + body.stiffness) / body.mass).sqrt();
+        let damping = (masses * self.links[kind].damping).max(body.damping) / body.mass;
+        [frequency, damping].into_iter().find(|&rate| rate > 0.0).unwrap_or(1.0)
     }
 
     fn frequency_of(&self, stiffness: f64) -> f64 {

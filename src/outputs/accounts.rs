@@ -38,7 +38,7 @@ pub struct Energies {
     pub channels: ChannelEnergies,
     /// Dissipated in impacts.
     pub impact: f64,
-    /// T + V at the start.
+    /// T + V + T_c + V_c at the start.
     pub initial: f64,
 }
 
@@ -55,9 +55,10 @@ impl Energies {
     }
 
     /// All numbers, to check that they are finite.
-    pub fn numbers(&self) -> [f64; 7] {
-        let Self { channels: ChannelEnergies { damper, maxwell, friction, shear, input }, impact, initial } = *self;
-        [damper, maxwell, friction, shear, input, impact, initial]
+    pub fn numbers(&self) -> [f64; 8] {
+        let Self { channels, impact, initial } = *self;
+        let ChannelEnergies { damper, maxwell, friction, shear, input, carrier } = channels;
+        [damper, maxwell, friction, shear, input, carrier, impact, initial]
     }
 }
 

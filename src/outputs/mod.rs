@@ -18,6 +18,18 @@ pub enum Output {
     ForceX,
     /// F_z = Σ F_z,i, N.
     ForceZ,
+    /// u of a body, m.
+    CarrierU,
+    /// w of a body, m.
+    CarrierW,
+    /// u̇ of a body, m/s.
+    CarrierURate,
+    /// ẇ of a body, m/s.
+    CarrierWRate,
+    /// R_x, the drive's force on a body, N.
+    DriveX,
+    /// R_z, the drive's force on a body, N.
+    DriveZ,
     /// Power dissipated in dampers, Maxwell elements and friction, W.
     DissipatedPower,
     /// Energy dissipated since the start through all channels, J.
@@ -64,6 +76,12 @@ pub enum Output {
     KineticEnergy,
     /// V, J.
     ElasticEnergy,
+    /// T_c, J.
+    CarrierKineticEnergy,
+    /// V_c, J.
+    CarrierElasticEnergy,
+    /// E_c, J.
+    CarrierDamperEnergy,
     /// Residual of the energy balance, J.
     EnergyResidual,
     /// Derivative of F_x at the end of a step by the target of û in that step, N/m.

@@ -9,9 +9,10 @@ use std::cell::OnceCell;
 
 use super::{Counters, Energies, Monitored, Variable};
 use crate::model::{
-    AreaShare, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, Powers, State, elastic_energy,
-    kinetic_energy,
+    AreaShare, BodyEnergy, Carrier, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, Powers,
+    State, elastic_energy, kinetic_energy,
 };
+use crate::scene::Axis;
 
 /// A run at one instant.
 #[derive(Clone, Copy, Debug)]
@@ -26,6 +27,8 @@ pub struct Snapshot<'a> {
     pub forces: &'a Forces,
     /// The carrier's rates.
     pub carrier: CarrierPoint,
+    /// The carrier's motion, and the time since the start of its piece, s.
+    pub motion: (&'a Carrier, f64),
     /// Displacement of the carrier: u and w, m.
     pub displacement: (f64, f64),
     /// Energies since the start.
@@ -79,11 +82,11 @@ impl<'a> Evaluation<'a> {
         *self.elastic_energy.get_or_init(|| elastic_energy(self.at.model, self.at.state))
     }
 
-    /// E_in - Δ(T + V) - E_diss, J.
+    /// E_in - Δ(T + V + T_c + V_c) - E_diss - E_c, J.
     pub(super) fn energy_residual(&self) -> f64 {
         let energies = &self.at.energies;
-        let gained = self.kinetic_energy() + self.elastic_energy() - energies.initial;
-        energies.channels.input - gained - energies.dissipated()
+        let gained = self.kinetic_energy() + self.elastic_energy() + self.at.body_energy().total() - energies.initial;
+        energies.channels.input - gained - energies.dissipated() - energies.channels.carrier
     }
 }
 
@@ -116,6 +119,18 @@ impl Snapshot<'_> {
 
     pub(super) fn powers(&self) -> Powers {
         Powers::evaluate(self.model, self.state, &self.carrier, self.forces)
+    }
+
+    /// R, the drive's force on the body along `axis`, N; 0 without one.
+    pub(super) fn drive_force(&self, axis: Axis) -> f64 {
+        let (carrier, s) = self.motion;
+        carrier.outside(self.model, axis, s).map_or(0.0, |(body, outside)| outside.drive_force(body))
+    }
+
+    /// The energies of the bodies.
+    pub(super) fn body_energy(&self) -> BodyEnergy {
+        let (carrier, s) = self.motion;
+        if carrier.has_bodies() { carrier.energy(self.model, s) } else { BodyEnergy::default() }
     }
 
     /// |F_x|/F_z, 0 where F_z ≤ 0; at most the largest number where F_z is next to nothing.

@@ -25,7 +25,7 @@ use std::mem::discriminant;
 use super::snapshot::{CarrierShift, ContactChange, Evaluation};
 use super::{Dependencies, Kind, Output};
 use crate::model::Mode;
-use crate::scene::{Link, LinkKind, OutputGroup, Scene, Unit};
+use crate::scene::{Axis, CarrierBody, Link, LinkKind, OutputGroup, Scene, Unit};
 
 #[derive(Debug)]
 pub(super) struct OutputRow {
@@ -169,10 +169,10 @@ const fn mass(
 
 /// All outputs, in the order of the result files within their groups.
 #[rustfmt::skip]
-pub(super) static TABLE: [OutputRow; 41] = {
+pub(super) static TABLE: [OutputRow; 50] = {
     use Kind::{Integer, Real};
-    use OutputGroup::{Contact, Dissipation, Energy, Forces, Friction, Solver, Tangent};
-    use Unit::{Joule, Meter, Newton, NewtonPerMeter, One, Second, SquareMeter, Watt};
+    use OutputGroup::{Carrier, Contact, Dissipation, Energy, Forces, Friction, Solver, Tangent};
+    use Unit::{Joule, Meter, MeterPerSecond, Newton, NewtonPerMeter, One, Second, SquareMeter, Watt};
     [
         layer(Output::ForceX, Forces, "F_x", Real, Newton, "Force of the layer on the carrier along x",
             |now| now.at.forces.on_carrier_x())
@@ -180,6 +180,24 @@ pub(super) static TABLE: [OutputRow; 41] = {
         layer(Output::ForceZ, Forces, "F_z", Real, Newton, "Force of the layer on the carrier along z, positive when compressed",
             |now| now.at.forces.on_carrier_z())
             .depending(elastic_z, |now, shift| now.at.force_changes(shift).1),
+        layer(Output::CarrierU, Carrier, "carrier.u", Real, Meter, "Displacement of the carrier along x",
+            |now| now.at.displacement.0)
+            .only_where(|scene| scene.carrier.x.is_some()),
+        layer(Output::CarrierW, Carrier, "carrier.w", Real, Meter, "Displacement of the carrier along z",
+            |now| now.at.displacement.1)
+            .only_where(|scene| scene.carrier.z.is_some()),
+        layer(Output::CarrierURate, Carrier, "carrier.u_rate", Real, MeterPerSecond, "Speed of the carrier along x",
+            |now| now.at.carrier.u_rate)
+            .only_where(|scene| scene.carrier.x.is_some()),
+        layer(Output::CarrierWRate, Carrier, "carrier.w_rate", Real, MeterPerSecond, "Speed of the carrier along z",
+            |now| now.at.carrier.w_rate)
+            .only_where(|scene| scene.carrier.z.is_some()),
+        layer(Output::DriveX, Carrier, "carrier.drive_x", Real, Newton, "Force of the drive on the carrier along x",
+            |now| now.at.drive_force(Axis::X))
+            .only_where(|scene| has_drive(scene, Axis::X)),
+        layer(Output::DriveZ, Carrier, "carrier.drive_z", Real, Newton, "Force of the drive on the carrier along z",
+            |now| now.at.drive_force(Axis::Z))
+            .only_where(|scene| has_drive(scene, Axis::Z)),
         layer(Output::DissipatedPower, Dissipation, "P_diss", Real, Watt, "Power dissipated at present",
             |now| now.at.powers().dissipated())
             .depending(dissipated_power, |now, shift| now.at.maxwell_power_change(shift) + now.at.friction_power_change(shift)),
@@ -245,6 +263,15 @@ pub(super) static TABLE: [OutputRow; 41] = {
         layer(Output::ElasticEnergy, Energy, "energy.elastic", Real, Joule, "Elastic energy of the links",
             |now| now.elastic_energy())
             .depending(elastic, |now, shift| now.at.elastic_energy_change(shift)),
+        layer(Output::CarrierKineticEnergy, Energy, "energy.carrier_kinetic", Real, Joule, "Kinetic energy of the carrier",
+            |now| now.at.body_energy().kinetic)
+            .only_where(|scene| scene.carrier.any()),
+        layer(Output::CarrierElasticEnergy, Energy, "energy.carrier_elastic", Real, Joule, "Elastic energy of the springs from the carrier to its drives",
+            |now| now.at.body_energy().elastic)
+            .only_where(|scene| any_body(scene, |body| body.stiffness.is_some())),
+        layer(Output::CarrierDamperEnergy, Energy, "energy.carrier_damper", Real, Joule, "Energy dissipated in the dampers from the carrier to its drives, no part of E_diss",
+            |now| now.at.energies.channels.carrier)
+            .only_where(|scene| any_body(scene, |body| body.damping.is_some())),
         layer(Output::EnergyResidual, Energy, "energy.residual", Real, Joule, "Residual of the energy balance: the numerical error of the run",
             |now| now.energy_residual())
             .depending(elastic, |now, shift| -now.at.elastic_energy_change(shift)),
@@ -310,6 +337,14 @@ fn has_dampers(scene: &Scene) -> bool {
 fn has_both_frictions(scene: &Scene) -> bool {
     let has_shear = scene.shear_force().is_some() || scene.rate_shear().is_some();
     has_shear && scene.friction.as_ref().is_some_and(|friction| friction.coulomb.is_some())
+}
+
+fn has_drive(scene: &Scene, axis: Axis) -> bool {
+    scene.carrier.along(axis).is_some_and(CarrierBody::has_drive)
+}
+
+fn any_body(scene: &Scene, test: fn(&CarrierBody) -> bool) -> bool {
+    Axis::ALL.into_iter().any(|axis| scene.carrier.along(axis).is_some_and(test))
 }
 
 fn none(_: &Scene) -> Dependencies {

@@ -1,4 +1,4 @@
-//! CSV files with a header; result files among them: columns `time`, `u` and `w`, then the output variables.
+//! CSV files with a header; result files among them: columns `time` and the inputs, then the output variables.
 
 use std::borrow::Cow;
 use std::fs::File;
@@ -6,6 +6,7 @@ use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
 use asperity::outputs::{Kind, Variable};
+use asperity::scene::Input;
 use asperity::scene::text_table::{self, Row};
 
 use super::files::{FileError, read};
@@ -56,20 +57,23 @@ impl CsvWriter {
 #[derive(Debug)]
 pub(crate) struct ResultWriter {
     file: CsvWriter,
+    inputs: Vec<Input>,
     kinds: Vec<Kind>,
 }
 
 impl ResultWriter {
     /// Creates the file at `path` and writes its header.
-    pub(crate) fn create(path: &Path, variables: &[Variable]) -> Result<Self, FileError> {
-        let names = ["time", "u", "w"].into_iter().chain(variables.iter().map(|variable| variable.name.as_str()));
+    pub(crate) fn create(path: &Path, inputs: &[Input], variables: &[Variable]) -> Result<Self, FileError> {
+        let names = std::iter::once("time").chain(inputs.iter().map(|input| input.name()));
+        let names = names.chain(variables.iter().map(|variable| variable.name.as_str()));
         let kinds = variables.iter().map(|variable| variable.kind).collect();
-        Ok(Self { file: CsvWriter::create(path, names)?, kinds })
+        Ok(Self { file: CsvWriter::create(path, names)?, inputs: inputs.to_vec(), kinds })
     }
 
     pub(crate) fn write(&mut self, carrier: CarrierSample, values: &[f64]) -> Result<(), FileError> {
         let variables = self.kinds.iter().zip(values).map(|(&kind, &value)| field(kind, value));
-        self.file.write([carrier.time, carrier.u, carrier.w].map(real).into_iter().chain(variables))
+        let inputs = self.inputs.iter().map(|&input| real(carrier.input(input)));
+        self.file.write(std::iter::once(real(carrier.time)).chain(inputs).chain(variables))
     }
 
     /// Flushes the file.

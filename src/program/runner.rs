@@ -1,13 +1,13 @@
 //! Runs a scene along its excitation, phase by phase, with rows at even intervals of each phase.
 
 use asperity::outputs::Snapshot;
-use asperity::scene::{Phase, Scene};
+use asperity::scene::{Force, Input, Phase, Scene};
 use asperity::simulation::{MethodSwitch, Motion, Simulation, SimulationError, Start};
 
 use super::terminal::warn;
 
-/// Time and carrier displacement at a row.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Time and inputs at a row: displacements of the carrier or of a body's drive, forces on a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct CarrierSample {
     /// Time, s.
     pub(crate) time: f64,
@@ -15,12 +15,34 @@ pub(crate) struct CarrierSample {
     pub(crate) u: f64,
     /// Displacement along z, m.
     pub(crate) w: f64,
+    /// Load on a body without its constant part, N.
+    pub(crate) load: f64,
+    /// Tangential force on a body without its constant part, N.
+    pub(crate) pull: f64,
 }
 
 impl CarrierSample {
-    /// The carrier a time `s` (s) after the start of `phase`, where `self` is the carrier at its start.
-    pub(crate) fn moved(self, phase: &Phase, s: f64) -> Self {
-        Self { time: self.time + s, u: self.u + phase.u.at(s), w: self.w + phase.w.at(s) }
+    /// The carrier a time `s` (s) after the start of `phase` of a layer of `area` (m²), where `self` is the carrier at its
+    /// start.
+    pub(crate) fn moved(self, phase: &Phase, area: Option<f64>, s: f64) -> Self {
+        let force = |force: Force, reached: f64| force.start.unwrap_or(reached) + force.change.at(s);
+        Self {
+            time: self.time + s,
+            u: self.u + phase.u.at(s),
+            w: self.w + phase.w.at(s),
+            load: force(phase.load(area), self.load),
+            pull: force(phase.pull, self.pull),
+        }
+    }
+
+    /// The value of an input.
+    pub(crate) fn input(&self, input: Input) -> f64 {
+        match input {
+            Input::U => self.u,
+            Input::W => self.w,
+            Input::Load => self.load,
+            Input::Pull => self.pull,
+        }
     }
 }
 
@@ -60,6 +82,8 @@ pub(crate) fn start(scene: &Scene, u: f64) -> Start {
         u_rate: first.map_or(0.0, |phase| phase.u.velocity(0.0)),
         w_rate: first.map_or(0.0, |phase| phase.w.velocity(0.0)),
         u,
+        load: scene.first_load(),
+        pull: scene.first_pull(),
         ..Start::default()
     }
 }
@@ -80,7 +104,7 @@ impl Runner {
     /// Starts a run of `scene` with the carrier at `u` (m), moving as the first phase begins.
     pub(crate) fn new(scene: &Scene, rows: Rows, u: f64) -> Result<Self, SimulationError> {
         let start = start(scene, u);
-        let carrier = CarrierSample { time: start.time, u: start.u, w: start.w };
+        let carrier = CarrierSample { time: start.time, u: start.u, w: start.w, load: start.load, pull: start.pull };
         let mut simulation = Simulation::new(scene, &start)?;
         simulation.record_method_switches(true);
         Ok(Self { simulation, carrier, rows, phases: 0, area: scene.layer.area() })
@@ -117,7 +141,8 @@ impl Runner {
         phase: &Phase,
         mut observe: impl FnMut(CarrierSample, &Snapshot<'_>),
     ) -> Result<f64, SimulationError> {
-        let motion = Motion { duration: phase.duration, u: phase.u, w: phase.w };
+        let load = phase.load(self.area);
+        let motion = Motion { duration: phase.duration, u: phase.u, w: phase.w, load, pull: phase.pull };
         let force = phase.end_force(self.area);
         let reached = self.time_of_force(&motion, force)?;
         self.phases += 1;
@@ -129,10 +154,10 @@ impl Runner {
             return Ok(0.0);
         }
         let times: Vec<f64> = self.rows.times(duration).collect();
-        let start = self.carrier;
-        let observe = |s: f64, snapshot: &Snapshot<'_>| observe(start.moved(phase, s), snapshot);
+        let (start, area) = (self.carrier, self.area);
+        let observe = |s: f64, snapshot: &Snapshot<'_>| observe(start.moved(phase, area, s), snapshot);
         self.simulation.advance_observed(&Motion { duration, ..motion }, None, &times, observe)?;
-        self.carrier = CarrierSample { time: self.simulation.time(), ..start.moved(phase, duration) };
+        self.carrier = CarrierSample { time: self.simulation.time(), ..start.moved(phase, area, duration) };
         Ok(duration)
     }
 

@@ -87,7 +87,7 @@ impl Recorder {
         let variables = variables(scene);
         Ok(Self {
             values: vec![0.0; variables.len()],
-            writer: ResultWriter::create(&command.output, &variables)?,
+            writer: ResultWriter::create(&command.output, &scene.inputs(), &variables)?,
             variables,
             history: command.plot.is_some().then(|| History::new(scene)),
             progress: bar(PROGRESS_LENGTH as u64),

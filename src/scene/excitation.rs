@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use serde::{Deserialize, Serialize};
 
 /// One phase of the carrier's motion.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Phase {
     /// Duration, s.
     pub duration: f64,
@@ -13,6 +13,12 @@ pub struct Phase {
     pub u: Path,
     /// Motion along z from the phase's start on.
     pub w: Path,
+    /// The load on a body along z.
+    pub load: Force,
+    /// The tangential force on a body along x.
+    pub pull: Force,
+    /// The load over the layer's area, Pa, in place of the load; in the material form alone, see [`Phase::load`].
+    pub pressure: Option<Force>,
     /// The phase ends when F_z rises to this force, N; in the direct form alone, see [`Phase::end_force`].
     pub until_force: Option<f64>,
     /// The phase ends when F_z over the layer's area rises to this pressure, Pa; in the material form alone.
@@ -20,13 +26,39 @@ pub struct Phase {
 }
 
 impl Phase {
+    /// The load on a layer of this area (m²), N: given, or that of the pressure.
+    pub fn load(&self, area: Option<f64>) -> Force {
+        let of_pressure = self.pressure.and_then(|pressure| Some(pressure.times(area?)));
+        of_pressure.unwrap_or(self.load)
+    }
+
     /// F_z at which the phase of a layer of this area (m²) ends, N, if it does: given, or that of the pressure.
     pub fn end_force(&self, area: Option<f64>) -> Option<f64> {
         self.until_force.or_else(|| Some(self.until_pressure? * area?))
     }
 }
 
-/// A displacement from the start: rate · s + amplitude · sin(2π frequency s), s the time since the start.
+/// A force from the start of a phase or a motion on, N, or a pressure, Pa.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Force {
+    /// The value that it jumps to at the start; `None`: it goes on from what it has reached, 0 at first.
+    pub start: Option<f64>,
+    /// Its change from there.
+    pub change: Path,
+}
+
+impl Force {
+    /// `factor` times this.
+    #[must_use]
+    pub fn times(self, factor: f64) -> Self {
+        let Path { rate, amplitude, frequency } = self.change;
+        let change = Path { rate: factor * rate, amplitude: factor * amplitude, frequency };
+        Self { start: self.start.map(|start| factor * start), change }
+    }
+}
+
+/// A change from the start: rate · s + amplitude · sin(2π frequency s), s the time since the start. It is one of a
+/// displacement, in m, or of a [`Force`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Path {
     /// Constant rate, m/s.

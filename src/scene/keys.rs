@@ -7,7 +7,8 @@ use std::fmt;
 
 use super::values::{ANY, NOT_NEGATIVE, NumberRange, POSITIVE, WholeRange, Word, words};
 use super::{
-    Extrapolation, FoundationKind, Initial, LengthUnit, Method, Missing, OutputGroup, ThirdColumn, Tilt, Unit,
+    CarrierInitial, Extrapolation, FoundationKind, Initial, LengthUnit, Method, Missing, OutputGroup, ThirdColumn,
+    Tilt, Unit,
 };
 
 pub(super) use patch::{AREA, COORDINATE, PATCH_ROOT, REFINE, ShapeKind};
@@ -105,6 +106,7 @@ pub(super) const ROOT: &[Key] = &[
     table("layer", LAYER),
     table("material", MATERIAL),
     key("surface", Allowed::Surface, "Rigid surface below the layer"),
+    table("carrier", CARRIER),
     table("friction", FRICTION),
     table("solver", SOLVER),
     table("input", INPUT),
@@ -263,6 +265,38 @@ const FRICTION: &[Key] = &[
     number("shear_strength", NOT_NEGATIVE, Unit::Pascal, "Adhesive shear strength of the contact").material(),
 ];
 
+const CARRIER: &[Key] = &[table("x", CARRIER_X), table("z", CARRIER_Z)];
+
+const CARRIER_MASS: Key = number("mass", POSITIVE, Unit::Kilogram, "Mass of the carrier");
+const CARRIER_STIFFNESS: Key =
+    number("stiffness", NOT_NEGATIVE, Unit::NewtonPerMeter, "Stiffness of the spring from the carrier to its drive");
+const CARRIER_DAMPING: Key =
+    number("damping", NOT_NEGATIVE, Unit::NewtonSecondPerMeter, "Damping of the damper from the carrier to its drive");
+const CARRIER_START: Key = number("start", ANY, Unit::Meter, "Displacement of the carrier at the start");
+const CARRIER_START_RATE: Key = number("start_rate", ANY, Unit::MeterPerSecond, "Speed of the carrier at the start");
+
+const CARRIER_X: &[Key] = &[
+    CARRIER_MASS,
+    CARRIER_STIFFNESS,
+    CARRIER_DAMPING,
+    number("pull", ANY, Unit::Newton, "Constant part of the tangential force on the carrier"),
+    CARRIER_START,
+    CARRIER_START_RATE,
+];
+
+const CARRIER_Z: &[Key] = &[
+    CARRIER_MASS,
+    CARRIER_STIFFNESS,
+    CARRIER_DAMPING,
+    number("load", ANY, Unit::Newton, "Constant part of the normal load on the carrier"),
+    CARRIER_START,
+    CARRIER_START_RATE,
+    word::<CarrierInitial>(
+        "initial",
+        "Where the carrier starts along z: start, or equilibrium, where the springs bear the load",
+    ),
+];
+
 const REAL_AREA: &[Key] = &[
     number("rms_slope", NOT_NEGATIVE, Unit::One, "Root mean square gradient of the roughness that the profile lacks"),
     number("wavelength", POSITIVE, Unit::Meter, "Wavelength of the roughness that the profile lacks"),
@@ -322,6 +356,15 @@ const PHASE: &[Key] = &[
     number("w_rate", ANY, Unit::MeterPerSecond, "Rate of w"),
     table("u_sine", SINE),
     table("w_sine", SINE),
+    number("load", ANY, Unit::Newton, "Load at the start of the phase"),
+    number("load_rate", ANY, Unit::One, "Rate of the load, N/s"),
+    table("load_sine", FORCE_SINE),
+    number("pull", ANY, Unit::Newton, "Tangential force at the start of the phase"),
+    number("pull_rate", ANY, Unit::One, "Rate of the tangential force, N/s"),
+    table("pull_sine", FORCE_SINE),
+    number("pressure", ANY, Unit::Pascal, "Load over the layer's area at the start of the phase").material(),
+    number("pressure_rate", ANY, Unit::One, "Rate of the load over the layer's area, Pa/s").material(),
+    table("pressure_sine", PRESSURE_SINE).material(),
     number("until_force", ANY, Unit::Newton, "F_z that ends the phase").direct(),
     number("until_pressure", ANY, Unit::Pascal, "Mean pressure that ends the phase").material(),
 ];
@@ -329,6 +372,16 @@ const PHASE: &[Key] = &[
 // A frequency is in Hz, which no parameter has.
 const SINE: &[Key] = &[
     number("amplitude", ANY, Unit::Meter, "Amplitude"),
+    key("frequency", Allowed::Number(NOT_NEGATIVE), "Frequency, Hz"),
+];
+
+const FORCE_SINE: &[Key] = &[
+    number("amplitude", ANY, Unit::Newton, "Amplitude"),
+    key("frequency", Allowed::Number(NOT_NEGATIVE), "Frequency, Hz"),
+];
+
+const PRESSURE_SINE: &[Key] = &[
+    number("amplitude", ANY, Unit::Pascal, "Amplitude"),
     key("frequency", Allowed::Number(NOT_NEGATIVE), "Frequency, Hz"),
 ];
 

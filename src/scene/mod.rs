@@ -6,6 +6,7 @@
 //! A new key is a line in the table of `keys`, a field of the data below and a line in `reader`. A key that the FMU has
 //! as a parameter is also a variant of [`Parameter`], with its path and its field in `parameters`.
 
+mod carrier;
 mod error;
 mod excitation;
 mod fine_roughness;
@@ -32,8 +33,9 @@ use serde::Serialize;
 
 use values::Word;
 
+pub use carrier::{Axis, CarrierBodies, CarrierBody, CarrierInitial, Input};
 pub use error::{ParameterError, Problem, SceneError};
-pub use excitation::{Path, Phase};
+pub use excitation::{Force, Path, Phase};
 pub use fine_roughness::FineRoughness;
 pub use foundation::{Body, Foundation, FoundationKind, Quality, Stiffness, Wave, Waves};
 pub use material::{Material, PronyTerm, Wlf, complex_stiffness};
@@ -59,6 +61,8 @@ pub struct Scene {
     pub foundation: Option<Foundation>,
     /// The rigid surface below it.
     pub surface: Surface,
+    /// The axes along which the carrier is a body.
+    pub carrier: CarrierBodies,
     /// Friction in the contacts; `None` is frictionless.
     pub friction: Option<Friction>,
     /// The integrator's settings.
@@ -360,6 +364,8 @@ impl Extrapolation {
 pub enum OutputGroup {
     /// F_x, F_z.
     Forces,
+    /// Motion of a carrier that is a body, and the force of its drive.
+    Carrier,
     /// Dissipated power and energy, whole and by channel.
     Dissipation,
     /// The tangential force split at the surface.
@@ -379,6 +385,7 @@ pub enum OutputGroup {
 impl Word for OutputGroup {
     const WORDS: &'static [(&'static str, Self)] = &[
         ("forces", Self::Forces),
+        ("carrier", Self::Carrier),
         ("dissipation", Self::Dissipation),
         ("friction", Self::Friction),
         ("contact", Self::Contact),
@@ -391,8 +398,9 @@ impl Word for OutputGroup {
 
 impl OutputGroup {
     /// All groups, in the order of the variables.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Forces,
+        Self::Carrier,
         Self::Dissipation,
         Self::Friction,
         Self::Contact,

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::error::{ParameterError, Problem};
 use super::keys::{self, Allowed, Key};
 use super::values::{Word, words};
-use super::{Foundation, Link, LinkKind, Scene, Unit};
+use super::{Axis, Foundation, Link, LinkKind, Scene, Unit};
 
 /// One settable number or word of a scene. Elements of lists are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -53,6 +53,22 @@ pub enum Parameter {
     ReferenceTemperature,
     /// `material.wlf.temperature`
     Temperature,
+    /// `carrier.x.mass` and so on
+    CarrierMass(Axis),
+    /// `carrier.x.stiffness` and so on
+    CarrierStiffness(Axis),
+    /// `carrier.x.damping` and so on
+    CarrierDamping(Axis),
+    /// `carrier.z.load`
+    Load,
+    /// `carrier.x.pull`
+    Pull,
+    /// `carrier.x.start` and so on
+    CarrierStart(Axis),
+    /// `carrier.x.start_rate` and so on
+    CarrierStartRate(Axis),
+    /// `carrier.z.initial`
+    CarrierInitial,
     /// `friction.coulomb`
     Coulomb,
     /// `friction.shear_force`
@@ -130,6 +146,14 @@ impl Parameter {
             Self::WlfC2 => "material.wlf.c2",
             Self::ReferenceTemperature => "material.wlf.reference_temperature",
             Self::Temperature => "material.wlf.temperature",
+            Self::CarrierMass(axis) => return format!("carrier.{}.mass", axis.name()),
+            Self::CarrierStiffness(axis) => return format!("carrier.{}.stiffness", axis.name()),
+            Self::CarrierDamping(axis) => return format!("carrier.{}.damping", axis.name()),
+            Self::Load => "carrier.z.load",
+            Self::Pull => "carrier.x.pull",
+            Self::CarrierStart(axis) => return format!("carrier.{}.start", axis.name()),
+            Self::CarrierStartRate(axis) => return format!("carrier.{}.start_rate", axis.name()),
+            Self::CarrierInitial => "carrier.z.initial",
             Self::Coulomb => "friction.coulomb",
             Self::ShearForce => "friction.shear_force",
             Self::ShearStrength => "friction.shear_strength",
@@ -174,6 +198,11 @@ impl Parameter {
             Self::PronyRelaxationTime(j) => {
                 format!("{meaning} of term {} of the Prony series at the reference temperature", j + 1)
             }
+            Self::CarrierMass(axis)
+            | Self::CarrierStiffness(axis)
+            | Self::CarrierDamping(axis)
+            | Self::CarrierStart(axis)
+            | Self::CarrierStartRate(axis) => format!("{meaning}, along {}", axis.name()),
             _ => meaning.to_owned(),
         }
     }
@@ -189,9 +218,9 @@ impl Parameter {
 }
 
 /// Where a Real parameter is in a scene, `None` where the scene does not have it: to be read (`field!(scene, parameter,
-/// as_ref, get, link)`) or changed (`field!(scene, parameter, as_mut, get_mut, link_mut, mut)`).
+/// as_ref, get, link, along)`) or changed (`field!(scene, parameter, as_mut, get_mut, link_mut, along_mut, mut)`).
 macro_rules! field {
-    ($scene:expr, $parameter:expr, $as_ref:ident, $get:ident, $link:ident $(, $mut:tt)?) => {{
+    ($scene:expr, $parameter:expr, $as_ref:ident, $get:ident, $link:ident, $along:ident $(, $mut:tt)?) => {{
         use Parameter::*;
         let scene = $scene;
         match $parameter {
@@ -212,6 +241,13 @@ macro_rules! field {
             WlfC2 => Some(&$($mut)? scene.material.$as_ref()?.wlf.$as_ref()?.c2),
             ReferenceTemperature => Some(&$($mut)? scene.material.$as_ref()?.wlf.$as_ref()?.reference_temperature),
             Temperature => Some(&$($mut)? scene.material.$as_ref()?.wlf.$as_ref()?.temperature),
+            CarrierMass(axis) => Some(&$($mut)? scene.carrier.$along(axis)?.mass),
+            CarrierStiffness(axis) => scene.carrier.$along(axis)?.stiffness.$as_ref(),
+            CarrierDamping(axis) => scene.carrier.$along(axis)?.damping.$as_ref(),
+            Load => scene.carrier.$along(Axis::Z)?.load.$as_ref(),
+            Pull => scene.carrier.$along(Axis::X)?.pull.$as_ref(),
+            CarrierStart(axis) => scene.carrier.$along(axis)?.start.$as_ref(),
+            CarrierStartRate(axis) => scene.carrier.$along(axis)?.start_rate.$as_ref(),
             Coulomb => scene.friction.$as_ref()?.coulomb.$as_ref(),
             ShearForce => scene.friction.$as_ref()?.shear_force.$as_ref(),
             ShearStrength => scene.friction.$as_ref()?.shear_strength.$as_ref(),
@@ -222,7 +258,7 @@ macro_rules! field {
             RelativeTolerance => Some(&$($mut)? scene.solver.relative_tolerance),
             // They follow others until they are set: see `real` and `write_real`.
             CreepSpeed | AbsoluteTolerance => None,
-            Initial | Method | MaxSteps | Extrapolation | TableExtrapolation | Refine => None,
+            Initial | CarrierInitial | Method | MaxSteps | Extrapolation | TableExtrapolation | Refine => None,
         }
     }};
 }
@@ -242,6 +278,19 @@ impl Scene {
         parameters.extend([Thickness, Density, PoissonRatio, EquilibriumModulus, Viscosity]);
         parameters.extend((0..terms).flat_map(|j| [PronyModulus(j), PronyRelaxationTime(j)]));
         parameters.extend([WlfC1, WlfC2, ReferenceTemperature, Temperature]);
+        let body = |axis, force| {
+            [
+                CarrierMass(axis),
+                CarrierStiffness(axis),
+                CarrierDamping(axis),
+                force,
+                CarrierStart(axis),
+                CarrierStartRate(axis),
+            ]
+        };
+        parameters.extend(body(Axis::X, Pull));
+        parameters.extend(body(Axis::Z, Load));
+        parameters.extend(self.carrier.z.map(|_| CarrierInitial));
         parameters.extend([Coulomb, ShearForce, ShearStrength, RateShearForce, RateShearStrength]);
         parameters.extend([ReferenceSpeed, Sharpness, CreepSpeed]);
         parameters.extend([Method, RelativeTolerance, AbsoluteTolerance, MaxSteps, Extrapolation]);
@@ -259,6 +308,7 @@ impl Scene {
     pub fn parameter(&self, parameter: Parameter) -> Value {
         match parameter {
             Parameter::Initial => Value::Text(self.layer.initial.as_word().into()),
+            Parameter::CarrierInitial => Value::Text(self.carrier.z.map_or("", |body| body.initial.as_word()).into()),
             Parameter::Method => Value::Text(self.solver.method.as_word().into()),
             Parameter::Extrapolation => Value::Text(self.extrapolation.as_word().into()),
             Parameter::MaxSteps => Value::Integer(i32::try_from(self.solver.max_steps).unwrap_or(i32::MAX)),
@@ -270,7 +320,7 @@ impl Scene {
         match parameter {
             Parameter::CreepSpeed => Some(self.friction.as_ref()?.rate_shear?.creep_speed()),
             Parameter::AbsoluteTolerance => Some(self.absolute_tolerance()),
-            _ => field!(self, parameter, as_ref, get, link).copied(),
+            _ => field!(self, parameter, as_ref, get, link, along).copied(),
         }
     }
 
@@ -284,6 +334,11 @@ impl Scene {
             (_, Value::Real(number)) => return self.set_real(parameter, *number),
             (Parameter::MaxSteps, Value::Integer(number)) => return self.set_max_steps(*number),
             (Parameter::Initial, Value::Text(word)) => self.layer.initial = parameter.choice(word)?,
+            (Parameter::CarrierInitial, Value::Text(word)) => {
+                let initial = parameter.choice(word)?;
+                let Some(body) = &mut self.carrier.z else { return Err(self.unknown(&parameter.name())) };
+                body.initial = initial;
+            }
             (Parameter::Method, Value::Text(word)) => self.solver.method = parameter.choice(word)?,
             (Parameter::Extrapolation, Value::Text(word)) => self.extrapolation = parameter.choice(word)?,
             _ => return Err(parameter.refuse(value)),
@@ -308,7 +363,7 @@ impl Scene {
             // These follow others until they are set themselves.
             Parameter::CreepSpeed => self.friction.as_mut()?.rate_shear.as_mut()?.creep_speed = Some(number),
             Parameter::AbsoluteTolerance => self.solver.absolute_tolerance = Some(number),
-            _ => *field!(&mut *self, parameter, as_mut, get_mut, link_mut, mut)? = number,
+            _ => *field!(&mut *self, parameter, as_mut, get_mut, link_mut, along_mut, mut)? = number,
         }
         if matches!(parameter, Parameter::Thickness | Parameter::PoissonRatio) {
             self.refit();

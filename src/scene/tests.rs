@@ -73,9 +73,12 @@ fn reads_phases() {
     let shaken = Path { rate: 0.0, amplitude: -1.0, frequency: 5.0 };
     assert_eq!(
         excitation[0],
-        Phase { duration: 1.0, u: still, w: pressed, until_force: Some(3.0), until_pressure: None }
+        Phase { duration: 1.0, u: still, w: pressed, until_force: Some(3.0), until_pressure: None, ..Phase::default() }
     );
-    assert_eq!(excitation[1], Phase { duration: 2.0, u: shaken, w: still, until_force: None, until_pressure: None });
+    assert_eq!(
+        excitation[1],
+        Phase { duration: 2.0, u: shaken, w: still, until_force: None, until_pressure: None, ..Phase::default() }
+    );
 }
 
 #[test]

@@ -13,7 +13,7 @@ use super::motion::{Divergence, Motion, SimulationError, Start};
 use super::run::{Run, RunState, Settings};
 use crate::contact::EventTolerance;
 use crate::integrator::Tolerance;
-use crate::model::Model;
+use crate::model::{BodyStart, Model};
 use crate::outputs::{Accounts, Monitored, Snapshot};
 
 /// The error-estimation run's tolerance, as a share of the run's.
@@ -53,8 +53,8 @@ pub(super) struct ErrorRun {
 
 impl ErrorRun {
     /// The error-estimation run of one with these `settings`.
-    pub(super) fn new(model: &Arc<Model>, settings: &Settings, start: &Start) -> Self {
-        let run = Run::new(Arc::clone(model), settings.tighter(model), start);
+    pub(super) fn new(model: &Arc<Model>, settings: &Settings, start: &Start, bodies: &[Option<BodyStart>; 2]) -> Self {
+        let run = Run::new(Arc::clone(model), settings.tighter(model), start, bodies);
         let work = WorkLimit::new(run.settings.max_steps);
         Self { run, duration: 0.0, work, steps_beside: 0, pending: None, failed: false }
     }
@@ -236,7 +236,12 @@ mod tests {
     fn both_end_together_wherever_that_is() {
         let scene = coarse();
         let mut simulation = started(&scene);
-        let press = Motion { duration: 1e-3, u: Path::default(), w: Path { rate: -0.01, ..Path::default() } };
+        let press = Motion {
+            duration: 1e-3,
+            u: Path::default(),
+            w: Path { rate: -0.01, ..Path::default() },
+            ..Motion::default()
+        };
         let force = 2.0 * simulation.snapshot().forces.on_carrier_z();
         let risen = simulation.advance_observed(&press, Some(force), &[1e-5, 2e-5], |_, _| ()).unwrap();
         assert!(risen.is_some_and(|s| s > 0.0 && s < press.duration), "{risen:?}");
@@ -276,7 +281,12 @@ mod tests {
     #[test]
     fn stick_and_slip_out_of_step_do_not_converge() {
         let mut scene = Scene::parse(STICK_SLIP, std::path::Path::new("stick-slip.toml")).unwrap();
-        let slide = Motion { duration: 1e-3, u: Path { rate: 0.02, ..Path::default() }, w: Path::default() };
+        let slide = Motion {
+            duration: 1e-3,
+            u: Path { rate: 0.02, ..Path::default() },
+            w: Path::default(),
+            ..Motion::default()
+        };
         for method in [Method::Event, Method::Step] {
             for tolerance in [1e-2, 1e-3] {
                 (scene.solver.method, scene.solver.relative_tolerance) = (method, tolerance);

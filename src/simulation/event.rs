@@ -78,6 +78,7 @@ impl Run {
         workspace.interpolated_at = None;
         let span = state.span(h);
         let attempt = workspace.integrator.attempt(model, &state.layer, &state.carrier, span, &settings.tolerance);
+        self.trace_bodies(h);
         let of_step = |attempt: StepAttempt| if resolvable { attempt.error } else { attempt.motion_error };
         let mut error = attempt.map_or(f64::NAN, of_step);
         if attempt.is_ok_and(|attempt| attempt.carrier_error > error.max(1.0)) && self.may_touch(h) {
@@ -171,10 +172,13 @@ impl Run {
             self.interpolate(h, share);
             std::mem::swap(&mut self.state.layer.state, &mut self.workspace.interpolated);
             self.workspace.interpolated_at = None;
+            let point = self.state.carrier.at(self.state.s + share * h);
+            self.state.carrier.take_step(end, &point);
             self.state.s = end;
             self.change_modes(self.settings.events.gap);
         } else {
             self.state.event_spacing = self.state.event_spacing.max(self.state.since_event);
+            self.state.carrier.take_step(end, &self.workspace.integrator.end_carrier(false));
             self.workspace.integrator.accept(&mut self.state.layer);
             self.state.s = end;
             self.change_modes_if_due();

@@ -14,6 +14,7 @@ mod event;
 mod motion;
 mod run;
 mod snapshot;
+mod start;
 mod state;
 #[cfg(test)]
 pub(crate) mod tests;
@@ -30,6 +31,7 @@ use driver::{TrialStep, WorkLimit};
 use error_run::ErrorRun;
 pub use motion::{Divergence, MethodSwitch, ModeChange, Motion, OutOfRange, SimulationError, Start};
 use run::{Run, Settings};
+use start::body_starts;
 use state::check_length;
 pub use state::{RestoreError, SimulationState};
 
@@ -56,16 +58,20 @@ impl Simulation {
     pub fn new(scene: &Scene, start: &Start) -> Result<Self, SimulationError> {
         start.check()?;
         scene.check()?;
+        scene.check_equilibrium(start.load)?;
         Ok(Self::started(scene, start))
     }
 
     fn started(scene: &Scene, start: &Start) -> Self {
         let mut model = Model::new(scene);
-        model.freeze_dashpots(start.u, start.w);
+        let bodies = body_starts(scene, &model, start);
+        let [u, w] = [(start.u, bodies[0]), (start.w, bodies[1])]
+            .map(|(prescribed, body)| body.map_or(prescribed, |body| body.displacement));
+        model.freeze_dashpots(u, w);
         let model = Arc::new(model);
         let settings = Settings::new(scene, &model);
-        let error_run = settings.accounts.solver.then(|| ErrorRun::new(&model, &settings, start));
-        Self { run: Run::new(model, settings, start), error_run, run_time: 0.0 }
+        let error_run = settings.accounts.solver.then(|| ErrorRun::new(&model, &settings, start, &bodies));
+        Self { run: Run::new(model, settings, start, &bodies), error_run, run_time: 0.0 }
     }
 
     /// The state of the simulation.

@@ -2,9 +2,10 @@
 
 use std::fmt;
 
-use crate::scene::{LARGEST, ParameterError, Path, is_possible};
+use crate::scene::{Force, LARGEST, ParameterError, Path, is_possible};
 
-/// The carrier at the start of a run.
+/// The carrier at the start of a run. Along the axis of a body the displacements and speeds are those of its drive; where the
+/// body starts, and how fast, is the scene's.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Start {
     /// Time t_0, s.
@@ -17,17 +18,25 @@ pub struct Start {
     pub u_rate: f64,
     /// ẇ just after the start, m/s.
     pub w_rate: f64,
+    /// Load on a body along z without its constant part, N.
+    pub load: f64,
+    /// Tangential force on a body along x without its constant part, N.
+    pub pull: f64,
 }
 
 /// One smooth piece of the carrier's motion, from where the carrier stands.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion {
     /// Duration, s.
     pub duration: f64,
-    /// Displacement along x.
+    /// Displacement along x; of the drive of a body.
     pub u: Path,
-    /// Displacement along z.
+    /// Displacement along z; of the drive of a body.
     pub w: Path,
+    /// The load on a body along z without its constant part.
+    pub load: Force,
+    /// The tangential force on a body along x without its constant part.
+    pub pull: Force,
 }
 
 /// The carrier's motion is not a number, or larger than [`LARGEST`].
@@ -132,11 +141,20 @@ impl Start {
             ("w", self.w),
             ("rate of u", self.u_rate),
             ("rate of w", self.w_rate),
+            ("load", self.load),
+            ("pull", self.pull),
         ])
     }
 }
 
 impl Motion {
+    /// A carrier at rest, for no time; loads stay what they have reached.
+    pub const REST: Self = {
+        let still = Path { rate: 0.0, amplitude: 0.0, frequency: 0.0 };
+        let held = Force { start: None, change: still };
+        Self { duration: 0.0, u: still, w: still, load: held, pull: held }
+    };
+
     pub(super) fn check(&self) -> Result<(), OutOfRange> {
         check_size(&[
             ("duration", self.duration),
@@ -146,6 +164,14 @@ impl Motion {
             ("rate of w", self.w.rate),
             ("amplitude of w", self.w.amplitude),
             ("frequency of w", self.w.frequency),
+            ("load", self.load.start.unwrap_or(0.0)),
+            ("rate of the load", self.load.change.rate),
+            ("amplitude of the load", self.load.change.amplitude),
+            ("frequency of the load", self.load.change.frequency),
+            ("pull", self.pull.start.unwrap_or(0.0)),
+            ("rate of the pull", self.pull.change.rate),
+            ("amplitude of the pull", self.pull.change.amplitude),
+            ("frequency of the pull", self.pull.change.frequency),
         ])
     }
 }

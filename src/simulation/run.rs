@@ -10,10 +10,11 @@ use crate::contact::{
 };
 use crate::integrator::{DenseWorkspace, Integrator, Pair, StepSpan, StepStart, Steps, Tolerance, Tracked};
 use crate::model::{
-    Carrier, CarrierPoint, CarrierPosition, Forces, LinkKind, Mode, Model, State, elastic_energy, kinetic_energy,
+    BodyStart, Carrier, CarrierPoint, CarrierPosition, Forces, LinkKind, Mode, Model, Piece, State, elastic_energy,
+    kinetic_energy,
 };
 use crate::outputs::{Accounts, Counters, Energies};
-use crate::scene::{Method, Path, Scene};
+use crate::scene::{Axis, Method, Path, Scene};
 
 /// The first step to try, as a share of the stiffest period over 2π; the error test corrects it at once.
 const FIRST_STEP: f64 = 0.1;
@@ -62,11 +63,16 @@ pub(super) struct RunState {
 }
 
 impl RunState {
-    fn new(model: &Model, start: &Start, time_stepping: bool) -> Self {
+    fn new(model: &Model, start: &Start, bodies: &[Option<BodyStart>; 2], time_stepping: bool) -> Self {
         let path = |rate| Path { rate, ..Path::default() };
         let paths = (path(start.u_rate), path(start.w_rate));
+        let mut carrier = Carrier::new(start.time, (start.u, start.w), paths, &model.profile);
+        for (axis, body) in Axis::ALL.into_iter().zip(bodies) {
+            body.iter().for_each(|body| carrier.start_body(axis, body, &model.profile));
+        }
         Self {
-            carrier: Carrier::new(start.time, (start.u, start.w), paths, &model.profile),
+            start: [carrier.u, carrier.w],
+            carrier,
             s: 0.0,
             layer: StepStart::new(model),
             rates_valid: false,
@@ -77,7 +83,6 @@ impl RunState {
             since_event: 0.0,
             step_after_event: f64::MAX,
             tangents: [0.0; 4],
-            start: [start.u, start.w],
             time_stepping,
             mode_changes_per_step: 0.0,
         }
@@ -206,7 +211,7 @@ pub(super) struct Workspace {
 
 impl Run {
     /// A run with the layer placed under the carrier at `start`.
-    pub(super) fn new(model: Arc<Model>, settings: Settings, start: &Start) -> Self {
+    pub(super) fn new(model: Arc<Model>, settings: Settings, start: &Start, bodies: &[Option<BodyStart>; 2]) -> Self {
         let tracked = Tracked { energy: settings.accounts.energy, tangents: settings.accounts.tangents };
         let pair = Pair::at_tolerance(settings.tolerance.relative);
         let steps = match settings.method {
@@ -214,7 +219,7 @@ impl Run {
             Method::Step => Steps::TwoStages,
             Method::Auto => Steps::Both(pair),
         };
-        let state = RunState::new(&model, start, settings.method == Method::Step);
+        let state = RunState::new(&model, start, bodies, settings.method == Method::Step);
         let workspace = Workspace {
             forces: Forces::new(&model),
             integrator: Integrator::new(&model, tracked, steps),
@@ -241,7 +246,8 @@ impl Run {
         forces.evaluate(model, layer, &carrier);
         free_unloaded(model, layer, at, forces);
         decide_modes(model, layer, forces);
-        self.state.energies.initial = kinetic_energy(model, layer) + elastic_energy(model, layer);
+        let of_layer = kinetic_energy(model, layer) + elastic_energy(model, layer);
+        self.state.energies.initial = of_layer + self.state.carrier.energy(model, 0.0).total();
     }
 
     /// Memory in bytes, without some hundreds that do not grow with the layer.
@@ -284,16 +290,38 @@ impl Run {
         let state = &mut self.state;
         let rates = |carrier: &Carrier, s: f64| (carrier.at(s).u_rate, carrier.at(s).w_rate);
         let before = rates(&state.carrier, state.s);
-        let paths = (motion.u, motion.w);
-        state.carrier = Carrier::new(state.time(), state.displacement(), paths, &self.model.profile);
+        let piece = Piece { paths: (motion.u, motion.w), forces: (motion.pull, motion.load) };
+        let jumps = state.carrier.begin(state.s, &piece, &self.model);
         state.s = 0.0;
         self.workspace.stall.reset();
         self.workspace.integrator.begin_tangents(motion.duration);
         if !self.state.rates_valid || rates(&self.state.carrier, 0.0) != before {
             self.change_modes(0.0);
-        } else if self.workspace.integrator.has_tangents() {
+            return;
+        }
+        if jumps {
+            self.accelerate_bodies();
+        }
+        if self.workspace.integrator.has_tangents() {
             self.evaluate_forces();
             self.refresh_tangents();
+        }
+    }
+
+    /// Computes the bodies' accelerations anew from the forces, of which one from outside has jumped. No force on a mass has.
+    fn accelerate_bodies(&mut self) {
+        self.evaluate_forces();
+        let Self { model, state, workspace, .. } = self;
+        state.carrier.accelerate(model, state.s, &workspace.forces);
+    }
+
+    /// Lets the bodies follow the step of length `h` (s) tried last.
+    pub(super) fn trace_bodies(&mut self, h: f64) {
+        let Self { state, workspace, .. } = self;
+        for axis in Axis::ALL {
+            if state.carrier.is_body(axis) {
+                state.carrier.set_step(axis, workspace.integrator.body_step(axis, h, state.time_stepping));
+            }
         }
     }
 
@@ -309,7 +337,8 @@ impl Run {
         stop_reversed(model, layer, forces, &mut run.energies.channels);
         forces.evaluate(model, layer, &carrier);
         decide_modes(model, layer, forces);
-        workspace.integrator.evaluate_start(model, &mut run.layer, &carrier, forces, run.step_size);
+        run.carrier.accelerate(model, run.s, forces);
+        workspace.integrator.evaluate_start(model, &mut run.layer, (&run.carrier, run.s), forces, run.step_size);
         run.rates_valid = true;
         self.refresh_tangents();
         self.count_mode_changes();
@@ -348,9 +377,10 @@ impl Run {
     /// Ḟ_x and Ḟ_z, N/s, from the left; at the start, from the right.
     pub(super) fn force_rates(&mut self) -> (f64, f64) {
         if !self.state.rates_valid {
-            let carrier = self.evaluate_forces();
+            self.accelerate_bodies();
             let Self { model, state, workspace, .. } = self;
-            workspace.integrator.evaluate_start(model, &mut state.layer, &carrier, &workspace.forces, state.step_size);
+            let (carrier, forces) = ((&state.carrier, state.s), &workspace.forces);
+            workspace.integrator.evaluate_start(model, &mut state.layer, carrier, forces, state.step_size);
         }
         let (layer, carrier) = (&self.state.layer, self.state.carrier.at(self.state.s));
         layer.rates.on_carrier(&self.model, &layer.state.maxwell, &carrier)

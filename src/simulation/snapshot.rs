@@ -29,6 +29,7 @@ impl Run {
             state: &self.state.layer.state,
             forces: &self.workspace.forces,
             carrier,
+            motion: (&self.state.carrier, self.state.s),
             displacement: self.state.displacement(),
             energies: self.state.energies,
             tangents: self.state.tangents,
@@ -48,6 +49,7 @@ impl Run {
             state: &self.workspace.interpolated,
             forces: &self.workspace.forces,
             carrier: self.state.carrier.at(s),
+            motion: (&self.state.carrier, s),
             displacement: self.state.displacement_at(s),
             energies,
             tangents: self.state.tangents,
@@ -157,10 +159,20 @@ mod tests {
         let rest = started.clone();
         started.advance(&WAVE).unwrap();
         let wave = started.clone();
-        let drag = Motion { duration: 1e-4, u: Path { rate: -0.3, ..Path::default() }, w: Path::default() };
+        let drag = Motion {
+            duration: 1e-4,
+            u: Path { rate: -0.3, ..Path::default() },
+            w: Path::default(),
+            ..Motion::default()
+        };
         started.advance(&drag).unwrap();
         let dragged = started.clone();
-        let still = Motion { duration: 2e-4, u: Path::default(), w: Path { rate: 1e-4, ..Path::default() } };
+        let still = Motion {
+            duration: 2e-4,
+            u: Path::default(),
+            w: Path { rate: 1e-4, ..Path::default() },
+            ..Motion::default()
+        };
         started.advance(&still).unwrap();
         let pressed = Simulation::new(scene, &Start { w: -8e-6, u_rate: 0.1, ..Start::default() }).unwrap();
         let runs = vec![rest, wave, dragged, started, pressed];
@@ -251,7 +263,8 @@ mod tests {
     #[test]
     fn force_rates_are_those_of_a_difference_quotient() {
         let scene = scene();
-        let straight = Motion { duration: 4e-5, u: Path { rate: 0.3, ..Path::default() }, w: WAVE.w };
+        let straight =
+            Motion { duration: 4e-5, u: Path { rate: 0.3, ..Path::default() }, w: WAVE.w, ..Motion::default() };
         for start in runs(&scene) {
             for motion in [WAVE, straight] {
                 let after = |by: f64| {

@@ -175,12 +175,12 @@ fn check_numbers(run: &RunState) -> Result<(), RestoreError> {
         time_stepping: _,
         mode_changes_per_step,
     } = run;
-    check_finite("the carrier's motion", &carrier.numbers())?;
+    check_finite("the carrier's motion", &carrier.numbers().collect::<Vec<_>>())?;
     check_finite("the energies", &energies.numbers())?;
     check_finite("the largest error or force", &counters.numbers())?;
     check_finite("the tangents", tangents)?;
     check_finite("the carrier's displacement at the start", start)?;
-    check_finite("the powers", &[exchange.friction, exchange.shear, exchange.input])?;
+    check_finite("the powers", &[exchange.friction, exchange.shear, exchange.input, exchange.carrier])?;
     check_finite("the largest forces and energies", &[largest.force_x, largest.force_z, largest.energy])?;
     let scalars = [
         ("the time since the carrier's last kink", *s),
@@ -283,7 +283,12 @@ mod tests {
     fn runs_alike_are_saved_alike() {
         let scene = scene();
         let mut first = run(&scene);
-        let lift = Motion { duration: 3e-5, u: Path::default(), w: Path { rate: 0.2, ..Path::default() } };
+        let lift = Motion {
+            duration: 3e-5,
+            u: Path::default(),
+            w: Path { rate: 0.2, ..Path::default() },
+            ..Motion::default()
+        };
         for _ in 0..20 {
             let mut second = Simulation::restore(&scene, &first.state()).unwrap();
             assert_eq!((first.advance(&lift), second.advance(&lift)), (Ok(()), Ok(())));

@@ -47,6 +47,7 @@ pub(super) const WAVE: Motion = Motion {
     duration: 1.3e-4,
     u: Path { rate: 0.02, amplitude: 1e-6, frequency: 2000.0 },
     w: Path { rate: -0.002, amplitude: 1e-7, frequency: 5000.0 },
+    ..Motion::REST
 };
 
 pub(super) fn scene() -> Scene {

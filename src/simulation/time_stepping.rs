@@ -52,6 +52,7 @@ impl Run {
         workspace.interpolated_at = None;
         let (layer, carrier, span) = (&state.layer, &state.carrier, state.span(h));
         let attempt = workspace.integrator.attempt_two_stages(model, layer, carrier, span, &settings.tolerance);
+        self.trace_bodies(h);
         let attempt = attempt.ok().map(|attempt| self.with_lateness(h, attempt));
         let error = attempt.map_or(f64::NAN, |attempt| attempt.error);
         if error <= 1.0 || (any_error && error.is_finite()) {
@@ -93,6 +94,11 @@ impl Run {
             energies.channels.add(&corrected.map_or_else(ChannelEnergies::default, |corrected| corrected.channels));
             energies.impact += corrected.map_or(0.0, |corrected| corrected.impact);
         }
+        let mut point = integrator.end_carrier(true);
+        if let Some(corrected) = &corrected {
+            state.carrier.push(&mut point, model, corrected.impulse);
+        }
+        state.carrier.take_step(end, &point);
         integrator.accept_two_stages(&mut state.layer);
         state.counters.steps += 1;
         state.s = end;

@@ -123,7 +123,9 @@ pub fn library_along(scene: &Scene, motion: &Table) -> Table {
     simulation.evaluate(&variables, &mut rows[0]);
     for i in 0..time.len() - 1 {
         let path = |values: &[f64]| scene::Path { rate: rate(values, i), ..scene::Path::default() };
-        simulation.advance(&Motion { duration: time[i + 1] - time[i], u: path(&u), w: path(&w) }).unwrap();
+        simulation
+            .advance(&Motion { duration: time[i + 1] - time[i], u: path(&u), w: path(&w), ..Motion::default() })
+            .unwrap();
         let mut row = vec![0.0; variables.len()];
         simulation.evaluate(&variables, &mut row);
         rows.push(row);

@@ -202,6 +202,7 @@ fn case(name: &str, [phrase, item]: [&str; 2], mut scene: Table) -> Case {
             w: start("w"),
             u_rate: start("u_rate"),
             w_rate: start("w_rate"),
+            ..Start::default()
         },
         rows: run.get("rows").map_or(24, |rows| rows.as_integer().unwrap().try_into().unwrap()),
         tight: run.get("tight").map_or(1e-3, number),

@@ -94,7 +94,8 @@ impl Drive {
             let same = (stands - value).abs() <= 4.0 * f64::EPSILON * stands.abs().max(value.abs());
             Path { rate: if same { rate } else { (value + h * rate - stands) / h }, ..Path::default() }
         };
-        let motion = Motion { duration: h, u: path(u, given[0], u_rate), w: path(w, given[1], w_rate) };
+        let motion =
+            Motion { duration: h, u: path(u, given[0], u_rate), w: path(w, given[1], w_rate), ..Motion::default() };
         match simulation.advance(&motion) {
             Ok(()) => self.compare(),
             Err(error) => self.note("same", format!("the library stops where the instance does not: {error}")),

@@ -132,7 +132,7 @@ pub fn by_library(case: &Case, method: &str, tight: f64) -> Outcome {
     };
     watch.look(&simulation.snapshot());
     for phase in &scene.excitation {
-        let motion = Motion { duration: phase.duration, u: phase.u, w: phase.w };
+        let motion = Motion { duration: phase.duration, u: phase.u, w: phase.w, ..Motion::default() };
         let rows: Vec<f64> = (1..=case.rows)
             .map(|i| if i == case.rows { phase.duration } else { phase.duration * f64::from(i) / f64::from(case.rows) })
             .collect();

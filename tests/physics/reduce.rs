@@ -82,10 +82,10 @@ fn difference(scenes: [&Scene; 2], both: [&[Vec<f64>]; 2], name: &str) -> f64 {
     largest(a.iter().zip(&b).map(|(a, b)| a - b))
 }
 
-const SLIDE_START: Start = Start { time: 0.0, u: 0.0, w: -2e-6, u_rate: 0.5, w_rate: 0.0 };
+const SLIDE_START: Start = Start { time: 0.0, u: 0.0, w: -2e-6, u_rate: 0.5, w_rate: 0.0, load: 0.0, pull: 0.0 };
 
 fn slide() -> Motion {
-    Motion { duration: 2e-3, u: Path { rate: 0.5, ..Path::default() }, w: Path::default() }
+    Motion { duration: 2e-3, u: Path { rate: 0.5, ..Path::default() }, w: Path::default(), ..Motion::default() }
 }
 
 #[test]
@@ -187,7 +187,7 @@ fn the_force_of_a_known_motion_is_within_the_bound() {
         };
         let w = Path { amplitude: AMPLITUDE, frequency: FREQUENCY, ..Path::default() };
         let start = Start { w: -PRESSED, w_rate: TAU * FREQUENCY * AMPLITUDE, ..Start::default() };
-        let motion = Motion { duration: DURATION, u: Path::default(), w };
+        let motion = Motion { duration: DURATION, u: Path::default(), w, ..Motion::default() };
         let whole = scene(&case, "");
         let exact = rows(&whole, &start, &motion, 200);
         for reduce in ["1e-4", "1e-3", "1e-2"] {

@@ -107,7 +107,9 @@ impl Case {
         let mut simulation = Simulation::new(&scene, &start).unwrap();
         simulation.record_mode_changes(true);
         for phase in &scene.excitation {
-            simulation.advance(&Motion { duration: phase.duration, u: phase.u, w: phase.w }).unwrap();
+            simulation
+                .advance(&Motion { duration: phase.duration, u: phase.u, w: phase.w, ..Motion::default() })
+                .unwrap();
         }
         simulation.take_mode_changes().iter().map(|change| change.time).collect()
     }

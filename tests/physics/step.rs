@@ -48,7 +48,7 @@ impl Run {
         };
         let mut rows = vec![values(&simulation.snapshot())];
         for phase in &scene.excitation {
-            let motion = Motion { duration: phase.duration, u: phase.u, w: phase.w };
+            let motion = Motion { duration: phase.duration, u: phase.u, w: phase.w, ..Motion::default() };
             let times: Vec<f64> = (1..=50).map(|i| phase.duration * f64::from(i) / 50.0).collect();
             simulation.advance_observed(&motion, None, &times, |_, now| rows.push(values(now))).unwrap();
         }
@@ -116,7 +116,7 @@ fn slow_slide(method: &str, tolerance: &str) -> (f64, f64) {
     scene.outputs.push(OutputGroup::Solver);
     let phase = |duration: f64, u: f64, w: f64| {
         let path = |rate: f64| Path { rate, ..Path::default() };
-        Phase { duration, u: path(u), w: path(w), until_force: None, until_pressure: None }
+        Phase { duration, u: path(u), w: path(w), until_force: None, until_pressure: None, ..Phase::default() }
     };
     scene.excitation = vec![phase(2e-3, 0.0, -0.05), phase(0.025, 0.01, 0.0), phase(0.025, 0.01, 0.0)];
     let run = Run::of(&scene);
@@ -189,7 +189,7 @@ fn rough(masses: usize, method: &str, more: &str) -> Scene {
 
 fn straight(duration: f64, u: f64, w: f64) -> Motion {
     let path = |rate| Path { rate, ..Path::default() };
-    Motion { duration, u: path(u), w: path(w) }
+    Motion { duration, u: path(u), w: path(w), ..Motion::default() }
 }
 
 const PRESS: (f64, f64, f64) = (2e-4, 0.0, -0.01);

@@ -46,7 +46,7 @@ fn scene(friction: &str) -> Scene {
 
 fn straight(duration: f64, u: f64, w: f64) -> Motion {
     let path = |rate| Path { rate, ..Path::default() };
-    Motion { duration, u: path(u), w: path(w) }
+    Motion { duration, u: path(u), w: path(w), ..Motion::default() }
 }
 
 struct Run {

@@ -10,15 +10,19 @@
 //! projected onto (1, s)ᵀ: its second row is the identity; for a sticking mass both are. So a contact that stops or
 //! breaks loose changes rows, not the shape of the system.
 
+mod border;
 mod modes;
 mod newton;
+
+use nalgebra::Vector2;
 
 use super::error::{NEWTON_SHARE, Tolerance};
 use super::rates::Rates;
 use crate::math::BlockTridiagonal;
 use crate::model::{CarrierPoint, ContactForces, Forces, LinkKind, LinkMotion, Mode, Model, State};
-use newton::{NeighbourWeights, RateFriction, RowShares, largest};
+use newton::{Climb, NeighbourWeights, RateFriction, RowShares, largest};
 
+pub(super) use border::{BodyHistory, Border};
 pub(super) use newton::SlippingMass;
 
 /// Newton's iterations did not converge. They will for a shorter step.
@@ -74,10 +78,20 @@ pub(super) struct StagePoint {
     pub integrated: (f64, f64),
     /// Its exact displacement along x, m, by which a sticking mass falls behind.
     pub moved: f64,
+    /// u as a position on the profile and w at the start of the carrier's piece, m.
+    pub piece: (f64, f64),
+}
+
+impl StagePoint {
     /// u at the stage as a position on the profile, m.
-    pub profile_position: f64,
+    fn profile_position(&self) -> f64 {
+        self.piece.0 + self.carrier.du
+    }
+
     /// w at the stage, m.
-    pub w: f64,
+    fn w(&self) -> f64 {
+        self.piece.1 + self.carrier.dw
+    }
 }
 
 /// The convergence test of Newton's iterations of a stage, in terms of corrections of the velocities, m/s.
@@ -104,6 +118,13 @@ pub(super) struct StageLaw {
     pub damping: f64,
     /// -∂F/∂v of a link to a free mass: βc + D.
     weight: f64,
+}
+
+impl StageLaw {
+    /// ∂F/∂ẋ of a vertical link to a slipping mass.
+    fn along(&self, climb: Climb) -> f64 {
+        self.stiffness * climb.height + self.damping * climb.rate
+    }
 }
 
 /// Which slipping stages the factors of the Jacobian serve. It changes little through a step, so that those of one stage
@@ -157,6 +178,8 @@ pub(super) struct StageSolver {
     rows: Vec<RowShares>,
     columns: Vec<NeighbourWeights>,
     pub system: BlockTridiagonal,
+    /// The bodies of the carrier; `None` where there are none.
+    pub border: Option<Box<Border>>,
     /// Which stages the factors of the system serve.
     factors: Factors,
     /// Newton iterations since the start of the run.
@@ -188,6 +211,7 @@ impl StageSolver {
             rows: vec![RowShares::default(); k],
             columns: vec![NeighbourWeights::default(); k],
             system: BlockTridiagonal::new(k),
+            border: Border::new(model),
             factors: Factors::Outdated,
             iterations: 0,
         }
@@ -217,6 +241,7 @@ impl StageSolver {
         self.factors = Factors::Outdated;
         if self.slips.is_empty() {
             self.system.factor_uncoupled();
+            self.factor_border(model, beta);
         }
     }
 
@@ -270,11 +295,12 @@ impl StageSolver {
     pub(super) fn solve(
         &mut self,
         model: &Model,
-        point: &StagePoint,
+        point: &mut StagePoint,
         test: ConvergenceTest,
         rates: &mut Rates,
     ) -> Result<(), NoConvergence> {
         self.history.subtract_frozen(model);
+        self.move_bodies(Vector2::zeros(), point);
         self.start_sticks_from_rest();
         self.set_positions(model, point);
         self.set_forces(point);
@@ -289,11 +315,13 @@ impl StageSolver {
     }
 
     /// Solves the equations without slip, which are linear: their matrix is factored once per step.
-    fn solve_linear(&mut self, model: &Model, point: &StagePoint) -> Result<(), NoConvergence> {
+    fn solve_linear(&mut self, model: &Model, point: &mut StagePoint) -> Result<(), NoConvergence> {
         self.set_residuals(model, point.beta);
         // Slips alone couple the motions along x and z.
         self.system.solve_uncoupled();
-        let change = self.correct();
+        let of_bodies = self.complete_border();
+        let change = self.correct().max(of_bodies.amax());
+        self.move_bodies(of_bodies, point);
         self.set_positions(model, point);
         self.set_forces(point);
         if change.is_finite() { Ok(()) } else { Err(NoConvergence) }
@@ -302,7 +330,7 @@ impl StageSolver {
     /// Newton's iterations. The error after an iteration is bounded in two ways by the residual at the new velocities:
     /// by the velocity that it makes against the inertia alone, and by the correction times the ratio by which the
     /// residual fell.
-    fn iterate(&mut self, model: &Model, point: &StagePoint, test: ConvergenceTest) -> Result<(), NoConvergence> {
+    fn iterate(&mut self, model: &Model, point: &mut StagePoint, test: ConvergenceTest) -> Result<(), NoConvergence> {
         let mut residual = self.residuals(model, point.beta);
         let mut last = f64::INFINITY;
         for _ in 0..self.friction.most_iterations() {
@@ -310,13 +338,14 @@ impl StageSolver {
             if !held {
                 self.factor_slips(model, point.beta);
             }
-            self.system.solve();
+            let of_bodies = self.solve_bordered();
             let steep = if model.friction_depends_on_speed() {
                 self.correct_along_friction_curve(model, point.beta)
             } else {
                 0.0
             };
-            let change = self.correct().max(steep);
+            let change = self.correct().max(steep).max(of_bodies.amax());
+            self.move_bodies(of_bodies, point);
             self.set_positions(model, point);
             self.set_forces(point);
             let left = self.residuals(model, point.beta);
@@ -346,6 +375,7 @@ impl StageSolver {
     fn factor_slips(&mut self, model: &Model, beta: f64) {
         self.assemble_slips(model, beta);
         self.system.factor();
+        self.factor_border(model, beta);
         if self.factors == Factors::Outdated && model.friction_is_linear() {
             self.factors = Factors::Held;
         }
@@ -353,7 +383,7 @@ impl StageSolver {
 
     /// Computes the positions from the velocities and puts the contact constraint in.
     fn set_positions(&mut self, model: &Model, point: &StagePoint) {
-        let beta = point.beta;
+        let (beta, profile_position, w) = (point.beta, point.profile_position(), point.w());
         let (state, history) = (&mut self.state, &self.history);
         set_elongations(&mut state.elongation_x, &history.elongation_x, beta, &state.velocity_x, point.integrated.0);
         set_elongations(&mut state.elongation_z, &history.elongation_z, beta, &state.velocity_z, point.integrated.1);
@@ -367,10 +397,10 @@ impl StageSolver {
             if mode[i] == Mode::Stick {
                 e_x[i] = star_x[i] - point.moved;
             } else {
-                surface[i] = model.surface_at(rest_x[i] + (point.profile_position + e_x[i]));
+                surface[i] = model.surface_at(rest_x[i] + (profile_position + e_x[i]));
                 v_z[i] = surface[i].slope * v_x[i];
             }
-            e_z[i] = surface[i].height - rest_z[i] - point.w;
+            e_z[i] = surface[i].height - rest_z[i] - w;
         }
     }
 

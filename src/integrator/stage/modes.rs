@@ -35,7 +35,7 @@ impl StageSolver {
     fn stop(&mut self, model: &Model, i: usize, point: &StagePoint) {
         (self.state.velocity_x[i], self.state.velocity_z[i]) = (0.0, 0.0);
         let elongation = self.history.elongation_x[i] - point.moved;
-        self.state.surface[i] = model.surface_at(model.rest_x[i] + (point.profile_position + elongation));
+        self.state.surface[i] = model.surface_at(model.rest_x[i] + (point.profile_position() + elongation));
     }
 
     /// The mode in which the residual of contact `i` can vanish: a slip goes on in its direction, and a mass at rest may

@@ -4,6 +4,7 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::{StageLaw, StageSolver};
 use crate::model::{ContactForces, Forces, FrictionCurve, Mode, Model, State, SurfacePoint};
+use crate::scene::Axis;
 
 impl StageSolver {
     /// Factors the Jacobian at the solution, for the tangents of the stage.
@@ -11,6 +12,7 @@ impl StageSolver {
         if !self.slips.is_empty() {
             self.assemble_slips(model, beta);
             self.system.factor();
+            self.factor_border(model, beta);
         }
     }
 
@@ -18,7 +20,8 @@ impl StageSolver {
     /// inertia alone.
     pub(super) fn residuals(&mut self, model: &Model, beta: f64) -> f64 {
         self.set_residuals(model, beta);
-        largest(&self.system.right) * beta / model.mass
+        let of_masses = largest(&self.system.right) * beta / model.mass;
+        self.border.as_ref().map_or(of_masses, |border| of_masses.max(border.largest_residual(beta)))
     }
 
     /// Writes the negative residuals of the equations of motion at the present velocities to the right sides.
@@ -37,6 +40,17 @@ impl StageSolver {
         self.slip_residuals(model, 1.0 / beta);
         if model.friction_depends_on_speed() {
             self.add_rate_shear(model, beta);
+        }
+        self.set_border_residuals(beta);
+    }
+
+    /// Of mass `i`, which slips: the factor with which a force on it along `axis` enters its equation, and how its elongation
+    /// along that axis follows its ẋ.
+    pub(super) fn slip_border(&self, model: &Model, i: usize, beta: f64, axis: Axis) -> (f64, Climb) {
+        let slip = self.slipping_mass(model, i, beta);
+        match axis {
+            Axis::X => (slip.share_x, Climb { height: beta, rate: 1.0 }),
+            Axis::Z => (slip.share_z, slip.climb(beta)),
         }
     }
 
@@ -107,7 +121,7 @@ impl StageSolver {
             let slip = self.slipping_mass(model, i, beta);
             let neighbours = neighbours(i, k);
             let climb = slip.climb(beta);
-            let weight = |law: &StageLaw| law.stiffness * climb.height + law.damping * climb.rate;
+            let weight = |law: &StageLaw| law.along(climb);
             let weights = (
                 horizontal.weight + neighbours * lateral_x.weight,
                 weight(&vertical) + neighbours * weight(&lateral_z),
@@ -165,11 +179,12 @@ pub(super) fn largest(values: &[Vector2<f64>]) -> f64 {
 const LANES: usize = 4;
 
 /// How the height of a slipping mass on the profile follows its ẋ.
-struct Climb {
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Climb {
     /// ∂e_z/∂ẋ = βs.
-    height: f64,
+    pub(super) height: f64,
     /// ∂ż/∂ẋ = s + βκẋ.
-    rate: f64,
+    pub(super) rate: f64,
 }
 
 /// The equation of motion of a slipping mass, (6)-(9), at given velocity and acceleration: its residual and derivatives.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use asperity::element::{Element, Load, OperatingPoint, PointContact, SweepGrid};
 use asperity::outputs::{Output, Variable, variable};
-use asperity::scene::{Initial, OutputGroup, Parameter, Path as Displacement, Scene, Value};
+use asperity::scene::{Initial, Input, OutputGroup, Parameter, Path as Displacement, Scene, Value};
 use asperity::simulation::{Motion, Simulation, Start};
 use rayon::prelude::*;
 
@@ -279,6 +279,7 @@ impl Loop {
                 duration: step,
                 u: Displacement { rate, ..Displacement::default() },
                 w: Displacement::default(),
+                ..Motion::default()
             };
             for _ in 0..ROWS {
                 layer.advance(&motion).map_err(|e| e.to_string())?;
@@ -293,13 +294,13 @@ impl Loop {
         let (mut of_layer, mut of_element) = ([0.0; 4], [0.0; 4]);
         layer.evaluate(variables, &mut of_layer);
         element.evaluate(variables, &mut of_element);
-        self.carriers.push(CarrierSample { time: layer.time(), u: layer.carrier().0, w });
+        self.carriers.push(CarrierSample { time: layer.time(), u: layer.carrier().0, w, ..CarrierSample::default() });
         self.layer.push(of_layer);
         self.element.push(of_element);
     }
 
     fn write(&self, path: &Path, variables: &[Variable], rows: &[[f64; 4]]) -> Result<(), FileError> {
-        let mut writer = ResultWriter::create(path, variables)?;
+        let mut writer = ResultWriter::create(path, &[Input::U, Input::W], variables)?;
         self.carriers.iter().zip(rows).try_for_each(|(carrier, row)| writer.write(*carrier, row))?;
         writer.finish()
     }

@@ -237,7 +237,7 @@ impl<'a> Master<'a> {
         let mut simulation = Simulation::new(scene, &inputs.start(0.0))?;
         let mut recorder = TraceRecorder::new(scene);
         recorder.row(&simulation.snapshot());
-        let carrier = CarrierSample { time: 0.0, u, w: 0.0 };
+        let carrier = CarrierSample { u, ..CarrierSample::default() };
         Ok(Self { scene, given, inputs, simulation, recorder, carrier })
     }
 
@@ -253,7 +253,7 @@ impl<'a> Master<'a> {
         self.simulation.advance(&motion)?;
         self.inputs.complete_step(h);
         self.recorder.row(&self.simulation.snapshot());
-        self.carrier = start.moved(phase, to);
+        self.carrier = start.moved(phase, self.scene.layer.area(), to);
         Ok(())
     }
 }

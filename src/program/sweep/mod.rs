@@ -193,6 +193,7 @@ fn scene_at(scene: &Scene, point: &OperatingPoint) -> Scene {
         w: Displacement::default(),
         until_force: None,
         until_pressure: None,
+        ..Phase::default()
     }];
     scene
 }

@@ -149,13 +149,18 @@ impl Slide {
     pub(super) fn press(&mut self, fraction: f64, dw: f64) -> Result<(), SimulationError> {
         let duration = fraction * self.blocks.length / self.blocks.speed;
         self.slid += fraction;
-        self.simulation.advance(&Motion { duration, u: rate(self.blocks.speed), w: rate(dw / duration) })
+        self.simulation.advance(&Motion {
+            duration,
+            u: rate(self.blocks.speed),
+            w: rate(dw / duration),
+            ..Motion::default()
+        })
     }
 
     /// Slides over one block with w held.
     pub(super) fn block(&mut self) -> Result<BlockMeans, SimulationError> {
         let duration = self.blocks.length / self.blocks.speed;
-        let motion = Motion { duration, u: rate(self.blocks.speed), w: Path::default() };
+        let motion = Motion { duration, u: rate(self.blocks.speed), w: Path::default(), ..Motion::default() };
         let (mut values, mut sums) = (vec![0.0; self.sampled.len()], vec![0.0; self.sampled.len()]);
         self.elongations.fill(0.0);
         let before = self.energies();
@@ -232,11 +237,11 @@ pub(super) fn tangential_stiffness(
 fn at_rest(scene: &Scene, blocks: Blocks, w: f64, duration: f64) -> Result<Simulation, SimulationError> {
     let mut simulation = Simulation::new(scene, &Start { u: blocks.start, w, ..Start::default() })?;
     for _ in 0..RELAXATIONS {
-        simulation.advance(&Motion { duration, u: Path::default(), w: Path::default() })?;
+        simulation.advance(&Motion { duration, u: Path::default(), w: Path::default(), ..Motion::default() })?;
         let elongations = simulation.maxwell_elongations().to_vec();
         simulation.relax_dashpots(&elongations, 0.0);
     }
-    simulation.advance(&Motion { duration, u: Path::default(), w: Path::default() })?;
+    simulation.advance(&Motion { duration, u: Path::default(), w: Path::default(), ..Motion::default() })?;
     Ok(simulation)
 }
 
@@ -252,7 +257,7 @@ fn slope(
     let share = |i: u32| if i == samples { 1.0 } else { f64::from(i) / f64::from(samples) };
     let times: Vec<f64> = (1..=samples).map(|i| duration * share(i)).collect();
     let (mut products, mut squares, mut values) = (0.0, 0.0, [0.0; 2]);
-    let motion = Motion { duration, u: rate(blocks.speed), w: Path::default() };
+    let motion = Motion { duration, u: rate(blocks.speed), w: Path::default(), ..Motion::default() };
     simulation.advance_observed(&motion, None, &times, |time, now| {
         now.evaluate(forces, &mut values);
         let u = blocks.speed * time;

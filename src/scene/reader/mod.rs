@@ -1,5 +1,6 @@
 //! From TOML text to a [`Scene`].
 
+mod carrier;
 mod patch;
 mod surface;
 mod table;
@@ -10,8 +11,8 @@ use std::path::Path as FilePath;
 use super::keys::Form;
 use super::values::Word;
 use super::{
-    Extrapolation, Foundation, FoundationKind, Friction, Initial, Layer, Link, Material, MaxwellElement, OutputGroup,
-    Path, Phase, PronyTerm, RateShear, RealArea, Scene, SceneError, Solver, Surface, Wlf, warnings,
+    CarrierBodies, Extrapolation, Foundation, FoundationKind, Friction, Initial, Layer, Link, Material, MaxwellElement,
+    OutputGroup, PronyTerm, RateShear, RealArea, Scene, SceneError, Solver, Surface, Wlf, warnings,
 };
 use surface::Found;
 use table::{Entry, Result, Source, TableReader};
@@ -54,11 +55,13 @@ fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
     let read_material = |entry: &Entry<'_>| entry.table(|table| read_material(table, &mut found));
     let material = material_entry.as_ref().map(read_material).transpose()?;
     let surface = surface::read(&root.required("surface")?, &mut found)?;
+    let carrier_entry = root.entry("carrier");
+    let carrier = carrier_entry.as_ref().map(|entry| entry.table(carrier::read)).transpose()?.unwrap_or_default();
     let friction = root.optional_table("friction", |table| read_friction(table, &surface))?;
     let solver = root.optional_table("solver", read_solver)?.unwrap_or_default();
     let extrapolation = root.optional_table("input", read_input)?.unwrap_or_default();
-    let outputs = root.optional_table("fmu", read_fmu)?.unwrap_or_else(default_outputs);
-    let excitation = root.tables("excitation", read_phase)?;
+    let outputs = root.optional_table("fmu", |table| read_fmu(table, &carrier))?.unwrap_or_else(default_outputs);
+    let excitation = root.tables("excitation", |table| carrier::read_phase(table, &carrier))?;
     root.finish()?;
     let Found { files, extracts, mut warnings } = found;
     warnings.extend(warnings::short_profile(&layer, &surface, &excitation));
@@ -71,6 +74,7 @@ fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
         material,
         foundation,
         surface,
+        carrier,
         friction,
         solver,
         extrapolation,
@@ -82,6 +86,9 @@ fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
     };
     let warnings = scene.foundation_warnings();
     scene.warnings.extend(warnings);
+    if let (Err(error), Some(entry)) = (scene.check_equilibrium(scene.first_load()), carrier_entry) {
+        return Err(SceneError::new(entry.location(), error.name(), error.problem().clone()));
+    }
     match (scene.check(), material_entry) {
         (Err(error), Some(entry)) => Err(SceneError::new(entry.location(), error.name(), error.problem().clone())),
         _ => Ok(scene),
@@ -254,8 +261,14 @@ fn default_outputs() -> Vec<OutputGroup> {
     vec![OutputGroup::Forces, OutputGroup::Dissipation]
 }
 
-fn read_fmu(table: &mut TableReader<'_>) -> Result<Vec<OutputGroup>> {
-    table.entry("outputs").map_or_else(|| Ok(default_outputs()), |entry| read_groups(&entry))
+/// The groups of a layer; that of a carrier that is a body where it is one.
+fn read_fmu(table: &mut TableReader<'_>, carrier: &CarrierBodies) -> Result<Vec<OutputGroup>> {
+    let Some(entry) = table.entry("outputs") else { return Ok(default_outputs()) };
+    let groups = read_groups(&entry)?;
+    match groups.contains(&OutputGroup::Carrier) && !carrier.any() {
+        true => Err(entry.refuse("no group \"carrier\" without [carrier.x] or [carrier.z]: the carrier is no body")),
+        false => Ok(groups),
+    }
 }
 
 /// The groups in the order of the variables, whatever their order in the file.
@@ -270,22 +283,4 @@ fn read_groups<G: Word + Ord>(entry: &Entry<'_>) -> Result<Vec<G>> {
     }
     groups.sort_unstable();
     Ok(groups)
-}
-
-fn read_phase(table: &mut TableReader<'_>) -> Result<Phase> {
-    Ok(Phase {
-        duration: table.number("duration")?,
-        u: read_motion(table, "u_rate", "u_sine")?,
-        w: read_motion(table, "w_rate", "w_sine")?,
-        until_force: table.optional_number("until_force")?,
-        until_pressure: table.optional_number("until_pressure")?,
-    })
-}
-
-fn read_motion(table: &mut TableReader<'_>, rate: &'static str, sine: &'static str) -> Result<Path> {
-    let rate = table.optional_number(rate)?.unwrap_or(0.0);
-    let sine = table.optional_table(sine, |table| {
-        Ok(Path { rate, amplitude: table.number("amplitude")?, frequency: table.number("frequency")? })
-    })?;
-    Ok(sine.unwrap_or(Path { rate, ..Path::default() }))
 }

@@ -195,7 +195,7 @@ fn every_method_agrees_with_the_library() {
         for i in 0..60 {
             let point = h * f64::from(i);
             assert_eq!((fmu.set_real("u", point), fmu.set_rate("u", 1.0), fmu.step(point, h)), (OK, OK, OK));
-            simulation.advance(&Motion { duration: h, u, w: Path::default() }).unwrap();
+            simulation.advance(&Motion { duration: h, u, w: Path::default(), ..Motion::default() }).unwrap();
             simulation.evaluate(&variables, &mut values);
             for name in ["F_x", "F_z", "E_diss"] {
                 let at = variables.iter().position(|variable| variable.name == name).unwrap();
@@ -235,7 +235,7 @@ fn inputs_that_jump_wildly_cost_limited_work() {
             let fastest = 3e6 * 1e-6_f64.powf(random(&mut state));
             let mut path =
                 |share: f64| Path { rate: fastest * share * (2.0 * random(&mut state) - 1.0), ..Path::default() };
-            let motion = Motion { duration, u: path(1.0), w: path(1e-4) };
+            let motion = Motion { duration, u: path(1.0), w: path(1e-4), ..Motion::default() };
             simulation.advance(&motion).unwrap();
             let mut values = [0.0; 2];
             simulation.evaluate(&counts, &mut values);

@@ -84,9 +84,10 @@ fn motions(scene: &Scene) -> Vec<(Motion, Option<f64>)> {
         duration: 1e-5,
         u: asperity::scene::Path { rate: 0.1, ..Default::default() },
         w: asperity::scene::Path { rate: -1.0, ..Default::default() },
+        ..Motion::default()
     };
     let phases = scene.excitation.iter().take(2);
-    let motion = |phase: &Phase| Motion { duration: phase.duration, u: phase.u, w: phase.w };
+    let motion = |phase: &Phase| Motion { duration: phase.duration, u: phase.u, w: phase.w, ..Motion::default() };
     let phases = phases.map(|phase| (motion(phase), phase.end_force(scene.layer.area())));
     phases.chain([(press, None)]).collect()
 }

@@ -39,7 +39,7 @@ fn balance(friction: &str, relative: f64) -> (f64, Vec<f64>) {
     for (u, w) in phases {
         let mut times = steps((0.0, duration), 60);
         times.push(duration);
-        let columns = run.sample(&Motion { duration, u, w }, &times, &names);
+        let columns = run.sample(&Motion { duration, u, w, ..Motion::default() }, &times, &names);
         worst = worst.max(largest(&columns[0]));
         size = size.max(largest(&columns[1])).max(largest(&columns[2]));
         last = columns.iter().map(|column| column[60]).collect();
@@ -116,7 +116,8 @@ fn check_extreme(method: &str, friction: &str, horizontal: f64, lateral_z: f64, 
     let mut run = Run::new(&text, Start { w_rate: -0.1, ..Start::default() });
     let (mut worst, mut size, mut falls) = (0.0_f64, 0.0_f64, 0.0_f64);
     for (duration, u, w) in [(2.0e-4, rate(0.0), rate(-0.1)), (6.0e-5 / speed, rate(speed), rate(0.0))] {
-        let columns = run.sample(&Motion { duration, u, w }, &steps((0.0, duration), 40), &CHANNELS);
+        let columns =
+            run.sample(&Motion { duration, u, w, ..Motion::default() }, &steps((0.0, duration), 40), &CHANNELS);
         worst = worst.max(largest(&columns[0])).max(run.get("energy.residual").abs());
         size = size.max(largest(&columns[1])).max(largest(&columns[2]));
         let lost = columns[2..].iter().flat_map(|channel| channel.windows(2));

@@ -63,7 +63,9 @@ impl Chain {
         let mut names: Vec<String> = vec!["F_x".into(), "F_z".into()];
         names.extend(element("x").chain(element("z")));
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        let pieces = self.motions.map(|(u, w)| run.sample(&Motion { duration: DURATION, u, w }, &times(), &names));
+        let pieces = self
+            .motions
+            .map(|(u, w)| run.sample(&Motion { duration: DURATION, u, w, ..Motion::default() }, &times(), &names));
         let [first, second] = pieces;
         first.into_iter().zip(second).map(|(first, second)| [first, second].concat()).collect()
     }

@@ -62,7 +62,7 @@ impl Chain {
         let mut run = Run::new(&self.scene(), Start { w: -PRESSED, u_rate: v, ..Start::default() });
         let mut samples = steps((transient, transient + period), 256);
         samples.push(transient + period);
-        let motion = Motion { duration: transient + period, u: rate(v), w: REST };
+        let motion = Motion { duration: transient + period, u: rate(v), w: REST, ..Motion::default() };
         let columns = run.sample(&motion, &samples, &["F_x", "energy.input", "contact.count"]);
         assert!(columns[2].iter().all(|&count| count == self.masses as f64), "every mass stays down at {v} m/s");
         let work = columns[1][256] - columns[1][0];

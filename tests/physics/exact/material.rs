@@ -105,7 +105,11 @@ fn a_run_of_the_material_is_that_of_its_links() {
     let columns = |scene: &Scene| {
         let mut run = Run::of(scene, Start { w: -2e-6, u_rate: 0.1, ..Start::default() });
         let times = steps((1e-4, 5e-3), 50);
-        run.sample(&Motion { duration: 5e-3, u: rate(0.1), w: rate(-1e-3) }, &times, &["F_x", "F_z"])
+        run.sample(
+            &Motion { duration: 5e-3, u: rate(0.1), w: rate(-1e-3), ..Motion::default() },
+            &times,
+            &["F_x", "F_z"],
+        )
     };
     let material = columns(&rubber());
     assert_eq!(material, columns(&rubber().direct_form()));
@@ -170,7 +174,7 @@ fn drag(scene: &Scene, v: f64, pressed: f64) -> f64 {
     // Whole periods until e^-20 = 2e-9 of the transient is left.
     let transient = period * (20.0 * TIME / period).ceil().max(1.0);
     let mut run = Run::of(scene, Start { w: -pressed, u_rate: v, ..Start::default() });
-    let motion = Motion { duration: transient + period, u: rate(v), w: REST };
+    let motion = Motion { duration: transient + period, u: rate(v), w: REST, ..Motion::default() };
     let columns = run.sample(&motion, &[transient, transient + period], &["energy.input", "contact.count"]);
     assert!(columns[1].iter().all(|&count| count == scene.layer.masses as f64), "every mass stays down at {v} m/s");
     (columns[0][1] - columns[0][0]) / WAVELENGTH
@@ -234,7 +238,7 @@ fn friction(law: &str, temperature: f64, v: f64) -> f64 {
     ));
     let mut run = Run::of(&scene, Start { w: -2e-5, u_rate: v, ..Start::default() });
     let times = steps((3.0 * WAVELENGTH / v, 4.0 * WAVELENGTH / v), 64);
-    let motion = Motion { duration: 4.0 * WAVELENGTH / v, u: rate(v), w: REST };
+    let motion = Motion { duration: 4.0 * WAVELENGTH / v, u: rate(v), w: REST, ..Motion::default() };
     let columns = run.sample(&motion, &times, &["F_x", "F_z", "contact.ratio"]);
     let ratio = mean(&columns[2]);
     assert!(0.1 < ratio && ratio < 0.99, "{ratio} in contact");

@@ -56,7 +56,7 @@ fn vibrate(frequency: f64, relative: f64) -> Seen {
     let window = (transient, transient + PERIODS as f64 / frequency);
     let mut times = steps(window, 40 * PERIODS);
     times.push(window.1);
-    let motion = Motion { duration: window.1, u: REST, w: sine(SWING, frequency) };
+    let motion = Motion { duration: window.1, u: REST, w: sine(SWING, frequency), ..Motion::default() };
     let columns = run.sample(&motion, &times, &["F_z", "E_diss", "energy.input", "contact.sticking"]);
     assert!(columns[3].iter().all(|&count| count == MASSES as f64), "every mass sticks");
     let last = times.len() - 1;
@@ -116,7 +116,7 @@ fn a_spring_and_a_damper_alone() {
     let (omega, duration) = (TAU * FREQUENCY, 100.0 / FREQUENCY);
     let mut run = Run::new(&text, Start { w: -PRESSED, w_rate: omega * SWING, ..Start::default() });
     let times = [0.013_37, 0.05, 0.071_23, duration];
-    let motion = Motion { duration, u: REST, w: sine(SWING, FREQUENCY) };
+    let motion = Motion { duration, u: REST, w: sine(SWING, FREQUENCY), ..Motion::default() };
     let columns = run.sample(&motion, &times, &["F_z", "E_diss"]);
     let masses = MASSES as f64;
     for (time, force) in times.iter().zip(&columns[0]) {

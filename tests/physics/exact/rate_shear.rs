@@ -177,7 +177,7 @@ fn sticks_and_slips_as_an_explicit_method_has_it() {
     let (horizontal, speed, duration) = (Law::new(1.0e3, 2.0e-3), 0.05, 2.0e-3);
     let mut run = pressed(&BLUNT, &horizontal, 0.0);
     let explicit = Explicit { law: BLUNT, horizontal: horizontal.clone(), speed };
-    let motion = Motion { duration, u: rate(speed), w: Path::default() };
+    let motion = Motion { duration, u: rate(speed), w: Path::default(), ..Motion::default() };
     let times: Vec<f64> = (1..=40).map(|i| duration * f64::from(i) / 40.0).collect();
     let found = run.sample(&motion, &times, &["element[1].x", "F_x", "dissipation.E_friction"]);
     let (expected, changes) = explicit.run(&times);
@@ -278,7 +278,7 @@ fn energies_close_on_a_wave_and_both_drivers_agree() {
         for (duration, u, w) in
             [(2e-4, rate(0.1), REST), (2e-4, rate(1e-4), REST), (1e-3, wave, rate(2e-3)), (1e-3, rate(-1e-6), REST)]
         {
-            let motion = Motion { duration, u, w };
+            let motion = Motion { duration, u, w, ..Motion::default() };
             let found = run.sample(&motion, &steps((0.0, duration), 40), &["F_x", "F_z", "E_diss"]);
             columns.iter_mut().zip(found).for_each(|(column, found)| column.extend(found));
         }

@@ -51,7 +51,7 @@ impl Run {
 
     /// Moves the carrier by `u` and `w` for `duration` seconds.
     pub(crate) fn drive(&mut self, duration: f64, u: Path, w: Path) {
-        self.simulation.advance(&Motion { duration, u, w }).unwrap();
+        self.simulation.advance(&Motion { duration, u, w, ..Motion::default() }).unwrap();
     }
 
     /// As [`drive`](Self::drive); the variables called `names` at each of `times` (s, since the start of the motion): a

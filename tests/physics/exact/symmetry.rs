@@ -58,7 +58,7 @@ fn travel(mirrored: bool, from: f64, motions: &[(f64, Path, Path)]) -> Vec<Vec<f
         let u = Path { rate: sign * u.rate, amplitude: sign * u.amplitude, ..*u };
         let times: Vec<f64> =
             (1..=40).map(|i| if i == 40 { *duration } else { duration * f64::from(i) / 40.0 }).collect();
-        let motion = Motion { duration: *duration, u, w: *w };
+        let motion = Motion { duration: *duration, u, w: *w, ..Motion::default() };
         for (column, more) in columns.iter_mut().zip(run.sample(&motion, &times, &NAMES)) {
             column.extend(more);
         }
@@ -117,7 +117,7 @@ fn contact_forces_are_the_carriers_on_the_mean() {
     );
     let (v, period) = (0.5, 8.0e-4);
     let mut run = Run::new(&text, Start { w: -1.0e-5, u_rate: v, ..Start::default() });
-    let motion = Motion { duration: 6.0 * period, u: rate(v), w: REST };
+    let motion = Motion { duration: 6.0 * period, u: rate(v), w: REST, ..Motion::default() };
     let times = steps((4.0 * period, 5.0 * period), 512);
     let columns = run.sample(&motion, &times, &NAMES);
     assert!(run.get("contact.count") == 2.0 && run.get("contact.sticking") == 0.0);

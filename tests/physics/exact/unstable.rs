@@ -66,7 +66,7 @@ fn rows_are_good_in_a_slow_slide() {
         );
         let mut run = Run::new(&text, Start { w_rate: -0.1, ..Start::default() });
         run.drive(2e-4, REST, rate(-0.1));
-        let motion = Motion { duration: 10.0, u: rate(1e-6), w: Path::default() };
+        let motion = Motion { duration: 10.0, u: rate(1e-6), w: Path::default(), ..Motion::REST };
         let times: Vec<f64> = (0..=24).map(|i| f64::from(i) * 10.0 / 24.0).collect();
         let columns = run.sample(&motion, &times, &["F_x", "F_z", "energy.residual"]);
         (columns, run.get("energy.input"))
@@ -93,7 +93,8 @@ const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/physics/scenes/bl
 const LAW: &str = "rate_shear = { strength = 9.194e5, reference_speed = 1.48e-5, sharpness = 1.0 }\n[solver]\n";
 /// 4 bar on 100 mm², N.
 const PRESSED: f64 = 40.0;
-const SLIDE: Motion = Motion { duration: 1.0e-2, u: Path { rate: 0.0176, amplitude: 0.0, frequency: 0.0 }, w: STILL };
+const SLIDE: Motion =
+    Motion { duration: 1.0e-2, u: Path { rate: 0.0176, amplitude: 0.0, frequency: 0.0 }, w: STILL, ..Motion::REST };
 const STILL: Path = Path { rate: 0.0, amplitude: 0.0, frequency: 0.0 };
 
 /// The tread block in rubber under that law, pressed and slid with as many rows.
@@ -103,7 +104,7 @@ fn slide(tolerance: &str, rows: u32) -> Result<usize, SimulationError> {
     for (name, value) in [("solver.relative_tolerance", tolerance), ("friction.coulomb", "0.0")] {
         scene.set_by_name(name, value).unwrap();
     }
-    let press = Motion { duration: 4.0e-3, u: STILL, w: Path { rate: -0.025, ..STILL } };
+    let press = Motion { duration: 4.0e-3, u: STILL, w: Path { rate: -0.025, ..STILL }, ..Motion::REST };
     let mut simulation = Simulation::new(&scene, &Start { w_rate: press.w.rate, ..Start::default() })?;
     simulation.advance_observed(&press, Some(PRESSED), &[], |_, _| ())?;
     let times: Vec<f64> = (1..=rows).map(|i| SLIDE.duration * f64::from(i) / f64::from(rows)).collect();

@@ -19,7 +19,12 @@ impl Case {
     /// The case whose scene is `text`; the motions are its excitation.
     pub(crate) fn of_text(text: &str, start: Start) -> Self {
         let scene = Scene::parse(text, FilePath::new("case.toml")).unwrap_or_else(|error| panic!("{error}\n{text}"));
-        let motion = |phase: &asperity::scene::Phase| Motion { duration: phase.duration, u: phase.u, w: phase.w };
+        let motion = |phase: &asperity::scene::Phase| Motion {
+            duration: phase.duration,
+            u: phase.u,
+            w: phase.w,
+            ..Motion::default()
+        };
         let motions = scene.excitation.iter().map(motion).collect();
         Self { scene, start, motions }
     }

@@ -86,7 +86,7 @@ fn no_channel_of_dissipation_falls() {
 fn under_a_carrier_at_rest_energy_only_falls() {
     check("a carrier at rest", 150, cases(), |mut case| {
         for motion in &mut case.motions {
-            *motion = Motion { duration: motion.duration, u: Path::default(), w: Path::default() };
+            *motion = Motion { duration: motion.duration, u: Path::default(), w: Path::default(), ..Motion::default() };
         }
         prop_assume!(case.has_a_time_of_its_own());
         let record = run(&case)?;

@@ -76,6 +76,7 @@ pub(crate) fn cases_by(method: Method) -> impl Strategy<Value = Case> {
                     layer,
                     material: None,
                     foundation: None,
+                    carrier: Default::default(),
                     surface,
                     friction,
                     solver,
@@ -219,7 +220,14 @@ fn start(scales: Scales) -> impl Strategy<Value = Start> {
     let speed = scales.height / scales.period();
     let rate = move || prop_oneof![Just(0.0), signed(-2.0..0.7).prop_map(move |part| part * speed)];
     (-0.5..2.0_f64, -30.0..30.0_f64, -2.0..1.0_f64, rate(), rate()).prop_map(move |(time, u, w, u_rate, w_rate)| {
-        Start { time: time * scales.period(), u: u * scales.spacing, w: w * scales.height, u_rate, w_rate }
+        Start {
+            time: time * scales.period(),
+            u: u * scales.spacing,
+            w: w * scales.height,
+            u_rate,
+            w_rate,
+            ..Start::default()
+        }
     })
 }
 
@@ -228,7 +236,7 @@ fn motion(scales: Scales) -> impl Strategy<Value = Motion> {
     decades(-0.7..0.8).prop_flat_map(move |duration| {
         let duration = duration * scales.period();
         let path = (path(scales, scales.spacing, duration), path(scales, scales.height, duration));
-        path.prop_map(move |(u, w)| Motion { duration, u, w })
+        path.prop_map(move |(u, w)| Motion { duration, u, w, ..Motion::default() })
     })
 }
 

@@ -59,8 +59,10 @@ fn interrupted(case: &Case, simulation: Simulation, interruption: Interruption) 
         Interruption::Rollback => {
             let saved = simulation.state();
             let mut tried = simulation;
-            let Motion { duration, u, w } = case.motions[0];
-            tried.advance(&Motion { duration, u: w, w: u }).map_err(|error| TestCaseError::fail(format!("{error}")))?;
+            let Motion { duration, u, w, .. } = case.motions[0];
+            tried
+                .advance(&Motion { duration, u: w, w: u, ..Motion::default() })
+                .map_err(|error| TestCaseError::fail(format!("{error}")))?;
             restored(&saved)
         }
     }

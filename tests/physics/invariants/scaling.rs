@@ -80,12 +80,18 @@ impl Powers {
             law.creep_speed.iter_mut().for_each(|creep| *creep *= speed);
         }
         scene.solver.absolute_tolerance.iter_mut().for_each(|tolerance| *tolerance *= length);
-        let Start { time: t, u, w, u_rate, w_rate } = case.start;
-        scaled.start =
-            Start { time: t * time, u: u * length, w: w * length, u_rate: u_rate * speed, w_rate: w_rate * speed };
+        let Start { time: t, u, w, u_rate, w_rate, .. } = case.start;
+        scaled.start = Start {
+            time: t * time,
+            u: u * length,
+            w: w * length,
+            u_rate: u_rate * speed,
+            w_rate: w_rate * speed,
+            ..Start::default()
+        };
         for motion in &mut scaled.motions {
-            let Motion { duration, u, w } = *motion;
-            *motion = Motion { duration: duration * time, u: self.path(u), w: self.path(w) };
+            let Motion { duration, u, w, .. } = *motion;
+            *motion = Motion { duration: duration * time, u: self.path(u), w: self.path(w), ..Motion::default() };
         }
         scaled
     }

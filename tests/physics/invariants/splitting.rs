@@ -15,7 +15,8 @@ pub(crate) fn straight(case: &Case) -> Case {
     let mut case = case.clone();
     for motion in &mut case.motions {
         let straight = |path: Path| Path { rate: path.rate, ..Path::default() };
-        *motion = Motion { duration: motion.duration, u: straight(motion.u), w: straight(motion.w) };
+        *motion =
+            Motion { duration: motion.duration, u: straight(motion.u), w: straight(motion.w), ..Motion::default() };
     }
     case
 }

@@ -28,7 +28,7 @@ fn parts(case: &Case, (rates, sines): (f64, f64)) -> [Case; 2] {
         let Start { u_rate, w_rate, .. } = case.start;
         part.start = Start { u_rate: rates * u_rate, w_rate: rates * w_rate, ..case.start };
         for motion in &mut part.motions {
-            *motion = Motion { duration: motion.duration, u: path(motion.u), w: path(motion.w) };
+            *motion = Motion { duration: motion.duration, u: path(motion.u), w: path(motion.w), ..Motion::default() };
         }
         part
     })

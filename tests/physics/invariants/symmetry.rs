@@ -110,7 +110,7 @@ fn with_exact_u(case: &Case) -> Case {
     for motion in &mut case.motions {
         let duration = motion.duration.log2().floor().exp2();
         let rate = whole(motion.u.rate * duration) / duration;
-        *motion = Motion { duration, u: Path { rate, ..Path::default() }, w: motion.w };
+        *motion = Motion { duration, u: Path { rate, ..Path::default() }, w: motion.w, ..Motion::default() };
     }
     case
 }

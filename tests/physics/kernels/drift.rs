@@ -37,7 +37,7 @@ fn slipping_masses_stay_on_the_profile() {
     let layer = rubber(SINE, (0.3, 0.0));
     let (scene, profile) = (layer.scene(), layer.model().profile);
     let mut simulation = pressed(&scene, 0.5);
-    let motion = Motion { duration: 1e-3, u: at_rate(0.5), w: Path::default() };
+    let motion = Motion { duration: 1e-3, u: at_rate(0.5), w: Path::default(), ..Motion::default() };
     let mut worst = 0.0_f64;
     for i in 0..100_000 {
         simulation.advance(&motion).unwrap();
@@ -75,7 +75,9 @@ fn sticking_masses_do_not_move() {
         let amplitude = if i % 2 == 0 { 1e-3 } else { -1e-3 };
         let rate = if i % 200 < 100 { 1e-2 } else { -1e-2 };
         let swing = Path { rate, amplitude, frequency: 1250.0 };
-        simulation.advance(&Motion { duration: 1e-3, u: swing, w: Path { rate: 0.0, ..swing } }).unwrap();
+        simulation
+            .advance(&Motion { duration: 1e-3, u: swing, w: Path { rate: 0.0, ..swing }, ..Motion::default() })
+            .unwrap();
         if i % 100 == 99 {
             let now = positions(&mut simulation);
             worst = now.iter().zip(&first).map(|(a, b)| (a - b).abs()).fold(worst, f64::max);
@@ -96,7 +98,9 @@ fn sticking_masses_stay_behind() {
     let mut simulation = pressed(&scene, 0.0);
     let rate = std::f64::consts::SQRT_2;
     for _ in 0..20_000 {
-        simulation.advance(&Motion { duration: 1e-4, u: at_rate(rate), w: Path::default() }).unwrap();
+        simulation
+            .advance(&Motion { duration: 1e-4, u: at_rate(rate), w: Path::default(), ..Motion::default() })
+            .unwrap();
     }
     let moved = output(&scene, &simulation.snapshot(), "element[1].x").abs();
     // x_i = X_i + (u + e): u and -e, 2.8 m each, are added up from the same parts and rounded alike, or nearly so.

@@ -135,7 +135,7 @@ impl Stepper {
         let integrator = Integrator::new(&model, Tracked::default(), Steps::Both(Pair::Fifth));
         forces.evaluate(&model, &state, &carrier.at(0.0));
         let mut start = StepStart { state, ..StepStart::new(&model) };
-        integrator.evaluate_start(&model, &mut start, &carrier.at(0.0), &forces, 1e-9);
+        integrator.evaluate_start(&model, &mut start, (&carrier, 0.0), &forces, 1e-9);
         Self { model, carrier, start, integrator, tolerance, s: 0.0, two_stages: false }
     }
 

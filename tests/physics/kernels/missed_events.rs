@@ -14,7 +14,7 @@ fn fly(layer: &Layer, u_rate: f64) -> (f64, f64, usize) {
     let start = Start { u_rate, ..Start::default() };
     let mut simulation = Simulation::new(&scene, &start).unwrap();
     simulation.record_mode_changes(true);
-    simulation.advance(&Motion { duration: 2.0, u: at_rate(u_rate), w: Path::default() }).unwrap();
+    simulation.advance(&Motion { duration: 2.0, u: at_rate(u_rate), w: Path::default(), ..Motion::default() }).unwrap();
     let steps = output(&scene, &simulation.snapshot(), "solver.steps");
     let changes = simulation.take_mode_changes().len();
     (output(&scene, &simulation.snapshot(), "dissipation.E_impact"), 2.0 / steps, changes)
@@ -67,7 +67,7 @@ fn throw(scene: &Scene) -> (f64, f64, f64, usize) {
     let start = Start { w_rate: -0.1, ..Start::default() };
     let mut simulation = Simulation::new(scene, &start).unwrap();
     simulation.record_mode_changes(true);
-    let motion = Motion { duration: 3.0, u: Path::default(), w: Path::default() };
+    let motion = Motion { duration: 3.0, u: Path::default(), w: Path::default(), ..Motion::default() };
     let times: Vec<f64> = (0..5000).map(|i| 1.52 + 2e-5 * f64::from(i)).collect();
     let mut lowest = f64::INFINITY;
     let observe = |_: f64, snapshot: &Snapshot<'_>| {
@@ -101,7 +101,7 @@ fn a_touch_is_recorded_where_it_happens() {
     let layer = Layer { clearance: 0.005, surface, friction: Some((0.1, 0.0)), ..Layer::default() };
     let mut simulation = Simulation::new(&layer.scene(), &Start { u_rate: 1.0, ..Start::default() }).unwrap();
     simulation.record_mode_changes(true);
-    simulation.advance(&Motion { duration: 0.9, u: at_rate(1.0), w: Path::default() }).unwrap();
+    simulation.advance(&Motion { duration: 0.9, u: at_rate(1.0), w: Path::default(), ..Motion::default() }).unwrap();
     let changes = simulation.take_mode_changes();
     let first = changes.first().unwrap();
     assert_eq!((first.from, first.to, first.mass, changes.len()), (0, 1, 0, 1), "{changes:?}");

@@ -44,7 +44,7 @@ fn run(scene: &Scene) -> Result<Shown, SimulationError> {
     let mut values = vec![0.0; variables.len()];
     let mut least_normal = 0.0_f64;
     for phase in &scene.excitation {
-        let motion = Motion { duration: phase.duration, u: phase.u, w: phase.w };
+        let motion = Motion { duration: phase.duration, u: phase.u, w: phase.w, ..Motion::default() };
         let times: Vec<f64> = (1..=100).map(|i| phase.duration * f64::from(i) / 100.0).collect();
         simulation.advance_observed(&motion, None, &times, |_, now| {
             now.evaluate(&variables, &mut values);

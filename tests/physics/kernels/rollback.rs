@@ -37,11 +37,13 @@ const PRESS: Motion = Motion {
     duration: 2e-4,
     u: Path { rate: 0.0, amplitude: 0.0, frequency: 0.0 },
     w: Path { rate: -0.04, amplitude: 0.0, frequency: 0.0 },
+    ..Motion::REST
 };
 const DRAG: Motion = Motion {
     duration: 1e-4,
     u: Path { rate: 4.0, amplitude: 1e-4, frequency: 3000.0 },
     w: Path { rate: 0.0, amplitude: 0.0, frequency: 0.0 },
+    ..Motion::REST
 };
 
 /// Everything that shows from outside, at the ends of `count` motions and within them.

@@ -193,7 +193,7 @@ pub fn started(scene: &Scene) -> Simulation {
 /// One of the pieces of the carrier's motion, alike; after each the outputs are compared.
 pub fn piece() -> Motion {
     let w = Path { amplitude: 2e-6, frequency: 3000.0, ..Path::default() };
-    Motion { duration: 6e-5, u: Path { rate: 0.5, ..Path::default() }, w }
+    Motion { duration: 6e-5, u: Path { rate: 0.5, ..Path::default() }, w, ..Motion::default() }
 }
 
 /// Pieces of a run.

@@ -1,0 +1,205 @@
+//! The carrier as a body: an axis along which loads and a drive move it, not a prescribed displacement.
+
+use serde::{Deserialize, Serialize};
+
+use super::error::{ParameterError, Problem};
+use super::values::Word;
+use super::{LinkKind, Phase, Scene, Unit};
+
+/// The two axes of the carrier.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Axis {
+    /// Along x: u.
+    X,
+    /// Along z: w.
+    Z,
+}
+
+impl Axis {
+    /// Both; `axis as usize` counts them.
+    pub const ALL: [Self; 2] = [Self::X, Self::Z];
+
+    /// The name of the axis's table in `[carrier]`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::X => "x",
+            Self::Z => "z",
+        }
+    }
+
+    /// The links to the carrier along the axis.
+    pub fn link(self) -> LinkKind {
+        match self {
+            Self::X => LinkKind::Horizontal,
+            Self::Z => LinkKind::Vertical,
+        }
+    }
+}
+
+/// `[carrier]`: the axes along which the carrier is a body; `None` where its displacement is prescribed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct CarrierBodies {
+    /// Along x.
+    pub x: Option<CarrierBody>,
+    /// Along z.
+    pub z: Option<CarrierBody>,
+}
+
+impl CarrierBodies {
+    /// The body along an axis, if it is one there.
+    pub fn along(&self, axis: Axis) -> Option<&CarrierBody> {
+        match axis {
+            Axis::X => self.x.as_ref(),
+            Axis::Z => self.z.as_ref(),
+        }
+    }
+
+    pub(super) fn along_mut(&mut self, axis: Axis) -> Option<&mut CarrierBody> {
+        match axis {
+            Axis::X => self.x.as_mut(),
+            Axis::Z => self.z.as_mut(),
+        }
+    }
+
+    /// Whether the carrier is a body along any axis.
+    pub fn any(&self) -> bool {
+        self.x.is_some() || self.z.is_some()
+    }
+}
+
+/// The carrier as a body along one axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct CarrierBody {
+    /// Mass M, kg.
+    pub mass: f64,
+    /// Stiffness K of the spring to the drive, N/m.
+    pub stiffness: Option<f64>,
+    /// Damping D of the damper to the drive, N s/m.
+    pub damping: Option<f64>,
+    /// Constant part of the normal load N, N; along z alone.
+    pub load: Option<f64>,
+    /// Constant part of the tangential force P, N; along x alone.
+    pub pull: Option<f64>,
+    /// Displacement at the start, m; `None` is the drive's, or 0.
+    pub start: Option<f64>,
+    /// Speed at the start, m/s.
+    pub start_rate: Option<f64>,
+    /// Where it starts.
+    pub initial: CarrierInitial,
+}
+
+impl CarrierBody {
+    /// Whether a spring or a damper joins it to a drive.
+    pub fn has_drive(&self) -> bool {
+        self.stiffness.unwrap_or(0.0) > 0.0 || self.damping.unwrap_or(0.0) > 0.0
+    }
+}
+
+/// Where a body starts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CarrierInitial {
+    /// At `start`, or at the drive's displacement.
+    #[default]
+    Start,
+    /// Where the springs of the layer and of the drive bear the load; along z alone.
+    Equilibrium,
+}
+
+impl Word for CarrierInitial {
+    const WORDS: &'static [(&'static str, Self)] = &[("start", Self::Start), ("equilibrium", Self::Equilibrium)];
+}
+
+/// What a master gives: a displacement of the carrier or of a body's drive, or a force on a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Input {
+    /// `u`, along x.
+    U,
+    /// `w`, along z.
+    W,
+    /// `load` on a body along z.
+    Load,
+    /// `pull` on a body along x.
+    Pull,
+}
+
+impl Input {
+    /// All, in the order of the variables.
+    pub const ALL: [Self; 4] = [Self::U, Self::W, Self::Load, Self::Pull];
+
+    /// The variable's name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::U => "u",
+            Self::W => "w",
+            Self::Load => "load",
+            Self::Pull => "pull",
+        }
+    }
+
+    /// Its unit.
+    pub fn unit(self) -> Unit {
+        match self {
+            Self::U | Self::W => Unit::Meter,
+            Self::Load | Self::Pull => Unit::Newton,
+        }
+    }
+
+    /// The axis that it acts along.
+    pub fn axis(self) -> Axis {
+        match self {
+            Self::U | Self::Pull => Axis::X,
+            Self::W | Self::Load => Axis::Z,
+        }
+    }
+
+    /// Whether it is a displacement, or a force.
+    pub fn is_displacement(self) -> bool {
+        matches!(self, Self::U | Self::W)
+    }
+}
+
+impl Scene {
+    /// The inputs of the scene's layer, in the order of the variables.
+    pub fn inputs(&self) -> Vec<Input> {
+        let acts = |input: &Input| {
+            let body = self.carrier.along(input.axis());
+            if input.is_displacement() { body.is_none_or(CarrierBody::has_drive) } else { body.is_some() }
+        };
+        Input::ALL.into_iter().filter(acts).collect()
+    }
+
+    /// The stiffness Σ_i C with which the masses on the profile bear a body along z at its start, per mass, N/m: that of
+    /// the springs of the vertical links, with the Maxwell elements where dashpots start undeformed.
+    pub fn bearing_stiffness(&self) -> f64 {
+        let Some(link) = self.link(LinkKind::Vertical) else { return 0.0 };
+        let elements = link.maxwell.iter().map(|element| element.stiffness).sum::<f64>();
+        let undeformed = self.layer.initial == super::Initial::Undeformed;
+        link.stiffness.unwrap_or(0.0) + if undeformed { elements } else { 0.0 }
+    }
+
+    /// The load's changing part at the start of a run along the excitation, N.
+    pub fn first_load(&self) -> f64 {
+        self.excitation.first().map_or(0.0, |phase| phase.load(self.layer.area()).start.unwrap_or(0.0))
+    }
+
+    /// The changing part of the tangential force at the start of a run along the excitation, N.
+    pub fn first_pull(&self) -> f64 {
+        self.excitation.first().and_then(|phase: &Phase| phase.pull.start).unwrap_or(0.0)
+    }
+
+    /// Refuses an equilibrium that does not exist under a load whose changing part is `load` at the start, N.
+    pub(crate) fn check_equilibrium(&self, load: f64) -> Result<(), ParameterError> {
+        let Some(body) = self.carrier.z.filter(|body| body.initial == CarrierInitial::Equilibrium) else {
+            return Ok(());
+        };
+        let load = load + body.load.unwrap_or(0.0);
+        if body.stiffness.unwrap_or(0.0) > 0.0 || (load >= 0.0 && self.bearing_stiffness() > 0.0) {
+            return Ok(());
+        }
+        let expected =
+            "a load of 0 or more on vertical springs, or carrier.z.stiffness > 0: otherwise nothing is at rest";
+        let given = format_args!("\"equilibrium\" under a load of {load:?} N");
+        Err(ParameterError::new("carrier.z.initial", Problem::value(given, expected)))
+    }
+}

@@ -1,0 +1,117 @@
+//! `[carrier]`, and the phases of `[[excitation]]`, whose keys depend on it.
+
+use super::table::{Result, TableReader};
+use crate::scene::{Axis, CarrierBodies, CarrierBody, CarrierInitial, Force, Path, Phase};
+
+pub(super) fn read(table: &mut TableReader<'_>) -> Result<CarrierBodies> {
+    Ok(CarrierBodies { x: table.optional_table("x", read_x)?, z: table.optional_table("z", read_z)? })
+}
+
+fn read_x(table: &mut TableReader<'_>) -> Result<CarrierBody> {
+    Ok(CarrierBody { pull: table.optional_number("pull")?, ..read_body(table)? })
+}
+
+fn read_z(table: &mut TableReader<'_>) -> Result<CarrierBody> {
+    let body = read_body(table)?;
+    let initial = table.optional_choice("initial")?;
+    if initial.is_some()
+        && let Some(entry) = table.entry("start")
+    {
+        return Err(entry.refuse("no such key beside initial"));
+    }
+    let initial = initial.unwrap_or(CarrierInitial::Start);
+    Ok(CarrierBody { load: table.optional_number("load")?, initial, ..body })
+}
+
+fn read_body(table: &mut TableReader<'_>) -> Result<CarrierBody> {
+    Ok(CarrierBody {
+        mass: table.number("mass")?,
+        stiffness: table.optional_number("stiffness")?,
+        damping: table.optional_number("damping")?,
+        start: table.optional_number("start")?,
+        start_rate: table.optional_number("start_rate")?,
+        ..CarrierBody::default()
+    })
+}
+
+/// The keys of a phase that move the carrier along an axis.
+struct PhaseKeys {
+    axis: Axis,
+    rate: &'static str,
+    sine: &'static str,
+}
+
+const U: PhaseKeys = PhaseKeys { axis: Axis::X, rate: "u_rate", sine: "u_sine" };
+const W: PhaseKeys = PhaseKeys { axis: Axis::Z, rate: "w_rate", sine: "w_sine" };
+
+/// The keys of a force in a phase.
+struct ForceKeys {
+    axis: Axis,
+    start: &'static str,
+    rate: &'static str,
+    sine: &'static str,
+}
+
+impl ForceKeys {
+    fn all(&self) -> [&'static str; 3] {
+        [self.start, self.rate, self.sine]
+    }
+}
+
+const LOAD: ForceKeys = ForceKeys { axis: Axis::Z, start: "load", rate: "load_rate", sine: "load_sine" };
+const PULL: ForceKeys = ForceKeys { axis: Axis::X, start: "pull", rate: "pull_rate", sine: "pull_sine" };
+const PRESSURE: ForceKeys =
+    ForceKeys { axis: Axis::Z, start: "pressure", rate: "pressure_rate", sine: "pressure_sine" };
+
+/// One phase of the motion of a carrier that is a body along the axes of `carrier`.
+pub(super) fn read_phase(table: &mut TableReader<'_>, carrier: &CarrierBodies) -> Result<Phase> {
+    let has_pressure = PRESSURE.all().into_iter().any(|key| table.has(key));
+    if has_pressure && let Some(entry) = LOAD.all().into_iter().find_map(|key| table.entry(key)) {
+        return Err(entry.refuse("no such key beside pressure, pressure_rate and pressure_sine"));
+    }
+    let pressure = if table.is_material() { Some(read_force(table, &PRESSURE, carrier)?) } else { None };
+    Ok(Phase {
+        duration: table.number("duration")?,
+        u: read_motion(table, &U, carrier)?,
+        w: read_motion(table, &W, carrier)?,
+        load: if has_pressure { Force::default() } else { read_force(table, &LOAD, carrier)? },
+        pull: read_force(table, &PULL, carrier)?,
+        pressure: pressure.filter(|_| has_pressure),
+        until_force: table.optional_number("until_force")?,
+        until_pressure: table.optional_number("until_pressure")?,
+    })
+}
+
+fn read_motion(table: &mut TableReader<'_>, keys: &PhaseKeys, carrier: &CarrierBodies) -> Result<Path> {
+    if carrier.along(keys.axis).is_some_and(|body| !body.has_drive()) {
+        for key in [keys.rate, keys.sine] {
+            let name = keys.axis.name();
+            let reason =
+                format_args!("no such key with [carrier.{name}] without stiffness and damping: it has no drive");
+            refuse(table, key, reason)?;
+        }
+    }
+    read_change(table, keys.rate, keys.sine)
+}
+
+fn read_force(table: &mut TableReader<'_>, keys: &ForceKeys, carrier: &CarrierBodies) -> Result<Force> {
+    if carrier.along(keys.axis).is_none() {
+        for key in keys.all() {
+            let name = keys.axis.name();
+            refuse(table, key, format_args!("no such key without [carrier.{name}]: the displacement is prescribed"))?;
+        }
+    }
+    Ok(Force { start: table.optional_number(keys.start)?, change: read_change(table, keys.rate, keys.sine)? })
+}
+
+fn refuse(table: &mut TableReader<'_>, key: &'static str, expected: impl ToString) -> Result<()> {
+    table.entry(key).map_or(Ok(()), |entry| Err(entry.refuse(expected)))
+}
+
+fn read_change(table: &mut TableReader<'_>, rate: &'static str, sine: &'static str) -> Result<Path> {
+    let rate = table.optional_number(rate)?.unwrap_or(0.0);
+    let sine = table.optional_table(sine, |table| {
+        Ok(Path { rate, amplitude: table.number("amplitude")?, frequency: table.number("frequency")? })
+    })?;
+    Ok(sine.unwrap_or(Path { rate, ..Path::default() }))
+}
