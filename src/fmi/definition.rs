@@ -11,6 +11,7 @@ use super::error::Error;
 use super::resources::{self, SCENE_FILE, TABLE_FILE};
 use crate::element::{self, PointContact, Table};
 use crate::outputs::{self, Dependencies, Output, Variable};
+pub use crate::scene::Input;
 use crate::scene::{self, Extrapolation, Parameter, ParameterError, Scene, Value};
 
 /// What an FMU simulates, as its resources define it.
@@ -113,6 +114,14 @@ impl Definition {
         }
     }
 
+    /// The inputs, in the order of their value references.
+    pub fn inputs(&self) -> Vec<Input> {
+        match self {
+            Self::Layer(scene) => scene.inputs(),
+            Self::Element(_) => vec![Input::U, Input::W],
+        }
+    }
+
     /// The output variables.
     pub fn variables(&self) -> Vec<Variable> {
         match self {
@@ -196,28 +205,6 @@ impl Parameters {
     }
 }
 
-/// An input: a displacement of the carrier.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Input {
-    /// `u`, along x.
-    U,
-    /// `w`, along z.
-    W,
-}
-
-impl Input {
-    /// Both, in the order of their value references.
-    pub const ALL: [Self; 2] = [Self::U, Self::W];
-
-    /// The variable's name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::U => "u",
-            Self::W => "w",
-        }
-    }
-}
-
 /// The type of a variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -285,6 +272,7 @@ impl Entry<'_> {
 /// The variables of an FMU by value reference: the inputs, then the outputs, then the parameters, numbered from 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Catalogue {
+    inputs: Vec<Input>,
     outputs: Vec<Variable>,
     parameters: Vec<(Parameter, Kind)>,
 }
@@ -303,16 +291,16 @@ impl Catalogue {
             Value::Text(_) => Kind::Text,
         };
         let parameters = definition.parameters().into_iter().map(|parameter| (parameter, kind(parameter))).collect();
-        Self { outputs: definition.variables(), parameters }
+        Self { inputs: definition.inputs(), outputs: definition.variables(), parameters }
     }
 
     /// The variable with the value reference `reference`.
     pub fn entry(&self, reference: u32) -> Option<Entry<'_>> {
         let index = usize::try_from(reference).ok()?;
-        if let Some(&input) = Input::ALL.get(index) {
+        if let Some(&input) = self.inputs.get(index) {
             return Some(Entry::Input(input));
         }
-        let index = index - Input::ALL.len();
+        let index = index - self.inputs.len();
         if let Some(variable) = self.outputs.get(index) {
             return Some(Entry::Output(index, variable));
         }
@@ -334,6 +322,11 @@ impl Catalogue {
     /// All variables with their value references, in rising order.
     pub fn entries(&self) -> impl Iterator<Item = (u32, Entry<'_>)> {
         (0..).map_while(|reference| Some((reference, self.entry(reference)?)))
+    }
+
+    /// The inputs in the order of their value references.
+    pub fn inputs(&self) -> &[Input] {
+        &self.inputs
     }
 
     /// The outputs in the order of their value references.

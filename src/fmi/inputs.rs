@@ -1,9 +1,9 @@
 //! The inputs and the carrier's motion that follows from them: between communication points û is continuous and runs
-//! straight to a target.
+//! straight to a target; a force runs straight, too, and may jump at a point.
 
 use serde::{Deserialize, Serialize};
 
-use crate::scene::{Extrapolation, Path, is_possible};
+use crate::scene::{Extrapolation, Force, Path, is_possible};
 use crate::simulation::{Motion, Start};
 
 use super::definition::Input;
@@ -12,15 +12,15 @@ use super::error::InputOutOfRange;
 /// The inputs as the master sets them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {
-    displacements: [Displacement; 2],
+    signals: [Signal; Input::ALL.len()],
 }
 
-/// One displacement of the carrier: where it is and what the next step follows from.
+/// One input: its value and what the next step follows from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Displacement {
-    /// u_n, m: the input's value.
+struct Signal {
+    /// u_n, m, or N_n, N: the input's value.
     value: f64,
-    /// u̇_n, m/s, if the master gave it for the next step.
+    /// Its first derivative, if the master gave it for the next step.
     rate: Option<f64>,
     /// The communication step before.
     past: Option<Past>,
@@ -29,7 +29,7 @@ struct Displacement {
 /// A communication step that is done.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Past {
-    /// u_{n-1}, m: the input at its start.
+    /// The input at its start.
     value: f64,
     /// h_{n-1}, s: its size.
     step: f64,
@@ -38,35 +38,36 @@ struct Past {
 impl Inputs {
     /// The value of an input.
     pub fn input(&self, input: Input) -> f64 {
-        self.displacements[input as usize].value
+        self.signals[input as usize].value
     }
 
     /// Sets an input.
     pub fn set_input(&mut self, input: Input, value: f64) {
-        self.displacements[input as usize].value = value;
+        self.signals[input as usize].value = value;
     }
 
     /// Sets the first derivative of an input for the next step.
     pub fn set_rate(&mut self, input: Input, rate: f64) {
-        self.displacements[input as usize].rate = Some(rate);
+        self.signals[input as usize].rate = Some(rate);
     }
 
     /// The carrier at the start: at the displacements given, with the derivatives given as its velocity, else at rest.
     /// The derivatives remain those of the first step unless the master sets others.
     pub fn start(&self, time: f64) -> Start {
-        let [u, w] = &self.displacements;
+        let [u, w, load, pull] = &self.signals;
         Start {
             time,
             u: u.value,
             w: w.value,
             u_rate: u.rate.unwrap_or_default(),
             w_rate: w.rate.unwrap_or_default(),
-            ..Start::default()
+            load: load.value,
+            pull: pull.value,
         }
     }
 
     /// The motion over a step of `h` (s) from `time` (s): straight from û = `u` and ŵ = `w` (m) to their targets. Rounding
-    /// does not accumulate, since the next motion starts from where this one ended.
+    /// does not accumulate, since the next motion starts from where this one ended. Forces start from the values given.
     ///
     /// # Errors
     /// [`InputOutOfRange`].
@@ -78,28 +79,38 @@ impl Inputs {
         rule: Extrapolation,
     ) -> Result<Motion, InputOutOfRange> {
         let path = |input: Input, from: f64| {
-            let displacement = &self.displacements[input as usize];
-            let target = displacement.checked_target(input, time, h, rule)?;
-            Ok::<_, InputOutOfRange>(Path {
-                rate: displacement.given_rate(from).unwrap_or((target - from) / h),
-                ..Path::default()
-            })
+            let signal = &self.signals[input as usize];
+            let target = signal.checked_target(input, time, h, rule)?;
+            let rate = signal.given_rate(from).unwrap_or((target - from) / h);
+            Ok::<_, InputOutOfRange>(Path { rate, ..Path::default() })
         };
-        Ok(Motion { duration: h, u: path(Input::U, u)?, w: path(Input::W, w)?, ..Motion::default() })
+        let force = |input: Input| {
+            let signal = &self.signals[input as usize];
+            let target = signal.checked_target(input, time, h, rule)?;
+            let rate = signal.rate.unwrap_or((target - signal.value) / h);
+            Ok::<_, InputOutOfRange>(Force { start: Some(signal.value), change: Path { rate, ..Path::default() } })
+        };
+        Ok(Motion {
+            duration: h,
+            u: path(Input::U, u)?,
+            w: path(Input::W, w)?,
+            load: force(Input::Load)?,
+            pull: force(Input::Pull)?,
+        })
     }
 
     /// Whether a run can have reached these inputs: the values of past steps are finite. Values and rates of the next step
     /// may be anything.
     pub(super) fn is_valid(&self) -> bool {
-        let pasts = self.displacements.iter().filter_map(|displacement| displacement.past.as_ref());
+        let pasts = self.signals.iter().filter_map(|signal| signal.past.as_ref());
         pasts.into_iter().all(|past| is_possible(past.value) && is_possible(past.step) && past.step > 0.0)
     }
 
     /// Completes a step of `h`: its derivatives apply to no other.
     pub fn complete_step(&mut self, h: f64) {
-        for displacement in &mut self.displacements {
-            displacement.rate = None;
-            displacement.past = Some(Past { value: displacement.value, step: h });
+        for signal in &mut self.signals {
+            signal.rate = None;
+            signal.past = Some(Past { value: signal.value, step: h });
         }
     }
 }
@@ -107,7 +118,7 @@ impl Inputs {
 /// Displacements whose relative difference is smaller are equal but for rounding.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-impl Displacement {
+impl Signal {
     /// The rate that the master gave, if û = `current` equals its value but for rounding. It is then used as it is: if it
     /// were computed from the difference to the target, that rounding over h would be a kink at every communication point
     /// of a steady motion.
@@ -116,7 +127,7 @@ impl Displacement {
         self.rate.filter(|_| same)
     }
 
-    /// û at the end of a step of `h`.
+    /// û, or the force, at the end of a step of `h`.
     fn target(&self, h: f64, rule: Extrapolation) -> f64 {
         match (self.rate, rule, self.past) {
             (Some(rate), _, _) => self.value + h * rate,
@@ -169,6 +180,24 @@ mod tests {
             inputs.set_input(Input::U, value);
             assert_eq!(step(&mut inputs, h, Extrapolation::Linear), [target, 0.0]);
         }
+    }
+
+    /// From the value given, by its derivative, by the values before, or held.
+    #[test]
+    fn a_force_starts_from_its_value_and_may_jump() {
+        let force = |inputs: &Inputs, rule| {
+            let load = inputs.motion((0.0, 0.0), 0.0, 0.5, rule).unwrap().load;
+            (load.start, load.change.rate)
+        };
+        let mut inputs = Inputs::default();
+        inputs.set_input(Input::Load, 3.0);
+        assert_eq!(force(&inputs, Extrapolation::Linear), (Some(3.0), 0.0));
+        inputs.complete_step(0.25);
+        inputs.set_input(Input::Load, 5.0);
+        assert_eq!(force(&inputs, Extrapolation::Linear), (Some(5.0), 8.0));
+        assert_eq!(force(&inputs, Extrapolation::Hold), (Some(5.0), 0.0));
+        inputs.set_rate(Input::Load, -1.0);
+        assert_eq!(force(&inputs, Extrapolation::Hold), (Some(5.0), -1.0));
     }
 
     #[test]

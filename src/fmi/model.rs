@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::definition::Definition;
 use super::error::{Error, RestoreError};
 use crate::element::{self, Element};
-use crate::outputs::Variable;
+use crate::outputs::{Output, Variable};
 use crate::simulation::{self, Divergence, MethodSwitch, ModeChange, Motion, Simulation, Start};
 
 /// A run of a layer or of an element.
@@ -60,6 +60,14 @@ impl InstanceModel {
         }
     }
 
+    /// The displacements û and ŵ that follow the inputs: of the carrier, or of a body's drive, m.
+    pub(super) fn driven(&self) -> (f64, f64) {
+        match self {
+            Self::Layer(simulation) => simulation.driven(),
+            Self::Element(element) => element.carrier(),
+        }
+    }
+
     /// Advances to the end of `motion`, which is straight.
     pub(super) fn advance(&mut self, motion: &Motion) -> Result<(), Error> {
         match self {
@@ -85,11 +93,13 @@ impl InstanceModel {
         }
     }
 
-    /// Ḟ_x and Ḟ_z, N/s.
-    pub(super) fn force_rates(&mut self) -> (f64, f64) {
-        match self {
-            Self::Layer(simulation) => simulation.force_rates(),
-            Self::Element(element) => element.force_rates(),
+    /// The first derivative of F_x, F_z or a variable of the carrier's motion, in its unit over s; 0 for other outputs.
+    pub(super) fn output_rate(&mut self, output: Output) -> f64 {
+        match (self, output) {
+            (Self::Layer(simulation), _) => simulation.output_rate(output),
+            (Self::Element(element), Output::ForceX) => element.force_rates().0,
+            (Self::Element(element), Output::ForceZ) => element.force_rates().1,
+            (Self::Element(_), _) => 0.0,
         }
     }
 

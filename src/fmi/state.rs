@@ -91,7 +91,7 @@ impl InstanceState {
     fn advance(&mut self, clock: Clock, h: f64) -> Result<(), Error> {
         let (inputs, time, rule) = (self.inputs, self.clock.time, self.parameters.definition().extrapolation());
         let model = self.model()?;
-        model.advance(&inputs.motion(model.carrier(), time, h, rule)?)?;
+        model.advance(&inputs.motion(model.driven(), time, h, rule)?)?;
         self.inputs.complete_step(h);
         self.clock = clock;
         Ok(())

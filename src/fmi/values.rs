@@ -143,7 +143,7 @@ impl Instance {
         }
     }
 
-    /// The displacement of the carrier along x and z.
+    /// The displacement of the carrier, or of a body's drive, along x and z.
     fn direction(&self, knowns: &[u32], steps: &[f64]) -> Result<(f64, f64), Error> {
         let (mut du, mut dw) = (0.0, 0.0);
         for (&reference, &step) in knowns.iter().zip(steps) {
@@ -153,6 +153,8 @@ impl Instance {
                 }
                 Entry::Input(Input::U) => du += step,
                 Entry::Input(Input::W) => dw += step,
+                // They accelerate a body; nothing follows them at once.
+                Entry::Input(Input::Load | Input::Pull) => (),
                 entry => return Err(Error::NoKnown(entry.name())),
             }
         }
@@ -167,7 +169,8 @@ impl Instance {
         finite(&unknown.name, value[0])
     }
 
-    /// fmi2GetRealOutputDerivatives: the first derivatives of F_x and F_z at the current time.
+    /// fmi2GetRealOutputDerivatives: the first derivatives of F_x, F_z and the carrier's motion at the
+    /// current time.
     pub(super) fn output_derivatives(
         &mut self,
         references: &[u32],
@@ -183,17 +186,21 @@ impl Instance {
     fn output_derivative(&mut self, reference: u32, order: i32) -> Result<f64, Error> {
         let entry = self.catalogue.find(reference, Kind::Real)?;
         let name = entry.name();
-        let of_x = match entry {
-            Entry::Output(_, Variable { output: Output::ForceX, .. }) => true,
-            Entry::Output(_, Variable { output: Output::ForceZ, .. }) => false,
+        let output = match entry {
+            Entry::Output(_, variable) if has_derivative(variable.output) => variable.output,
             _ => return Err(Error::NoOutputDerivative(name)),
         };
         if order != 1 {
             return Err(Error::DerivativeOrder { name, order });
         }
-        let (x, z) = self.state.model()?.force_rates();
-        finite(&name, if of_x { x } else { z })
+        finite(&name, self.state.model()?.output_rate(output))
     }
+}
+
+/// Whether fmi2GetRealOutputDerivatives has the first derivative of an output.
+fn has_derivative(output: Output) -> bool {
+    use Output::{CarrierU, CarrierURate, CarrierW, CarrierWRate, DriveX, DriveZ, ForceX, ForceZ};
+    matches!(output, ForceX | ForceZ | CarrierU | CarrierW | CarrierURate | CarrierWRate | DriveX | DriveZ)
 }
 
 fn kind_of(value: &Value) -> Kind {

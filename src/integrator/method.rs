@@ -34,7 +34,7 @@ pub(super) struct Stages {
     pub exchange: [Exchange; STAGES],
     pub solver: StageSolver,
     pub tracks_energy: bool,
-    /// The sensitivities to the targets of u and w; empty if they are not asked for.
+    /// The sensitivities to the targets of the inputs; empty if they are not asked for.
     pub tangents: Vec<Tangent>,
 }
 

@@ -26,6 +26,7 @@ pub use interpolation::StageInterpolation;
 pub use largest::Largest;
 pub use motions::Motions;
 pub use rates::{NO_LIMIT, Rates, StepStart};
+pub use sensitivity::{Tangents, TangentsOf};
 pub use stage::NoConvergence;
 pub use tableau::{ContinuousWeights, ESDIRK3, ESDIRK5, SDIRK2, STAGES, TWO_STAGES, Tableau};
 
@@ -37,7 +38,7 @@ use error::ErrorWorkspace;
 use event_method::EventMethod;
 use maxwell::Maxwell;
 use method::{InitialGuess, RungeKutta, Stages, StepInput};
-use sensitivity::{Tangent, Target};
+use sensitivity::Tangent;
 use stage::{ConvergenceTest, Friction, StageSolver};
 use tableau::{GAMMA, SDIRK2_ESTIMATE};
 
@@ -75,7 +76,7 @@ pub struct StepEnd<'a> {
 pub struct Tracked {
     /// The powers through the channels.
     pub energy: bool,
-    /// The sensitivities of the forces to the carrier's targets.
+    /// The sensitivities of the forces and of the bodies' motion to the targets of the inputs.
     pub tangents: bool,
 }
 
@@ -111,7 +112,7 @@ impl Integrator {
     /// An integrator for `model` with workspace for `steps`.
     pub fn new(model: &Model, tracked: Tracked, steps: Steps) -> Self {
         let pair = steps.pair().unwrap_or(Pair::Fifth);
-        let targets: &[Target] = if tracked.tangents { &[Target::U, Target::W] } else { &[] };
+        let inputs = if tracked.tangents { model.inputs() } else { Vec::new() };
         Self {
             pair,
             event_method: EventMethod::new(pair, model, steps.pair().is_some()),
@@ -129,7 +130,7 @@ impl Integrator {
                 exchange: [Exchange::default(); STAGES],
                 solver: StageSolver::new(model),
                 tracks_energy: tracked.energy,
-                tangents: targets.iter().map(|&target| Tangent::new(model, target, steps.stages())).collect(),
+                tangents: inputs.into_iter().map(|input| Tangent::new(model, input, steps.stages())).collect(),
             },
             interpolation: pair.interpolation(),
             error_workspace: ErrorWorkspace::new(model),
@@ -370,11 +371,13 @@ impl Integrator {
         }
     }
 
-    /// ∂F_x/∂u, ∂F_x/∂w, ∂F_z/∂u, ∂F_z/∂w by the targets of the motion, `s` seconds after its start, N/m.
-    pub fn tangents(&mut self, model: &Model, s: f64) -> [f64; 4] {
-        let mut by_target = self.stages.tangents.iter_mut().map(|tangent| tangent.carrier_forces(model, s));
-        let (u, w) = (by_target.next().unwrap_or_default(), by_target.next().unwrap_or_default());
-        [u.0, w.0, u.1, w.1]
+    /// The derivatives by the targets of the motion, `s` seconds after its start.
+    pub fn tangents(&mut self, model: &Model, s: f64) -> Tangents {
+        let mut tangents = Tangents::default();
+        for tangent in &mut self.stages.tangents {
+            tangents.set(tangent.input(), tangent.tangents(model, s));
+        }
+        tangents
     }
 
     /// Bytes that the stages hold, those of a copy to go back to included.

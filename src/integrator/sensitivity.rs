@@ -1,20 +1,47 @@
 //! Forward sensitivities of the run to the carrier's targets, along the stages of the steps (docs/theory.md, section 8).
 //!
-//! Over a motion of the carrier of duration T, let one of its displacements end at û + ε instead of û. On the way it is
-//! displaced by ε s/T, and its rate changes by ε/T. All quantities here are derivatives with respect to ε at ε = 0, with
+//! Over a motion of the carrier of duration T, let one of its displacements, or of the forces on it, end at û + ε instead
+//! of û. On the way it differs by ε s/T, and its rate by ε/T. All quantities here are derivatives with respect to ε at ε = 0, with
 //! the contact modes held. At a stage they solve the same linear system as Newton's corrections, with another right side.
 
 use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
 
 use super::rates::Rates;
 use super::stage::{SlippingMass, StagePoint, StageSolver};
-use crate::model::{Forces, LinkKind, LinkMotion, Mode, Model, State};
+use crate::model::{Body, Forces, LinkKind, LinkMotion, Mode, Model, State};
+use crate::scene::{Axis, Input};
 
-/// The displacement whose target is varied.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Target {
-    U,
-    W,
+/// Derivatives of the run's forces and of its bodies' motion by the targets of its inputs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Tangents {
+    by_input: [TangentsOf; Input::ALL.len()],
+}
+
+/// The derivatives by the target of one input.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TangentsOf {
+    /// Of F_x and F_z.
+    pub force: [f64; 2],
+    /// Of the displacement and the speed of the bodies along x and z; 0 where the displacement is prescribed.
+    pub body: [[f64; 2]; 2],
+}
+
+impl Tangents {
+    /// Those by the target of `input`.
+    pub fn by(&self, input: Input) -> &TangentsOf {
+        &self.by_input[input as usize]
+    }
+
+    pub(super) fn set(&mut self, input: Input, tangents: TangentsOf) {
+        self.by_input[input as usize] = tangents;
+    }
+
+    /// Whether all of them are finite.
+    pub fn are_finite(&self) -> bool {
+        let finite = |of: &TangentsOf| of.force.iter().chain(of.body.as_flattened()).all(|value| value.is_finite());
+        self.by_input.iter().all(finite)
+    }
 }
 
 /// The variation of the layer's state: dimensionless for positions, 1/s for velocities.
@@ -30,6 +57,8 @@ struct Variation {
     v_z: Vec<f64>,
     /// Of the elongations a_j of the Maxwell elements.
     maxwell: Vec<f64>,
+    /// Of the displacements and speeds of the bodies along x and z.
+    bodies: [[f64; 2]; 2],
 }
 
 /// The variation of the rates at one stage.
@@ -40,6 +69,8 @@ struct VariationRates {
     a_x: Vec<f64>,
     a_z: Vec<f64>,
     maxwell: Vec<f64>,
+    /// Of the speeds and accelerations of the bodies along x and z.
+    bodies: [[f64; 2]; 2],
 }
 
 /// The variation of the carrier at one instant.
@@ -51,10 +82,20 @@ struct CarrierVariation {
     w_rate: f64,
 }
 
-/// The derivative of a run with respect to one target.
+impl CarrierVariation {
+    /// The same with a displacement and a speed of a body along an axis.
+    fn set_along(&mut self, axis: Axis, [displacement, rate]: [f64; 2]) {
+        match axis {
+            Axis::X => (self.u, self.u_rate) = (displacement, rate),
+            Axis::Z => (self.w, self.w_rate) = (displacement, rate),
+        }
+    }
+}
+
+/// The derivative of a run with respect to the target of one input.
 #[derive(Clone, Debug)]
 pub(super) struct Tangent {
-    target: Target,
+    input: Input,
     /// Duration of the carrier's motion, s.
     duration: f64,
     /// At the start of the step.
@@ -97,7 +138,7 @@ impl Variation {
     fn new(model: &Model) -> Self {
         let zero = vec![0.0; model.masses()];
         let maxwell = vec![0.0; model.maxwell_variables()];
-        Self { x: zero.clone(), z: zero.clone(), v_x: zero.clone(), v_z: zero, maxwell }
+        Self { x: zero.clone(), z: zero.clone(), v_x: zero.clone(), v_z: zero, maxwell, bodies: [[0.0; 2]; 2] }
     }
 
     fn parts(&mut self) -> [&mut Vec<f64>; 5] {
@@ -106,7 +147,7 @@ impl Variation {
 }
 
 impl Tangent {
-    pub(super) fn new(model: &Model, target: Target, stages: usize) -> Self {
+    pub(super) fn new(model: &Model, input: Input, stages: usize) -> Self {
         let zero = vec![0.0; model.masses()];
         let rates = VariationRates {
             v_x: zero.clone(),
@@ -114,9 +155,10 @@ impl Tangent {
             a_x: zero.clone(),
             a_z: zero,
             maxwell: vec![0.0; model.maxwell_variables()],
+            bodies: [[0.0; 2]; 2],
         };
         Self {
-            target,
+            input,
             duration: 1.0,
             start: Variation::new(model),
             end: Variation::new(model),
@@ -138,15 +180,38 @@ impl Tangent {
         for part in self.start.parts() {
             part.fill(0.0);
         }
+        self.start.bodies = [[0.0; 2]; 2];
     }
 
-    /// The carrier's variation `s` seconds after the start of its motion.
-    fn carrier(&self, s: f64) -> CarrierVariation {
-        let (displacement, rate) = (s / self.duration, 1.0 / self.duration);
-        match self.target {
-            Target::U => CarrierVariation { u: displacement, u_rate: rate, ..CarrierVariation::default() },
-            Target::W => CarrierVariation { w: displacement, w_rate: rate, ..CarrierVariation::default() },
+    /// The carrier's variation `s` seconds after the start of its motion, with `bodies` the displacements and speeds of
+    /// bodies.
+    fn carrier(&self, model: &Model, s: f64, bodies: &[[f64; 2]; 2]) -> CarrierVariation {
+        let mut carrier = CarrierVariation::default();
+        for axis in Axis::ALL {
+            let driven = self.input.is_displacement() && self.input.axis() == axis;
+            if model.bodies[axis as usize].is_some() {
+                carrier.set_along(axis, bodies[axis as usize]);
+            } else if driven {
+                carrier.set_along(axis, self.ramp(s));
+            }
         }
+        carrier
+    }
+
+    /// The variation of the input `s` seconds after the start of the motion, and its rate, 1/s.
+    fn ramp(&self, s: f64) -> [f64; 2] {
+        [s / self.duration, 1.0 / self.duration]
+    }
+
+    /// The variation of what acts from outside on the body along `axis`, displaced and moving as given.
+    fn on_body(&self, body: &Body, axis: Axis, s: f64, [displacement, rate]: [f64; 2]) -> f64 {
+        let [input, input_rate] = if self.input.axis() == axis { self.ramp(s) } else { [0.0; 2] };
+        let (drive, drive_rate, force) = match self.input {
+            Input::U | Input::W => (input, input_rate, 0.0),
+            Input::Load => (0.0, 0.0, -input),
+            Input::Pull => (0.0, 0.0, input),
+        };
+        force - body.stiffness * (displacement - drive) - body.damping * (rate - drive_rate)
     }
 
     /// Writes the contribution of the earlier stages, with these weights, in a step of length `h` to `end`.
@@ -161,6 +226,12 @@ impl Tangent {
                 add(sum, step, term);
             }
         }
+        self.end.bodies = self.start.bodies;
+        for (stage, weight) in self.stages.iter().zip(weights) {
+            for (sums, rates) in self.end.bodies.iter_mut().zip(stage.bodies) {
+                sums.iter_mut().zip(rates).for_each(|(sum, rate)| *sum += h * weight * rate);
+            }
+        }
     }
 
     /// Puts the constraints of the contact modes into the variation at the start of a step, `s` seconds after the start of
@@ -173,7 +244,7 @@ impl Tangent {
         accelerations: &[f64],
         s: f64,
     ) {
-        let carrier = self.carrier(s);
+        let carrier = self.carrier(model, s, &self.start.bodies);
         for i in 0..model.masses() {
             if let Some(mass) = Constrained::of(state, i, self.start.x[i], self.start.v_x[i]) {
                 (self.start.z[i], self.start.v_x[i], self.start.v_z[i]) = (mass.z, mass.v_x, mass.v_z);
@@ -196,6 +267,12 @@ impl Tangent {
             };
             rates.a_z[i] = on_mass.1 / model.mass;
         }
+        for (axis, of_layer) in Axis::ALL.into_iter().zip([self.forces.on_carrier_x(), self.forces.on_carrier_z()]) {
+            let Some(body) = &model.bodies[axis as usize] else { continue };
+            let motion = self.start.bodies[axis as usize];
+            let acceleration = (of_layer + self.on_body(body, axis, s, motion)) / body.mass;
+            self.stages[0].bodies[axis as usize] = [motion[1], acceleration];
+        }
         for row in &model.rows {
             let start = self.start.maxwell[row.range.clone()].iter().zip(&self.forces.rate[row.kind as usize]);
             for (rate, (a, elongation_rate)) in self.stages[0].maxwell[row.range.clone()].iter_mut().zip(start) {
@@ -204,10 +281,15 @@ impl Tangent {
         }
     }
 
-    /// ∂F_x and ∂F_z on the carrier at the start of the next step, `s` seconds after the start of the motion, N/m.
-    pub(super) fn carrier_forces(&mut self, model: &Model, s: f64) -> (f64, f64) {
-        self.forces_at_start(model, &self.carrier(s));
-        (self.forces.on_carrier_x(), self.forces.on_carrier_z())
+    /// The input whose target is varied.
+    pub(super) fn input(&self) -> Input {
+        self.input
+    }
+
+    /// The derivatives at the start of the next step, `s` seconds after the start of the motion.
+    pub(super) fn tangents(&mut self, model: &Model, s: f64) -> TangentsOf {
+        self.forces_at_start(model, &self.carrier(model, s, &self.start.bodies));
+        TangentsOf { force: [self.forces.on_carrier_x(), self.forces.on_carrier_z()], body: self.start.bodies }
     }
 
     /// Computes the variation of the forces of the links at the start of the step.
@@ -244,15 +326,33 @@ impl Tangent {
     /// factored its matrix there; `weights` are those of the earlier stages.
     pub(super) fn solve_stage(&mut self, model: &Model, solver: &mut StageSolver, stage: &SolvedStage<'_>) {
         let &SolvedStage { i, s, h, weights, rates, point } = stage;
-        let carrier = self.carrier(s);
         self.collect_history(h, &weights[..i]);
-        self.known_forces(model, solver, point.beta, &carrier);
+        // The known part of a body's motion: its speed, unknown, is not varied.
+        let known = self.end.bodies.map(|[displacement, _]| [displacement, 0.0]);
+        self.known_forces(model, solver, point.beta, &self.carrier(model, s, &known));
         for i in 0..model.masses() {
             solver.system.right[i] = self.right_side(model, solver, i, point.beta, rates.acceleration_x[i]);
         }
-        solver.system.solve();
+        for axis in Axis::ALL {
+            if let Some(body) = &model.bodies[axis as usize] {
+                let history = self.end.bodies[axis as usize];
+                let outside = self.on_body(body, axis, s, [history[0], 0.0]) + body.mass / point.beta * history[1];
+                solver.set_border_right(axis, &self.forces, outside);
+            }
+        }
+        let found = solver.solve_bordered();
+        for axis in Axis::ALL {
+            self.set_body(axis, found[axis as usize], point.beta, i);
+        }
         self.set_masses(model, solver, point.beta, i);
-        self.set_elements(model, point.beta, &carrier, i);
+        self.set_elements(model, point.beta, &self.carrier(model, s, &self.end.bodies), i);
+    }
+
+    /// Takes the variation of a body at stage `stage` from its speed `found`.
+    fn set_body(&mut self, axis: Axis, found: f64, beta: f64, stage: usize) {
+        let [displacement, rate] = &mut self.end.bodies[axis as usize];
+        self.stages[stage].bodies[axis as usize] = [found, (found - *rate) / beta];
+        (*displacement, *rate) = (*displacement + beta * found, found);
     }
 
     /// The variation of the forces for the known part of the motion.

@@ -108,7 +108,8 @@ struct BodyMotion {
     s: f64,
     /// Displacement since the start of the piece (m), speed (m/s) and acceleration (m/s²) there.
     start: [f64; 3],
-    /// The step tried last.
+    /// The step tried last; none between motions.
+    #[serde(skip)]
     step: BodyStep,
     /// Displacement of the drive at the start of the piece, m.
     drive: f64,
@@ -119,7 +120,7 @@ struct BodyMotion {
 }
 
 /// A body's motion through a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum BodyStep {
     /// No step was tried from here.
     #[default]
@@ -225,14 +226,9 @@ impl BodyMotion {
 
     /// All its numbers, to be checked.
     fn numbers(&self) -> impl Iterator<Item = f64> {
-        let of_step = match self.step {
-            BodyStep::None => [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-            BodyStep::Polynomial { length, speed: [a, b, c, d, e] } => [length, a, b, c, d, e],
-            BodyStep::TwoStages { length, node, displacement: [a, b], speed: [c, d] } => [length, node, a, b, c, d],
-        };
         let Path { rate, amplitude, frequency } = self.force_path;
         let others = [self.s, self.drive, self.force, rate, amplitude, frequency];
-        self.start.into_iter().chain(of_step).chain(others)
+        self.start.into_iter().chain(others)
     }
 }
 
@@ -395,6 +391,13 @@ impl Carrier {
         // The difference of the displacements at the start of the piece keeps the digits of what has moved since.
         let offset = start - motion.drive;
         Some((body, Outside { force, drive: [drive, drive_rate], body: [offset + displacement, rate] }))
+    }
+
+    /// Ṙ of the drive along `axis` at the time `s` after the start of the piece, s, N/s; 0 where there is none.
+    pub fn drive_force_rate(&self, model: &Model, axis: Axis, s: f64) -> f64 {
+        let Some(body) = &model.bodies[axis as usize] else { return 0.0 };
+        let ([_, rate, acceleration], drive) = (self.motion(axis, s), self.path(axis).motion(s));
+        -(body.stiffness * (rate - drive[1]) + body.damping * (acceleration - drive[2]))
     }
 
     /// Displacement of the drive of a body along `axis` at the time `s` after the start of the piece, s, m; `None` where it

@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::math::Spline;
 pub use crate::scene::LinkKind;
-use crate::scene::{Initial, Scene};
+use crate::scene::{Initial, Input, Scene};
 
 /// The profile at one position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -146,6 +146,16 @@ impl Model {
     /// y of the frozen dashpots of one link of a kind that has some, m.
     pub fn frozen_dashpot(&self, kind: LinkKind, link: usize) -> f64 {
         if kind.is_lateral() { self.frozen[link + 1] - self.frozen[link] } else { self.frozen[link] }
+    }
+
+    /// The inputs that act on the carrier.
+    pub fn inputs(&self) -> Vec<Input> {
+        let acts = |input: &Input| match (&self.bodies[input.axis() as usize], input.is_displacement()) {
+            (None, is_displacement) => is_displacement,
+            (Some(body), true) => body.stiffness > 0.0 || body.damping > 0.0,
+            (Some(_), false) => true,
+        };
+        Input::ALL.into_iter().filter(acts).collect()
     }
 
     /// Whether the carrier is a body along an axis.

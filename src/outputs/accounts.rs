@@ -67,6 +67,8 @@ impl Energies {
 pub struct Monitored {
     /// F_x and F_z, N.
     pub forces: [f64; 2],
+    /// Distances of bodies from their start along x and z, m.
+    pub ways: [f64; 2],
     /// E_diss, J; `None` where it is not asked for.
     pub dissipated: Option<f64>,
 }
@@ -110,15 +112,18 @@ pub struct Counters {
     pub events: u64,
     /// Of F_x and F_z, N.
     forces: [LargestError; 2],
+    /// Of the bodies' displacements, m.
+    ways: [LargestError; 2],
     /// Of E_diss, J.
     dissipated: LargestError,
 }
 
 impl Counters {
     /// All numbers that are not counts, to check that they are finite.
-    pub fn numbers(&self) -> [f64; 6] {
-        let [x, z] = self.forces;
-        [x.error, x.value, z.error, z.value, self.dissipated.error, self.dissipated.value]
+    pub fn numbers(&self) -> [f64; 10] {
+        let ([x, z], [u, w], dissipated) = (self.forces, self.ways, self.dissipated);
+        let numbers = [x, z, u, w, dissipated].map(|LargestError { error, value }| [error, value]);
+        std::array::from_fn(|i| numbers[i / 2][i % 2])
     }
 
     /// Compares a run with its error-estimation run at the same time. The difference is the `share` of the error.
@@ -128,6 +133,9 @@ impl Counters {
         for ((force, found), reference) in self.forces.iter_mut().zip(found.forces).zip(reference.forces) {
             let difference = (found - reference).abs();
             force.include(if difference > rounding { difference / share } else { 0.0 }, reference);
+        }
+        for ((way, found), reference) in self.ways.iter_mut().zip(found.ways).zip(reference.ways) {
+            way.include((found - reference).abs() / share, reference);
         }
         if let (Some(found), Some(reference)) = (found.dissipated, reference.dissipated) {
             self.dissipated.include((found - reference).abs() / share, reference);
@@ -139,14 +147,18 @@ impl Counters {
         for (force, found) in self.forces.iter_mut().zip(found.forces) {
             force.include(found.abs(), found);
         }
+        for (way, found) in self.ways.iter_mut().zip(found.ways) {
+            way.include(found.abs(), found);
+        }
         if let Some(found) = found.dissipated {
             self.dissipated.include(found.abs(), found);
         }
     }
 
-    /// The larger of the estimated errors of F_x and F_z, each over its largest value so far; 0 without an estimate.
+    /// The largest of the estimated errors of F_x, F_z and the bodies' displacements, each over its largest value so far; 0
+    /// without an estimate.
     pub fn force_error(&self) -> f64 {
-        self.forces.iter().map(LargestError::relative).fold(0.0, f64::max)
+        self.forces.iter().chain(&self.ways).map(LargestError::relative).fold(0.0, f64::max)
     }
 
     /// The estimated error of E_diss over its largest value so far; 0 without an estimate.
@@ -160,7 +172,7 @@ mod tests {
     use super::*;
 
     fn monitored(x: f64, z: f64, dissipated: f64) -> Monitored {
-        Monitored { forces: [x, z], dissipated: Some(dissipated) }
+        Monitored { forces: [x, z], ways: [0.0; 2], dissipated: Some(dissipated) }
     }
 
     #[test]

@@ -8,7 +8,7 @@ mod table;
 pub use accounts::{Accounts, Counters, Energies, Monitored};
 pub use snapshot::Snapshot;
 
-use crate::scene::{OutputGroup, Scene, Unit};
+use crate::scene::{Input, OutputGroup, Scene, Unit};
 use table::{OutputRow, TABLE};
 
 /// The quantity behind an output variable; its row in the table says more.
@@ -84,14 +84,8 @@ pub enum Output {
     CarrierDamperEnergy,
     /// Residual of the energy balance, J.
     EnergyResidual,
-    /// Derivative of F_x at the end of a step by the target of û in that step, N/m.
-    TangentXU,
-    /// Derivative of F_x by the target of ŵ, N/m.
-    TangentXW,
-    /// Derivative of F_z by the target of û, N/m.
-    TangentZU,
-    /// Derivative of F_z by the target of ŵ, N/m.
-    TangentZW,
+    /// Derivative of a quantity at the end of a step by the target of an input in that step.
+    Tangent(Tangent, Input),
     /// Accepted steps since the start.
     Steps,
     /// Mode changes since the start.
@@ -114,6 +108,23 @@ pub enum Output {
     ElementFrictionForce(usize),
     /// Mode of mass `.0` (from 0): 0 free, 1 or -1 slipping, 2 sticking.
     ElementMode(usize),
+}
+
+/// A quantity whose derivatives by the targets of the inputs are outputs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tangent {
+    /// F_x.
+    ForceX,
+    /// F_z.
+    ForceZ,
+    /// u of a body.
+    U,
+    /// u̇ of a body.
+    URate,
+    /// w of a body.
+    W,
+    /// ẇ of a body.
+    WRate,
 }
 
 /// The type of a variable.

@@ -8,6 +8,7 @@
 use std::cell::OnceCell;
 
 use super::{Counters, Energies, Monitored, Variable};
+use crate::integrator::Tangents;
 use crate::model::{
     AreaShare, BodyEnergy, Carrier, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, Powers,
     State, elastic_energy, kinetic_energy,
@@ -31,10 +32,12 @@ pub struct Snapshot<'a> {
     pub motion: (&'a Carrier, f64),
     /// Displacement of the carrier: u and w, m.
     pub displacement: (f64, f64),
+    /// u and w at the start of the run, m.
+    pub start: [f64; 2],
     /// Energies since the start.
     pub energies: Energies,
-    /// ∂F_x/∂u, ∂F_x/∂w, ∂F_z/∂u, ∂F_z/∂w by the targets of the last motion, N/m.
-    pub tangents: [f64; 4],
+    /// The derivatives by the targets of the last motion.
+    pub tangents: Tangents,
     /// The solver's counters.
     pub counters: Counters,
     /// Processor time since the start, s.
@@ -113,8 +116,16 @@ impl Snapshot<'_> {
     pub(crate) fn monitored(&self, tracked: bool) -> Monitored {
         Monitored {
             forces: [self.forces.on_carrier_x(), self.forces.on_carrier_z()],
+            ways: self.ways(),
             dissipated: tracked.then(|| self.energies.dissipated()),
         }
+    }
+
+    /// How far bodies are from their start along x and z, m; 0 where the displacement is prescribed.
+    fn ways(&self) -> [f64; 2] {
+        let [x, z] = &self.model.bodies;
+        let way = |is_body: bool, now: f64, start: f64| if is_body { now - start } else { 0.0 };
+        [way(x.is_some(), self.displacement.0, self.start[0]), way(z.is_some(), self.displacement.1, self.start[1])]
     }
 
     pub(super) fn powers(&self) -> Powers {
@@ -223,15 +234,21 @@ pub(super) struct CarrierShift {
     elongation: (f64, f64),
     /// Of the forces of the links on each mass, N.
     on_mass: (f64, f64),
+    /// Of the drives' displacements along x and z, m.
+    drive: [f64; 2],
 }
 
 impl CarrierShift {
-    /// A shift of u and w by (δu, δw), m.
-    pub(super) fn new(model: &Model, (du, dw): (f64, f64)) -> Self {
+    /// A shift of u and w by (δu, δw), m; along the axis of a body it shifts the drive, and the layer not at all.
+    pub(super) fn new(model: &Model, direction: (f64, f64)) -> Self {
+        let of =
+            |axis: Axis, change: f64| if model.bodies[axis as usize].is_some() { (0.0, change) } else { (change, 0.0) };
+        let ((du, drive_x), (dw, drive_z)) = (of(Axis::X, direction.0), of(Axis::Z, direction.1));
         let stiffness = |kind| model.instantaneous_stiffness(kind);
         Self {
             elongation: (-du, -dw),
             on_mass: (stiffness(LinkKind::Horizontal) * du, stiffness(LinkKind::Vertical) * dw),
+            drive: [drive_x, drive_z],
         }
     }
 }
@@ -285,6 +302,22 @@ impl Snapshot<'_> {
     pub(super) fn force_changes(&self, shift: &CarrierShift) -> (f64, f64) {
         let k = self.model.masses() as f64;
         (-k * shift.on_mass.0, -k * shift.on_mass.1)
+    }
+
+    /// δR = K δu_d of the drive along `axis`.
+    pub(super) fn drive_force_change(&self, axis: Axis, shift: &CarrierShift) -> f64 {
+        let body = &self.model.bodies[axis as usize];
+        body.as_ref().map_or(0.0, |body| body.stiffness * shift.drive[axis as usize])
+    }
+
+    /// Of V_c = ½ K (u - u_d)² of both axes.
+    pub(super) fn drive_energy_change(&self, shift: &CarrierShift) -> f64 {
+        let (carrier, s) = self.motion;
+        let of = |axis: Axis| {
+            let stretch = carrier.outside(self.model, axis, s).map_or(0.0, |(_, outside)| outside.stretch()[0]);
+            -self.drive_force_change(axis, shift) * stretch
+        };
+        of(Axis::X) + of(Axis::Z)
     }
 
     /// Of |F_x|/F_z; 0 where F_x = 0, the kink of |F_x|.

@@ -23,9 +23,9 @@
 use std::mem::discriminant;
 
 use super::snapshot::{CarrierShift, ContactChange, Evaluation};
-use super::{Dependencies, Kind, Output};
+use super::{Dependencies, Kind, Output, Tangent};
 use crate::model::Mode;
-use crate::scene::{Axis, CarrierBody, Link, LinkKind, OutputGroup, Scene, Unit};
+use crate::scene::{Axis, CarrierBody, Input, Link, LinkKind, OutputGroup, Scene, Unit};
 
 #[derive(Debug)]
 pub(super) struct OutputRow {
@@ -86,8 +86,10 @@ impl OutputRow {
 
     /// Whether this is the row of `output`, of whichever mass.
     pub(super) fn is(&self, output: Output) -> bool {
-        let own = self.of_layer().or_else(|| self.of_mass(0));
-        own.is_some_and(|own| discriminant(&own) == discriminant(&output))
+        match self.scope {
+            Scope::Layer { output: own, .. } => own == output,
+            Scope::Mass { output: own, .. } => discriminant(&own(0)) == discriminant(&output),
+        }
     }
 
     /// The value in `now`; of mass `i` if it is a quantity of single masses.
@@ -169,10 +171,13 @@ const fn mass(
 
 /// All outputs, in the order of the result files within their groups.
 #[rustfmt::skip]
-pub(super) static TABLE: [OutputRow; 50] = {
+pub(super) static TABLE: [OutputRow; 70] = {
     use Kind::{Integer, Real};
-    use OutputGroup::{Carrier, Contact, Dissipation, Energy, Forces, Friction, Solver, Tangent};
-    use Unit::{Joule, Meter, MeterPerSecond, Newton, NewtonPerMeter, One, Second, SquareMeter, Watt};
+    use OutputGroup::{Carrier, Contact, Dissipation, Energy, Forces, Friction, Solver, Tangent as Tangents};
+    use Unit::{
+        Joule, Meter, MeterPerNewton, MeterPerNewtonSecond, MeterPerSecond, Newton, NewtonPerMeter, One, PerSecond, Second,
+        SquareMeter, Watt,
+    };
     [
         layer(Output::ForceX, Forces, "F_x", Real, Newton, "Force of the layer on the carrier along x",
             |now| now.at.forces.on_carrier_x())
@@ -194,9 +199,11 @@ pub(super) static TABLE: [OutputRow; 50] = {
             .only_where(|scene| scene.carrier.z.is_some()),
         layer(Output::DriveX, Carrier, "carrier.drive_x", Real, Newton, "Force of the drive on the carrier along x",
             |now| now.at.drive_force(Axis::X))
+            .depending(drive_x, |now, shift| now.at.drive_force_change(Axis::X, shift))
             .only_where(|scene| has_drive(scene, Axis::X)),
         layer(Output::DriveZ, Carrier, "carrier.drive_z", Real, Newton, "Force of the drive on the carrier along z",
             |now| now.at.drive_force(Axis::Z))
+            .depending(drive_z, |now, shift| now.at.drive_force_change(Axis::Z, shift))
             .only_where(|scene| has_drive(scene, Axis::Z)),
         layer(Output::DissipatedPower, Dissipation, "P_diss", Real, Watt, "Power dissipated at present",
             |now| now.at.powers().dissipated())
@@ -268,21 +275,86 @@ pub(super) static TABLE: [OutputRow; 50] = {
             .only_where(|scene| scene.carrier.any()),
         layer(Output::CarrierElasticEnergy, Energy, "energy.carrier_elastic", Real, Joule, "Elastic energy of the springs from the carrier to its drives",
             |now| now.at.body_energy().elastic)
+            .depending(drive_springs, |now, shift| now.at.drive_energy_change(shift))
             .only_where(|scene| any_body(scene, |body| body.stiffness.is_some())),
         layer(Output::CarrierDamperEnergy, Energy, "energy.carrier_damper", Real, Joule, "Energy dissipated in the dampers from the carrier to its drives, no part of E_diss",
             |now| now.at.energies.channels.carrier)
             .only_where(|scene| any_body(scene, |body| body.damping.is_some())),
         layer(Output::EnergyResidual, Energy, "energy.residual", Real, Joule, "Residual of the energy balance: the numerical error of the run",
             |now| now.energy_residual())
-            .depending(elastic, |now, shift| -now.at.elastic_energy_change(shift)),
-        layer(Output::TangentXU, Tangent, "tangent.dF_x_du", Real, NewtonPerMeter, "Derivative of F_x at the end of a communication step with respect to u there",
-            |now| now.at.tangents[0]),
-        layer(Output::TangentXW, Tangent, "tangent.dF_x_dw", Real, NewtonPerMeter, "Derivative of F_x at the end of a communication step with respect to w there",
-            |now| now.at.tangents[1]),
-        layer(Output::TangentZU, Tangent, "tangent.dF_z_du", Real, NewtonPerMeter, "Derivative of F_z at the end of a communication step with respect to u there",
-            |now| now.at.tangents[2]),
-        layer(Output::TangentZW, Tangent, "tangent.dF_z_dw", Real, NewtonPerMeter, "Derivative of F_z at the end of a communication step with respect to w there",
-            |now| now.at.tangents[3]),
+            .depending(springs, |now, shift| -(now.at.elastic_energy_change(shift) + now.at.drive_energy_change(shift))),
+        layer(Output::Tangent(Tangent::ForceX, Input::U), Tangents, "tangent.dF_x_du", Real, NewtonPerMeter, "Derivative of F_x at the end of a communication step with respect to u there",
+            |now| now.at.tangents.by(Input::U).force[0])
+            .only_where(|scene| scene.inputs().contains(&Input::U)),
+        layer(Output::Tangent(Tangent::ForceX, Input::W), Tangents, "tangent.dF_x_dw", Real, NewtonPerMeter, "Derivative of F_x at the end of a communication step with respect to w there",
+            |now| now.at.tangents.by(Input::W).force[0])
+            .only_where(|scene| scene.inputs().contains(&Input::W)),
+        layer(Output::Tangent(Tangent::ForceX, Input::Load), Tangents, "tangent.dF_x_dload", Real, One, "Derivative of F_x at the end of a communication step with respect to load there",
+            |now| now.at.tangents.by(Input::Load).force[0])
+            .only_where(|scene| scene.inputs().contains(&Input::Load)),
+        layer(Output::Tangent(Tangent::ForceX, Input::Pull), Tangents, "tangent.dF_x_dpull", Real, One, "Derivative of F_x at the end of a communication step with respect to pull there",
+            |now| now.at.tangents.by(Input::Pull).force[0])
+            .only_where(|scene| scene.inputs().contains(&Input::Pull)),
+        layer(Output::Tangent(Tangent::ForceZ, Input::U), Tangents, "tangent.dF_z_du", Real, NewtonPerMeter, "Derivative of F_z at the end of a communication step with respect to u there",
+            |now| now.at.tangents.by(Input::U).force[1])
+            .only_where(|scene| scene.inputs().contains(&Input::U)),
+        layer(Output::Tangent(Tangent::ForceZ, Input::W), Tangents, "tangent.dF_z_dw", Real, NewtonPerMeter, "Derivative of F_z at the end of a communication step with respect to w there",
+            |now| now.at.tangents.by(Input::W).force[1])
+            .only_where(|scene| scene.inputs().contains(&Input::W)),
+        layer(Output::Tangent(Tangent::ForceZ, Input::Load), Tangents, "tangent.dF_z_dload", Real, One, "Derivative of F_z at the end of a communication step with respect to load there",
+            |now| now.at.tangents.by(Input::Load).force[1])
+            .only_where(|scene| scene.inputs().contains(&Input::Load)),
+        layer(Output::Tangent(Tangent::ForceZ, Input::Pull), Tangents, "tangent.dF_z_dpull", Real, One, "Derivative of F_z at the end of a communication step with respect to pull there",
+            |now| now.at.tangents.by(Input::Pull).force[1])
+            .only_where(|scene| scene.inputs().contains(&Input::Pull)),
+        layer(Output::Tangent(Tangent::U, Input::U), Tangents, "tangent.dcarrier_u_du", Real, One, "Derivative of the carrier's u at the end of a communication step with respect to u there",
+            |now| now.at.tangents.by(Input::U).body[0][0])
+            .only_where(|scene| scene.inputs().contains(&Input::U) && scene.carrier.x.is_some()),
+        layer(Output::Tangent(Tangent::U, Input::W), Tangents, "tangent.dcarrier_u_dw", Real, One, "Derivative of the carrier's u at the end of a communication step with respect to w there",
+            |now| now.at.tangents.by(Input::W).body[0][0])
+            .only_where(|scene| scene.inputs().contains(&Input::W) && scene.carrier.x.is_some()),
+        layer(Output::Tangent(Tangent::U, Input::Load), Tangents, "tangent.dcarrier_u_dload", Real, MeterPerNewton, "Derivative of the carrier's u at the end of a communication step with respect to load there",
+            |now| now.at.tangents.by(Input::Load).body[0][0])
+            .only_where(|scene| scene.inputs().contains(&Input::Load) && scene.carrier.x.is_some()),
+        layer(Output::Tangent(Tangent::U, Input::Pull), Tangents, "tangent.dcarrier_u_dpull", Real, MeterPerNewton, "Derivative of the carrier's u at the end of a communication step with respect to pull there",
+            |now| now.at.tangents.by(Input::Pull).body[0][0])
+            .only_where(|scene| scene.inputs().contains(&Input::Pull) && scene.carrier.x.is_some()),
+        layer(Output::Tangent(Tangent::URate, Input::U), Tangents, "tangent.dcarrier_u_rate_du", Real, PerSecond, "Derivative of the carrier's speed along x at the end of a communication step with respect to u there",
+            |now| now.at.tangents.by(Input::U).body[0][1])
+            .only_where(|scene| scene.inputs().contains(&Input::U) && scene.carrier.x.is_some()),
+        layer(Output::Tangent(Tangent::URate, Input::W), Tangents, "tangent.dcarrier_u_rate_dw", Real, PerSecond, "Derivative of the carrier's speed along x at the end of a communication step with respect to w there",
+            |now| now.at.tangents.by(Input::W).body[0][1])
+            .only_where(|scene| scene.inputs().contains(&Input::W) && scene.carrier.x.is_some()),
+        layer(Output::Tangent(Tangent::URate, Input::Load), Tangents, "tangent.dcarrier_u_rate_dload", Real, MeterPerNewtonSecond, "Derivative of the carrier's speed along x at the end of a communication step with respect to load there",
+            |now| now.at.tangents.by(Input::Load).body[0][1])
+            .only_where(|scene| scene.inputs().contains(&Input::Load) && scene.carrier.x.is_some()),
+        layer(Output::Tangent(Tangent::URate, Input::Pull), Tangents, "tangent.dcarrier_u_rate_dpull", Real, MeterPerNewtonSecond, "Derivative of the carrier's speed along x at the end of a communication step with respect to pull there",
+            |now| now.at.tangents.by(Input::Pull).body[0][1])
+            .only_where(|scene| scene.inputs().contains(&Input::Pull) && scene.carrier.x.is_some()),
+        layer(Output::Tangent(Tangent::W, Input::U), Tangents, "tangent.dcarrier_w_du", Real, One, "Derivative of the carrier's w at the end of a communication step with respect to u there",
+            |now| now.at.tangents.by(Input::U).body[1][0])
+            .only_where(|scene| scene.inputs().contains(&Input::U) && scene.carrier.z.is_some()),
+        layer(Output::Tangent(Tangent::W, Input::W), Tangents, "tangent.dcarrier_w_dw", Real, One, "Derivative of the carrier's w at the end of a communication step with respect to w there",
+            |now| now.at.tangents.by(Input::W).body[1][0])
+            .only_where(|scene| scene.inputs().contains(&Input::W) && scene.carrier.z.is_some()),
+        layer(Output::Tangent(Tangent::W, Input::Load), Tangents, "tangent.dcarrier_w_dload", Real, MeterPerNewton, "Derivative of the carrier's w at the end of a communication step with respect to load there",
+            |now| now.at.tangents.by(Input::Load).body[1][0])
+            .only_where(|scene| scene.inputs().contains(&Input::Load) && scene.carrier.z.is_some()),
+        layer(Output::Tangent(Tangent::W, Input::Pull), Tangents, "tangent.dcarrier_w_dpull", Real, MeterPerNewton, "Derivative of the carrier's w at the end of a communication step with respect to pull there",
+            |now| now.at.tangents.by(Input::Pull).body[1][0])
+            .only_where(|scene| scene.inputs().contains(&Input::Pull) && scene.carrier.z.is_some()),
+        layer(Output::Tangent(Tangent::WRate, Input::U), Tangents, "tangent.dcarrier_w_rate_du", Real, PerSecond, "Derivative of the carrier's speed along z at the end of a communication step with respect to u there",
+            |now| now.at.tangents.by(Input::U).body[1][1])
+            .only_where(|scene| scene.inputs().contains(&Input::U) && scene.carrier.z.is_some()),
+        layer(Output::Tangent(Tangent::WRate, Input::W), Tangents, "tangent.dcarrier_w_rate_dw", Real, PerSecond, "Derivative of the carrier's speed along z at the end of a communication step with respect to w there",
+            |now| now.at.tangents.by(Input::W).body[1][1])
+            .only_where(|scene| scene.inputs().contains(&Input::W) && scene.carrier.z.is_some()),
+        layer(Output::Tangent(Tangent::WRate, Input::Load), Tangents, "tangent.dcarrier_w_rate_dload", Real, MeterPerNewtonSecond, "Derivative of the carrier's speed along z at the end of a communication step with respect to load there",
+            |now| now.at.tangents.by(Input::Load).body[1][1])
+            .only_where(|scene| scene.inputs().contains(&Input::Load) && scene.carrier.z.is_some()),
+        layer(Output::Tangent(Tangent::WRate, Input::Pull), Tangents, "tangent.dcarrier_w_rate_dpull", Real, MeterPerNewtonSecond, "Derivative of the carrier's speed along z at the end of a communication step with respect to pull there",
+            |now| now.at.tangents.by(Input::Pull).body[1][1])
+            .only_where(|scene| scene.inputs().contains(&Input::Pull) && scene.carrier.z.is_some()),
         layer(Output::Steps, Solver, "solver.steps", Integer, One, "Accepted steps since the start",
             |now| as_integer(now.at.counters.steps)),
         layer(Output::Events, Solver, "solver.events", Integer, One, "Mode changes since the start",
@@ -373,10 +445,27 @@ fn dissipated_power(scene: &Scene) -> Dependencies {
     carrier_links(scene, |link| !link.maxwell.is_empty()).or(elastic(scene).only_if(coulomb))
 }
 
-/// The inputs whose links to the carrier pass `test`: u elongates the horizontal ones, w the vertical ones.
+/// The inputs whose links to the carrier pass `test`: u elongates the horizontal ones, w the vertical ones. A body's u and w
+/// are states.
 fn carrier_links(scene: &Scene, test: fn(&Link) -> bool) -> Dependencies {
-    Dependencies {
-        on_u: scene.link(LinkKind::Horizontal).as_ref().is_some_and(test),
-        on_w: scene.link(LinkKind::Vertical).as_ref().is_some_and(test),
-    }
+    let along = |axis: Axis| scene.carrier.along(axis).is_none() && scene.link(axis.link()).as_ref().is_some_and(test);
+    Dependencies { on_u: along(Axis::X), on_w: along(Axis::Z) }
+}
+
+/// The inputs that move drives with springs to bodies.
+fn drive_springs(scene: &Scene) -> Dependencies {
+    let along = |axis: Axis| scene.carrier.along(axis).is_some_and(|body| body.stiffness.is_some() && body.has_drive());
+    Dependencies { on_u: along(Axis::X), on_w: along(Axis::Z) }
+}
+
+fn drive_x(scene: &Scene) -> Dependencies {
+    Dependencies { on_w: false, ..drive_springs(scene) }
+}
+
+fn drive_z(scene: &Scene) -> Dependencies {
+    Dependencies { on_u: false, ..drive_springs(scene) }
+}
+
+fn springs(scene: &Scene) -> Dependencies {
+    elastic(scene).or(drive_springs(scene))
 }

@@ -110,6 +110,12 @@ pub enum Unit {
     Newton,
     /// N/m.
     NewtonPerMeter,
+    /// m/N.
+    MeterPerNewton,
+    /// 1/s.
+    PerSecond,
+    /// m/(N s).
+    MeterPerNewtonSecond,
     /// N s/m.
     NewtonSecondPerMeter,
     /// K.
@@ -156,6 +162,9 @@ impl Unit {
             Self::MeterPerSecond => ("m/s", [0, 1, -1, 0]),
             Self::Kilogram => ("kg", [1, 0, 0, 0]),
             Self::Newton => ("N", [1, 1, -2, 0]),
+            Self::MeterPerNewton => ("m/N", [-1, 0, 2, 0]),
+            Self::PerSecond => ("1/s", [0, 0, -1, 0]),
+            Self::MeterPerNewtonSecond => ("m/(N.s)", [-1, 0, 1, 0]),
             Self::NewtonPerMeter => ("N/m", [1, 0, -2, 0]),
             Self::NewtonSecondPerMeter => ("N.s/m", [1, 0, -1, 0]),
             Self::Kelvin => ("K", [0, 0, 0, 1]),

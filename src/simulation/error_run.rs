@@ -203,7 +203,7 @@ mod tests {
         let rows = |simulation: &mut Simulation| {
             let mut rows: Vec<[f64; 3]> = Vec::new();
             let observe = |_, snapshot: &Snapshot<'_>| {
-                let Monitored { forces: [x, z], dissipated } = snapshot.monitored(true);
+                let Monitored { forces: [x, z], dissipated, .. } = snapshot.monitored(true);
                 rows.push([x, z, dissipated.unwrap()]);
             };
             simulation.advance_observed(&WAVE, None, &times, observe).unwrap();
@@ -270,7 +270,7 @@ mod tests {
         let error_run = simulation.error_run.as_mut().unwrap();
         error_run.run.state.counters.events += 1;
         assert_eq!(simulation.divergence(), None);
-        let force = |x| Monitored { forces: [x, 1e9], dissipated: None };
+        let force = |x| Monitored { forces: [x, 1e9], ways: [0.0; 2], dissipated: None };
         simulation.run.state.counters.note_error(&force(0.0), &force(1e9), 1.0);
         let Divergence { error, tolerance, mode_changes: [run, finer] } = simulation.divergence().unwrap();
         assert_eq!((error, tolerance, finer), (1.0, 1e-4, run + 1));

@@ -25,8 +25,8 @@ use std::sync::Arc;
 use cpu_time::ThreadTime;
 
 use crate::model::Model;
-use crate::outputs::{Counters, Snapshot, Variable};
-use crate::scene::Scene;
+use crate::outputs::{Counters, Output, Snapshot, Variable};
+use crate::scene::{Axis, Scene};
 use driver::{TrialStep, WorkLimit};
 use error_run::ErrorRun;
 pub use motion::{Divergence, MethodSwitch, ModeChange, Motion, OutOfRange, SimulationError, Start};
@@ -130,6 +130,13 @@ impl Simulation {
         self.run.state.displacement()
     }
 
+    /// Displacements of the carrier where they are prescribed, of the drive where the carrier is a body: û and ŵ, m.
+    pub fn driven(&self) -> (f64, f64) {
+        let (carrier, s) = (&self.run.state.carrier, self.run.state.s);
+        let (u, w) = self.carrier();
+        (carrier.drive(Axis::X, s).unwrap_or(u), carrier.drive(Axis::Z, s).unwrap_or(w))
+    }
+
     /// Memory of the simulation in bytes, without some hundreds that do not grow with the layer.
     pub fn bytes(&self) -> usize {
         self.run.bytes() + self.error_run.as_ref().map_or(0, ErrorRun::bytes)
@@ -210,6 +217,7 @@ impl Simulation {
             let (mut step, at_force) = self.next_step(motion.duration, until_force, &mut work)?;
             let (end, shortened) = self.show_rows_within(&mut step, motion.duration, &mut work, &mut observer)?;
             self.run.take_step(&step, end);
+            self.run.check_bodies()?;
             reached = (at_force && !shortened) || self.run.has_reached(until_force);
             if reached || end >= motion.duration {
                 self.run.find_tangents();
@@ -315,6 +323,25 @@ impl Simulation {
     /// Ḟ_x and Ḟ_z, N/s, from the left; at the start, from the right.
     pub fn force_rates(&mut self) -> (f64, f64) {
         self.run.force_rates()
+    }
+
+    /// The first derivative of F_x, F_z or a variable of the carrier's motion, in its unit over s, from the left; at the
+    /// start, from the right. 0 for other outputs.
+    pub fn output_rate(&mut self, output: Output) -> f64 {
+        let (force_x, force_z) = self.run.force_rates();
+        let (carrier, s) = (&self.run.state.carrier, self.run.state.s);
+        let point = carrier.at(s);
+        match output {
+            Output::ForceX => force_x,
+            Output::ForceZ => force_z,
+            Output::CarrierU => point.u_rate,
+            Output::CarrierW => point.w_rate,
+            Output::CarrierURate => point.u_acceleration,
+            Output::CarrierWRate => point.w_acceleration,
+            Output::DriveX => carrier.drive_force_rate(&self.run.model, Axis::X, s),
+            Output::DriveZ => carrier.drive_force_rate(&self.run.model, Axis::Z, s),
+            _ => 0.0,
+        }
     }
 
     /// a_j = e - y_j of every Maxwell element, m, in the order of [`State::maxwell`](crate::model::State::maxwell).

@@ -4,17 +4,17 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::motion::{MethodSwitch, ModeChange, Motion, Start};
+use super::motion::{MethodSwitch, ModeChange, Motion, OutOfRange, Start};
 use crate::contact::{
     EndCorrection, EventTolerance, decide_modes, free_unloaded, impacts_due, place_layer, stop_reversed,
 };
-use crate::integrator::{DenseWorkspace, Integrator, Pair, StepSpan, StepStart, Steps, Tolerance, Tracked};
+use crate::integrator::{DenseWorkspace, Integrator, Pair, StepSpan, StepStart, Steps, Tangents, Tolerance, Tracked};
 use crate::model::{
     BodyStart, Carrier, CarrierPoint, CarrierPosition, Forces, LinkKind, Mode, Model, Piece, State, elastic_energy,
     kinetic_energy,
 };
 use crate::outputs::{Accounts, Counters, Energies};
-use crate::scene::{Axis, Method, Path, Scene};
+use crate::scene::{Axis, Method, Path, Scene, is_possible};
 
 /// The first step to try, as a share of the stiffest period over 2π; the error test corrects it at once.
 const FIRST_STEP: f64 = 0.1;
@@ -52,8 +52,8 @@ pub(super) struct RunState {
     pub since_event: f64,
     /// The step that the error allowed right after the last event or kink, s; the largest number before the first.
     pub step_after_event: f64,
-    /// ∂F_x/∂u, ∂F_x/∂w, ∂F_z/∂u, ∂F_z/∂w with respect to the targets of the last motion, N/m; 0 before the first.
-    pub tangents: [f64; 4],
+    /// The derivatives with respect to the targets of the last motion; 0 before the first.
+    pub tangents: Tangents,
     /// u and w at the start of the run, m.
     pub start: [f64; 2],
     /// Whether time-stepping is active, or the event-driven method.
@@ -82,7 +82,7 @@ impl RunState {
             event_spacing: f64::MAX,
             since_event: 0.0,
             step_after_event: f64::MAX,
-            tangents: [0.0; 4],
+            tangents: Tangents::default(),
             time_stepping,
             mode_changes_per_step: 0.0,
         }
@@ -313,6 +313,20 @@ impl Run {
         self.evaluate_forces();
         let Self { model, state, workspace, .. } = self;
         state.carrier.accelerate(model, state.s, &workspace.forces);
+    }
+
+    /// Refuses bodies that have left the range of possible numbers.
+    pub(super) fn check_bodies(&self) -> Result<(), OutOfRange> {
+        if !self.state.carrier.has_bodies() {
+            return Ok(());
+        }
+        let (u, w) = self.state.displacement();
+        let point = self.state.carrier.at(self.state.s);
+        let numbers = [("u", u), ("w", w), ("rate of u", point.u_rate), ("rate of w", point.w_rate)];
+        match numbers.into_iter().find(|(_, value)| !is_possible(*value)) {
+            Some((what, value)) => Err(OutOfRange { what, value }),
+            None => Ok(()),
+        }
     }
 
     /// Lets the bodies follow the step of length `h` (s) tried last.

@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::run::{Run, RunState};
 use crate::integrator::{Rates, StepStart};
-use crate::model::{LinkKind, Mode, State};
-use crate::scene::{Method, ParameterError};
+use crate::model::{Carrier, LinkKind, Mode, State};
+use crate::scene::{Axis, Method, ParameterError};
 
 /// All that changes in a simulation, but for the processor time and the records of mode changes and method switches.
 ///
@@ -71,6 +71,10 @@ impl Run {
 
     /// Checks that `state` can be that of this run.
     pub(super) fn check_state(&self, state: &RunState) -> Result<(), RestoreError> {
+        for axis in Axis::ALL {
+            let bodies = |carrier: &Carrier| usize::from(carrier.is_body(axis));
+            check_length("bodies", bodies(&state.carrier), bodies(&self.state.carrier))?;
+        }
         check_lengths(&state.layer, &self.state.layer)?;
         check_numbers(state)?;
         check_modes(&state.layer.state.mode, self.model.has_friction)?;
@@ -178,7 +182,9 @@ fn check_numbers(run: &RunState) -> Result<(), RestoreError> {
     check_finite("the carrier's motion", &carrier.numbers().collect::<Vec<_>>())?;
     check_finite("the energies", &energies.numbers())?;
     check_finite("the largest error or force", &counters.numbers())?;
-    check_finite("the tangents", tangents)?;
+    if !tangents.are_finite() {
+        return Err(RestoreError::Number { what: "the tangents", value: f64::NAN });
+    }
     check_finite("the carrier's displacement at the start", start)?;
     check_finite("the powers", &[exchange.friction, exchange.shear, exchange.input, exchange.carrier])?;
     check_finite("the largest forces and energies", &[largest.force_x, largest.force_z, largest.energy])?;

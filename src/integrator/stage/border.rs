@@ -8,7 +8,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::{StagePoint, StageSolver};
-use crate::model::{Model, Outside};
+use crate::model::{Body, Forces, Mode, Model, Outside};
 use crate::scene::{Axis, LinkKind};
 
 /// The rows and columns of the bodies.
@@ -24,7 +24,7 @@ pub(in crate::integrator) struct Border {
 struct Side {
     axis: Axis,
     /// Mass M, stiffness K and damping D.
-    body: crate::model::Body,
+    body: Body,
     /// Contributions of the earlier stages: the speed, and the displacement since the start of the step.
     star: BodyHistory,
     /// What acts on the body from outside, and the body itself, at the velocities evaluated last.
@@ -210,20 +210,33 @@ impl StageSolver {
         }
     }
 
-    /// Sets the negative residuals of the bodies' equations, those of the free masses added, at the present velocities.
+    /// Sets the negative residuals of the bodies' equations at the present velocities.
     pub(super) fn set_border_residuals(&mut self, beta: f64) {
         let Some(border) = &mut self.border else { return };
         for side in border.sides() {
-            let component = side.axis as usize;
-            let links = &self.forces.link[side.axis.link() as usize];
-            let masses = self.system.right.iter().zip(&self.state.mode).enumerate();
-            let of_mass = |(i, (right, mode)): (usize, (&Vector2<f64>, &crate::model::Mode))| {
-                let link = links.get(i).copied().unwrap_or(0.0);
-                if mode.in_contact() { link } else { link + right[component] }
-            };
-            let sum: f64 = masses.map(of_mass).sum();
             let gained = side.body.mass * (side.outside.body[1] - side.star.rate) / beta;
-            side.right = sum + side.outside.force + side.outside.drive_force(&side.body) - gained;
+            let outside = side.outside.force + side.outside.drive_force(&side.body) - gained;
+            side.right = outside + with_free_masses(side.axis, &self.forces, &self.system.right, &self.state.mode);
         }
     }
+
+    /// Sets the right side of the body's equation along `axis` to `outside` and what links with these `forces` exert (N), as
+    /// the right sides of the masses are set.
+    pub(in crate::integrator) fn set_border_right(&mut self, axis: Axis, forces: &Forces, outside: f64) {
+        let Some(border) = &mut self.border else { return };
+        if let Some(side) = &mut border.sides[axis as usize] {
+            side.right = outside + with_free_masses(axis, forces, &self.system.right, &self.state.mode);
+        }
+    }
+}
+
+/// The force of the links on the body along `axis` and the right sides of the free masses, N: what the links between the two
+/// exert cancels.
+fn with_free_masses(axis: Axis, forces: &Forces, right: &[Vector2<f64>], modes: &[Mode]) -> f64 {
+    let links = &forces.link[axis.link() as usize];
+    let of_mass = |(i, (right, mode)): (usize, (&Vector2<f64>, &Mode))| {
+        let link = links.get(i).copied().unwrap_or(0.0);
+        if mode.in_contact() { link } else { link + right[axis as usize] }
+    };
+    right.iter().zip(modes).enumerate().map(of_mass).sum()
 }

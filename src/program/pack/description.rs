@@ -114,7 +114,7 @@ fn unit_definitions(xml: &mut Xml, catalogue: &Catalogue) -> io::Result<()> {
 
 pub(super) fn unit(entry: &Entry<'_>) -> Unit {
     match entry {
-        Entry::Input(_) => Unit::Meter,
+        Entry::Input(input) => input.unit(),
         Entry::Output(_, variable) => variable.unit,
         Entry::Parameter(parameter, _) => parameter.unit(),
     }
@@ -131,10 +131,21 @@ fn unit_definition(xml: &mut Xml, unit: Unit) -> io::Result<()> {
     Ok(())
 }
 
-pub(super) fn description(entry: &Entry<'_>) -> String {
+fn input_description(definition: &Definition, input: Input) -> &'static str {
+    let has_body = |axis| matches!(definition, Definition::Layer(scene) if scene.carrier.along(axis).is_some());
+    match (input, has_body(input.axis())) {
+        (Input::U, false) => "Displacement of the carrier along x",
+        (Input::W, false) => "Displacement of the carrier along z, negative presses",
+        (Input::U, true) => "Displacement along x of the drive of the carrier",
+        (Input::W, true) => "Displacement along z of the drive of the carrier",
+        (Input::Load, _) => "Normal load on the carrier, without its constant part; positive presses",
+        (Input::Pull, _) => "Tangential force on the carrier along x, without its constant part",
+    }
+}
+
+pub(super) fn description(definition: &Definition, entry: &Entry<'_>) -> String {
     match entry {
-        Entry::Input(Input::U) => "Displacement of the carrier along x".into(),
-        Entry::Input(Input::W) => "Displacement of the carrier along z, negative presses".into(),
+        Entry::Input(input) => input_description(definition, *input).into(),
         Entry::Output(_, variable) => variable.description.clone(),
         Entry::Parameter(parameter, _) => parameter.description(),
     }
@@ -175,7 +186,7 @@ fn scalar_variable(xml: &mut Xml, definition: &Definition, reference: u32, entry
     xml.create_element("ScalarVariable")
         .with_attribute(("name", entry.name().as_str()))
         .with_attribute(("valueReference", reference.to_string().as_str()))
-        .with_attribute(("description", clean(&description(entry)).as_str()))
+        .with_attribute(("description", clean(&description(definition, entry)).as_str()))
         .with_attribute(("causality", causality(entry)))
         .with_attribute(("variability", variability(entry)))
         .with_attributes(initial(entry).map(|initial| ("initial", initial)))
@@ -221,8 +232,9 @@ fn model_structure(xml: &mut Xml, definition: &Definition, catalogue: &Catalogue
     }
     structure.write_inner_content(|xml| {
         xml.create_element("Outputs").write_inner_content(|xml| {
-            unknowns()
-                .try_for_each(|(reference, variable)| output(xml, reference, definition.dependencies(variable.output)))
+            unknowns().try_for_each(|(reference, variable)| {
+                output(xml, catalogue, reference, definition.dependencies(variable.output))
+            })
         })?;
         // Without dependencies: at the start everything may depend on all inputs and parameters.
         xml.create_element("InitialUnknowns")
@@ -232,9 +244,14 @@ fn model_structure(xml: &mut Xml, definition: &Definition, catalogue: &Catalogue
     Ok(())
 }
 
-fn output(xml: &mut Xml, reference: u32, dependencies: Dependencies) -> io::Result<()> {
-    let names = [("1", dependencies.on_u), ("2", dependencies.on_w)];
-    let names: Vec<_> = names.into_iter().filter(|(_, depends)| *depends).map(|(name, _)| name).collect();
+fn output(xml: &mut Xml, catalogue: &Catalogue, reference: u32, dependencies: Dependencies) -> io::Result<()> {
+    let depends = |input: Input| match input {
+        Input::U => dependencies.on_u,
+        Input::W => dependencies.on_w,
+        Input::Load | Input::Pull => false,
+    };
+    let inputs = catalogue.inputs().iter().enumerate().filter(|(_, input)| depends(**input));
+    let names: Vec<_> = inputs.map(|(index, _)| (index + 1).to_string()).collect();
     unknown(xml, reference, Some(&names.join(" ")))
 }
 

@@ -35,9 +35,10 @@ pub(super) fn write(definition: &Definition, catalogue: &Catalogue, summary: &[L
     let summary: Vec<_> = summary.iter().map(|(name, text)| [(*name).into(), description::clean(text)]).collect();
     let is_parameter = |entry: &Entry<'_>| matches!(entry, Entry::Parameter(..));
     let (parameters, variables): (Vec<_>, Vec<_>) = catalogue.entries().map(|(_, entry)| entry).partition(is_parameter);
-    let variables: Vec<_> = variables.iter().map(|entry| row(entry, description::causality(entry).into())).collect();
+    let variables: Vec<_> =
+        variables.iter().map(|entry| row(definition, entry, description::causality(entry).into())).collect();
     let start = |entry| description::start(definition, entry).unwrap_or_default();
-    let parameters: Vec<_> = parameters.iter().map(|entry| row(entry, start(entry))).collect();
+    let parameters: Vec<_> = parameters.iter().map(|entry| row(definition, entry, start(entry))).collect();
     let fields = [
         ("name", escape(description::clean(&definition.name())).into_owned()),
         ("description", escape(description::clean(&definition.description())).into_owned()),
@@ -49,9 +50,9 @@ pub(super) fn write(definition: &Definition, catalogue: &Catalogue, summary: &[L
     Ok(html::fill(page, &fields).into_bytes())
 }
 
-fn row(entry: &Entry<'_>, second: String) -> [String; 4] {
+fn row(definition: &Definition, entry: &Entry<'_>, second: String) -> [String; 4] {
     let unit = if entry.kind() == Kind::Real { description::unit(entry).name() } else { "" };
-    [entry.name(), second, unit.into(), description::description(entry)]
+    [entry.name(), second, unit.into(), description::description(definition, entry)]
 }
 
 fn table<const N: usize>(head: [&str; N], rows: &[[String; N]]) -> io::Result<String> {

@@ -243,12 +243,13 @@ impl<'a> Master<'a> {
 
     /// Does the communication step between two times (s) of the phase that began at `start`.
     fn step(&mut self, phase: &Phase, start: CarrierSample, from: f64, to: f64) -> Result<(), StepError> {
-        self.inputs.set_input(Input::U, self.carrier.u);
-        self.inputs.set_input(Input::W, self.carrier.w);
+        for input in Input::ALL {
+            self.inputs.set_input(input, self.carrier.input(input));
+        }
         if self.given == Given::Rates {
             set_rates(&mut self.inputs, phase, from);
         }
-        let (stands, h) = (self.simulation.carrier(), to - from);
+        let (stands, h) = (self.simulation.driven(), to - from);
         let motion = self.inputs.motion(stands, self.carrier.time, h, self.scene.extrapolation)?;
         self.simulation.advance(&motion)?;
         self.inputs.complete_step(h);
