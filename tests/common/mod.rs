@@ -112,6 +112,16 @@ pub fn drive(fmu: &Path, motion: &Path, parameters: &[&str]) -> Table {
     Table::read(&output)
 }
 
+/// As [`drive`], with inputs that jump: each as `TIME:NAME=VALUE`.
+pub fn drive_with_jumps(fmu: &Path, motion: &Path, parameters: &[&str], jumps: &[&str]) -> Table {
+    let output = fmu.with_extension("driven.csv");
+    let mut command = Command::new(python());
+    command.arg(root().join("tests/python/drive.py")).args([fmu, motion]).arg("-o").arg(&output);
+    let jumps = jumps.iter().flat_map(|jump| ["--jump", jump]);
+    run(command.args(parameters.iter().flat_map(|parameter| ["--set", parameter])).args(jumps));
+    Table::read(&output)
+}
+
 /// What the library gives along the rows of `motion`, straight from one to the next.
 pub fn library_along(scene: &Scene, motion: &Table) -> Table {
     let [time, u, w] = ["time", "u", "w"].map(|name| motion.column(name));

@@ -20,6 +20,7 @@ mod invariants;
 mod kernels;
 mod leaving_out;
 mod patch;
+mod load;
 mod reduce;
 mod reference;
 mod rows;

@@ -3,10 +3,10 @@
 import csv
 
 
-def read_motion(path):
-    """The rows (time, u, w)."""
+def read_motion(path, names=("u", "w")):
+    """The rows: the time, then the inputs of these names, 0 where the file has no such column."""
     with open(path, newline="") as file:
-        return [tuple(float(row[name]) for name in ("time", "u", "w")) for row in csv.DictReader(file)]
+        return [tuple(float(row.get(name, 0.0)) for name in ("time", *names)) for row in csv.DictReader(file)]
 
 
 def write(path, names, rows):

@@ -7,6 +7,7 @@
 
 mod energy;
 mod free;
+mod carrier;
 mod friction;
 mod hysteresis;
 mod material;

@@ -6,6 +6,8 @@ use asperity::outputs::{self, Snapshot, Variable};
 use asperity::scene::{Path, Scene};
 use asperity::simulation::{ModeChange, Motion, Simulation, Start};
 
+/// Those of a carrier that is a body, too.
+const WITH_CARRIER: &str = r#"outputs = ["forces", "carrier", "dissipation", "energy", "solver"]"#;
 const OUTPUTS: &str = r#"outputs = ["forces", "dissipation", "friction", "contact", "energy", "solver", "elements"]"#;
 
 /// A run that records its mode changes.
@@ -19,7 +21,8 @@ pub(crate) struct Run {
 impl Run {
     /// Starts the scene whose tables, but for name and outputs, are `text`.
     pub(crate) fn new(text: &str, start: Start) -> Self {
-        let text = format!("name = \"exact\"\n{text}\n[fmu]\n{OUTPUTS}\n");
+        let outputs = if text.contains("[carrier.") { WITH_CARRIER } else { OUTPUTS };
+        let text = format!("name = \"exact\"\n{text}\n[fmu]\n{outputs}\n");
         let scene = Scene::parse(&text, FilePath::new("exact.toml")).unwrap_or_else(|error| panic!("{error}\n{text}"));
         Self::of(&scene, start)
     }
@@ -52,6 +55,11 @@ impl Run {
     /// Moves the carrier by `u` and `w` for `duration` seconds.
     pub(crate) fn drive(&mut self, duration: f64, u: Path, w: Path) {
         self.simulation.advance(&Motion { duration, u, w, ..Motion::default() }).unwrap();
+    }
+
+    /// Follows `motion`.
+    pub(crate) fn follow(&mut self, motion: &Motion) {
+        self.simulation.advance(motion).unwrap();
     }
 
     /// As [`drive`](Self::drive); the variables called `names` at each of `times` (s, since the start of the motion): a
