@@ -122,6 +122,20 @@ impl Definition {
         }
     }
 
+    /// The start value of an input.
+    pub fn input_start(&self, input: Input) -> f64 {
+        match self {
+            Self::Layer(scene) => scene.input_start(input),
+            Self::Element(_) => 0.0,
+        }
+    }
+
+    /// The temperature that a run starts from, K, where it is an input.
+    pub(super) fn temperature(&self) -> Option<f64> {
+        let is_input = self.inputs().contains(&Input::Temperature);
+        is_input.then(|| self.input_start(Input::Temperature))
+    }
+
     /// The output variables.
     pub fn variables(&self) -> Vec<Variable> {
         match self {

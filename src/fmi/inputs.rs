@@ -13,6 +13,8 @@ use super::error::InputOutOfRange;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {
     signals: [Signal; Input::ALL.len()],
+    /// Whether the temperature is one.
+    has_temperature: bool,
 }
 
 /// One input: its value and what the next step follows from.
@@ -36,6 +38,18 @@ struct Past {
 }
 
 impl Inputs {
+    /// Those of a layer whose temperature (K) is an input, or is none: the other inputs are 0.
+    pub fn new(temperature: Option<f64>) -> Self {
+        let mut inputs = Self { has_temperature: temperature.is_some(), ..Self::default() };
+        inputs.set_input(Input::Temperature, temperature.unwrap_or(0.0));
+        inputs
+    }
+
+    /// The temperature, K, if it is an input.
+    fn temperature(&self) -> Option<f64> {
+        self.has_temperature.then(|| self.input(Input::Temperature))
+    }
+
     /// The value of an input.
     pub fn input(&self, input: Input) -> f64 {
         self.signals[input as usize].value
@@ -54,7 +68,7 @@ impl Inputs {
     /// The carrier at the start: at the displacements given, with the derivatives given as its velocity, else at rest.
     /// The derivatives remain those of the first step unless the master sets others.
     pub fn start(&self, time: f64) -> Start {
-        let [u, w, load, pull] = &self.signals;
+        let [u, w, load, pull, _] = &self.signals;
         Start {
             time,
             u: u.value,
@@ -63,6 +77,7 @@ impl Inputs {
             w_rate: w.rate.unwrap_or_default(),
             load: load.value,
             pull: pull.value,
+            temperature: self.temperature(),
         }
     }
 
@@ -96,6 +111,7 @@ impl Inputs {
             w: path(Input::W, w)?,
             load: force(Input::Load)?,
             pull: force(Input::Pull)?,
+            temperature: self.temperature(),
         })
     }
 

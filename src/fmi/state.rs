@@ -40,10 +40,11 @@ pub(super) struct FmuState {
 impl InstanceState {
     /// The state after fmi2Instantiate.
     pub(super) fn new(parameters: Arc<Parameters>) -> Self {
+        let inputs = Inputs::new(parameters.definition().temperature());
         Self {
             lifecycle: LifecycleState::Instantiated,
             parameters,
-            inputs: Inputs::default(),
+            inputs,
             clock: Clock::default(),
             last_step: Status::Ok,
             model: None,

@@ -153,8 +153,8 @@ impl Instance {
                 }
                 Entry::Input(Input::U) => du += step,
                 Entry::Input(Input::W) => dw += step,
-                // They accelerate a body; nothing follows them at once.
-                Entry::Input(Input::Load | Input::Pull) => (),
+                // Forces accelerate a body, a temperature acts from the next step on: nothing follows them at once.
+                Entry::Input(Input::Load | Input::Pull | Input::Temperature) => (),
                 entry => return Err(Error::NoKnown(entry.name())),
             }
         }

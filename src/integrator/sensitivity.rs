@@ -15,7 +15,7 @@ use crate::scene::{Axis, Input};
 /// Derivatives of the run's forces and of its bodies' motion by the targets of its inputs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Tangents {
-    by_input: [TangentsOf; Input::ALL.len()],
+    by_input: [TangentsOf; Input::MECHANICAL.len()],
 }
 
 /// The derivatives by the target of one input.
@@ -28,7 +28,7 @@ pub struct TangentsOf {
 }
 
 impl Tangents {
-    /// Those by the target of `input`.
+    /// Those by the target of `input`, which moves the carrier.
     pub fn by(&self, input: Input) -> &TangentsOf {
         &self.by_input[input as usize]
     }
@@ -188,7 +188,7 @@ impl Tangent {
     fn carrier(&self, model: &Model, s: f64, bodies: &[[f64; 2]; 2]) -> CarrierVariation {
         let mut carrier = CarrierVariation::default();
         for axis in Axis::ALL {
-            let driven = self.input.is_displacement() && self.input.axis() == axis;
+            let driven = self.input.is_displacement() && self.input.axis() == Some(axis);
             if model.bodies[axis as usize].is_some() {
                 carrier.set_along(axis, bodies[axis as usize]);
             } else if driven {
@@ -205,11 +205,12 @@ impl Tangent {
 
     /// The variation of what acts from outside on the body along `axis`, displaced and moving as given.
     fn on_body(&self, body: &Body, axis: Axis, s: f64, [displacement, rate]: [f64; 2]) -> f64 {
-        let [input, input_rate] = if self.input.axis() == axis { self.ramp(s) } else { [0.0; 2] };
+        let [input, input_rate] = if self.input.axis() == Some(axis) { self.ramp(s) } else { [0.0; 2] };
         let (drive, drive_rate, force) = match self.input {
             Input::U | Input::W => (input, input_rate, 0.0),
             Input::Load => (0.0, 0.0, -input),
             Input::Pull => (0.0, 0.0, input),
+            Input::Temperature => (0.0, 0.0, 0.0),
         };
         force - body.stiffness * (displacement - drive) - body.damping * (rate - drive_rate)
     }

@@ -113,6 +113,15 @@ impl Model {
         }
     }
 
+    /// Takes over what depends on the temperature from `scene`, this model's at another one: relaxation times, viscosity, the
+    /// speeds of the friction law and the modulus of the fine roughness. Stiffnesses stay.
+    pub fn set_temperature(&mut self, scene: &Scene) {
+        let other = Self::new(scene);
+        let Self { links, rows, relaxation_times, shear_force, rate_shear, real_area, .. } = other;
+        (self.links, self.rows, self.relaxation_times) = (links, rows, relaxation_times);
+        (self.shear_force, self.rate_shear, self.real_area) = (shear_force, rate_shear, real_area);
+    }
+
     /// The model of the scene with this text.
     #[cfg(test)]
     pub(crate) fn of_text(text: &str) -> Self {
@@ -148,14 +157,15 @@ impl Model {
         if kind.is_lateral() { self.frozen[link + 1] - self.frozen[link] } else { self.frozen[link] }
     }
 
-    /// The inputs that act on the carrier.
+    /// The inputs that move the carrier.
     pub fn inputs(&self) -> Vec<Input> {
-        let acts = |input: &Input| match (&self.bodies[input.axis() as usize], input.is_displacement()) {
+        let body = |input: &Input| input.axis().map(|axis| &self.bodies[axis as usize]);
+        let acts = |input: &Input| match (body(input).unwrap_or(&None), input.is_displacement()) {
             (None, is_displacement) => is_displacement,
             (Some(body), true) => body.stiffness > 0.0 || body.damping > 0.0,
             (Some(_), false) => true,
         };
-        Input::ALL.into_iter().filter(acts).collect()
+        Input::MECHANICAL.into_iter().filter(acts).collect()
     }
 
     /// Whether the carrier is a body along an axis.

@@ -19,6 +19,8 @@ pub(crate) struct CarrierSample {
     pub(crate) load: f64,
     /// Tangential force on a body without its constant part, N.
     pub(crate) pull: f64,
+    /// Temperature of the layer where it is an input, K; else 0.
+    pub(crate) temperature: f64,
 }
 
 impl CarrierSample {
@@ -32,6 +34,7 @@ impl CarrierSample {
             w: self.w + phase.w.at(s),
             load: force(phase.load(area), self.load),
             pull: force(phase.pull, self.pull),
+            temperature: phase.temperature.unwrap_or(self.temperature),
         }
     }
 
@@ -42,6 +45,7 @@ impl CarrierSample {
             Input::W => self.w,
             Input::Load => self.load,
             Input::Pull => self.pull,
+            Input::Temperature => self.temperature,
         }
     }
 }
@@ -84,6 +88,7 @@ pub(crate) fn start(scene: &Scene, u: f64) -> Start {
         u,
         load: scene.first_load(),
         pull: scene.first_pull(),
+        temperature: first.and_then(|phase| phase.temperature),
         ..Start::default()
     }
 }
@@ -104,7 +109,9 @@ impl Runner {
     /// Starts a run of `scene` with the carrier at `u` (m), moving as the first phase begins.
     pub(crate) fn new(scene: &Scene, rows: Rows, u: f64) -> Result<Self, SimulationError> {
         let start = start(scene, u);
-        let carrier = CarrierSample { time: start.time, u: start.u, w: start.w, load: start.load, pull: start.pull };
+        let temperature = start.temperature.unwrap_or(scene.input_start(Input::Temperature));
+        let carrier =
+            CarrierSample { time: start.time, u: start.u, w: start.w, load: start.load, pull: start.pull, temperature };
         let mut simulation = Simulation::new(scene, &start)?;
         simulation.record_method_switches(true);
         Ok(Self { simulation, carrier, rows, phases: 0, area: scene.layer.area() })
@@ -142,7 +149,14 @@ impl Runner {
         mut observe: impl FnMut(CarrierSample, &Snapshot<'_>),
     ) -> Result<f64, SimulationError> {
         let load = phase.load(self.area);
-        let motion = Motion { duration: phase.duration, u: phase.u, w: phase.w, load, pull: phase.pull };
+        let motion = Motion {
+            duration: phase.duration,
+            u: phase.u,
+            w: phase.w,
+            load,
+            pull: phase.pull,
+            temperature: phase.temperature,
+        };
         let force = phase.end_force(self.area);
         let reached = self.time_of_force(&motion, force)?;
         self.phases += 1;

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::{ParameterError, Problem};
 use super::values::Word;
-use super::{LinkKind, Phase, Scene, Unit};
+use super::{LinkKind, Phase, Scene, Unit, is_possible};
 
 /// The two axes of the carrier.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -121,11 +121,16 @@ pub enum Input {
     Load,
     /// `pull` on a body along x.
     Pull,
+    /// `temperature` of the layer.
+    Temperature,
 }
 
 impl Input {
     /// All, in the order of the variables.
-    pub const ALL: [Self; 4] = [Self::U, Self::W, Self::Load, Self::Pull];
+    pub const ALL: [Self; 5] = [Self::U, Self::W, Self::Load, Self::Pull, Self::Temperature];
+
+    /// Those that move the carrier.
+    pub const MECHANICAL: [Self; 4] = [Self::U, Self::W, Self::Load, Self::Pull];
 
     /// The variable's name.
     pub fn name(self) -> &'static str {
@@ -134,6 +139,7 @@ impl Input {
             Self::W => "w",
             Self::Load => "load",
             Self::Pull => "pull",
+            Self::Temperature => "temperature",
         }
     }
 
@@ -142,14 +148,16 @@ impl Input {
         match self {
             Self::U | Self::W => Unit::Meter,
             Self::Load | Self::Pull => Unit::Newton,
+            Self::Temperature => Unit::Kelvin,
         }
     }
 
-    /// The axis that it acts along.
-    pub fn axis(self) -> Axis {
+    /// The axis that it acts along; `None` for the temperature.
+    pub fn axis(self) -> Option<Axis> {
         match self {
-            Self::U | Self::Pull => Axis::X,
-            Self::W | Self::Load => Axis::Z,
+            Self::U | Self::Pull => Some(Axis::X),
+            Self::W | Self::Load => Some(Axis::Z),
+            Self::Temperature => None,
         }
     }
 
@@ -163,7 +171,8 @@ impl Scene {
     /// The inputs of the scene's layer, in the order of the variables.
     pub fn inputs(&self) -> Vec<Input> {
         let acts = |input: &Input| {
-            let body = self.carrier.along(input.axis());
+            let Some(axis) = input.axis() else { return self.temperature_input };
+            let body = self.carrier.along(axis);
             if input.is_displacement() { body.is_none_or(CarrierBody::has_drive) } else { body.is_some() }
         };
         Input::ALL.into_iter().filter(acts).collect()
@@ -181,6 +190,29 @@ impl Scene {
     /// The load's changing part at the start of a run along the excitation, N.
     pub fn first_load(&self) -> f64 {
         self.excitation.first().map_or(0.0, |phase| phase.load(self.layer.area()).start.unwrap_or(0.0))
+    }
+
+    /// The value of an input before anything is set: the material's temperature, 0 for the others.
+    pub fn input_start(&self, input: Input) -> f64 {
+        let wlf = self.material.as_ref().and_then(|material| material.wlf.as_ref());
+        if input == Input::Temperature { wlf.map_or(0.0, |wlf| wlf.temperature) } else { 0.0 }
+    }
+
+    /// The scene at another temperature, K.
+    ///
+    /// # Errors
+    /// [`ParameterError`] where the temperature is none, or the shift has its pole above it, or a number of the material
+    /// becomes impossible.
+    pub fn at_temperature(&self, temperature: f64) -> Result<Self, ParameterError> {
+        let mut scene = self.clone();
+        let given =
+            || Problem::value(format_args!("{temperature:?}"), super::keys::range_of("material.wlf.temperature"));
+        match scene.material.as_mut().and_then(|material| material.wlf.as_mut()) {
+            Some(wlf) if temperature > 0.0 && is_possible(temperature) => wlf.temperature = temperature,
+            _ => return Err(ParameterError::new("temperature", given())),
+        }
+        scene.check()?;
+        Ok(scene)
     }
 
     /// The changing part of the tangential force at the start of a run along the excitation, N.

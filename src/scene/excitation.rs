@@ -19,6 +19,8 @@ pub struct Phase {
     pub pull: Force,
     /// The load over the layer's area, Pa, in place of the load; in the material form alone, see [`Phase::load`].
     pub pressure: Option<Force>,
+    /// The layer's temperature from the phase's start on, K, where it is an input; `None`: as it was.
+    pub temperature: Option<f64>,
     /// The phase ends when F_z rises to this force, N; in the direct form alone, see [`Phase::end_force`].
     pub until_force: Option<f64>,
     /// The phase ends when F_z over the layer's area rises to this pressure, Pa; in the material form alone.

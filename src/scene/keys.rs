@@ -345,8 +345,10 @@ const SOLVER: &[Key] = &[
     number("reduce", NOT_NEGATIVE.up_to(0.1), Unit::One, "Error bound for leaving Maxwell elements out"),
 ];
 
-const INPUT: &[Key] =
-    &[word::<Extrapolation>("extrapolation", "How the carrier moves when no rates are given: linear or hold")];
+const INPUT: &[Key] = &[
+    word::<Extrapolation>("extrapolation", "How the carrier moves when no rates are given: linear or hold"),
+    key("temperature", Allowed::Flag, "Whether the layer's temperature is an input").material(),
+];
 
 const FMU: &[Key] = &[key("outputs", Allowed::Words(words::<OutputGroup>), "Groups of output variables")];
 
@@ -365,6 +367,7 @@ const PHASE: &[Key] = &[
     number("pressure", ANY, Unit::Pascal, "Load over the layer's area at the start of the phase").material(),
     number("pressure_rate", ANY, Unit::One, "Rate of the load over the layer's area, Pa/s").material(),
     table("pressure_sine", PRESSURE_SINE).material(),
+    number("temperature", POSITIVE, Unit::Kelvin, "Temperature of the layer from the phase's start on").material(),
     number("until_force", ANY, Unit::Newton, "F_z that ends the phase").direct(),
     number("until_pressure", ANY, Unit::Pascal, "Mean pressure that ends the phase").material(),
 ];

@@ -69,6 +69,8 @@ pub struct Scene {
     pub solver: Solver,
     /// How the carrier moves on when a master gives no rates.
     pub extrapolation: Extrapolation,
+    /// Whether the layer's temperature is an input.
+    pub temperature_input: bool,
     /// The output groups, in the order of [`OutputGroup::ALL`], each once.
     pub outputs: Vec<OutputGroup>,
     /// The motion of the carrier in runs without a master.

@@ -296,6 +296,8 @@ impl Scene {
         parameters.extend([Method, RelativeTolerance, AbsoluteTolerance, MaxSteps, Extrapolation]);
         let is_real = |parameter: Parameter| matches!(parameter.key().allowed, Allowed::Number(_));
         parameters.retain(|&parameter| !is_real(parameter) || self.real(parameter).is_some());
+        // As an input it is none.
+        parameters.retain(|&parameter| parameter != Temperature || !self.temperature_input);
         parameters
     }
 

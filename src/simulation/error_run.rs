@@ -153,7 +153,7 @@ impl ErrorRun {
 
 impl Settings {
     /// The settings of the error-estimation run of one with these.
-    fn tighter(&self, model: &Model) -> Self {
+    pub(super) fn tighter(&self, model: &Model) -> Self {
         let tolerance = Tolerance::new(model, TIGHTER * self.tolerance.relative, TIGHTER * self.tolerance.position);
         Self {
             events: EventTolerance::new(model, &tolerance),

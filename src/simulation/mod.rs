@@ -26,7 +26,7 @@ use cpu_time::ThreadTime;
 
 use crate::model::Model;
 use crate::outputs::{Counters, Output, Snapshot, Variable};
-use crate::scene::{Axis, Scene};
+use crate::scene::{Axis, ParameterError, Scene};
 use driver::{TrialStep, WorkLimit};
 use error_run::ErrorRun;
 pub use motion::{Divergence, MethodSwitch, ModeChange, Motion, OutOfRange, SimulationError, Start};
@@ -43,6 +43,8 @@ pub struct Simulation {
     run: Run,
     /// A more accurate run beside it, where its error is asked for.
     error_run: Option<ErrorRun>,
+    /// The scene where its temperature is an input.
+    scene: Option<Arc<Scene>>,
     /// Processor time since the start, s. It is not part of the run's state: a run restored from another's state keeps
     /// its own.
     run_time: f64,
@@ -59,7 +61,13 @@ impl Simulation {
         start.check()?;
         scene.check()?;
         scene.check_equilibrium(start.load)?;
-        Ok(Self::started(scene, start))
+        let Some(wlf) = scene.material.as_ref().and_then(|material| material.wlf).filter(|_| scene.temperature_input)
+        else {
+            return Ok(Self::started(scene, &Start { temperature: None, ..*start }));
+        };
+        let temperature = start.temperature.unwrap_or(wlf.temperature);
+        let start = Start { temperature: Some(temperature), ..*start };
+        Ok(Self::started(&scene.at_temperature(temperature)?, &start))
     }
 
     fn started(scene: &Scene, start: &Start) -> Self {
@@ -71,7 +79,12 @@ impl Simulation {
         let model = Arc::new(model);
         let settings = Settings::new(scene, &model);
         let error_run = settings.accounts.solver.then(|| ErrorRun::new(&model, &settings, start, &bodies));
-        Self { run: Run::new(model, settings, start, &bodies), error_run, run_time: 0.0 }
+        Self {
+            run: Run::new(model, settings, start, &bodies),
+            error_run,
+            scene: scene.temperature_input.then(|| Arc::new(scene.clone())),
+            run_time: 0.0,
+        }
     }
 
     /// The state of the simulation.
@@ -105,6 +118,9 @@ impl Simulation {
         if state.run.start != self.run.state.start {
             self.freeze_dashpots(state.run.start);
         }
+        if state.run.temperature != self.run.state.temperature {
+            self.heat(state.run.temperature)?;
+        }
         self.run.set_state(&state.run);
         if let (Some(error_run), Some(state)) = (&mut self.error_run, &state.error_run) {
             error_run.run.set_state(state);
@@ -118,6 +134,20 @@ impl Simulation {
         if let Some(error_run) = &mut self.error_run {
             error_run.run.model = Arc::clone(&self.run.model);
         }
+    }
+
+    /// Makes the model that of the layer at another temperature, K.
+    fn heat(&mut self, temperature: f64) -> Result<(), ParameterError> {
+        let Some(scene) = &self.scene else { return Ok(()) };
+        let scene = scene.at_temperature(temperature)?;
+        Arc::make_mut(&mut self.run.model).set_temperature(&scene);
+        self.run.heat(temperature, Settings::new(&scene, &self.run.model));
+        if let Some(error_run) = &mut self.error_run {
+            error_run.run.model = Arc::clone(&self.run.model);
+            let settings = self.run.settings.tighter(&self.run.model);
+            error_run.run.heat(temperature, settings);
+        }
+        Ok(())
     }
 
     /// The time reached, s.
@@ -184,12 +214,22 @@ impl Simulation {
         let result = self.follow(motion, until_force, times, observe);
         if result.is_err() {
             self.run_time = run_time;
+            self.cool_back();
             self.run.roll_back();
             if let Some(error_run) = &mut self.error_run {
                 error_run.roll_back();
             }
         }
         result
+    }
+
+    /// The model at the temperature of the checkpoint, which a motion that fails may have changed.
+    fn cool_back(&mut self) {
+        let before = self.run.checkpoint().temperature;
+        if before != self.run.state.temperature {
+            // It was that of the run before: it is valid.
+            let _ = self.heat(before);
+        }
     }
 
     /// [`advance_observed`](Self::advance_observed) without rollback: after an error the run stands anywhere within the
@@ -206,6 +246,9 @@ impl Simulation {
         self.show_rows(0.0, &mut observer);
         if self.run.has_reached(until_force) {
             return Ok(Some(0.0));
+        }
+        if let Some(temperature) = motion.temperature.filter(|&temperature| temperature != self.run.state.temperature) {
+            self.heat(temperature)?;
         }
         self.run.enter(motion);
         if let Some(error_run) = &mut self.error_run {

@@ -22,6 +22,8 @@ pub struct Start {
     pub load: f64,
     /// Tangential force on a body along x without its constant part, N.
     pub pull: f64,
+    /// The layer's temperature, K, where it is an input; `None`: the material's.
+    pub temperature: Option<f64>,
 }
 
 /// One smooth piece of the carrier's motion, from where the carrier stands.
@@ -37,6 +39,8 @@ pub struct Motion {
     pub load: Force,
     /// The tangential force on a body along x without its constant part.
     pub pull: Force,
+    /// The layer's temperature, K, where it is an input; `None`: as it was.
+    pub temperature: Option<f64>,
 }
 
 /// The carrier's motion is not a number, or larger than [`LARGEST`].
@@ -152,7 +156,7 @@ impl Motion {
     pub const REST: Self = {
         let still = Path { rate: 0.0, amplitude: 0.0, frequency: 0.0 };
         let held = Force { start: None, change: still };
-        Self { duration: 0.0, u: still, w: still, load: held, pull: held }
+        Self { duration: 0.0, u: still, w: still, load: held, pull: held, temperature: None }
     };
 
     pub(super) fn check(&self) -> Result<(), OutOfRange> {

@@ -56,6 +56,8 @@ pub(super) struct RunState {
     pub tangents: Tangents,
     /// u and w at the start of the run, m.
     pub start: [f64; 2],
+    /// The layer's temperature, K; 0 where it is no input.
+    pub temperature: f64,
     /// Whether time-stepping is active, or the event-driven method.
     pub time_stepping: bool,
     /// The running mean of the mode changes per time step; of the method *auto* alone.
@@ -72,6 +74,7 @@ impl RunState {
         }
         Self {
             start: [carrier.u, carrier.w],
+            temperature: start.temperature.unwrap_or(0.0),
             carrier,
             s: 0.0,
             layer: StepStart::new(model),
@@ -103,9 +106,11 @@ impl RunState {
             step_after_event,
             tangents,
             start,
+            temperature,
             time_stepping,
             mode_changes_per_step,
         } = self;
+        *temperature = other.temperature;
         (*carrier, *s, *energies, *counters) = (other.carrier, other.s, other.energies, other.counters);
         (*event_spacing, *since_event) = (other.event_spacing, other.since_event);
         (*step_size, *tangents, *rates_valid) = (other.step_size, other.tangents, other.rates_valid);
@@ -212,17 +217,10 @@ pub(super) struct Workspace {
 impl Run {
     /// A run with the layer placed under the carrier at `start`.
     pub(super) fn new(model: Arc<Model>, settings: Settings, start: &Start, bodies: &[Option<BodyStart>; 2]) -> Self {
-        let tracked = Tracked { energy: settings.accounts.energy, tangents: settings.accounts.tangents };
-        let pair = Pair::at_tolerance(settings.tolerance.relative);
-        let steps = match settings.method {
-            Method::Event => Steps::EventDriven(pair),
-            Method::Step => Steps::TwoStages,
-            Method::Auto => Steps::Both(pair),
-        };
         let state = RunState::new(&model, start, bodies, settings.method == Method::Step);
         let workspace = Workspace {
             forces: Forces::new(&model),
-            integrator: Integrator::new(&model, tracked, steps),
+            integrator: Self::integrator(&model, &settings),
             interpolated: state.layer.state.clone(),
             interpolated_at: None,
             dense: DenseWorkspace::new(&model),
@@ -306,6 +304,31 @@ impl Run {
             self.evaluate_forces();
             self.refresh_tangents();
         }
+    }
+
+    /// The run before the motion under way.
+    pub(super) fn checkpoint(&self) -> &RunState {
+        &self.workspace.checkpoint
+    }
+
+    /// Takes over another temperature (K) and the settings for the model there, which is set. The dampers' forces jump, so the
+    /// next motion decides all modes anew.
+    pub(super) fn heat(&mut self, temperature: f64, settings: Settings) {
+        self.settings = settings;
+        (self.state.temperature, self.state.rates_valid) = (temperature, false);
+        self.workspace.integrator = Self::integrator(&self.model, &self.settings);
+        self.workspace.dense = DenseWorkspace::new(&self.model);
+    }
+
+    fn integrator(model: &Model, settings: &Settings) -> Integrator {
+        let tracked = Tracked { energy: settings.accounts.energy, tangents: settings.accounts.tangents };
+        let pair = Pair::at_tolerance(settings.tolerance.relative);
+        let steps = match settings.method {
+            Method::Event => Steps::EventDriven(pair),
+            Method::Step => Steps::TwoStages,
+            Method::Auto => Steps::Both(pair),
+        };
+        Integrator::new(model, tracked, steps)
     }
 
     /// Computes the bodies' accelerations anew from the forces, of which one from outside has jumped. No force on a mass has.

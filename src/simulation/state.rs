@@ -176,6 +176,7 @@ fn check_numbers(run: &RunState) -> Result<(), RestoreError> {
         step_after_event,
         tangents,
         start,
+        temperature,
         time_stepping: _,
         mode_changes_per_step,
     } = run;
@@ -186,6 +187,7 @@ fn check_numbers(run: &RunState) -> Result<(), RestoreError> {
         return Err(RestoreError::Number { what: "the tangents", value: f64::NAN });
     }
     check_finite("the carrier's displacement at the start", start)?;
+    check_finite("the temperature", &[*temperature])?;
     check_finite("the powers", &[exchange.friction, exchange.shear, exchange.input, exchange.carrier])?;
     check_finite("the largest forces and energies", &[largest.force_x, largest.force_z, largest.energy])?;
     let scalars = [

@@ -28,7 +28,8 @@ impl Case {
     /// carrier does by itself.
     fn compare(&self, found: &Table, bound: f64) {
         let wanted = Table::read(&self.scene().with_extension("csv"));
-        let largest_of = |columns: &[&str]| columns.iter().map(|name| largest(&wanted.column(name))).fold(0.0, f64::max);
+        let largest_of =
+            |columns: &[&str]| columns.iter().map(|name| largest(&wanted.column(name))).fold(0.0, f64::max);
         let (force, energy) = (largest_of(&["F_x", "F_z"]), largest_of(&["energy.input", "energy.elastic"]));
         for name in wanted.names() {
             let scale = match name.as_str() {

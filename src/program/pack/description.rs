@@ -133,12 +133,13 @@ fn unit_definition(xml: &mut Xml, unit: Unit) -> io::Result<()> {
 
 fn input_description(definition: &Definition, input: Input) -> &'static str {
     let has_body = |axis| matches!(definition, Definition::Layer(scene) if scene.carrier.along(axis).is_some());
-    match (input, has_body(input.axis())) {
+    match (input, input.axis().is_some_and(has_body)) {
         (Input::U, false) => "Displacement of the carrier along x",
         (Input::W, false) => "Displacement of the carrier along z, negative presses",
         (Input::U, true) => "Displacement along x of the drive of the carrier",
         (Input::W, true) => "Displacement along z of the drive of the carrier",
         (Input::Load, _) => "Normal load on the carrier, without its constant part; positive presses",
+        (Input::Temperature, _) => "Bulk temperature of the layer, held over each communication step",
         (Input::Pull, _) => "Tangential force on the carrier along x, without its constant part",
     }
 }
@@ -164,7 +165,7 @@ pub(super) fn causality(entry: &Entry<'_>) -> &'static str {
 /// The start value; calculated variables have none.
 pub(super) fn start(definition: &Definition, entry: &Entry<'_>) -> Option<String> {
     match entry {
-        Entry::Input(_) => Some(real(0.0)),
+        Entry::Input(input) => Some(real(definition.input_start(*input))),
         Entry::Output(..) => None,
         Entry::Parameter(parameter, _) => Some(match definition.parameter(*parameter) {
             Value::Real(value) => real(value),
@@ -248,7 +249,7 @@ fn output(xml: &mut Xml, catalogue: &Catalogue, reference: u32, dependencies: De
     let depends = |input: Input| match input {
         Input::U => dependencies.on_u,
         Input::W => dependencies.on_w,
-        Input::Load | Input::Pull => false,
+        Input::Load | Input::Pull | Input::Temperature => false,
     };
     let inputs = catalogue.inputs().iter().enumerate().filter(|(_, input)| depends(**input));
     let names: Vec<_> = inputs.map(|(index, _)| (index + 1).to_string()).collect();

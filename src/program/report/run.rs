@@ -229,7 +229,8 @@ struct Master<'a> {
 
 impl<'a> Master<'a> {
     fn new(scene: &'a Scene, given: Given, u: f64) -> Result<Self, SimulationError> {
-        let mut inputs = Inputs::default();
+        let temperature = scene.temperature_input.then(|| scene.input_start(Input::Temperature));
+        let mut inputs = Inputs::new(temperature);
         inputs.set_input(Input::U, u);
         if let Some(phase) = scene.excitation.first().filter(|_| given == Given::Rates) {
             set_rates(&mut inputs, phase, 0.0);

@@ -1,7 +1,7 @@
 //! `[carrier]`, and the phases of `[[excitation]]`, whose keys depend on it.
 
 use super::table::{Result, TableReader};
-use crate::scene::{Axis, CarrierBodies, CarrierBody, CarrierInitial, Force, Path, Phase};
+use crate::scene::{Axis, CarrierBodies, CarrierBody, CarrierInitial, Force, Path, Phase, Wlf};
 
 pub(super) fn read(table: &mut TableReader<'_>) -> Result<CarrierBodies> {
     Ok(CarrierBodies { x: table.optional_table("x", read_x)?, z: table.optional_table("z", read_z)? })
@@ -64,7 +64,11 @@ const PRESSURE: ForceKeys =
     ForceKeys { axis: Axis::Z, start: "pressure", rate: "pressure_rate", sine: "pressure_sine" };
 
 /// One phase of the motion of a carrier that is a body along the axes of `carrier`.
-pub(super) fn read_phase(table: &mut TableReader<'_>, carrier: &CarrierBodies) -> Result<Phase> {
+pub(super) fn read_phase(
+    table: &mut TableReader<'_>,
+    carrier: &CarrierBodies,
+    temperature: TemperatureInput<'_>,
+) -> Result<Phase> {
     let has_pressure = PRESSURE.all().into_iter().any(|key| table.has(key));
     if has_pressure && let Some(entry) = LOAD.all().into_iter().find_map(|key| table.entry(key)) {
         return Err(entry.refuse("no such key beside pressure, pressure_rate and pressure_sine"));
@@ -77,9 +81,23 @@ pub(super) fn read_phase(table: &mut TableReader<'_>, carrier: &CarrierBodies) -
         load: if has_pressure { Force::default() } else { read_force(table, &LOAD, carrier)? },
         pull: read_force(table, &PULL, carrier)?,
         pressure: pressure.filter(|_| has_pressure),
+        temperature: read_temperature(table, temperature)?,
         until_force: table.optional_number("until_force")?,
         until_pressure: table.optional_number("until_pressure")?,
     })
+}
+
+/// `material.wlf` where the temperature is an input.
+pub(super) type TemperatureInput<'a> = Option<&'a Wlf>;
+
+fn read_temperature(table: &mut TableReader<'_>, input: TemperatureInput<'_>) -> Result<Option<f64>> {
+    let Some(entry) = table.entry("temperature") else { return Ok(None) };
+    let Some(wlf) = input else {
+        return Err(entry.refuse("no such key without temperature = true in [input]"));
+    };
+    let temperature = entry.number()?;
+    let checked = Wlf { temperature, ..*wlf }.check();
+    checked.map_err(|error| entry.error(error.problem().clone())).map(|()| Some(temperature))
 }
 
 fn read_motion(table: &mut TableReader<'_>, keys: &PhaseKeys, carrier: &CarrierBodies) -> Result<Path> {

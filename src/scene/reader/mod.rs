@@ -59,9 +59,12 @@ fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
     let carrier = carrier_entry.as_ref().map(|entry| entry.table(carrier::read)).transpose()?.unwrap_or_default();
     let friction = root.optional_table("friction", |table| read_friction(table, &surface))?;
     let solver = root.optional_table("solver", read_solver)?.unwrap_or_default();
-    let extrapolation = root.optional_table("input", read_input)?.unwrap_or_default();
+    let wlf = material.as_ref().and_then(|material| material.wlf.as_ref());
+    let read_input = |table: &mut TableReader<'_>| read_input(table, wlf.is_some(), solver.reduce);
+    let (extrapolation, temperature_input) = root.optional_table("input", read_input)?.unwrap_or_default();
     let outputs = root.optional_table("fmu", |table| read_fmu(table, &carrier))?.unwrap_or_else(default_outputs);
-    let excitation = root.tables("excitation", |table| carrier::read_phase(table, &carrier))?;
+    let excitation =
+        root.tables("excitation", |table| carrier::read_phase(table, &carrier, wlf.filter(|_| temperature_input)))?;
     root.finish()?;
     let Found { files, extracts, mut warnings } = found;
     warnings.extend(warnings::short_profile(&layer, &surface, &excitation));
@@ -78,6 +81,7 @@ fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
         friction,
         solver,
         extrapolation,
+        temperature_input,
         outputs,
         excitation,
         files,
@@ -253,8 +257,16 @@ fn read_solver(table: &mut TableReader<'_>) -> Result<Solver> {
     })
 }
 
-fn read_input(table: &mut TableReader<'_>) -> Result<Extrapolation> {
-    Ok(table.optional_choice("extrapolation")?.unwrap_or_default())
+fn read_input(table: &mut TableReader<'_>, has_wlf: bool, reduce: f64) -> Result<(Extrapolation, bool)> {
+    let extrapolation = table.optional_choice("extrapolation")?.unwrap_or_default();
+    let Some(entry) = table.entry("temperature") else { return Ok((extrapolation, false)) };
+    match (entry.flag()?, has_wlf, reduce > 0.0) {
+        (true, false, _) => Err(entry.refuse("false without [material.wlf], which says what a temperature does")),
+        (true, _, true) => {
+            Err(entry.refuse("false beside solver.reduce > 0, which leaves elements out for one temperature"))
+        }
+        (input, _, _) => Ok((extrapolation, input)),
+    }
 }
 
 fn default_outputs() -> Vec<OutputGroup> {

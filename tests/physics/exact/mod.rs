@@ -5,9 +5,9 @@
 //! iωd + Σ_j c_j iωτ_j/(1 + iωτ_j). The carrier stands at (u, w), a mass m over the profile z_r(x) of slope s and
 //! curvature κ, with n and t normal and tangent to the profile.
 
+mod carrier;
 mod energy;
 mod free;
-mod carrier;
 mod friction;
 mod hysteresis;
 mod material;
