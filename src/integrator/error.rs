@@ -5,8 +5,8 @@ use super::maxwell::Maxwell;
 use super::rates::Rates;
 use super::tableau::Tableau;
 use crate::math::{dot, sum_of, sum_of_pairs, sum_of_triples, weighted_sum};
+use crate::model::Axis;
 use crate::model::{CarrierPoint, Exchange, LinkKind, Mode, Model, State};
-use crate::scene::Axis;
 
 /// The tolerances of the local error of a step. The error of each quantity is divided by absolute + relative · size.
 #[derive(Clone, Debug, PartialEq)]

@@ -9,8 +9,8 @@ use super::sensitivity::{SolvedStage, Tangent};
 use super::stage::{BodyHistory, ConvergenceTest, Friction, NoConvergence, StagePoint, StageSolver};
 use super::tableau::{ContinuousWeights, STAGES, Tableau};
 use crate::math::weighted_sum;
+use crate::model::Axis;
 use crate::model::{Carrier, CarrierPoint, ChannelEnergies, Exchange, Mode, Model, State};
-use crate::scene::Axis;
 
 /// One Runge-Kutta method with its workspace.
 #[derive(Clone, Debug)]

@@ -26,12 +26,11 @@ pub use interpolation::StageInterpolation;
 pub use largest::Largest;
 pub use motions::Motions;
 pub use rates::{NO_LIMIT, Rates, StepStart};
-pub use sensitivity::{Tangents, TangentsOf};
 pub use stage::NoConvergence;
 pub use tableau::{ContinuousWeights, ESDIRK3, ESDIRK5, SDIRK2, STAGES, TWO_STAGES, Tableau};
 
+use crate::model::{Axis, Tangents};
 use crate::model::{BodyStep, Carrier, CarrierPoint, ChannelEnergies, Exchange, Forces, Model, State};
-use crate::scene::Axis;
 use dense::{piecewise_linear, two_stage_body_step};
 use energy::StepSums;
 use error::ErrorWorkspace;

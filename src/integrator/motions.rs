@@ -4,8 +4,8 @@ use super::dense::DenseOutput;
 use super::rates::Rates;
 use super::tableau::STAGES;
 use crate::math::{Jet, Quintic};
+use crate::model::Axis;
 use crate::model::CarrierPoint;
-use crate::scene::Axis;
 
 /// The motions of the masses by the [`DenseOutput`] of one step.
 #[derive(Clone, Debug)]

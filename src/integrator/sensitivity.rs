@@ -5,44 +5,10 @@
 //! the contact modes held. At a stage they solve the same linear system as Newton's corrections, with another right side.
 
 use nalgebra::Vector2;
-use serde::{Deserialize, Serialize};
 
 use super::rates::Rates;
 use super::stage::{SlippingMass, StagePoint, StageSolver};
-use crate::model::{Body, Forces, LinkKind, LinkMotion, Mode, Model, State};
-use crate::scene::{Axis, Input};
-
-/// Derivatives of the run's forces and of its bodies' motion by the targets of its inputs.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Tangents {
-    by_input: [TangentsOf; Input::MECHANICAL.len()],
-}
-
-/// The derivatives by the target of one input.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct TangentsOf {
-    /// Of F_x and F_z.
-    pub force: [f64; 2],
-    /// Of the displacement and the speed of the bodies along x and z; 0 where the displacement is prescribed.
-    pub body: [[f64; 2]; 2],
-}
-
-impl Tangents {
-    /// Those by the target of `input`, which moves the carrier.
-    pub fn by(&self, input: Input) -> &TangentsOf {
-        &self.by_input[input as usize]
-    }
-
-    pub(super) fn set(&mut self, input: Input, tangents: TangentsOf) {
-        self.by_input[input as usize] = tangents;
-    }
-
-    /// Whether all of them are finite.
-    pub fn are_finite(&self) -> bool {
-        let finite = |of: &TangentsOf| of.force.iter().chain(of.body.as_flattened()).all(|value| value.is_finite());
-        self.by_input.iter().all(finite)
-    }
-}
+use crate::model::{Axis, Body, Forces, Input, LinkKind, LinkMotion, Mode, Model, State, TangentsOf};
 
 /// The variation of the layer's state: dimensionless for positions, 1/s for velocities.
 #[derive(Clone, Debug)]

@@ -10,6 +10,7 @@ mod real_area;
 mod reduction;
 mod scales;
 mod state;
+mod tangents;
 
 pub use carrier::{Body, BodyEnergy, BodyStart, BodyStep, Carrier, CarrierPoint, CarrierPosition, Outside, Piece};
 pub use energy::{ChannelEnergies, Exchange, Powers, elastic_energy, kinetic_energy};
@@ -18,12 +19,13 @@ pub use friction::{ContactForces, FrictionCurve, RateShear, SlipCurve};
 pub use real_area::{AreaShare, RealArea};
 pub use reduction::{Reduction, Replaced, Replacement};
 pub use state::{Mode, State};
+pub use tangents::{Tangents, TangentsOf};
 
 use serde::{Deserialize, Serialize};
 
 use crate::math::Spline;
-pub use crate::scene::LinkKind;
-use crate::scene::{Initial, Input, Scene};
+pub use crate::scene::{Axis, Input, LinkKind};
+use crate::scene::{Initial, Scene};
 
 /// The profile at one position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -8,10 +8,9 @@
 use std::cell::OnceCell;
 
 use super::{Counters, Energies, Monitored, Variable};
-use crate::integrator::Tangents;
 use crate::model::{
     AreaShare, BodyEnergy, Carrier, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, Powers,
-    State, elastic_energy, kinetic_energy,
+    State, Tangents, elastic_energy, kinetic_energy,
 };
 use crate::scene::Axis;
 

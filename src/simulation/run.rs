@@ -8,10 +8,10 @@ use super::motion::{MethodSwitch, ModeChange, Motion, OutOfRange, Start};
 use crate::contact::{
     EndCorrection, EventTolerance, decide_modes, free_unloaded, impacts_due, place_layer, stop_reversed,
 };
-use crate::integrator::{DenseWorkspace, Integrator, Pair, StepSpan, StepStart, Steps, Tangents, Tolerance, Tracked};
+use crate::integrator::{DenseWorkspace, Integrator, Pair, StepSpan, StepStart, Steps, Tolerance, Tracked};
 use crate::model::{
-    BodyStart, Carrier, CarrierPoint, CarrierPosition, Forces, LinkKind, Mode, Model, Piece, State, elastic_energy,
-    kinetic_energy,
+    BodyStart, Carrier, CarrierPoint, CarrierPosition, Forces, LinkKind, Mode, Model, Piece, State, Tangents,
+    elastic_energy, kinetic_energy,
 };
 use crate::outputs::{Accounts, Counters, Energies};
 use crate::scene::{Axis, Method, Path, Scene, is_possible};

@@ -8,8 +8,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::{StagePoint, StageSolver};
-use crate::model::{Body, Forces, Mode, Model, Outside};
-use crate::scene::{Axis, LinkKind};
+use crate::model::{Axis, Body, Forces, LinkKind, Mode, Model, Outside};
 
 /// The rows and columns of the bodies.
 #[derive(Clone, Debug)]

@@ -3,8 +3,8 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::{StageLaw, StageSolver};
+use crate::model::Axis;
 use crate::model::{ContactForces, Forces, FrictionCurve, Mode, Model, State, SurfacePoint};
-use crate::scene::Axis;
 
 impl StageSolver {
     /// Factors the Jacobian at the solution, for the tangents of the stage.

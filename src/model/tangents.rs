@@ -1,0 +1,38 @@
+//! Derivatives of what a master reads by what it sets.
+
+use serde::{Deserialize, Serialize};
+
+use crate::scene::Input;
+
+/// Derivatives of the run's forces and of its bodies' motion by the targets of its inputs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Tangents {
+    by_input: [TangentsOf; Input::MECHANICAL.len()],
+}
+
+/// The derivatives by the target of one input.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TangentsOf {
+    /// Of F_x and F_z.
+    pub force: [f64; 2],
+    /// Of the displacement and the speed of the bodies along x and z; 0 where the displacement is prescribed.
+    pub body: [[f64; 2]; 2],
+}
+
+impl Tangents {
+    /// Those by the target of `input`, which moves the carrier.
+    pub fn by(&self, input: Input) -> &TangentsOf {
+        &self.by_input[input as usize]
+    }
+
+    /// Sets those by the target of `input`.
+    pub fn set(&mut self, input: Input, tangents: TangentsOf) {
+        self.by_input[input as usize] = tangents;
+    }
+
+    /// Whether all of them are finite.
+    pub fn are_finite(&self) -> bool {
+        let finite = |of: &TangentsOf| of.force.iter().chain(of.body.as_flattened()).all(|value| value.is_finite());
+        self.by_input.iter().all(finite)
+    }
+}
