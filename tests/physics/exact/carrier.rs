@@ -219,10 +219,10 @@ fn a_heavy_body_and_one_on_a_stiff_drive_move_as_prescribed() {
     let prescribed = forces(&mut Run::new(&format!("{layer}\n{tolerance}"), start), &motion);
     let heavy = "
         [carrier.x]
-        mass = 1e4
+        mass = 1e7
         start_rate = 0.1
         [carrier.z]
-        mass = 1e4
+        mass = 1e7
         start = -1e-6
         start_rate = -2e-3";
     let on_drive = "

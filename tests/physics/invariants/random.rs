@@ -81,6 +81,7 @@ pub(crate) fn cases_by(method: Method) -> impl Strategy<Value = Case> {
                     friction,
                     solver,
                     extrapolation: Extrapolation::Linear,
+                    temperature_input: false,
                     outputs: GROUPS.to_vec(),
                     excitation: Vec::new(),
                     files: Vec::new(),
