@@ -157,6 +157,8 @@ pub struct Basis {
     pub real_area: Option<String>,
     /// What a study of convergence found; `None` without one.
     pub convergence: Option<String>,
+    /// What was held at each point instead of the displacement w; `None` where that was.
+    pub held: Option<String>,
 }
 
 /// What [`Basis::convergence`] begins with where all is within the error of the study.
@@ -164,7 +166,7 @@ pub const CONVERGED: &str = "converged";
 
 impl Basis {
     fn lines(&self) -> impl Iterator<Item = String> {
-        let named = BASIS_KEYS.into_iter().zip([&self.foundation, &self.real_area, &self.convergence]);
+        let named = BASIS_KEYS.into_iter().zip([&self.foundation, &self.real_area, &self.convergence, &self.held]);
         named.filter_map(|(key, text)| Some(format!("# {key} = {}", one_line(text.as_ref()?))))
     }
 
@@ -174,7 +176,7 @@ impl Basis {
     }
 }
 
-const BASIS_KEYS: [&str; 3] = ["foundation", "real_area", "convergence"];
+const BASIS_KEYS: [&str; 4] = ["foundation", "real_area", "convergence", "held"];
 
 impl TableHeader {
     /// The lines of the header, the names of the columns included.
@@ -356,8 +358,8 @@ impl TableText {
 
     /// What the numbers rest on, as far as the table says.
     pub(super) fn basis(&self) -> Basis {
-        let [foundation, real_area, convergence] = BASIS_KEYS.map(|key| self.header.get(key).cloned());
-        Basis { foundation, real_area, convergence }
+        let [foundation, real_area, convergence, held] = BASIS_KEYS.map(|key| self.header.get(key).cloned());
+        Basis { foundation, real_area, convergence, held }
     }
 
     /// The header of a table as a sweep writes it.

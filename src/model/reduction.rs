@@ -17,7 +17,8 @@
 //! A jump of ė, by an impact or a kink of the carrier's motion, excites all frequencies, and no bound of this kind holds
 //! right after it: it adds c_j τ_j |Δė|, which decays as e^{-t/τ} and is an impulse of c_j τ_j² |Δė|. An element that
 //! starts undeformed under a mass lifted onto the profile has the force c_j e, an impulse of c_j τ_j e that no damper
-//! has; so in a layer that starts undeformed no element becomes a damper. The frequency ω is the largest of: the
+//! has; so in a layer that starts undeformed no element becomes a damper, nor in one under a body that is free along x, whose
+//! speed is not known. The frequency ω is the largest of: the
 //! carrier's sines, 2πf; the passage along the profile, v q, with the carrier's largest speed v and the profile's
 //! shortest waves, q = max|z_r'''|/max|z_r''| (exact for a sine; at most half a wave between two data points); and the
 //! layer's own.
@@ -40,7 +41,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::LinkKind;
 use crate::math::Spline;
-use crate::scene::{Initial, MaxwellElement, Scene};
+use crate::scene::{Axis, Initial, MaxwellElement, Phase, Scene};
 
 /// The elements that are replaced, and the quantities that this was decided by.
 #[derive(Clone, Debug, PartialEq)]
@@ -87,14 +88,15 @@ impl Reduction {
 
     fn chosen(scene: &Scene) -> Self {
         let run = if scene.excitation.is_empty() { f64::INFINITY } else { scene.duration() };
-        let frequency = carrier_frequency(scene).max(passage_frequency(scene)).max(own_frequency(scene));
+        let frequencies = [carrier_frequency, passage_frequency, own_frequency, body_frequency].map(|of| of(scene));
+        let frequency = frequencies.into_iter().fold(0.0, f64::max);
         let links = LinkKind::ALL.map(|kind| scene.link(kind).unwrap_or_default());
         let stiffness = links.each_ref().map(|link| link.complex_stiffness(1.0 / run).0);
         let mut replaced = Vec::new();
         for kind in LinkKind::ALL {
             let allowed = scene.solver.reduce * stiffness[kind as usize];
             let elements = &links[kind as usize].maxwell;
-            let relaxed = scene.layer.initial == Initial::Relaxed;
+            let relaxed = scene.layer.initial == Initial::Relaxed && scene.carrier.x.is_none();
             let candidates = elements.iter().enumerate().filter_map(|(index, &element)| {
                 let (by, bound) = better(&element, run, relaxed.then_some(frequency))?;
                 Some(Replaced { kind, index, element, by, bound })
@@ -134,7 +136,9 @@ fn smallest(mut candidates: Vec<Replaced>, allowed: f64) -> Vec<Replaced> {
 
 /// The highest frequency of the carrier's sines, rad/s.
 fn carrier_frequency(scene: &Scene) -> f64 {
-    let paths = scene.excitation.iter().flat_map(|phase| [phase.u, phase.w]);
+    let area = scene.layer.area();
+    let of_phase = |phase: &Phase| [phase.u, phase.w, phase.load(area).change, phase.pull.change];
+    let paths = scene.excitation.iter().flat_map(of_phase);
     paths.map(|path| TAU / path.period()).fold(0.0, f64::max)
 }
 
@@ -157,6 +161,20 @@ fn shortest_wave(x: &[f64], profile: &Spline) -> f64 {
         interval = interval.min(2.0 * half);
     }
     if curvature > 0.0 { (third / curvature).min(PI / interval) } else { 0.0 }
+}
+
+/// The largest ω at which M ω² = |k K*(ω)| + K for a body on the layer and its drive, rad/s; 0 without a body.
+fn body_frequency(scene: &Scene) -> f64 {
+    let along = |axis: Axis| {
+        let body = scene.carrier.along(axis)?;
+        let (link, masses) = (scene.link(axis.link()).unwrap_or_default(), scene.layer.masses as f64);
+        let stiffness = |omega: f64| {
+            let (storage, loss) = link.complex_stiffness(omega);
+            masses * storage.hypot(loss) + body.stiffness.unwrap_or(0.0)
+        };
+        Some(largest_balance(body.mass, stiffness))
+    };
+    Axis::ALL.into_iter().filter_map(along).fold(0.0, f64::max)
 }
 
 /// The largest ω at which m ω² = |K*(ω)|, rad/s, from above.

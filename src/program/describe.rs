@@ -3,10 +3,10 @@
 use asperity::model::{Model, RealArea, Reduction, Replaced, Replacement};
 use asperity::outputs::variables;
 use asperity::scene::{
-    Extrapolation, Friction, Initial, Layer, Link, LinkKind, Material, OutputGroup, Parameter, Path, Phase, RateShear,
-    Scene, Surface, Value, Wlf,
+    Axis, CarrierBody, CarrierInitial, Extrapolation, Force, Friction, Initial, Input, Layer, Link, LinkKind, Material,
+    OutputGroup, Parameter, Path, Phase, RateShear, Scene, Surface, Value, Wlf,
 };
-use asperity::simulation::{Simulation, SimulationError, Start};
+use asperity::simulation::{Simulation, SimulationError};
 use serde::Serialize;
 
 use super::cli::Describe;
@@ -14,6 +14,7 @@ use super::figure::Figure as _;
 use super::files::{FileError, check_outputs, load, print, sources};
 use super::foundation;
 use super::persson::Theory;
+use super::runner::start;
 use super::terminal::{LabelledLine, decimal, labelled, lines, rounded};
 
 /// `asperity describe` failed.
@@ -48,7 +49,7 @@ fn json(scene: &Scene) -> Result<String, DescribeError> {
 }
 
 fn text(scene: &Scene) -> Result<String, DescribeError> {
-    let simulation = Simulation::new(scene, &Start::default())?;
+    let simulation = Simulation::new(scene, &start(scene, 0.0))?;
     let title = scene.description.as_ref().map_or_else(|| scene.name.clone(), |text| format!("{}: {text}", scene.name));
     let memory = ("Memory", format!("{} bytes a run", simulation.bytes()));
     Ok(lines(&[vec![("Scene", title)], rows(scene), vec![memory]].concat()))
@@ -68,7 +69,8 @@ pub(super) fn rows(scene: &Scene) -> Vec<LabelledLine> {
     rows.extend(labelled("Outputs", OutputGroup::ALL.map(|group| outputs(scene, group))));
     rows.push(("Solver", solver(scene)));
     rows.extend(reduction(scene));
-    rows.push(("Input", input(scene).into()));
+    rows.extend(carrier(scene));
+    rows.push(("Input", input(scene)));
     rows.extend(excitation(scene));
     rows
 }
@@ -355,11 +357,38 @@ fn replaced_element(one: &Replaced, stiffness: f64) -> String {
     )
 }
 
-fn input(scene: &Scene) -> &'static str {
-    match scene.extrapolation {
-        Extrapolation::Linear => "u, w; values without rates continue at their last rate (linear)",
-        Extrapolation::Hold => "u, w; values without rates are reached at the end of the step (hold)",
+fn input(scene: &Scene) -> String {
+    let names: Vec<_> = scene.inputs().into_iter().map(Input::name).collect();
+    let rule = match scene.extrapolation {
+        Extrapolation::Linear => "values without rates continue at their last rate (linear)",
+        Extrapolation::Hold => "values without rates are reached at the end of the step (hold)",
+    };
+    format!("{}; {rule}", names.join(", "))
+}
+
+/// The axes along which the carrier is a body.
+fn carrier(scene: &Scene) -> Vec<LabelledLine> {
+    let bodies = Axis::ALL.into_iter().filter_map(|axis| Some((axis, scene.carrier.along(axis)?)));
+    labelled("Carrier", bodies.map(|(axis, body)| body_text(axis, body)))
+}
+
+fn body_text(axis: Axis, body: &CarrierBody) -> String {
+    let mut text = format!("a body along {}: {} kg", axis.name(), number(body.mass));
+    let parts = [
+        (body.load, "load", "N"),
+        (body.pull, "pull", "N"),
+        (body.stiffness, "spring to the drive", "N/m"),
+        (body.damping, "damper to the drive", "N s/m"),
+        (body.start, "start", "m"),
+        (body.start_rate, "start rate", "m/s"),
+    ];
+    for (value, name, unit) in parts {
+        text += &value.map_or_else(String::new, |value| format!(", {name} {} {unit}", number(value)));
     }
+    if body.initial == CarrierInitial::Equilibrium {
+        text += ", from equilibrium";
+    }
+    text
 }
 
 fn excitation(scene: &Scene) -> Vec<LabelledLine> {
@@ -370,7 +399,11 @@ fn excitation(scene: &Scene) -> Vec<LabelledLine> {
 }
 
 fn phase_text(number_of: usize, phase: &Phase) -> String {
-    let motion = path_text("u", &phase.u) + &path_text("w", &phase.w);
+    let motion = path_text("u", "m", &phase.u) + &path_text("w", "m", &phase.w);
+    let forces = force_text("load", "N", &phase.load) + &force_text("pull", "N", &phase.pull);
+    let pressure = phase.pressure.map_or_else(String::new, |pressure| force_text("pressure", "Pa", &pressure));
+    let temperature = phase.temperature.map_or_else(String::new, |kelvin| format!(", at {} K", number(kelvin)));
+    let motion = motion + &forces + &pressure + &temperature;
     let motion = if motion.is_empty() { ", at rest".into() } else { motion };
     let end = match (phase.until_force, phase.until_pressure) {
         (Some(force), _) => format!(", until F_z = {} N", number(force)),
@@ -380,13 +413,18 @@ fn phase_text(number_of: usize, phase: &Phase) -> String {
     format!("{number_of}  {} s{motion}{end}", number(phase.duration))
 }
 
-fn path_text(name: &str, path: &Path) -> String {
+fn force_text(name: &str, unit: &str, force: &Force) -> String {
+    let start = force.start.map_or_else(String::new, |start| format!(", {name} from {} {unit}", number(start)));
+    start + &path_text(name, unit, &force.change)
+}
+
+fn path_text(name: &str, unit: &str, path: &Path) -> String {
     let mut text = String::new();
     if path.rate != 0.0 {
-        text += &format!(", {name} at {} m/s", number(path.rate));
+        text += &format!(", {name} at {} {unit}/s", number(path.rate));
     }
     if path.amplitude != 0.0 {
-        text += &format!(", {name} by {} m at {} Hz", number(path.amplitude), number(path.frequency));
+        text += &format!(", {name} by {} {unit} at {} Hz", number(path.amplitude), number(path.frequency));
     }
     text
 }

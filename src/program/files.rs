@@ -5,7 +5,7 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
-use asperity::scene::{ParameterError, Scene, SceneError};
+use asperity::scene::{EXCITATION, ParameterError, Scene, SceneError};
 
 use super::terminal::warn;
 
@@ -50,7 +50,10 @@ pub(crate) fn load(path: &Path) -> Result<Scene, FileError> {
 
 /// Overrides parameters as `--set` gives them, then checks the scene as a whole.
 pub(crate) fn set_parameters(scene: &mut Scene, set: &[(String, String)]) -> Result<(), FileError> {
-    set.iter().try_for_each(|(key, value)| scene.set_by_name(key, value))?;
+    set.iter().try_for_each(|(key, value)| match key.starts_with(EXCITATION) {
+        true => scene.set_excitation(key, value),
+        false => scene.set_by_name(key, value),
+    })?;
     Ok(scene.check()?)
 }
 

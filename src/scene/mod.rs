@@ -35,7 +35,7 @@ use values::Word;
 
 pub use carrier::{Axis, CarrierBodies, CarrierBody, CarrierInitial, Input};
 pub use error::{ParameterError, Problem, SceneError};
-pub use excitation::{Force, Path, Phase};
+pub use excitation::{EXCITATION, Force, Path, Phase};
 pub use fine_roughness::FineRoughness;
 pub use foundation::{Body, Foundation, FoundationKind, Quality, Stiffness, Wave, Waves};
 pub use material::{Material, PronyTerm, Wlf, complex_stiffness};

@@ -403,6 +403,8 @@ impl Simulation {
     /// ā x/(eˣ - 1) of it are left, x = T/τ. So much is taken off: all of ā for an element slower than T, nothing for a
     /// fast one. Where masses touch and lift, e follows the dashpots a little, and a second time is needed.
     ///
+    /// A body along z moves to where springs bear that force in their place.
+    ///
     /// The energies since the start no longer balance.
     pub fn relax_dashpots(&mut self, means: &[f64], time: f64) -> f64 {
         self.run.relax_dashpots(means, time)

@@ -82,7 +82,8 @@ fn difference(scenes: [&Scene; 2], both: [&[Vec<f64>]; 2], name: &str) -> f64 {
     largest(a.iter().zip(&b).map(|(a, b)| a - b))
 }
 
-const SLIDE_START: Start = Start { time: 0.0, u: 0.0, w: -2e-6, u_rate: 0.5, w_rate: 0.0, load: 0.0, pull: 0.0, temperature: None };
+const SLIDE_START: Start =
+    Start { time: 0.0, u: 0.0, w: -2e-6, u_rate: 0.5, w_rate: 0.0, load: 0.0, pull: 0.0, temperature: None };
 
 fn slide() -> Motion {
     Motion { duration: 2e-3, u: Path { rate: 0.5, ..Path::default() }, w: Path::default(), ..Motion::default() }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use asperity::element::{Element, Load, OperatingPoint, PointContact, SweepGrid};
 use asperity::outputs::{Output, Variable, variable};
-use asperity::scene::{Initial, Input, OutputGroup, Parameter, Path as Displacement, Scene, Value};
+use asperity::scene::{CarrierBodies, Initial, Input, OutputGroup, Parameter, Path as Displacement, Scene, Value};
 use asperity::simulation::{Motion, Simulation, Start};
 use rayon::prelude::*;
 
@@ -41,7 +41,8 @@ pub(crate) enum CheckError {
 
 /// Compares the layer and the element, writes the results beside the FMU and summarises them.
 pub(super) fn check(command: &Pack, contact: &PointContact, scene: &Path) -> Result<Vec<LabelledLine>, CheckError> {
-    let scene = files::load(scene)?;
+    // The element's w is given: what the table was swept on is held by its displacement here.
+    let scene = Scene { carrier: CarrierBodies::default(), ..files::load(scene)? };
     let (swept, load) = (&contact.table().scene, contact.table().load);
     if scene.name != *swept {
         terminal::warn(&format!("--check: the table is of {swept}, the scene is {}", scene.name));

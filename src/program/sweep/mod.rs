@@ -28,6 +28,8 @@ use values::Values;
 /// `asperity sweep` failed, or not all of its points are steady.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum SweepError {
+    #[error("the scene has [carrier.x]; expected none, since a sweep prescribes the speed")]
+    BodyAlongX,
     #[error(transparent)]
     File(#[from] FileError),
     #[error(transparent)]
@@ -70,6 +72,9 @@ fn merge(command: &Sweep, output: &Path) -> Result<(), SweepError> {
 fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepError> {
     let mut scene = load(path)?;
     set_parameters(&mut scene, &command.set)?;
+    if scene.carrier.x.is_some() {
+        return Err(SweepError::BodyAlongX);
+    }
     let (load, loads) = loads(command, &scene)?;
     let grid = SweepGrid { speeds: speeds.0.clone(), loads, temperatures: temperatures(command, &scene)? };
     let output = command.output.clone().unwrap_or_else(|| default_output(path));
@@ -96,7 +101,8 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepErr
 fn basis(scene: &Scene, convergence: Option<String>) -> Basis {
     let foundation = scene.layer.foundation.map(|kind| kind.word().to_owned());
     let real_area = scene.friction.as_ref().and_then(|friction| friction.real_area).map(|area| area.describe());
-    Basis { foundation, real_area, convergence }
+    let held = scene.carrier.z.map(|body| format!("load, on a carrier of {} kg", body.mass));
+    Basis { foundation, real_area, convergence, held }
 }
 
 /// Computes the points that are not done yet, on all cores.

@@ -7,6 +7,10 @@
 //! blocks are the window, judged as in [`steady`](super::steady). Where the mean of F_z differs from the load, w moves
 //! again, and a new window begins.
 //!
+//! Where the carrier is a body along z, its load is constant in place of w: it starts at equilibrium, nothing is searched, and
+//! after each block the dashpots move as before and the carrier with them. A window counts once the carrier's inertia bears
+//! next to nothing of the load in its mean.
+//!
 //! A point is independent of the others, so a table is the same in whatever order and on however many machines it is
 //! computed.
 //!
@@ -14,7 +18,7 @@
 
 use asperity::element::{OperatingPoint, Quantity, STEADY, TableHeader, TableRow};
 use asperity::model::{LinkKind, Model};
-use asperity::scene::Scene;
+use asperity::scene::{CarrierBodies, CarrierBody, CarrierInitial, Scene};
 use asperity::simulation::SimulationError;
 
 use super::load_search::LoadSearch;
@@ -169,6 +173,8 @@ struct Search<'a> {
     distance: f64,
     slide: Slide,
     load: LoadSearch,
+    /// Mass of the carrier whose load is held, kg; `None` where w is.
+    body: Option<f64>,
     runs: u32,
     /// Distance of the slides before the present one, m.
     distance_before: f64,
@@ -176,17 +182,29 @@ struct Search<'a> {
 
 /// Steady sliding of the layer of `scene` at `speed` (m/s) under the force `load` (N).
 pub(super) fn sliding(scene: &Scene, speed: f64, load: f64, bounds: Bounds) -> PointResult {
+    let loaded = under_load(scene, load);
+    let scene = &loaded;
     let load = LoadSearch::estimated(load, scene, &Model::new(scene));
     let search = Search::new(scene, Blocks::new(scene, speed), bounds, load);
     search.and_then(Search::finish).unwrap_or_else(|error| PointResult::failed(error.to_string()))
 }
 
-/// Steady sliding, and the tangential stiffness at its start.
+/// The scene with the force `load` (N) as the constant load of a carrier that is a body, from equilibrium.
+fn under_load(scene: &Scene, load: f64) -> Scene {
+    let mut scene = scene.clone();
+    if let Some(body) = &mut scene.carrier.z {
+        *body = CarrierBody { load: Some(load), start: None, initial: CarrierInitial::Equilibrium, ..*body };
+    }
+    scene
+}
+
+/// Steady sliding, and the tangential stiffness at its start, w held.
 pub(super) fn find(scene: &Scene, speed: f64, load: f64, bounds: Bounds) -> PointResult {
     let result = sliding(scene, speed, load, bounds);
     if result.sliding.is_none() {
         return result;
     }
+    let scene = &Scene { carrier: CarrierBodies::default(), ..scene.clone() };
     let model = Model::new(scene);
     let (load, blocks) = (LoadSearch::estimated(load, scene, &model), Blocks::new(scene, speed));
     let stiffness = model.links[LinkKind::Vertical as usize].stiffness;
@@ -203,8 +221,9 @@ pub(super) fn find(scene: &Scene, speed: f64, load: f64, bounds: Bounds) -> Poin
 impl<'a> Search<'a> {
     fn new(scene: &'a Scene, blocks: Blocks, bounds: Bounds, load: LoadSearch) -> Result<Self, SimulationError> {
         let distance = bounds.distance.unwrap_or(BLOCKS * blocks.length);
-        let slide = Slide::new(scene, blocks, load.w)?;
-        Ok(Self { scene, blocks, error: bounds.error, distance, slide, load, runs: 1, distance_before: 0.0 })
+        let body = scene.carrier.z.map(|body| body.mass);
+        let slide = Slide::new(scene, blocks, if body.is_some() { 0.0 } else { load.w })?;
+        Ok(Self { scene, blocks, error: bounds.error, distance, slide, load, body, runs: 1, distance_before: 0.0 })
     }
 
     /// Presses, then averages at one w after the other until a window is steady and has the load.
@@ -216,8 +235,7 @@ impl<'a> Search<'a> {
                 let status = format!("not steady: no room for {FEWEST} blocks of {} m", self.blocks.length);
                 return Ok(PointResult::failed(status));
             };
-            let deviation = average.load.mean / self.load.target - 1.0;
-            let pressed = average.steady && deviation.abs() <= LOAD;
+            let pressed = average.steady && self.deviation(&average.means).abs() <= LOAD;
             if pressed || !self.has_room(RAMP + CALM + FEWEST as f64) {
                 return Ok(self.result(&average));
             }
@@ -234,8 +252,7 @@ impl<'a> Search<'a> {
             }
             let means = self.slide.block()?;
             let maxwell = self.slide.relax();
-            let near = |force: f64| force.abs() <= NEAR * self.load.target;
-            if near(means.load - self.load.target) && near(maxwell) {
+            if self.deviation(&means).abs() <= NEAR && maxwell.abs() <= NEAR * self.load.target {
                 return Ok(Some(means));
             }
             self.correct(means.load, maxwell)?;
@@ -243,11 +260,19 @@ impl<'a> Search<'a> {
         Ok(None)
     }
 
-    /// Changes w where F_z was `force`, of which the Maxwell elements bore `maxwell` (N). On a profile that ends, a new
-    /// slide begins where no room is left.
+    /// How far F_z is from the load in the mean, as a share of it: where that is held, what the carrier's inertia bears.
+    fn deviation(&self, means: &BlockMeans) -> f64 {
+        match self.body {
+            Some(mass) => mass * means.acceleration / self.load.target,
+            None => means.load / self.load.target - 1.0,
+        }
+    }
+
+    /// Changes w where F_z was `force`, of which the Maxwell elements bore `maxwell` (N), or lets a carrier under its load come
+    /// to rest. On a profile that ends, a new slide begins where no room is left.
     fn correct(&mut self, force: f64, maxwell: f64) -> Result<(), SimulationError> {
-        let change = self.load.change(force, maxwell);
-        self.runs += 1;
+        let change = if self.body.is_some() { 0.0 } else { self.load.change(force, maxwell) };
+        self.runs += u32::from(self.body.is_none());
         if !self.slide.has_room(RAMP + CALM + FEWEST as f64) {
             return self.restart();
         }
@@ -258,7 +283,8 @@ impl<'a> Search<'a> {
     /// A new slide from the start of a profile that ends.
     fn restart(&mut self) -> Result<(), SimulationError> {
         self.distance_before += self.slide.distance();
-        self.slide = Slide::new(self.scene, self.blocks, self.load.w)?;
+        let w = if self.body.is_some() { 0.0 } else { self.load.w };
+        self.slide = Slide::new(self.scene, self.blocks, w)?;
         self.slide.press(RAMP + CALM, 0.0)
     }
 
@@ -301,7 +327,7 @@ impl<'a> Search<'a> {
         let means = &average.means;
         let [damper, maxwell, friction, impact] = means.power;
         let sliding = SteadySliding {
-            w: self.load.w,
+            w: if self.body.is_some() { means.w } else { self.load.w },
             force_z: means.load,
             friction: Friction::new(means),
             friction_error: average.friction.error,
@@ -315,7 +341,7 @@ impl<'a> Search<'a> {
     }
 
     fn status(&self, average: &Average) -> String {
-        let deviation = average.load.mean / self.load.target - 1.0;
+        let deviation = self.deviation(&average.means);
         let distance = self.distance_before + self.slide.distance();
         if !average.steady {
             let error = average.friction.error / average.friction.mean.abs().max(SMALL);

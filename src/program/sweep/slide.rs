@@ -46,6 +46,10 @@ pub(super) struct BlockMeans {
     pub(super) contact: f64,
     /// Power lost in dampers, Maxwell elements, friction and impacts, W; none for a channel that the scene cannot have.
     pub(super) power: [Option<f64>; 4],
+    /// Displacement of the carrier, m.
+    pub(super) w: f64,
+    /// Change of the carrier's speed along z over the time, m/s².
+    pub(super) acceleration: f64,
 }
 
 impl BlockMeans {
@@ -61,6 +65,8 @@ impl BlockMeans {
             adhesion: of(&|means| means.adhesion),
             contact: of(&|means| means.contact),
             power: [0, 1, 2, 3].map(power),
+            w: of(&|means| means.w),
+            acceleration: of(&|means| means.acceleration),
         }
     }
 }
@@ -157,18 +163,21 @@ impl Slide {
         })
     }
 
-    /// Slides over one block with w held.
+    /// Slides over one block with w held, or the load on the carrier.
     pub(super) fn block(&mut self) -> Result<BlockMeans, SimulationError> {
         let duration = self.blocks.length / self.blocks.speed;
         let motion = Motion { duration, u: rate(self.blocks.speed), w: Path::default(), ..Motion::default() };
         let (mut values, mut sums) = (vec![0.0; self.sampled.len()], vec![0.0; self.sampled.len()]);
         self.elongations.fill(0.0);
-        let before = self.energies();
+        let (before, rate_before) = (self.energies(), self.simulation.snapshot().carrier.w_rate);
+        let (mut w, mut w_rate) = (0.0, 0.0);
         let (sampled, elongations) = (&self.sampled, &mut self.elongations);
         self.simulation.advance_observed(&motion, None, &self.times, |_, snapshot| {
             snapshot.evaluate(sampled, &mut values);
             add(&mut sums, &values);
             add(elongations, &snapshot.state.maxwell);
+            w += snapshot.displacement.1;
+            w_rate = snapshot.carrier.w_rate;
         })?;
         self.slid += 1.0;
         let share = 1.0 / f64::from(self.blocks.samples);
@@ -177,7 +186,16 @@ impl Slide {
         let mean = |i: usize| Some((gain[i]? - before[i]?) / duration);
         let [load, hysteresis, adhesion, contact] = [0, 1, 2, 3].map(|i| sums[i]);
         let (drag, power) = (mean(0).unwrap_or(0.0) / self.blocks.speed, [1, 2, 3, 4].map(mean));
-        Ok(BlockMeans { drag, load, hysteresis: -hysteresis, adhesion: -adhesion, contact, power })
+        Ok(BlockMeans {
+            drag,
+            load,
+            hysteresis: -hysteresis,
+            adhesion: -adhesion,
+            contact,
+            power,
+            w: share * w,
+            acceleration: (w_rate - rate_before) / duration,
+        })
     }
 
     /// Moves the slow dashpots to where they will be in steady motion, by the means of the last block. Returns what the
