@@ -98,7 +98,7 @@ impl SideBySide {
     }
 }
 
-/// A run over time: forces, contacts and energy lost, collected row by row.
+/// A run over time: forces, the speed of a carrier that is a body, contacts and energy lost, collected row by row.
 #[derive(Debug)]
 pub(crate) struct History {
     scene: Scene,
@@ -110,8 +110,11 @@ pub(crate) struct History {
 /// A chart of a run: the quantity, its unit, and which outputs it shows.
 type RunPanel = (&'static str, &'static str, fn(&Output) -> bool);
 
-const RUN_PANELS: [RunPanel; 3] = [
-    ("force on the carrier", "N", |output| matches!(output, Output::ForceX | Output::ForceZ)),
+const RUN_PANELS: [RunPanel; 4] = [
+    ("force on the carrier", "N", |output| {
+        matches!(output, Output::ForceX | Output::ForceZ | Output::DriveX | Output::DriveZ)
+    }),
+    ("speed of the carrier", "m/s", |output| matches!(output, Output::CarrierURate | Output::CarrierWRate)),
     ("masses", "", |output| matches!(output, Output::ContactCount | Output::StickingCount)),
     ("energy lost", "J", |output| {
         use Output::{DamperEnergy, DissipatedEnergy, FrictionEnergy, ImpactEnergy, MaxwellEnergy};
@@ -123,6 +126,7 @@ impl History {
     pub(crate) fn new(scene: &Scene) -> Self {
         let shows = |group: &OutputGroup| {
             matches!(group, OutputGroup::Forces | OutputGroup::Contact | OutputGroup::Dissipation)
+                || (*group == OutputGroup::Carrier && scene.carrier.any())
                 || scene.outputs.contains(group)
         };
         let scene = Scene { outputs: OutputGroup::ALL.into_iter().filter(shows).collect(), ..scene.clone() };
@@ -141,6 +145,11 @@ impl History {
         snapshot.evaluate(&self.variables, &mut values);
         self.times.push(time);
         self.rows.push(values);
+    }
+
+    /// The panels that have something to show: no carrier that is prescribed.
+    fn panels(&self) -> impl Iterator<Item = &'static RunPanel> {
+        RUN_PANELS.iter().filter(|(_, _, shows)| self.variables.iter().any(|variable| shows(&variable.output)))
     }
 
     fn chart(&self, &(quantity, unit, shows): &RunPanel) -> Chart {
@@ -162,7 +171,7 @@ impl History {
 
 impl Figure for History {
     fn size(&self) -> (u32, u32) {
-        (1000, 1080)
+        (1000, 360 * self.panels().count() as u32)
     }
 
     fn title(&self) -> &str {
@@ -170,8 +179,8 @@ impl Figure for History {
     }
 
     fn draw<B: Backend>(&self, canvas: &Canvas<B>) -> DrawResult {
-        let canvases = canvas.split_evenly((RUN_PANELS.len(), 1));
-        RUN_PANELS.iter().zip(&canvases).try_for_each(|(panel, canvas)| self.chart(panel).draw_with_legend(canvas))
+        let canvases = canvas.split_evenly((self.panels().count(), 1));
+        self.panels().zip(&canvases).try_for_each(|(panel, canvas)| self.chart(panel).draw_with_legend(canvas))
     }
 }
 

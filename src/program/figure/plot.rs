@@ -107,6 +107,8 @@ fn unit(column: &str) -> &'static str {
     match column {
         "time" => "s",
         "u" | "w" => "m",
+        "load" | "pull" => "N",
+        "temperature" => "K",
         _ => unit_of(column).map(|unit| unit.name()).filter(|&name| name != "1").unwrap_or_default(),
     }
 }
