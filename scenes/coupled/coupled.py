@@ -2,10 +2,10 @@
 
     coupled.py FOLDER [--quick]
 
-FOLDER holds body.fmu, smooth.fmu and rough.fmu (see run.sh); tables and picture go there. Three cases: `smooth`, the
-body on a layer; `pair`, the body between two such layers; `rough`, with friction and loss of contact. The first two are
-compared with the equations of the whole system solved by scipy; the last with the iterated master at a far shorter
-step.
+FOLDER holds body.fmu and the layers' FMUs (see run.sh); tables and picture go there. Four cases: `smooth`, the body on a
+layer; `pair`, the body between two such layers; `stuck`, on masses that stick; `rough`, with friction and loss of
+contact. The first two are compared with the equations of the whole system solved by scipy; the third with inside.fmu,
+in which the same body is the layer's own carrier; the last with the iterated master at a far shorter step.
 """
 
 import argparse
@@ -23,7 +23,7 @@ from matplotlib.ticker import EngFormatter
 from body import PARAMETERS
 from master import METHODS, Master
 from monolith import System
-from slaves import Body
+from slaves import Body, Slave
 
 # The same picture, the same bytes.
 plt.rcParams.update({"svg.hashsalt": "coupled", "svg.fonttype": "none"})
@@ -48,13 +48,34 @@ class Case:
         if self.scene == "smooth":
             body = {name: start for name, (start, _) in PARAMETERS.items()} | self.body
             return System(HERE / "smooth.toml", self.mirrored, body).solve(SETTLE, times, 1e-7)
+        if self.scene == "stuck":
+            return inside(folder, times)
         fine = 4 * (len(times) - 1)
         return run(self, folder, "newton", True, fine)[0][::4]
+
+
+def inside(folder: Path, times: np.ndarray) -> np.ndarray:
+    """u and w at the times with the body inside the layer's FMU, its force in straight pieces of a tenth of a step."""
+    values = {name: start for name, (start, _) in PARAMETERS.items()}
+    pull = values["load_x"] * np.sin(2 * np.pi * values["frequency"] * np.linspace(times[0], times[-1], 10 * len(times) - 9))
+    slave = Slave(folder / "inside.fmu")
+    slave.start(times[0])
+    h = (times[1] - times[0]) / 10
+    places = [slave.get(("carrier.u", "carrier.w"))]
+    for i, (start, end) in enumerate(zip(pull, pull[1:])):
+        slave.set(("pull",), [start])
+        slave.fmu.setRealInputDerivatives(slave.find(("pull",)), [1], [(end - start) / h])
+        slave.step(times[0] + i * h, h)
+        if i % 10 == 9:
+            places.append(slave.get(("carrier.u", "carrier.w")))
+    slave.close()
+    return np.array(places)
 
 
 CASES = [
     Case("smooth", "smooth", [False]),
     Case("pair", "smooth", [False, True], {"load_z": 0.5}),
+    Case("stuck", "stuck", [False]),
     Case("rough", "rough", [False], {"load_x": 2.0}),
 ]
 
@@ -166,7 +187,7 @@ def main():
     check_balance(folder)
     counts = [50, 100, 200] if quick else [25, 50, 100, 200, 400, 800]
     h, tables = [DURATION / n for n in counts], {}
-    for case in CASES[:2] if quick else CASES:
+    for case in CASES[:3] if quick else CASES:
         errors, defects = tables[case.name] = measure(case, folder, counts)
         write(folder / f"{case.name}.errors.csv", h, errors)
         write(folder / f"{case.name}.defects.csv", h, defects)

@@ -15,7 +15,7 @@ mkdir -p "$folder"
 folder=$(cd "$folder" && pwd)
 
 python=$("$root/tests/python/environment.sh" "$folder/venv" "$here/requirements.txt")
-for scene in smooth rough; do
+for scene in smooth stuck inside rough; do
     "$root/build-fmu.sh" "$here/$scene.toml" -o "$folder/$scene.fmu"
 done
 "$python" -m pythonfmu build -f "$here/body.py" -d "$folder/body.fmu" --handle-state

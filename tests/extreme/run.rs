@@ -123,6 +123,8 @@ pub fn by_library(case: &Case, method: &str, tight: f64) -> Outcome {
     let start = Start {
         u_rate: first.map_or(0.0, |phase| phase.u.velocity(0.0)),
         w_rate: first.map_or(0.0, |phase| phase.w.velocity(0.0)),
+        load: scene.first_load(),
+        pull: scene.first_pull(),
         ..case.start
     };
     let mut watch = Watch::new(&scene, case.undamped);
@@ -132,7 +134,9 @@ pub fn by_library(case: &Case, method: &str, tight: f64) -> Outcome {
     };
     watch.look(&simulation.snapshot());
     for phase in &scene.excitation {
-        let motion = Motion { duration: phase.duration, u: phase.u, w: phase.w, ..Motion::default() };
+        let load = phase.load(scene.layer.area());
+        let motion =
+            Motion { duration: phase.duration, u: phase.u, w: phase.w, load, pull: phase.pull, ..Motion::REST };
         let rows: Vec<f64> = (1..=case.rows)
             .map(|i| if i == case.rows { phase.duration } else { phase.duration * f64::from(i) / f64::from(case.rows) })
             .collect();

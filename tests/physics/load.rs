@@ -88,3 +88,28 @@ fn by_the_other_methods() {
         }
     }
 }
+
+/// M Δẇ = ∫(F_z - N + R_z) dt, also where masses that settle at the ends of time steps pass impulses on.
+#[test]
+fn momentum_is_kept() {
+    let case = &CASES[2];
+    for (method, tolerance) in [("event", "1e-6"), ("step", "1e-3")] {
+        let folder = scratch(&format!("load-momentum-{method}"));
+        let settings = [format!("solver.method={method}"), format!("solver.relative_tolerance={tolerance}")];
+        let options = ["--set", &settings[0], "--set", &settings[1], "--points", "4000"];
+        let found = simulate(&case.scene(), &folder, &options);
+        let [time, force, drive, rate, load] =
+            ["time", "F_z", "carrier.drive_z", "carrier.w_rate", "load"].map(|name| found.column(name));
+        let (mut impulse, mut worst) = (0.0, 0.0_f64);
+        for i in 1..time.len() {
+            // A row at a jump holds the load before it.
+            let load = 0.02 + load[i];
+            let mean = 0.5 * (force[i - 1] + force[i] + drive[i - 1] + drive[i]) - load;
+            impulse += (time[i] - time[i - 1]) * mean;
+            worst = worst.max((2e-4 * (rate[i] - rate[0]) - impulse).abs());
+        }
+        // Forces jump at impacts, within intervals of 1e-6 s at most: 1e-3 of the momentum.
+        let momentum = 2e-4 * largest(&rate);
+        assert!(worst < 2e-3 * momentum, "{method}: {worst:e} of {momentum:e}");
+    }
+}

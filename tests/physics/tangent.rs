@@ -4,7 +4,7 @@
 use std::path::Path as FilePath;
 
 use asperity::outputs::{Variable, variables};
-use asperity::scene::{Path, Scene};
+use asperity::scene::{Force, Path, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
 
 /// Six masses, rough on rough, Maxwell elements in all links.
@@ -151,4 +151,61 @@ fn a_short_motion_meets_the_glassy_stiffness_and_the_damper_over_the_step() {
     // The relaxation over 1e-10 s against 1e-6 s leaves 1e-4 of a part of the stiffness.
     assert!((x / (-6.0 * (1.6e3 + 5e-3 / h)) - 1.0).abs() < 1e-4);
     assert!((z / (-6.0 * (3.5e3 + 8e-3 / h)) - 1.0).abs() < 1e-4);
+}
+
+/// The same for a carrier that is a body along both axes: by every input, of the forces and of its own motion.
+#[test]
+fn by_every_input_of_a_body() {
+    let text = "name = 'bodies'
+        layer = { masses = 5, spacing = 1e-4, mass = 1e-7,
+                  vertical = { stiffness = 2e3, damping = 8e-3, maxwell = [{ stiffness = 1e3, relaxation_time = 1e-4 }] },
+                  horizontal = { stiffness = 1e3, damping = 5e-3 }, lateral_x = { stiffness = 5e2, damping = 2e-3 },
+                  lateral_z = { stiffness = 3e2 } }
+        surface = { kind = 'sinusoid', amplitude = 2e-6, wavelength = 3.3e-4 }
+        friction = { coulomb = 0.3 }
+        carrier.x = { mass = 1e-4, stiffness = 800.0, damping = 0.02 }
+        carrier.z = { mass = 2e-4, stiffness = 300.0, damping = 0.2, load = 0.05, initial = 'equilibrium' }
+        solver.relative_tolerance = 1e-10
+        fmu.outputs = ['forces', 'carrier', 'tangent', 'solver']";
+    let scene = Scene::parse(text, FilePath::new("scene.toml")).unwrap();
+    let force = |rate| Force { start: None, change: Path { rate, ..Path::default() } };
+    let names = ["F_x", "F_z", "carrier.u", "carrier.u_rate", "carrier.w", "carrier.w_rate", "solver.events"];
+    let tangents = |by: &str| {
+        ["F_x", "F_z", "carrier_u", "carrier_u_rate", "carrier_w", "carrier_w_rate"]
+            .map(|of| format!("tangent.d{of}_d{by}"))
+    };
+    // Sticking, then slipping: with the drive far ahead.
+    for (ahead, some_free) in [(1e-5, false), (3e-4, false), (3e-4, true)] {
+        let lift = if some_free { -0.045 } else { 0.0 };
+        let run = Run::new(
+            &scene,
+            &[straight(1e-3, ahead / 1e-3, 0.0), Motion { load: force(lift / 1e-4), ..straight(1e-4, 0.02, 0.0) }],
+        );
+        for duration in [1e-7, 1e-5] {
+            let motion = straight(duration, 0.02, 1e-3);
+            for (by, moved) in [("u", 1e-9), ("w", 1e-9), ("load", 1e-6), ("pull", 1e-6)] {
+                let tangents = tangents(by);
+                let found = run.after(&motion, [0, 1, 2, 3, 4, 5].map(|i| tangents[i].as_str()));
+                let shifted = |sign: f64| {
+                    let mut motion = motion;
+                    let rate = sign * moved / duration;
+                    match by {
+                        "u" => motion.u.rate += rate,
+                        "w" => motion.w.rate += rate,
+                        "load" => motion.load = force(rate),
+                        _ => motion.pull = force(rate),
+                    }
+                    run.after(&motion, names)
+                };
+                let (up, down) = (shifted(1.0), shifted(-1.0));
+                assert_eq!(up[6], down[6], "a mode has changed");
+                for (i, found) in found.into_iter().enumerate() {
+                    let quotient = (up[i] - down[i]) / (2.0 * moved);
+                    // The runs' tolerance of 1e-10 of their values over what the input is changed by; a profile that bends.
+                    let allowed = 1e-4 * quotient.abs() + 1e-9 * up[i].abs() / moved;
+                    assert!((found - quotient).abs() <= allowed, "{} by {by}: {found} {quotient}", names[i]);
+                }
+            }
+        }
+    }
 }

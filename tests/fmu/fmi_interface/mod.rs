@@ -1,5 +1,6 @@
 //! The FMU driven through its C functions, as a master drives it.
 
+mod carrier;
 mod derivatives;
 mod element;
 mod failures;
