@@ -55,8 +55,26 @@ fn no_fault_is_found_in_the_shipped_scenes() {
 #[test]
 fn no_fault_is_found_with_every_output_group_and_with_none() {
     let folder = scratch("fmpy-groups");
-    validate(&pack(&scene_with_groups(&folder, &OutputGroup::ALL.map(OutputGroup::name)), &folder));
+    let groups: Vec<_> = OutputGroup::ALL.into_iter().filter(|group| *group != OutputGroup::Carrier).collect();
+    let groups: Vec<_> = groups.into_iter().map(OutputGroup::name).collect();
+    validate(&pack(&scene_with_groups(&folder, &groups), &folder));
     validate(&pack(&scene_with_groups(&folder, &[]), &folder));
+}
+
+/// With every group, every input and every unit that a carrier's body brings.
+#[test]
+fn no_fault_is_found_with_bodies() {
+    let folder = scratch("fmpy-bodies");
+    let scene = fs::read_to_string(root().join("tests/reference/load/bouncing-load.toml")).unwrap();
+    let all = OutputGroup::ALL.map(|group| format!("\"{}\"", group.name())).join(", ");
+    let asked =
+        "outputs = [\"forces\", \"carrier\", \"dissipation\", \"friction\", \"contact\", \"energy\", \"solver\"]";
+    assert!(scene.contains(asked));
+    let body = "[carrier.x]\nmass = 1e-4\nstiffness = 1e3\npull = 0.0\nstart = 0.0\nstart_rate = 0.0\n[carrier.z]";
+    let scene = scene.replace(asked, &format!("outputs = [{all}]")).replace("[carrier.z]", body);
+    let path = folder.join("bodies.toml");
+    fs::write(&path, scene).unwrap();
+    validate(&pack(&path, &folder));
 }
 
 #[test]

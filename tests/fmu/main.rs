@@ -23,3 +23,4 @@ mod masters;
 #[path = "../common/sweeps.rs"]
 #[allow(dead_code, reason = "shared by several tests")]
 mod sweeps;
+mod thermal;
