@@ -60,7 +60,9 @@ fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
     let friction = root.optional_table("friction", |table| read_friction(table, &surface))?;
     let solver = root.optional_table("solver", read_solver)?.unwrap_or_default();
     let wlf = material.as_ref().and_then(|material| material.wlf.as_ref());
-    let read_input = |table: &mut TableReader<'_>| read_input(table, wlf.is_some(), solver.reduce);
+    let read_input = |table: &mut TableReader<'_>| {
+        Ok((read_input(table)?, read_temperature_input(table, wlf.is_some(), solver.reduce)?))
+    };
     let (extrapolation, temperature_input) = root.optional_table("input", read_input)?.unwrap_or_default();
     let outputs = root.optional_table("fmu", |table| read_fmu(table, &carrier))?.unwrap_or_else(default_outputs);
     let excitation =
@@ -257,15 +259,19 @@ fn read_solver(table: &mut TableReader<'_>) -> Result<Solver> {
     })
 }
 
-fn read_input(table: &mut TableReader<'_>, has_wlf: bool, reduce: f64) -> Result<(Extrapolation, bool)> {
-    let extrapolation = table.optional_choice("extrapolation")?.unwrap_or_default();
-    let Some(entry) = table.entry("temperature") else { return Ok((extrapolation, false)) };
+fn read_input(table: &mut TableReader<'_>) -> Result<Extrapolation> {
+    Ok(table.optional_choice("extrapolation")?.unwrap_or_default())
+}
+
+/// Whether the temperature is an input.
+fn read_temperature_input(table: &mut TableReader<'_>, has_wlf: bool, reduce: f64) -> Result<bool> {
+    let Some(entry) = table.entry("temperature") else { return Ok(false) };
     match (entry.flag()?, has_wlf, reduce > 0.0) {
         (true, false, _) => Err(entry.refuse("false without [material.wlf], which says what a temperature does")),
         (true, _, true) => {
             Err(entry.refuse("false beside solver.reduce > 0, which leaves elements out for one temperature"))
         }
-        (input, _, _) => Ok((extrapolation, input)),
+        (input, _, _) => Ok(input),
     }
 }
 

@@ -59,7 +59,7 @@ const SCENES: [&str; 7] = [
     RUBBER,
 ];
 
-/// Two masses with all kinds of links, friction and outputs.
+/// Two masses with all kinds of links, friction and outputs, under a carrier that is a body.
 const EVERYTHING: &str = "
 name = 'everything'
 [layer]
@@ -79,6 +79,14 @@ periodic = true
 [friction]
 coulomb = 0.3
 shear_force = 1e-5
+[carrier.x]
+mass = 1e-6
+stiffness = 2e3
+damping = 1e-2
+[carrier.z]
+mass = 1e-6
+damping = 1e-1
+load = 1e-3
 ";
 
 /// Two masses of a material, with the adhesion that depends on speed and temperature.
@@ -87,6 +95,7 @@ layer = { masses = 2, spacing = 0.7e-4, thickness = 1e-3, width = 1e-2, roughnes
 material = { density = 1.1e3, poisson_ratio = 0.49, equilibrium_modulus = 2e6, viscosity = 10.0, \
     prony = [{ modulus = 5e6, relaxation_time = 1e-5 }], \
     wlf = { c1 = 7.52, c2 = 119.75, reference_temperature = 293.15, temperature = 313.15 } }
+input = { temperature = true }
 surface = { kind = 'sinusoid', amplitude = 1e-6, wavelength = 1e-4, points_per_wavelength = 8 }
 friction = { coulomb = 0.3, shear_strength = 1e4, \
     rate_shear = { strength = 1e5, reference_speed = 6e-3, sharpness = 0.1 } }
@@ -95,8 +104,10 @@ solver = { method = 'auto', relative_tolerance = 1e-3, max_steps = 30 }
 
 /// The text of a scene with all outputs; one without a name gets the missing tables, too.
 fn with_all_outputs(text: &str) -> String {
-    let groups: Vec<String> = OutputGroup::ALL.iter().map(|group| format!("'{}'", group.name())).collect();
     let base = if text.starts_with("name") { "" } else { EVERYTHING };
+    let shown = |group: &&OutputGroup| **group != OutputGroup::Carrier || base.contains("[carrier.");
+    let groups: Vec<String> =
+        OutputGroup::ALL.iter().filter(shown).map(|group| format!("'{}'", group.name())).collect();
     format!("{text}fmu = {{ outputs = [{}] }}\n{base}", groups.join(", "))
 }
 
