@@ -22,6 +22,7 @@ KNOWN = {
     "surface": {"x", "z", "periodic"},
     "friction": {"coulomb", "shear_force"},
     "phase": {"duration", "u", "w"},
+    "carrier": set(),
 }
 
 
@@ -29,6 +30,7 @@ def check(scene):
     """Refuses what is not null and not known."""
     tables = [("layer", scene["layer"]), ("surface", scene["surface"]), ("friction", scene["friction"] or {})]
     tables += [("phase", phase) for phase in scene["excitation"]]
+    tables.append(("carrier", scene["carrier"]))
     for name, table in tables:
         more = sorted(key for key, value in table.items() if value is not None and key not in KNOWN[name])
         if more:

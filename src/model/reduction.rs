@@ -137,7 +137,7 @@ fn smallest(mut candidates: Vec<Replaced>, allowed: f64) -> Vec<Replaced> {
 /// The highest frequency of the carrier's sines, rad/s.
 fn carrier_frequency(scene: &Scene) -> f64 {
     let area = scene.layer.area();
-    let of_phase = |phase: &Phase| [phase.u, phase.w, phase.load(area).change, phase.pull.change];
+    let of_phase = |phase: &Phase| [phase.u, phase.w, phase.load(area).change, phase.pull().change];
     let paths = scene.excitation.iter().flat_map(of_phase);
     paths.map(|path| TAU / path.period()).fold(0.0, f64::max)
 }

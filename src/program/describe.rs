@@ -400,7 +400,8 @@ fn excitation(scene: &Scene) -> Vec<LabelledLine> {
 
 fn phase_text(number_of: usize, phase: &Phase) -> String {
     let motion = path_text("u", "m", &phase.u) + &path_text("w", "m", &phase.w);
-    let forces = force_text("load", "N", &phase.load) + &force_text("pull", "N", &phase.pull);
+    let forces = phase.load.map_or_else(String::new, |load| force_text("load", "N", &load))
+        + &phase.pull.map_or_else(String::new, |pull| force_text("pull", "N", &pull));
     let pressure = phase.pressure.map_or_else(String::new, |pressure| force_text("pressure", "Pa", &pressure));
     let temperature = phase.temperature.map_or_else(String::new, |kelvin| format!(", at {} K", number(kelvin)));
     let motion = motion + &forces + &pressure + &temperature;

@@ -33,7 +33,7 @@ impl CarrierSample {
             u: self.u + phase.u.at(s),
             w: self.w + phase.w.at(s),
             load: force(phase.load(area), self.load),
-            pull: force(phase.pull, self.pull),
+            pull: force(phase.pull(), self.pull),
             temperature: phase.temperature.unwrap_or(self.temperature),
         }
     }
@@ -154,7 +154,7 @@ impl Runner {
             u: phase.u,
             w: phase.w,
             load,
-            pull: phase.pull,
+            pull: phase.pull(),
             temperature: phase.temperature,
         };
         let force = phase.end_force(self.area);

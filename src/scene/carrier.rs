@@ -217,7 +217,7 @@ impl Scene {
 
     /// The changing part of the tangential force at the start of a run along the excitation, N.
     pub fn first_pull(&self) -> f64 {
-        self.excitation.first().and_then(|phase: &Phase| phase.pull.start).unwrap_or(0.0)
+        self.excitation.first().and_then(|phase: &Phase| phase.pull().start).unwrap_or(0.0)
     }
 
     /// Refuses an equilibrium that does not exist under a load whose changing part is `load` at the start, N.

@@ -16,10 +16,10 @@ pub struct Phase {
     pub u: Path,
     /// Motion along z from the phase's start on.
     pub w: Path,
-    /// The load on a body along z.
-    pub load: Force,
-    /// The tangential force on a body along x.
-    pub pull: Force,
+    /// The load on a body along z, see [`Phase::load`].
+    pub load: Option<Force>,
+    /// The tangential force on a body along x, see [`Phase::pull`].
+    pub pull: Option<Force>,
     /// The load over the layer's area, Pa, in place of the load; in the material form alone, see [`Phase::load`].
     pub pressure: Option<Force>,
     /// The layer's temperature from the phase's start on, K, where it is an input; `None`: as it was.
@@ -34,7 +34,12 @@ impl Phase {
     /// The load on a layer of this area (m²), N: given, or that of the pressure.
     pub fn load(&self, area: Option<f64>) -> Force {
         let of_pressure = self.pressure.and_then(|pressure| Some(pressure.times(area?)));
-        of_pressure.unwrap_or(self.load)
+        of_pressure.or(self.load).unwrap_or_default()
+    }
+
+    /// The tangential force, N.
+    pub fn pull(&self) -> Force {
+        self.pull.unwrap_or_default()
     }
 
     /// F_z at which the phase of a layer of this area (m²) ends, N, if it does: given, or that of the pressure.
@@ -52,8 +57,8 @@ impl Phase {
             "until_force" => return self.until_force.as_mut(),
             "until_pressure" => return self.until_pressure.as_mut(),
             "temperature" => return self.temperature.as_mut(),
-            "load" => return self.load.start.as_mut(),
-            "pull" => return self.pull.start.as_mut(),
+            "load" => return self.load.as_mut()?.start.as_mut(),
+            "pull" => return self.pull.as_mut()?.start.as_mut(),
             "pressure" => return self.pressure.as_mut()?.start.as_mut(),
             _ => (),
         }
@@ -61,8 +66,8 @@ impl Phase {
         let path = match name {
             "u" => &mut self.u,
             "w" => &mut self.w,
-            "load" => &mut self.load.change,
-            "pull" => &mut self.pull.change,
+            "load" => &mut self.load.as_mut()?.change,
+            "pull" => &mut self.pull.as_mut()?.change,
             "pressure" => &mut self.pressure.as_mut()?.change,
             _ => return None,
         };
@@ -188,7 +193,7 @@ mod tests {
         scene.set_excitation("excitation[2].pull", "-1").unwrap();
         let phases = &scene.excitation;
         assert_eq!(
-            (phases[0].duration, phases[1].pull.change.frequency, phases[1].pull.start),
+            (phases[0].duration, phases[1].pull().change.frequency, phases[1].pull().start),
             (0.5, 620.0, Some(-1.0))
         );
         for (path, value) in [

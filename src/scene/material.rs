@@ -233,6 +233,9 @@ impl Scene {
             }
             for phase in &mut scene.excitation {
                 (phase.until_force, phase.until_pressure) = (phase.end_force(self.layer.area()), None);
+                if phase.pressure.is_some() {
+                    (phase.load, phase.pressure) = (Some(phase.load(self.layer.area())), None);
+                }
             }
         }
         scene

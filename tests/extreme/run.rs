@@ -136,7 +136,7 @@ pub fn by_library(case: &Case, method: &str, tight: f64) -> Outcome {
     for phase in &scene.excitation {
         let load = phase.load(scene.layer.area());
         let motion =
-            Motion { duration: phase.duration, u: phase.u, w: phase.w, load, pull: phase.pull, ..Motion::REST };
+            Motion { duration: phase.duration, u: phase.u, w: phase.w, load, pull: phase.pull(), ..Motion::REST };
         let rows: Vec<f64> = (1..=case.rows)
             .map(|i| if i == case.rows { phase.duration } else { phase.duration * f64::from(i) / f64::from(case.rows) })
             .collect();

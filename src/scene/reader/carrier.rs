@@ -73,14 +73,14 @@ pub(super) fn read_phase(
     if has_pressure && let Some(entry) = LOAD.all().into_iter().find_map(|key| table.entry(key)) {
         return Err(entry.refuse("no such key beside pressure, pressure_rate and pressure_sine"));
     }
-    let pressure = if table.is_material() { Some(read_force(table, &PRESSURE, carrier)?) } else { None };
+    let pressure = if table.is_material() { read_force(table, &PRESSURE, carrier)? } else { None };
     Ok(Phase {
         duration: table.number("duration")?,
         u: read_motion(table, &U, carrier)?,
         w: read_motion(table, &W, carrier)?,
-        load: if has_pressure { Force::default() } else { read_force(table, &LOAD, carrier)? },
+        load: read_force(table, &LOAD, carrier)?,
         pull: read_force(table, &PULL, carrier)?,
-        pressure: pressure.filter(|_| has_pressure),
+        pressure,
         temperature: read_temperature(table, temperature)?,
         until_force: table.optional_number("until_force")?,
         until_pressure: table.optional_number("until_pressure")?,
@@ -112,14 +112,17 @@ fn read_motion(table: &mut TableReader<'_>, keys: &PhaseKeys, carrier: &CarrierB
     read_change(table, keys.rate, keys.sine)
 }
 
-fn read_force(table: &mut TableReader<'_>, keys: &ForceKeys, carrier: &CarrierBodies) -> Result<Force> {
+/// A force; `None` where the phase names none of its keys.
+fn read_force(table: &mut TableReader<'_>, keys: &ForceKeys, carrier: &CarrierBodies) -> Result<Option<Force>> {
     if carrier.along(keys.axis).is_none() {
         for key in keys.all() {
             let name = keys.axis.name();
             refuse(table, key, format_args!("no such key without [carrier.{name}]: the displacement is prescribed"))?;
         }
     }
-    Ok(Force { start: table.optional_number(keys.start)?, change: read_change(table, keys.rate, keys.sine)? })
+    let named = keys.all().into_iter().any(|key| table.has(key));
+    let force = Force { start: table.optional_number(keys.start)?, change: read_change(table, keys.rate, keys.sine)? };
+    Ok(named.then_some(force))
 }
 
 fn refuse(table: &mut TableReader<'_>, key: &'static str, expected: impl ToString) -> Result<()> {

@@ -11,8 +11,9 @@ const FILE_KEYS: &str = "surface.x: unknown; allowed: kind, path, periodic, unit
 fn unknown_keys() {
     let layer =
         "masses, spacing, origin, clearance, initial, roughness, mass, vertical, horizontal, lateral_x, lateral_z";
-    let root = "name, description, layer, material, surface, friction, solver, input, fmu, excitation";
-    let phase = "duration, u_rate, w_rate, u_sine, w_sine, until_force";
+    let root = "name, description, layer, material, surface, carrier, friction, solver, input, fmu, excitation";
+    let phase =
+        "duration, u_rate, w_rate, u_sine, w_sine, load, load_rate, load_sine, pull, pull_rate, pull_sine, until_force";
     assert_refusals(
         "unknown",
         &[

@@ -77,7 +77,7 @@ fn keys_of_the_direct_form_beside_a_material() {
                 21,
                 "until_force = 1.0",
                 21,
-                "excitation[1].until_force = 1.0: expected no such key beside [material]; instead: until_pressure",
+                "excitation[1].until_force = 1.0: expected no such key beside [material]; instead: pressure, pressure_rate, pressure_sine, temperature, until_pressure",
             ),
         ],
     );

@@ -1,5 +1,6 @@
 //! Every refusal of a scene names the file, the line, the key, what was given and what is allowed.
 
+mod carrier;
 mod keys;
 mod material;
 mod profiles;
