@@ -37,14 +37,28 @@ pub enum ScaledQuantity {
     RelaxationTimes,
     /// The speed at which the carrier follows its path.
     Speed,
+    /// The mass of a carrier that is a body.
+    CarrierMass,
+    /// The springs and dampers from a body to its drives.
+    Drive,
+    /// The load on a body along z.
+    Load,
     /// The communication step of a master.
     CommunicationStep,
 }
 
 impl ScaledQuantity {
     /// All of them.
-    pub const ALL: [Self; 5] =
-        [Self::Stiffness, Self::Mass, Self::RelaxationTimes, Self::Speed, Self::CommunicationStep];
+    pub const ALL: [Self; 8] = [
+        Self::Stiffness,
+        Self::Mass,
+        Self::RelaxationTimes,
+        Self::Speed,
+        Self::CarrierMass,
+        Self::Drive,
+        Self::Load,
+        Self::CommunicationStep,
+    ];
 
     /// In words.
     pub fn name(self) -> &'static str {
@@ -53,6 +67,9 @@ impl ScaledQuantity {
             Self::Mass => "mass",
             Self::RelaxationTimes => "relaxation times",
             Self::Speed => "speed",
+            Self::CarrierMass => "carrier mass",
+            Self::Drive => "drive",
+            Self::Load => "load",
             Self::CommunicationStep => "communication step",
         }
     }
@@ -62,9 +79,10 @@ impl ScaledQuantity {
         let parameters = scene.parameters();
         let moves = |path: &Path| path.rate != 0.0 || path.amplitude * path.frequency != 0.0;
         let is_there = |quantity: &Self| match quantity {
-            Self::Stiffness | Self::Mass | Self::RelaxationTimes => {
+            Self::Stiffness | Self::Mass | Self::RelaxationTimes | Self::CarrierMass | Self::Drive => {
                 parameters.iter().any(|&parameter| quantity.includes(parameter))
             }
+            Self::Load => scene.carrier.z.is_some(),
             Self::Speed => scene.excitation.iter().any(|phase| moves(&phase.u) || moves(&phase.w)),
             Self::CommunicationStep => true,
         };
@@ -85,6 +103,9 @@ impl ScaledQuantity {
             Self::RelaxationTimes => {
                 matches!(parameter, Parameter::RelaxationTime(..) | Parameter::PronyRelaxationTime(_))
             }
+            Self::CarrierMass => matches!(parameter, Parameter::CarrierMass(_)),
+            Self::Drive => matches!(parameter, Parameter::CarrierStiffness(_) | Parameter::CarrierDamping(_)),
+            Self::Load => parameter == Parameter::Load,
             Self::Speed | Self::CommunicationStep => false,
         }
     }
@@ -92,6 +113,10 @@ impl ScaledQuantity {
     fn scale(self, scene: &mut Scene, factor: f64) -> Result<(), ParameterError> {
         if self == Self::Speed {
             scene.excitation.iter_mut().for_each(|phase| hasten(phase, factor));
+        }
+        if self == Self::Load {
+            let loads = scene.excitation.iter_mut().flat_map(|phase| phase.load.iter_mut().chain(&mut phase.pressure));
+            loads.for_each(|load| *load = load.times(factor));
         }
         let parameters = scene.parameters().into_iter().filter(|&parameter| self.includes(parameter));
         parameters.into_iter().try_for_each(|parameter| match scene.parameter(parameter) {
@@ -104,7 +129,8 @@ impl ScaledQuantity {
 /// The same path, so many times as fast.
 fn hasten(phase: &mut Phase, factor: f64) {
     phase.duration /= factor;
-    for path in [&mut phase.u, &mut phase.w] {
+    let forces = phase.load.iter_mut().chain(&mut phase.pull).chain(&mut phase.pressure);
+    for path in [&mut phase.u, &mut phase.w].into_iter().chain(forces.map(|force| &mut force.change)) {
         path.rate *= factor;
         path.frequency *= factor;
     }
@@ -114,7 +140,7 @@ fn hasten(phase: &mut Phase, factor: f64) {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Perturbation {
     /// Of the scene's own quantities, in the order of [`ScaledQuantity::ALL`].
-    powers: [i32; 4],
+    powers: [i32; 7],
     communication: Option<i32>,
 }
 

@@ -232,8 +232,10 @@ impl<'a> Master<'a> {
         let temperature = scene.temperature_input.then(|| scene.input_start(Input::Temperature));
         let mut inputs = Inputs::new(temperature);
         inputs.set_input(Input::U, u);
+        inputs.set_input(Input::Load, scene.first_load());
+        inputs.set_input(Input::Pull, scene.first_pull());
         if let Some(phase) = scene.excitation.first().filter(|_| given == Given::Rates) {
-            set_rates(&mut inputs, phase, 0.0);
+            set_rates(&mut inputs, phase, scene.layer.area(), 0.0);
         }
         let mut simulation = Simulation::new(scene, &inputs.start(0.0))?;
         let mut recorder = TraceRecorder::new(scene);
@@ -244,11 +246,13 @@ impl<'a> Master<'a> {
 
     /// Does the communication step between two times (s) of the phase that began at `start`.
     fn step(&mut self, phase: &Phase, start: CarrierSample, from: f64, to: f64) -> Result<(), StepError> {
-        for input in Input::ALL {
-            self.inputs.set_input(input, self.carrier.input(input));
+        // A force jumps at the start of a phase.
+        let at_start = if from == 0.0 { start.moved(phase, self.scene.layer.area(), 0.0) } else { self.carrier };
+        for input in Input::MECHANICAL {
+            self.inputs.set_input(input, at_start.input(input));
         }
         if self.given == Given::Rates {
-            set_rates(&mut self.inputs, phase, from);
+            set_rates(&mut self.inputs, phase, self.scene.layer.area(), from);
         }
         let (stands, h) = (self.simulation.driven(), to - from);
         let motion = self.inputs.motion(stands, self.carrier.time, h, self.scene.extrapolation)?;
@@ -260,9 +264,11 @@ impl<'a> Master<'a> {
     }
 }
 
-fn set_rates(inputs: &mut Inputs, phase: &Phase, s: f64) {
+fn set_rates(inputs: &mut Inputs, phase: &Phase, area: Option<f64>, s: f64) {
     inputs.set_rate(Input::U, phase.u.velocity(s));
     inputs.set_rate(Input::W, phase.w.velocity(s));
+    inputs.set_rate(Input::Load, phase.load(area).change.velocity(s));
+    inputs.set_rate(Input::Pull, phase.pull().change.velocity(s));
 }
 
 /// What is read at every row, in this order.

@@ -42,10 +42,10 @@ const ADDED: &str = "timed,most_above_least,runs,rejected,newton_iterations,ener
 const COMMUNICATION: &str = "scene,given,communication_step,error_F_x,error_F_z,error_E_diss,mean_square_error_F_x,\
     mean_square_error_F_z,mean_square_error_E_diss,run_time,steps,events,below_reference,failure";
 
-const JUDGEMENTS: &str = "scene,stiffness,mass,relaxation_times,speed,communication_step,method,tolerance,error,\
+const JUDGEMENTS: &str = "scene,stiffness,mass,relaxation_times,speed,carrier_mass,drive,load,communication_step,method,tolerance,error,\
     error_over_tolerance,estimate,estimate_over_error,warned,left_out";
 
-const ROBUSTNESS: &str = "scene,stiffness,mass,relaxation_times,speed,communication_step,status,reason,error,\
+const ROBUSTNESS: &str = "scene,stiffness,mass,relaxation_times,speed,carrier_mass,drive,load,communication_step,status,reason,error,\
     moved_start_changes,energy_residual,steps,times_the_steps,rejected,events,newton_iterations";
 
 /// Writes errors and run times, the reference first.
@@ -140,7 +140,7 @@ pub(super) fn write_judgements<'a>(
 }
 
 /// Of everything that is scaled.
-fn factors(perturbation: Perturbation) -> [String; 5] {
+fn factors(perturbation: Perturbation) -> [String; 8] {
     ScaledQuantity::ALL.map(|quantity| optional(perturbation.factor(quantity)))
 }
 

@@ -6,7 +6,8 @@ use crate::scene_errors::{NAME, PATH, assert_refusals};
 
 #[test]
 fn wrong_types() {
-    let outputs = r#""forces", "carrier", "dissipation", "friction", "contact", "energy", "tangent", "solver", "elements""#;
+    let outputs =
+        r#""forces", "carrier", "dissipation", "friction", "contact", "energy", "tangent", "solver", "elements""#;
     assert_refusals(
         "types",
         &[
@@ -62,7 +63,8 @@ fn wrong_types() {
 
 #[test]
 fn values_out_of_range() {
-    let outputs = r#""forces", "carrier", "dissipation", "friction", "contact", "energy", "tangent", "solver", "elements""#;
+    let outputs =
+        r#""forces", "carrier", "dissipation", "friction", "contact", "energy", "tangent", "solver", "elements""#;
     let kinds = r#"one of "flat", "sinusoid", "self_affine", "points", "file""#;
     let steps = "a whole number from 1 to 2147483647";
     // Too long for the name of a file in the archive.
