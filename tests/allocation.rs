@@ -6,7 +6,7 @@ use std::cell::Cell;
 use std::path::Path as FilePath;
 
 use asperity::outputs::{Snapshot, Variable, variables};
-use asperity::scene::{Path, Scene};
+use asperity::scene::{Force, Path, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
 
 thread_local! {
@@ -120,6 +120,33 @@ fn other_methods_allocate_nothing() {
         simulation.evaluate(&variables, &mut values);
         assert_eq!(count, 0, "{method}");
         assert!(value(&variables, &values, "solver.events") > 200.0, "a lively run");
+    }
+}
+
+/// Nor does a carrier that is a body, on a drive along x and under a load that jumps along z.
+#[test]
+fn bodies_allocate_nothing() {
+    for method in ["event", "step"] {
+        let text = format!(
+            "{RATTLE}
+            [carrier.x]\nmass = 1e-5\nstiffness = 1e4\ndamping = 0.1
+            [carrier.z]\nmass = 1e-5\ndamping = 0.1\nload = 0.02
+            [solver]\nmethod = \"{method}\"\nrelative_tolerance = 1e-3"
+        );
+        let text = text.replace("\"solver\", ", "\"solver\", \"carrier\", \"tangent\", ");
+        let scene = Scene::parse(&text, FilePath::new("rattle.toml")).unwrap();
+        let mut simulation = Simulation::new(&scene, &Start { w: -5e-6, ..Start::default() }).unwrap();
+        let variables = variables(&scene);
+        let mut values = vec![0.0; variables.len()];
+        let mut push = |simulation: &mut Simulation, load: f64| {
+            let load = Force { start: Some(load), ..Force::default() };
+            simulation.advance(&Motion { load, ..SWING }).unwrap();
+            simulation.evaluate(&variables, &mut values);
+        };
+        push(&mut simulation, 0.0);
+        let count = allocations(|| (0..20).for_each(|i| push(&mut simulation, 0.01 * f64::from(i % 3))));
+        assert_eq!(count, 0, "{method}");
+        assert!(value(&variables, &values, "solver.events") > 50.0, "a lively run");
     }
 }
 
