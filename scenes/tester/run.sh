@@ -12,16 +12,16 @@ mkdir -p "$folder"
 cargo build --release --locked --manifest-path "$root/Cargo.toml"
 asperity=${CARGO_TARGET_DIR:-$root/target}/release/asperity
 "$asperity" simulate "$here/tester.toml" -o "$folder/tester.csv" --points 4000
-"$asperity" plot "$folder/tester.csv" --y carrier.drive_x --title "Force of the arm on the block" -o "$folder/force.svg"
+"$asperity" plot "$folder/tester.csv" --y carrier.drive_x --labels tester --title "Force of the arm on the block" -o "$folder/force.svg"
 
-# The law of the ten masses together under 20 N: 0.3 N_z + 10 N exp(-0.5 log10(v/v_0)^2), constant up to v_0 = 0.01 m/s.
+# The law of the ten masses together under 20 N: 6 N + 10 N exp(-0.3 log10(v/v_0)^2), constant up to v_0 = 1 mm/s.
 awk 'BEGIN {
     print "speed,friction"
     for (i = 0; i <= 200; i++) {
         v = 0.0025 * i
-        decades = v > 0.01 ? log(v / 0.01) / log(10) : 0
-        printf "%g,%g\n", v, 0.3 * 20 + 10 * exp(-0.5 * decades * decades)
+        decades = v > 0.001 ? log(v / 0.001) / log(10) : 0
+        printf "%g,%g\n", v, 0.3 * 20 + 10 * exp(-0.3 * decades * decades)
     }
 }' > "$folder/law.csv"
-"$asperity" plot "$folder/law.csv" --x speed --y friction --title "Friction of the block over its speed" -o "$folder/law.svg"
+"$asperity" plot "$folder/law.csv" --x speed --y friction --labels law --title "Friction of the block over its speed" -o "$folder/law.svg"
 echo "$folder/force.svg $folder/law.svg"
