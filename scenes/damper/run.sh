@@ -16,6 +16,6 @@ mkdir -p "$folder"
 cargo build --release --locked --manifest-path "$root/Cargo.toml"
 asperity=${CARGO_TARGET_DIR:-$root/target}/release/asperity
 python3 "$here/damper.py" "$asperity" "$folder" "$@"
-"$asperity" plot "$folder/damper.csv" --x load --y amplitude --y jenkins_one_harmonic -o "$folder/damper.svg" \
-    --title "Largest amplitude over frequency"
+"$asperity" plot "$folder/damper.csv" --x load --y amplitude_um --y jenkins_one_harmonic_um --labels damper -o "$folder/damper.svg" \
+    --title "Largest amplitude over frequency in micrometres"
 echo "$folder/damper.svg"
