@@ -403,11 +403,17 @@ impl Simulation {
     /// ā x/(eˣ - 1) of it are left, x = T/τ. So much is taken off: all of ā for an element slower than T, nothing for a
     /// fast one. Where masses touch and lift, e follows the dashpots a little, and a second time is needed.
     ///
-    /// A body along z moves to where springs bear that force in their place.
-    ///
     /// The energies since the start no longer balance.
     pub fn relax_dashpots(&mut self, means: &[f64], time: f64) -> f64 {
         self.run.relax_dashpots(means, time)
+    }
+
+    /// Moves a carrier that is a body along z down by `way`, m, its speed kept and the masses where they are: the vertical
+    /// springs in contact bear so much more.
+    ///
+    /// The energies since the start no longer balance.
+    pub fn lower_carrier(&mut self, way: f64) {
+        self.run.lower_carrier(way);
     }
 
     /// Processor time since the start, s; measured where the group `solver` is asked for.

@@ -450,24 +450,17 @@ impl Run {
                 borne += row.stiffness * means[row.range.clone()].iter().sum::<f64>();
             }
         }
-        self.lower_body(borne);
         // The forces have jumped: the next motion decides all contacts anew.
         self.state.rates_valid = false;
         borne
     }
 
-    /// Moves a body along z to where the springs of the masses in contact and of the drive bear a `force` (N) more, its speed
-    /// kept, the masses where they are.
-    fn lower_body(&mut self, force: f64) {
-        let Some(body) = &self.model.bodies[Axis::Z as usize] else { return };
-        let layer = &mut self.state.layer.state;
-        let contacts = layer.mode.iter().filter(|mode| mode.in_contact()).count() as f64;
-        let stiffness = contacts * self.model.links[LinkKind::Vertical as usize].stiffness + body.stiffness;
-        if stiffness > 0.0 {
-            let lowered = force / stiffness;
-            self.state.carrier.w -= lowered;
-            layer.elongation_z.iter_mut().for_each(|elongation| *elongation += lowered);
-        }
+    /// See [`Simulation::lower_carrier`](super::Simulation::lower_carrier).
+    pub(super) fn lower_carrier(&mut self, way: f64) {
+        self.state.carrier.w -= way;
+        let elongations = &mut self.state.layer.state.elongation_z;
+        elongations.iter_mut().for_each(|elongation| *elongation += way);
+        self.state.rates_valid = false;
     }
 }
 

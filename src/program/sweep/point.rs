@@ -175,6 +175,8 @@ struct Search<'a> {
     load: LoadSearch,
     /// Mass of the carrier whose load is held, kg; `None` where w is.
     body: Option<f64>,
+    /// Stiffness of all vertical springs in the long term, N/m.
+    stiffness: f64,
     runs: u32,
     /// Distance of the slides before the present one, m.
     distance_before: f64,
@@ -222,8 +224,21 @@ impl<'a> Search<'a> {
     fn new(scene: &'a Scene, blocks: Blocks, bounds: Bounds, load: LoadSearch) -> Result<Self, SimulationError> {
         let distance = bounds.distance.unwrap_or(BLOCKS * blocks.length);
         let body = scene.carrier.z.map(|body| body.mass);
+        let vertical = scene.link(LinkKind::Vertical).and_then(|link| link.stiffness).unwrap_or(0.0);
+        let stiffness = scene.layer.masses as f64 * vertical;
         let slide = Slide::new(scene, blocks, if body.is_some() { 0.0 } else { load.w })?;
-        Ok(Self { scene, blocks, error: bounds.error, distance, slide, load, body, runs: 1, distance_before: 0.0 })
+        Ok(Self {
+            scene,
+            blocks,
+            error: bounds.error,
+            distance,
+            slide,
+            load,
+            body,
+            stiffness,
+            runs: 1,
+            distance_before: 0.0,
+        })
     }
 
     /// Presses, then averages at one w after the other until a window is steady and has the load.
@@ -239,7 +254,7 @@ impl<'a> Search<'a> {
             if pressed || !self.has_room(RAMP + CALM + FEWEST as f64) {
                 return Ok(self.result(&average));
             }
-            let maxwell = if average.drifts { self.slide.relax() } else { 0.0 };
+            let maxwell = if average.drifts { self.relax(&average.means) } else { 0.0 };
             self.correct(average.load.mean, maxwell)?;
         }
     }
@@ -251,13 +266,22 @@ impl<'a> Search<'a> {
                 break;
             }
             let means = self.slide.block()?;
-            let maxwell = self.slide.relax();
+            let maxwell = self.relax(&means);
             if self.deviation(&means).abs() <= NEAR && maxwell.abs() <= NEAR * self.load.target {
                 return Ok(Some(means));
             }
             self.correct(means.load, maxwell)?;
         }
         Ok(None)
+    }
+
+    /// Relaxes the dashpots by the `means` of the last blocks; returns what the vertical ones bore of F_z, N.
+    fn relax(&mut self, means: &BlockMeans) -> f64 {
+        if self.body.is_none() {
+            return self.slide.relax();
+        }
+        // Of the masses that bear in the mean: at one instant there may be none.
+        self.slide.relax_under_load(means.contact * self.stiffness)
     }
 
     /// How far F_z is from the load in the mean, as a share of it: where that is held, what the carrier's inertia bears.

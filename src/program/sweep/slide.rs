@@ -204,6 +204,16 @@ impl Slide {
         self.simulation.relax_dashpots(&self.elongations, self.blocks.length / self.blocks.speed)
     }
 
+    /// The same under a carrier whose load is held: it moves to where springs of this `stiffness` (N/m) bear that force in
+    /// their place.
+    pub(super) fn relax_under_load(&mut self, stiffness: f64) -> f64 {
+        let borne = self.relax();
+        if stiffness > 0.0 {
+            self.simulation.lower_carrier(borne / stiffness);
+        }
+        borne
+    }
+
     fn energies(&mut self) -> [Option<f64>; INTEGRATED.len()] {
         let mut values = vec![0.0; self.integrated.len()];
         self.simulation.evaluate(&self.integrated, &mut values);
