@@ -141,6 +141,44 @@ fn hysteresis_on_a_sinusoid() {
 const POINTS: [&str; 4] = ["--speeds", "0.1..1/3", "--forces", "0.5,2"];
 
 /// Cut off after any byte, a table is completed, the same to the last byte; points done are kept to the letter.
+/// A layer as long as the profile's period bears the same at every place, so w stands still under a load that is held: no
+/// search, and the same friction at the same w, within the errors that the tables give. Dashpots of minutes come to rest too.
+#[test]
+fn a_load_held_is_that_of_a_displacement_found() {
+    let text = "name = 'held'
+        layer = { masses = 50, spacing = 1e-4, thickness = 1e-3, width = 1e-2 }
+        material = { density = 1100, poisson_ratio = 0.49, equilibrium_modulus = 2e6,
+                     prony = [{ modulus = 5e6, relaxation_time = 1e-4 }, { modulus = 1e6, relaxation_time = 60.0 }] }
+        surface = { kind = 'self_affine', length = 5e-3, points = 512, hurst = 0.8, rms = 2e-5, seed = 3,
+                    roll_off_wavelength = 2e-3, cut_off_wavelength = 4e-4 }
+        friction = { coulomb = 0.2 }
+        solver = { method = 'step', relative_tolerance = 1e-3 }
+        ";
+    let options = ["--speeds", "0.03,0.1", "--pressures", "3e5"];
+    let tables =
+        [("displacement", ""), ("load", "carrier.z = { mass = 1e-2, damping = 20.0 }")].map(|(held, carrier)| {
+            let (scene, table) = scene(&scratch(&format!("sweep-held-{held}")), &format!("{text}{carrier}\n"));
+            sweep(&scene, &table, &options);
+            assert_eq!(
+                fs::read_to_string(&table).unwrap().contains("# held = load, on a carrier of 0.01 kg"),
+                held == "load"
+            );
+            Rows::read(&table)
+        });
+    let [searched, held] = &tables;
+    for row in 0..2 {
+        assert_eq!((held.text(row, "status"), held.number(row, "runs")), ("steady", 1.0));
+        let of = |name: &str| [searched.number(row, name), held.number(row, name)];
+        let ([a, b], errors) = (of("friction"), of("friction_standard_error"));
+        // The load found is within 1e-3; three standard errors.
+        assert!((a - b).abs() < 1e-3 * a + 3.0 * (errors[0] + errors[1]), "friction {a} {b}");
+        let [a, b] = of("w");
+        assert!((a - b).abs() < 5e-3 * a.abs(), "w {a} {b}");
+    }
+    let (scene, _) = scene(&scratch("sweep-held-x"), &format!("{text}carrier.x = {{ mass = 1.0 }}\n"));
+    assert!(refused(&[&scene], &options).contains("[carrier.x]"));
+}
+
 #[test]
 fn a_table_cut_off_anywhere_is_completed() {
     let folder = scratch("sweep-resume");
