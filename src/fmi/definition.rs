@@ -8,9 +8,11 @@ use std::{fmt, fs, io};
 use uuid::Uuid;
 
 use super::error::Error;
-use super::resources::{self, SCENE_FILE, TABLE_FILE};
+use super::patch_inputs::PatchInput;
+use super::resources::{self, PATCH_FILE, SCENE_FILE, TABLE_FILE};
 use crate::element::{self, PointContact, Table};
 use crate::outputs::{self, Dependencies, Output, Variable};
+use crate::patch::{Patch, PatchVariable};
 use crate::scene::{self, Extrapolation, Parameter, ParameterError, Scene, Value};
 
 /// What an FMU simulates, as its resources define it.
@@ -20,6 +22,8 @@ pub enum Definition {
     Layer(Box<Scene>),
     /// A point-contact element.
     Element(PointContact),
+    /// A contact patch.
+    Patch(Box<Patch>),
 }
 
 impl From<Scene> for Definition {
@@ -34,12 +38,21 @@ impl From<PointContact> for Definition {
     }
 }
 
+impl From<Patch> for Definition {
+    fn from(patch: Patch) -> Self {
+        Self::Patch(Box::new(patch))
+    }
+}
+
 impl Definition {
     /// Reads the definition in the resources at `location`; also returns its file.
     pub(super) fn find(location: &str) -> Result<(Self, PathBuf), Error> {
-        let path = resources::find(location, &[SCENE_FILE, TABLE_FILE])?;
+        // The table of a patch may have any name.
+        let path = resources::find(location, &[SCENE_FILE, PATCH_FILE, TABLE_FILE])?;
         let definition = if path.ends_with(TABLE_FILE) {
             PointContact::new(Table::load(&path)?).into()
+        } else if path.ends_with(PATCH_FILE) {
+            Patch::load(&path)?.into()
         } else {
             Scene::load(&path)?.into()
         };
@@ -51,6 +64,7 @@ impl Definition {
         match self {
             Self::Layer(scene) => scene.name.clone(),
             Self::Element(contact) => contact.name(),
+            Self::Patch(patch) => patch.name().to_owned(),
         }
     }
 
@@ -59,6 +73,7 @@ impl Definition {
         match self {
             Self::Layer(scene) => scene.description.clone().unwrap_or_default(),
             Self::Element(contact) => contact.description(),
+            Self::Patch(patch) => patch.description(),
         }
     }
 
@@ -72,6 +87,7 @@ impl Definition {
         match self {
             Self::Layer(scene) => &scene.files,
             Self::Element(_) => &[],
+            Self::Patch(patch) => patch.files(),
         }
     }
 
@@ -82,7 +98,7 @@ impl Definition {
     pub fn carried(&self, folder: &Path, file: &Path) -> io::Result<Vec<u8>> {
         match self {
             Self::Layer(scene) => scene.carried(folder, file),
-            Self::Element(_) => fs::read(folder.join(file)),
+            Self::Element(_) | Self::Patch(_) => fs::read(folder.join(file)),
         }
     }
 
@@ -91,6 +107,7 @@ impl Definition {
         match self {
             Self::Layer(_) => SCENE_FILE,
             Self::Element(_) => TABLE_FILE,
+            Self::Patch(_) => PATCH_FILE,
         }
     }
 
@@ -99,7 +116,7 @@ impl Definition {
         let folder = path.parent().unwrap_or(Path::new(""));
         let extracts = match self {
             Self::Layer(scene) => scene.extracts.iter(),
-            Self::Element(_) => [].iter(),
+            Self::Element(_) | Self::Patch(_) => [].iter(),
         };
         let files = self.files().iter().chain(extracts.map(|extract| &extract.source));
         std::iter::once(path.to_owned()).chain(files.map(|file| folder.join(file))).collect()
@@ -109,15 +126,16 @@ impl Definition {
     pub fn warnings(&self) -> &[String] {
         match self {
             Self::Layer(scene) => &scene.warnings,
-            Self::Element(_) => &[],
+            Self::Element(_) | Self::Patch(_) => &[],
         }
     }
 
-    /// The output variables.
+    /// The output variables of a layer or an element; a patch has [its own](Patch::variables).
     pub fn variables(&self) -> Vec<Variable> {
         match self {
             Self::Layer(scene) => outputs::variables(scene),
             Self::Element(contact) => contact.variables(),
+            Self::Patch(_) => Vec::new(),
         }
     }
 
@@ -126,6 +144,7 @@ impl Definition {
         match self {
             Self::Layer(scene) => outputs::dependencies(scene, output),
             Self::Element(_) => element::dependencies(output),
+            Self::Patch(_) => Dependencies::default(),
         }
     }
 
@@ -134,6 +153,7 @@ impl Definition {
         match self {
             Self::Layer(scene) => scene.parameters(),
             Self::Element(contact) => contact.parameters(),
+            Self::Patch(patch) => patch.parameters(),
         }
     }
 
@@ -142,6 +162,7 @@ impl Definition {
         match self {
             Self::Layer(scene) => scene.parameter(parameter),
             Self::Element(contact) => contact.parameter(parameter),
+            Self::Patch(patch) => patch.parameter(parameter),
         }
     }
 
@@ -154,7 +175,13 @@ impl Definition {
         match self {
             Self::Layer(scene) => scene.set_parameter(parameter, value),
             Self::Element(contact) => contact.set_parameter(parameter, value),
+            Self::Patch(patch) => patch.set_parameter(parameter, value),
         }
+    }
+
+    /// The patch, if it is one.
+    pub(super) fn patch(&self) -> Option<&Patch> {
+        if let Self::Patch(patch) = self { Some(patch) } else { None }
     }
 
     /// How inputs are extrapolated where the master gives no derivatives.
@@ -162,6 +189,7 @@ impl Definition {
         match self {
             Self::Layer(scene) => scene.extrapolation,
             Self::Element(contact) => contact.extrapolation,
+            Self::Patch(patch) => patch.extrapolation,
         }
     }
 }
@@ -232,6 +260,13 @@ pub enum Kind {
 }
 
 impl Kind {
+    fn of(kind: outputs::Kind) -> Self {
+        match kind {
+            outputs::Kind::Real => Self::Real,
+            outputs::Kind::Integer => Self::Integer,
+        }
+    }
+
     fn name(self) -> &'static str {
         match self {
             Self::Real => "Real",
@@ -255,6 +290,10 @@ pub enum Entry<'a> {
     Input(Input),
     /// An output or, in the group elements, a local variable: its index in [`Catalogue::outputs`] and the variable.
     Output(usize, &'a Variable),
+    /// An input of a patch, a Real.
+    PatchInput(PatchInput),
+    /// The same as `Output`, of a patch.
+    PatchOutput(usize, &'a PatchVariable),
     /// A fixed parameter and its type.
     Parameter(Parameter, Kind),
 }
@@ -265,6 +304,8 @@ impl Entry<'_> {
         match self {
             Self::Input(input) => input.name().into(),
             Self::Output(_, variable) => variable.name.clone(),
+            Self::PatchInput(input) => input.name().into(),
+            Self::PatchOutput(_, variable) => variable.name.clone(),
             Self::Parameter(parameter, _) => parameter.name(),
         }
     }
@@ -272,11 +313,9 @@ impl Entry<'_> {
     /// The variable's type.
     pub fn kind(&self) -> Kind {
         match self {
-            Self::Input(_) => Kind::Real,
-            Self::Output(_, variable) => match variable.kind {
-                outputs::Kind::Real => Kind::Real,
-                outputs::Kind::Integer => Kind::Integer,
-            },
+            Self::Input(_) | Self::PatchInput(_) => Kind::Real,
+            Self::Output(_, variable) => Kind::of(variable.kind),
+            Self::PatchOutput(_, variable) => Kind::of(variable.kind),
             Self::Parameter(_, kind) => *kind,
         }
     }
@@ -286,7 +325,32 @@ impl Entry<'_> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Catalogue {
     outputs: Vec<Variable>,
+    patch: Option<PatchCatalogue>,
     parameters: Vec<(Parameter, Kind)>,
+}
+
+/// Inputs and outputs of a patch.
+#[derive(Clone, Debug, PartialEq)]
+struct PatchCatalogue {
+    inputs: Vec<PatchInput>,
+    outputs: Vec<PatchVariable>,
+}
+
+impl PatchCatalogue {
+    fn of(definition: &Definition) -> Option<Self> {
+        let Definition::Patch(patch) = definition else { return None };
+        Some(Self { inputs: PatchInput::of(patch), outputs: patch.variables() })
+    }
+
+    /// The variable with this index, or the index after them.
+    fn entry(&self, index: usize) -> Result<Entry<'_>, usize> {
+        if let Some(&input) = self.inputs.get(index) {
+            return Ok(Entry::PatchInput(input));
+        }
+        let index = index - self.inputs.len();
+        let output = self.outputs.get(index).map(|variable| Entry::PatchOutput(index, variable));
+        output.ok_or(index - self.outputs.len().min(index))
+    }
 }
 
 impl Catalogue {
@@ -303,21 +367,29 @@ impl Catalogue {
             Value::Text(_) => Kind::Text,
         };
         let parameters = definition.parameters().into_iter().map(|parameter| (parameter, kind(parameter))).collect();
-        Self { outputs: definition.variables(), parameters }
+        Self { outputs: definition.variables(), patch: PatchCatalogue::of(definition), parameters }
     }
 
     /// The variable with the value reference `reference`.
     pub fn entry(&self, reference: u32) -> Option<Entry<'_>> {
         let index = usize::try_from(reference).ok()?;
+        match self.variable(index) {
+            Ok(entry) => Some(entry),
+            Err(index) => self.parameters.get(index).map(|&(parameter, kind)| Entry::Parameter(parameter, kind)),
+        }
+    }
+
+    /// The input or output with this index, or the index after them.
+    fn variable(&self, index: usize) -> Result<Entry<'_>, usize> {
+        if let Some(patch) = &self.patch {
+            return patch.entry(index);
+        }
         if let Some(&input) = Input::ALL.get(index) {
-            return Some(Entry::Input(input));
+            return Ok(Entry::Input(input));
         }
         let index = index - Input::ALL.len();
-        if let Some(variable) = self.outputs.get(index) {
-            return Some(Entry::Output(index, variable));
-        }
-        let &(parameter, kind) = self.parameters.get(index - self.outputs.len())?;
-        Some(Entry::Parameter(parameter, kind))
+        let output = self.outputs.get(index).map(|variable| Entry::Output(index, variable));
+        output.ok_or(index - self.outputs.len().min(index))
     }
 
     /// The variable with the value reference `reference`, of the type `asked` for.
@@ -336,9 +408,19 @@ impl Catalogue {
         (0..).map_while(|reference| Some((reference, self.entry(reference)?)))
     }
 
-    /// The outputs in the order of their value references.
+    /// The outputs of a layer or an element in the order of their value references.
     pub fn outputs(&self) -> &[Variable] {
         &self.outputs
+    }
+
+    /// The outputs of a patch in the order of their value references.
+    pub fn patch_outputs(&self) -> &[PatchVariable] {
+        self.patch.as_ref().map_or(&[], |patch| &patch.outputs)
+    }
+
+    /// The number of outputs.
+    pub(super) fn output_count(&self) -> usize {
+        self.outputs.len() + self.patch_outputs().len()
     }
 }
 

@@ -12,12 +12,12 @@ use super::error::InputOutOfRange;
 /// The inputs as the master sets them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {
-    displacements: [Displacement; 2],
+    signals: [Signal; 2],
 }
 
-/// One displacement of the carrier: where it is and what the next step follows from.
+/// One input: its value and what the next step follows from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Displacement {
+pub(super) struct Signal {
     /// u_n, m: the input's value.
     value: f64,
     /// u̇_n, m/s, if the master gave it for the next step.
@@ -38,23 +38,23 @@ struct Past {
 impl Inputs {
     /// The value of an input.
     pub fn input(&self, input: Input) -> f64 {
-        self.displacements[input as usize].value
+        self.signals[input as usize].value
     }
 
     /// Sets an input.
     pub fn set_input(&mut self, input: Input, value: f64) {
-        self.displacements[input as usize].value = value;
+        self.signals[input as usize].set(value);
     }
 
     /// Sets the first derivative of an input for the next step.
     pub fn set_rate(&mut self, input: Input, rate: f64) {
-        self.displacements[input as usize].rate = Some(rate);
+        self.signals[input as usize].set_rate(rate);
     }
 
     /// The carrier at the start: at the displacements given, with the derivatives given as its velocity, else at rest.
     /// The derivatives remain those of the first step unless the master sets others.
     pub fn start(&self, time: f64) -> Start {
-        let [u, w] = &self.displacements;
+        let [u, w] = &self.signals;
         Start { time, u: u.value, w: w.value, u_rate: u.rate.unwrap_or_default(), w_rate: w.rate.unwrap_or_default() }
     }
 
@@ -71,10 +71,10 @@ impl Inputs {
         rule: Extrapolation,
     ) -> Result<Motion, InputOutOfRange> {
         let path = |input: Input, from: f64| {
-            let displacement = &self.displacements[input as usize];
-            let target = displacement.checked_target(input, time, h, rule)?;
+            let signal = &self.signals[input as usize];
+            let target = signal.checked_target(input.name(), time, h, rule)?;
             Ok::<_, InputOutOfRange>(Path {
-                rate: displacement.given_rate(from).unwrap_or((target - from) / h),
+                rate: signal.given_rate(from).unwrap_or((target - from) / h),
                 ..Path::default()
             })
         };
@@ -84,27 +84,51 @@ impl Inputs {
     /// Whether a run can have reached these inputs: the values of past steps are finite. Values and rates of the next step
     /// may be anything.
     pub(super) fn is_valid(&self) -> bool {
-        let pasts = self.displacements.iter().filter_map(|displacement| displacement.past.as_ref());
-        pasts.into_iter().all(|past| is_possible(past.value) && is_possible(past.step) && past.step > 0.0)
+        self.signals.iter().all(Signal::is_valid)
     }
 
     /// Completes a step of `h`: its derivatives apply to no other.
     pub fn complete_step(&mut self, h: f64) {
-        for displacement in &mut self.displacements {
-            displacement.rate = None;
-            displacement.past = Some(Past { value: displacement.value, step: h });
-        }
+        self.signals.iter_mut().for_each(|signal| signal.complete_step(h));
     }
 }
 
 /// Displacements whose relative difference is smaller are equal but for rounding.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-impl Displacement {
+impl Signal {
+    pub(super) fn value(&self) -> f64 {
+        self.value
+    }
+
+    pub(super) fn set(&mut self, value: f64) {
+        self.value = value;
+    }
+
+    /// The first derivative, if the master gave it for the next step.
+    pub(super) fn rate(&self) -> Option<f64> {
+        self.rate
+    }
+
+    pub(super) fn set_rate(&mut self, rate: f64) {
+        self.rate = Some(rate);
+    }
+
+    /// Completes a step of `h` (s).
+    pub(super) fn complete_step(&mut self, h: f64) {
+        self.rate = None;
+        self.past = Some(Past { value: self.value, step: h });
+    }
+
+    /// Whether the values of the past step are finite.
+    pub(super) fn is_valid(&self) -> bool {
+        self.past.is_none_or(|past| is_possible(past.value) && is_possible(past.step) && past.step > 0.0)
+    }
+
     /// The rate that the master gave, if û = `current` equals its value but for rounding. It is then used as it is: if it
     /// were computed from the difference to the target, that rounding over h would be a kink at every communication point
     /// of a steady motion.
-    fn given_rate(&self, current: f64) -> Option<f64> {
+    pub(super) fn given_rate(&self, current: f64) -> Option<f64> {
         let same = (current - self.value).abs() <= ROUNDING * current.abs().max(self.value.abs());
         self.rate.filter(|_| same)
     }
@@ -122,10 +146,16 @@ impl Displacement {
     }
 
     /// [`target`](Self::target), checked to be in range.
-    fn checked_target(&self, input: Input, time: f64, h: f64, rule: Extrapolation) -> Result<f64, InputOutOfRange> {
+    pub(super) fn checked_target(
+        &self,
+        name: &'static str,
+        time: f64,
+        h: f64,
+        rule: Extrapolation,
+    ) -> Result<f64, InputOutOfRange> {
         let target = self.target(h, rule);
         match [self.value, target].into_iter().find(|value| !is_possible(*value)) {
-            Some(value) => Err(InputOutOfRange { name: input.name(), value, time }),
+            Some(value) => Err(InputOutOfRange { name, value, time }),
             None => Ok(target),
         }
     }

@@ -116,12 +116,16 @@ pub(super) fn unit(entry: &Entry<'_>) -> Unit {
     match entry {
         Entry::Input(_) => Unit::Meter,
         Entry::Output(_, variable) => variable.unit,
+        Entry::PatchInput(input) => input.unit(),
+        Entry::PatchOutput(_, variable) => variable.unit,
         Entry::Parameter(parameter, _) => parameter.unit(),
     }
 }
 
 fn unit_definition(xml: &mut Xml, unit: Unit) -> io::Result<()> {
-    let exponents = ["kg", "m", "s", "K"].into_iter().zip(unit.exponents()).filter(|(_, exponent)| *exponent != 0);
+    let radian = [("rad", unit.exponent_of_radian())];
+    let exponents = ["kg", "m", "s", "K"].into_iter().zip(unit.exponents()).chain(radian);
+    let exponents = exponents.filter(|(_, exponent)| *exponent != 0);
     let texts: Vec<_> = exponents.map(|(base, exponent)| (base, exponent.to_string())).collect();
     xml.create_element("Unit").with_attribute(("name", unit.name())).write_inner_content(|xml| {
         let attributes = texts.iter().map(|(base, exponent)| (*base, exponent.as_str()));
@@ -136,6 +140,8 @@ pub(super) fn description(entry: &Entry<'_>) -> String {
         Entry::Input(Input::U) => "Displacement of the carrier along x".into(),
         Entry::Input(Input::W) => "Displacement of the carrier along z, negative presses".into(),
         Entry::Output(_, variable) => variable.description.clone(),
+        Entry::PatchInput(input) => input.description().into(),
+        Entry::PatchOutput(_, variable) => variable.description.clone(),
         Entry::Parameter(parameter, _) => parameter.description(),
     }
 }
@@ -143,9 +149,10 @@ pub(super) fn description(entry: &Entry<'_>) -> String {
 /// The causality as the standard calls it.
 pub(super) fn causality(entry: &Entry<'_>) -> &'static str {
     match entry {
-        Entry::Input(_) => "input",
+        Entry::Input(_) | Entry::PatchInput(_) => "input",
         Entry::Output(_, variable) if variable.is_output() => "output",
-        Entry::Output(..) => "local",
+        Entry::PatchOutput(_, variable) if variable.is_output() => "output",
+        Entry::Output(..) | Entry::PatchOutput(..) => "local",
         Entry::Parameter(..) => "parameter",
     }
 }
@@ -154,7 +161,11 @@ pub(super) fn causality(entry: &Entry<'_>) -> &'static str {
 pub(super) fn start(definition: &Definition, entry: &Entry<'_>) -> Option<String> {
     match entry {
         Entry::Input(_) => Some(real(0.0)),
-        Entry::Output(..) => None,
+        Entry::PatchInput(input) => {
+            let Definition::Patch(patch) = definition else { return None };
+            Some(real(input.start(patch)))
+        }
+        Entry::Output(..) | Entry::PatchOutput(..) => None,
         Entry::Parameter(parameter, _) => Some(match definition.parameter(*parameter) {
             Value::Real(value) => real(value),
             Value::Integer(value) => value.to_string(),
@@ -194,8 +205,8 @@ fn variability(entry: &Entry<'_>) -> &'static str {
 /// Inputs must not have it.
 fn initial(entry: &Entry<'_>) -> Option<&'static str> {
     match entry {
-        Entry::Input(_) => None,
-        Entry::Output(..) => Some("calculated"),
+        Entry::Input(_) | Entry::PatchInput(_) => None,
+        Entry::Output(..) | Entry::PatchOutput(..) => Some("calculated"),
         Entry::Parameter(..) => Some("exact"),
     }
 }
@@ -211,7 +222,13 @@ fn typed(xml: &mut Xml, entry: &Entry<'_>, start: Option<String>) -> io::Result<
 
 fn model_structure(xml: &mut Xml, definition: &Definition, catalogue: &Catalogue) -> io::Result<()> {
     let outputs = |(reference, entry)| match entry {
-        Entry::Output(_, variable) if variable.is_output() => Some((reference, variable)),
+        Entry::Output(_, variable) if variable.is_output() => {
+            Some((reference, dependencies(definition.dependencies(variable.output))))
+        }
+        Entry::PatchOutput(_, variable) if variable.is_output() => {
+            // On the six coordinates of the pose, which come first.
+            Some((reference, if variable.output.follows_pose() { "1 2 3 4 5 6" } else { "" }))
+        }
         _ => None,
     };
     let unknowns = || catalogue.entries().filter_map(outputs);
@@ -221,8 +238,7 @@ fn model_structure(xml: &mut Xml, definition: &Definition, catalogue: &Catalogue
     }
     structure.write_inner_content(|xml| {
         xml.create_element("Outputs").write_inner_content(|xml| {
-            unknowns()
-                .try_for_each(|(reference, variable)| output(xml, reference, definition.dependencies(variable.output)))
+            unknowns().try_for_each(|(reference, names)| unknown(xml, reference, Some(names)))
         })?;
         // Without dependencies: at the start everything may depend on all inputs and parameters.
         xml.create_element("InitialUnknowns")
@@ -232,10 +248,13 @@ fn model_structure(xml: &mut Xml, definition: &Definition, catalogue: &Catalogue
     Ok(())
 }
 
-fn output(xml: &mut Xml, reference: u32, dependencies: Dependencies) -> io::Result<()> {
-    let names = [("1", dependencies.on_u), ("2", dependencies.on_w)];
-    let names: Vec<_> = names.into_iter().filter(|(_, depends)| *depends).map(|(name, _)| name).collect();
-    unknown(xml, reference, Some(&names.join(" ")))
+fn dependencies(dependencies: Dependencies) -> &'static str {
+    match (dependencies.on_u, dependencies.on_w) {
+        (true, true) => "1 2",
+        (true, false) => "1",
+        (false, true) => "2",
+        (false, false) => "",
+    }
 }
 
 /// The standard counts the variables from 1 here; value references count them from 0.
