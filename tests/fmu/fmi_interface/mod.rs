@@ -9,6 +9,7 @@ mod logging;
 mod many;
 mod master;
 mod material;
+mod patch;
 mod states;
 mod stepping;
 mod values;
