@@ -6,6 +6,7 @@ use std::cell::Cell;
 use std::path::Path as FilePath;
 
 use asperity::outputs::{Snapshot, Variable, variables};
+use asperity::patch::{Patch, PatchMotion, PatchRun, PatchStart, Pose};
 use asperity::scene::{Force, Path, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
 
@@ -194,4 +195,34 @@ fn a_refused_motion_allocates_nothing() {
     let (mut simulation, ..) = rattling();
     let count = allocations(|| assert!(simulation.advance(&Motion { duration: f64::NAN, ..SWING }).is_err()));
     assert_eq!(count, 0);
+}
+
+/// Steps of a rolling patch that touches, lifts, slides and is warmed, and all outputs after each.
+#[test]
+fn a_patch_allocates_nothing() {
+    let text = r#"
+name = "wheel"
+table = { path = "block.table.csv" }
+patch = { shape = "cylinder", radius = 0.3, length = 0.0144, width = 0.01, nx = 24, ny = 4, transport = true }
+fmu = { outputs = ["forces", "dissipation", "contact", "friction", "energy", "tangent", "elements"] }
+"#;
+    let folder = FilePath::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/patch");
+    let patch = Patch::parse(text, &folder.join("patch.toml")).unwrap();
+    let pose = Pose { place: [0.0, 0.0, 0.29999], angles: [0.0; 3] };
+    let start = PatchStart { pose, temperature: 290.0, ..PatchStart::default() };
+    let mut run = PatchRun::new(&patch, &start).unwrap();
+    let variables = patch.variables();
+    let mut values = vec![0.0; variables.len()];
+    let count = allocations(|| {
+        for step in 0..40 {
+            let t = 1e-3 * f64::from(step);
+            let rates = [0.5 * (9.0 * t).sin(), 0.1, 4e-3 * (300.0 * t).cos(), 0.1, 0.0, 5.0 * t];
+            let motion =
+                PatchMotion { duration: 1e-3, rates, transport_speed: 0.4 * t, temperature: 290.0 + 100.0 * t };
+            run.advance(&motion).unwrap();
+            run.evaluate(&variables, &mut values);
+        }
+    });
+    let energy = variables.iter().position(|variable| variable.name == "E_diss").unwrap();
+    assert!(values[energy] > 0.0 && count == 0, "{count} allocations, {} J lost", values[energy]);
 }

@@ -8,9 +8,11 @@ use std::{fmt, fs, io};
 use uuid::Uuid;
 
 use super::error::Error;
-use super::resources::{self, SCENE_FILE, TABLE_FILE};
+use super::patch_inputs::PatchInput;
+use super::resources::{self, PATCH_FILE, SCENE_FILE, TABLE_FILE};
 use crate::element::{self, PointContact, Table};
 use crate::outputs::{self, Dependencies, Output, Variable};
+use crate::patch::{Patch, PatchVariable};
 pub use crate::scene::Input;
 use crate::scene::{self, Extrapolation, Parameter, ParameterError, Scene, Value};
 
@@ -21,6 +23,8 @@ pub enum Definition {
     Layer(Box<Scene>),
     /// A point-contact element.
     Element(PointContact),
+    /// A contact patch.
+    Patch(Box<Patch>),
 }
 
 impl From<Scene> for Definition {
@@ -35,12 +39,21 @@ impl From<PointContact> for Definition {
     }
 }
 
+impl From<Patch> for Definition {
+    fn from(patch: Patch) -> Self {
+        Self::Patch(Box::new(patch))
+    }
+}
+
 impl Definition {
     /// Reads the definition in the resources at `location`; also returns its file.
     pub(super) fn find(location: &str) -> Result<(Self, PathBuf), Error> {
-        let path = resources::find(location, &[SCENE_FILE, TABLE_FILE])?;
+        // The table of a patch may have any name.
+        let path = resources::find(location, &[SCENE_FILE, PATCH_FILE, TABLE_FILE])?;
         let definition = if path.ends_with(TABLE_FILE) {
             PointContact::new(Table::load(&path)?).into()
+        } else if path.ends_with(PATCH_FILE) {
+            Patch::load(&path)?.into()
         } else {
             Scene::load(&path)?.into()
         };
@@ -52,6 +65,7 @@ impl Definition {
         match self {
             Self::Layer(scene) => scene.name.clone(),
             Self::Element(contact) => contact.name(),
+            Self::Patch(patch) => patch.name().to_owned(),
         }
     }
 
@@ -60,6 +74,7 @@ impl Definition {
         match self {
             Self::Layer(scene) => scene.description.clone().unwrap_or_default(),
             Self::Element(contact) => contact.description(),
+            Self::Patch(patch) => patch.description(),
         }
     }
 
@@ -73,6 +88,7 @@ impl Definition {
         match self {
             Self::Layer(scene) => &scene.files,
             Self::Element(_) => &[],
+            Self::Patch(patch) => patch.files(),
         }
     }
 
@@ -83,7 +99,7 @@ impl Definition {
     pub fn carried(&self, folder: &Path, file: &Path) -> io::Result<Vec<u8>> {
         match self {
             Self::Layer(scene) => scene.carried(folder, file),
-            Self::Element(_) => fs::read(folder.join(file)),
+            Self::Element(_) | Self::Patch(_) => fs::read(folder.join(file)),
         }
     }
 
@@ -92,6 +108,7 @@ impl Definition {
         match self {
             Self::Layer(_) => SCENE_FILE,
             Self::Element(_) => TABLE_FILE,
+            Self::Patch(_) => PATCH_FILE,
         }
     }
 
@@ -100,7 +117,7 @@ impl Definition {
         let folder = path.parent().unwrap_or(Path::new(""));
         let extracts = match self {
             Self::Layer(scene) => scene.extracts.iter(),
-            Self::Element(_) => [].iter(),
+            Self::Element(_) | Self::Patch(_) => [].iter(),
         };
         let files = self.files().iter().chain(extracts.map(|extract| &extract.source));
         std::iter::once(path.to_owned()).chain(files.map(|file| folder.join(file))).collect()
@@ -110,7 +127,7 @@ impl Definition {
     pub fn warnings(&self) -> &[String] {
         match self {
             Self::Layer(scene) => &scene.warnings,
-            Self::Element(_) => &[],
+            Self::Element(_) | Self::Patch(_) => &[],
         }
     }
 
@@ -119,6 +136,7 @@ impl Definition {
         match self {
             Self::Layer(scene) => scene.inputs(),
             Self::Element(_) => vec![Input::U, Input::W],
+            Self::Patch(_) => Vec::new(),
         }
     }
 
@@ -126,7 +144,7 @@ impl Definition {
     pub fn input_start(&self, input: Input) -> f64 {
         match self {
             Self::Layer(scene) => scene.input_start(input),
-            Self::Element(_) => 0.0,
+            Self::Element(_) | Self::Patch(_) => 0.0,
         }
     }
 
@@ -136,11 +154,12 @@ impl Definition {
         is_input.then(|| self.input_start(Input::Temperature))
     }
 
-    /// The output variables.
+    /// The output variables of a layer or an element; a patch has [its own](Patch::variables).
     pub fn variables(&self) -> Vec<Variable> {
         match self {
             Self::Layer(scene) => outputs::variables(scene),
             Self::Element(contact) => contact.variables(),
+            Self::Patch(_) => Vec::new(),
         }
     }
 
@@ -149,6 +168,7 @@ impl Definition {
         match self {
             Self::Layer(scene) => outputs::dependencies(scene, output),
             Self::Element(_) => element::dependencies(output),
+            Self::Patch(_) => Dependencies::default(),
         }
     }
 
@@ -157,6 +177,7 @@ impl Definition {
         match self {
             Self::Layer(scene) => scene.parameters(),
             Self::Element(contact) => contact.parameters(),
+            Self::Patch(patch) => patch.parameters(),
         }
     }
 
@@ -165,6 +186,7 @@ impl Definition {
         match self {
             Self::Layer(scene) => scene.parameter(parameter),
             Self::Element(contact) => contact.parameter(parameter),
+            Self::Patch(patch) => patch.parameter(parameter),
         }
     }
 
@@ -177,7 +199,13 @@ impl Definition {
         match self {
             Self::Layer(scene) => scene.set_parameter(parameter, value),
             Self::Element(contact) => contact.set_parameter(parameter, value),
+            Self::Patch(patch) => patch.set_parameter(parameter, value),
         }
+    }
+
+    /// The patch, if it is one.
+    pub(super) fn patch(&self) -> Option<&Patch> {
+        if let Self::Patch(patch) = self { Some(patch) } else { None }
     }
 
     /// How inputs are extrapolated where the master gives no derivatives.
@@ -185,6 +213,7 @@ impl Definition {
         match self {
             Self::Layer(scene) => scene.extrapolation,
             Self::Element(contact) => contact.extrapolation,
+            Self::Patch(patch) => patch.extrapolation,
         }
     }
 }
@@ -233,6 +262,13 @@ pub enum Kind {
 }
 
 impl Kind {
+    fn of(kind: outputs::Kind) -> Self {
+        match kind {
+            outputs::Kind::Real => Self::Real,
+            outputs::Kind::Integer => Self::Integer,
+        }
+    }
+
     fn name(self) -> &'static str {
         match self {
             Self::Real => "Real",
@@ -256,6 +292,10 @@ pub enum Entry<'a> {
     Input(Input),
     /// An output or, in the group elements, a local variable: its index in [`Catalogue::outputs`] and the variable.
     Output(usize, &'a Variable),
+    /// An input of a patch, a Real.
+    PatchInput(PatchInput),
+    /// The same as `Output`, of a patch.
+    PatchOutput(usize, &'a PatchVariable),
     /// A fixed parameter and its type.
     Parameter(Parameter, Kind),
 }
@@ -266,6 +306,8 @@ impl Entry<'_> {
         match self {
             Self::Input(input) => input.name().into(),
             Self::Output(_, variable) => variable.name.clone(),
+            Self::PatchInput(input) => input.name().into(),
+            Self::PatchOutput(_, variable) => variable.name.clone(),
             Self::Parameter(parameter, _) => parameter.name(),
         }
     }
@@ -273,11 +315,9 @@ impl Entry<'_> {
     /// The variable's type.
     pub fn kind(&self) -> Kind {
         match self {
-            Self::Input(_) => Kind::Real,
-            Self::Output(_, variable) => match variable.kind {
-                outputs::Kind::Real => Kind::Real,
-                outputs::Kind::Integer => Kind::Integer,
-            },
+            Self::Input(_) | Self::PatchInput(_) => Kind::Real,
+            Self::Output(_, variable) => Kind::of(variable.kind),
+            Self::PatchOutput(_, variable) => Kind::of(variable.kind),
             Self::Parameter(_, kind) => *kind,
         }
     }
@@ -288,7 +328,32 @@ impl Entry<'_> {
 pub struct Catalogue {
     inputs: Vec<Input>,
     outputs: Vec<Variable>,
+    patch: Option<PatchCatalogue>,
     parameters: Vec<(Parameter, Kind)>,
+}
+
+/// Inputs and outputs of a patch.
+#[derive(Clone, Debug, PartialEq)]
+struct PatchCatalogue {
+    inputs: Vec<PatchInput>,
+    outputs: Vec<PatchVariable>,
+}
+
+impl PatchCatalogue {
+    fn of(definition: &Definition) -> Option<Self> {
+        let Definition::Patch(patch) = definition else { return None };
+        Some(Self { inputs: PatchInput::of(patch), outputs: patch.variables() })
+    }
+
+    /// The variable with this index, or the index after them.
+    fn entry(&self, index: usize) -> Result<Entry<'_>, usize> {
+        if let Some(&input) = self.inputs.get(index) {
+            return Ok(Entry::PatchInput(input));
+        }
+        let index = index - self.inputs.len();
+        let output = self.outputs.get(index).map(|variable| Entry::PatchOutput(index, variable));
+        output.ok_or(index - self.outputs.len().min(index))
+    }
 }
 
 impl Catalogue {
@@ -305,21 +370,30 @@ impl Catalogue {
             Value::Text(_) => Kind::Text,
         };
         let parameters = definition.parameters().into_iter().map(|parameter| (parameter, kind(parameter))).collect();
-        Self { inputs: definition.inputs(), outputs: definition.variables(), parameters }
+        let (inputs, outputs) = (definition.inputs(), definition.variables());
+        Self { inputs, outputs, patch: PatchCatalogue::of(definition), parameters }
     }
 
     /// The variable with the value reference `reference`.
     pub fn entry(&self, reference: u32) -> Option<Entry<'_>> {
         let index = usize::try_from(reference).ok()?;
+        match self.variable(index) {
+            Ok(entry) => Some(entry),
+            Err(index) => self.parameters.get(index).map(|&(parameter, kind)| Entry::Parameter(parameter, kind)),
+        }
+    }
+
+    /// The input or output with this index, or the index after them.
+    fn variable(&self, index: usize) -> Result<Entry<'_>, usize> {
+        if let Some(patch) = &self.patch {
+            return patch.entry(index);
+        }
         if let Some(&input) = self.inputs.get(index) {
-            return Some(Entry::Input(input));
+            return Ok(Entry::Input(input));
         }
         let index = index - self.inputs.len();
-        if let Some(variable) = self.outputs.get(index) {
-            return Some(Entry::Output(index, variable));
-        }
-        let &(parameter, kind) = self.parameters.get(index - self.outputs.len())?;
-        Some(Entry::Parameter(parameter, kind))
+        let output = self.outputs.get(index).map(|variable| Entry::Output(index, variable));
+        output.ok_or(index - self.outputs.len().min(index))
     }
 
     /// The variable with the value reference `reference`, of the type `asked` for.
@@ -343,9 +417,19 @@ impl Catalogue {
         &self.inputs
     }
 
-    /// The outputs in the order of their value references.
+    /// The outputs of a layer or an element in the order of their value references.
     pub fn outputs(&self) -> &[Variable] {
         &self.outputs
+    }
+
+    /// The outputs of a patch in the order of their value references.
+    pub fn patch_outputs(&self) -> &[PatchVariable] {
+        self.patch.as_ref().map_or(&[], |patch| &patch.outputs)
+    }
+
+    /// The number of outputs.
+    pub(super) fn output_count(&self) -> usize {
+        self.outputs.len() + self.patch_outputs().len()
     }
 }
 

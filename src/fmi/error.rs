@@ -9,6 +9,7 @@ use std::sync::OnceLock;
 use serde::{Deserialize, Serialize};
 
 use crate::element::{self, ElementError, TableError};
+use crate::patch::{self, MotionError, PatchError};
 use crate::scene::{LARGEST, ParameterError, SMALLEST, SceneError};
 use crate::simulation::{self, SimulationError};
 
@@ -49,7 +50,7 @@ pub(super) enum Error {
     NoInput(String),
     #[error("the derivative of {name} is of order {order}; only order 1 is supported")]
     DerivativeOrder { name: String, order: i32 },
-    #[error("{0} has no derivative by time; only F_x and F_z have")]
+    #[error("{0} has no derivative by time; only the forces have")]
     NoOutputDerivative(String),
     #[error("{0} is not an output; directional derivatives exist only for outputs")]
     NoUnknown(String),
@@ -103,6 +104,10 @@ pub(super) enum Error {
     Table(#[from] TableError),
     #[error(transparent)]
     Element(#[from] ElementError),
+    #[error(transparent)]
+    Patch(#[from] PatchError),
+    #[error(transparent)]
+    Motion(#[from] MotionError),
     #[error("cannot read {path}: {source}", path = .path.display())]
     Unreadable { path: PathBuf, source: std::io::Error },
     #[error("internal error, the instance is lost: {0}")]
@@ -122,6 +127,9 @@ impl Error {
                 Status::Discard
             }
             Self::Element(ElementError::Pressure { within: true, .. }) => Status::Discard,
+            Self::Motion(MotionError::TooManyParts { .. } | MotionError::BeyondTable { within: true, .. }) => {
+                Status::Discard
+            }
             Self::NoSuchStatus => Status::Discard,
             Self::Panic(_) => Status::Fatal,
             _ => Status::Error,
@@ -150,6 +158,8 @@ pub(super) enum RestoreError {
     Simulation(#[from] simulation::RestoreError),
     #[error(transparent)]
     Element(#[from] element::RestoreError),
+    #[error(transparent)]
+    Patch(#[from] patch::RestoreError),
     #[error("{0}")]
     Invalid(&'static str),
 }

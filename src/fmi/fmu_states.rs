@@ -11,13 +11,13 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use uuid::Uuid;
 
-use super::definition::Parameters;
+use super::definition::{Catalogue, Parameters};
 use super::error::{Error, RestoreError, Status};
 use super::inputs::Inputs;
 use super::lifecycle::LifecycleState;
 use super::model::{InstanceModel, ModelState};
+use super::patch_inputs::PatchInputs;
 use super::state::{Clock, FmuState};
-use crate::outputs::Variable;
 use crate::scene::Value;
 
 /// FMU states by handle. The handle is the state's address, which is unique among all that exist. It is looked up and
@@ -81,23 +81,27 @@ struct WrittenState {
 
 /// `state` of the FMU with this GUID as a byte string.
 pub(super) fn write(state: &FmuState, guid: &str) -> Result<Vec<u8>, RestoreError> {
-    let FmuState { lifecycle, parameters, inputs, clock, last_step, model } = state.clone();
+    let FmuState { lifecycle, parameters, inputs, patch_inputs, clock, last_step, model } = state.clone();
     let parameters = parameters.values_set().clone();
     let written = WrittenState { lifecycle, parameters, inputs, clock, last_step, model };
     let mut bytes = postcard::to_extend(&written, head(guid))?;
+    if let Some(inputs) = patch_inputs {
+        bytes = postcard::to_extend(&inputs, bytes)?;
+    }
     bytes.extend(checksum(&bytes));
     Ok(bytes)
 }
 
-/// Reads a state of the FMU with this GUID, whose parameters were `original` before any was set. Its outputs, `outputs`,
-/// must be finite: those of a forged state need not be.
+/// Reads a state of the FMU with this GUID, whose parameters were `original` before any was set. Its outputs, those of
+/// `catalogue`, must be finite: those of a forged state need not be.
 pub(super) fn read(
     bytes: &[u8],
     guid: &str,
     original: &Arc<Parameters>,
-    outputs: &[Variable],
+    catalogue: &Catalogue,
 ) -> Result<FmuState, RestoreError> {
     let (written, rest) = postcard::take_from_bytes::<WrittenState>(body(bytes, guid)?)?;
+    let (patch_inputs, rest) = patch_inputs(original, rest)?;
     if !rest.is_empty() {
         return Err(RestoreError::Invalid("something follows its end"));
     }
@@ -105,14 +109,24 @@ pub(super) fn read(
     let WrittenState { lifecycle, parameters: set, inputs, clock, last_step, model } = written;
     let parameters = parameters(original, set)?;
     if let Some(model) = &model {
-        check_outputs(InstanceModel::restore(parameters.definition(), model)?, outputs)?;
+        check_outputs(InstanceModel::restore(parameters.definition(), model)?, catalogue)?;
     }
-    Ok(FmuState { lifecycle, parameters, inputs, clock, last_step, model })
+    Ok(FmuState { lifecycle, parameters, inputs, patch_inputs, clock, last_step, model })
 }
 
-fn check_outputs(mut model: InstanceModel, outputs: &[Variable]) -> Result<(), RestoreError> {
-    let mut values = vec![0.0; outputs.len()];
-    model.evaluate(outputs, &mut values);
+/// The inputs of a patch, which follow the rest; and what follows them.
+fn patch_inputs<'a>(original: &Parameters, bytes: &'a [u8]) -> Result<(Option<PatchInputs>, &'a [u8]), RestoreError> {
+    if original.definition().patch().is_none() {
+        return Ok((None, bytes));
+    }
+    let (inputs, rest) = postcard::take_from_bytes::<PatchInputs>(bytes)?;
+    let valid = inputs.is_valid();
+    if valid { Ok((Some(inputs), rest)) } else { Err(RestoreError::Invalid("its past inputs are no numbers")) }
+}
+
+fn check_outputs(mut model: InstanceModel, catalogue: &Catalogue) -> Result<(), RestoreError> {
+    let mut values = vec![0.0; catalogue.output_count()];
+    model.evaluate(catalogue, &mut values);
     let finite = values.iter().all(|value| value.is_finite());
     if finite { Ok(()) } else { Err(RestoreError::Invalid("its outputs are no finite numbers")) }
 }

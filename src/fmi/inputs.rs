@@ -19,7 +19,7 @@ pub struct Inputs {
 
 /// One input: its value and what the next step follows from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Signal {
+pub(super) struct Signal {
     /// u_n, m, or N_n, N: the input's value.
     value: f64,
     /// Its first derivative, if the master gave it for the next step.
@@ -57,12 +57,12 @@ impl Inputs {
 
     /// Sets an input.
     pub fn set_input(&mut self, input: Input, value: f64) {
-        self.signals[input as usize].value = value;
+        self.signals[input as usize].set(value);
     }
 
     /// Sets the first derivative of an input for the next step.
     pub fn set_rate(&mut self, input: Input, rate: f64) {
-        self.signals[input as usize].rate = Some(rate);
+        self.signals[input as usize].set_rate(rate);
     }
 
     /// The carrier at the start: at the displacements given, with the derivatives given as its velocity, else at rest.
@@ -95,13 +95,13 @@ impl Inputs {
     ) -> Result<Motion, InputOutOfRange> {
         let path = |input: Input, from: f64| {
             let signal = &self.signals[input as usize];
-            let target = signal.checked_target(input, time, h, rule)?;
+            let target = signal.checked_target(input.name(), time, h, rule)?;
             let rate = signal.given_rate(from).unwrap_or((target - from) / h);
             Ok::<_, InputOutOfRange>(Path { rate, ..Path::default() })
         };
         let force = |input: Input| {
             let signal = &self.signals[input as usize];
-            let target = signal.checked_target(input, time, h, rule)?;
+            let target = signal.checked_target(input.name(), time, h, rule)?;
             let rate = signal.rate.unwrap_or((target - signal.value) / h);
             Ok::<_, InputOutOfRange>(Force { start: Some(signal.value), change: Path { rate, ..Path::default() } })
         };
@@ -118,16 +118,12 @@ impl Inputs {
     /// Whether a run can have reached these inputs: the values of past steps are finite. Values and rates of the next step
     /// may be anything.
     pub(super) fn is_valid(&self) -> bool {
-        let pasts = self.signals.iter().filter_map(|signal| signal.past.as_ref());
-        pasts.into_iter().all(|past| is_possible(past.value) && is_possible(past.step) && past.step > 0.0)
+        self.signals.iter().all(Signal::is_valid)
     }
 
     /// Completes a step of `h`: its derivatives apply to no other.
     pub fn complete_step(&mut self, h: f64) {
-        for signal in &mut self.signals {
-            signal.rate = None;
-            signal.past = Some(Past { value: signal.value, step: h });
-        }
+        self.signals.iter_mut().for_each(|signal| signal.complete_step(h));
     }
 }
 
@@ -135,10 +131,38 @@ impl Inputs {
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 impl Signal {
+    pub(super) fn value(&self) -> f64 {
+        self.value
+    }
+
+    pub(super) fn set(&mut self, value: f64) {
+        self.value = value;
+    }
+
+    /// The first derivative, if the master gave it for the next step.
+    pub(super) fn rate(&self) -> Option<f64> {
+        self.rate
+    }
+
+    pub(super) fn set_rate(&mut self, rate: f64) {
+        self.rate = Some(rate);
+    }
+
+    /// Completes a step of `h` (s).
+    pub(super) fn complete_step(&mut self, h: f64) {
+        self.rate = None;
+        self.past = Some(Past { value: self.value, step: h });
+    }
+
+    /// Whether the values of the past step are finite.
+    pub(super) fn is_valid(&self) -> bool {
+        self.past.is_none_or(|past| is_possible(past.value) && is_possible(past.step) && past.step > 0.0)
+    }
+
     /// The rate that the master gave, if û = `current` equals its value but for rounding. It is then used as it is: if it
     /// were computed from the difference to the target, that rounding over h would be a kink at every communication point
     /// of a steady motion.
-    fn given_rate(&self, current: f64) -> Option<f64> {
+    pub(super) fn given_rate(&self, current: f64) -> Option<f64> {
         let same = (current - self.value).abs() <= ROUNDING * current.abs().max(self.value.abs());
         self.rate.filter(|_| same)
     }
@@ -156,10 +180,16 @@ impl Signal {
     }
 
     /// [`target`](Self::target), checked to be in range.
-    fn checked_target(&self, input: Input, time: f64, h: f64, rule: Extrapolation) -> Result<f64, InputOutOfRange> {
+    pub(super) fn checked_target(
+        &self,
+        name: &'static str,
+        time: f64,
+        h: f64,
+        rule: Extrapolation,
+    ) -> Result<f64, InputOutOfRange> {
         let target = self.target(h, rule);
         match [self.value, target].into_iter().find(|value| !is_possible(*value)) {
-            Some(value) => Err(InputOutOfRange { name: input.name(), value, time }),
+            Some(value) => Err(InputOutOfRange { name, value, time }),
             None => Ok(target),
         }
     }

@@ -120,6 +120,7 @@ impl Instance {
     /// fmi2ExitInitializationMode: the layer or the element is placed under the carrier.
     pub(super) fn exit_initialization_mode(&mut self) -> Result<(), Error> {
         self.state.start()?;
+        self.log_patch_warning();
         self.warnings.start = Some(self.state.clock.time);
         self.record_events();
         Ok(())
@@ -135,6 +136,7 @@ impl Instance {
         self.log_events(&events);
         self.log_work(&switches);
         self.log_warnings();
+        self.log_patch_warning();
         Ok(())
     }
 
@@ -182,7 +184,7 @@ impl Instance {
 
     /// fmi2DeSerializeFMUstate: keeps the state in `bytes` and returns its handle.
     pub(super) fn deserialise_state(&mut self, bytes: &[u8]) -> Result<usize, Error> {
-        let state = fmu_states::read(bytes, &self.guid, &self.original, self.catalogue.outputs())?;
+        let state = fmu_states::read(bytes, &self.guid, &self.original, &self.catalogue)?;
         Ok(self.fmu_states.keep_new(state))
     }
 
@@ -221,6 +223,12 @@ impl Instance {
         for text in self.warnings.new_ones(self.state.parameters.definition(), model, self.state.clock.time) {
             self.log.add(Message::of_status(Status::Warning, text));
         }
+    }
+
+    /// An element beyond the table is told of once a run.
+    fn log_patch_warning(&mut self) {
+        let warning = self.state.model.as_mut().and_then(InstanceModel::patch).and_then(|run| run.take_warning());
+        self.log.extend(warning.map(|text| Message::of_status(Status::Warning, text)));
     }
 
     fn log_work(&mut self, switches: &[MethodSwitch]) {

@@ -105,6 +105,11 @@ impl Log {
         }
     }
 
+    /// Keeps messages for the end of the call.
+    pub(super) fn extend(&mut self, messages: impl IntoIterator<Item = Message>) {
+        self.waiting.extend(messages);
+    }
+
     /// Keeps a message for the end of the call.
     pub(super) fn add(&mut self, message: Message) {
         self.waiting.push(message);

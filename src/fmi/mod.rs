@@ -1,5 +1,6 @@
 //! The FMU: the C interface of FMI 2.0 for co-simulation around a [`Simulation`](crate::simulation::Simulation) of a
-//! layer, or an [`Element`](crate::element::Element) that interpolates the forces in a table.
+//! layer, an [`Element`](crate::element::Element) that interpolates the forces in a table, or a
+//! [patch](crate::patch::PatchRun) of many.
 //!
 //! The exports check pointers and then call a method of an instance in safe Rust. Each file uses only those above it:
 //!
@@ -11,7 +12,8 @@
 //! | `resources` | the file of the scene or table in the FMU's resources |
 //! | `definition` | what the FMU simulates, its parameters, variables by value reference, GUID |
 //! | `inputs` | inputs and the carrier's motion between communication points |
-//! | `model` | the instance's model: a simulation of the layer, or an element |
+//! | `patch_inputs` | the same of a patch |
+//! | `model` | the instance's model: a simulation of the layer, an element or a patch |
 //! | `state` | the state of an instance, its copy in an FMU state, its clock |
 //! | `fmu_states` | FMU states handed out, and as byte strings |
 //! | `log` | messages by category, warnings of runs that the scene does not cover |
@@ -30,6 +32,7 @@ mod instance;
 mod lifecycle;
 mod log;
 mod model;
+mod patch_inputs;
 mod resources;
 mod state;
 mod values;
@@ -43,7 +46,8 @@ pub use error::InputOutOfRange;
 pub use exports::*;
 pub use inputs::Inputs;
 pub use log::Category;
-pub use resources::{SCENE_FILE, TABLE_FILE};
+pub use patch_inputs::PatchInput;
+pub use resources::{PATCH_FILE, SCENE_FILE, TABLE_FILE};
 
 /// The capabilities that the model description claims, as attributes of its element `CoSimulation`; those left out are
 /// false.

@@ -1,18 +1,20 @@
-//! The model of an instance: a run of a layer or of an element.
+//! The model of an instance: a run of a layer, of an element or of a patch.
 
 use serde::{Deserialize, Serialize};
 
-use super::definition::Definition;
+use super::definition::{Catalogue, Definition};
 use super::error::{Error, RestoreError};
 use crate::element::{self, Element};
 use crate::outputs::{Output, Variable};
+use crate::patch::{PatchRun, PatchStart, PatchState};
 use crate::simulation::{self, Divergence, MethodSwitch, ModeChange, Motion, Simulation, Start};
 
-/// A run of a layer or of an element.
+/// A run of a layer, of an element or of a patch.
 #[derive(Clone, Debug)]
 pub(super) enum InstanceModel {
     Layer(Box<Simulation>),
     Element(Box<Element>),
+    Patch(Box<PatchRun>),
 }
 
 /// The state of an [`InstanceModel`], as an FMU state keeps it.
@@ -20,6 +22,7 @@ pub(super) enum InstanceModel {
 pub(super) enum ModelState {
     Layer(Box<simulation::SimulationState>),
     Element(element::ElementState),
+    Patch(Box<PatchState>),
 }
 
 impl InstanceModel {
@@ -27,7 +30,16 @@ impl InstanceModel {
         Ok(match definition {
             Definition::Layer(scene) => Self::Layer(Box::new(Simulation::new(scene, start)?)),
             Definition::Element(contact) => Self::Element(Box::new(Element::new(contact, start)?)),
+            // It has a start of its own.
+            Definition::Patch(_) => return Err(Error::NoRun),
         })
+    }
+
+    pub(super) fn start_patch(definition: &Definition, start: &PatchStart) -> Result<Self, Error> {
+        match definition {
+            Definition::Patch(patch) => Ok(Self::Patch(Box::new(PatchRun::new(patch, start)?))),
+            _ => Err(Error::NoRun),
+        }
     }
 
     /// A run that continues from `state`.
@@ -39,6 +51,9 @@ impl InstanceModel {
             (Definition::Element(contact), ModelState::Element(state)) => {
                 Self::Element(Box::new(Element::restore(contact, state)?))
             }
+            (Definition::Patch(patch), ModelState::Patch(state)) => {
+                Self::Patch(Box::new(PatchRun::restore(patch, state)?))
+            }
             _ => return Err(RestoreError::Invalid("its run is of something else")),
         })
     }
@@ -47,6 +62,7 @@ impl InstanceModel {
     pub(super) fn set_state(&mut self, definition: &Definition, state: &ModelState) -> Result<(), RestoreError> {
         match (&mut *self, state) {
             (Self::Layer(simulation), ModelState::Layer(state)) => simulation.set_state(state)?,
+            (Self::Patch(run), ModelState::Patch(state)) => run.set_state(state)?,
             _ => *self = Self::restore(definition, state)?,
         }
         Ok(())
@@ -57,6 +73,7 @@ impl InstanceModel {
         match self {
             Self::Layer(simulation) => simulation.carrier(),
             Self::Element(element) => element.carrier(),
+            Self::Patch(_) => (0.0, 0.0),
         }
     }
 
@@ -65,6 +82,7 @@ impl InstanceModel {
         match self {
             Self::Layer(simulation) => simulation.driven(),
             Self::Element(element) => element.carrier(),
+            Self::Patch(_) => (0.0, 0.0),
         }
     }
 
@@ -73,15 +91,18 @@ impl InstanceModel {
         match self {
             Self::Layer(simulation) => simulation.advance(motion)?,
             Self::Element(element) => element.advance(motion.duration, motion.u.rate, motion.w.rate)?,
+            // It has a motion of its own.
+            Self::Patch(_) => return Err(Error::NoRun),
         }
         Ok(())
     }
 
-    /// Writes the values of `variables` into `values`, in their order.
-    pub(super) fn evaluate(&mut self, variables: &[Variable], values: &mut [f64]) {
+    /// Writes the values of all outputs into `values`, in their order.
+    pub(super) fn evaluate(&mut self, catalogue: &Catalogue, values: &mut [f64]) {
         match self {
-            Self::Layer(simulation) => simulation.evaluate(variables, values),
-            Self::Element(element) => element.evaluate(variables, values),
+            Self::Layer(simulation) => simulation.evaluate(catalogue.outputs(), values),
+            Self::Element(element) => element.evaluate(catalogue.outputs(), values),
+            Self::Patch(run) => run.evaluate(catalogue.patch_outputs(), values),
         }
     }
 
@@ -90,6 +111,7 @@ impl InstanceModel {
         match self {
             Self::Layer(simulation) => simulation.directional_derivative(variables, direction, values),
             Self::Element(element) => element.directional_derivative(variables, direction, values),
+            Self::Patch(_) => values.fill(0.0),
         }
     }
 
@@ -99,7 +121,7 @@ impl InstanceModel {
             (Self::Layer(simulation), _) => simulation.output_rate(output),
             (Self::Element(element), Output::ForceX) => element.force_rates().0,
             (Self::Element(element), Output::ForceZ) => element.force_rates().1,
-            (Self::Element(_), _) => 0.0,
+            (Self::Element(_) | Self::Patch(_), _) => 0.0,
         }
     }
 
@@ -107,6 +129,7 @@ impl InstanceModel {
         match self {
             Self::Layer(simulation) => ModelState::Layer(Box::new(simulation.state())),
             Self::Element(element) => ModelState::Element(element.save()),
+            Self::Patch(run) => ModelState::Patch(Box::new(run.save())),
         }
     }
 
@@ -117,11 +140,11 @@ impl InstanceModel {
         }
     }
 
-    /// Why the run does not converge, if it shows; an element has no steps.
+    /// Why the run does not converge, if it shows; elements have no steps.
     pub(super) fn divergence(&self) -> Option<Divergence> {
         match self {
             Self::Layer(simulation) => simulation.divergence(),
-            Self::Element(_) => None,
+            Self::Element(_) | Self::Patch(_) => None,
         }
     }
 
@@ -133,6 +156,7 @@ impl InstanceModel {
                 simulation.record_method_switches(switches);
             }
             Self::Element(element) => element.record_mode_changes(events),
+            Self::Patch(_) => (),
         }
     }
 
@@ -141,14 +165,20 @@ impl InstanceModel {
         match self {
             Self::Layer(simulation) => (simulation.take_mode_changes(), simulation.take_method_switches()),
             Self::Element(element) => (element.take_mode_changes(), Vec::new()),
+            Self::Patch(_) => (Vec::new(), Vec::new()),
         }
+    }
+
+    /// The run of a patch.
+    pub(super) fn patch(&mut self) -> Option<&mut PatchRun> {
+        if let Self::Patch(run) = self { Some(run) } else { None }
     }
 
     /// The simulation of a layer, which counts its work.
     pub(super) fn simulation(&mut self) -> Option<&mut Simulation> {
         match self {
             Self::Layer(simulation) => Some(simulation),
-            Self::Element(_) => None,
+            Self::Element(_) | Self::Patch(_) => None,
         }
     }
 }

@@ -12,6 +12,9 @@ pub const SCENE_FILE: &str = "scene.toml";
 /// The name there of an element's table.
 pub const TABLE_FILE: &str = "table.csv";
 
+/// The name there of a patch.
+pub const PATCH_FILE: &str = "patch.toml";
+
 /// The first of `files` that is in the resources at `location`.
 ///
 /// # Errors

@@ -9,6 +9,7 @@ use super::error::{Error, RestoreError, Status};
 use super::inputs::Inputs;
 use super::lifecycle::LifecycleState;
 use super::model::{InstanceModel, ModelState};
+use super::patch_inputs::PatchInputs;
 use crate::scene::{SMALLEST, is_possible};
 
 #[derive(Debug)]
@@ -18,6 +19,8 @@ pub(super) struct InstanceState {
     /// What is simulated, with the parameters set.
     pub(super) parameters: Arc<Parameters>,
     pub(super) inputs: Inputs,
+    /// Of a patch, in their place.
+    pub(super) patch_inputs: Option<PatchInputs>,
     pub(super) clock: Clock,
     /// What the last step returned.
     pub(super) last_step: Status,
@@ -31,6 +34,7 @@ pub(super) struct FmuState {
     pub(super) lifecycle: LifecycleState,
     pub(super) parameters: Arc<Parameters>,
     pub(super) inputs: Inputs,
+    pub(super) patch_inputs: Option<PatchInputs>,
     pub(super) clock: Clock,
     pub(super) last_step: Status,
     /// `None` before the run: the model follows from the rest then.
@@ -43,6 +47,7 @@ impl InstanceState {
         let inputs = Inputs::new(parameters.definition().temperature());
         Self {
             lifecycle: LifecycleState::Instantiated,
+            patch_inputs: parameters.definition().patch().map(PatchInputs::new),
             parameters,
             inputs,
             clock: Clock::default(),
@@ -61,8 +66,11 @@ impl InstanceState {
     /// The model. Before the run, outputs are those of a run that starts from the parameters and inputs set.
     pub(super) fn model(&mut self) -> Result<&mut InstanceModel, Error> {
         if self.model.is_none() && self.lifecycle.before_run() {
-            let start = self.inputs.start(self.clock.time);
-            self.model = Some(InstanceModel::start(self.parameters.definition(), &start)?);
+            let (definition, time) = (self.parameters.definition(), self.clock.time);
+            self.model = Some(match &self.patch_inputs {
+                Some(inputs) => InstanceModel::start_patch(definition, &inputs.start(time))?,
+                None => InstanceModel::start(definition, &self.inputs.start(time))?,
+            });
         }
         self.model.as_mut().ok_or(Error::NoRun)
     }
@@ -91,9 +99,13 @@ impl InstanceState {
 
     fn advance(&mut self, clock: Clock, h: f64) -> Result<(), Error> {
         let (inputs, time, rule) = (self.inputs, self.clock.time, self.parameters.definition().extrapolation());
-        let model = self.model()?;
-        model.advance(&inputs.motion(model.driven(), time, h, rule)?)?;
+        let patch_inputs = self.patch_inputs;
+        match (self.model()?, &patch_inputs) {
+            (InstanceModel::Patch(run), Some(inputs)) => run.advance(&inputs.motion(run, h, rule)?)?,
+            (model, _) => model.advance(&inputs.motion(model.driven(), time, h, rule)?)?,
+        }
         self.inputs.complete_step(h);
+        self.patch_inputs.iter_mut().for_each(|inputs| inputs.complete_step(h));
         self.clock = clock;
         Ok(())
     }
@@ -105,6 +117,7 @@ impl InstanceState {
             lifecycle: self.lifecycle,
             parameters: Arc::clone(&self.parameters),
             inputs: self.inputs,
+            patch_inputs: self.patch_inputs,
             clock: self.clock,
             last_step: self.last_step,
             model: model.map(InstanceModel::state),
@@ -128,7 +141,8 @@ impl InstanceState {
         }
         self.lifecycle = state.lifecycle;
         self.parameters = Arc::clone(&state.parameters);
-        (self.inputs, self.clock, self.last_step) = (state.inputs, state.clock, state.last_step);
+        (self.inputs, self.patch_inputs) = (state.inputs, state.patch_inputs);
+        (self.clock, self.last_step) = (state.clock, state.last_step);
         Ok(())
     }
 }
@@ -152,8 +166,8 @@ impl OutputCache {
     pub(super) fn get(&mut self, state: &mut InstanceState, catalogue: &Catalogue) -> Result<&[f64], Error> {
         if self.values.is_none() {
             let mut values = std::mem::take(&mut self.spare);
-            values.resize(catalogue.outputs().len(), 0.0);
-            state.model()?.evaluate(catalogue.outputs(), &mut values);
+            values.resize(catalogue.output_count(), 0.0);
+            state.model()?.evaluate(catalogue, &mut values);
             self.values = Some(values);
         }
         Ok(self.values.as_deref().unwrap_or_default())

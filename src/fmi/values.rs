@@ -6,7 +6,9 @@ use std::sync::Arc;
 use super::definition::{Entry, Input, Kind, Parameters};
 use super::error::Error;
 use super::instance::Instance;
+use super::patch_inputs::PatchInput;
 use crate::outputs::{Output, Variable};
+use crate::patch::PatchOutput;
 use crate::scene::{Value, is_possible};
 
 impl Instance {
@@ -18,13 +20,18 @@ impl Instance {
     fn get_one(&mut self, reference: u32, kind: Kind) -> Result<Value, Error> {
         match self.catalogue.find(reference, kind)? {
             Entry::Input(input) => Ok(Value::Real(self.state.inputs.input(input))),
+            Entry::PatchInput(input) => Ok(Value::Real(self.state.patch_inputs.map_or(0.0, |all| all.get(input)))),
             Entry::Parameter(parameter, _) => Ok(self.state.parameters.definition().parameter(parameter)),
-            Entry::Output(index, variable) => match self.outputs.get(&mut self.state, &self.catalogue)?[index] {
-                value if !value.is_finite() => Err(Error::NoValue { name: variable.name.clone(), value }),
-                value if kind == Kind::Real => Ok(Value::Real(value)),
-                // Saturates: a count is held at the largest Integer.
-                value => Ok(Value::Integer(value as i32)),
-            },
+            Entry::Output(index, _) | Entry::PatchOutput(index, _) => {
+                match self.outputs.get(&mut self.state, &self.catalogue)?[index] {
+                    value if !value.is_finite() => {
+                        Err(Error::NoValue { name: self.catalogue.find(reference, kind)?.name(), value })
+                    }
+                    value if kind == Kind::Real => Ok(Value::Real(value)),
+                    // Saturates: a count is held at the largest Integer.
+                    value => Ok(Value::Integer(value as i32)),
+                }
+            }
         }
     }
 
@@ -74,16 +81,19 @@ impl Instance {
     /// as it does not ask the model to follow it.
     pub(super) fn set(&mut self, references: &[u32], values: impl Iterator<Item = Value>) -> Result<(), Error> {
         let mut parameters = Arc::clone(&self.state.parameters);
-        let mut inputs = self.state.inputs;
+        let (mut inputs, mut patch_inputs) = (self.state.inputs, self.state.patch_inputs);
         for (&reference, value) in references.iter().zip(values) {
             match (self.catalogue.find(reference, kind_of(&value))?, value) {
                 (Entry::Input(input), Value::Real(value)) => inputs.set_input(input, value),
+                (Entry::PatchInput(input), Value::Real(value)) => {
+                    patch_inputs.iter_mut().for_each(|inputs| inputs.set(input, value));
+                }
                 (entry @ Entry::Parameter(..), value) => self.set_parameter(&mut parameters, entry, value)?,
                 (entry, _) => return Err(Error::OutputSet(entry.name())),
             }
         }
         self.state.parameters = parameters;
-        self.state.inputs = inputs;
+        (self.state.inputs, self.state.patch_inputs) = (inputs, patch_inputs);
         self.update_start();
         Ok(())
     }
@@ -98,15 +108,20 @@ impl Instance {
 
     /// fmi2SetRealInputDerivatives: all of them or none.
     pub(super) fn set_rates(&mut self, references: &[u32], orders: &[i32], rates: &[f64]) -> Result<(), Error> {
-        let mut inputs = self.state.inputs;
+        let (mut inputs, mut patch_inputs) = (self.state.inputs, self.state.patch_inputs);
         for ((&reference, &order), &rate) in references.iter().zip(orders).zip(rates) {
             match (self.catalogue.find(reference, Kind::Real)?, order) {
                 (Entry::Input(input), 1) => inputs.set_rate(input, rate),
-                (Entry::Input(input), _) => return Err(Error::DerivativeOrder { name: input.name().into(), order }),
+                (Entry::PatchInput(input), 1) => {
+                    patch_inputs.iter_mut().for_each(|inputs| inputs.set_rate(input, rate));
+                }
+                (entry @ (Entry::Input(_) | Entry::PatchInput(_)), _) => {
+                    return Err(Error::DerivativeOrder { name: entry.name(), order });
+                }
                 (entry, _) => return Err(Error::NoInput(entry.name())),
             }
         }
-        self.state.inputs = inputs;
+        (self.state.inputs, self.state.patch_inputs) = (inputs, patch_inputs);
         self.update_start();
         Ok(())
     }
@@ -128,6 +143,9 @@ impl Instance {
         direction: &[f64],
         values: &mut [f64],
     ) -> Result<(), Error> {
+        if self.state.patch_inputs.is_some() {
+            return self.patch_derivatives(unknowns, knowns, direction, values);
+        }
         let unknowns = unknowns.iter().map(|&reference| self.unknown(reference)).collect::<Result<Vec<_>, _>>()?;
         let direction = self.direction(knowns, direction)?;
         let found = unknowns.iter().map(|unknown| self.directional_derivative(unknown, direction));
@@ -185,6 +203,10 @@ impl Instance {
 
     fn output_derivative(&mut self, reference: u32, order: i32) -> Result<f64, Error> {
         let entry = self.catalogue.find(reference, Kind::Real)?;
+        if let Entry::PatchOutput(_, variable) = entry {
+            let output = variable.output;
+            return self.patch_rate(&entry.name(), output, order);
+        }
         let name = entry.name();
         let output = match entry {
             Entry::Output(_, variable) if has_derivative(variable.output) => variable.output,
@@ -194,6 +216,54 @@ impl Instance {
             return Err(Error::DerivativeOrder { name, order });
         }
         finite(&name, self.state.model()?.output_rate(output))
+    }
+}
+
+/// The derivatives of a patch.
+impl Instance {
+    fn patch_derivatives(
+        &mut self,
+        unknowns: &[u32],
+        knowns: &[u32],
+        steps: &[f64],
+        values: &mut [f64],
+    ) -> Result<(), Error> {
+        let unknown = |&reference: &u32| match self.catalogue.find(reference, Kind::Real)? {
+            Entry::PatchOutput(_, variable) if variable.is_output() => Ok(variable.clone()),
+            entry => Err(Error::NoUnknown(entry.name())),
+        };
+        let unknowns = unknowns.iter().map(unknown).collect::<Result<Vec<_>, _>>()?;
+        let direction = self.pose_direction(knowns, steps)?;
+        let mut found = vec![0.0; unknowns.len()];
+        let run = self.state.model()?.patch().ok_or(Error::NoRun)?;
+        run.directional_derivative(&unknowns, direction, &mut found);
+        for (unknown, value) in unknowns.iter().zip(&found) {
+            finite(&unknown.name, *value)?;
+        }
+        values.iter_mut().zip(found).for_each(|(target, value)| *target = value);
+        Ok(())
+    }
+
+    /// The change of the pose's coordinates. The speed of a tread and the temperature act from the next step on.
+    fn pose_direction(&self, knowns: &[u32], steps: &[f64]) -> Result<[f64; 6], Error> {
+        let mut direction = [0.0; 6];
+        for (&reference, &step) in knowns.iter().zip(steps) {
+            match self.catalogue.find(reference, Kind::Real)? {
+                _ if !is_possible(step) => {
+                    return Err(Error::OutOfRange { what: "a value of dvKnown", value: step });
+                }
+                Entry::PatchInput(PatchInput::Coordinate(i)) => direction[i] += step,
+                Entry::PatchInput(_) => (),
+                entry => return Err(Error::NoKnown(entry.name())),
+            }
+        }
+        Ok(direction)
+    }
+
+    fn patch_rate(&mut self, name: &str, output: PatchOutput, order: i32) -> Result<f64, Error> {
+        let run = self.state.model()?.patch().ok_or(Error::NoRun)?;
+        let rate = run.rate(output).ok_or_else(|| Error::NoOutputDerivative(name.into()))?;
+        if order == 1 { finite(name, rate) } else { Err(Error::DerivativeOrder { name: name.into(), order }) }
     }
 }
 

@@ -26,6 +26,7 @@ pub enum PatchError {
 #[derive(Clone, Debug)]
 pub struct Patch {
     file: Arc<PatchFile>,
+    files: Arc<[PathBuf]>,
     table: Arc<Table>,
     pub(super) face: Arc<Face>,
     pub(super) nominal_area: f64,
@@ -62,6 +63,7 @@ impl Patch {
             table_extrapolation: file.table_extrapolation,
             refine: file.refine,
             extrapolation: file.extrapolation,
+            files: file.files().into(),
             table: Arc::new(table),
             file: Arc::new(file),
         })
@@ -117,8 +119,8 @@ impl Patch {
     }
 
     /// Paths of the files that it reads besides its own, relative to that one's folder.
-    pub fn files(&self) -> Vec<PathBuf> {
-        self.file.files()
+    pub fn files(&self) -> &[PathBuf] {
+        &self.files
     }
 
     /// A height (m) at which nothing touches when the body is level.

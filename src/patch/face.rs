@@ -87,6 +87,15 @@ impl Tread {
         Column { arc, place: [self.offset[0] + x, self.offset[2] + z], direction, share: (high - low) / self.cell }
     }
 
+    /// How the arc length (m) of the middle of what is inside of a column and its share change as cells enter.
+    pub(super) fn changes(&self, i: f64, entered: f64) -> (f64, f64) {
+        let half = 0.5 * self.length;
+        let rear = half - (entered + i) * self.cell;
+        let moves = |edge: f64| if edge > -half && edge < half { 1.0 } else { 0.0 };
+        let (low, high) = (moves(rear), moves(rear + self.cell));
+        (-0.5 * (low + high) * self.cell, low - high)
+    }
+
     /// The first column of a step, as counted at its start, and the number of columns that are inside at some time.
     pub(super) fn columns_of(&self, run: Run) -> (f64, usize) {
         let entered = run.entered();

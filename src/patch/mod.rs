@@ -15,11 +15,13 @@
 //! | `state` | motions, errors, what a run holds |
 //! | `run` | a run |
 //! | `survey` | elements one by one, and sums over them |
+//! | `derivatives` | changes of outputs with the pose and by time |
 //! | `variables` | output variables |
 
 mod block;
 mod cut;
 mod definition;
+mod derivatives;
 mod face;
 mod motion;
 mod run;

@@ -153,6 +153,15 @@ impl Unit {
         self.definition().1
     }
 
+    /// The exponent of rad in the unit.
+    pub fn exponent_of_radian(self) -> i32 {
+        match self {
+            Self::Radian => 1,
+            Self::NewtonPerRadian | Self::NewtonMeterPerRadian => -1,
+            _ => 0,
+        }
+    }
+
     /// The name, and the exponents of kg, m, s and K.
     fn definition(self) -> (&'static str, [i32; 4]) {
         match self {

@@ -78,6 +78,25 @@ fn no_fault_is_found_with_bodies() {
 }
 
 #[test]
+fn no_fault_is_found_in_patches() {
+    let folder = scratch("fmpy-patches");
+    let all =
+        "outputs = [\"forces\", \"dissipation\", \"contact\", \"friction\", \"energy\", \"tangent\", \"elements\"]";
+    for name in ["block", "ring", "wheel"] {
+        let source = root().join("tests/reference/patch");
+        for file in ["block.table.csv", "winkler.table.csv", "ring.points.csv"] {
+            fs::copy(source.join(file), folder.join(file)).unwrap();
+        }
+        let text = fs::read_to_string(source.join(format!("{name}.toml"))).unwrap();
+        let (before, _) = text.split_once("outputs = [").unwrap();
+        let (patch, fmu) = (folder.join(format!("{name}.toml")), folder.join(format!("{name}.fmu")));
+        fs::write(&patch, format!("{before}{all}\n")).unwrap();
+        run(asperity().args(["pack", "--patch"]).arg(&patch).arg("-o").arg(&fmu).arg("--library").arg(library()));
+        validate(&fmu);
+    }
+}
+
+#[test]
 fn the_same_scene_gives_the_same_bytes() {
     let folder = scratch("fmpy-bytes");
     let pack = || fs::read(pack(&root().join(DEFAULT_SCENE), &folder)).unwrap();

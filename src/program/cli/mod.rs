@@ -128,6 +128,9 @@ pub(crate) struct Pack {
     /// A sweep table: packs a point-contact element, which interpolates the table instead of simulating the layer.
     #[arg(long, value_name = "TABLE.csv", group = "input")]
     pub(crate) table: Option<PathBuf>,
+    /// A patch file: packs a contact patch of many point-contact elements in three dimensions.
+    #[arg(long, value_name = "PATCH.toml", group = "input")]
+    pub(crate) patch: Option<PathBuf>,
     /// The scene that was swept: compares the element with its layer between the table's points and along a
     /// to-and-fro motion, and writes tables and plots to a folder beside the FMU.
     #[arg(long, value_name = "SCENE.toml", requires = "table", conflicts_with = "scene")]

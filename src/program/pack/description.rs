@@ -116,12 +116,16 @@ pub(super) fn unit(entry: &Entry<'_>) -> Unit {
     match entry {
         Entry::Input(input) => input.unit(),
         Entry::Output(_, variable) => variable.unit,
+        Entry::PatchInput(input) => input.unit(),
+        Entry::PatchOutput(_, variable) => variable.unit,
         Entry::Parameter(parameter, _) => parameter.unit(),
     }
 }
 
 fn unit_definition(xml: &mut Xml, unit: Unit) -> io::Result<()> {
-    let exponents = ["kg", "m", "s", "K"].into_iter().zip(unit.exponents()).filter(|(_, exponent)| *exponent != 0);
+    let radian = [("rad", unit.exponent_of_radian())];
+    let exponents = ["kg", "m", "s", "K"].into_iter().zip(unit.exponents()).chain(radian);
+    let exponents = exponents.filter(|(_, exponent)| *exponent != 0);
     let texts: Vec<_> = exponents.map(|(base, exponent)| (base, exponent.to_string())).collect();
     xml.create_element("Unit").with_attribute(("name", unit.name())).write_inner_content(|xml| {
         let attributes = texts.iter().map(|(base, exponent)| (*base, exponent.as_str()));
@@ -148,6 +152,8 @@ pub(super) fn description(definition: &Definition, entry: &Entry<'_>) -> String 
     match entry {
         Entry::Input(input) => input_description(definition, *input).into(),
         Entry::Output(_, variable) => variable.description.clone(),
+        Entry::PatchInput(input) => input.description().into(),
+        Entry::PatchOutput(_, variable) => variable.description.clone(),
         Entry::Parameter(parameter, _) => parameter.description(),
     }
 }
@@ -155,9 +161,10 @@ pub(super) fn description(definition: &Definition, entry: &Entry<'_>) -> String 
 /// The causality as the standard calls it.
 pub(super) fn causality(entry: &Entry<'_>) -> &'static str {
     match entry {
-        Entry::Input(_) => "input",
+        Entry::Input(_) | Entry::PatchInput(_) => "input",
         Entry::Output(_, variable) if variable.is_output() => "output",
-        Entry::Output(..) => "local",
+        Entry::PatchOutput(_, variable) if variable.is_output() => "output",
+        Entry::Output(..) | Entry::PatchOutput(..) => "local",
         Entry::Parameter(..) => "parameter",
     }
 }
@@ -166,7 +173,11 @@ pub(super) fn causality(entry: &Entry<'_>) -> &'static str {
 pub(super) fn start(definition: &Definition, entry: &Entry<'_>) -> Option<String> {
     match entry {
         Entry::Input(input) => Some(real(definition.input_start(*input))),
-        Entry::Output(..) => None,
+        Entry::PatchInput(input) => {
+            let Definition::Patch(patch) = definition else { return None };
+            Some(real(input.start(patch)))
+        }
+        Entry::Output(..) | Entry::PatchOutput(..) => None,
         Entry::Parameter(parameter, _) => Some(match definition.parameter(*parameter) {
             Value::Real(value) => real(value),
             Value::Integer(value) => value.to_string(),
@@ -206,8 +217,8 @@ fn variability(entry: &Entry<'_>) -> &'static str {
 /// Inputs must not have it.
 fn initial(entry: &Entry<'_>) -> Option<&'static str> {
     match entry {
-        Entry::Input(_) => None,
-        Entry::Output(..) => Some("calculated"),
+        Entry::Input(_) | Entry::PatchInput(_) => None,
+        Entry::Output(..) | Entry::PatchOutput(..) => Some("calculated"),
         Entry::Parameter(..) => Some("exact"),
     }
 }
@@ -223,7 +234,13 @@ fn typed(xml: &mut Xml, entry: &Entry<'_>, start: Option<String>) -> io::Result<
 
 fn model_structure(xml: &mut Xml, definition: &Definition, catalogue: &Catalogue) -> io::Result<()> {
     let outputs = |(reference, entry)| match entry {
-        Entry::Output(_, variable) if variable.is_output() => Some((reference, variable)),
+        Entry::Output(_, variable) if variable.is_output() => {
+            Some((reference, dependencies(catalogue, definition.dependencies(variable.output))))
+        }
+        Entry::PatchOutput(_, variable) if variable.is_output() => {
+            // On the six coordinates of the pose, which come first.
+            Some((reference, if variable.output.follows_pose() { "1 2 3 4 5 6" } else { "" }.to_owned()))
+        }
         _ => None,
     };
     let unknowns = || catalogue.entries().filter_map(outputs);
@@ -233,9 +250,7 @@ fn model_structure(xml: &mut Xml, definition: &Definition, catalogue: &Catalogue
     }
     structure.write_inner_content(|xml| {
         xml.create_element("Outputs").write_inner_content(|xml| {
-            unknowns().try_for_each(|(reference, variable)| {
-                output(xml, catalogue, reference, definition.dependencies(variable.output))
-            })
+            unknowns().try_for_each(|(reference, names)| unknown(xml, reference, Some(&names)))
         })?;
         // Without dependencies: at the start everything may depend on all inputs and parameters.
         xml.create_element("InitialUnknowns")
@@ -245,7 +260,8 @@ fn model_structure(xml: &mut Xml, definition: &Definition, catalogue: &Catalogue
     Ok(())
 }
 
-fn output(xml: &mut Xml, catalogue: &Catalogue, reference: u32, dependencies: Dependencies) -> io::Result<()> {
+/// The inputs that an output depends on, counted from 1.
+fn dependencies(catalogue: &Catalogue, dependencies: Dependencies) -> String {
     let depends = |input: Input| match input {
         Input::U => dependencies.on_u,
         Input::W => dependencies.on_w,
@@ -253,7 +269,7 @@ fn output(xml: &mut Xml, catalogue: &Catalogue, reference: u32, dependencies: De
     };
     let inputs = catalogue.inputs().iter().enumerate().filter(|(_, input)| depends(**input));
     let names: Vec<_> = inputs.map(|(index, _)| (index + 1).to_string()).collect();
-    unknown(xml, reference, Some(&names.join(" ")))
+    names.join(" ")
 }
 
 /// The standard counts the variables from 1 here; value references count them from 0.

@@ -11,6 +11,7 @@ use crate::program::html::{self, Cell};
 use crate::program::terminal::{LabelledLine, labelled};
 
 const LAYER_PAGE: &str = include_str!("../../../modelDescription/documentation/index.html");
+const PATCH_PAGE: &str = include_str!("../../../modelDescription/documentation/patch.html");
 const ELEMENT_PAGE: &str = include_str!("../../../modelDescription/documentation/element.html");
 
 /// The files that are the same in every archive: path, content.
@@ -31,7 +32,11 @@ pub(super) const FILES: [(&str, &str); 5] = [
 
 /// index.html: a summary of the scene or the table, the variables, the parameters, the equations.
 pub(super) fn write(definition: &Definition, catalogue: &Catalogue, summary: &[LabelledLine]) -> io::Result<Vec<u8>> {
-    let page = if matches!(definition, Definition::Element(_)) { ELEMENT_PAGE } else { LAYER_PAGE };
+    let page = match definition {
+        Definition::Layer(_) => LAYER_PAGE,
+        Definition::Element(_) => ELEMENT_PAGE,
+        Definition::Patch(_) => PATCH_PAGE,
+    };
     let summary: Vec<_> = summary.iter().map(|(name, text)| [(*name).into(), description::clean(text)]).collect();
     let is_parameter = |entry: &Entry<'_>| matches!(entry, Entry::Parameter(..));
     let (parameters, variables): (Vec<_>, Vec<_>) = catalogue.entries().map(|(_, entry)| entry).partition(is_parameter);

@@ -11,6 +11,7 @@ use std::path::{Component, Path, PathBuf};
 
 use asperity::element::{Basis, PointContact, Table, TableError};
 use asperity::fmi::{Catalogue, Definition, Sources, guid};
+use asperity::patch::{Patch, PatchError};
 
 use super::cli::Pack;
 use super::describe;
@@ -27,6 +28,8 @@ pub(crate) enum PackError {
     #[error(transparent)]
     Table(#[from] TableError),
     #[error(transparent)]
+    Patch(#[from] PatchError),
+    #[error(transparent)]
     Check(#[from] CheckError),
     #[error(transparent)]
     Archive(#[from] ArchiveError),
@@ -36,7 +39,7 @@ pub(crate) enum PackError {
     Document { document: &'static str, source: io::Error },
 }
 
-/// Writes the FMU; of an element, prints its table and errors.
+/// Writes the FMU; of an element or a patch, prints its table and errors.
 pub(crate) fn pack(command: &Pack) -> Result<(), PackError> {
     let (definition, path) = load(command)?;
     check_output(&command.output, &definition.sources(&path))?;
@@ -46,12 +49,18 @@ pub(crate) fn pack(command: &Pack) -> Result<(), PackError> {
     entries.extend(documents(&definition, &path, &summary)?);
     let bytes = archive::zip(entries).map_err(ArchiveError::from)?;
     write(&command.output, bytes)?;
-    if matches!(definition, Definition::Element(_)) { Ok(print(&lines(&summary))?) } else { Ok(()) }
+    if matches!(definition, Definition::Layer(_)) { Ok(()) } else { Ok(print(&lines(&summary))?) }
 }
 
 /// What is packed, and the file that it is read from.
 fn load(command: &Pack) -> Result<(Definition, PathBuf), PackError> {
     match (&command.table, &command.scene) {
+        _ if command.patch.is_some() => {
+            let path = command.patch.clone().unwrap_or_default();
+            let patch = Patch::load(&path)?;
+            warn_of(&patch.table().basis);
+            Ok((patch.into(), path))
+        }
         (Some(path), _) => {
             let table = Table::load(path)?;
             warn_of(&table.basis);
@@ -77,6 +86,10 @@ fn summary(command: &Pack, definition: &Definition) -> Result<Vec<LabelledLine>,
     let contact = match definition {
         Definition::Layer(scene) => return Ok(describe::rows(scene)),
         Definition::Element(contact) => contact,
+        Definition::Patch(patch) => {
+            let elements = ("Patch", patch.description());
+            return Ok([vec![elements], documentation::table_rows(patch.table())].concat());
+        }
     };
     let mut rows = documentation::table_rows(contact.table());
     if let Some(scene) = &command.check {
@@ -116,6 +129,7 @@ fn documents(definition: &Definition, path: &Path, summary: &[LabelledLine]) -> 
     let picture = match definition {
         Definition::Layer(scene) => picture::layer_png(scene),
         Definition::Element(contact) => picture::element_png(contact.table()),
+        Definition::Patch(patch) => picture::element_png(patch.table()),
     };
     let picture = picture.map_err(|error| FileError::picture(Path::new("model.png"), &*error))?;
     let written = [("modelDescription.xml", description), ("documentation/index.html", index), ("model.png", picture)];

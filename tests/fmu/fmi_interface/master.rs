@@ -8,7 +8,8 @@ use std::{fs, mem, process, ptr};
 
 use asperity::element::{PointContact, Table};
 use asperity::fmi::bindings::*;
-use asperity::fmi::{self, Catalogue, Definition, SCENE_FILE, Sources, TABLE_FILE};
+use asperity::fmi::{self, Catalogue, Definition, PATCH_FILE, SCENE_FILE, Sources, TABLE_FILE};
+use asperity::patch::Patch;
 use asperity::scene::Scene;
 
 pub const OK: fmi2Status = fmi2Status_fmi2OK;
@@ -89,6 +90,14 @@ impl Folder {
         folder
     }
 
+    /// A folder with a patch and its table in it.
+    pub fn with_patch(patch: &str, table: &Path) -> Self {
+        let folder = Self::new("patch");
+        fs::write(folder.path().join(PATCH_FILE), patch).unwrap();
+        fs::copy(table, folder.path().join(table.file_name().unwrap())).unwrap();
+        folder
+    }
+
     pub fn path(&self) -> &Path {
         &self.0
     }
@@ -101,10 +110,12 @@ impl Folder {
         self.0.join(SCENE_FILE)
     }
 
-    /// The GUID and the variables of the scene, or the table, in it.
+    /// The GUID and the variables of the scene, the table or the patch in it.
     pub fn description(&self) -> (String, Catalogue) {
-        let table = self.0.join(TABLE_FILE);
-        let (definition, file): (Definition, _) = if table.is_file() {
+        let (table, patch) = (self.0.join(TABLE_FILE), self.0.join(PATCH_FILE));
+        let (definition, file): (Definition, _) = if patch.is_file() {
+            (Patch::load(&patch).unwrap().into(), patch)
+        } else if table.is_file() {
             (PointContact::new(Table::load(&table).unwrap()).into(), table)
         } else {
             (Scene::load(&self.scene_file()).unwrap().into(), self.scene_file())
@@ -205,6 +216,11 @@ impl Fmu {
         Self::in_folder(Folder::with_table(table), logging)
     }
 
+    /// An instance of a patch with the table at `table`.
+    pub fn of_patch(patch: &str, table: &Path) -> Self {
+        Self::in_folder(Folder::with_patch(patch, table), false)
+    }
+
     fn in_folder(folder: Folder, logging: bool) -> Self {
         let (guid, catalogue) = folder.description();
         let messages = Box::new(Messages::default());
@@ -269,7 +285,10 @@ impl Fmu {
     /// All outputs but the processor time, bit by bit.
     pub fn bits(&self) -> Vec<u64> {
         let is_time = |entry: &fmi::Entry<'_>| entry.name() == "solver.run_time";
-        let outputs = self.catalogue.entries().filter(|(_, entry)| matches!(entry, fmi::Entry::Output(..)));
+        let outputs = self
+            .catalogue
+            .entries()
+            .filter(|(_, entry)| matches!(entry, fmi::Entry::Output(..) | fmi::Entry::PatchOutput(..)));
         let bits = |(reference, entry): (u32, fmi::Entry<'_>)| match entry.kind() {
             fmi::Kind::Real => self.real(&entry.name()).to_bits(),
             _ => {

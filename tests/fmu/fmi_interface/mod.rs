@@ -10,6 +10,7 @@ mod logging;
 mod many;
 mod master;
 mod material;
+mod patch;
 mod states;
 mod stepping;
 mod values;

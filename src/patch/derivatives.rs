@@ -1,0 +1,221 @@
+//! How a run's outputs change at once, its states and modes held: as the body is displaced, or as it moves on.
+//!
+//! The spring of an element that sticks follows the face, and where its stiffness falls, loses its share; one that slips
+//! stays at its limit. The pressure follows the approach, arms turn with the body.
+
+use super::cut::size;
+use super::face::Face;
+use super::motion::{Instant, Path};
+use super::run::PatchRun;
+use super::variables::{PatchOutput, PatchVariable};
+use crate::math::{Dual, Number};
+
+type Rate = Dual<1>;
+
+/// Outputs that follow the pose at once, and their changes.
+#[derive(Clone, Copy, Debug)]
+struct Changes {
+    wrench: [Rate; 6],
+    transport: Rate,
+    real_area: Rate,
+    /// The largest on an element.
+    pressure: Rate,
+    beyond: Rate,
+    tangential: Rate,
+    hysteresis: Rate,
+    elastic: Rate,
+}
+
+/// A displacement of the body, or its motion.
+#[derive(Clone, Copy, Debug)]
+struct Shift {
+    /// Of the pose's coordinates.
+    pose: [f64; 6],
+    /// Of the tread, in cells.
+    entered: f64,
+}
+
+/// An element as it changes.
+#[derive(Clone, Copy, Debug)]
+struct Changing {
+    area: Rate,
+    arm: [Rate; 3],
+    along: [Rate; 3],
+    /// Of the face's material along the plane.
+    displacement: [f64; 2],
+}
+
+fn rate(value: f64, slope: f64) -> Rate {
+    Rate { value, slopes: [slope] }
+}
+
+impl PatchRun {
+    /// Writes into `values` how `variables` change as the pose's coordinates change by `direction` (m and rad per unit).
+    pub fn directional_derivative(&mut self, variables: &[PatchVariable], direction: [f64; 6], values: &mut [f64]) {
+        let changes = self.changes(&Shift { pose: direction, entered: 0.0 });
+        for (variable, value) in variables.iter().zip(values) {
+            *value = changes.of(variable.output).slopes[0];
+        }
+    }
+
+    /// The rate of a component of the wrench at the end of the last step, N/s or N m/s; `None` for another output.
+    pub fn rate(&mut self, output: PatchOutput) -> Option<f64> {
+        if !matches!(output, PatchOutput::Force(_) | PatchOutput::Moment(_)) {
+            return None;
+        }
+        let entered = match &*self.patch.face {
+            Face::Tread(tread) => self.totals.tread_speed / tread.cell,
+            Face::Points(_) => 0.0,
+        };
+        Some(self.changes(&Shift { pose: self.totals.rates, entered }).of(output).slopes[0])
+    }
+
+    fn changes(&mut self, shift: &Shift) -> Changes {
+        let (totals, now) = (self.totals, self.totals.instant());
+        let start = totals.pose.coordinates();
+        let shifted = Path { start, change: shift.pose.map(|slope| rate(0.0, slope)), duration: 1.0 }.at(1.0);
+        let (pressure, speed) = (self.law.largest_pressure(), self.law.speed_range().1);
+        let mut changes = Changes::zero();
+        for i in 0..self.patch.count() {
+            let here = self.present(i, &totals, &now);
+            let element = self.changing(i, shift, &shifted);
+            let approach = -(shifted.height + element.arm[2]);
+            let point = self.law.at(&here.spot, rate(here.log_speed, 0.0), approach);
+            let normal = point.pressure() * element.area;
+            if normal.value <= 0.0 {
+                continue;
+            }
+            let (limit, stiffness) = (normal * point.friction, point.stiffness * element.area);
+            let force = self.force(i, limit, stiffness, element.displacement);
+            let (hysteresis, ratio) = self.shares(i, &totals, &now, approach);
+            changes.add(&element, force, normal);
+            let tangential = size(force);
+            changes.real_area = changes.real_area + ratio * element.area;
+            changes.pressure = changes.pressure.larger(point.pressure());
+            changes.tangential = changes.tangential + tangential;
+            changes.hysteresis = changes.hysteresis + tangential * hysteresis;
+            changes.elastic = changes.elastic + (tangential * tangential / stiffness).times(0.5);
+            if here.pressure > pressure || size(here.velocity) > speed {
+                changes.beyond = changes.beyond + normal;
+            }
+        }
+        changes
+    }
+
+    /// An element's place as it changes.
+    fn changing(&self, i: usize, shift: &Shift, shifted: &Instant<Rate>) -> Changing {
+        let (place, area, direction) = self.patch.element(i, self.totals.place);
+        let (mut slopes, mut area_slope, mut run) = ([0.0; 3], 0.0, 0.0);
+        if let Face::Tread(tread) = &*self.patch.face {
+            let (arc, share) = tread.changes((i / tread.rows.len()) as f64, self.totals.place);
+            slopes = [direction[0], 0.0, direction[1]].map(|d| d * arc * shift.entered);
+            area_slope = tread.area * share * shift.entered;
+            run = tread.cell * shift.entered;
+        }
+        let turned = shifted.turned(place);
+        let moved =
+            shifted.rotation.map(|row| row[0].value * slopes[0] + row[1].value * slopes[1] + row[2].value * slopes[2]);
+        let along = shifted.turned([direction[0], 0.0, direction[1]]);
+        let body = |axis: usize| shifted.moved[axis].slopes[0] + turned[axis].slopes[0];
+        Changing {
+            area: rate(area, area_slope),
+            arm: std::array::from_fn(|axis| turned[axis] + rate(0.0, moved[axis])),
+            along,
+            displacement: [0, 1].map(|axis| body(axis) - along[axis].value * run),
+        }
+    }
+
+    /// G of an element as it changes.
+    fn force(&self, i: usize, limit: Rate, stiffness: Rate, displacement: [f64; 2]) -> [Rate; 2] {
+        let force = [self.springs.x[i], self.springs.y[i]];
+        let slopes = match self.springs.mode[i] {
+            0 => [0.0; 2],
+            1 => {
+                let strength = force[0].hypot(force[1]);
+                let n = force.map(|g| if strength > 0.0 { g / strength } else { 0.0 });
+                let along = n[0] * displacement[0] + n[1] * displacement[1];
+                [0, 1].map(|axis| n[axis] * limit.slopes[0] + stiffness.value * (displacement[axis] - n[axis] * along))
+            }
+            _ => {
+                let lost = stiffness.slopes[0].min(0.0) / stiffness.value;
+                [0, 1].map(|axis| stiffness.value * displacement[axis] + lost * force[axis])
+            }
+        };
+        [rate(force[0], slopes[0]), rate(force[1], slopes[1])]
+    }
+
+    /// Hysteresis' share of the friction coefficient and the contact ratio, as they change with the approach.
+    fn shares(&mut self, i: usize, totals: &super::state::Totals, now: &Instant<f64>, approach: Rate) -> (Rate, Rate) {
+        let here = self.present(i, totals, now);
+        // Of smooth cubics over some µm.
+        let step = 1e-6 * (approach.value - self.law.earliest_touch()).abs().max(1e-9);
+        let at = |shift: f64| self.law.shares(&here.spot, here.log_speed, approach.value + shift);
+        let (before, middle, after) = (at(-step), at(0.0), at(step));
+        let slope = |from: f64, to: f64| (to - from) / (2.0 * step) * approach.slopes[0];
+        (rate(middle.0, slope(before.0, after.0)), rate(middle.1, slope(before.1, after.1)))
+    }
+}
+
+impl Changes {
+    fn zero() -> Self {
+        let zero = Rate::constant(0.0);
+        Self {
+            wrench: [zero; 6],
+            transport: zero,
+            real_area: zero,
+            pressure: zero,
+            beyond: zero,
+            tangential: zero,
+            hysteresis: zero,
+            elastic: zero,
+        }
+    }
+
+    /// Adds the loads of an element.
+    fn add(&mut self, element: &Changing, force: [Rate; 2], normal: Rate) {
+        let [x, y, z] = element.arm;
+        let (f_x, f_y, f_z) = (-force[0], -force[1], normal);
+        let loads = [f_x, f_y, f_z, y * f_z - z * f_y, z * f_x - x * f_z, x * f_y - y * f_x];
+        self.wrench.iter_mut().zip(loads).for_each(|(sum, load)| *sum = *sum + load);
+        let [a_x, a_y, a_z] = element.along;
+        self.transport = self.transport - (a_x * f_x + a_y * f_y + a_z * f_z);
+    }
+
+    fn of(&self, output: PatchOutput) -> Rate {
+        let share = |part: Rate, whole: Rate| if whole.value > 0.0 { part / whole } else { Rate::constant(0.0) };
+        let [x, y, z, ..] = self.wrench;
+        match output {
+            PatchOutput::Force(axis) => self.wrench[axis],
+            PatchOutput::Moment(axis) => self.wrench[3 + axis],
+            PatchOutput::TransportForce => self.transport,
+            PatchOutput::RealArea => self.real_area,
+            PatchOutput::Pressure => self.pressure,
+            PatchOutput::Beyond => share(self.beyond, z),
+            PatchOutput::Friction => share(size([x, y]), z),
+            PatchOutput::Hysteresis => share(self.hysteresis, self.tangential),
+            PatchOutput::ElasticEnergy => self.elastic,
+            _ => Rate::constant(0.0),
+        }
+    }
+}
+
+impl PatchOutput {
+    /// Whether it follows the pose at once, the springs and modes held.
+    pub fn follows_pose(self) -> bool {
+        use PatchOutput::{
+            Beyond, ElasticEnergy, Force, Friction, Hysteresis, Moment, Pressure, RealArea, TransportForce,
+        };
+        matches!(
+            self,
+            Force(_)
+                | Moment(_)
+                | TransportForce
+                | RealArea
+                | Pressure
+                | Beyond
+                | Friction
+                | Hysteresis
+                | ElasticEnergy
+        )
+    }
+}

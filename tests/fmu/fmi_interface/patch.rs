@@ -1,0 +1,266 @@
+//! A contact patch through the same interface as a layer.
+
+use std::fs;
+
+use asperity::fmi::bindings::fmi2Status;
+use asperity::patch::{COORDINATES, Patch, PatchMotion, PatchRun, PatchStart, Pose};
+
+use crate::common::root;
+use crate::fmi_interface::master::{DISCARD, ERROR, Fmu, OK};
+
+const WHEEL: &str = r#"
+name = "wheel"
+[table]
+path = "block.table.csv"
+[patch]
+shape = "cylinder"
+radius = 0.3
+length = 0.0144
+width = 0.01
+nx = 6
+ny = 2
+transport = true
+[fmu]
+outputs = ["forces", "dissipation", "contact", "friction", "energy", "tangent", "elements"]
+"#;
+
+/// Pressed, slipping ahead and to the side, rolling.
+const POSE: [f64; 6] = [0.0, 0.0, 0.29999, 1e-3, 2e-3, 0.1];
+const RATES: [f64; 6] = [0.12, 0.02, -2e-4, 0.01, -0.02, 0.3];
+const SPEED: f64 = 0.1;
+const H: f64 = 1e-3;
+
+fn fmu(text: &str) -> Fmu {
+    Fmu::of_patch(text, &root().join("tests/reference/patch/block.table.csv"))
+}
+
+fn give(fmu: &Fmu, pose: [f64; 6], rates: [f64; 6]) {
+    for (i, name) in COORDINATES.into_iter().enumerate() {
+        assert_eq!((fmu.set_real(name, pose[i]), fmu.set_rate(name, rates[i])), (OK, OK));
+    }
+    assert_eq!(fmu.set_real("transport.speed", SPEED), OK);
+    assert_eq!(fmu.set_rate("transport.speed", 0.0), OK);
+}
+
+fn pose_after(steps: u32) -> [f64; 6] {
+    std::array::from_fn(|i| POSE[i] + RATES[i] * H * f64::from(steps))
+}
+
+/// An instance that has done some steps.
+fn rolling(steps: u32) -> Fmu {
+    let fmu = fmu(WHEEL);
+    assert_eq!((fmu.setup(0.0), fmu.enter()), (OK, OK));
+    give(&fmu, POSE, RATES);
+    assert_eq!(fmu.exit(), OK);
+    for step in 0..steps {
+        give(&fmu, pose_after(step), RATES);
+        assert_eq!(fmu.step(H * f64::from(step), H), OK);
+    }
+    fmu
+}
+
+#[test]
+fn its_variables_stand_in_their_order() {
+    let names: Vec<String> = fmu(WHEEL).catalogue.entries().map(|(_, entry)| entry.name()).collect();
+    let start =
+        ["x", "y", "z", "roll", "pitch", "yaw", "transport.speed", "temperature", "force.x", "force.y", "force.z"];
+    assert_eq!(names[..11], start);
+    for (index, name) in [
+        (14, "transport.force"),
+        (15, "P_diss"),
+        (19, "contact.count"),
+        (25, "friction.coefficient"),
+        (27, "energy.elastic"),
+        (28, "tangent.force.x.x"),
+        (63, "tangent.moment.z.yaw"),
+        (64, "element[1,1].pressure"),
+        (68, "element[1,2].pressure"),
+    ] {
+        assert_eq!(names[index], name);
+    }
+    assert_eq!(names[names.len() - 3..], ["table.extrapolation", "input.extrapolation", "solver.refine"]);
+}
+
+/// The library's own run, to rounding of the poses that the master gives.
+#[test]
+fn its_results_are_those_of_the_library() {
+    let folder = root().join("tests/reference/patch");
+    let patch = Patch::parse(WHEEL, &folder.join("wheel-of-a-test.toml")).unwrap();
+    let temperature = patch.temperature();
+    let start = PatchStart { time: 0.0, pose: Pose::of(POSE), rates: RATES, transport_speed: SPEED, temperature };
+    let mut run = PatchRun::new(&patch, &start).unwrap();
+    let motion = PatchMotion { duration: H, rates: RATES, transport_speed: SPEED, temperature };
+    (0..20).for_each(|_| run.advance(&motion).unwrap());
+    let variables = patch.variables();
+    let mut values = vec![0.0; variables.len()];
+    run.evaluate(&variables, &mut values);
+    let fmu = rolling(20);
+    for (variable, value) in variables.iter().zip(values).filter(|(variable, _)| variable.name.starts_with("force.")) {
+        let found = fmu.real(&variable.name);
+        assert!((found - value).abs() <= 1e-8 * value.abs().max(1e-3), "{}: {found} {value}", variable.name);
+    }
+    assert!(fmu.real("force.x") < -0.1 && fmu.real("E_diss") > 0.0);
+}
+
+#[test]
+fn a_state_goes_on_bit_for_bit() {
+    let fmu = rolling(10);
+    let (bytes, mut state) = (fmu.frozen(), fmu.state());
+    let go = |fmu: &Fmu| {
+        for step in 10..16 {
+            give(fmu, pose_after(step), RATES);
+            assert_eq!(fmu.step(H * f64::from(step), H), OK);
+        }
+        fmu.bits()
+    };
+    let first = go(&fmu);
+    assert_eq!(fmu.set_state(state), OK);
+    assert_eq!(go(&fmu), first);
+    assert_eq!(fmu.free_state(&mut state), OK);
+    let other = rolling(1);
+    other.thaw(&bytes);
+    assert_eq!(go(&other), first);
+}
+
+/// A difference quotient of two steps from the same state, one target moved.
+#[test]
+fn tangents_are_those_of_moved_targets() {
+    let fmu = rolling(7);
+    let mut state = fmu.state();
+    let forces = |i: usize, by: f64| {
+        assert_eq!(fmu.set_state(state), OK);
+        let mut rates = RATES;
+        rates[i] += by / H;
+        give(&fmu, pose_after(7), rates);
+        assert_eq!(fmu.step(7.0 * H, H), OK);
+        ["force.x", "force.z", "moment.y"].map(|name| (name, fmu.real(name)))
+    };
+    for (i, coordinate) in COORDINATES.into_iter().enumerate() {
+        let by = 1e-9;
+        let (before, after) = (forces(i, -by), forces(i, by));
+        forces(i, 0.0);
+        for ((name, low), (_, high)) in before.into_iter().zip(after) {
+            let (quotient, found) = ((high - low) / (2.0 * by), fmu.real(&format!("tangent.{name}.{coordinate}")));
+            // Rounding of some N over 1e-9, and elements at a switch.
+            assert!((quotient - found).abs() <= 1e-3 * found.abs() + 1e-1, "{name} {coordinate}: {found} {quotient}");
+        }
+    }
+    assert_eq!(fmu.free_state(&mut state), OK);
+}
+
+/// The first derivative of an output by time.
+fn rate_of(fmu: &Fmu, name: &str) -> (fmi2Status, f64) {
+    let mut rate = [f64::NAN];
+    (fmu.get_rates(&[fmu.reference(name)], &[1], &mut rate), rate[0])
+}
+
+/// What a small step on adds.
+#[test]
+fn output_derivatives_are_rates() {
+    let fmu = rolling(7);
+    for name in ["force.x", "force.y", "force.z", "moment.x", "moment.z"] {
+        let (status, rate) = rate_of(&fmu, name);
+        assert_eq!(status, OK);
+        let (mut state, before, h) = (fmu.state(), fmu.real(name), 1e-8);
+        give(&fmu, pose_after(7), RATES);
+        assert_eq!(fmu.step(7.0 * H, h), OK);
+        let quotient = (fmu.real(name) - before) / h;
+        assert!((quotient - rate).abs() <= 2e-2 * rate.abs().max(1.0), "{name}: {rate} {quotient}");
+        assert_eq!((fmu.set_state(state), fmu.free_state(&mut state)), (OK, OK));
+    }
+    assert_eq!(rate_of(&fmu, "E_diss").0, ERROR);
+}
+
+/// Beyond the table: one warning a run, or a discard after which a shorter step is done.
+#[test]
+fn the_end_of_the_table_is_held_or_refused() {
+    let down = [0.0, 0.0, -0.1, 0.0, 0.0, 0.0];
+    let pressed = |extrapolation: &str| {
+        let fmu = fmu(WHEEL);
+        assert_eq!((fmu.setup(0.0), fmu.set_text(fmu.reference("table.extrapolation"), extrapolation)), (OK, OK));
+        assert_eq!(fmu.enter(), OK);
+        give(&fmu, POSE, [0.0; 6]);
+        assert_eq!(fmu.exit(), OK);
+        fmu
+    };
+    let held = pressed("hold");
+    for step in 0..3 {
+        let mut pose = POSE;
+        pose[2] += down[2] * H * f64::from(step);
+        give(&held, pose, down);
+        assert_eq!(held.step(H * f64::from(step), H), OK);
+    }
+    assert!(held.message().contains("beyond the table"));
+    assert!(held.real("contact.beyond") > 0.5);
+    let refused = pressed("refuse");
+    let before = refused.bits();
+    give(&refused, POSE, down);
+    assert_eq!(refused.step(0.0, H), DISCARD);
+    assert!(refused.message().contains("beyond the table"));
+    assert_eq!(refused.bits(), before);
+    assert_eq!(refused.step(0.0, 1e-5), OK);
+}
+
+#[test]
+fn parameters_out_of_range_are_refused() {
+    let fmu = fmu(WHEEL);
+    for refine in [0, 1001] {
+        assert_eq!(fmu.set_integers(&[fmu.reference("solver.refine")], &[refine]), ERROR);
+        assert!(fmu.message().contains("from 1 to 1000"));
+    }
+    assert_eq!(fmu.set_text(fmu.reference("table.extrapolation"), "guess"), ERROR);
+}
+
+/// An angle that is no number, a turn beyond the parts of a step.
+#[test]
+fn impossible_steps_leave_the_patch_as_it_was() {
+    let fmu = rolling(3);
+    let before = fmu.bits();
+    let mut rates = RATES;
+    rates[5] = 1e9;
+    give(&fmu, pose_after(3), rates);
+    assert_eq!(fmu.step(3.0 * H, H), DISCARD);
+    assert_eq!(fmu.bits(), before);
+    give(&fmu, pose_after(3), RATES);
+    assert_eq!(fmu.step(3.0 * H, H), OK);
+    assert_eq!(fmu.set_real("roll", f64::NAN), OK);
+    assert_eq!(fmu.step(4.0 * H, H), ERROR);
+}
+
+#[test]
+fn a_patch_file_names_what_is_wrong() {
+    let folder = root().join("tests/reference/patch");
+    let error = |text: &str| Patch::parse(text, &folder.join("p.toml")).unwrap_err().to_string();
+    let cases = [
+        ("radius = 0.3", "radius = -1.0", "p.toml:7: patch.radius = -1.0: expected a number from"),
+        ("length = 0.0144", "length = 1.0", "p.toml:8: patch.length = 1.0: expected a number < 0.94"),
+        ("nx = 6", "nx = 1000000", "p.toml:11: patch.ny = 2: expected nx ny up to 1000000"),
+        ("nx = 6", "nz = 6", "p.toml:10: patch.nz: unknown; allowed: shape, radius"),
+        (
+            "path = \"block",
+            "temperature = 400.0\npath = \"block",
+            "p.toml:4: table.temperature = 400.0: expected a number from 283.15",
+        ),
+        ("path = \"block", "nominal_area = 1.0\npath = \"block", "p.toml:4: table.nominal_area = 1.0: expected none"),
+        ("\"tangent\"", "\"tangents\"", "p.toml:14: fmu.outputs[6] = \"tangents\": expected one of \"forces\""),
+        ("shape = \"cylinder\"\nradius = 0.3", "shape = \"flat\"\nradius = 0.3", "p.toml:7: patch.radius: unknown"),
+    ];
+    for (from, to, expected) in cases {
+        let text = WHEEL.replace(from, to);
+        assert_ne!(text, WHEEL);
+        let found = error(&text);
+        assert!(found.contains(expected), "{found}\n{expected}");
+    }
+    let points = "name = \"p\"\ntable = { path = \"block.table.csv\" }\npatch = { shape = \"points\", path = \"ring.points.csv\", transport = true }";
+    assert!(error(points).contains("patch.transport: unknown"), "{}", error(points));
+    let scratch = crate::common::scratch("patch-points");
+    fs::copy(folder.join("block.table.csv"), scratch.join("block.table.csv")).unwrap();
+    for (row, expected) in
+        [("1,2,3", "points.csv:3: columns = 3: expected four numbers"), ("1,2,3,-4", "points.csv:3: area = \"-4\"")]
+    {
+        fs::write(scratch.join("points.csv"), format!("x,y,z,area\n0,0,0,1e-6\n{row}\n")).unwrap();
+        let text = points.replace("ring.points.csv", "points.csv").replace(", transport = true", "");
+        let found = Patch::parse(&text, &scratch.join("p.toml")).unwrap_err().to_string();
+        assert!(found.contains(expected), "{found}");
+    }
+}
