@@ -14,6 +14,7 @@
 #[allow(dead_code, unreachable_pub, reason = "shared by several tests")]
 mod common;
 mod converge;
+mod damper;
 mod element;
 mod fit;
 mod peers;

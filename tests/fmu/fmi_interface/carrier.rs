@@ -159,15 +159,19 @@ fn output_derivatives_are_those_of_the_motion() {
 /// NaN and infinity stop the step as those of u do, a carrier that leaves the range as an error.
 #[test]
 fn impossible_forces_are_refused() {
-    let fmu = Fmu::running_with(BODIES);
     for bad in [f64::NAN, f64::INFINITY, 1e31] {
-        assert_eq!((fmu.set_real("load", 0.0), fmu.set_real("pull", bad)), (OK, OK));
-        let before = fmu.bits();
-        assert_ne!(fmu.step(0.0, 1e-5), OK);
-        assert!(fmu.message().contains("the input pull is "), "{}", fmu.message());
-        assert_eq!(fmu.bits(), before);
-        return;
+        for force in ["load", "pull"] {
+            let fmu = Fmu::running_with(BODIES);
+            assert_eq!(fmu.set_real(force, bad), OK);
+            let before = fmu.bits();
+            assert_ne!(fmu.step(0.0, 1e-5), OK);
+            assert!(fmu.message().contains(&format!("the input {force} is ")), "{}", fmu.message());
+            assert_eq!(fmu.bits(), before);
+        }
     }
+    // Free fall for so long that the carrier leaves all range.
+    let fmu = Fmu::running_with(&BODIES.replace("load = 0.04\ninitial = \"equilibrium\"", "load = -1e25\nstart = 1.0"));
+    assert_eq!(fmu.step(0.0, 1e3), ERROR, "{:?}", fmu.messages());
 }
 
 /// A thermal model's temperature: what a parameter would have been, from the start on or later.

@@ -82,10 +82,10 @@ def main():
     folder, counts = Path(sys.argv[1]), [1000, 2000, 4000]
     reference = monolith(np.linspace(0.0, DURATION, counts[-1] + 1))
     rise = reference.max() - AIR
-    print(f"rise {rise!r}")
+    print(f"rise {float(rise)!r}")
     for steps in counts:
         error = np.abs(coupled(folder, steps) - reference[:: counts[-1] // steps]).max() / rise
-        print(f"{steps} {error!r}")
+        print(f"{steps} {float(error)!r}")
 
 
 if __name__ == "__main__":
