@@ -110,13 +110,14 @@ impl Model {
     }
 
     /// The frequency of the body along `axis` on the glassy springs of the layer and on its drive, rad/s; the rate of its
-    /// dampers, 1/s, where there are no springs, and 1 where there are no dampers either, or no body.
+    /// dampers, 1/s, where there are no springs, and that of a mass where there are no dampers either; 1 without a body.
     pub fn body_frequency(&self, axis: Axis) -> f64 {
         let Some(body) = &self.bodies[axis as usize] else { return 1.0 };
         let (kind, masses) = (axis.link() as usize, self.masses() as f64);
         let frequency = ((masses * self.glassy[kind] + body.stiffness) / body.mass).sqrt();
         let damping = (masses * self.links[kind].damping).max(body.damping) / body.mass;
-        [frequency, damping].into_iter().find(|&rate| rate > 0.0).unwrap_or(1.0)
+        let own = [frequency, damping].into_iter().find(|&rate| rate > 0.0);
+        own.unwrap_or_else(|| self.frequency_without_rods())
     }
 
     fn frequency_of(&self, stiffness: f64) -> f64 {

@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::Path as FilePath;
 
 use asperity::outputs::{Output, Snapshot, Variable, variables};
-use asperity::scene::{Friction, LinkKind, OutputGroup, Path, RateShear, Scene};
+use asperity::scene::{Axis, Force, Friction, LinkKind, OutputGroup, Path, RateShear, Scene};
 use asperity::simulation::{Motion, Simulation, SimulationError, Start};
 
 /// What runs: a scene, how the carrier starts, and its motions one after another.
@@ -110,6 +110,7 @@ impl Case {
             format!("[surface]\nkind = \"points\"\nperiodic = {}\n", surface.periodic),
             format!("x = {:?}\nz = {:?}\n", surface.x, surface.z),
             self.scene.friction.as_ref().map_or(String::new(), friction),
+            Axis::ALL.into_iter().map(|axis| carrier(&self.scene, axis)).collect(),
             format!("[solver]\nmethod = \"{}\"\n", format!("{method:?}").to_lowercase()),
             format!("relative_tolerance = {relative:?}\nabsolute_tolerance = {absolute:?}\n"),
             format!("max_steps = {}\n[fmu]\noutputs = [{}]\n", solver.max_steps, words.join(", ")),
@@ -144,6 +145,20 @@ fn roughness(heights: &[f64]) -> String {
     if heights.is_empty() { String::new() } else { format!("roughness = {{ kind = \"points\", z = {heights:?} }}\n") }
 }
 
+fn carrier(scene: &Scene, axis: Axis) -> String {
+    let Some(body) = scene.carrier.along(axis) else { return String::new() };
+    let numbers = [
+        number("mass", Some(body.mass)),
+        number("stiffness", body.stiffness),
+        number("damping", body.damping),
+        number("load", body.load),
+        number("pull", body.pull),
+        number("start", body.start),
+        number("start_rate", body.start_rate),
+    ];
+    format!("[carrier.{}]\n{}", axis.name(), numbers.concat())
+}
+
 fn friction(friction: &Friction) -> String {
     let Friction { coulomb, shear_force, shear_strength: _, rate_shear, real_area: _ } = friction;
     let rate_shear = rate_shear.map_or(String::new(), |law| {
@@ -165,7 +180,11 @@ fn phase(motion: &Motion) -> String {
         let sine = format!("{name}_sine = {{ amplitude = {amplitude:?}, frequency = {frequency:?} }}\n");
         format!("{name}_rate = {rate:?}\n{}", if amplitude == 0.0 { "" } else { &sine })
     };
-    format!("[[excitation]]\nduration = {:?}\n{}{}", motion.duration, path("u", &motion.u), path("w", &motion.w))
+    let force = |name: &str, force: &Force| {
+        if *force == Force::default() { String::new() } else { number(name, force.start) + &path(name, &force.change) }
+    };
+    let (forces, along_u) = (force("load", &motion.load) + &force("pull", &motion.pull), path("u", &motion.u));
+    format!("[[excitation]]\nduration = {:?}\n{along_u}{}{forces}", motion.duration, path("w", &motion.w))
 }
 
 impl fmt::Debug for Case {

@@ -7,7 +7,8 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 use asperity::scene::{
-    Extrapolation, Friction, Initial, Layer, Link, MaxwellElement, Method, Path, RateShear, Scene, Solver, Surface,
+    CarrierBodies, CarrierBody, Extrapolation, Force, Friction, Initial, Layer, Link, MaxwellElement, Method, Path,
+    RateShear, Scene, Solver, Surface,
 };
 use asperity::simulation::{Motion, Start};
 use proptest::collection::vec;
@@ -66,32 +67,79 @@ pub(crate) fn methods() -> impl Strategy<Value = Method> {
 
 /// A case for this method.
 pub(crate) fn cases_by(method: Method) -> impl Strategy<Value = Case> {
-    scales().prop_flat_map(move |scales| {
-        let parts = (layer(scales), surface(scales), option::weighted(0.75, friction(scales)), solver(scales, method));
-        (parts, start(scales), vec(motion(scales), 1..=4)).prop_map(
-            |((layer, surface, friction, solver), start, motions)| {
-                let scene = Scene {
-                    name: "case".into(),
-                    description: None,
-                    layer,
-                    material: None,
-                    foundation: None,
-                    carrier: Default::default(),
-                    surface,
-                    friction,
-                    solver,
-                    extrapolation: Extrapolation::Linear,
-                    temperature_input: false,
-                    outputs: GROUPS.to_vec(),
-                    excitation: Vec::new(),
-                    files: Vec::new(),
-                    extracts: Vec::new(),
-                    warnings: Vec::new(),
-                };
-                Case { scene, start, motions }
-            },
-        )
+    scales().prop_flat_map(move |scales| cases_of(scales, method))
+}
+
+/// A case for any method whose carrier is a body along x, along z or both, under forces that jump, grow and swing.
+pub(crate) fn cases_with_bodies() -> impl Strategy<Value = Case> {
+    let axes = prop_oneof![Just((true, false)), Just((false, true)), Just((true, true))];
+    (scales(), methods(), axes).prop_flat_map(|(scales, method, (along_x, along_z))| {
+        let bodies = (body(scales), body(scales));
+        let forces = vec((force(scales), force(scales)), 4);
+        (cases_of(scales, method), bodies, forces).prop_map(move |(mut case, (x, z), forces)| {
+            case.scene.carrier = CarrierBodies { x: along_x.then_some(x), z: along_z.then_some(z) };
+            for (motion, (load, pull)) in case.motions.iter_mut().zip(forces) {
+                (motion.load, motion.pull) = (load, pull);
+            }
+            case
+        })
     })
+}
+
+/// From a hundredth of a point mass to thousands of them, on a drive or not.
+fn body(scales: Scales) -> impl Strategy<Value = CarrierBody> {
+    let critical = 2.0 * (scales.stiffness * scales.mass).sqrt();
+    let stiffness = option::weighted(0.5, decades(-2.0..1.5).prop_map(move |part| part * scales.stiffness));
+    let damping = option::weighted(0.7, decades(-1.0..1.5).prop_map(move |part| part * critical));
+    let speed = scales.height / scales.period();
+    let start_rate = option::weighted(0.3, signed(-2.0..0.0).prop_map(move |part| part * speed));
+    (decades(-2.0..4.0), stiffness, damping, start_rate).prop_map(move |(mass, stiffness, damping, start_rate)| {
+        CarrierBody { mass: mass * scales.mass, stiffness, damping, start_rate, ..CarrierBody::default() }
+    })
+}
+
+/// Of the size of what some springs bear at the profile's height.
+fn force(scales: Scales) -> impl Strategy<Value = Force> {
+    let size = scales.stiffness * scales.height;
+    let start = option::weighted(0.6, signed(-2.0..0.7).prop_map(move |part| part * size));
+    let rate = option::weighted(0.3, signed(-2.0..0.3).prop_map(move |part| part * size / scales.period()));
+    let sine = option::weighted(0.2, (signed(-2.0..0.0), decades(-1.0..0.5)));
+    (start, rate, sine).prop_map(move |(start, rate, sine)| {
+        let (amplitude, frequency) = sine.unwrap_or_default();
+        let change = Path {
+            rate: rate.unwrap_or_default(),
+            amplitude: amplitude * size,
+            frequency: frequency / scales.period(),
+        };
+        Force { start, change }
+    })
+}
+
+fn cases_of(scales: Scales, method: Method) -> impl Strategy<Value = Case> {
+    let parts = (layer(scales), surface(scales), option::weighted(0.75, friction(scales)), solver(scales, method));
+    (parts, start(scales), vec(motion(scales), 1..=4)).prop_map(
+        |((layer, surface, friction, solver), start, motions)| {
+            let scene = Scene {
+                name: "case".into(),
+                description: None,
+                layer,
+                material: None,
+                foundation: None,
+                carrier: Default::default(),
+                surface,
+                friction,
+                solver,
+                extrapolation: Extrapolation::Linear,
+                temperature_input: false,
+                outputs: GROUPS.to_vec(),
+                excitation: Vec::new(),
+                files: Vec::new(),
+                extracts: Vec::new(),
+                warnings: Vec::new(),
+            };
+            Case { scene, start, motions }
+        },
+    )
 }
 
 fn layer(scales: Scales) -> impl Strategy<Value = Layer> {

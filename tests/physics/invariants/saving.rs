@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 use crate::invariants::case::{Case, Record};
 use crate::invariants::check::check;
-use crate::invariants::random::cases;
+use crate::invariants::random::{cases, cases_with_bodies};
 use crate::invariants::trust::{Compared, Trusted};
 
 /// How a run is interrupted.
@@ -73,17 +73,26 @@ fn interrupted(case: &Case, simulation: Simulation, interruption: Interruption) 
 #[test]
 fn save_and_restore_anywhere_change_no_bit() {
     let place = (0_usize..4, 0.01..0.99_f64);
-    check("save and restore", 40, (cases(), place, any::<bool>()), |(mut case, place, all)| {
-        if all {
-            case = case.with_group(OutputGroup::Tangent).with_group(OutputGroup::Solver);
-        }
-        let (plain, saved) = run(&case, place, Interruption::None)?;
-        for interruption in INTERRUPTIONS {
-            let (other, other_saved) = run(&case, place, interruption)?;
-            prop_assert!(plain.bits() == other.bits() && saved == other_saved, "{interruption:?}");
-        }
-        Ok(())
-    });
+    check("save and restore", 40, (cases(), place, any::<bool>()), saves_and_restores);
+}
+
+/// The same under a carrier that is a body, with its forces.
+#[test]
+fn save_and_restore_change_no_bit_under_a_body() {
+    let place = (0_usize..4, 0.01..0.99_f64);
+    check("save and restore a body", 40, (cases_with_bodies(), place, any::<bool>()), saves_and_restores);
+}
+
+fn saves_and_restores((mut case, place, all): (Case, (usize, f64), bool)) -> Result<(), TestCaseError> {
+    if all {
+        case = case.with_group(OutputGroup::Tangent).with_group(OutputGroup::Solver);
+    }
+    let (plain, saved) = run(&case, place, Interruption::None)?;
+    for interruption in INTERRUPTIONS {
+        let (other, other_saved) = run(&case, place, interruption)?;
+        prop_assert!(plain.bits() == other.bits() && saved == other_saved, "{interruption:?}");
+    }
+    Ok(())
 }
 
 /// The rows at the ends of the motions of a run that is asked for `rows` rows in each.

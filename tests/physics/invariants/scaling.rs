@@ -1,12 +1,12 @@
 //! No unit is special: a scene in other units gives the same.
 
-use asperity::scene::{Link, Path, Unit};
+use asperity::scene::{CarrierBody, Force, Link, Path, Unit};
 use asperity::simulation::{Motion, Start};
 use proptest::prelude::*;
 
 use crate::invariants::case::Case;
 use crate::invariants::check::check;
-use crate::invariants::random::cases;
+use crate::invariants::random::{cases, cases_with_bodies};
 
 /// Below this, in any unit, a number is what is left of a decay.
 const TINY: f64 = 1e-250;
@@ -57,6 +57,23 @@ impl Powers {
         }
     }
 
+    fn force(self, force: Force) -> Force {
+        let (size, Path { rate, amplitude, frequency }) = (self.of(1, 1, -2), force.change);
+        let change = Path {
+            rate: rate * size * self.of(0, 0, -1),
+            amplitude: amplitude * size,
+            frequency: frequency * self.of(0, 0, -1),
+        };
+        Force { start: force.start.map(|start| start * size), change }
+    }
+
+    fn body(self, body: &mut CarrierBody) {
+        body.mass *= self.of(0, 1, 0);
+        body.stiffness.iter_mut().for_each(|stiffness| *stiffness *= self.of(0, 1, -2));
+        body.damping.iter_mut().for_each(|damping| *damping *= self.of(0, 1, -1));
+        body.start_rate.iter_mut().for_each(|rate| *rate *= self.of(1, 0, -1));
+    }
+
     /// Every quantity of the case times the power of its dimension.
     fn case(self, case: &Case) -> Case {
         let (length, mass, time, speed) = (self.of(1, 0, 0), self.of(0, 1, 0), self.of(0, 0, 1), self.of(1, 0, -1));
@@ -71,6 +88,7 @@ impl Powers {
         layer.mass.iter_mut().for_each(|each| *each *= mass);
         let links = [&mut layer.vertical, &mut layer.horizontal, &mut layer.lateral_x, &mut layer.lateral_z];
         links.into_iter().flatten().for_each(|link| self.link(link));
+        scene.carrier.x.iter_mut().chain(&mut scene.carrier.z).for_each(|body| self.body(body));
         scene.surface.x.iter_mut().chain(&mut scene.surface.z).for_each(|value| *value *= length);
         let shear = scene.friction.iter_mut().flat_map(|friction| &mut friction.shear_force);
         shear.for_each(|force| *force *= self.of(1, 1, -2));
@@ -91,7 +109,9 @@ impl Powers {
         };
         for motion in &mut scaled.motions {
             let Motion { duration, u, w, .. } = *motion;
-            *motion = Motion { duration: duration * time, u: self.path(u), w: self.path(w), ..Motion::default() };
+            let (load, pull) = (self.force(motion.load), self.force(motion.pull));
+            *motion =
+                Motion { duration: duration * time, u: self.path(u), w: self.path(w), load, pull, ..Motion::REST };
         }
         scaled
     }
@@ -107,20 +127,28 @@ fn powers() -> impl Strategy<Value = Powers> {
 /// seconds.
 #[test]
 fn a_scene_in_other_units_is_the_same_to_the_last_bit() {
-    check("other units", 150, (cases(), powers()), |(case, powers)| {
-        let scaled = powers.case(&case);
-        prop_assume!(case.has_a_time_of_its_own());
-        let run = |case: &Case| case.run(4).map_err(|error| TestCaseError::fail(format!("{error}")));
-        let (one, other) = (run(&case)?, run(&scaled)?);
-        for (column, variable) in one.variables.iter().enumerate() {
-            let factor = powers.of_unit(variable.unit);
-            for (row, (a, b)) in one.rows.iter().zip(&other.rows).enumerate() {
-                let (a, b) = (factor * a[column], b[column]);
-                // Numbers near the smallest that there are lose digits: no force or energy is meant by these.
-                let nothing = a.abs().max(b.abs()) < TINY;
-                prop_assert!(a == b || nothing, "{} in row {row}: {a:e} {b:e}", variable.name);
-            }
+    check("other units", 150, (cases(), powers()), is_the_same_in_other_units);
+}
+
+/// The same under a carrier that is a body.
+#[test]
+fn a_body_in_other_units_is_the_same_to_the_last_bit() {
+    check("a body in other units", 100, (cases_with_bodies(), powers()), is_the_same_in_other_units);
+}
+
+fn is_the_same_in_other_units((case, powers): (Case, Powers)) -> Result<(), TestCaseError> {
+    let scaled = powers.case(&case);
+    prop_assume!(case.has_a_time_of_its_own());
+    let run = |case: &Case| case.run(4).map_err(|error| TestCaseError::fail(format!("{error}")));
+    let (one, other) = (run(&case)?, run(&scaled)?);
+    for (column, variable) in one.variables.iter().enumerate() {
+        let factor = powers.of_unit(variable.unit);
+        for (row, (a, b)) in one.rows.iter().zip(&other.rows).enumerate() {
+            let (a, b) = (factor * a[column], b[column]);
+            // Numbers near the smallest that there are lose digits: no force or energy is meant by these.
+            let nothing = a.abs().max(b.abs()) < TINY;
+            prop_assert!(a == b || nothing, "{} in row {row}: {a:e} {b:e}", variable.name);
         }
-        Ok(())
-    });
+    }
+    Ok(())
 }

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 use crate::invariants::case::Case;
 use crate::invariants::check::check;
-use crate::invariants::random::cases;
+use crate::invariants::random::{cases, cases_with_bodies};
 use crate::invariants::trust::{Compared, Series, Trusted};
 
 /// The case seen in a mirror, x → -x.
@@ -21,7 +21,10 @@ fn mirrored(case: &Case) -> Case {
     mirror.start = Start { u: 0.0 - case.start.u, u_rate: 0.0 - case.start.u_rate, ..case.start };
     for motion in &mut mirror.motions {
         motion.u = Path { rate: 0.0 - motion.u.rate, amplitude: 0.0 - motion.u.amplitude, ..motion.u };
+        motion.pull = motion.pull.times(-1.0);
     }
+    let body = mirror.scene.carrier.x.iter_mut().flat_map(|body| &mut body.start_rate);
+    body.for_each(|rate| *rate = 0.0 - *rate);
     mirror
 }
 
@@ -40,15 +43,25 @@ fn seen_in_the_mirror(series: &Series) -> Series {
 /// by roundings and by what these make of the steps' lengths.
 #[test]
 fn a_mirrored_scene_gives_mirrored_forces() {
+    mirrored_forces("a mirrored scene", cases());
+}
+
+/// The same of a carrier that is a body.
+#[test]
+fn a_mirrored_body_has_mirrored_forces() {
+    mirrored_forces("a mirrored body", cases_with_bodies());
+}
+
+fn mirrored_forces(name: &str, cases: impl Strategy<Value = Case>) {
     let compared = Compared::default();
-    check("a mirrored scene", 30, cases(), |case| {
+    check(name, 30, cases, |case| {
         let fail = |error| TestCaseError::fail(format!("{error}"));
         let one = Trusted::where_a_perturbed_run_agrees(&case, |case| case.run(6)).map_err(fail)?;
         let mut other = Trusted::where_a_perturbed_run_agrees(&mirrored(&case), |case| case.run(6)).map_err(fail)?;
         other.series = seen_in_the_mirror(&other.series);
         compared.same(&one, &other)
     });
-    compared.report("a mirrored scene", 0.5);
+    compared.report(name, 0.5);
 }
 
 /// One mass over a flat surface has no sums whose order could change: bit for bit.
