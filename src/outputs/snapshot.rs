@@ -121,7 +121,7 @@ impl Snapshot<'_> {
     }
 
     /// How far bodies are from their start along x and z, m; 0 where the displacement is prescribed.
-    fn ways(&self) -> [f64; 2] {
+    pub fn ways(&self) -> [f64; 2] {
         let [x, z] = &self.model.bodies;
         let way = |is_body: bool, now: f64, start: f64| if is_body { now - start } else { 0.0 };
         [way(x.is_some(), self.displacement.0, self.start[0]), way(z.is_some(), self.displacement.1, self.start[1])]

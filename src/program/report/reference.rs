@@ -4,7 +4,7 @@ use asperity::robustness::{Budget, DISPLACEMENT, RunFailure, at_tolerance, diver
 use asperity::scene::Scene;
 
 use super::run::{Counts, Figures, Measured, Progress, UNLIMITED, follow, weight, with_durations};
-use super::trace::{Errors, Trace, WINDOWS};
+use super::trace::{Errors, OF_ALL_SCENES, QUANTITIES, Trace, WINDOWS};
 use crate::program::cli::tenth;
 use crate::program::runner::Rows;
 
@@ -91,7 +91,7 @@ impl Reference {
         let differences = moved.trace.largest(&measured.trace);
         let sensitivity = Sensitivity { differences, limit: divergence(&scene) };
         let comparison = Comparison::Pointwise(rows);
-        let unknown = [Some(f64::INFINITY); 3];
+        let unknown = [Some(f64::INFINITY); QUANTITIES.len()];
         let own = check.as_ref().map_or(unknown, |(_, check)| comparison.errors(&check.trace, &measured.trace));
         let check = check.map(|(tolerance, _)| tolerance);
         let found = Self { tolerance, check, measured, own, sensitivity, comparison, scene: scene.clone() };
@@ -108,9 +108,14 @@ impl Reference {
         self.measured.figures(self.own)
     }
 
+    /// How many of the [`QUANTITIES`] are shown: u and w where the carrier is a body.
+    pub(super) fn shown(&self) -> usize {
+        if self.scene.carrier.any() { QUANTITIES.len() } else { OF_ALL_SCENES }
+    }
+
     /// Which errors are below the reference's own.
-    pub(super) fn below(&self, errors: &Errors) -> [bool; 3] {
-        [0, 1, 2].map(|i| errors[i].zip(self.own[i]).is_some_and(|(error, own)| error < own))
+    pub(super) fn below(&self, errors: &Errors) -> [bool; QUANTITIES.len()] {
+        std::array::from_fn(|i| errors[i].zip(self.own[i]).is_some_and(|(error, own)| error < own))
     }
 }
 
@@ -160,7 +165,7 @@ impl ReferenceSearch<'_> {
         let mut own = comparison.errors(&run(pointwise.tolerance, DISPLACEMENT)?.trace, &measured.trace);
         if let Some(check) = pointwise.check {
             let errors = comparison.errors(&run(check, 0.0)?.trace, &measured.trace);
-            own = [0, 1, 2].map(|i| own[i].zip(errors[i]).map(|(moved, checked)| moved.max(checked)));
+            own = std::array::from_fn(|i| own[i].zip(errors[i]).map(|(moved, checked)| moved.max(checked)));
         }
         Ok(Reference { measured, own, comparison, ..pointwise })
     }

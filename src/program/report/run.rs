@@ -320,7 +320,8 @@ impl TraceRecorder {
     fn row(&mut self, snapshot: &Snapshot<'_>) {
         snapshot.evaluate(&self.variables, &mut self.values);
         let [x, z, lost, input, kinetic, elastic, residual, steps, rejected, events, estimate] = self.values;
-        self.trace.push(snapshot.time, [x, z, lost]);
+        let [u, w] = snapshot.ways();
+        self.trace.push(snapshot.time, [x, z, lost, u, w]);
         self.energy = [input, kinetic, elastic, lost].iter().fold(self.energy, |most, energy| most.max(energy.abs()));
         self.residual = self.residual.max(residual.abs());
         let [steps, rejected, events] = [steps, rejected, events].map(|count| count as u64);

@@ -10,7 +10,7 @@ use super::machine::{Machine, build};
 use super::reference::Reference;
 use super::robustness::Robustness;
 use super::run::Figures;
-use super::trace::{Errors, QUANTITIES};
+use super::trace::{Errors, OF_ALL_SCENES, QUANTITIES};
 use crate::program::files::FileError;
 use crate::program::result_file::{CsvFile, CsvWriter, ResultFileError};
 use crate::program::terminal::real;
@@ -37,10 +37,10 @@ const TIMINGS: &str = "runs";
 
 /// What this program adds to them.
 const ADDED: &str = "timed,most_above_least,runs,rejected,newton_iterations,energy_residual,estimate,below_reference,failure,\
-    cpu,cores,system,build";
+    cpu,cores,system,build,error_u,error_w";
 
 const COMMUNICATION: &str = "scene,given,communication_step,error_F_x,error_F_z,error_E_diss,mean_square_error_F_x,\
-    mean_square_error_F_z,mean_square_error_E_diss,run_time,steps,events,below_reference,failure";
+    mean_square_error_F_z,mean_square_error_E_diss,run_time,steps,events,below_reference,failure,error_u,error_w,mean_square_error_u,mean_square_error_w";
 
 const JUDGEMENTS: &str = "scene,stiffness,mass,relaxation_times,speed,carrier_mass,drive,load,communication_step,method,tolerance,error,\
     error_over_tolerance,estimate,estimate_over_error,warned,left_out";
@@ -60,7 +60,8 @@ pub(super) fn write_errors(
     let records = std::iter::once(&own).chain(rows).map(|row| {
         let figures = row.result.as_ref().copied().unwrap_or_default();
         let mut fields = vec![scene.to_owned(), row.program.clone(), row.method.clone(), real(row.tolerance)];
-        fields.extend(figures.errors.map(optional));
+        let errors = figures.errors.map(optional);
+        fields.extend_from_slice(&errors[..OF_ALL_SCENES]);
         fields.push(optional(figures.time));
         fields.extend([figures.steps, figures.events].map(count));
         fields.extend([row.timed.name().to_owned(), optional(figures.spread.map(short)), count(figures.timings)]);
@@ -69,6 +70,7 @@ pub(super) fn write_errors(
         fields.push(below(reference, &figures.errors));
         fields.push(row.result.as_ref().err().cloned().unwrap_or_default());
         fields.extend(measured_on(row.timed, &machine));
+        fields.extend_from_slice(&errors[OF_ALL_SCENES..]);
         fields
     });
     write(path, MEASURED.into_iter().chain(ADDED.split(',')), records)
@@ -91,12 +93,13 @@ pub(super) fn write_communication(
     let records = rows.iter().map(|row| {
         let (figures, mean_square) = row.result.clone().unwrap_or_default();
         let mut fields = vec![scene.to_owned(), row.given.name().to_owned(), optional(row.step)];
-        fields.extend(figures.errors.map(optional));
-        fields.extend(mean_square.unwrap_or_default().map(optional));
+        let kinds = [figures.errors, mean_square.unwrap_or_default()].map(|errors| errors.map(optional));
+        kinds.iter().for_each(|errors| fields.extend_from_slice(&errors[..OF_ALL_SCENES]));
         fields.push(optional(figures.time));
         fields.extend([figures.steps, figures.events].map(count));
         fields.push(below(reference, &figures.errors));
         fields.push(row.result.as_ref().err().cloned().unwrap_or_default());
+        kinds.iter().for_each(|errors| fields.extend_from_slice(&errors[OF_ALL_SCENES..]));
         fields
     });
     write(path, COMMUNICATION.split(','), records)
@@ -214,7 +217,7 @@ fn row(
     let tolerance = number(tolerance)?.ok_or("expected a tolerance, found none")?;
     let time = number(time)?;
     let figures = Figures {
-        errors: [number(x)?, number(z)?, number(lost)?],
+        errors: [number(x)?, number(z)?, number(lost)?, None, None],
         time,
         spread: number(spread)?,
         timings: number(timings)?.map(|count| count as u64),

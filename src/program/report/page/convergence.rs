@@ -137,10 +137,12 @@ fn process_cells(rows: &[ToleranceRow], bound: f64) -> Vec<Cell> {
     cells.chain([number(ratio)]).collect()
 }
 
-const TOLERANCE_FIGURES: [&str; 11] = [
-    "error of F_x",
-    "F_z",
-    "E_diss",
+/// The columns of errors, those that a scene has.
+fn error_names(first: &'static str, reference: &Reference) -> Vec<&'static str> {
+    std::iter::once(first).chain(QUANTITIES.into_iter().skip(1)).take(reference.shown()).collect()
+}
+
+const TOLERANCE_FIGURES: [&str; 8] = [
     "run time in s",
     "longest, above it",
     "timings",
@@ -152,27 +154,27 @@ const TOLERANCE_FIGURES: [&str; 11] = [
 ];
 
 fn runs(reference: &Reference, rows: &[ToleranceRow]) -> io::Result<String> {
+    let figures = [&error_names("error of F_x", reference)[..], &TOLERANCE_FIGURES].concat();
     let own = ToleranceRow::of_reference(reference);
     let rows: Vec<&ToleranceRow> = rows.iter().chain([&own]).collect();
     let cells = rows.iter().enumerate().map(|(i, row)| {
-        let below = |figures: &Figures| reference.below(&figures.errors);
         let mut cells = vec![row.name().into(), number(format!("{:e}", row.tolerance))];
         match &row.result {
-            Ok(figures) => cells.extend(figure_cells(figures, below(figures))),
-            Err(why) => cells.push(reason(why, TOLERANCE_FIGURES.len())),
+            Ok(figures) => cells.extend(figure_cells(figures, reference)),
+            Err(why) => cells.push(reason(why, figures.len())),
         }
         if i > 0 && row.name() != rows[i - 1].name() {
             begin_group(&mut cells);
         }
         cells
     });
-    table(&head(&["method"], &[&["tolerance"], &TOLERANCE_FIGURES[..]].concat()), &cells.collect::<Vec<_>>())
+    table(&head(&["method"], &[&["tolerance"], &figures[..]].concat()), &cells.collect::<Vec<_>>())
 }
 
-fn figure_cells(figures: &Figures, below: [bool; 3]) -> Vec<Cell> {
+fn figure_cells(figures: &Figures, reference: &Reference) -> Vec<Cell> {
     let counts = [figures.steps, figures.rejected, figures.events, figures.iterations].map(count);
     let times = [seconds(figures.time), per_cent(figures.spread), count(figures.timings)];
-    let cells = errors(&figures.errors, below).chain(times).chain(counts);
+    let cells = errors(&figures.errors, reference).chain(times).chain(counts);
     cells.chain([short(figures.residual)]).collect()
 }
 
@@ -219,8 +221,11 @@ fn in_words(errors: &Errors) -> String {
 
 const COMMUNICATION: &str = include_str!("communication.html");
 
-const COMMUNICATION_FIGURES: [&str; 9] =
-    ["error of F_x", "F_z", "E_diss", "root mean square, F_x", "F_z", "E_diss", "run time in s", "steps", "events"];
+/// The columns of a row of the table of communication steps.
+fn communication_figures(reference: &Reference) -> Vec<&'static str> {
+    let errors = ["error of F_x", "root mean square, F_x"].map(|first| error_names(first, reference));
+    [errors.concat(), vec!["run time in s", "steps", "events"]].concat()
+}
 
 /// The section on communication steps, with its picture as SVG.
 pub(in crate::program::report) fn communication(
@@ -259,7 +264,7 @@ fn communication_table(reference: &Reference, rows: &[CommunicationRow]) -> io::
         cells
     });
     table(
-        &head(&["a master gives"], &[&["step in s"], &COMMUNICATION_FIGURES[..]].concat()),
+        &head(&["a master gives"], &[&["step in s"], &communication_figures(reference)[..]].concat()),
         &cells.collect::<Vec<_>>(),
     )
 }
@@ -269,11 +274,11 @@ fn communication_cells(row: &CommunicationRow, reference: &Reference) -> Vec<Cel
     let mut cells = vec![row.given.name().into(), number(step)];
     match &row.result {
         Ok((figures, mean_squares)) => {
-            cells.extend(errors(&figures.errors, reference.below(&figures.errors)));
-            cells.extend(mean_squares.unwrap_or_default().map(short));
+            cells.extend(errors(&figures.errors, reference));
+            cells.extend(mean_squares.unwrap_or_default().into_iter().take(reference.shown()).map(short));
             cells.extend([seconds(figures.time), count(figures.steps), count(figures.events)]);
         }
-        Err(why) => cells.push(reason(why, COMMUNICATION_FIGURES.len())),
+        Err(why) => cells.push(reason(why, communication_figures(reference).len())),
     }
     cells
 }
@@ -350,5 +355,5 @@ fn panels(reference: &Reference, ladders: impl Fn(usize) -> Vec<Ladder>) -> Vec<
 
 fn title(quantity: usize, of_means: bool) -> String {
     let name = QUANTITIES[quantity];
-    if of_means && quantity < 2 { format!("error of {name}, means") } else { format!("error of {name}") }
+    if of_means && quantity != 2 { format!("error of {name}, means") } else { format!("error of {name}") }
 }

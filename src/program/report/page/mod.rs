@@ -10,6 +10,7 @@ use asperity::scene::{Parameter, Scene};
 use quick_xml::escape::escape;
 
 use super::machine::{Machine, build};
+use super::reference::Reference;
 use super::trace::Errors;
 use crate::program::describe;
 use crate::program::html::{Cell, fill, table};
@@ -93,8 +94,8 @@ fn per_cent(value: Option<f64>) -> Cell {
 }
 
 /// Errors; those below the reference's own are marked.
-fn errors(errors: &Errors, below: [bool; 3]) -> impl Iterator<Item = Cell> {
-    errors.iter().zip(below).map(|(&error, below)| {
+fn errors(errors: &Errors, reference: &Reference) -> impl Iterator<Item = Cell> {
+    errors.iter().zip(reference.below(errors)).take(reference.shown()).map(|(&error, below)| {
         let cell = short(error);
         if below { Cell { text: format!("{} *", cell.text), class: "number below".into(), ..cell } } else { cell }
     })
