@@ -36,7 +36,8 @@
 //! | a column of a sweep's table | `element/table_format.rs`; its value in `program/sweep/point.rs` and `slide.rs` |
 //! | the rules of mode changes, the impact | `contact/laws.rs`, for both methods; stops and breaks within a time step also in `integrator/stage/modes.rs` |
 //! | what an FMU state holds | `FmuState` in `fmi/state.rs`, `RunState` in `simulation/run.rs` |
-//! | the carrier's motion as an unknown | `model/carrier.rs`; `integrator/method.rs` and `stage` (a border of the block tridiagonal system), `integrator/dense.rs`, `integrator/error.rs`; impulses in `contact/correction.rs`; `RunState` |
+//! | what acts on a carrier that is a body | `scene/carrier.rs` (keys in `scene/reader/carrier.rs`), `Body` and `Outside` in `model/carrier.rs`; its equation in `integrator/stage/border.rs`, its sensitivity in `integrator/sensitivity.rs` |
+//! | an input of the FMU | [`scene::Input`], `Inputs` in `fmi/inputs.rs`, `Motion` in `simulation/motion.rs`, `CarrierSample` in `program/runner.rs` |
 //!
 //! ```
 //! use asperity::outputs::variables;
@@ -94,6 +95,9 @@
 //! | a_T | `Material::shift_factor()` | 1 | shift of all times with temperature (Williams, Landel and Ferry) |
 //! | E', E'' | `Material::complex_modulus()` | Pa | storage and loss modulus (2) |
 //! | f_x,i, f_z,i | `Forces::on_mass_x`, `on_mass_z` | N | forces of the links on mass i (3), (4) |
+//! | M, K, D | `Body::mass`, `stiffness`, `damping` | kg, N/m, N s/m | carrier that is a body, spring and damper to its drive |
+//! | N, P | `Input::Load`, `Input::Pull` | N | normal load (N > 0 presses) and tangential force on a body |
+//! | u_d, w_d, R | `Outside::drive`, `drive_force()` | m, N | displacement of the drive, its force on the body |
 //! | F_x, F_z | `Forces::on_carrier_x`, `on_carrier_z` | N | forces of the layer on the carrier |
 //! | z_r, s, κ | `SurfacePoint::height`, `slope`, `curvature` | m, 1, 1/m | profile, z_r', z_r'' (5), (9) |
 //! | q | `ContactForces::q` | 1 | √(1 + s²) |
@@ -111,7 +115,7 @@
 //! | P_damper, P_maxwell, P_friction, P_in | `Powers::damper`, … | W | powers of the channels and of the carrier |
 //! | E_damper, E_maxwell, E_friction, E_in | `ChannelEnergies::damper`, … | J | their integrals over time |
 //! | E_impact | `Energies::impact` | J | energy lost in impacts |
-//! | T, V | `kinetic_energy()`, `elastic_energy()` | J | energy balance E_in = Δ(T + V) + E_damper + E_maxwell + E_friction + E_impact |
+//! | T, V | `kinetic_energy()`, `elastic_energy()` | J | energy balance E_in = Δ(T + V + T_c + V_c) + E_damper + E_maxwell + E_friction + E_impact + E_c |
 
 pub mod contact;
 pub mod element;

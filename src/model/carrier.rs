@@ -54,10 +54,9 @@ impl CarrierPoint {
 
     /// Sets the same.
     pub fn set_along(&mut self, axis: Axis, [displacement, rate, acceleration]: [f64; 3]) {
-        let (of_u, of_w) = ((&mut self.du, &mut self.u_rate, &mut self.u_acceleration), &mut self.dw);
         match axis {
-            Axis::X => (*of_u.0, *of_u.1, *of_u.2) = (displacement, rate, acceleration),
-            Axis::Z => (*of_w, self.w_rate, self.w_acceleration) = (displacement, rate, acceleration),
+            Axis::X => (self.du, self.u_rate, self.u_acceleration) = (displacement, rate, acceleration),
+            Axis::Z => (self.dw, self.w_rate, self.w_acceleration) = (displacement, rate, acceleration),
         }
     }
 }
