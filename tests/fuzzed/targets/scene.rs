@@ -59,7 +59,8 @@ pub fn run_scene(mut scene: Scene) {
     scene.solver.max_steps = scene.solver.max_steps.min(MOST_STEPS);
     scene.outputs = OutputGroup::ALL.to_vec();
     let variables = variables(&scene);
-    let mut simulation = Simulation::new(&scene, &Start::default()).unwrap();
+    let start = Start { load: scene.first_load(), pull: scene.first_pull(), ..Start::default() };
+    let mut simulation = Simulation::new(&scene, &start).unwrap();
     let mut before = values(&simulation.snapshot(), &variables);
     assert_finite(&variables, &before);
     for (motion, until) in motions(&scene) {
@@ -87,7 +88,14 @@ fn motions(scene: &Scene) -> Vec<(Motion, Option<f64>)> {
         ..Motion::default()
     };
     let phases = scene.excitation.iter().take(2);
-    let motion = |phase: &Phase| Motion { duration: phase.duration, u: phase.u, w: phase.w, ..Motion::default() };
+    let motion = |phase: &Phase| Motion {
+        duration: phase.duration,
+        u: phase.u,
+        w: phase.w,
+        load: phase.load(scene.layer.area()),
+        pull: phase.pull(),
+        temperature: phase.temperature,
+    };
     let phases = phases.map(|phase| (motion(phase), phase.end_force(scene.layer.area())));
     phases.chain([(press, None)]).collect()
 }
