@@ -519,7 +519,10 @@ kind = 'flat'";
     #[test]
     fn what_a_scene_does_not_have_is_not_scaled() {
         use ScaledQuantity::{CommunicationStep, Mass, RelaxationTimes, Speed, Stiffness};
-        assert_eq!(ScaledQuantity::of(&scene(TEXT)), ScaledQuantity::ALL);
+        let prescribed = [Stiffness, Mass, RelaxationTimes, Speed, CommunicationStep];
+        assert_eq!(ScaledQuantity::of(&scene(TEXT)), prescribed);
+        let body = format!("{TEXT}\n[carrier.z]\nmass = 1.0\ndamping = 1.0");
+        assert_eq!(ScaledQuantity::of(&scene(&body)), ScaledQuantity::ALL);
         let springs = TEXT.replace("maxwell = [{ stiffness = 5e2, relaxation_time = 1e-4 }]", "");
         assert_eq!(ScaledQuantity::of(&scene(&springs)), [Stiffness, Mass, Speed, CommunicationStep]);
         let at_rest = TEXT.replace("w_rate = -0.01", "").replace("u_sine", "# u_sine");
