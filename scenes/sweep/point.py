@@ -110,7 +110,7 @@ def slide(fmu: Layer, settings: Settings, point: Point, secant: Secant) -> tuple
     """Blocks at one w: where it is far from right, until all relaxation is over; else until their means are steady."""
     fmu.start(secant.w, point.speed, point.temperature)
     passing = settings.block / point.speed
-    settling = max(FEWEST, math.ceil(3 * point.slowing * settings.slowest / passing) + 1)
+    settling = FEWEST + math.ceil(5 * point.slowing * settings.slowest / passing)
     blocks = []
     while len(blocks) < MOST:
         blocks.append(fmu.block(settings.block, settings.samples))

@@ -56,23 +56,26 @@ class Model:
             surface = self.scene["surface"]
             if surface["kind"] != "file" or not surface.get("periodic"):
                 raise SystemExit("this example slides over a periodic profile from a file")
+            if self.scene["layer"].get("foundation") != "half_space":
+                raise SystemExit("this example slides a half-space")
             lines = archive.read(f"resources/{surface['path']}").decode().splitlines()
         self.x, self.z = np.loadtxt(lines, delimiter=",", skiprows=1, unpack=True)
 
     def settings(self, error: float) -> Settings:
         layer, material = self.scene["layer"], self.scene["material"]
         # The mean of a periodic spline over even points is that of the points.
-        rest, heights = layer.get("clearance", 0.0), self.z[:-1]
+        rest, heights, period = layer.get("clearance", 0.0), self.z[:-1], float(self.x[-1] - self.x[0])
         return Settings(
             area=layer["masses"] * layer["spacing"] * layer["width"],
             rest_separation=float(rest - heights.mean()),
-            block=float(self.x[-1] - self.x[0]),
+            block=period,
             # One more than there are intervals, so that masses are seen at all places between the points.
             samples=min(max(len(self.x), 129), 2049),
             slowest=max(term["relaxation_time"] for term in material["prony"]),
             error=error,
             lifts=tuple(heights - rest),
-            stiffness=material["equilibrium_modulus"] / layer["thickness"],
+            # A half-space against a wave as long as the period: half its wave number times the plane modulus.
+            stiffness=math.pi / period * material["equilibrium_modulus"] / (1 - material["poisson_ratio"] ** 2),
         )
 
     def points(self, arguments) -> list:

@@ -126,7 +126,7 @@ fn maxwell(model: &Model, state: &State) -> f64 {
     model.rows.iter().map(row_power).sum()
 }
 
-/// P_friction and P_shear, W.
+/// P_friction and P_shear, W; the latter is 0 where the scene does not tell the two apart.
 fn friction(model: &Model, state: &State, forces: &Forces) -> (f64, f64) {
     if !model.has_friction {
         return (0.0, 0.0);
@@ -136,13 +136,16 @@ fn friction(model: &Model, state: &State, forces: &Forces) -> (f64, f64) {
         let (sigma, v) = (state.mode[i].direction(), state.velocity_x[i]);
         let contact = forces.contact(model, i, v, &state.surface[i]);
         at_rest += sigma * contact.limit * v * contact.q;
-        coulomb += sigma * (model.friction_coefficient * contact.normal) * v * contact.q;
+        if model.has_both_frictions {
+            coulomb += sigma * (model.friction_coefficient * contact.normal) * v * contact.q;
+        }
         if let Some(curve) = model.slip_curve(contact.normal) {
             let speed = sigma * v * contact.q;
             excess += curve.excess(speed) * speed;
         }
     }
-    (at_rest + excess, (at_rest - coulomb) + excess)
+    let shear = if model.has_both_frictions { (at_rest - coulomb) + excess } else { 0.0 };
+    (at_rest + excess, shear)
 }
 
 /// The power of a prescribed carrier into the layer, W. One at rest does no work, whatever the forces.

@@ -74,6 +74,8 @@ pub struct Model {
     pub real_area: Option<RealArea>,
     /// Whether contacts can stick: whether a part of the friction law is not zero.
     pub has_friction: bool,
+    /// Whether the scene has Coulomb's friction and a shear force, so that their parts are told apart.
+    pub has_both_frictions: bool,
     /// How the dashpots start.
     pub initial: Initial,
     /// Elongations of the vertical links at the start, m: those of the frozen dashpots, see [`LinkLaw::frozen`]. Empty
@@ -111,6 +113,7 @@ impl Model {
             rate_shear,
             real_area: RealArea::new(scene),
             has_friction: coulomb > 0.0 || shear_force > 0.0 || rate_shear.is_some(),
+            has_both_frictions: scene.has_both_frictions(),
             initial: layer.initial,
         }
     }

@@ -221,10 +221,10 @@ pub(super) static TABLE: [OutputRow; 70] = {
             .only_where(|scene| scene.friction.is_some()),
         layer(Output::CoulombEnergy, Dissipation, "dissipation.E_coulomb", Real, Joule, "Energy dissipated in friction: the part of Coulomb's law",
             |now| now.at.energies.channels.friction - now.at.energies.channels.shear)
-            .only_where(has_both_frictions),
+            .only_where(Scene::has_both_frictions),
         layer(Output::ShearEnergy, Dissipation, "dissipation.E_shear", Real, Joule, "Energy dissipated in friction: the part of the shear strength",
             |now| now.at.energies.channels.shear)
-            .only_where(has_both_frictions),
+            .only_where(Scene::has_both_frictions),
         layer(Output::ImpactEnergy, Dissipation, "dissipation.E_impact", Real, Joule, "Energy dissipated in impacts",
             |now| now.at.energies.impact),
         layer(Output::Hysteresis, Friction, "friction.F_hysteresis", Real, Newton, "Tangential force by hysteresis: the tangential part of the normal contact forces on the slopes",
@@ -236,11 +236,11 @@ pub(super) static TABLE: [OutputRow; 70] = {
         layer(Output::CoulombForce, Friction, "friction.F_coulomb", Real, Newton, "Tangential force by adhesion: the part of Coulomb's law",
             |now| now.contact_sums().adhesion - now.contact_sums().shear)
             .depending(elastic, |now, shift| now.at.contact_sum(shift, ContactChange::coulomb))
-            .only_where(has_both_frictions),
+            .only_where(Scene::has_both_frictions),
         layer(Output::ShearForce, Friction, "friction.F_shear", Real, Newton, "Tangential force by adhesion: the part of the shear strength",
             |now| now.contact_sums().shear)
             .depending(elastic, |now, shift| now.at.contact_sum(shift, ContactChange::shear))
-            .only_where(has_both_frictions),
+            .only_where(Scene::has_both_frictions),
         layer(Output::FrictionCoefficient, Friction, "friction.coefficient", Real, One, "|F_x|/F_z, 0 where F_z <= 0",
             |now| now.at.friction_coefficient())
             .depending(elastic, |now, shift| now.at.friction_coefficient_change(shift)),
@@ -403,12 +403,6 @@ fn has_maxwell_elements(scene: &Scene) -> bool {
 /// `solver.reduce` may replace a Maxwell element by a damper.
 fn has_dampers(scene: &Scene) -> bool {
     any_link(scene, |link| link.damping.is_some()) || (scene.solver.reduce > 0.0 && has_maxwell_elements(scene))
-}
-
-/// Coulomb's friction and a shear strength, whose parts are told apart.
-fn has_both_frictions(scene: &Scene) -> bool {
-    let has_shear = scene.shear_force().is_some() || scene.rate_shear().is_some();
-    has_shear && scene.friction.as_ref().is_some_and(|friction| friction.coulomb.is_some())
 }
 
 fn has_drive(scene: &Scene, axis: Axis) -> bool {

@@ -5,9 +5,9 @@
 //! surface is in contact, and μ = (1/p) Σ q_m z_m² K <cos φ Im M(q_m v cos φ)> P_m S_m. S is 1, or ½ + ½P² for contacts
 //! that deform less than the whole surface would.
 
-use std::f64::consts::{FRAC_PI_2, PI, SQRT_2, TAU};
+use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
-use asperity::scene::{Body, Layer, Material, Scene, Spectrum};
+use asperity::scene::{Body, Material, Scene, Spectrum};
 
 /// Area and friction by the theory.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -29,10 +29,6 @@ pub(super) enum Dimension {
 
 /// Angles between 0 and π/2 at whose middles the waves of an isotropic surface are taken.
 const ANGLES: u32 = 32;
-/// Waves of less than this part of the largest mean square slope are roundings of the transform.
-const ROUNDING: f64 = 1e-20;
-/// A wave lies within the band if it does but for rounding.
-const EDGE: f64 = 1e-9;
 
 impl Theory {
     /// Of the waves that the layer of `scene` resolves, sliding at `speed` (m/s) under `pressure` (Pa); `None` in the
@@ -40,7 +36,7 @@ impl Theory {
     pub(super) fn of(scene: &Scene, pressure: f64, speed: f64, dimension: Dimension) -> Option<Self> {
         let material = scene.material.as_ref()?;
         let body = scene.layer.body(material)?;
-        let waves = resolved(&scene.layer, Spectrum::of(&scene.surface).modes());
+        let waves = resolved(scene);
         Some(Self::of_waves(&waves, material, body, (pressure, speed), dimension))
     }
 
@@ -51,7 +47,7 @@ impl Theory {
         let body = scene.layer.body(material)?;
         // Half of the mean square height of an isotropic surface is in the waves of its lines.
         let fine = roughness.bands().map(|(q, gradient_square)| (q, 0.5 * gradient_square / (q * q)));
-        let coarse = resolved(&scene.layer, Spectrum::of(&scene.surface).modes());
+        let coarse = resolved(scene);
         let all: Vec<(f64, f64)> = coarse.iter().copied().chain(fine).collect();
         let friction = |waves| Self::of_waves(waves, material, body, (pressure, speed), Dimension::Two).friction;
         (all.len() > coarse.len()).then(|| friction(&all) - friction(&coarse))
@@ -111,20 +107,14 @@ impl Dimension {
     }
 }
 
-/// Those of `modes` between 2π/(kΔx) and π/Δx.
-fn resolved(layer: &Layer, modes: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
-    let (low, high) = (TAU / (layer.spacing * layer.masses as f64), PI / layer.spacing);
-    let within = |q: f64| low <= q * (1.0 + EDGE) && q <= high * (1.0 + EDGE);
-    let mut waves: Vec<(f64, f64)> = modes.filter(|mode| within(mode.0)).collect();
-    let slope = |&(q, square): &(f64, f64)| q * q * square;
-    let largest = waves.iter().map(slope).fold(0.0, f64::max);
-    waves.retain(|wave| slope(wave) > ROUNDING * largest);
-    waves
+/// The waves of the profile that the layer resolves.
+fn resolved(scene: &Scene) -> Vec<(f64, f64)> {
+    Spectrum::of(&scene.surface).modes().filter(|(wave_number, _)| scene.layer.resolves(*wave_number)).collect()
 }
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::FRAC_2_PI;
+    use std::f64::consts::{FRAC_2_PI, TAU};
 
     use asperity::scene::PronyTerm;
 
@@ -211,9 +201,8 @@ mod tests {
     fn waves_below_the_spacing_and_beyond_the_length_are_left_out() {
         let text = "name = 'w'\nlayer = { masses = 8, spacing = 1.0, mass = 1.0 }\nsurface = { kind = 'flat' }";
         let scene = Scene::parse(text, "w.toml".as_ref()).unwrap();
-        let modes = (1..20).map(|m| (TAU * f64::from(m) / 16.0, if m == 5 { 1e-30 } else { 1.0 }));
-        let kept: Vec<i32> =
-            resolved(&scene.layer, modes).iter().map(|(q, _)| (q * 16.0 / TAU).round() as i32).collect();
-        assert_eq!(kept, [2, 3, 4, 6, 7, 8]);
+        let resolved = |m: i32| scene.layer.resolves(TAU * f64::from(m) / 16.0);
+        // 2π/(kΔx) is m = 2, π/Δx is m = 8.
+        assert_eq!((1..20).filter(|&m| resolved(m)).collect::<Vec<_>>(), [2, 3, 4, 5, 6, 7, 8]);
     }
 }

@@ -187,6 +187,12 @@ impl Scene {
         self.layer.mass.or_else(of_material).unwrap_or(0.0)
     }
 
+    /// Coulomb's friction and a shear force, at rest or in slip, whose parts are told apart.
+    pub fn has_both_frictions(&self) -> bool {
+        let has_shear = self.shear_force().is_some() || self.rate_shear().is_some();
+        has_shear && self.friction.as_ref().is_some_and(|friction| friction.coulomb.is_some())
+    }
+
     /// Adhesive shear force A τ_0 of one mass in contact, N, if the scene has it: given, or of the shear strength.
     pub fn shear_force(&self) -> Option<f64> {
         let friction = self.friction.as_ref()?;

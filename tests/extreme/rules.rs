@@ -29,6 +29,7 @@ pub struct Limits {
     /// The largest |X_i|, m.
     farthest: f64,
     masses: f64,
+    /// Coulomb's coefficient, and the shear force of a mass at rest, N.
     friction: (f64, f64),
     rate_shear: Option<RateShear>,
     /// Whether nothing forgets an error, so that every step may make its own.
@@ -44,15 +45,14 @@ impl Limits {
     pub fn new(scene: &Scene, adds_up: bool) -> Self {
         let model = Model::new(scene);
         let (relative, absolute) = (scene.solver.relative_tolerance, scene.absolute_tolerance());
-        let friction = scene.friction.as_ref();
-        let part = |part: fn(&asperity::scene::Friction) -> Option<f64>| friction.and_then(part).unwrap_or_default();
+        let coulomb = scene.friction.as_ref().and_then(|friction| friction.coulomb);
         Self {
             relative,
             absolute,
             force: absolute * softest(&model),
             farthest: model.rest_x.iter().fold(0.0, |farthest: f64, x| farthest.max(x.abs())),
             masses: model.masses() as f64,
-            friction: (part(|friction| friction.coulomb), part(|friction| friction.shear_force)),
+            friction: (coulomb.unwrap_or_default(), scene.shear_force().unwrap_or_default()),
             rate_shear: scene.rate_shear(),
             adds_up,
             model,
@@ -107,7 +107,9 @@ impl Limits {
 
     /// |F_T| ≤ T, but for the tolerance within which a break is located and the row's own error.
     fn friction(&self, normal: f64, friction: f64, mode: f64) -> Option<String> {
-        let limit = self.friction.0 * normal.max(0.0) + self.friction.1 + self.rate_limit(mode);
+        // On the area that touches at rest: the rubber is no softer in slip.
+        let share = self.model.real_area.as_ref().map_or(1.0, |area| area.at_rest(normal.max(0.0)).value);
+        let limit = self.friction.0 * normal.max(0.0) + share * (self.friction.1 + self.rate_limit(mode));
         let slack = self.force * (1.0 + self.friction.0) + self.relative * limit;
         (friction.abs() > limit + slack).then(|| format!("|F_T| = {:.2e} above {limit:.2e}", friction.abs()))
     }

@@ -103,6 +103,24 @@ fn full_contact_of_a_sine_converges_at_once() {
     assert!(table.lines().count() == 11 && path.with_extension("svg").exists());
 }
 
+/// A tenth of M, 0.133 MPa, is passed by the pressure of the study alone: the scene has no phases.
+#[test]
+fn a_pressure_beyond_the_links_is_warned_of_once() {
+    let folder = scratch("converge-hard");
+    let (scene, path) = write(&folder, SINE);
+    let warnings = |output: &Output| String::from_utf8_lossy(&output.stderr).matches("pressed too hard").count();
+    let study = converge(&scene, &path, &["--pressure", "2e5", "--speed", "0.1", "--error", "0.5"]);
+    assert_eq!(warnings(&study), 1, "{study:?}");
+    let sweep = |loads: &[&str]| {
+        let mut command = asperity();
+        command.arg("sweep").arg(&scene).args(["--speeds", "0.1,1", "--force", "-o"]).arg(folder.join("sweep.csv"));
+        warnings(&command.args(loads).output().unwrap())
+    };
+    assert_eq!(sweep(&["--pressures", "1e5,2e5"]), 1);
+    assert_eq!(sweep(&["--forces", "4"]), 1, "4 N on 2e-5 m² are 2e5 Pa");
+    assert_eq!(sweep(&["--pressures", "1e5"]), 0);
+}
+
 /// With a small error and few masses the spacing stays open; chance and length are judged nevertheless.
 #[test]
 fn a_rough_surface_stays_open_with_few_masses() {

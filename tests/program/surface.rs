@@ -200,3 +200,22 @@ fn lines_of_an_areal_measurement_go_into_the_archive_as_text() {
             .contains("will not write")
     );
 }
+
+/// Half of the wave of the cut-off is left, 2^-16 of one of a quarter of it: what was taken away has the rest of the slopes.
+#[test]
+fn a_profile_is_smoothed() {
+    let folder = scratch("surface-smoothed");
+    let [source, written] = ["waves.csv", "smooth.csv"].map(|name| folder.join(name));
+    let waves = |x: f64| 1e-6 * (TAU * x).sin() + 1e-7 * (4.0 * TAU * x).sin();
+    let rows = (0..=400).map(|i| format!("{},{}\n", f64::from(i) * 2.5e-6, waves(f64::from(i % 400) / 400.0)));
+    fs::write(&source, format!("x [m],z [m]\n{}", rows.collect::<String>())).unwrap();
+    let options = ["--periodic", "--smooth", "1e-3", "--write", written.to_str().unwrap()];
+    let found = findings(&source, &options);
+    let slope =
+        |of_long: f64, of_short: f64| 1e-6 * TAU / 1e-3 * ((of_long.powi(2) + (0.4 * of_short).powi(2)) / 2.0).sqrt();
+    // 100 points a wave, and the filter's weights end at 7e-7.
+    near(&found["rms_slope"], slope(0.5, 0.5_f64.powi(16)), 1e-4);
+    near(&found["removed"]["rms_slope"], slope(0.5, 1.0 - 0.5_f64.powi(16)), 1e-4);
+    near(&findings(&written, &["--periodic"])["rms_slope"], slope(0.5, 0.5_f64.powi(16)), 1e-4);
+    assert!(failure(&["surface", source.to_str().unwrap(), "--smooth", "0"]).contains("--smooth"));
+}

@@ -236,7 +236,11 @@ pub(crate) struct Surface {
     /// Plots the profile and its spectrum, as SVG or PNG according to the file name.
     #[arg(short, long, value_name = "OUT.svg", value_parser = picture())]
     pub(crate) output: Option<PathBuf>,
-    /// Writes the profile as read, as two columns in m that a scene can use.
+    /// Smooths the profile: a Gaussian filter (ISO 16610-21) that halves waves of this length in m and takes away shorter
+    /// ones.
+    #[arg(long, value_name = "WAVELENGTH", value_parser = positive)]
+    pub(crate) smooth: Option<f64>,
+    /// Writes the profile as read, and smoothed, as two columns in m that a scene can use.
     #[arg(long, value_name = "OUT.csv")]
     pub(crate) write: Option<PathBuf>,
     /// Prints one JSON object in SI units, including the bands of the spectrum.

@@ -21,7 +21,7 @@ use super::cli::Converge;
 use super::figure::Figure as _;
 use super::files::{FileError, check_outputs, print, sources};
 use super::sweep::{Bounds, relevant, steady_sliding, table_fingerprint};
-use super::terminal;
+use super::terminal::{self, warn};
 use crate::program::persson::{Dimension, Theory};
 use plan::{Next, Plan};
 use table::{Header, Measured, Run, Table};
@@ -72,6 +72,9 @@ const RUN_ERROR: f64 = 0.1;
 pub(crate) fn converge(command: &Converge) -> Result<ExitCode, ConvergeError> {
     let (template, scene) = Template::read(&command.scene, &command.set)?;
     let plan = plan(command, &template)?;
+    if let Some(warning) = scene.hard_pressure("--pressure", command.pressure) {
+        warn(&warning);
+    }
     let output = command.output.clone().unwrap_or_else(|| default_output(&command.scene));
     let picture = command.plot.clone().unwrap_or_else(|| output.with_extension("svg"));
     check_outputs([&output, &picture], sources(&command.scene, &scene))?;

@@ -23,9 +23,11 @@ pub(crate) enum SurfaceError {
 
 /// Reads the surface, prints the analysis, plots it and writes the profile.
 pub(crate) fn surface(command: &Surface) -> Result<(), SurfaceError> {
-    let (surface, files) = read(command)?;
+    let (read, files) = read(command)?;
     check_outputs(command.output.iter().chain(&command.write), files)?;
-    let analysis = Analysis::of(&surface, command);
+    let surface = command.smooth.map_or_else(|| read.clone(), |cut_off| read.smoothed(cut_off));
+    let removed = command.smooth.map(|cut_off| Removed::of(&read, &surface, cut_off));
+    let analysis = Analysis { removed, ..Analysis::of(&surface, command) };
     let text = if command.json { serde_json::to_string(&analysis)? + "\n" } else { analysis.text() };
     print(&text)?;
     if let Some(path) = &command.output {
@@ -123,11 +125,29 @@ fn trapezoid(x: &[f64], value: impl Fn(usize) -> f64) -> f64 {
     (1..x.len()).map(|i| 0.5 * (x[i] - x[i - 1]) * (value(i) + value(i - 1))).sum()
 }
 
+/// What smoothing took away, in SI units.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+struct Removed {
+    /// The wavelength that the filter halves.
+    cut_off: f64,
+    /// Root mean square slope of the difference.
+    rms_slope: f64,
+}
+
+impl Removed {
+    fn of(read: &scene::Surface, smoothed: &scene::Surface, cut_off: f64) -> Self {
+        let z = read.z.iter().zip(&smoothed.z).map(|(before, after)| before - after).collect();
+        let difference = scene::Surface { z, ..smoothed.clone() };
+        Self { cut_off, rms_slope: Statistics::of(&difference).rms_slope }
+    }
+}
+
 /// The analysis of a profile, as JSON has it.
 #[derive(Debug, Serialize)]
 struct Analysis {
     #[serde(flatten)]
     statistics: Statistics,
+    removed: Option<Removed>,
     law: Option<PowerLaw>,
     /// How the spectrum was computed.
     taken: String,
@@ -141,7 +161,7 @@ impl Analysis {
         let law = PowerLaw::of(&bands, command.wavelengths.as_ref());
         let points = if statistics.is_even() { "" } else { "at even points of the spline, " };
         let window = if surface.periodic { "over one period, as it is" } else { "without tilt, under a Hann window" };
-        Self { statistics, law, taken: format!("{points}{window}"), spectrum: bands }
+        Self { statistics, removed: None, law, taken: format!("{points}{window}"), spectrum: bands }
     }
 
     fn text(&self) -> String {
@@ -161,6 +181,9 @@ impl Analysis {
             ("", format!("{:.4e} m peak to valley", numbers.peak_to_valley)),
             ("Slopes", format!("rms {:.4}, largest {:.4}, of the spline", numbers.rms_slope, numbers.largest_slope)),
         ];
+        rows.extend(self.removed.map(|Removed { cut_off, rms_slope }| {
+            ("Smoothed", format!("waves of {cut_off:.3e} m halved, shorter ones taken away: rms slope {rms_slope:.4}"))
+        }));
         rows.push(("Spectrum", format!("taken {}", self.taken)));
         rows.extend(self.law_rows().into_iter().map(|row| ("", row)));
         lines(&rows)

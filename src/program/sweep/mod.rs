@@ -18,7 +18,7 @@ use rayon::prelude::*;
 
 use super::cli::Sweep;
 use super::files::{FileError, check_output, load, set_parameters, sources};
-use super::terminal;
+use super::terminal::{self, warn};
 use load_search::{heights, rest_separation};
 pub(crate) use point::{Bounds, SMALL as SMALL_FRICTION, SteadySliding};
 pub(crate) use table_file::fingerprint as table_fingerprint;
@@ -76,6 +76,9 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepErr
         return Err(SweepError::BodyAlongX);
     }
     let (load, loads) = loads(command, &scene)?;
+    if let Some(warning) = hard_pressure(&scene, load, &loads) {
+        warn(&warning);
+    }
     let grid = SweepGrid { speeds: speeds.0.clone(), loads, temperatures: temperatures(command, &scene)? };
     let output = command.output.clone().unwrap_or_else(|| default_output(path));
     check_output(&output, &sources(path, &scene))?;
@@ -152,6 +155,15 @@ fn loads(command: &Sweep, scene: &Scene) -> Result<(Load, Vec<f64>), SweepError>
             Ok((Load::Pressure { area }, pressures.0.clone()))
         }
         (None, None) => Err(SweepError::NoLoad),
+    }
+}
+
+/// The warning where the largest of `loads` presses the layer harder than its links stand for.
+fn hard_pressure(scene: &Scene, load: Load, loads: &[f64]) -> Option<String> {
+    let largest = loads.iter().copied().fold(0.0, f64::max);
+    match load {
+        Load::Pressure { .. } => scene.hard_pressure("the largest of --pressures", largest),
+        Load::Force => scene.hard_pressure("the largest of --forces over the area", largest / scene.layer.area()?),
     }
 }
 

@@ -27,7 +27,7 @@ impl Scene {
             self.coarse_spacing(foundation),
             self.waves_below_the_spacing(foundation),
             steep_slopes(foundation),
-            self.hard_pressure(),
+            self.hard_pressure("until_pressure", self.largest_pressure()),
             self.short_layer(),
         ];
         found.into_iter().flatten().collect()
@@ -66,17 +66,24 @@ impl Scene {
         })
     }
 
-    fn hard_pressure(&self) -> Option<String> {
+    /// The warning where `pressure` (Pa), called `name` where it was asked for, is outside the range in which the links stand
+    /// for the rubber's surface; none for springs.
+    pub fn hard_pressure(&self, name: &str, pressure: f64) -> Option<String> {
+        self.foundation.as_ref()?;
         let modulus = self.material.as_ref()?.plane_modulus(self.material.as_ref()?.equilibrium_modulus);
-        let pressures = self.excitation.iter().filter_map(|phase: &Phase| phase.until_pressure);
-        let pressure = pressures.fold(0.0, f64::max);
         (pressure > HARD * modulus).then(|| {
             format!(
-                "pressed too hard: until_pressure = {pressure:?} Pa is more than a tenth of the plane modulus at rest, \
+                "pressed too hard: {name} = {pressure:?} Pa is more than a tenth of the plane modulus at rest, \
                  {modulus:.3e} Pa: in full contact friction comes out {:.0} % too large",
                 100.0 * (2.0 * pressure / modulus).powi(2)
             )
         })
+    }
+
+    /// The largest mean pressure that a phase ends at, Pa; 0 without one.
+    fn largest_pressure(&self) -> f64 {
+        let pressures = self.excitation.iter().filter_map(|phase: &Phase| phase.until_pressure);
+        pressures.fold(0.0, f64::max)
     }
 
     fn short_layer(&self) -> Option<String> {

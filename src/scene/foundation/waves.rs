@@ -55,11 +55,11 @@ impl Waves {
         let largest = waves.iter().map(|wave| wave.weight).fold(0.0, f64::max);
         waves.retain(|wave| wave.weight > ROUNDING * largest);
         waves.sort_by(|a, b| a.wave_number.total_cmp(&b.wave_number));
-        let (low, high) = (TAU / length, PI / spacing);
         let whole = weight_of(&waves);
+        let (low, high) = layer.band();
         let beyond: f64 = waves.iter().filter(|wave| !is_within(wave.wave_number, high)).map(|wave| wave.weight).sum();
         let shortest = shortest_wavelength(&waves);
-        waves.retain(|wave| low <= wave.wave_number * (1.0 + EDGE) && is_within(wave.wave_number, high));
+        waves.retain(|wave| layer.resolves(wave.wave_number));
         if waves.is_empty() {
             waves = even(low.min(high), high);
         }
@@ -104,6 +104,19 @@ impl Waves {
         let start = shares.partition_point(|share| *share < 0.05);
         let end = shares.partition_point(|share| *share < 0.95) + 1;
         &self.resolved[start.min(self.resolved.len())..end.min(self.resolved.len())]
+    }
+}
+
+impl Layer {
+    /// The wave numbers 2π/(kΔx) and π/Δx of the longest and of the shortest wave that the masses resolve, rad/m.
+    fn band(&self) -> (f64, f64) {
+        (TAU / (self.spacing * self.masses as f64), PI / self.spacing)
+    }
+
+    /// Whether the masses resolve a wave of this wave number, rad/m.
+    pub fn resolves(&self, wave_number: f64) -> bool {
+        let (low, high) = self.band();
+        low <= wave_number * (1.0 + EDGE) && is_within(wave_number, high)
     }
 }
 
