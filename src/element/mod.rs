@@ -19,7 +19,7 @@ mod tests;
 pub use grid::{Load, OperatingPoint, SweepGrid};
 pub use law::{LeftOut, left_out};
 pub use point_contact::{PointContact, dependencies, variables};
-pub use resampled::{LawPoint, ResampledLaw, Spot};
+pub use resampled::{LawPoint, ResampledLaw, SpeedRange, Spot};
 pub use run::{Element, ElementError, ElementState, RestoreError};
 pub use table::{Node, Table};
 pub use table_format::{Basis, CONVERGED, FORMAT, Quantity, STEADY, TableError, TableHeader, TableRow, TableText};

@@ -59,6 +59,50 @@ pub struct Spot {
     density: f64,
 }
 
+/// Between two speeds of the table, as logarithms.
+#[derive(Clone, Copy, Debug)]
+struct Stretch {
+    start: f64,
+    end: f64,
+    /// Intervals per unit, and the width of one.
+    density: f64,
+    width: f64,
+}
+
+impl Stretch {
+    /// A table of one speed has one stretch without width.
+    fn of(speeds: &[f64]) -> Vec<Self> {
+        let stretch = |start: f64, end: f64| {
+            let width = (end - start) / INTERVALS as f64;
+            Self { start, end, density: if width > 0.0 { 1.0 / width } else { 0.0 }, width }
+        };
+        match speeds {
+            [one] => vec![stretch(*one, *one)],
+            _ => speeds.windows(2).map(|pair| stretch(pair[0], pair[1])).collect(),
+        }
+    }
+}
+
+/// The speeds of a table.
+#[derive(Clone, Copy, Debug)]
+pub struct SpeedRange {
+    least: f64,
+    largest: f64,
+    /// Their logarithms.
+    first: f64,
+    last: f64,
+}
+
+impl SpeedRange {
+    /// ln v of a speed (m/s), limited to those of the table.
+    #[inline(always)]
+    pub fn logarithm<T: Number>(&self, speed: T) -> T {
+        let speed = speed.larger(T::constant(self.least)).smaller(T::constant(self.largest));
+        // Rounding may lead out again.
+        speed.ln().larger(T::constant(self.first)).smaller(T::constant(self.last))
+    }
+}
+
 /// The precomputed law of a table at one temperature.
 #[derive(Clone, Debug)]
 pub struct ResampledLaw {
@@ -71,6 +115,7 @@ pub struct ResampledLaw {
     log_pressures: Vec<f64>,
     /// Of the table, as logarithms.
     speeds: Vec<f64>,
+    stretches: Vec<Stretch>,
     /// Even bins of ln v: the last speed of the table at or below where each begins; at most one more lies in it.
     bins: Vec<u32>,
     bin_density: f64,
@@ -98,6 +143,7 @@ impl ResampledLaw {
             temperature,
             area,
             log_pressures: curve.points()[0].iter().map(|y| y + shift).collect(),
+            stretches: Stretch::of(&speeds),
             speeds,
             bins,
             bin_density,
@@ -134,9 +180,9 @@ impl ResampledLaw {
         self.earliest_touch
     }
 
-    /// The least and the largest speed of the table, m/s.
-    pub fn speed_range(&self) -> (f64, f64) {
-        self.law.speed_range
+    /// The largest speed of the table, m/s.
+    pub fn largest_speed(&self) -> f64 {
+        self.law.speed_range.1
     }
 
     /// The largest pressure of the table, Pa.
@@ -144,31 +190,22 @@ impl ResampledLaw {
         self.log_pressures.last().map_or(0.0, |y| y.exp())
     }
 
-    /// ln v of a speed (m/s), limited to those of the table.
+    /// The speeds of the table.
     #[inline(always)]
-    pub fn log_speed<T: Number>(&self, speed: T) -> T {
+    pub fn range(&self) -> SpeedRange {
         let (least, largest) = self.law.speed_range;
-        let (first, last) = (self.speeds[0], self.speeds[self.speeds.len() - 1]);
-        let speed = speed.larger(T::constant(least)).smaller(T::constant(largest));
-        // Rounding may lead out again.
-        speed.ln().larger(T::constant(first)).smaller(T::constant(last))
+        SpeedRange { least, largest, first: self.speeds[0], last: self.speeds[self.speeds.len() - 1] }
     }
 
-    /// The interval of a [`log_speed`](Self::log_speed), computed if it was not yet.
+    /// The interval of a [logarithm of a speed](SpeedRange::logarithm), computed if it was not yet.
     #[inline(always)]
     pub fn spot(&mut self, log_speed: f64) -> Spot {
-        let last = self.speeds.len() - 1;
-        let spot = if last == 0 {
-            Spot { interval: 0, start: log_speed, density: 0.0 }
-        } else {
-            let bin = ((log_speed - self.speeds[0]) * self.bin_density) as usize;
-            let below = self.bins[bin.min(self.bins.len() - 1)] as usize;
-            let below = (below + usize::from(log_speed >= self.speeds[below + 1])).min(last - 1);
-            let (from, to) = (self.speeds[below], self.speeds[below + 1]);
-            let density = INTERVALS as f64 / (to - from);
-            let interval = (((log_speed - from) * density) as usize).min(INTERVALS - 1);
-            Spot { interval: below * INTERVALS + interval, start: from + interval as f64 / density, density }
-        };
+        let bin = ((log_speed - self.speeds[0]) * self.bin_density) as usize;
+        let below = self.bins[bin.min(self.bins.len() - 1)] as usize;
+        let below = (below + usize::from(log_speed >= self.stretches[below].end)).min(self.stretches.len() - 1);
+        let Stretch { start, density, width, .. } = self.stretches[below];
+        let interval = (((log_speed - start) * density) as usize).min(INTERVALS - 1);
+        let spot = Spot { interval: below * INTERVALS + interval, start: start + interval as f64 * width, density };
         if self.computed[spot.interval] != self.temperatures {
             self.compute(&spot);
         }
@@ -177,7 +214,7 @@ impl ResampledLaw {
 
     #[cold]
     fn compute(&mut self, spot: &Spot) {
-        let width = if spot.density > 0.0 { 1.0 / spot.density } else { 0.0 };
+        let width = self.stretches[spot.interval / INTERVALS].width;
         let pressures = self.log_pressures.len();
         let rows = spot.interval * pressures..(spot.interval + 1) * pressures;
         self.pieces[rows.clone()].fill([[0.0; PADDED]; 4]);
@@ -217,18 +254,26 @@ impl ResampledLaw {
     fn piece_at(&self, interval: usize, share: f64, approach: f64) -> usize {
         let n = self.log_pressures.len();
         let rows = &self.approaches[interval * n..(interval + 1) * n];
-        rows.iter().skip(1).map(|[l, r]| usize::from(approach >= l + share * (r - l))).sum()
+        let mut piece = 0;
+        for [left, right] in &rows[1..] {
+            piece += usize::from(approach >= left + share * (right - left));
+        }
+        piece
     }
 
     /// The coefficients of a piece at a share of the interval.
     #[inline(always)]
     fn coefficients<T: Number>(&self, interval: usize, share: T, piece: usize) -> [T; PADDED] {
         let powers = &self.pieces[interval * self.log_pressures.len() + piece];
-        let at = |power: usize, k: usize| T::constant(powers[power][k]);
-        std::array::from_fn(|k| at(0, k) + share * (at(1, k) + share * (at(2, k) + share * at(3, k))))
+        let mut coefficients = [T::constant(0.0); PADDED];
+        for k in 0..PADDED {
+            let [a, b, c, d] = [powers[0][k], powers[1][k], powers[2][k], powers[3][k]].map(T::constant);
+            coefficients[k] = a + share * (b + share * (c + share * d));
+        }
+        coefficients
     }
 
-    /// The law at a [`log_speed`](Self::log_speed), whose [`spot`](Self::spot) is given, and an approach (m).
+    /// The law at a logarithm of a speed, whose [`spot`](Self::spot) is given, and an approach (m).
     #[inline(always)]
     pub fn at<T: Number>(&self, spot: &Spot, log_speed: T, approach: T) -> LawPoint<T> {
         let share = (log_speed - T::constant(spot.start)).times(spot.density);

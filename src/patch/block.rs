@@ -130,7 +130,8 @@ pub(super) struct Block<T> {
     pub(super) mode: Lanes<u8>,
     begin: Box<Side<T>>,
     end: Box<Side<T>>,
-    slips: Lanes<bool>,
+    /// 1 for those that slip, else 0.
+    slips: Lanes<f64>,
     slip: Lanes<f64>,
     release: Lanes<f64>,
 }
@@ -214,8 +215,9 @@ impl<T: Number> Side<T> {
     /// Looks the law up.
     #[inline(always)]
     fn look_up(&mut self, law: &mut ResampledLaw) {
+        let range = law.range();
         for i in 0..BLOCK {
-            self.log_speed[i] = law.log_speed(size([self.velocity[0][i], self.velocity[1][i]]));
+            self.log_speed[i] = range.logarithm(size([self.velocity[0][i], self.velocity[1][i]]));
         }
         let mut factor = [T::constant(0.0); BLOCK];
         let mut friction = factor;
@@ -259,7 +261,7 @@ impl<T: Number> Block<T> {
             mode: [0; BLOCK],
             begin: Box::new(Side::new()),
             end: Box::new(Side::new()),
-            slips: [false; BLOCK],
+            slips: [0.0; BLOCK],
             slip: [0.0; BLOCK],
             release: [0.0; BLOCK],
         }
@@ -270,7 +272,7 @@ impl<T: Number> Block<T> {
         (self.start, self.count) = (start, count);
         let zero = [T::constant(0.0); BLOCK];
         (self.force, self.stiffness) = ([zero; 2], zero);
-        self.slips = [false; BLOCK];
+        self.slips = [0.0; BLOCK];
         (self.slip, self.release) = ([0.0; BLOCK], [0.0; BLOCK]);
         for side in [&mut self.begin, &mut self.end] {
             (side.place, side.area) = ([[0.0; BLOCK]; 3], [0.0; BLOCK]);
@@ -330,41 +332,23 @@ impl<T: Number> Block<T> {
         (now, next): (&Instant<T>, &Instant<T>),
         part: f64,
     ) {
-        let (begin, end) = (&*self.begin, &*self.end);
         let displacement = self.displacements(step, (now, next), part);
-        for i in 0..BLOCK {
-            let (force, lost) = leap([self.force[0][i], self.force[1][i]], self.stiffness[i], &begin.hold(i));
-            (self.force[0][i], self.force[1][i]) = (force[0], force[1]);
-            self.release[i] += lost;
-        }
-        let before = self.force;
-        for i in 0..BLOCK {
-            let velocity = |side: &Side<T>| [side.velocity[0][i], side.velocity[1][i]];
-            let piece = Piece {
-                begin: begin.hold(i),
-                end: end.hold(i),
-                displacement: [displacement[0][i], displacement[1][i]],
-                half_turn: half_turn(velocity(begin), velocity(end)),
-            };
-            let cut = is_cut(begin.pressure[i].value(), end.pressure[i].value());
-            let passed = pass([self.force[0][i], self.force[1][i]], &piece);
-            (self.force[0][i], self.force[1][i]) = (passed.force[0], passed.force[1]);
-            self.slips[i] = passed.slips;
-            self.slip[i] += if cut { 0.0 } else { passed.slip };
-            self.release[i] += if cut { 0.0 } else { passed.release };
-        }
-        for i in 0..self.count {
+        let Self { force, stiffness, slips, slip, release, begin, end, count, .. } = self;
+        leap_all(force, stiffness, release, begin);
+        let before = *force;
+        pass_all(force, slips, (slip, release), (begin, end), &displacement);
+        for i in 0..*count {
             if is_cut(begin.pressure[i].value(), end.pressure[i].value()) {
                 let displacement = [displacement[0][i], displacement[1][i]];
                 let ends = (&begin.end(i), &end.end(i));
                 let passed = pass_in_pieces(law, [before[0][i], before[1][i]], ends, displacement);
-                (self.force[0][i], self.force[1][i]) = (passed.force[0], passed.force[1]);
-                self.slips[i] = passed.slips;
-                self.slip[i] += passed.slip;
-                self.release[i] += passed.release;
+                (force[0][i], force[1][i]) = (passed.force[0], passed.force[1]);
+                slips[i] = if passed.slips { 1.0 } else { 0.0 };
+                slip[i] += passed.slip;
+                release[i] += passed.release;
             }
         }
-        self.stiffness = end.stiffness;
+        *stiffness = end.stiffness;
     }
 
     /// How far the face's material goes along the plane in a part, m.
@@ -395,7 +379,7 @@ impl<T: Number> Block<T> {
     /// Takes note of an element beyond the table.
     #[inline(always)]
     fn check(&self, law: &ResampledLaw, share: f64, sums: &mut Sums<T>) {
-        let (pressure, speed) = (law.largest_pressure() * (1.0 + ROUNDING), law.speed_range().1 * (1.0 + ROUNDING));
+        let (pressure, speed) = (law.largest_pressure() * (1.0 + ROUNDING), law.largest_speed() * (1.0 + ROUNDING));
         let speed_of = |i: usize| {
             let [x, y] = [0, 1].map(|axis| self.end.velocity[axis][i].value());
             x * x + y * y
@@ -403,7 +387,7 @@ impl<T: Number> Block<T> {
         let mut found = false;
         for i in 0..BLOCK {
             let p = self.end.pressure[i].value();
-            found |= p > pressure || (p > 0.0 && speed_of(i) > speed * speed);
+            found |= (p > pressure) | ((p > 0.0) & (speed_of(i) > speed * speed));
         }
         if !found || sums.beyond.is_some_and(|beyond| beyond.share <= share) {
             return;
@@ -422,27 +406,82 @@ impl<T: Number> Block<T> {
     #[inline(always)]
     fn add_up(&mut self, step: &Step<'_, T>, sums: &mut Sums<T>) {
         let end = &*self.end;
-        let mut wrench = [T::constant(0.0); 6];
+        let mut loads = [[T::constant(0.0); BLOCK]; 7];
         for i in 0..BLOCK {
             let (f_x, f_y) = (-self.force[0][i], -self.force[1][i]);
             let f_z = end.pressure[i].times(end.area[i]);
-            let [x, y, z] = [end.arm[0][i], end.arm[1][i], end.arm[2][i]];
-            let loads = [f_x, f_y, f_z, y * f_z - z * f_y, z * f_x - x * f_z, x * f_y - y * f_x];
-            wrench.iter_mut().zip(loads).for_each(|(sum, load)| *sum = *sum + load);
-            sums.slip += self.slip[i];
-            sums.release += self.release[i];
-            let mode = if self.slips[i] { 1 } else { 2 };
-            self.mode[i] = if end.stiffness[i].value() > 0.0 { mode } else { 0 };
+            let (x, y, z) = (end.arm[0][i], end.arm[1][i], end.arm[2][i]);
+            (loads[0][i], loads[1][i], loads[2][i]) = (f_x, f_y, f_z);
+            loads[3][i] = y * f_z - z * f_y;
+            loads[4][i] = z * f_x - x * f_z;
+            loads[5][i] = x * f_y - y * f_x;
         }
-        sums.wrench.iter_mut().zip(wrench).for_each(|(sum, load)| *sum = *sum + load);
         if let Face::Tread(_) = step.face {
             for i in 0..BLOCK {
-                let f_z = end.pressure[i].times(end.area[i]);
-                let along =
-                    end.along[2][i] * f_z - end.along[0][i] * self.force[0][i] - end.along[1][i] * self.force[1][i];
-                sums.transport = sums.transport - along;
+                let along = end.along[0][i] * loads[0][i] + end.along[1][i] * loads[1][i];
+                loads[6][i] = -(along + end.along[2][i] * loads[2][i]);
             }
         }
+        for (sum, load) in sums.wrench.iter_mut().zip(&loads) {
+            *sum = *sum + total(load);
+        }
+        sums.transport = sums.transport + total(&loads[6]);
+        sums.slip += total(&self.slip);
+        sums.release += total(&self.release);
+        for i in 0..BLOCK {
+            let mode = if self.slips[i] > 0.0 { 1 } else { 2 };
+            self.mode[i] = if end.stiffness[i].value() > 0.0 { mode } else { 0 };
+        }
+    }
+}
+
+/// The sum over a block, by halves.
+#[inline(always)]
+fn total<T: Number>(lanes: &Lanes<T>) -> T {
+    let mut sums = *lanes;
+    let mut width = BLOCK / 2;
+    while width > 0 {
+        let (left, right) = sums.split_at_mut(width);
+        left.iter_mut().zip(&right[..width]).for_each(|(sum, other)| *sum = *sum + *other);
+        width /= 2;
+    }
+    sums[0]
+}
+
+/// Lets all springs of a block follow a leap of the law to that of a side.
+#[inline(always)]
+fn leap_all<T: Number>(force: &mut [Lanes<T>; 2], stiffness: &Lanes<T>, release: &mut Lanes<f64>, side: &Side<T>) {
+    for i in 0..BLOCK {
+        let (leapt, lost) = leap([force[0][i], force[1][i]], stiffness[i], &side.hold(i));
+        (force[0][i], force[1][i]) = (leapt[0], leapt[1]);
+        release[i] += lost;
+    }
+}
+
+/// Takes all springs of a block through a part; the losses of those that are cut for themselves are left out.
+#[inline(always)]
+fn pass_all<T: Number>(
+    force: &mut [Lanes<T>; 2],
+    slips: &mut Lanes<f64>,
+    (slip, release): (&mut Lanes<f64>, &mut Lanes<f64>),
+    (begin, end): (&Side<T>, &Side<T>),
+    displacement: &[Lanes<T>; 2],
+) {
+    for i in 0..BLOCK {
+        let before = [begin.velocity[0][i], begin.velocity[1][i]];
+        let after = [end.velocity[0][i], end.velocity[1][i]];
+        let piece = Piece {
+            begin: begin.hold(i),
+            end: end.hold(i),
+            displacement: [displacement[0][i], displacement[1][i]],
+            half_turn: half_turn(before, after),
+        };
+        let passed = pass([force[0][i], force[1][i]], &piece);
+        let kept = if is_cut(begin.pressure[i].value(), end.pressure[i].value()) { 0.0 } else { 1.0 };
+        (force[0][i], force[1][i]) = (passed.force[0], passed.force[1]);
+        slips[i] = if passed.slips { 1.0 } else { 0.0 };
+        slip[i] += kept * passed.slip;
+        release[i] += kept * passed.release;
     }
 }
 
@@ -452,5 +491,5 @@ const ROUNDING: f64 = 1e-9;
 /// Whether an element is cut for itself in a part with these pressures at its ends.
 #[inline(always)]
 fn is_cut(before: f64, after: f64) -> bool {
-    before > LARGEST_RATIO * after || after > LARGEST_RATIO * before
+    (before > LARGEST_RATIO * after) | (after > LARGEST_RATIO * before)
 }

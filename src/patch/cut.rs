@@ -74,7 +74,7 @@ pub(super) fn pass_in_pieces<T: Number>(
 /// in their order, and 1.
 fn stops<T: Number>(law: &mut ResampledLaw, begin: &End<T>, end: &End<T>) -> [T; 3] {
     let mut beginning = |end: &End<T>| {
-        let speed = law.log_speed(size(end.velocity));
+        let speed = law.range().logarithm(size(end.velocity));
         let spot = law.spot(speed.value());
         let (touch, least) = law.beginning(&spot, speed);
         (end.approach - touch, end.approach - least)
@@ -97,7 +97,7 @@ fn between<T: Number>(law: &mut ResampledLaw, begin: &End<T>, end: &End<T>, shar
     let straight = |from: T, to: T| from + (to - from) * share;
     let velocity = [0, 1].map(|i| straight(begin.velocity[i], end.velocity[i]));
     let area = straight(T::constant(begin.area), T::constant(end.area));
-    let speed = law.log_speed(size(velocity));
+    let speed = law.range().logarithm(size(velocity));
     let spot = law.spot(speed.value());
     let point = law.at(&spot, speed, straight(begin.approach, end.approach));
     let pressure = point.pressure();

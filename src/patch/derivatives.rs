@@ -74,7 +74,7 @@ impl PatchRun {
         let (totals, now) = (self.totals, self.totals.instant());
         let start = totals.pose.coordinates();
         let shifted = Path { start, change: shift.pose.map(|slope| rate(0.0, slope)), duration: 1.0 }.at(1.0);
-        let (pressure, speed) = (self.law.largest_pressure(), self.law.speed_range().1);
+        let (pressure, speed) = (self.law.largest_pressure(), self.law.largest_speed());
         let mut changes = Changes::zero();
         for i in 0..self.patch.count() {
             let here = self.present(i, &totals, &now);

@@ -77,7 +77,9 @@ impl<T: Number> Instant<T> {
     /// A vector of the body's axes in the ground's.
     #[inline(always)]
     pub(super) fn turned(&self, r: [f64; 3]) -> [T; 3] {
-        self.rotation.map(|row| row[0].times(r[0]) + row[1].times(r[1]) + row[2].times(r[2]))
+        let [a, b, c] = &self.rotation;
+        let row = |row: &[T; 3]| row[0].times(r[0]) + row[1].times(r[1]) + row[2].times(r[2]);
+        [row(a), row(b), row(c)]
     }
 
     /// The velocity along the plane of what is fixed to the body at `arm` (m), in the ground's axes.

@@ -139,7 +139,11 @@ impl PatchRun {
         let (sums, tangents) = match workspace {
             Workspace::Plain(block) => {
                 let step = Step { face, path, run, parts, tread_speed };
-                (over_blocks(&step, springs, next, block, |block, sums| block.advance(&step, law, sums)), None)
+                let widest = pulp::Arch::new();
+                let advance = |block: &mut Block<f64>, sums: &mut Sums<f64>| {
+                    widest.dispatch(Advance { block, step: &step, law, sums });
+                };
+                (over_blocks(&step, springs, next, block, advance), None)
             }
             Workspace::Tangent(block) => {
                 let path = Path { start, change: std::array::from_fn(|i| Dual::variable(change[i], i)), duration };
@@ -228,6 +232,23 @@ impl PatchRun {
         }
         self.warning = None;
         Ok(())
+    }
+}
+
+/// A step of a block, to be done with the widest vectors of the processor; numbers are the same with all.
+struct Advance<'a, 'b> {
+    block: &'a mut Block<f64>,
+    step: &'a Step<'b, f64>,
+    law: &'a mut ResampledLaw,
+    sums: &'a mut Sums<f64>,
+}
+
+impl pulp::NullaryFnOnce for Advance<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.block.advance(self.step, self.law, self.sums);
     }
 }
 

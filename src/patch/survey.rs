@@ -64,7 +64,7 @@ impl PatchRun {
             velocity = [0, 1].map(|axis| velocity[axis] - along[axis].times(totals.tread_speed));
         }
         let approach = -(now.height + arm[2]);
-        let log_speed = self.law.log_speed(size(velocity));
+        let log_speed = self.law.range().logarithm(size(velocity));
         let spot = self.law.spot(log_speed.value());
         let point = self.law.at(&spot, log_speed, approach);
         Present { area, velocity, approach, log_speed, spot, point, pressure: point.pressure() }
@@ -73,7 +73,7 @@ impl PatchRun {
     /// Sums over all elements now.
     pub(super) fn survey(&mut self) -> Survey {
         let (totals, now) = (self.totals, self.totals.instant());
-        let (pressure, speed) = (self.law.largest_pressure(), self.law.speed_range().1);
+        let (pressure, speed) = (self.law.largest_pressure(), self.law.largest_speed());
         let mut survey = Survey::default();
         for i in 0..self.patch.count() {
             let here = self.present(i, &totals, &now);

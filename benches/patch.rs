@@ -1,0 +1,108 @@
+//! The time of a step of a patch by element and part, beside the bare loops of its arithmetic in C.
+//!
+//! The patch turns, rolls and slides so that every element bears, its law is looked up at both ends of each step, and most
+//! slip: what `common/patch_cost.c` does. That is compiled with the C compiler `cc` where there is one, with the
+//! instructions that this processor has, and run side by side; the least of several runs counts.
+#![allow(missing_docs, clippy::unwrap_used, clippy::print_stdout, reason = "a bench may fail and prints")]
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::process::Command;
+use std::{env, fs};
+
+use asperity::patch::{Patch, PatchMotion, PatchRun, PatchStart, Pose};
+use cpu_time::ProcessTime;
+
+const RUNS: usize = 7;
+const STEPS: u32 = 60;
+const H: f64 = 1e-3;
+
+/// 24 speeds from 0.1 mm/s to 10 m/s, 8 pressures from 50 kPa to 1.6 MPa.
+fn table() -> String {
+    let mut text = "# asperity sweep = 1\n# scene = bench\n# nominal_area = 1 m2\n# rest_separation = 0 m\n\
+                    speed [m/s],pressure [Pa],temperature [K],status,friction [1],separation [m],\
+                    tangential_stiffness [N/m]\n"
+        .to_owned();
+    for j in 0..24 {
+        let x = 1e-4_f64.ln() + f64::from(j) * 1e5_f64.ln() / 23.0;
+        for i in 0..8 {
+            let h = f64::from(i) * 32_f64.ln() / 7.0;
+            let approach = 6e-6 * h * (1.0 - 0.03 * h) - 1e-7 * x - 4e-9 * x * x;
+            let friction = 0.8 + 0.2 * (0.5 * x).sin() - 0.02 * f64::from(i);
+            let (speed, pressure, stiffness) = (x.exp(), 5e4 * h.exp(), 5e8 * (0.7 * h).exp());
+            writeln!(text, "{speed:e},{pressure:e},,steady,{friction:e},{:e},{stiffness:e}", -approach).unwrap();
+        }
+    }
+    text
+}
+
+fn folder() -> PathBuf {
+    let folder = env::temp_dir().join(format!("asperity-bench-{}", std::process::id()));
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn pose(k: f64) -> [f64; 6] {
+    let z = -1.2e-5 + 2e-6 * (0.05 * k).sin();
+    [1e-3 * (0.03 * k).sin() / 0.03, 2e-4 * k, z, 5e-5 * (0.07 * k).sin(), 0.0, 0.01 * (0.02 * k).sin()]
+}
+
+/// Seconds an element and step.
+fn patch_time(side: usize, tread: bool) -> f64 {
+    let folder = folder();
+    fs::write(folder.join("table.csv"), table()).unwrap();
+    let length = 1e-3 * side as f64;
+    let text = format!(
+        "name = \"bench\"\ntable = {{ path = \"table.csv\" }}\npatch = {{ shape = \"flat\", length = {length}, width = \
+         {length}, nx = {side}, ny = {side}, transport = {tread} }}\n[fmu]\noutputs = [\"forces\", \"dissipation\"]"
+    );
+    let patch = Patch::parse(&text, &folder.join("patch.toml")).unwrap();
+    let start = PatchStart { pose: Pose::of(pose(0.0)), ..PatchStart::default() };
+    let mut run = PatchRun::new(&patch, &start).unwrap();
+    let motions = |k: u32| {
+        let (from, to) = (pose(f64::from(k)), pose(f64::from(k + 1)));
+        let rates = std::array::from_fn(|i| (to[i] - from[i]) / H);
+        PatchMotion { duration: H, rates, transport_speed: 0.0, temperature: 0.0 }
+    };
+    // The law's intervals are computed as they are met.
+    (0..STEPS).for_each(|k| run.advance(&motions(k)).unwrap());
+    let start = ProcessTime::now();
+    (STEPS..2 * STEPS).for_each(|k| run.advance(&motions(k)).unwrap());
+    start.elapsed().as_secs_f64() / f64::from(STEPS) / patch.count() as f64
+}
+
+/// The bare loops' seconds an element and step; `None` without a C compiler.
+fn floor_time(side: usize) -> Option<f64> {
+    let source = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("benches/common/patch_cost.c");
+    let program = folder().join("patch_cost");
+    let wide =
+        cfg!(target_arch = "x86_64") && fs::read_to_string("/proc/cpuinfo").is_ok_and(|text| text.contains("avx2"));
+    let mut cc = Command::new("cc");
+    if wide {
+        cc.arg("-march=x86-64-v3");
+    }
+    let fast = ["-fno-math-errno", "-fno-trapping-math", "-fassociative-math", "-fno-signed-zeros"];
+    let built =
+        cc.args(["-O3", "-ffp-contract=off"]).args(fast).arg(source).arg("-o").arg(&program).arg("-lm").status();
+    if !built.is_ok_and(|status| status.success()) {
+        return None;
+    }
+    let output = Command::new(program).arg((side * side).to_string()).arg(STEPS.to_string()).output().ok()?;
+    let text = String::from_utf8(output.stdout).ok()?;
+    // The first two rows; the third has clocks inside.
+    let times = text.lines().filter(|line| line.contains("ns an element")).take(2);
+    times.filter_map(|line| line.split_whitespace().next()?.parse().ok()).reduce(f64::min).map(|ns: f64| 1e-9 * ns)
+}
+
+fn main() {
+    let side = 96;
+    let (mut own, mut own_tread, mut floor) = (f64::INFINITY, f64::INFINITY, f64::INFINITY);
+    for _ in 0..RUNS {
+        own = own.min(patch_time(side, false));
+        own_tread = own_tread.min(patch_time(side, true));
+        floor = floor.min(floor_time(side).unwrap_or(f64::INFINITY));
+    }
+    println!("{:.1} ns an element and part, {:.1} with a tread", 1e9 * own, 1e9 * own_tread);
+    println!("{:.1} ns in the bare loops: {:.2} of them", 1e9 * floor, own / floor);
+    let _ = fs::remove_dir_all(folder());
+}
