@@ -346,3 +346,50 @@ fn cubic_over(x: &[f64], column: Option<[&[f64]; 2]>, i: usize) -> [f64; 4] {
     let quadratic = (3.0 * secant - 2.0 * slopes[i] - slopes[i + 1]) / h;
     [values[i], slopes[i], quadratic, (slopes[i] + slopes[i + 1] - 2.0 * secant) / (h * h)]
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    fn table(name: &str) -> Table {
+        Table::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/patch").join(name)).unwrap()
+    }
+
+    /// p, μ and κ at speeds and approaches all over the table and beyond, at temperatures between its own.
+    #[test]
+    fn it_is_the_law_of_the_table() {
+        for (name, temperatures) in [("block.table.csv", [285.0, 299.0]), ("winkler.table.csv", [0.0, 0.0])] {
+            let table = table(name);
+            let area = table.load.area();
+            let mut found = ResampledLaw::new(&table, area, temperatures[0]);
+            for temperature in temperatures {
+                found.set_temperature(temperature);
+                let law = Law::new(&table, temperature);
+                for step in 0..400 {
+                    let speed = (1e-5_f64.ln() + 0.05 * f64::from(step)).exp();
+                    let curve = Curve::new(&law, speed);
+                    let (from, to) = (curve.touch, curve.closest());
+                    for i in -2..40 {
+                        let approach = from + (to - from) * f64::from(i) / 36.0;
+                        let exact = curve.at(approach);
+                        let log_speed = found.range().logarithm(speed);
+                        let spot = found.spot(log_speed);
+                        let point = found.at(&spot, log_speed, approach);
+                        let close = |value: f64, expected: f64, scale: f64| {
+                            assert!(
+                                (value - expected).abs() <= 1e-6 * expected.abs() + 1e-9 * scale,
+                                "{value} {expected}"
+                            );
+                        };
+                        close(point.pressure() * area, exact.normal.value, 1e5 * area);
+                        close(point.pressure() * point.friction * area, exact.limit.value, 1e5 * area);
+                        close(point.stiffness * area, exact.stiffness.value, 1e6);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -36,9 +36,10 @@ pub(super) struct Survey {
     pub(super) real_area: f64,
     /// The largest, Pa.
     pub(super) pressure: f64,
-    /// N, and of that beyond the table.
+    /// N, and of that beyond the table and below its least pressure.
     pub(super) normal: f64,
     pub(super) beyond: f64,
+    pub(super) below: f64,
     /// Σ|G| and Σ|G|η, N.
     pub(super) tangential: f64,
     pub(super) hysteresis: f64,
@@ -70,6 +71,17 @@ impl PatchRun {
         Present { area, velocity, approach, log_speed, spot, point, pressure: point.pressure() }
     }
 
+    /// Whether the pressure on an element is above the largest of the table.
+    pub fn pressure_is_beyond(&mut self) -> bool {
+        self.survey().pressure > self.law.largest_pressure()
+    }
+
+    /// The share of the normal force that is borne below the least pressure of the table; 0 without contact.
+    pub fn share_below_table(&mut self) -> f64 {
+        let survey = self.survey();
+        if survey.normal > 0.0 { survey.below / survey.normal } else { 0.0 }
+    }
+
     /// Sums over all elements now.
     pub(super) fn survey(&mut self) -> Survey {
         let (totals, now) = (self.totals, self.totals.instant());
@@ -91,6 +103,7 @@ impl PatchRun {
             survey.pressure = survey.pressure.max(here.pressure);
             survey.normal += normal;
             survey.beyond += if is_beyond { normal } else { 0.0 };
+            survey.below += if here.point.factor < 1.0 { normal } else { 0.0 };
             survey.tangential += tangential;
             survey.hysteresis += tangential * hysteresis;
             survey.elastic += 0.5 * tangential * tangential / self.springs.stiffness[i];

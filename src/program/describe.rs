@@ -33,12 +33,12 @@ pub(crate) enum DescribeError {
 /// Stands for what the scene does not give.
 const LEFT_OUT: &str = "left out";
 
-pub(crate) fn describe(command: &Describe) -> Result<(), DescribeError> {
-    let scene = load(&command.scene)?;
-    if let Some(path) = &command.plot {
+pub(crate) fn describe(command: &Describe, path: &std::path::Path) -> Result<(), DescribeError> {
+    let scene = load(path)?;
+    if let Some(output) = &command.plot {
         let picture = foundation::picture(&scene).ok_or(DescribeError::NothingToPlot)?;
-        check_outputs([path], sources(&command.scene, &scene))?;
-        picture.write(path)?;
+        check_outputs([output], sources(path, &scene))?;
+        picture.write(output)?;
     }
     let text = if command.json { json(&scene)? } else { text(&scene)? };
     Ok(print(&text)?)

@@ -32,7 +32,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
         Command::Simulate(command) => run_simulate(&command)?,
         Command::Converge(command) => return Ok(converge::converge(&command)?),
         Command::Plot(command) => figure::plot_files(&command)?,
-        Command::Describe(command) => describe::describe(&command)?,
+        Command::Describe(command) => run_describe(&command)?,
         Command::Pack(command) => pack::pack(&command)?,
         Command::Fit(command) => fit::fit(&command)?,
         Command::Material(command) => material::material(&command)?,
@@ -50,6 +50,17 @@ fn run_simulate(command: &cli::Simulate) -> Result<(), Box<dyn Error>> {
         (None, Some(patch), Some(motion)) => patch::simulate(command, patch, motion)?,
         // The command line has a scene, or a patch and its motion.
         (None, _, _) => (),
+    }
+    Ok(())
+}
+
+/// A scene or a patch.
+fn run_describe(command: &cli::Describe) -> Result<(), Box<dyn Error>> {
+    match (&command.scene, &command.patch) {
+        (Some(scene), _) => describe::describe(command, scene)?,
+        (None, Some(patch)) => patch::describe(patch)?,
+        // The command line has one of them.
+        (None, None) => (),
     }
     Ok(())
 }

@@ -105,10 +105,14 @@ pub(crate) struct Plot {
 }
 
 #[derive(Debug, Args)]
+#[command(group(ArgGroup::new("described").required(true).args(["scene", "patch"])))]
 pub(crate) struct Describe {
     /// The scene file.
     #[arg(value_name = "SCENE.toml")]
-    pub(crate) scene: PathBuf,
+    pub(crate) scene: Option<PathBuf>,
+    /// A patch file: summarises a contact patch instead.
+    #[arg(long, value_name = "PATCH.toml", conflicts_with_all = ["json", "plot"])]
+    pub(crate) patch: Option<PathBuf>,
     /// Prints the whole scene as one JSON object in SI units: links as constants, the profile as data points. Absent
     /// entries are null or empty.
     #[arg(long)]

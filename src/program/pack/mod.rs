@@ -16,6 +16,7 @@ use asperity::patch::{Patch, PatchError};
 use super::cli::Pack;
 use super::describe;
 use super::files::{self, FileError, check_output, print, read, write};
+use super::patch;
 use super::terminal::{LabelledLine, lines, warn};
 use archive::{ArchiveError, Entry};
 use check::CheckError;
@@ -87,8 +88,7 @@ fn summary(command: &Pack, definition: &Definition) -> Result<Vec<LabelledLine>,
         Definition::Layer(scene) => return Ok(describe::rows(scene)),
         Definition::Element(contact) => contact,
         Definition::Patch(patch) => {
-            let elements = ("Patch", patch.description());
-            return Ok([vec![elements], documentation::table_rows(patch.table())].concat());
+            return Ok([patch::rows(patch), documentation::table_rows(patch.table())].concat());
         }
     };
     let mut rows = documentation::table_rows(contact.table());

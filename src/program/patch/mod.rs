@@ -1,8 +1,10 @@
 //! Contact patches on the command line.
 
+mod describe;
 mod motion;
 mod simulate;
 
+pub(crate) use describe::{describe, rows};
 pub(crate) use simulate::simulate;
 
 use std::path::{Path, PathBuf};

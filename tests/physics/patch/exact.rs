@@ -5,7 +5,9 @@ use std::fs;
 use std::path::PathBuf;
 
 use crate::common::{root, scratch};
+use asperity::element::{Element, PointContact, Table, variables as element_variables};
 use asperity::patch::{Patch, PatchMotion, PatchOutput, PatchRun, PatchStart, Pose};
+use asperity::simulation::Start;
 
 /// A bed of springs: p = 5e9 Pa/m of approach, μ = 0.9, κ = 1.5e9 N/m³, the same at all speeds. From 2e3 Pa.
 const WINKLER: &str = "winkler.table.csv";
@@ -322,6 +324,34 @@ fn a_straight_path_may_be_cut_anyhow() {
                 assert!((whole[i] - cut[i]).abs() < 1e-10 * whole[2], "{whole:?} {cut:?}");
             }
             assert!((lost - lost_in_cuts).abs() < 1e-10 * lost.max(1e-6), "{lost} {lost_in_cuts}");
+        }
+    }
+}
+
+/// One element of a patch, moved along x at constant height, is the point-contact element.
+#[test]
+fn one_element_is_the_point_contact_element() {
+    let path = root().join("tests/reference/patch/block.table.csv");
+    let table = Table::load(&path).unwrap();
+    let (area, rest) = (table.load.area(), table.rest_separation);
+    let patch = points("one", "block.table.csv", &[[0.0, 0.0, 0.0, area]]);
+    let height = 8e-6;
+    let rates = |rate: f64| [rate, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let mut run = run_at(&patch, [0.0, 0.0, height, 0.0, 0.0, 0.0], rates(0.05), 0.0);
+    let start = Start { w: height - rest, u_rate: 0.05, ..Start::default() };
+    let mut element = Element::new(&PointContact::new(table.clone()), &start).unwrap();
+    let variables = element_variables(&table);
+    for (rate, duration) in [(0.05, 1e-4), (0.05, 3e-3), (-0.02, 2e-4), (-0.02, 5e-3), (0.0, 1e-3), (0.7, 1e-2)] {
+        element.advance(duration, rate, 0.0).unwrap();
+        go(&mut run, &patch, duration, rates(rate), 0.0);
+        let mut values = vec![0.0; variables.len()];
+        element.evaluate(&variables, &mut values);
+        let of = |name: &str| values[variables.iter().position(|variable| variable.name == name).unwrap()];
+        let [x, _, z, ..] = wrench(&mut run, &patch);
+        let lost = value(&mut run, &patch, PatchOutput::Energy);
+        for (found, expected) in [(x, of("F_x")), (z, of("F_z")), (lost, of("E_diss"))] {
+            // The law, precomputed, is met to 1e-9 and better.
+            assert!((found - expected).abs() <= 1e-8 * expected.abs().max(1e-6), "{rate}: {found} {expected}");
         }
     }
 }
