@@ -108,14 +108,16 @@ pub(super) fn pass<T: Number>(force: [T; 2], piece: &Piece<T>) -> Passed<T> {
     let decay = (-lambda.smaller(T::constant(LONG))).exp();
 
     let share = t.times(0.5) + rest * lag(lambda, decay);
-    let [ux, uy] = turned([dx / distance, dy / distance], piece.half_turn * share);
+    let per_distance = one / distance;
+    let [ux, uy] = turned([dx * per_distance, dy * per_distance], piece.half_turn * share);
     let (nx, ny) = (ex + dx * t, ey + dy * t);
     let size = one / (nx * nx + ny * ny + tiny).sqrt();
     let (nx, ny) = (nx * size, ny * size);
     let (cos, sin) = (nx * ux + ny * uy, ux * ny - uy * nx);
     let decay_2 = decay * decay;
     let whole = (one + cos) + (one - cos) * decay_2 + tiny;
-    let (cos_1, sin_1) = (((one + cos) - (one - cos) * decay_2) / whole, (sin * decay).times(2.0) / whole);
+    let per_whole = one / whole;
+    let (cos_1, sin_1) = (((one + cos) - (one - cos) * decay_2) * per_whole, (sin * decay).times(2.0) * per_whole);
     let slipped = [l1 * (cos_1 * ux - sin_1 * uy), l1 * (cos_1 * uy + sin_1 * ux)];
 
     let along = travel + mean * whole.times(0.5).ln() - (l1 - radius);
