@@ -11,6 +11,8 @@ use crate::math::Number;
 const TINY: f64 = 1e-300;
 /// Share of a stiffness by which it may change and stay the same.
 const ROUNDING: f64 = 1e-9;
+/// A displacement below this share of L/K is none.
+const STANDING: f64 = 1e-12;
 /// Below this λ the series of [`lag`] serves.
 const SHORT: f64 = 1e-2;
 /// Beyond this λ nothing is left of e^-λ.
@@ -118,7 +120,10 @@ pub(super) fn pass<T: Number>(force: [T; 2], piece: &Piece<T>) -> Passed<T> {
     let whole = (one + cos) + (one - cos) * decay_2 + tiny;
     let per_whole = one / whole;
     let (cos_1, sin_1) = (((one + cos) - (one - cos) * decay_2) * per_whole, (sin * decay).times(2.0) * per_whole);
-    let slipped = [l1 * (cos_1 * ux - sin_1 * uy), l1 * (cos_1 * uy + sin_1 * ux)];
+    // A displacement that is nothing beside the radius has no direction: G is cut where it points.
+    let moves = square.value() > (STANDING * l1.value()).powi(2);
+    let slipped =
+        [(l1 * (cos_1 * ux - sin_1 * uy)).or(moves, l1 * nx), (l1 * (cos_1 * uy + sin_1 * ux)).or(moves, l1 * ny)];
 
     let along = travel + mean * whole.times(0.5).ln() - (l1 - radius);
     let limit = begin.limit + (end.limit - begin.limit) * t;
@@ -163,4 +168,54 @@ fn turned<T: Number>(direction: [T; 2], tangent: T) -> [T; 2] {
     let (cos, sin) = ((one - square) * per, tangent.times(2.0) * per);
     let [x, y] = direction;
     [cos * x - sin * y, sin * x + cos * y]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn hold(stiffness: f64, limit: f64) -> Hold<f64> {
+        Hold { stiffness, limit }
+    }
+
+    fn passed(force: [f64; 2], begin: Hold<f64>, end: Hold<f64>, displacement: [f64; 2]) -> Passed<f64> {
+        pass(force, &Piece { begin, end, displacement, half_turn: 0.0 })
+    }
+
+    /// At its limit, displaced by nothing or by next to nothing, a spring stays; where the limit falls it is cut.
+    #[test]
+    fn a_spring_at_its_limit_that_stands_keeps_its_direction() {
+        for tiny in [0.0, 1e-320, 1e-200, 1e-30] {
+            for over in [1.0 - 1e-15, 1.0, 1.0 + 1e-15] {
+                let [x, y] = passed([3.0 * over, 4.0 * over], hold(1e6, 5.0), hold(1e6, 5.0), [tiny, -tiny]).force;
+                assert!((x - 3.0).abs() < 1e-12 && (y - 4.0).abs() < 1e-12, "{tiny:e} {over}: {x} {y}");
+            }
+            let cut = passed([3.0, 4.0], hold(1e6, 5.0), hold(1e6, 2.5), [tiny, 0.0]);
+            assert!((cut.force[0] - 1.5).abs() < 1e-12 && cut.slips && (cut.slip - 3.75 * 2.5e-6).abs() < 1e-12);
+        }
+    }
+
+    /// In many pieces, by steps of the differential equations.
+    #[test]
+    fn slip_turns_as_the_equations_say() {
+        let (k, limit, n) = (1e6, 5.0, 200_000);
+        let (mut g, d) = ([3.0_f64, 4.0_f64], [2e-5_f64, -1e-5_f64]);
+        let found = passed(g, hold(k, limit), hold(k, limit), d).force;
+        for _ in 0..n {
+            g = [0, 1].map(|i| g[i] + k * d[i] / f64::from(n));
+            let size = g[0].hypot(g[1]);
+            g = g.map(|g| g * (limit / size).min(1.0));
+        }
+        // Steps of 1e-10 m against L/K = 5e-6 m.
+        assert!((found[0] - g[0]).abs() < 1e-4 && (found[1] - g[1]).abs() < 1e-4, "{found:?} {g:?}");
+    }
+
+    /// Without contact nothing is left, and nothing is no number.
+    #[test]
+    fn what_lifts_loses_all() {
+        let lifted = passed([3.0, 4.0], hold(1e6, 5.0), hold(0.0, 0.0), [1e-6, 0.0]);
+        assert!(lifted.force == [0.0; 2] && lifted.release > 0.0 && lifted.slip.is_finite());
+        let free = passed([0.0; 2], hold(0.0, 0.0), hold(0.0, 0.0), [1e30, 0.0]);
+        assert!(free.force == [0.0; 2] && free.release == 0.0 && free.slip == 0.0);
+    }
 }
