@@ -12,8 +12,9 @@ use crate::math::Number;
 
 /// Intervals between two speeds of a table.
 ///
-/// What the table gives is a cubic there and is met exactly; slopes along the pressure are not, to 1e-6 with so many.
-const INTERVALS: usize = 12;
+/// What the table gives is a cubic there and is met exactly. Slopes along the pressure are not: where they leave 0 they
+/// have a corner. With so many p, μ p and κ are met to 1e-6 of their largest values.
+const INTERVALS: usize = 48;
 
 /// Most bins in which the place of a speed among those of the table is looked up.
 const MOST_BINS: f64 = 1e5;

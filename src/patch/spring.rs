@@ -110,7 +110,10 @@ pub(super) fn pass<T: Number>(force: [T; 2], piece: &Piece<T>) -> Passed<T> {
     let decay = (-lambda.smaller(T::constant(LONG))).exp();
 
     let share = t.times(0.5) + rest * lag(lambda, decay);
-    let per_distance = one / distance;
+    // A displacement that is nothing beside the radius has no direction: G is cut where it points.
+    let least = STANDING * l1.value();
+    let moves = square.value() > least * least;
+    let per_distance = (one / distance).or(moves, T::constant(0.0));
     let [ux, uy] = turned([dx * per_distance, dy * per_distance], piece.half_turn * share);
     let (nx, ny) = (ex + dx * t, ey + dy * t);
     let size = one / (nx * nx + ny * ny + tiny).sqrt();
@@ -120,8 +123,6 @@ pub(super) fn pass<T: Number>(force: [T; 2], piece: &Piece<T>) -> Passed<T> {
     let whole = (one + cos) + (one - cos) * decay_2 + tiny;
     let per_whole = one / whole;
     let (cos_1, sin_1) = (((one + cos) - (one - cos) * decay_2) * per_whole, (sin * decay).times(2.0) * per_whole);
-    // A displacement that is nothing beside the radius has no direction: G is cut where it points.
-    let moves = square.value() > (STANDING * l1.value()).powi(2);
     let slipped =
         [(l1 * (cos_1 * ux - sin_1 * uy)).or(moves, l1 * nx), (l1 * (cos_1 * uy + sin_1 * ux)).or(moves, l1 * ny)];
 
