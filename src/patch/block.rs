@@ -126,7 +126,7 @@ pub(super) struct Block<T> {
     pub(super) force: [Lanes<T>; 2],
     /// K, N/m.
     pub(super) stiffness: Lanes<T>,
-    /// As of [`modes`](super::run).
+    /// 0 free, 1 slips, 2 sticks.
     pub(super) mode: Lanes<u8>,
     begin: Box<Side<T>>,
     end: Box<Side<T>>,
