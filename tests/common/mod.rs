@@ -59,6 +59,13 @@ pub fn coupled_python() -> &'static Path {
     PYTHON.get_or_init(|| environment("venv-coupled", packages.to_str().unwrap()))
 }
 
+/// A Python with the packages of scenes/patch-mujoco/requirements.txt.
+pub fn mujoco_python() -> &'static Path {
+    static PYTHON: OnceLock<PathBuf> = OnceLock::new();
+    let packages = root().join("scenes/patch-mujoco/requirements.txt");
+    PYTHON.get_or_init(|| environment("venv-mujoco", packages.to_str().unwrap()))
+}
+
 /// A Python with the packages of scenes/sweep/requirements.txt.
 pub fn sweep_python() -> &'static Path {
     static PYTHON: OnceLock<PathBuf> = OnceLock::new();

@@ -12,12 +12,13 @@ use asperity::scene::{OutputGroup, Scene};
 
 const DEFAULT_SCENE: &str = "scenes/tread-block/tread-block.toml";
 
-/// Every scene in scenes/.
+/// Every scene in scenes/; patches lie there, too.
 fn shipped_scenes() -> Vec<PathBuf> {
     let files = |folder: &Path| fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect::<Vec<_>>();
     let folders = files(&root().join("scenes")).into_iter().filter(|path| path.is_dir());
     let toml = |path: &PathBuf| path.extension().is_some_and(|extension| extension == "toml");
-    let scenes: Vec<_> = folders.flat_map(|folder| files(&folder)).filter(toml).collect();
+    let is_scene = |path: &PathBuf| toml(path) && fs::read_to_string(path).unwrap().contains("[layer]");
+    let scenes: Vec<_> = folders.flat_map(|folder| files(&folder)).filter(is_scene).collect();
     assert!(!scenes.is_empty());
     scenes
 }

@@ -20,6 +20,7 @@ mod fmi_interface;
 mod fmpy;
 mod host;
 mod masters;
+mod patch_mujoco;
 #[path = "../common/sweeps.rs"]
 #[allow(dead_code, reason = "shared by several tests")]
 mod sweeps;

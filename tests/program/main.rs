@@ -21,6 +21,7 @@ mod peers;
 mod program;
 mod report;
 mod scene_errors;
+mod seal_ring;
 mod surface;
 mod sweep;
 #[path = "../common/sweeps.rs"]
