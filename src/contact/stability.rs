@@ -9,9 +9,10 @@ use crate::model::{Forces, FrictionCurve, LinkKind, Model, State};
 /// 3.4, they no longer do.
 const LARGEST_GROWTH: f64 = 2.0;
 
-/// The longest step that resolves the growth of unstable contacts, s; the largest number if there are none.
-pub fn longest_unstable(model: &Model, state: &State, forces: &Forces) -> f64 {
-    let weakening = weakening(model, state, forces);
+/// The longest step that resolves the growth of unstable contacts, s; the largest number if there are none. The step
+/// went from `start` to `state`.
+pub fn longest_unstable(model: &Model, start: &State, state: &State, forces: &Forces) -> f64 {
+    let weakening = weakening(model, Some(start), state, forces);
     if model.profile.bounds().curvature_max_abs == 0.0 {
         return longest(weakening);
     }
@@ -23,22 +24,29 @@ pub fn longest_unstable(model: &Model, state: &State, forces: &Forces) -> f64 {
 /// The longest step that resolves the growth of stick-slip vibrations where friction weakens with the speed, s; the
 /// largest number if there are none.
 pub fn longest_weakening(model: &Model, state: &State, forces: &Forces) -> f64 {
-    longest(weakening(model, state, forces))
+    longest(weakening(model, None, state, forces))
 }
 
 /// The growth rate, 1/s, of vibrations of contacts whose friction weakens with the speed, or up to twice that rate; 0
 /// if there are none. Slopes, the vertical links and the other masses only reduce it.
-fn weakening(model: &Model, state: &State, forces: &Forces) -> f64 {
+///
+/// A step much longer than friction's fall can throw a mass that breaks loose backwards: the implicit equations have that
+/// solution too. It would stop at once, break loose again, and so on. There the fall that it has passed over counts.
+fn weakening(model: &Model, start: Option<&State>, state: &State, forces: &Forces) -> f64 {
     if !model.friction_depends_on_speed() {
         return 0.0;
     }
+    let slope = |i| {
+        let thrown_back = start.and_then(|start| fall_passed_over(model, start, state, forces, i));
+        thrown_back.unwrap_or_else(|| slope(model, state, forces, i))
+    };
     let slipping = (0..model.masses()).filter(|&i| state.mode[i].slips());
-    let steepest = slipping.map(|i| slope(model, state, forces, i)).fold(0.0, f64::min);
+    let steepest = slipping.map(slope).fold(0.0, f64::min);
     if steepest >= 0.0 {
         return 0.0;
     }
     let (frequency, damping) = model.horizontal_oscillation();
-    let chain = Chain { model, state, forces, damping };
+    let chain = Chain { model, state, slope: &slope, damping };
     let mut rate = -(damping + steepest) / model.mass;
     if rate <= 0.0 || chain.decays(0.0) {
         return 0.0;
@@ -47,6 +55,19 @@ fn weakening(model: &Model, state: &State, forces: &Forces) -> f64 {
         rate *= 0.5;
     }
     rate.max(frequency)
+}
+
+/// The steepest q² ∂T/∂v_t, N s/m, between rest and the speed of mass `i`, where it broke loose at the start of the step
+/// and runs backwards at its end; `None` elsewhere.
+fn fall_passed_over(model: &Model, start: &State, state: &State, forces: &Forces, i: usize) -> Option<f64> {
+    let sigma = state.mode[i].direction();
+    let (before, after) = (sigma * start.velocity_x[i], sigma * state.velocity_x[i]);
+    if before > 0.0 || after >= 0.0 {
+        return None;
+    }
+    let contact = forces.contact(model, i, state.velocity_x[i], &state.surface[i]);
+    let curve = model.slip_curve(contact.normal)?;
+    Some(contact.q * contact.q * curve.steepest_fall(after.abs() * contact.q))
 }
 
 fn longest(fastest: f64) -> f64 {
@@ -62,15 +83,16 @@ fn slope(model: &Model, state: &State, forces: &Forces, i: usize) -> f64 {
 }
 
 /// The slipping masses, coupled by dampers: these may take from one mass the energy that friction feeds to another.
-struct Chain<'a> {
+struct Chain<'a, S: Fn(usize) -> f64> {
     model: &'a Model,
     state: &'a State,
-    forces: &'a Forces,
+    /// The friction of a mass as a damper, N s/m.
+    slope: &'a S,
     /// Damping of a horizontal link, N s/m.
     damping: f64,
 }
 
-impl Chain<'_> {
+impl<S: Fn(usize) -> f64> Chain<'_, S> {
     /// Whether no motion of the masses grows at the `rate` λ (1/s): whether D + λM is positive definite, by Cholesky's
     /// pivots. D is the damping matrix for the velocities ẋ of the slipping masses, friction included; M are their masses
     /// m q².
@@ -103,10 +125,7 @@ impl Chain<'_> {
         let vertical = self.model.links[LinkKind::Vertical as usize].damping;
         let neighbours = [i.wrapping_sub(1), i + 1].into_iter().filter_map(|j| self.state.mode.get(j));
         let count = neighbours.filter(|mode| mode.in_contact()).count() as f64;
-        self.damping
-            + self.slopes(i, i) * vertical
-            + count * self.coupling(i, i)
-            + slope(self.model, self.state, self.forces, i)
+        self.damping + self.slopes(i, i) * vertical + count * self.coupling(i, i) + (self.slope)(i)
     }
 }
 

@@ -288,6 +288,13 @@ impl SlipCurve<'_> {
         let force = self.model.shear_force + self.model.rate_shear.as_ref().map_or(0.0, strength);
         self.model.real_area.as_ref().map_or(0.0, |area| area.share(self.normal, speed).by_normal * force)
     }
+
+    /// The steepest fall of friction up to the `speed` of slip, m/s, by the real area that shrinks: ∂T/∂v, N s/m, 0 where
+    /// friction does not fall.
+    pub fn steepest_fall(&self, speed: f64) -> f64 {
+        let falls = self.model.real_area.iter().flat_map(RealArea::speeds).take_while(|&at| at <= speed);
+        falls.map(|at| self.with_slope(at).1).fold(0.0, f64::min)
+    }
 }
 
 impl FrictionCurve for SlipCurve<'_> {

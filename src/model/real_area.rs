@@ -75,6 +75,11 @@ impl RealArea {
         self.creep_speed.max(self.log_speeds[0].exp())
     }
 
+    /// The speeds that the modulus is tabulated for, m/s, ascending.
+    pub fn speeds(&self) -> impl Iterator<Item = f64> {
+        self.log_speeds.iter().map(|log_speed| log_speed.exp())
+    }
+
     /// The share at rest under the normal force F_N, N.
     pub fn at_rest(&self, normal: f64) -> AreaShare {
         self.share(normal, 0.0)

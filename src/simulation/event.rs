@@ -121,7 +121,7 @@ impl Run {
     /// The longest step, s, that lets unstable contacts move away, as they are at the end of the step tried last.
     fn longest_unstable(&self) -> f64 {
         let integrator = &self.workspace.integrator;
-        longest_unstable(&self.model, integrator.end(), integrator.end_forces())
+        longest_unstable(&self.model, &self.state.layer.state, integrator.end(), integrator.end_forces())
     }
 
     /// Whether a free mass may have reached the profile in the step of length `h` tried last, which did not see all of

@@ -90,7 +90,7 @@ fn errors_on_the_command_line_say_what_was_expected() {
         (&["simulate", &scene, "-o", "x.csv", "--points", "0"], "expected a whole number, 1 or more"),
         (&["material", &scene, "-o", "out.pdf"], "expected a name that ends in .svg, .png or .csv"),
         (&["material", &scene, "--temperature", "-5"], "expected a temperature above 0 K"),
-        (&["pack", "-o", "x.fmu"], "<SCENE.toml|--table <TABLE.csv>>"),
+        (&["pack", "-o", "x.fmu"], "<SCENE.toml|--table <TABLE.csv>|--patch <PATCH.toml>>"),
         (&["pack", &scene, "-o", "x.fmu", "--check", &scene], "cannot be used with '--check"),
         (&["sweep", "--merge", &result, "-o", "x.csv", "--shard", "1/2"], "cannot be used with '--shard"),
         (&["report", &scene, "-o", "x", "--stress", "13"], "expected a whole number from 0 to 12"),
