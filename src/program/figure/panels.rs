@@ -154,19 +154,30 @@ impl History {
 
     fn chart(&self, &(quantity, unit, shows): &RunPanel) -> Chart {
         let shown = self.variables.iter().enumerate().filter(|(_, variable)| shows(&variable.output));
-        let curve = |(look, (i, variable)): (usize, (usize, &Variable))| Curve {
-            // Without the group: `E_damper` of `dissipation.E_damper`.
-            name: variable.name.rsplit('.').next().unwrap_or_default().to_owned(),
-            look,
-            stroke: Stroke::Line,
-            points: self.times.iter().zip(&self.rows).map(|(&time, row)| (time, row[i])).collect(),
-        };
-        let curves: Vec<Curve> = shown.enumerate().map(curve).collect();
-        let values = curves.iter().flat_map(|curve| &curve.points).map(|point| point.1);
-        let y = Axis::linear(quantity, unit, values, Fit::Round);
-        let x = Axis::linear("time", "s", self.times.iter().copied(), Fit::Tight);
-        Chart { title: String::new(), x, y, curves }
+        // Without the group: `E_damper` of `dissipation.E_damper`.
+        let shown = shown.map(|(i, variable)| (i, variable.name.rsplit('.').next().unwrap_or_default()));
+        over_time((quantity, unit), &self.times, &self.rows, shown)
     }
+}
+
+/// The chart of a `quantity` in its unit over the `times` (s) of rows: the columns `shown`, with their names.
+pub(super) fn over_time<'a>(
+    (quantity, unit): (&'static str, &'static str),
+    times: &[f64],
+    rows: &[Vec<f64>],
+    shown: impl Iterator<Item = (usize, &'a str)>,
+) -> Chart {
+    let curve = |(look, (i, name)): (usize, (usize, &str))| Curve {
+        name: name.to_owned(),
+        look,
+        stroke: Stroke::Line,
+        points: times.iter().zip(rows).map(|(&time, row)| (time, row[i])).collect(),
+    };
+    let curves: Vec<Curve> = shown.enumerate().map(curve).collect();
+    let values = curves.iter().flat_map(|curve| &curve.points).map(|point| point.1);
+    let y = Axis::linear(quantity, unit, values, Fit::Round);
+    let x = Axis::linear("time", "s", times.iter().copied(), Fit::Tight);
+    Chart { title: String::new(), x, y, curves }
 }
 
 impl Figure for History {

@@ -2,8 +2,8 @@
 
 use asperity::patch::{Patch, PatchOutput, PatchRun, PatchVariable};
 
-use super::axis::{Axis, Fit};
-use super::chart::{Chart, Curve, Stroke};
+use super::chart::Chart;
+use super::panels::over_time;
 use super::{Backend, Canvas, DrawResult, Figure};
 
 /// A run of a patch over time: force, moment and energy lost, collected row by row.
@@ -42,17 +42,8 @@ impl PatchHistory {
 
     fn chart(&self, &(quantity, unit, shows): &RunPanel) -> Chart {
         let shown = self.variables.iter().enumerate().filter(|(_, variable)| shows(&variable.output));
-        let curve = |(look, (i, variable)): (usize, (usize, &PatchVariable))| Curve {
-            name: variable.name.clone(),
-            look,
-            stroke: Stroke::Line,
-            points: self.times.iter().zip(&self.rows).map(|(&time, row)| (time, row[i])).collect(),
-        };
-        let curves: Vec<Curve> = shown.enumerate().map(curve).collect();
-        let values = curves.iter().flat_map(|curve| &curve.points).map(|point| point.1);
-        let y = Axis::linear(quantity, unit, values, Fit::Round);
-        let x = Axis::linear("time", "s", self.times.iter().copied(), Fit::Tight);
-        Chart { title: String::new(), x, y, curves }
+        let shown = shown.map(|(i, variable)| (i, variable.name.as_str()));
+        over_time((quantity, unit), &self.times, &self.rows, shown)
     }
 }
 
