@@ -4,7 +4,9 @@ use super::block::{BLOCK, Beyond, Block, Step, Sums};
 use super::definition::Patch;
 use super::face::Face;
 use super::motion::{Parts, Path, Run};
-use super::state::{MOST_PARTS, MotionError, PatchMotion, PatchStart, PatchState, Pose, RestoreError, Springs, Totals};
+use super::state::{
+    MOST_PARTS, MotionError, PatchMotion, PatchStart, PatchState, Pose, RestoreError, Springs, Totals, check_duration,
+};
 use crate::element::ResampledLaw;
 use crate::math::{Dual, Number};
 use crate::scene::{PatchGroup, TableExtrapolation};
@@ -55,8 +57,8 @@ impl PatchRun {
     fn at(patch: &Patch, temperature: f64) -> Self {
         let tangents = patch.groups().contains(&PatchGroup::Tangent);
         let mut law = patch.law();
-        if patch.has_temperatures() {
-            law.set_temperature(temperature);
+        if let Some(held) = patch.held_temperature(temperature) {
+            law.set_temperature(held);
         }
         let workspace = if tangents {
             Workspace::Tangent(Box::new(Block::new()))
@@ -88,9 +90,12 @@ impl PatchRun {
         let sums = over_blocks(&step, &self.springs, &mut self.next, &mut block, |block, sums| {
             block.settle(&step, &mut self.law, sums);
         });
-        self.accept(sums.beyond, time, 0.0)?;
+        let mut reached = self.totals;
+        reached.add(&sums, 0.0);
+        let warning = self.judge(&reached, sums.beyond, time, 0.0)?;
+        reached.check(None)?;
         self.springs.clone_from(&self.next);
-        self.totals.add(&sums, 0.0);
+        self.reach(reached, warning);
         Ok(())
     }
 
@@ -114,7 +119,7 @@ impl PatchRun {
         self.warning.take()
     }
 
-    /// Follows a motion.
+    /// Follows a motion; over no time it stays as it is.
     ///
     /// # Errors
     /// [`MotionError`]; the patch is then as it was.
@@ -125,6 +130,10 @@ impl PatchRun {
         let change = rates.map(|rate| rate * duration);
         let end = Pose::of(std::array::from_fn(|i| start[i] + change[i]));
         PatchStart { time: time + duration, pose: end, rates, transport_speed, temperature }.check()?;
+        if duration == 0.0 {
+            return Ok(());
+        }
+        check_duration(duration, time)?;
         let tread_speed = 0.5 * (self.totals.transport_speed + transport_speed);
         let run = self.run(place, tread_speed * duration);
         let path = Path { start, change, duration };
@@ -152,26 +161,40 @@ impl PatchRun {
                 (sums.plain(), Some(sums.wrench.map(|load| load.slopes)))
             }
         };
-        if let Err(error) = self.accept(sums.beyond, time, duration) {
-            self.set_temperature(temperature_before);
-            return Err(error);
-        }
-        std::mem::swap(&mut self.springs, &mut self.next);
-        if let (Some(kept), Some(found)) = (&mut self.tangents, tangents) {
-            **kept = found;
-        }
-        let totals = &mut self.totals;
-        totals.add(&sums, duration);
-        (totals.time, totals.pose, totals.rates) = (time + duration, end, rates);
-        (totals.transport_speed, totals.tread_speed, totals.temperature) = (transport_speed, tread_speed, temperature);
+        let mut reached = self.totals;
+        reached.add(&sums, duration);
+        (reached.time, reached.pose, reached.rates) = (time + duration, end, rates);
+        (reached.transport_speed, reached.tread_speed, reached.temperature) =
+            (transport_speed, tread_speed, temperature);
         // Just below a whole number, rounding may give 1.
-        totals.place = (run.at(1.0) - run.entered()).min(1.0_f64.next_down());
-        Ok(())
+        reached.place = (run.at(1.0) - run.entered()).min(1.0_f64.next_down());
+        let judged = self.judge(&reached, sums.beyond, time, duration);
+        match judged.and_then(|warning| reached.check(tangents.as_ref()).map(|()| warning)) {
+            Ok(warning) => {
+                std::mem::swap(&mut self.springs, &mut self.next);
+                if let (Some(kept), Some(found)) = (&mut self.tangents, tangents) {
+                    **kept = found;
+                }
+                self.reach(reached, warning);
+                Ok(())
+            }
+            Err(error) => {
+                self.set_temperature(temperature_before);
+                Err(error)
+            }
+        }
+    }
+
+    /// Takes over what a step has reached.
+    fn reach(&mut self, reached: Totals, warning: Option<String>) {
+        self.totals = reached;
+        self.totals.beyond |= warning.is_some();
+        self.warning = warning.or(self.warning.take());
     }
 
     fn set_temperature(&mut self, kelvin: f64) {
-        if self.patch.has_temperatures() {
-            self.law.set_temperature(kelvin);
+        if let Some(held) = self.patch.held_temperature(kelvin) {
+            self.law.set_temperature(held);
         }
     }
 
@@ -183,18 +206,28 @@ impl PatchRun {
         }
     }
 
-    /// Refuses an element beyond the table, or takes note of the first.
-    fn accept(&mut self, beyond: Option<Beyond>, time: f64, duration: f64) -> Result<(), MotionError> {
-        let Some(Beyond { element, share, pressure, speed, by_speed }) = beyond else { return Ok(()) };
-        let (element, within) = (element + 1, share > 0.0 && !by_speed);
-        let error = MotionError::BeyondTable { element, time: time + share * duration, pressure, speed, within };
-        if self.patch.table_extrapolation == TableExtrapolation::Refuse {
-            return Err(error);
+    /// Refuses a temperature or an element beyond the table, or says what the first one is.
+    fn judge(
+        &self,
+        reached: &Totals,
+        beyond: Option<Beyond>,
+        time: f64,
+        duration: f64,
+    ) -> Result<Option<String>, MotionError> {
+        let kelvin = reached.temperature;
+        let error = if self.patch.held_temperature(kelvin).is_some_and(|held| held != kelvin) {
+            MotionError::TemperatureBeyondTable { time, kelvin }
+        } else if let Some(Beyond { element, share, pressure, speed, by_speed }) = beyond {
+            let (element, within) = (element + 1, share > 0.0 && !by_speed);
+            MotionError::BeyondTable { element, time: time + share * duration, pressure, speed, within }
+        } else {
+            return Ok(None);
+        };
+        match self.patch.table_extrapolation {
+            TableExtrapolation::Refuse => Err(error),
+            TableExtrapolation::Hold if self.totals.beyond => Ok(None),
+            TableExtrapolation::Hold => Ok(Some(format!("{error}: its ends hold from here on"))),
         }
-        if !std::mem::replace(&mut self.totals.beyond, true) {
-            self.warning = Some(format!("{error}: its ends hold from here on"));
-        }
-        Ok(())
     }
 
     /// All that changes in the run.

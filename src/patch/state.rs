@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::block::{Block, Sums};
 use crate::math::Number;
-use crate::scene::is_possible;
+use crate::scene::{SMALLEST, is_possible};
 
 /// Most parts of a step.
 pub(super) const MOST_PARTS: f64 = 1e5;
@@ -96,6 +96,16 @@ pub enum MotionError {
         speed: f64,
         /// Whether a shorter step may end before.
         within: bool,
+    },
+    /// The temperature is beyond the table.
+    #[error(
+        "the temperature {kelvin} K is beyond the table at t = {time} s (table.extrapolation = \"hold\" holds its ends)"
+    )]
+    TemperatureBeyondTable {
+        /// s.
+        time: f64,
+        /// K.
+        kelvin: f64,
     },
 }
 
@@ -215,6 +225,14 @@ fn check(time: f64, what: &'static str, values: &[f64]) -> Result<(), MotionErro
     }
 }
 
+/// Refuses a duration by which nothing can be divided.
+pub(super) fn check_duration(duration: f64, time: f64) -> Result<(), MotionError> {
+    if duration >= SMALLEST {
+        return Ok(());
+    }
+    Err(MotionError::OutOfRange { what: "the duration", value: duration, time })
+}
+
 impl Totals {
     /// Takes the loads at the end of a step and its losses over.
     pub(super) fn add<T: Number>(&mut self, sums: &Sums<T>, duration: f64) {
@@ -223,6 +241,16 @@ impl Totals {
         self.lost[0] += sums.slip;
         self.lost[1] += sums.release;
         self.power = if duration > 0.0 { (sums.slip + sums.release) / duration } else { 0.0 };
+    }
+
+    /// Refuses what no run goes on from: loads, losses or tangents that are no numbers or too large.
+    pub(super) fn check(&self, tangents: Option<&[[f64; 6]; 6]>) -> Result<(), MotionError> {
+        let loads = self.numbers().find(|(_, value)| !is_possible(*value));
+        let tangents = tangents.and_then(|rows| rows.as_flattened().iter().find(|value| !value.is_finite()));
+        match loads.or(tangents.map(|value| ("a tangent", *value))) {
+            Some((what, value)) => Err(MotionError::OutOfRange { what, value, time: self.time }),
+            None => Ok(()),
+        }
     }
 
     fn numbers(&self) -> impl Iterator<Item = (&'static str, f64)> {
@@ -246,10 +274,10 @@ impl PatchState {
         if let Some((what, value)) = self.totals.numbers().find(|(_, value)| !is_possible(*value)) {
             return invalid(what, value);
         }
-        if let Some(value) = x.iter().chain(y).find(|value| !is_possible(**value)) {
+        if let Some(value) = x.iter().chain(y).find(|value| !value.is_finite()) {
             return invalid("the force of a spring", *value);
         }
-        if let Some(value) = stiffness.iter().find(|value| !(is_possible(**value) && **value >= 0.0)) {
+        if let Some(value) = stiffness.iter().find(|value| !(value.is_finite() && **value >= 0.0)) {
             return invalid("the stiffness of a spring", *value);
         }
         if let Some(value) = mode.iter().find(|value| **value > 2) {

@@ -87,3 +87,29 @@ fn calls() {
     let mut random = Random(8);
     (0..3_000).for_each(|length| targets::fmi_calls::run(&random.bytes(length % 300)));
 }
+
+#[test]
+fn patches() {
+    run("patch", targets::patch::run, 300);
+}
+
+#[test]
+fn motions_of_patches() {
+    run("patch_motion", targets::patch_motion::run, 100);
+    let mut random = Random(9);
+    (0..3_000).for_each(|length| targets::patch_motion::run(&random.bytes(length % 400)));
+}
+
+#[test]
+fn states_of_patches() {
+    run("patch_state", targets::state::run_on_patches, 100);
+    let mut random = Random(10);
+    (0..3_000).for_each(|length| targets::state::run_on_patches(&random.bytes(length % 200)));
+}
+
+#[test]
+fn calls_of_patches() {
+    run("patch_calls", targets::fmi_calls::run_on_patches, 100);
+    let mut random = Random(11);
+    (0..3_000).for_each(|length| targets::fmi_calls::run_on_patches(&random.bytes(length % 300)));
+}

@@ -10,7 +10,7 @@ use arbitrary::{Arbitrary, Unstructured};
 use asperity::fmi::bindings::*;
 use asperity::fmi::*;
 
-use super::fmu::{self, Fmu, OK, Outputs, checked, show, sites};
+use super::fmu::{self, Fmu, OK, Outputs, Site, checked, show};
 use super::number::Number;
 use functions::{call_function, on_nothing, step};
 
@@ -95,11 +95,20 @@ enum Call {
     OnNothing,
 }
 
-/// Runs a sequence of calls.
+/// Runs a sequence of calls of layers and elements.
 pub fn run(bytes: &[u8]) {
+    run_on(fmu::sites(), bytes);
+}
+
+/// Runs a sequence of calls of patches.
+pub fn run_on_patches(bytes: &[u8]) {
+    run_on(fmu::patch_sites(), bytes);
+}
+
+fn run_on(sites: &'static [Site], bytes: &[u8]) {
     let Ok(case) = Case::arbitrary_take_rest(Unstructured::new(bytes)) else { return };
     show(&case);
-    let mut master = Master::default();
+    let mut master = Master { sites, slots: [None; SLOTS], uses: [0; SLOTS], states: Vec::new(), bytes: Vec::new() };
     master.put(0, case.site);
     if let (Some(inputs), Some(fmu)) = (case.started, &master.slots[0]) {
         fmu.start(inputs.map(Number::value));
@@ -118,8 +127,8 @@ struct Kept {
 }
 
 /// The instances and states of a master.
-#[derive(Default)]
 struct Master {
+    sites: &'static [Site],
     slots: [Option<Fmu>; SLOTS],
     /// Number of cases that each instance was used in before.
     uses: [usize; SLOTS],
@@ -178,7 +187,7 @@ fn pointer(string: &Option<CString>) -> *const c_char {
 impl Master {
     fn put(&mut self, slot: usize, site: u8) {
         self.give_back(slot);
-        let (fmu, uses) = sites()[usize::from(site) % sites().len()].take();
+        let (fmu, uses) = self.sites[usize::from(site) % self.sites.len()].take();
         (self.slots[slot], self.uses[slot]) = (Some(fmu), uses);
     }
 
@@ -266,7 +275,7 @@ impl Master {
         site: u8,
     ) {
         self.free(slot);
-        let site = &sites()[usize::from(site) % sites().len()];
+        let site = &self.sites[usize::from(site) % self.sites.len()];
         let callbacks = fmu::callbacks();
         let functions = if functions { ptr::from_ref(&callbacks) } else { ptr::null() };
         // A short text stands for the right one.

@@ -6,8 +6,11 @@ use std::{env, fmt, fs, mem, process, ptr};
 
 use asperity::element::{PointContact, Table};
 use asperity::fmi::bindings::*;
-use asperity::fmi::{self, Catalogue, Definition, Entry, Kind, SCENE_FILE, Sources, TABLE_FILE};
+use asperity::fmi::{self, Catalogue, Definition, Entry, Kind, PATCH_FILE, SCENE_FILE, Sources, TABLE_FILE};
+use asperity::patch::Patch;
 use asperity::scene::{OutputGroup, Scene};
+
+use super::patches::{self, PATCHES};
 
 pub const OK: fmi2Status = fmi2Status_fmi2OK;
 pub const DISCARD: fmi2Status = fmi2Status_fmi2Discard;
@@ -21,8 +24,11 @@ pub struct Site {
     pub location: CString,
     pub reals: Vec<u32>,
     pub integers: Vec<u32>,
-    /// Parameters: Reals and Strings.
-    pub parameters: Vec<u32>,
+    /// The two inputs that cases set most: u and w; of a patch x and z.
+    pub inputs: [u32; 2],
+    /// Real parameters, and other inputs of a patch.
+    pub numbers: Vec<u32>,
+    /// String parameters.
     pub texts: Vec<u32>,
     /// The number of steps and the processor time; an element has neither.
     pub max_steps: Option<u32>,
@@ -41,6 +47,14 @@ pub fn sites() -> &'static [Site] {
         let scenes = SCENES.iter().map(|text| (SCENE_FILE, with_all_outputs(text)));
         let resources = scenes.chain([(TABLE_FILE, table())]);
         resources.enumerate().map(|(number, (file, text))| Site::new(number, file, &text)).collect()
+    })
+}
+
+/// Patches.
+pub fn patch_sites() -> &'static [Site] {
+    static SITES: OnceLock<Vec<Site>> = OnceLock::new();
+    SITES.get_or_init(|| {
+        (0..PATCHES.len()).map(|i| Site::new(sites().len() + i, PATCH_FILE, &patches::text(i))).collect()
     })
 }
 
@@ -139,6 +153,9 @@ impl Site {
         fs::write(&file, text).unwrap();
         let definition: Definition = if file.ends_with(TABLE_FILE) {
             PointContact::new(Table::load(&file).unwrap()).into()
+        } else if file.ends_with(PATCH_FILE) {
+            patches::write_files(&folder, patches::POINTS);
+            Patch::load(&file).unwrap().into()
         } else {
             Scene::load(&file).unwrap().into()
         };
@@ -147,14 +164,21 @@ impl Site {
         let of = |take: &dyn Fn(&Entry<'_>) -> bool| {
             catalogue.entries().filter(|(_, entry)| take(entry)).map(|(reference, _)| reference).collect::<Vec<_>>()
         };
-        let is_output = |entry: &Entry<'_>| matches!(entry, Entry::Output(..)) && entry.name() != "solver.run_time";
+        let is_output = |entry: &Entry<'_>| {
+            matches!(entry, Entry::Output(..) | Entry::PatchOutput(..)) && entry.name() != "solver.run_time"
+        };
         let named = |name: &str| of(&|entry| entry.name() == name).first().copied();
         let mut site = Self {
             guid: CString::new(guid).unwrap(),
             location: CString::new(folder.to_str().unwrap()).unwrap(),
             reals: of(&|entry| is_output(entry) && entry.kind() == Kind::Real),
             integers: of(&|entry| is_output(entry) && entry.kind() == Kind::Integer),
-            parameters: of(&|entry| matches!(entry, Entry::Parameter(_, Kind::Real))),
+            inputs: [0, if named("u").is_some() { 1 } else { 2 }],
+            numbers: of(&|entry| match entry {
+                Entry::Parameter(_, Kind::Real) => true,
+                Entry::PatchInput(input) => !["x", "z"].contains(&input.name()),
+                _ => false,
+            }),
             texts: of(&|entry| entry.kind() == Kind::Text),
             max_steps: named("solver.max_steps"),
             time: named("solver.run_time"),
@@ -339,7 +363,7 @@ impl Fmu {
         unsafe {
             checked(fmi::fmi2SetupExperiment(self.c, 0, 0.0, 0.0, 0, 0.0)) == OK
                 && checked(fmi::fmi2EnterInitializationMode(self.c)) == OK
-                && checked(fmi::fmi2SetReal(self.c, [0, 1].as_ptr(), 2, [u, w].as_ptr())) == OK
+                && checked(fmi::fmi2SetReal(self.c, self.site.inputs.as_ptr(), 2, [u, w].as_ptr())) == OK
                 && self.set_rates([u_rate, w_rate]) == OK
                 && checked(fmi::fmi2ExitInitializationMode(self.c)) == OK
         }
@@ -348,7 +372,7 @@ impl Fmu {
     pub fn set_rates(&self, rates: [f64; 2]) -> fmi2Status {
         // SAFETY: as above.
         checked(unsafe {
-            fmi::fmi2SetRealInputDerivatives(self.c, [0, 1].as_ptr(), 2, [1, 1].as_ptr(), rates.as_ptr())
+            fmi::fmi2SetRealInputDerivatives(self.c, self.site.inputs.as_ptr(), 2, [1, 1].as_ptr(), rates.as_ptr())
         })
     }
 
@@ -396,11 +420,11 @@ impl Fmu {
         // SAFETY: an instance that lives, slices of the lengths given.
         let (first, second) = unsafe {
             let (knowns, unknowns, direction, place) =
-                ([0, 1], reals.as_ptr(), direction.as_ptr(), values.as_mut_ptr());
+                (self.site.inputs, reals.as_ptr(), direction.as_ptr(), values.as_mut_ptr());
             let first =
                 fmi::fmi2GetDirectionalDerivative(self.c, unknowns, reals.len(), knowns.as_ptr(), 2, direction, place);
             assert!(values.iter().all(|value| value.is_finite()), "{values:?}");
-            // F_x and F_z are the first.
+            // F_x and F_z are the first, of a patch force.x and force.y.
             let orders = [1, 1];
             (first, fmi::fmi2GetRealOutputDerivatives(self.c, unknowns, 2, orders.as_ptr(), values.as_mut_ptr()))
         };

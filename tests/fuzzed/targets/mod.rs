@@ -1,6 +1,8 @@
-//! The fuzz targets: five functions of arbitrary bytes that panic where the library violates its specification.
+//! The fuzz targets: functions of arbitrary bytes that panic where the library violates its specification.
 
 pub mod fmi_calls;
+pub mod patch;
+pub mod patch_motion;
 pub mod profile;
 pub mod scene;
 pub mod state;
@@ -8,3 +10,4 @@ pub mod table;
 
 mod fmu;
 mod number;
+mod patches;

@@ -2,12 +2,13 @@
 
 use std::cell::OnceCell;
 use std::ptr;
+use std::thread::LocalKey;
 
 use arbitrary::{Arbitrary, Unstructured};
 use asperity::fmi;
 use uuid::Uuid;
 
-use super::fmu::{CHECKSUM, Fmu, MOST_STEPS, OK, checked, show, sites};
+use super::fmu::{CHECKSUM, Fmu, MOST_STEPS, OK, Site, checked, patch_sites, show, sites};
 use super::number::Number;
 
 /// A byte string and the steps that follow.
@@ -47,19 +48,29 @@ struct Bases {
 
 thread_local! {
     /// Never freed: a thread ends with its process.
-    static BASES: OnceCell<&'static Bases> = const { OnceCell::new() };
+    static LAYERS: OnceCell<&'static Bases> = const { OnceCell::new() };
+    static PATCHES: OnceCell<&'static Bases> = const { OnceCell::new() };
 }
 
-/// Makes a byte string, restores it if it is accepted, and does some steps.
+/// Makes a byte string, restores it if it is accepted, and does some steps: of layers and elements.
 pub fn run(bytes: &[u8]) {
+    run_on(&LAYERS, sites, bytes);
+}
+
+/// The same of patches.
+pub fn run_on_patches(bytes: &[u8]) {
+    run_on(&PATCHES, patch_sites, bytes);
+}
+
+fn run_on(bases: &'static LocalKey<OnceCell<&'static Bases>>, sites: fn() -> &'static [Site], bytes: &[u8]) {
     let Ok(case) = Case::arbitrary_take_rest(Unstructured::new(bytes)) else { return };
     show(&case);
-    BASES.with(|bases| bases.get_or_init(|| Box::leak(Box::new(Bases::new()))).run(&case));
+    bases.with(|bases| bases.get_or_init(|| Box::leak(Box::new(Bases::new(sites())))).run(&case));
 }
 
 impl Bases {
-    fn new() -> Self {
-        let fmus: Vec<Fmu> = sites().iter().map(|site| Fmu { c: site.instantiate(false), site }).collect();
+    fn new(sites: &'static [Site]) -> Self {
+        let fmus: Vec<Fmu> = sites.iter().map(|site| Fmu { c: site.instantiate(false), site }).collect();
         let mut states = Vec::new();
         for (i, fmu) in fmus.iter().enumerate() {
             let mut keep = || states.push((i, fmu.frozen().unwrap()));
@@ -108,7 +119,7 @@ fn go_on(fmu: &Fmu, steps: &[(Number, Number, Number)]) {
     }
     for (u, w, h) in steps.iter().take(2) {
         // SAFETY: as above.
-        checked(unsafe { fmi::fmi2SetReal(fmu.c, [0, 1].as_ptr(), 2, [u.value(), w.value()].as_ptr()) });
+        checked(unsafe { fmi::fmi2SetReal(fmu.c, fmu.site.inputs.as_ptr(), 2, [u.value(), w.value()].as_ptr()) });
         let point = fmu.time().unwrap_or_default();
         if fmu.checked_step(point, h.value()) == OK {
             fmu.check_derivatives([1.0, 1.0]);

@@ -14,7 +14,7 @@ pub(super) fn step(fmu: Fmu, call: &Call) {
     match *call {
         Call::Inputs { u, w } => {
             // SAFETY: an instance that lives, slices of the lengths given.
-            checked(unsafe { fmi2SetReal(fmu.c, [0, 1].as_ptr(), 2, [u.value(), w.value()].as_ptr()) });
+            checked(unsafe { fmi2SetReal(fmu.c, fmu.site.inputs.as_ptr(), 2, [u.value(), w.value()].as_ptr()) });
         }
         Call::Rates { u, w } => {
             fmu.set_rates([u, w].map(Number::value));
@@ -110,7 +110,7 @@ fn set(fmu: Fmu, call: &Call) {
     let status = unsafe {
         match call {
             Call::Parameter { which, value } => {
-                let reference = fmu.site.parameters[usize::from(*which) % fmu.site.parameters.len()];
+                let reference = fmu.site.numbers[usize::from(*which) % fmu.site.numbers.len()];
                 fmi2SetReal(c, &reference, 1, &value.value())
             }
             Call::SetReal(array, null) => {

@@ -1,0 +1,8 @@
+//! A patch file and its points.
+#![no_main]
+#![allow(dead_code, reason = "each target is one of those")]
+
+#[path = "../../fuzzed/targets/mod.rs"]
+mod targets;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| targets::patch::run(bytes));

@@ -1,0 +1,8 @@
+//! Motions of patches.
+#![no_main]
+#![allow(dead_code, reason = "each target is one of those")]
+
+#[path = "../../fuzzed/targets/mod.rs"]
+mod targets;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| targets::patch_motion::run(bytes));
