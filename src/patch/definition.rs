@@ -7,7 +7,7 @@ use super::face::{Arc as Section, Face, Points, Tread};
 use super::motion::Run;
 use crate::element::{Load, ResampledLaw, Table, TableError};
 use crate::scene::{
-    Extrapolation, FaceShape, Grid, Parameter, ParameterError, PatchFile, PatchGroup, Problem, SceneError,
+    Extrapolation, FaceShape, Grid, NotDoubled, Parameter, ParameterError, PatchFile, PatchGroup, Problem, SceneError,
     TableExtrapolation, Value,
 };
 
@@ -20,6 +20,17 @@ pub enum PatchError {
     /// The table.
     #[error(transparent)]
     Table(#[from] TableError),
+}
+
+/// An element of a patch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PatchElement {
+    /// Its number, from 0.
+    pub index: usize,
+    /// Where it sits in the body's axes, m.
+    pub place: [f64; 3],
+    /// m².
+    pub area: f64,
 }
 
 /// The definition of a patch.
@@ -119,12 +130,60 @@ impl Patch {
         &self.file.outputs
     }
 
-    /// Elements across the face, of a grid.
-    pub fn rows(&self) -> Option<usize> {
+    /// The area that a layer of the table stands for, m².
+    pub fn nominal_area(&self) -> f64 {
+        self.nominal_area
+    }
+
+    /// The elements at the start of a run; a cell of a tread that is not in the contact yet has no area.
+    pub fn elements(&self) -> impl Iterator<Item = PatchElement> {
+        (0..self.count()).map(|index| {
+            let (place, area, _) = self.element(index, 0.0);
+            PatchElement { index, place, area }
+        })
+    }
+
+    /// The patch of these elements alone, which stand on its face, with the same law.
+    pub fn of_elements(&self, elements: impl IntoIterator<Item = PatchElement>) -> Self {
+        let point = |PatchElement { place: [x, y, z], area, .. }| [x, y, z, area];
+        let points = elements.into_iter().map(point).collect();
+        let mut file = PatchFile::clone(&self.file);
+        file.shape = FaceShape::Points { path: PathBuf::new(), points };
+        (file.transport, file.offset) = (false, [0.0; 3]);
+        self.with_file(file)
+    }
+
+    /// The patch with twice as many elements along x and along y.
+    ///
+    /// # Errors
+    /// [`NotDoubled`] where the face is no grid or there would be too many elements.
+    pub fn doubled(&self) -> Result<Self, NotDoubled> {
+        Ok(self.with_file(self.file.doubled()?))
+    }
+
+    /// The patch with these groups of variables in place of its own.
+    pub fn with_groups(&self, outputs: Vec<PatchGroup>) -> Self {
+        let mut file = PatchFile::clone(&self.file);
+        file.outputs = outputs;
+        self.with_file(file)
+    }
+
+    /// The patch with another face or other groups of variables.
+    fn with_file(&self, file: PatchFile) -> Self {
+        Self { face: Arc::new(face(&file)), file: Arc::new(file), ..self.clone() }
+    }
+
+    /// Elements along and across the face, of a grid.
+    pub fn grid(&self) -> Option<(usize, usize)> {
         match &self.file.shape {
-            FaceShape::Flat(grid) | FaceShape::Cylinder { grid, .. } => Some(grid.ny),
+            FaceShape::Flat(grid) | FaceShape::Cylinder { grid, .. } => Some((grid.nx, grid.ny)),
             FaceShape::Points { .. } => None,
         }
+    }
+
+    /// Elements across the face, of a grid.
+    pub fn rows(&self) -> Option<usize> {
+        self.grid().map(|(_, across)| across)
     }
 
     /// Paths of the files that it reads besides its own, relative to that one's folder.

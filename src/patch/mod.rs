@@ -30,7 +30,7 @@ mod state;
 mod survey;
 mod variables;
 
-pub use definition::{Patch, PatchError};
+pub use definition::{Patch, PatchElement, PatchError};
 pub use run::PatchRun;
 pub use state::{MotionError, PatchMotion, PatchStart, PatchState, Pose, RestoreError};
 pub use variables::{COORDINATES, PatchOutput, PatchVariable};

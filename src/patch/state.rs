@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::block::{Block, Sums};
+use super::motion::Path;
 use crate::math::Number;
 use crate::scene::{SMALLEST, is_possible};
 
@@ -23,6 +24,12 @@ impl Pose {
     pub fn coordinates(&self) -> [f64; 6] {
         let ([x, y, z], [roll, pitch, yaw]) = (self.place, self.angles);
         [x, y, z, roll, pitch, yaw]
+    }
+
+    /// Places of the body's axes (m) from the pose's point in the ground's axes, m.
+    pub fn arms(&self, places: impl IntoIterator<Item = [f64; 3]>) -> Vec<[f64; 3]> {
+        let now = Path { start: self.coordinates(), change: [0.0; 6], duration: 1.0 }.at(0.0);
+        places.into_iter().map(|place| now.turned(place)).collect()
     }
 
     /// The pose with these coordinates.

@@ -40,7 +40,7 @@ pub use fine_roughness::FineRoughness;
 pub use foundation::{Body, Foundation, FoundationKind, Quality, Stiffness, Wave, Waves};
 pub use material::{Material, PronyTerm, Wlf, complex_stiffness};
 pub use parameters::{Parameter, Value};
-pub use patch_file::{FaceShape, Grid, PatchFile, PatchGroup, TableExtrapolation};
+pub use patch_file::{FaceShape, Grid, NotDoubled, PatchFile, PatchGroup, TableExtrapolation};
 pub use profile::{Extract, LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt, UnknownWord};
 pub use spectrum::{Band, PowerLaw, Spectrum};
 pub use surface::{MeanLine, SelfAffine, Surface};

@@ -136,7 +136,41 @@ impl PatchGroup {
     }
 }
 
+/// Why the elements of a face cannot be doubled along and across it.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NotDoubled {
+    /// They are no grid.
+    #[error("the face is a list of points, whose number cannot be doubled here")]
+    Points,
+    /// There would be too many.
+    #[error("{nx} by {ny} would be more than {MOST_ELEMENTS} elements")]
+    TooMany {
+        /// Elements along x that it would have.
+        nx: usize,
+        /// Elements along y.
+        ny: usize,
+    },
+}
+
 impl PatchFile {
+    /// The same face with twice as many elements along x and along y.
+    ///
+    /// # Errors
+    /// [`NotDoubled`] where the face is no grid or there would be too many elements.
+    pub fn doubled(&self) -> Result<Self, NotDoubled> {
+        let double = |grid: &Grid| {
+            let (nx, ny) = (2 * grid.nx, 2 * grid.ny);
+            let allowed = i64::try_from(nx * ny).is_ok_and(|count| count <= MOST_ELEMENTS);
+            if allowed { Ok(Grid { nx, ny, ..*grid }) } else { Err(NotDoubled::TooMany { nx, ny }) }
+        };
+        let shape = match &self.shape {
+            FaceShape::Flat(grid) => FaceShape::Flat(double(grid)?),
+            FaceShape::Cylinder { radius, grid } => FaceShape::Cylinder { radius: *radius, grid: double(grid)? },
+            FaceShape::Points { .. } => return Err(NotDoubled::Points),
+        };
+        Ok(Self { shape, ..self.clone() })
+    }
+
     /// The error of a temperature that the table does not reach.
     pub fn refuse_temperature(&self, expected: String) -> SceneError {
         let given = self.temperature.map_or_else(String::new, |kelvin| format!("{kelvin:?}"));

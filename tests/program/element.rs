@@ -100,7 +100,7 @@ fn an_incomplete_table_is_refused() {
 }
 
 /// Three masses on a wave that stick and slip.
-const SCENE: &str = r#"
+pub const SCENE: &str = r#"
 name = "wave"
 [layer]
 masses = 3

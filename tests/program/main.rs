@@ -17,6 +17,7 @@ mod converge;
 mod damper;
 mod element;
 mod fit;
+mod patch_check;
 mod peers;
 mod program;
 mod report;

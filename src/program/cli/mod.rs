@@ -32,7 +32,7 @@ pub(crate) enum Command {
     Plot(Plot),
     /// Summarises a scene: what it contains, what it leaves out, and the constants derived from it.
     Describe(Describe),
-    /// Packs a scene, or a point-contact element from a sweep table, as an FMI 2.0 co-simulation FMU.
+    /// Packs a scene, or a point-contact element or a contact patch from a sweep table, as an FMI 2.0 co-simulation FMU.
     Pack(Pack),
     /// Fits Prony terms to measured moduli of a compound (DMA data).
     Fit(Fit),
@@ -135,11 +135,12 @@ pub(crate) struct Pack {
     /// A patch file: packs a contact patch of many point-contact elements in three dimensions.
     #[arg(long, value_name = "PATCH.toml", group = "input")]
     pub(crate) patch: Option<PathBuf>,
-    /// The scene that was swept: compares the element with its layer between the table's points and along a
-    /// to-and-fro motion, and writes tables and plots to a folder beside the FMU.
-    #[arg(long, value_name = "SCENE.toml", requires = "table", conflicts_with = "scene")]
+    /// The scene that was swept: compares the element with its layer between the table's points, or elements of the
+    /// patch, tilted over the table's pressures, at three speeds; along a to-and-fro motion; and the patch with one of
+    /// twice as many elements along and across. Writes tables and plots to a folder beside the FMU.
+    #[arg(long, value_name = "SCENE.toml", conflicts_with = "scene")]
     pub(crate) check: Option<PathBuf>,
-    /// Maximum number of points that --check compares.
+    /// Maximum number of points, or of elements of a patch, that --check compares with the layer.
     #[arg(long, value_name = "N", default_value_t = 12, value_parser = count)]
     pub(crate) points: u32,
     /// The FMU to write.

@@ -20,7 +20,7 @@ use plotters_backend::{BackendColor, BackendCoord, BackendStyle, BackendTextStyl
 
 pub(crate) use chart::{Curve, Stroke};
 pub(crate) use ladders::{Ladder, LadderPanel, Ladders, Rung};
-pub(crate) use panels::{History, Panel, ProfilePicture, SideBySide, Stacked};
+pub(crate) use panels::{History, LinearPanel, LinearStack, Panel, ProfilePicture, SideBySide, Stacked};
 pub(crate) use patch::PatchHistory;
 pub(crate) use plot::{PlotError, plot_files};
 

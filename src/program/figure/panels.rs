@@ -98,6 +98,46 @@ impl SideBySide {
     }
 }
 
+/// Charts below each other over the same linear axis; each has a legend and a vertical axis of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct LinearStack {
+    /// The quantity of the horizontal axes and its unit.
+    pub(crate) x: (&'static str, &'static str),
+    pub(crate) panels: Vec<LinearPanel>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct LinearPanel {
+    /// Of the vertical axis.
+    pub(crate) quantity: &'static str,
+    pub(crate) unit: &'static str,
+    /// In the order of the legend.
+    pub(crate) curves: Vec<Curve>,
+}
+
+impl Figure for LinearStack {
+    fn size(&self) -> (u32, u32) {
+        (1000, 260 * self.panels.len() as u32)
+    }
+
+    fn draw<B: Backend>(&self, canvas: &Canvas<B>) -> DrawResult {
+        let canvases = canvas.split_evenly((self.panels.len(), 1));
+        self.panels.iter().zip(&canvases).try_for_each(|(panel, canvas)| panel.chart(self.x).draw_with_legend(canvas))
+    }
+}
+
+impl LinearPanel {
+    fn chart(&self, (quantity, unit): (&str, &str)) -> Chart {
+        let points = || self.curves.iter().flat_map(|curve| &curve.points);
+        Chart {
+            title: String::new(),
+            x: Axis::linear(quantity, unit, points().map(|point| point.0), Fit::Tight),
+            y: Axis::linear(self.quantity, self.unit, points().map(|point| point.1), Fit::Round),
+            curves: self.curves.clone(),
+        }
+    }
+}
+
 /// A run over time: forces, the speed of a carrier that is a body, contacts and energy lost, collected row by row.
 #[derive(Debug)]
 pub(crate) struct History {

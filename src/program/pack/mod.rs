@@ -82,18 +82,22 @@ fn warn_of(basis: &Basis) {
     }
 }
 
-/// What there is in the scene or in the table, and the errors of an element.
+/// What there is in the scene or in the table, and the errors of an element or a patch.
 fn summary(command: &Pack, definition: &Definition) -> Result<Vec<LabelledLine>, PackError> {
     let contact = match definition {
         Definition::Layer(scene) => return Ok(describe::rows(scene)),
         Definition::Element(contact) => contact,
         Definition::Patch(patch) => {
-            return Ok([patch::rows(patch), documentation::table_rows(patch.table())].concat());
+            let mut rows = [patch::rows(patch), documentation::table_rows(patch.table())].concat();
+            if let Some(scene) = &command.check {
+                rows.extend(check::check_patch(command, patch, scene)?);
+            }
+            return Ok(rows);
         }
     };
     let mut rows = documentation::table_rows(contact.table());
     if let Some(scene) = &command.check {
-        rows.extend(check::check(command, contact, scene)?);
+        rows.extend(check::check_element(command, contact, scene)?);
     }
     Ok(rows)
 }

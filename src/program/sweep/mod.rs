@@ -20,6 +20,7 @@ use super::cli::Sweep;
 use super::files::{FileError, check_output, load, set_parameters, sources};
 use super::terminal::{self, warn};
 use load_search::{heights, rest_separation};
+use point::PointResult;
 pub(crate) use point::{Bounds, SMALL as SMALL_FRICTION, SteadySliding};
 pub(crate) use table_file::fingerprint as table_fingerprint;
 use table_file::{SweepTable, TableFile, TableFileError};
@@ -83,12 +84,11 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepErr
     let output = command.output.clone().unwrap_or_else(|| default_output(path));
     check_output(&output, &sources(path, &scene))?;
     let scene = relevant(scene);
-    let model = Model::new(&scene);
     let header = TableHeader {
         fingerprint: fingerprint(&scene, command, load)?,
         scene: scene.name.clone(),
         load,
-        rest_separation: rest_separation(&model, &heights(&scene, &model)),
+        rest_separation: separation_at_rest(&scene),
         basis: basis(&scene, convergence::found(command.converged.as_ref(), path, &scene.name)?),
         grid,
     };
@@ -188,6 +188,12 @@ fn with_temperature(scene: &Scene, temperature: f64) -> Scene {
     scene
 }
 
+/// Separation of the carrier's rest line and the profile's mean line at w = 0, m.
+pub(crate) fn separation_at_rest(scene: &Scene) -> f64 {
+    let model = Model::new(scene);
+    rest_separation(&model, &heights(scene, &model))
+}
+
 /// The scene without what a sweep does not depend on, and with the outputs that it reads.
 pub(crate) fn relevant(scene: Scene) -> Scene {
     use OutputGroup::{Contact, Dissipation, Energy, Forces, Friction};
@@ -230,7 +236,22 @@ pub(crate) fn steady_sliding(
     bounds: Bounds,
 ) -> Result<SteadySliding, String> {
     let scene = scene_at(&relevant(scene.clone()), point);
-    let result = point::sliding(&scene, point.speed, load.force(point.load), bounds);
+    steady(point::sliding(&scene, point.speed, load.force(point.load), bounds))
+}
+
+/// Steady sliding at one point with the carrier held at `w` (m), where the load is near that of the point.
+pub(crate) fn steady_sliding_at(
+    scene: &Scene,
+    point: &OperatingPoint,
+    w: f64,
+    load: Load,
+    bounds: Bounds,
+) -> Result<SteadySliding, String> {
+    let scene = scene_at(&relevant(scene.clone()), point);
+    steady(point::sliding_at(&scene, point.speed, w, load.force(point.load), bounds))
+}
+
+fn steady(result: PointResult) -> Result<SteadySliding, String> {
     match result.sliding {
         Some(sliding) if result.status == asperity::element::STEADY => Ok(sliding),
         _ => Err(result.status),

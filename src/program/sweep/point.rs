@@ -164,7 +164,18 @@ struct Average {
     drifts: bool,
 }
 
-/// The search for steady sliding under a load.
+/// What is held while a layer slides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Held {
+    /// w, which is searched until it bears the load.
+    Searched,
+    /// The load, by a carrier of this mass, kg.
+    Load(f64),
+    /// w, whatever it bears.
+    Given,
+}
+
+/// The search for steady sliding under a load, or for steady sliding at a displacement that is given.
 #[derive(Debug)]
 struct Search<'a> {
     scene: &'a Scene,
@@ -173,8 +184,7 @@ struct Search<'a> {
     distance: f64,
     slide: Slide,
     load: LoadSearch,
-    /// Mass of the carrier whose load is held, kg; `None` where w is.
-    body: Option<f64>,
+    held: Held,
     /// Stiffness of all vertical springs in the long term, N/m.
     stiffness: f64,
     runs: u32,
@@ -187,7 +197,20 @@ pub(super) fn sliding(scene: &Scene, speed: f64, load: f64, bounds: Bounds) -> P
     let loaded = under_load(scene, load);
     let scene = &loaded;
     let load = LoadSearch::estimated(load, scene, &Model::new(scene));
-    let search = Search::new(scene, Blocks::new(scene, speed), bounds, load);
+    let held = scene.carrier.z.map_or(Held::Searched, |body| Held::Load(body.mass));
+    search(scene, speed, bounds, load, held)
+}
+
+/// Steady sliding of the layer of `scene` at `speed` (m/s) with the carrier held at `w` (m), where F_z is near `load` (N).
+pub(super) fn sliding_at(scene: &Scene, speed: f64, w: f64, load: f64, bounds: Bounds) -> PointResult {
+    let scene = &Scene { carrier: CarrierBodies::default(), ..scene.clone() };
+    let mut load = LoadSearch::estimated(load, scene, &Model::new(scene));
+    load.w = w;
+    search(scene, speed, bounds, load, Held::Given)
+}
+
+fn search(scene: &Scene, speed: f64, bounds: Bounds, load: LoadSearch, held: Held) -> PointResult {
+    let search = Search::new(scene, Blocks::new(scene, speed), bounds, load, held);
     search.and_then(Search::finish).unwrap_or_else(|error| PointResult::failed(error.to_string()))
 }
 
@@ -220,13 +243,25 @@ pub(super) fn find(scene: &Scene, speed: f64, load: f64, bounds: Bounds) -> Poin
     }
 }
 
+impl Held {
+    /// w at the start, m: a carrier under its load finds its own.
+    fn start(self, load: &LoadSearch) -> f64 {
+        if matches!(self, Self::Load(_)) { 0.0 } else { load.w }
+    }
+}
+
 impl<'a> Search<'a> {
-    fn new(scene: &'a Scene, blocks: Blocks, bounds: Bounds, load: LoadSearch) -> Result<Self, SimulationError> {
+    fn new(
+        scene: &'a Scene,
+        blocks: Blocks,
+        bounds: Bounds,
+        load: LoadSearch,
+        held: Held,
+    ) -> Result<Self, SimulationError> {
         let distance = bounds.distance.unwrap_or(BLOCKS * blocks.length);
-        let body = scene.carrier.z.map(|body| body.mass);
         let vertical = scene.link(LinkKind::Vertical).and_then(|link| link.stiffness).unwrap_or(0.0);
         let stiffness = scene.layer.masses as f64 * vertical;
-        let slide = Slide::new(scene, blocks, if body.is_some() { 0.0 } else { load.w })?;
+        let slide = Slide::new(scene, blocks, held.start(&load))?;
         Ok(Self {
             scene,
             blocks,
@@ -234,7 +269,7 @@ impl<'a> Search<'a> {
             distance,
             slide,
             load,
-            body,
+            held,
             stiffness,
             runs: 1,
             distance_before: 0.0,
@@ -277,26 +312,28 @@ impl<'a> Search<'a> {
 
     /// Relaxes the dashpots by the `means` of the last blocks; returns what the vertical ones bore of F_z, N.
     fn relax(&mut self, means: &BlockMeans) -> f64 {
-        if self.body.is_none() {
-            return self.slide.relax();
+        match self.held {
+            // Of the masses that bear in the mean: at one instant there may be none.
+            Held::Load(_) => self.slide.relax_under_load(means.contact * self.stiffness),
+            Held::Searched | Held::Given => self.slide.relax(),
         }
-        // Of the masses that bear in the mean: at one instant there may be none.
-        self.slide.relax_under_load(means.contact * self.stiffness)
     }
 
     /// How far F_z is from the load in the mean, as a share of it: where that is held, what the carrier's inertia bears.
     fn deviation(&self, means: &BlockMeans) -> f64 {
-        match self.body {
-            Some(mass) => mass * means.acceleration / self.load.target,
-            None => means.load / self.load.target - 1.0,
+        match self.held {
+            Held::Load(mass) => mass * means.acceleration / self.load.target,
+            Held::Searched => means.load / self.load.target - 1.0,
+            Held::Given => 0.0,
         }
     }
 
-    /// Changes w where F_z was `force`, of which the Maxwell elements bore `maxwell` (N), or lets a carrier under its load come
-    /// to rest. On a profile that ends, a new slide begins where no room is left.
+    /// Changes w where F_z was `force`, of which the Maxwell elements bore `maxwell` (N), or lets a carrier under its load, or
+    /// a layer at its w, come to rest. On a profile that ends, a new slide begins where no room is left.
     fn correct(&mut self, force: f64, maxwell: f64) -> Result<(), SimulationError> {
-        let change = if self.body.is_some() { 0.0 } else { self.load.change(force, maxwell) };
-        self.runs += u32::from(self.body.is_none());
+        let searched = self.held == Held::Searched;
+        let change = if searched { self.load.change(force, maxwell) } else { 0.0 };
+        self.runs += u32::from(searched);
         if !self.slide.has_room(RAMP + CALM + FEWEST as f64) {
             return self.restart();
         }
@@ -307,8 +344,7 @@ impl<'a> Search<'a> {
     /// A new slide from the start of a profile that ends.
     fn restart(&mut self) -> Result<(), SimulationError> {
         self.distance_before += self.slide.distance();
-        let w = if self.body.is_some() { 0.0 } else { self.load.w };
-        self.slide = Slide::new(self.scene, self.blocks, w)?;
+        self.slide = Slide::new(self.scene, self.blocks, self.held.start(&self.load))?;
         self.slide.press(RAMP + CALM, 0.0)
     }
 
@@ -351,7 +387,7 @@ impl<'a> Search<'a> {
         let means = &average.means;
         let [damper, maxwell, friction, impact] = means.power;
         let sliding = SteadySliding {
-            w: if self.body.is_some() { means.w } else { self.load.w },
+            w: if matches!(self.held, Held::Load(_)) { means.w } else { self.load.w },
             force_z: means.load,
             friction: Friction::new(means),
             friction_error: average.friction.error,

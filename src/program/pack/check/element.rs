@@ -1,52 +1,37 @@
 //! `asperity pack --table TABLE.csv --check SCENE.toml`: the element against the layer that was swept, in steady sliding
 //! between the points of the table and along a motion to and fro.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use asperity::element::{Element, Load, OperatingPoint, PointContact, SweepGrid};
 use asperity::outputs::{Output, Variable, variable};
-use asperity::scene::{CarrierBodies, Initial, Input, OutputGroup, Parameter, Path as Displacement, Scene, Value};
-use asperity::simulation::{Motion, Simulation, Start};
+use asperity::scene::{Input, Parameter, Scene, Value};
+use asperity::simulation::Start;
 use rayon::prelude::*;
 
+use super::drag::ToAndFro;
+use super::{CheckError, ERROR, SLIDING_DISTANCE, deviation, folder_beside, scene_of, selected};
 use crate::program::cli::{Pack, Plot};
-use crate::program::figure::{Figure as _, Ladder, LadderPanel, Ladders, PlotError, Rung, Stroke, plot_files};
-use crate::program::files::{self, FileError};
+use crate::program::figure::{Figure as _, Ladder, LadderPanel, Ladders, Rung, Stroke, plot_files};
+use crate::program::files::FileError;
 use crate::program::result_file::{CsvWriter, ResultWriter};
 use crate::program::runner::CarrierSample;
 use crate::program::sweep::{Bounds, SteadySliding, steady_sliding};
 use crate::program::terminal::{self, LabelledLine, labelled, real};
 
-/// Standard error of the layer's friction coefficient, relative to it.
-const ERROR: f64 = 0.01;
 /// What is compared in steady sliding.
 const COMPARED: [&str; 3] = ["F_x", "F_z", "P_diss"];
-/// Distance over which the element slides, m: far more than it sticks.
-const SLIDING_DISTANCE: f64 = 1.0;
 /// What is compared along the motion to and fro.
 const LOOP_OUTPUTS: [Output; 4] = [Output::ForceX, Output::ForceZ, Output::DissipatedPower, Output::DissipatedEnergy];
-/// Displacements of the motion to and fro, over the length over which the element sticks.
-const LEGS: [f64; 3] = [10.0, -20.0, 20.0];
-const ROWS: u32 = 200;
-
-/// An element cannot be compared with its layer.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum CheckError {
-    #[error(transparent)]
-    File(#[from] FileError),
-    #[error(transparent)]
-    Plot(#[from] PlotError),
-}
 
 /// Compares the layer and the element, writes the results beside the FMU and summarises them.
-pub(super) fn check(command: &Pack, contact: &PointContact, scene: &Path) -> Result<Vec<LabelledLine>, CheckError> {
-    // The element's w is given: what the table was swept on is held by its displacement here.
-    let scene = Scene { carrier: CarrierBodies::default(), ..files::load(scene)? };
-    let (swept, load) = (&contact.table().scene, contact.table().load);
-    if scene.name != *swept {
-        terminal::warn(&format!("--check: the table is of {swept}, the scene is {}", scene.name));
-    }
+pub(in crate::program::pack) fn check(
+    command: &Pack,
+    contact: &PointContact,
+    scene: &Path,
+) -> Result<Vec<LabelledLine>, CheckError> {
+    let scene = scene_of(contact.table(), scene)?;
+    let load = contact.table().load;
     let folder = folder_beside(&command.output)?;
     let checks = check_points(contact, &scene, command.points as usize);
     write_points(&folder.join("points.csv"), load, &checks)?;
@@ -58,13 +43,6 @@ pub(super) fn check(command: &Pack, contact: &PointContact, scene: &Path) -> Res
     }
     lines.push(("", format!("in {}", folder.display())));
     Ok(lines)
-}
-
-fn folder_beside(output: &Path) -> Result<PathBuf, FileError> {
-    let stem = output.file_stem().map_or_else(|| "element".into(), |stem| stem.to_string_lossy());
-    let path = output.with_file_name(format!("{stem}-check"));
-    fs::create_dir_all(&path).map_err(FileError::io("create", &path))?;
-    Ok(path)
 }
 
 /// The layer and the element at a point between those of the table.
@@ -107,13 +85,8 @@ fn centres(grid: &SweepGrid) -> Vec<OperatingPoint> {
     grid.points().collect()
 }
 
-fn selected(points: &[OperatingPoint], count: usize) -> Vec<OperatingPoint> {
-    let (all, count) = (points.len(), count.min(points.len()));
-    (0..count).map(|i| points[(2 * i + 1) * all / (2 * count)]).collect()
-}
-
 /// The element at the temperature of a point.
-fn element_at(contact: &PointContact, point: &OperatingPoint, start: &Start) -> Result<Element, String> {
+pub(super) fn element_at(contact: &PointContact, point: &OperatingPoint, start: &Start) -> Result<Element, String> {
     let mut contact = contact.clone();
     if let (Some(kelvin), true) = (point.temperature, contact.table().grid.temperatures.len() > 1) {
         let parameter = Parameter::Temperature;
@@ -180,15 +153,6 @@ fn summary(checks: &[PointCheck]) -> Vec<LabelledLine> {
     labelled("Checked", texts)
 }
 
-/// The largest and the root mean square of relative errors.
-fn deviation(name: &str, errors: impl ExactSizeIterator<Item = f64>) -> String {
-    let count = errors.len() as f64;
-    let (largest, squares) =
-        errors.fold((0.0_f64, 0.0), |(largest, sum), error| (largest.max(error.abs()), sum + error * error));
-    let root = (squares / count).sqrt();
-    format!("{name}: off by at most {:.2} %, in root mean square {:.2} %", 100.0 * largest, 100.0 * root)
-}
-
 fn write_points(path: &Path, load: Load, checks: &[PointCheck]) -> Result<(), FileError> {
     let mut head = vec!["speed [m/s]".to_owned(), format!("{} [{}]", load.name(), load.unit())];
     head.extend(["temperature [K]", "status", "w [m]"].map(String::from));
@@ -220,11 +184,11 @@ fn errors_plot(checks: &[PointCheck], load: Load) -> Ladders {
 }
 
 /// The layer and the element along the motion to and fro, row by row.
-#[derive(Default)]
 struct Loop {
+    motion: ToAndFro,
     carriers: Vec<CarrierSample>,
-    layer: Vec<[f64; 4]>,
-    element: Vec<[f64; 4]>,
+    layer: Vec<[f64; LOOP_OUTPUTS.len()]>,
+    element: Vec<[f64; LOOP_OUTPUTS.len()]>,
 }
 
 /// Drags both to and fro from rest at the height and the speed of `check`; writes them as result files and plots them.
@@ -253,7 +217,7 @@ fn to_and_fro(
         negate: true,
         from_motion: false,
     })?;
-    Ok(rows.summary(&variables, check.point.speed))
+    Ok(rows.summary(&variables))
 }
 
 impl Loop {
@@ -264,84 +228,39 @@ impl Loop {
         w: f64,
         variables: &[Variable],
     ) -> Result<Self, String> {
-        let start = Start { w, ..Start::default() };
-        let mut element = element_at(contact, point, &start)?;
-        let mut layer = Simulation::new(&relaxed(scene, point.temperature)?, &start).map_err(|e| e.to_string())?;
-        let mut rows = Self::default();
-        rows.add(&mut layer, &element, w, variables);
-        let length = element.stick_length();
-        if length <= 0.0 {
+        let mut element = element_at(contact, point, &Start { w, ..Start::default() })?;
+        let motion = ToAndFro { speed: point.speed, length: element.stick_length() };
+        if motion.length <= 0.0 {
             return Err("no contact, or no friction".into());
         }
-        for leg in LEGS {
-            let (duration, rate) = ((leg * length).abs() / point.speed, leg.signum() * point.speed);
-            let step = duration / f64::from(ROWS);
-            let motion = Motion {
-                duration: step,
-                u: Displacement { rate, ..Displacement::default() },
-                w: Displacement::default(),
-                ..Motion::default()
-            };
-            for _ in 0..ROWS {
-                layer.advance(&motion).map_err(|e| e.to_string())?;
-                element.advance(step, rate, 0.0).map_err(|e| e.to_string())?;
-                rows.add(&mut layer, &element, w, variables);
-            }
+        let values = |element: &Element| {
+            let mut values = [0.0; LOOP_OUTPUTS.len()];
+            element.evaluate(variables, &mut values);
+            values
+        };
+        let mut rows = vec![values(&element)];
+        for (duration, rate) in motion.steps() {
+            element.advance(duration, rate, 0.0).map_err(|error| error.to_string())?;
+            rows.push(values(&element));
         }
-        Ok(rows)
+        let layer = motion.layer(scene, point.temperature, w, variables)?;
+        Ok(Self { motion, carriers: motion.carriers(w), layer, element: rows })
     }
 
-    fn add(&mut self, layer: &mut Simulation, element: &Element, w: f64, variables: &[Variable]) {
-        let (mut of_layer, mut of_element) = ([0.0; 4], [0.0; 4]);
-        layer.evaluate(variables, &mut of_layer);
-        element.evaluate(variables, &mut of_element);
-        self.carriers.push(CarrierSample { time: layer.time(), u: layer.carrier().0, w, ..CarrierSample::default() });
-        self.layer.push(of_layer);
-        self.element.push(of_element);
-    }
-
-    fn write(&self, path: &Path, variables: &[Variable], rows: &[[f64; 4]]) -> Result<(), FileError> {
+    fn write(&self, path: &Path, variables: &[Variable], rows: &[[f64; LOOP_OUTPUTS.len()]]) -> Result<(), FileError> {
         let mut writer = ResultWriter::create(path, &[Input::U, Input::W], variables)?;
         self.carriers.iter().zip(rows).try_for_each(|(carrier, row)| writer.write(*carrier, row))?;
         writer.finish()
     }
 
     /// The largest and the root mean square differences over the largest value of the layer.
-    fn summary(&self, variables: &[Variable], speed: f64) -> Vec<LabelledLine> {
-        let distance = self.carriers.iter().fold(0.0_f64, |distance, carrier| distance.max(carrier.u.abs()));
-        let head =
-            format!("to and fro by {distance:.3e} m at {speed:.3e} m/s, from rest, over the layer's largest value");
+    fn summary(&self, variables: &[Variable]) -> Vec<LabelledLine> {
+        let head = format!("{}, over the layer's largest value", self.motion.describe());
         let of = |(i, variable): (usize, &Variable)| {
             let largest = self.layer.iter().fold(f64::MIN_POSITIVE, |largest, row| largest.max(row[i].abs()));
             let errors = self.layer.iter().zip(&self.element).map(|(a, b)| (a[i] - b[i]).abs() / largest);
             ("", deviation(&variable.name, errors))
         };
         std::iter::once(("", head)).chain(variables.iter().enumerate().map(of)).collect()
-    }
-}
-
-/// The scene relaxed at the start and with the outputs that are compared.
-fn relaxed(scene: &Scene, temperature: Option<f64>) -> Result<Scene, String> {
-    let outputs = vec![OutputGroup::Forces, OutputGroup::Dissipation];
-    let mut scene = Scene { outputs, excitation: Vec::new(), ..scene.clone() };
-    scene.layer.initial = Initial::Relaxed;
-    if let Some(kelvin) = temperature {
-        let parameter = Parameter::Temperature;
-        scene.set_parameter(parameter, Value::Real(kelvin)).map_err(|error| error.to_string())?;
-    }
-    Ok(scene)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn points_are_selected_evenly_and_each_once() {
-        let point = |speed: f64| OperatingPoint { speed, load: 1.0, temperature: None };
-        let points: Vec<OperatingPoint> = (0..10).map(|i| point(f64::from(i))).collect();
-        let speeds = |count| selected(&points, count).iter().map(|point| point.speed).collect::<Vec<_>>();
-        assert_eq!(speeds(2), [2.0, 7.0]);
-        assert_eq!(speeds(99), (0..10).map(f64::from).collect::<Vec<_>>());
     }
 }
