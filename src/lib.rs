@@ -37,6 +37,7 @@
 //! | the rules of mode changes, the impact | `contact/laws.rs`, for both methods; stops and breaks within a time step also in `integrator/stage/modes.rs` |
 //! | an element's law in a patch, its step | `element/resampled.rs`; `patch/spring.rs` (closed form), `patch/cut.rs` (touch and lift), `patch/block.rs` |
 //! | an output of a patch | `patch/variables.rs`, `patch/survey.rs`, `patch/derivatives.rs` |
+//! | a picture of a patch | `program/figure/patch.rs`; its maps `moment.rs` (what is drawn) and `maps.rs` (how), from `patch/plan.rs` |
 //! | what an FMU state holds | `FmuState` in `fmi/state.rs`, `RunState` in `simulation/run.rs` |
 //! | what acts on a carrier that is a body | `scene/carrier.rs` (keys in `scene/reader/carrier.rs`), `Body` and `Outside` in `model/carrier.rs`; its equation in `integrator/stage/border.rs`, its sensitivity in `integrator/sensitivity.rs` |
 //! | an input of the FMU | [`scene::Input`], `Inputs` in `fmi/inputs.rs`, `Motion` in `simulation/motion.rs`, `CarrierSample` in `program/runner.rs` |

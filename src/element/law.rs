@@ -243,6 +243,12 @@ impl Curve {
         self.ends.push(self.approaches[self.approaches.len() - 1]);
     }
 
+    /// The ends of the pieces of the approach, m, rising: the first begins where the contact does and ends at the least
+    /// pressure, the last ends at the largest.
+    pub(super) fn ends(&self) -> &[f64] {
+        &self.ends
+    }
+
     /// The end of the piece that the carrier enters as it leaves `approach` (m), closer or farther; infinite where there
     /// is none.
     pub(super) fn end_of_piece(&self, approach: f64, closer: bool) -> f64 {

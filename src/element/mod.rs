@@ -8,6 +8,7 @@
 mod grid;
 mod jenkins;
 mod law;
+mod low_end;
 mod point_contact;
 mod resampled;
 mod run;
@@ -18,6 +19,7 @@ mod tests;
 
 pub use grid::{Load, OperatingPoint, SweepGrid};
 pub use law::{LeftOut, left_out};
+pub use low_end::LowEnd;
 pub use point_contact::{PointContact, dependencies, variables};
 pub use resampled::{LawPoint, ResampledLaw, SpeedRange, Spot};
 pub use run::{Element, ElementError, ElementState, RestoreError};

@@ -146,6 +146,9 @@ pub struct TableHeader {
     pub basis: Basis,
     /// The points that the table is to have.
     pub grid: SweepGrid,
+    /// How far the law reaches below the least load, in words; `None` while points are missing. It follows from the rows and
+    /// is not read.
+    pub low_end: Option<String>,
 }
 
 /// What the numbers of a table rest on, in words; a line of the header each, where there is something to say.
@@ -197,6 +200,7 @@ impl TableHeader {
         if !grid.temperatures.is_empty() {
             lines.push(format!("# temperatures = {} K", list(&grid.temperatures)));
         }
+        lines.extend(self.low_end.as_ref().map(|text| format!("# low_end = {}", one_line(text))));
         lines.push(columns(self.load).join(","));
         lines.join("\n") + "\n"
     }
@@ -384,6 +388,7 @@ impl TableText {
                 loads: self.header_numbers(&format!("{}s", load.name()), load.unit())?,
                 temperatures: if has_temperatures { self.header_numbers("temperatures", "K")? } else { Vec::new() },
             },
+            low_end: None,
         })
     }
 
@@ -517,7 +522,8 @@ mod tests {
             let grid = SweepGrid { speeds: vec![1e-5, 0.1 + 0.2], loads: vec![2e5, 1e30], temperatures };
             let (scene, fingerprint) = ("a = b, c".to_owned(), "00ff".to_owned());
             let basis = Basis { foundation: Some("half_space".into()), ..Basis::default() };
-            let header = TableHeader { scene, fingerprint, load, rest_separation: -1.5e-5, basis, grid };
+            let rest_separation = -1.5e-5;
+            let mut header = TableHeader { scene, fingerprint, load, rest_separation, basis, grid, low_end: None };
             let row = |(i, point): (usize, OperatingPoint)| {
                 let mut row = TableRow::new(point, if i == 0 { STEADY } else { "not steady, \"by far\"" }.into());
                 let values = Quantity::ALL.iter().zip(1..).filter(|(_, number)| number % 3 != 0);
@@ -525,8 +531,10 @@ mod tests {
                 row
             };
             let rows: Vec<TableRow> = header.grid.points().enumerate().map(row).collect();
+            header.low_end = Some("below 1 Pa".into());
             let written = header.text() + &rows.iter().map(TableRow::line).collect::<String>();
             let text = TableText::parse(&written, Path::new("t.csv")).unwrap();
+            header.low_end = None;
             assert_eq!((text.header().unwrap(), text.rows(load).unwrap()), (header, rows));
         }
     }

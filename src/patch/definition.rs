@@ -324,16 +324,17 @@ fn face(file: &PatchFile) -> Face {
         area: length / nx as f64 * (width / ny as f64),
         offset: file.offset,
     };
-    if file.transport { Face::Tread(tread) } else { Face::Points(standing(&tread)) }
+    if file.transport { Face::Tread(tread) } else { Face::Points(standing(tread)) }
 }
 
 fn single_points(points: &[[f64; 4]], offset: [f64; 3]) -> Points {
     let axis = |i: usize| points.iter().map(|point| point[i] + offset[i]).collect();
-    Points { x: axis(0), y: axis(1), z: axis(2), area: points.iter().map(|point| point[3]).collect() }
+    let area = points.iter().map(|point| point[3]).collect();
+    Points { x: axis(0), y: axis(1), z: axis(2), area, grid: None }
 }
 
 /// The cells of a tread that does not run.
-fn standing(tread: &Tread) -> Points {
+fn standing(tread: Tread) -> Points {
     let mut points = Points::default();
     for column in (1..=tread.columns).map(|i| tread.column(i as f64, Run::default().at(0.0))) {
         for &y in &tread.rows {
@@ -343,5 +344,5 @@ fn standing(tread: &Tread) -> Points {
             points.area.push(tread.area);
         }
     }
-    points
+    Points { grid: Some(tread), ..points }
 }

@@ -21,6 +21,8 @@ pub(super) struct Points {
     pub(super) z: Vec<f64>,
     /// Areas, m².
     pub(super) area: Vec<f64>,
+    /// The grid whose cells they are, its columns counted from 1; `None` where they are single points.
+    pub(super) grid: Option<Tread>,
 }
 
 /// A grid of cells that moves along -x.

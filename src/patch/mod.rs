@@ -15,6 +15,7 @@
 //! | `state` | motions, errors, what a run holds |
 //! | `run` | a run |
 //! | `survey` | elements one by one, and sums over them |
+//! | `plan` | elements in the plane of their face, for pictures |
 //! | `derivatives` | changes of outputs with the pose and by time |
 //! | `variables` | output variables |
 
@@ -24,6 +25,7 @@ mod definition;
 mod derivatives;
 mod face;
 mod motion;
+mod plan;
 mod run;
 mod spring;
 mod state;
@@ -31,6 +33,7 @@ mod survey;
 mod variables;
 
 pub use definition::{Patch, PatchElement, PatchError};
+pub use plan::{FaceElement, FacePlan};
 pub use run::PatchRun;
 pub use state::{MotionError, PatchMotion, PatchStart, PatchState, Pose, RestoreError};
 pub use variables::{COORDINATES, PatchOutput, PatchVariable};

@@ -18,6 +18,7 @@ mod damper;
 mod element;
 mod fit;
 mod patch_check;
+mod patch_maps;
 mod peers;
 mod program;
 mod report;

@@ -192,6 +192,9 @@ fn a_table_cut_off_anywhere_is_completed() {
     }
     // Points done are not computed again: what is changed by hand stays.
     let text = String::from_utf8(whole.clone()).unwrap().replace(",steady,", ",by hand,");
+    // Nothing is said of the law of points that are not steady.
+    let low_end = text.lines().find(|line| line.starts_with("# low_end")).unwrap();
+    let text = text.replace(&format!("{low_end}\n"), "");
     fs::write(&table, &text).unwrap();
     let message = refused(&[&scene, Path::new("-o"), &table], &POINTS);
     assert!(message.contains("6 of 6 points are not steady"), "{message}");
@@ -202,6 +205,44 @@ fn a_table_cut_off_anywhere_is_completed() {
     sweep(&scene, &table, &["--speeds", "0.1..1/3,2", "--forces", "0.5,2"]);
     assert_eq!(Rows::read(&table).rows.len(), 8);
     assert!(table.with_extension("svg").exists());
+}
+
+/// The end of a sweep, and the header of its table, say how far the law reaches below the least load; a table with that
+/// line is read.
+#[test]
+fn the_low_end_is_named() {
+    let folder = scratch("sweep-low-end");
+    let (scene, table) = scene(&folder, FLAT);
+    let mut sweep = asperity();
+    sweep.arg("sweep").arg(&scene).arg("-o").arg(&table).args(["--speeds", "0.1,1", "--forces", "0.5,1,2"]);
+    let printed = run(&mut sweep);
+    // Springs of 8 kN/m: 62.5 µm to the first force, as much to the second, twice that to the third. ln F rises by ln 2 from
+    // each to the next; the parabola through the three has the slope (1 + 1/2 · 1/3) ln 2/62.5 µm at the first, and the law
+    // touches 2/slope farther.
+    let reach = 2.0 / ((1.0 + 1.0 / 6.0) * 2.0_f64.ln() / 62.5);
+    let line = format!(
+        "below 0.5 N the law is a parabola that reaches {:.0} µm farther at 0.1 m/s",
+        10.0 * (reach / 10.0).round()
+    );
+    assert!(printed.starts_with("Low end ") && printed.contains(&line), "{line}: {printed}");
+    let header = fs::read_to_string(&table).unwrap();
+    let header = header.lines().find_map(|line| line.strip_prefix("# low_end = ")).unwrap();
+    assert!(printed.trim_end().ends_with(header), "{header}");
+    let patch = folder.join("patch.toml");
+    let shape = "shape = 'flat'\nlength = 0.01\nwidth = 0.01\nnx = 1\nny = 1";
+    fs::write(&patch, format!("name = 'p'\n[table]\npath = 'table.csv'\nnominal_area = 1e-6\n[patch]\n{shape}\n"))
+        .unwrap();
+    assert!(run(asperity().args(["describe", "--patch"]).arg(&patch)).contains("6 points"));
+    // One force has no slope, so nothing is known below it.
+    assert_eq!(
+        run(asperity()
+            .arg("sweep")
+            .arg(&scene)
+            .arg("-o")
+            .arg(folder.join("one.csv"))
+            .args(["--speeds", "1", "--forces", "1"])),
+        ""
+    );
 }
 
 /// Merged shards are the whole, byte for byte; points that are missing or differ are named.

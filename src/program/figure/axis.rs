@@ -6,6 +6,8 @@ use std::ops::Range;
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use plotters::coord::types::RangedCoordf64;
 
+use crate::program::terminal::rounded;
+
 const PREFIXES: [(&str, f64); 9] =
     [("G", 1e9), ("M", 1e6), ("k", 1e3), ("", 1.0), ("m", 1e-3), ("µ", 1e-6), ("n", 1e-9), ("p", 1e-12), ("f", 1e-15)];
 
@@ -91,7 +93,7 @@ impl Axis {
     }
 
     /// The ticks with labels, at most about `most` of them on a logarithmic axis.
-    fn ticks(&self, most: usize) -> Vec<f64> {
+    pub(super) fn ticks(&self, most: usize) -> Vec<f64> {
         match self.scale {
             Scale::Linear { step, .. } => {
                 let [first, last] = [(self.low / step - ROUNDING).ceil(), (self.high / step + ROUNDING).floor()];
@@ -186,6 +188,19 @@ fn prefix(largest: f64, unit: &str) -> (&'static str, f64) {
     PREFIXES.into_iter().find(|(_, factor)| largest >= 0.999 * factor).unwrap_or(("f", 1e-15))
 }
 
+/// A quantity in three digits, with the prefix of its unit that suits `largest`: `1.23 mN`.
+pub(super) fn with_prefix(value: f64, largest: f64, unit: &str) -> String {
+    let (prefix, factor) = prefix(largest.abs(), unit);
+    format!("{} {prefix}{unit}", rounded(value / factor, 3))
+}
+
+/// The largest of 1, 2 and 5 times a power of ten that is at most `value`; 0 where that is.
+pub(super) fn rounded_down(value: f64) -> f64 {
+    let decade = 10_f64.powf(value.log10().floor());
+    let round = [5.0, 2.0, 1.0].into_iter().map(|factor| factor * decade);
+    round.into_iter().find(|round| *round <= value * (1.0 + ROUNDING)).unwrap_or_default()
+}
+
 /// The smallest of 1, 2 and 5 times a power of ten that is at least `step`.
 fn round_step(step: f64) -> f64 {
     let decade = 10_f64.powf(step.log10().floor());
@@ -264,6 +279,13 @@ mod tests {
         assert_eq!(labels(&logarithmic(2e-5, 1e-4), 10), ["2·10⁻⁵", "5·10⁻⁵", "10⁻⁴"]);
         assert_eq!(labels(&logarithmic(0.05, 200.0), 10), ["10⁻¹", "10⁰", "10¹", "10²"]);
         assert_eq!(labels(&logarithmic(1e-12, 1.0), 10)[..2], ["10⁻¹²", "10⁻¹⁰"]);
+    }
+
+    #[test]
+    fn quantities_have_few_digits_and_a_prefix() {
+        assert_eq!([with_prefix(0.9, 4.5, "s"), with_prefix(389_123.0, 4e5, "Pa")], ["0.9 s", "389 kPa"]);
+        assert_eq!(with_prefix(0.0, 0.0, "N"), "0 N");
+        assert_eq!([0.0, 1.0, 4.99e5, 0.7].map(rounded_down), [0.0, 1.0, 2e5, 0.5]);
     }
 
     #[test]

@@ -11,13 +11,13 @@ use super::{
 };
 
 /// Between the edges of a chart and its axes; more at the right, where half of a tick's label stands.
-const MARGIN: u32 = 6 * FINE;
-const RIGHT_MARGIN: u32 = 28 * FINE;
+pub(super) const MARGIN: u32 = 6 * FINE;
+pub(super) const RIGHT_MARGIN: u32 = 28 * FINE;
 /// Space for ticks and title of the vertical axis, and of the horizontal one.
 const BESIDE: u32 = 72 * FINE;
-const BELOW: u32 = 46 * FINE;
+pub(super) const BELOW: u32 = 46 * FINE;
 /// From the left edge to the vertical axis, and to the legend.
-const LEFT: u32 = MARGIN + BESIDE;
+pub(super) const LEFT: u32 = MARGIN + BESIDE;
 const TICK: u32 = 5 * FINE;
 /// Space for a tick's label along a horizontal and along a vertical axis.
 const LABEL: (u32, u32) = (42 * FINE, 28 * FINE);
@@ -25,7 +25,7 @@ const LABEL: (u32, u32) = (42 * FINE, 28 * FINE);
 const CIRCLE: i32 = 4 * FINE as i32;
 pub(super) const MARKER: i32 = 5 * FINE as i32;
 
-const LEGEND_LINE: u32 = 30 * FINE;
+pub(super) const LEGEND_LINE: u32 = 30 * FINE;
 const SYMBOL: u32 = 26 * FINE;
 /// Between a symbol and its name; three times that before the next symbol.
 const GAP: u32 = 7 * FINE;

@@ -3,6 +3,8 @@
 mod axis;
 mod chart;
 mod ladders;
+mod maps;
+mod moment;
 mod panels;
 mod patch;
 mod plot;

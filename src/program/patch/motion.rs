@@ -54,6 +54,11 @@ impl MotionFile {
         &self.rows
     }
 
+    /// The times of its rows, s.
+    pub(crate) fn times(&self) -> Vec<f64> {
+        self.rows.iter().map(|row| row.time).collect()
+    }
+
     /// The names of its columns.
     pub(crate) fn names(&self) -> Vec<&'static str> {
         let mut names = vec![TIME];

@@ -73,7 +73,7 @@ impl Recorder {
         Ok(Self {
             values: vec![0.0; variables.len()],
             writer: CsvWriter::create(&command.output, names)?,
-            history: command.plot.is_some().then(|| PatchHistory::new(patch)),
+            history: command.plot.is_some().then(|| PatchHistory::new(patch, &motion.times())),
             variables,
         })
     }

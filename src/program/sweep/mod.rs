@@ -2,6 +2,7 @@
 
 mod convergence;
 mod load_search;
+mod low_end;
 mod plot;
 mod point;
 mod slide;
@@ -17,8 +18,8 @@ use asperity::scene::{Initial, OutputGroup, ParameterError, Path as Displacement
 use rayon::prelude::*;
 
 use super::cli::Sweep;
-use super::files::{FileError, check_output, load, set_parameters, sources};
-use super::terminal::{self, warn};
+use super::files::{FileError, check_output, load, print, set_parameters, sources};
+use super::terminal::{self, lines, warn};
 use load_search::{heights, rest_separation};
 use point::PointResult;
 pub(crate) use point::{Bounds, SMALL as SMALL_FRICTION, SteadySliding};
@@ -91,11 +92,13 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepErr
         rest_separation: separation_at_rest(&scene),
         basis: basis(&scene, convergence::found(command.converged.as_ref(), path, &scene.name)?),
         grid,
+        low_end: None,
     };
     let file = TableFile::open(&output, &header, command.force)?;
     run(command, &scene, &header, &file)?;
     let mut table = SweepTable { header, ..SweepTable::read(&output)? };
     table.sort();
+    table.find_low_end(&output);
     table.write(&output)?;
     finish(command, &output, &table)
 }
@@ -131,12 +134,15 @@ fn run(command: &Sweep, scene: &Scene, header: &TableHeader, file: &TableFile) -
     work
 }
 
-/// Draws the plot and counts the points that are not steady.
+/// Draws the plot, says what lies at the low end and counts the points that are not steady.
 fn finish(command: &Sweep, output: &Path, table: &SweepTable) -> Result<(), SweepError> {
     if command.shard.is_none() {
         let picture = command.plot.clone().unwrap_or_else(|| output.with_extension("svg"));
         check_output(&picture, &[vec![output.to_owned()], command.merge.clone()].concat())?;
         plot::draw(&picture, table)?;
+    }
+    if let Some(low_end) = &table.header.low_end {
+        print(&lines(&[("Low end", low_end.clone())]))?;
     }
     let (failed, total) = (table.rows.iter().filter(|stored| !stored.row.is_steady()).count(), table.rows.len());
     if failed == 0 { Ok(()) } else { Err(SweepError::NotSteady { failed, total, path: output.to_owned() }) }

@@ -4,9 +4,10 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use asperity::element::{FORMAT, OperatingPoint, TableError, TableHeader, TableRow, TableText};
+use asperity::element::{FORMAT, OperatingPoint, Table, TableError, TableHeader, TableRow, TableText};
 use asperity::scene::Scene;
 
+use super::low_end::low_end;
 use crate::program::files::{FileError, LineFile, replace};
 
 /// A table cannot be read, continued or merged.
@@ -87,6 +88,11 @@ impl SweepTable {
         self.rows.sort_by_key(|stored| grid.index(&stored.row.point));
     }
 
+    /// Says in the header what lies at the low end, where every point is there and steady and there are several loads.
+    pub(super) fn find_low_end(&mut self, path: &Path) {
+        self.header.low_end = Table::parse(&self.text(), path).ok().map(|table| low_end(&table));
+    }
+
     fn text(&self) -> String {
         self.header.text() + &self.rows.iter().map(|stored| stored.text.as_str()).collect::<String>()
     }
@@ -113,7 +119,8 @@ impl SweepTable {
                 None => missing.push(point.describe(header.load)),
             }
         }
-        let table = Self { header, rows };
+        let mut table = Self { header, rows };
+        table.find_low_end(output);
         table.write(output)?;
         if missing.is_empty() {
             return Ok(table);
@@ -177,7 +184,7 @@ fn rows_done(path: &Path, header: &TableHeader) -> Result<Vec<StoredRow>, TableF
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
         Err(error) => return Err(FileError::io("read", path)(error).into()),
     };
-    if header.text().starts_with(&text) {
+    if is_begun(&text, &header.text()) {
         return Ok(Vec::new());
     }
     let table = SweepTable::parse(&text, path).map_err(TableFileError::NotATable)?;
@@ -192,6 +199,14 @@ fn rows_done(path: &Path, header: &TableHeader) -> Result<Vec<StoredRow>, TableF
         }
         None => Ok(table.rows),
     }
+}
+
+/// Whether a text is the beginning of a header, cut off before the rows; a line on the low end may stand in it before the
+/// names of the columns.
+fn is_begun(text: &str, header: &str) -> bool {
+    let names = header.trim_end().rfind('\n').map_or(0, |end| end + 1);
+    let after = text.strip_prefix(&header[..names]);
+    header.starts_with(text) || after.is_some_and(|rest| rest.starts_with('#') && rest.matches('\n').count() < 2)
 }
 
 /// Tells one sweep from another: depends on everything in the scene that its points depend on, and on the settings.
