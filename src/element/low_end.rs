@@ -9,7 +9,7 @@ pub struct LowEnd {
     /// How much farther away than where it bears the least load a layer touches, m.
     pub reach: f64,
     /// The share of the load that is borne below the least one, of many layers whose separations are spread evenly from the
-    /// touch to that of the largest load: a face that stands obliquely or is round.
+    /// touch to that of the largest load, as those of an oblique face are.
     pub share: f64,
 }
 

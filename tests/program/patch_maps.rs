@@ -50,7 +50,7 @@ fn a_map_has_each_cell_and_the_heading_the_largest_pressure() {
     assert!(colours.contains(&"#FEE825"), "{colours:?}");
     let [time, pressure] = [times[largest] * 1e3, pressures[largest] * 1e-3];
     let heading = format!(
-        "At {time:.0} ms, where the force is largest, {:.0} N: pressure up to {pressure:.0} kPa",
+        "At {time:.0} ms, when the force is largest, {:.0} N: pressure up to {pressure:.0} kPa",
         force(largest)
     );
     assert!(picture.contains(&heading), "{heading}");

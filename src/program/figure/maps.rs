@@ -124,7 +124,7 @@ fn fitted(length: f64, width: f64, within: (u32, u32)) -> (u32, u32) {
 fn draw_title<B: Backend>(canvas: &Canvas<B>, moment: &Moment) -> DrawResult {
     let [time, force, pressure] = [(moment.time, "s"), (moment.force, "N"), (moment.pressure, "Pa")]
         .map(|(value, unit)| with_prefix(value, value, unit));
-    let text = format!("At {time}, where the force is largest, {force}: pressure up to {pressure}");
+    let text = format!("At {time}, when the force is largest, {force}: pressure up to {pressure}");
     canvas.draw(&Text::new(text, (LEFT as i32, 8 * FINE as i32), text_style(TEXT_SIZE)))?;
     Ok(())
 }

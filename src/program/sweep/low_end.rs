@@ -16,8 +16,8 @@ pub(super) fn low_end(table: &Table) -> String {
     let reaches: Vec<String> = speeds.iter().zip(&ends).map(reach).collect();
     let share = ends.iter().map(|end| end.share).fold(0.0, f64::max);
     format!(
-        "below {} {unit} the law is a parabola that reaches {}; of a face that stands obliquely or is round and presses up to \
-         the table's largest {} it bears {} % of the load",
+        "below {} {unit} the law is a parabola that reaches {}; of an oblique face that presses up to the table's largest {} \
+         it bears {} % of the load",
         grid.loads[0],
         reaches.join(" and "),
         table.load.name(),
