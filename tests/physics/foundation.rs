@@ -146,3 +146,43 @@ fn friction_on_a_rough_layer_is_the_layers() {
 fn friction_on_a_rough_half_plane_is_the_half_planes() {
     slides("rough", "1,10");
 }
+
+/// Means of the shipped tread block over the last two thirds of its slide, with these edits of the scene: friction coefficient
+/// and contact ratio.
+fn block(edits: &[(&str, &str)], folder: &Path) -> [f64; 2] {
+    let home = root().join("scenes/tread-block-rubber");
+    for file in ["compound.csv", "profile.csv"] {
+        fs::copy(home.join(file), folder.join(file)).unwrap();
+    }
+    let mut text = fs::read_to_string(home.join("tread-block-rubber.toml")).unwrap();
+    for (before, after) in edits {
+        assert_eq!(text.matches(before).count(), 1, "{before}");
+        text = text.replace(before, after);
+    }
+    let path = folder.join("block.toml");
+    fs::write(&path, text).unwrap();
+    let run = simulate(&path, folder, &["--points", "600"]);
+    let place = run.column("u");
+    let mean = |name: &str| {
+        let values = run.column(name);
+        let slide = values.iter().zip(&place).filter(|(_, u)| (0.5e-3..1.5e-3).contains(*u)).map(|(value, _)| *value);
+        let (sum, count) = slide.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+        sum / count
+    };
+    [-mean("F_x") / mean("F_z"), mean("contact.ratio")]
+}
+
+/// From twice its spacing to its own, and with ten times its tolerance. A halving again changes less, and takes three times as long.
+#[test]
+fn the_tread_block_in_rubber_is_converged() {
+    let folder = scratch("tread-block-rubber");
+    let coarse = [("masses = 512", "masses = 256"), ("spacing = 2.5e-5", "spacing = 5.0e-5")];
+    let [friction, area] = block(&[], &folder);
+    let [coarse_friction, coarse_area] = block(&coarse, &folder);
+    // By less than a tenth of this; where masses stick and slip by themselves by twenty times it.
+    near("friction", friction, coarse_friction, 0.005);
+    // Of first order in the spacing: 9.6 %, and 4 % with the next halving.
+    near("area", area, coarse_area, 0.1);
+    let [loose_friction, _] = block(&[("relative_tolerance = 1.0e-3", "relative_tolerance = 1.0e-2")], &folder);
+    near("friction at 1e-2", loose_friction, friction, 1e-3);
+}
