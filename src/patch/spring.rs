@@ -132,7 +132,9 @@ pub(super) fn pass<T: Number>(force: [T; 2], piece: &Piece<T>) -> Passed<T> {
     let (x, y) = (slipped[0].or(slips, tx), slipped[1].or(slips, ty));
     let (k_0, k_1, k_m) = (begin.stiffness.value(), end.stiffness.value(), middle.value());
     let (before, after) = ((ex * ex + ey * ey).value(), (x * x + y * y).value());
-    let (share_0, share_1) = if falls { (1.0, 1.0) } else { (k_m / (k_0 + TINY), k_m / (k_1 + TINY)) };
+    // Finite where a stiffness begins at 0, times a force that does too.
+    let share = |k: f64| if falls { 1.0 } else { (k_m / (k + TINY)).min(f64::MAX) };
+    let (share_0, share_1) = (share(k_0), share(k_1));
     let release = 0.25 * (k_1 - k_0).abs() * (before * share_0 + after * share_1);
     Passed { force: [k_b * x, k_b * y], slips, slip: if slips && by_slip > 0.0 { by_slip } else { 0.0 }, release }
 }
@@ -216,6 +218,9 @@ mod tests {
     fn what_lifts_loses_all() {
         let lifted = passed([3.0, 4.0], hold(1e6, 5.0), hold(0.0, 0.0), [1e-6, 0.0]);
         assert!(lifted.force == [0.0; 2] && lifted.release > 0.0 && lifted.slip.is_finite());
+        // However stiff what touches is.
+        let touches = passed([0.0; 2], hold(0.0, 0.0), hold(1e20, 1e15), [1e-6, 0.0]);
+        assert!(touches.force[0] > 0.0 && touches.release.is_finite());
         let free = passed([0.0; 2], hold(0.0, 0.0), hold(0.0, 0.0), [1e30, 0.0]);
         assert!(free.force == [0.0; 2] && free.release == 0.0 && free.slip == 0.0);
     }
