@@ -223,6 +223,12 @@ fmu = { outputs = ["forces", "dissipation", "contact", "friction", "energy", "ta
             run.evaluate(&variables, &mut values);
         }
     });
+    let mut saved = run.save();
+    let states = allocations(|| {
+        run.set_state(&saved).unwrap();
+        run.save_into(&mut saved);
+    });
+    assert_eq!(states, 0, "a state is copied into the arrays that there are");
     let energy = variables.iter().position(|variable| variable.name == "E_diss").unwrap();
     assert!(values[energy] > 0.0 && count == 0, "{count} allocations, {} J lost", values[energy]);
 }

@@ -420,7 +420,7 @@ pub unsafe extern "C" fn fmi2SerializedFMUstateSize(
     // SAFETY: the contract of this module.
     unsafe {
         call(c, Function::SerializedFmuStateSize, |instance| {
-            *target("size", size)? = instance.serialise_state(FMUstate.addr())?.len();
+            *target("size", size)? = instance.serialised_size(FMUstate.addr())?;
             Ok(())
         })
     }

@@ -28,14 +28,9 @@ pub(super) struct FmuStates {
 }
 
 impl FmuStates {
-    /// Keeps `state` under `handle`, or under a new handle where that is 0. Returns its handle.
-    pub(super) fn keep(&mut self, handle: usize, state: FmuState) -> Result<usize, Error> {
-        if handle == 0 {
-            return Ok(self.keep_new(state));
-        }
-        let kept = self.states.get_mut(&handle).ok_or(Error::UnknownState("what FMUstate points to"))?;
-        **kept = state;
-        Ok(handle)
+    /// The state `handle`, to be written over.
+    pub(super) fn recall_mut(&mut self, handle: usize) -> Result<&mut FmuState, Error> {
+        self.states.get_mut(&handle).map(|state| &mut **state).ok_or(Error::UnknownState("what FMUstate points to"))
     }
 
     /// Keeps `state` under a new handle, which it returns.
@@ -69,7 +64,7 @@ const FORMAT: u32 = 9;
 const CHECKSUM: usize = 16;
 
 /// An [`FmuState`] as it is serialised: with the parameters set instead of the definition.
-#[derive(Serialize, Deserialize)]
+#[derive(Deserialize)]
 struct WrittenState {
     lifecycle: LifecycleState,
     parameters: BTreeMap<String, Value>,
@@ -79,14 +74,39 @@ struct WrittenState {
     model: Option<ModelState>,
 }
 
+/// The same as it is written: a patch may be large.
+#[derive(Serialize)]
+struct BorrowedState<'a> {
+    lifecycle: LifecycleState,
+    parameters: &'a BTreeMap<String, Value>,
+    inputs: Inputs,
+    clock: Clock,
+    last_step: Status,
+    model: &'a Option<ModelState>,
+}
+
+impl<'a> BorrowedState<'a> {
+    fn of(state: &'a FmuState) -> Self {
+        let FmuState { lifecycle, parameters, inputs, clock, last_step, model, .. } = state;
+        let parameters = parameters.values_set();
+        Self { lifecycle: *lifecycle, parameters, inputs: *inputs, clock: *clock, last_step: *last_step, model }
+    }
+}
+
+/// The number of bytes of `state` of the FMU with this GUID.
+pub(super) fn size(state: &FmuState, guid: &str) -> Result<usize, RestoreError> {
+    let own = postcard::experimental::serialized_size(&BorrowedState::of(state))?;
+    let inputs = state.patch_inputs.as_ref().map_or(Ok(0), postcard::experimental::serialized_size)?;
+    Ok(head(guid).len() + own + inputs + CHECKSUM)
+}
+
 /// `state` of the FMU with this GUID as a byte string.
 pub(super) fn write(state: &FmuState, guid: &str) -> Result<Vec<u8>, RestoreError> {
-    let FmuState { lifecycle, parameters, inputs, patch_inputs, clock, last_step, model } = state.clone();
-    let parameters = parameters.values_set().clone();
-    let written = WrittenState { lifecycle, parameters, inputs, clock, last_step, model };
-    let mut bytes = postcard::to_extend(&written, head(guid))?;
-    if let Some(inputs) = patch_inputs {
-        bytes = postcard::to_extend(&inputs, bytes)?;
+    let mut bytes = Vec::with_capacity(size(state, guid)?);
+    bytes.extend(head(guid));
+    bytes = postcard::to_extend(&BorrowedState::of(state), bytes)?;
+    if let Some(inputs) = &state.patch_inputs {
+        bytes = postcard::to_extend(inputs, bytes)?;
     }
     bytes.extend(checksum(&bytes));
     Ok(bytes)

@@ -161,7 +161,11 @@ impl Instance {
 
     /// fmi2GetFMUstate: takes and returns the state's handle, 0 for a new one.
     pub(super) fn get_state(&mut self, handle: usize) -> Result<usize, Error> {
-        self.fmu_states.keep(handle, self.state.save())
+        if handle == 0 {
+            return Ok(self.fmu_states.keep_new(self.state.save()));
+        }
+        self.state.save_into(self.fmu_states.recall_mut(handle)?);
+        Ok(handle)
     }
 
     /// fmi2SetFMUstate
@@ -177,7 +181,12 @@ impl Instance {
         self.fmu_states.forget(handle)
     }
 
-    /// fmi2SerializedFMUstateSize and fmi2SerializeFMUstate: the state `handle` as a byte string.
+    /// fmi2SerializedFMUstateSize
+    pub(super) fn serialised_size(&self, handle: usize) -> Result<usize, Error> {
+        Ok(fmu_states::size(self.fmu_states.recall(handle)?, &self.guid)?)
+    }
+
+    /// fmi2SerializeFMUstate: the state `handle` as a byte string.
     pub(super) fn serialise_state(&self, handle: usize) -> Result<Vec<u8>, Error> {
         Ok(fmu_states::write(self.fmu_states.recall(handle)?, &self.guid)?)
     }

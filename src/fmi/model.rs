@@ -58,11 +58,11 @@ impl InstanceModel {
         })
     }
 
-    /// Puts the model in `state`, of the same definition. The processor time spent remains.
+    /// Puts the model in `state`, of the same definition; that of a patch was checked where it was read. The processor time spent remains.
     pub(super) fn set_state(&mut self, definition: &Definition, state: &ModelState) -> Result<(), RestoreError> {
         match (&mut *self, state) {
             (Self::Layer(simulation), ModelState::Layer(state)) => simulation.set_state(state)?,
-            (Self::Patch(run), ModelState::Patch(state)) => run.set_state(state)?,
+            (Self::Patch(run), ModelState::Patch(state)) => run.go_on_from(state),
             _ => *self = Self::restore(definition, state)?,
         }
         Ok(())
@@ -130,6 +130,14 @@ impl InstanceModel {
             Self::Layer(simulation) => ModelState::Layer(Box::new(simulation.state())),
             Self::Element(element) => ModelState::Element(element.save()),
             Self::Patch(run) => ModelState::Patch(Box::new(run.save())),
+        }
+    }
+
+    /// As [`state`](Self::state), into one that there is.
+    pub(super) fn save_into(&self, saved: &mut ModelState) {
+        match (self, &mut *saved) {
+            (Self::Patch(run), ModelState::Patch(saved)) => run.save_into(saved),
+            _ => *saved = self.state(),
         }
     }
 

@@ -113,6 +113,20 @@ impl InstanceState {
     /// A copy for an FMU state.
     pub(super) fn save(&self) -> FmuState {
         let model = self.model.as_ref().filter(|_| !self.lifecycle.before_run());
+        FmuState { model: model.map(InstanceModel::state), ..self.without_model() }
+    }
+
+    /// As [`save`](Self::save), into an FMU state that there is: the arrays of a large patch stay where they are.
+    pub(super) fn save_into(&self, saved: &mut FmuState) {
+        let mut kept = saved.model.take();
+        match (self.model.as_ref().filter(|_| !self.lifecycle.before_run()), &mut kept) {
+            (Some(model), Some(kept)) => model.save_into(kept),
+            (model, kept) => *kept = model.map(InstanceModel::state),
+        }
+        *saved = FmuState { model: kept, ..self.without_model() };
+    }
+
+    fn without_model(&self) -> FmuState {
         FmuState {
             lifecycle: self.lifecycle,
             parameters: Arc::clone(&self.parameters),
@@ -120,7 +134,7 @@ impl InstanceState {
             patch_inputs: self.patch_inputs,
             clock: self.clock,
             last_step: self.last_step,
-            model: model.map(InstanceModel::state),
+            model: None,
         }
     }
 

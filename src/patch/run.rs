@@ -235,6 +235,13 @@ impl PatchRun {
         PatchState { totals: self.totals, springs: self.springs.clone(), tangents: self.tangents.clone() }
     }
 
+    /// As [`save`](Self::save), into a state that there is; allocates nothing where that is of the same patch.
+    pub fn save_into(&self, saved: &mut PatchState) {
+        saved.totals = self.totals;
+        saved.springs.clone_from(&self.springs);
+        saved.tangents.clone_from(&self.tangents);
+    }
+
     /// A run that continues from `saved`, bit for bit as the run that was saved.
     ///
     /// # Errors
@@ -245,7 +252,7 @@ impl PatchRun {
         Ok(run)
     }
 
-    /// Continues from `saved`, of the same patch.
+    /// Continues from `saved`, of the same patch; allocates nothing.
     ///
     /// # Errors
     /// As for [`restore`](Self::restore); the run is then as it was.
@@ -258,13 +265,20 @@ impl PatchRun {
             self.set_temperature(before);
             return Err(error);
         }
+        self.go_on_from(saved);
+        Ok(())
+    }
+
+    /// Continues from `saved`, a state of the same patch that a run has saved or that was checked when it was read;
+    /// allocates nothing.
+    pub(crate) fn go_on_from(&mut self, saved: &PatchState) {
+        self.set_temperature(saved.totals.temperature);
         self.totals = saved.totals;
         self.springs.clone_from(&saved.springs);
         if let (Some(own), Some(saved)) = (&mut self.tangents, &saved.tangents) {
             **own = **saved;
         }
         self.warning = None;
-        Ok(())
     }
 }
 

@@ -138,7 +138,7 @@ pub enum RestoreError {
 }
 
 /// The springs of all elements.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Springs {
     /// G, N.
     pub(super) x: Vec<f64>,
@@ -147,6 +147,21 @@ pub(super) struct Springs {
     pub(super) stiffness: Vec<f64>,
     /// 0 free, 1 slips, 2 sticks.
     pub(super) mode: Vec<u8>,
+}
+
+impl Clone for Springs {
+    fn clone(&self) -> Self {
+        let Self { x, y, stiffness, mode } = self;
+        Self { x: x.clone(), y: y.clone(), stiffness: stiffness.clone(), mode: mode.clone() }
+    }
+
+    /// Into the arrays that there are; the derived one would replace them.
+    fn clone_from(&mut self, other: &Self) {
+        self.x.clone_from(&other.x);
+        self.y.clone_from(&other.y);
+        self.stiffness.clone_from(&other.stiffness);
+        self.mode.clone_from(&other.mode);
+    }
 }
 
 impl Springs {
