@@ -7,10 +7,10 @@ use asperity::patch::{MotionError, Patch, PatchOutput, PatchVariable};
 use asperity::scene::{NotDoubled, PatchGroup};
 use indicatif::ProgressBar;
 
-use super::Setting;
 use super::elements::{Drag, write_rows};
 use super::tilt::Tilted;
 use super::wrench::{COMPONENTS, Pair, Wrench, text};
+use super::{Setting, extent};
 use crate::program::files::FileError;
 use crate::program::pack::check::SLIDING_DISTANCE;
 use crate::program::pack::check::drag::ToAndFro;
@@ -56,28 +56,32 @@ impl Doubled {
         let fine = Course::run(setting, &finer, &bar)?;
         let coarse = Course::run(setting, setting.patch, &bar)?;
         bar.finish_and_clear();
+        let pair = |fine: Vec<Wrench>, coarse| {
+            let sizes = fine.clone();
+            Pair::new(fine, coarse, &sizes, setting.lever)
+        };
         Ok(Ok(Self {
             grid,
-            steady: Pair { reference: fine.steady, other: coarse.steady },
-            to_and_fro: Pair { reference: fine.to_and_fro, other: coarse.to_and_fro },
-            rolling: Pair { reference: fine.rolling, other: coarse.rolling },
+            steady: pair(fine.steady, coarse.steady),
+            to_and_fro: pair(fine.to_and_fro, coarse.to_and_fro),
+            rolling: pair(fine.rolling, coarse.rolling),
         }))
     }
 
     /// By how much the wrench changes.
     pub(super) fn summary(&self, setting: &Setting<'_>) -> Vec<String> {
         let (nx, ny) = self.grid;
-        let shares = self.steady.shares(setting.lever);
+        let shares = self.steady.shares();
         let line = |(face, share): (&Tilted, Wrench)| format!("at {} m/s: {}", real(face.speed), text(share));
         let mut texts = vec![format!("the whole patch beside one of {nx} by {ny} elements, over its largest values")];
         texts.extend(setting.faces.iter().zip(shares).map(line));
         if setting.motion.length > 0.0 {
-            texts.extend(setting.extent("to and fro", &self.to_and_fro));
+            texts.extend(extent("to and fro", &self.to_and_fro));
         }
         if !self.rolling.reference.is_empty() {
             let speed = setting.middle().speed;
             let rolling = format!("rolling at {} m/s, slipping at {} m/s", real(ROLLING * speed), real(speed));
-            texts.extend(setting.extent(&rolling, &self.rolling));
+            texts.extend(extent(&rolling, &self.rolling));
         }
         texts
     }

@@ -101,14 +101,17 @@ impl Dragged {
             return Ok(Err("no contact, or no friction".into()));
         }
         let mut elements = Elements::new(setting.patch, face, 0.0)?;
-        let sum = |forces: Vec<[f64; 3]>| wrench(face.spots.iter().map(|spot| spot.arm).zip(forces));
+        let sum = |forces: Vec<[f64; 3]>| wrench(face.spots.iter().map(|spot| spot.arm).zip(forces)).0;
         let mut other = vec![sum(elements.forces())];
         for step in motion.steps() {
             elements.advance(step)?;
             other.push(sum(elements.forces()));
         }
-        let reference = layers(setting, face);
-        Ok(reference.map(|reference| Self { motion, pair: Pair { reference, other } }))
+        let layers = layers(setting, face);
+        Ok(layers.map(|layers| {
+            let (reference, sizes): (Vec<_>, Vec<_>) = layers.into_iter().unzip();
+            Self { motion, pair: Pair::new(reference, other, &sizes, setting.lever) }
+        }))
     }
 
     pub(super) fn pair(&self) -> &Pair {
@@ -139,8 +142,8 @@ impl Dragged {
     }
 }
 
-/// The wrench of the layers, row by row.
-fn layers(setting: &Setting<'_>, face: &Tilted) -> Result<Vec<Wrench>, String> {
+/// The wrench of the layers and the sums of magnitudes, row by row.
+fn layers(setting: &Setting<'_>, face: &Tilted) -> Result<Vec<(Wrench, Wrench)>, String> {
     let variables: Vec<Variable> = LAYER.into_iter().filter_map(variable).collect();
     let (table, temperature) = (setting.patch.table(), point(setting.patch, face.speed).temperature);
     let bar = terminal::bar(face.spots.len() as u64);

@@ -90,6 +90,12 @@ fn point(patch: &Patch, speed: f64) -> OperatingPoint {
     OperatingPoint { speed, load: 0.0, temperature: has_temperature.then_some(patch.temperature()) }
 }
 
+/// The largest and the root mean square differences along a motion.
+fn extent(motion: &str, pair: &Pair) -> [String; 2] {
+    let (largest, root) = pair.extent();
+    [format!("{motion}, at most: {}", text(largest)), format!("  in root mean square: {}", text(root))]
+}
+
 impl Setting<'_> {
     /// The face at the middle speed.
     fn middle(&self) -> &Tilted {
@@ -104,7 +110,7 @@ impl Setting<'_> {
         match Dragged::run(self)? {
             Ok(dragged) => {
                 dragged.write(folder)?;
-                texts.extend(self.extent(&self.motion.describe(), dragged.pair()));
+                texts.extend(extent(&self.motion.describe(), dragged.pair()));
             }
             Err(status) => texts.push(format!("to and fro: {status}")),
         }
@@ -124,12 +130,6 @@ impl Setting<'_> {
         Ok(labelled("Checked", texts))
     }
 
-    /// The largest and the root mean square differences along a motion.
-    fn extent(&self, motion: &str, pair: &Pair) -> [String; 2] {
-        let (largest, root) = pair.extent(self.lever);
-        [format!("{motion}, at most: {}", text(largest)), format!("  in root mean square: {}", text(root))]
-    }
-
     /// Differences in steady sliding over the speed.
     fn plot(&self, pairs: &[(&str, &Pair)]) -> Ladders {
         let ladder = |look: usize, name: &str, shares: &[Wrench], component: usize| {
@@ -138,7 +138,7 @@ impl Setting<'_> {
             let rungs = self.faces.iter().zip(shares).map(rung).collect();
             Ladder { name: name.to_owned(), stroke: Stroke::Line, look, rungs }
         };
-        let shares: Vec<_> = pairs.iter().map(|(name, pair)| (*name, pair.shares(self.lever))).collect();
+        let shares: Vec<_> = pairs.iter().map(|(name, pair)| (*name, pair.shares())).collect();
         let panel = |(i, (component, _)): (usize, &(&str, &str))| LadderPanel {
             title: format!("difference of {component}, as a share of the largest"),
             floor: None,

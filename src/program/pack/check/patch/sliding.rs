@@ -50,8 +50,9 @@ impl<'a> Sliding<'a> {
 
     /// The wrenches of the layers and of the elements, by speed.
     pub(super) fn pair(&self) -> Pair {
-        let (reference, other) = self.speeds.iter().map(AtSpeed::wrenches).unzip();
-        Pair { reference, other }
+        let (layers, other): (Vec<_>, Vec<_>) = self.speeds.iter().map(AtSpeed::wrenches).unzip();
+        let (reference, sizes): (Vec<_>, Vec<_>) = layers.into_iter().unzip();
+        Pair::new(reference, other, &sizes, self.setting.lever)
     }
 
     /// Differences by speed, and what could not be compared.
@@ -64,7 +65,7 @@ impl<'a> Sliding<'a> {
         let compared = pressures.len();
         let mut texts =
             vec![format!("{compared} of {all} elements beside their layers,{range} over the layers' largest values")];
-        let shares = self.pair().shares(self.setting.lever);
+        let shares = self.pair().shares();
         texts.extend(self.speeds.iter().zip(shares).map(|(sliding, share)| sliding.line(share)));
         texts.extend(self.speeds.iter().flat_map(AtSpeed::failed));
         texts
@@ -126,11 +127,12 @@ impl<'a> AtSpeed<'a> {
         self.compared().map(|(spot, _, element)| element[2] / spot.element.area)
     }
 
-    fn wrenches(&self) -> (Wrench, Wrench) {
+    /// The wrench of the layers with the sums of magnitudes, and that of the elements.
+    fn wrenches(&self) -> ((Wrench, Wrench), Wrench) {
         let of = |which: fn([f64; 3], [f64; 3]) -> [f64; 3]| {
             wrench(self.compared().map(|(spot, layer, element)| (spot.arm, which(layer, element))))
         };
-        (of(|layer, _| layer), of(|_, element| element))
+        (of(|layer, _| layer), of(|_, element| element).0)
     }
 
     fn line(&self, share: Wrench) -> String {
