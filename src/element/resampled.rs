@@ -1,27 +1,30 @@
 //! The law of an element, per unit area and precomputed along the speed: for many elements of different speeds.
 //!
-//! Between two speeds of the table ln v is divided into even intervals. At four speeds of each the law is a [`Curve`];
-//! the coefficients of its cubics over the approach and over ln p are interpolated by cubics of ln v. So an evaluation
-//! takes one logarithm, one exponential and cubics, no division. Intervals are computed when they are first needed at a
-//! temperature.
+//! Between two speeds of the table ln v is divided into even intervals. At three speeds of each the law is a [`Curve`];
+//! the coefficients of its cubics over the approach and over ln p are interpolated by parabolas of ln v. So an evaluation
+//! takes one logarithm, one exponential and polynomials, no division. Intervals are computed when they are first needed
+//! at a temperature.
 
 use super::law::{Curve, Law};
 use super::table::Table;
 use super::table_format::Quantity;
 use crate::math::Number;
 
-/// Intervals between two speeds of a table.
+/// Width of an interval, in ln v, at most, and intervals between two speeds of a table, at least.
 ///
-/// What the table gives is a cubic there and is met exactly. Slopes along the pressure are not: where they leave 0 they
-/// have a corner. With so many p, μ p and κ are met to 1e-6 of their largest values.
-const INTERVALS: usize = 48;
+/// So p, μ p and κ are met to 1e-6 of their largest values. Where the table is smooth a tenth of the intervals would do:
+/// slopes along the pressure have a corner where they leave 0.
+const WIDEST: f64 = 0.01;
+const FEWEST: f64 = 8.0;
 
 /// Most bins in which the place of a speed among those of the table is looked up.
 const MOST_BINS: f64 = 1e5;
 
-/// Coefficients of a piece, and how many numbers are kept: a multiple of what a processor takes at once.
-const COEFFICIENTS: usize = 13;
-const PADDED: usize = 16;
+/// Speeds of an interval at which the law is taken.
+const SAMPLES: usize = 3;
+
+/// Approaches that are compared at once.
+const WIDTH: usize = 4;
 
 /// The law at one speed and approach, of numbers or of numbers with their derivatives.
 #[derive(Clone, Copy, Debug)]
@@ -44,20 +47,40 @@ impl<T: Number> LawPoint<T> {
     }
 }
 
-/// The law between two pressures of the table: the approach where it begins, ln p over the approach from there, μ and κ
-/// over ln p from there. Above the last pressure: constants, and the slope of ln p. By power of the share of the interval.
-type Piece = [[f64; PADDED]; 4];
+/// The law between two pressures of the table, by power of the share of the interval: the approach where it begins; the
+/// slope of ln p over the approach from there and the next two coefficients of its cubic; four of μ and of κ over ln p from
+/// there. Above the last pressure: the slope of ln p, and constants.
+type Piece = [[f64; 12]; SAMPLES];
 
 /// Of the same piece hysteresis and contact ratio over ln p.
-type Shares = [[f64; 8]; 4];
+type Shares = [[f64; 8]; SAMPLES];
+
+/// Approaches (m) at which pieces begin, as straight functions of the share of an interval: where it begins, and by how
+/// much they grow. Those without a piece are never reached.
+#[derive(Clone, Copy, Debug)]
+struct Beginnings {
+    start: [f64; WIDTH],
+    growth: [f64; WIDTH],
+}
+
+impl Beginnings {
+    const NONE: Self = Self { start: [f64::INFINITY; WIDTH], growth: [0.0; WIDTH] };
+}
 
 /// Where a speed lies: an interval, and the share of it as a straight function of ln v.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Spot {
     interval: usize,
     /// ln v where the interval begins, and intervals per unit of ln v.
     start: f64,
     density: f64,
+}
+
+impl Spot {
+    #[inline(always)]
+    fn share<T: Number>(&self, log_speed: T) -> T {
+        (log_speed - T::constant(self.start)).times(self.density)
+    }
 }
 
 /// Between two speeds of the table, as logarithms.
@@ -68,14 +91,22 @@ struct Stretch {
     /// Intervals per unit, and the width of one.
     density: f64,
     width: f64,
+    /// The first of its intervals and their number.
+    first: usize,
+    count: usize,
 }
 
 impl Stretch {
-    /// A table of one speed has one stretch without width.
+    /// Those of a table; a table of one speed has one without width.
     fn of(speeds: &[f64]) -> Vec<Self> {
-        let stretch = |start: f64, end: f64| {
-            let width = (end - start) / INTERVALS as f64;
-            Self { start, end, density: if width > 0.0 { 1.0 / width } else { 0.0 }, width }
+        let mut first = 0;
+        let mut stretch = |start: f64, end: f64| {
+            let count = ((end - start) / WIDEST).ceil().max(FEWEST);
+            let width = (end - start) / count;
+            let density = if width > 0.0 { 1.0 / width } else { 0.0 };
+            let count = count as usize;
+            first += count;
+            Self { start, end, density, width, first: first - count, count }
         };
         match speeds {
             [one] => vec![stretch(*one, *one)],
@@ -120,8 +151,8 @@ pub struct ResampledLaw {
     /// Even bins of ln v: the last speed of the table at or below where each begins; at most one more lies in it.
     bins: Vec<u32>,
     bin_density: f64,
-    /// By interval and pressure the approaches at both ends, m.
-    approaches: Vec<[f64; 2]>,
+    /// By interval those of all pressures but the first.
+    beginnings: Vec<Beginnings>,
     /// By interval and pressure.
     pieces: Vec<Piece>,
     shares: Vec<Shares>,
@@ -139,18 +170,19 @@ impl ResampledLaw {
         let shift = (table.load.area() / area).ln();
         let speeds = law.speeds().to_vec();
         let (bins, bin_density) = bins(&speeds);
-        let (intervals, pressures) = ((speeds.len() - 1).max(1) * INTERVALS, table.grid.loads.len());
+        let (stretches, pressures) = (Stretch::of(&speeds), table.grid.loads.len());
+        let intervals = stretches.iter().map(|stretch| stretch.count).sum();
         Self {
             temperature,
             area,
             log_pressures: curve.points()[0].iter().map(|y| y + shift).collect(),
-            stretches: Stretch::of(&speeds),
+            stretches,
             speeds,
             bins,
             bin_density,
-            approaches: vec![[0.0; 2]; intervals * pressures],
-            pieces: vec![[[0.0; PADDED]; 4]; intervals * pressures],
-            shares: vec![[[0.0; 8]; 4]; intervals * pressures],
+            beginnings: vec![Beginnings::NONE; intervals * beginnings_of(pressures)],
+            pieces: vec![[[0.0; 12]; SAMPLES]; intervals * pressures],
+            shares: vec![[[0.0; 8]; SAMPLES]; intervals * pressures],
             computed: vec![0; intervals],
             temperatures: 1,
             earliest_touch: law.earliest_touch(),
@@ -201,12 +233,12 @@ impl ResampledLaw {
     /// The interval of a [logarithm of a speed](SpeedRange::logarithm), computed if it was not yet.
     #[inline(always)]
     pub fn spot(&mut self, log_speed: f64) -> Spot {
-        let bin = ((log_speed - self.speeds[0]) * self.bin_density) as usize;
+        let bin = ((log_speed - self.speeds[0]) * self.bin_density) as u32 as usize;
         let below = self.bins[bin.min(self.bins.len() - 1)] as usize;
         let below = (below + usize::from(log_speed >= self.stretches[below].end)).min(self.stretches.len() - 1);
-        let Stretch { start, density, width, .. } = self.stretches[below];
-        let interval = (((log_speed - start) * density) as usize).min(INTERVALS - 1);
-        let spot = Spot { interval: below * INTERVALS + interval, start: start + interval as f64 * width, density };
+        let Stretch { start, density, width, first, count, .. } = self.stretches[below];
+        let interval = (((log_speed - start) * density) as u32 as usize).min(count - 1);
+        let spot = Spot { interval: first + interval, start: start + interval as f64 * width, density };
         if self.computed[spot.interval] != self.temperatures {
             self.compute(&spot);
         }
@@ -215,27 +247,29 @@ impl ResampledLaw {
 
     #[cold]
     fn compute(&mut self, spot: &Spot) {
-        let width = self.stretches[spot.interval / INTERVALS].width;
+        let width = if spot.density > 0.0 { 1.0 / spot.density } else { 0.0 };
         let pressures = self.log_pressures.len();
         let rows = spot.interval * pressures..(spot.interval + 1) * pressures;
-        self.pieces[rows.clone()].fill([[0.0; PADDED]; 4]);
-        self.shares[rows].fill([[0.0; 8]; 4]);
+        self.pieces[rows.clone()].fill([[0.0; 12]; SAMPLES]);
+        self.shares[rows].fill([[0.0; 8]; SAMPLES]);
         for (sample, weights) in LAGRANGE.iter().enumerate() {
-            self.curve.set_speed(&self.law, (spot.start + width * sample as f64 / 3.0).exp());
-            (0..pressures).for_each(|i| self.add_sample(spot.interval * pressures + i, i, sample, weights));
+            self.curve.set_speed(&self.law, (spot.start + width * sample as f64 / (SAMPLES - 1) as f64).exp());
+            (0..pressures).for_each(|i| self.add_sample(spot.interval * pressures + i, i, weights));
+            self.note_beginnings(spot.interval, sample);
         }
         self.computed[spot.interval] = self.temperatures;
     }
 
-    /// Adds one of the four samples of an interval to the piece `row`, which begins at pressure `i`.
-    fn add_sample(&mut self, row: usize, i: usize, sample: usize, weights: &[f64; 4]) {
+    /// Adds one of the samples of an interval to the piece `row`, which begins at pressure `i`.
+    fn add_sample(&mut self, row: usize, i: usize, weights: &[f64; SAMPLES]) {
         let [_, approaches, slopes] = self.curve.points();
         let along = |quantity| cubic_over(&self.log_pressures, self.curve.column(quantity), i);
-        let mut now = [0.0; COEFFICIENTS];
+        let mut now = [0.0; 12];
+        now[..4].copy_from_slice(&cubic_over(approaches, Some([&self.log_pressures, slopes]), i));
+        // Where a piece begins ln p is that of the table.
         now[0] = approaches[i];
-        now[1..5].copy_from_slice(&cubic_over(approaches, Some([&self.log_pressures, slopes]), i));
-        now[5..9].copy_from_slice(&along(Quantity::Friction));
-        now[9..13].copy_from_slice(&along(Quantity::Stiffness).map(|k| k / self.area));
+        now[4..8].copy_from_slice(&along(Quantity::Friction));
+        now[8..].copy_from_slice(&along(Quantity::Stiffness).map(|k| k / self.area));
         let shares = [along(Quantity::Hysteresis), along(Quantity::ContactRatio)];
         for (power, weight) in weights.iter().enumerate() {
             let piece = &mut self.pieces[row][power];
@@ -243,33 +277,43 @@ impl ResampledLaw {
             let kept = &mut self.shares[row][power];
             kept.iter_mut().zip(shares.as_flattened()).for_each(|(sum, value)| *sum += weight * value);
         }
-        if sample == 0 {
-            self.approaches[row][0] = approaches[i];
-        } else if sample + 1 == LAGRANGE.len() {
-            self.approaches[row][1] = approaches[i];
+    }
+
+    /// Takes the beginnings of an interval's pieces from its first and its last sample.
+    fn note_beginnings(&mut self, interval: usize, sample: usize) {
+        let [_, approaches, _] = self.curve.points();
+        let count = beginnings_of(approaches.len());
+        let kept = &mut self.beginnings[interval * count..(interval + 1) * count];
+        for (i, approach) in approaches[1..].iter().enumerate() {
+            let Beginnings { start, growth } = &mut kept[i / WIDTH];
+            if sample == 0 {
+                start[i % WIDTH] = *approach;
+            } else {
+                growth[i % WIDTH] = approach - start[i % WIDTH];
+            }
         }
     }
 
     /// The index of the piece at an approach: near the ends of pieces one or the other, which agree there.
     #[inline(always)]
-    fn piece_at(&self, interval: usize, share: f64, approach: f64) -> usize {
-        let n = self.log_pressures.len();
-        let rows = &self.approaches[interval * n..(interval + 1) * n];
-        let mut piece = 0;
-        for [left, right] in &rows[1..] {
-            piece += usize::from(approach >= left + share * (right - left));
+    pub fn piece(&self, spot: &Spot, log_speed: f64, approach: f64) -> usize {
+        let (share, count) = (spot.share(log_speed), beginnings_of(self.log_pressures.len()));
+        let mut passed = [0_u64; WIDTH];
+        for Beginnings { start, growth } in &self.beginnings[spot.interval * count..(spot.interval + 1) * count] {
+            for i in 0..WIDTH {
+                passed[i] += u64::from(approach >= start[i] + share * growth[i]);
+            }
         }
-        piece
+        passed.iter().sum::<u64>() as usize
     }
 
     /// The coefficients of a piece at a share of the interval.
     #[inline(always)]
-    fn coefficients<T: Number>(&self, interval: usize, share: T, piece: usize) -> [T; PADDED] {
-        let powers = &self.pieces[interval * self.log_pressures.len() + piece];
-        let mut coefficients = [T::constant(0.0); PADDED];
-        for k in 0..PADDED {
-            let [a, b, c, d] = [powers[0][k], powers[1][k], powers[2][k], powers[3][k]].map(T::constant);
-            coefficients[k] = a + share * (b + share * (c + share * d));
+    fn coefficients<T: Number>(&self, interval: usize, share: T, piece: usize) -> [T; 12] {
+        let [a, b, c] = &self.pieces[interval * self.log_pressures.len() + piece];
+        let mut coefficients = [T::constant(0.0); 12];
+        for k in 0..12 {
+            coefficients[k] = T::constant(a[k]) + share * (T::constant(b[k]) + share.times(c[k]));
         }
         coefficients
     }
@@ -277,50 +321,56 @@ impl ResampledLaw {
     /// The law at a logarithm of a speed, whose [`spot`](Self::spot) is given, and an approach (m).
     #[inline(always)]
     pub fn at<T: Number>(&self, spot: &Spot, log_speed: T, approach: T) -> LawPoint<T> {
-        let share = (log_speed - T::constant(spot.start)).times(spot.density);
-        let i = self.piece_at(spot.interval, share.value(), approach.value());
-        let c = self.coefficients(spot.interval, share, i);
+        self.at_piece(spot, self.piece(spot, log_speed.value(), approach.value()), log_speed, approach)
+    }
+
+    /// The same where the [`piece`](Self::piece) is known.
+    #[inline(always)]
+    pub fn at_piece<T: Number>(&self, spot: &Spot, i: usize, log_speed: T, approach: T) -> LawPoint<T> {
+        let c = self.coefficients(spot.interval, spot.share(log_speed), i);
         let from = approach - c[0];
         let y = self.log_pressures[i];
         if i + 1 == self.log_pressures.len() {
-            let factor = T::constant(1.0) + from * c[2];
-            LawPoint { log_pressure: T::constant(y), factor, friction: c[5], stiffness: c[9] }
+            let factor = T::constant(1.0) + from * c[1];
+            LawPoint { log_pressure: T::constant(y), factor, friction: c[4], stiffness: c[8] }
         } else if from.value() < 0.0 {
-            let root = (T::constant(1.0) + (from * c[2]).times(0.5)).larger(T::constant(0.0));
+            let root = (T::constant(1.0) + (from * c[1]).times(0.5)).larger(T::constant(0.0));
             let factor = root * root;
-            LawPoint { log_pressure: T::constant(y), factor, friction: c[5], stiffness: c[9] * factor }
+            LawPoint { log_pressure: T::constant(y), factor, friction: c[4], stiffness: c[8] * factor }
         } else {
-            let log_pressure = c[1] + from * (c[2] + from * (c[3] + from * c[4]));
-            let t = log_pressure - T::constant(y);
-            let along = |c: &[T]| c[0] + t * (c[1] + t * (c[2] + t * c[3]));
-            LawPoint { log_pressure, factor: T::constant(1.0), friction: along(&c[5..9]), stiffness: along(&c[9..13]) }
+            let t = from * (c[1] + from * (c[2] + from * c[3]));
+            let along = |i: usize| c[i] + t * (c[i + 1] + t * (c[i + 2] + t * c[i + 3]));
+            let log_pressure = T::constant(y) + t;
+            LawPoint { log_pressure, factor: T::constant(1.0), friction: along(4), stiffness: along(8) }
         }
     }
 
     /// The approaches (m) at a speed where the contact begins and where it reaches the least pressure of the table.
     pub fn beginning<T: Number>(&self, spot: &Spot, log_speed: T) -> (T, T) {
-        let share = (log_speed - T::constant(spot.start)).times(spot.density);
-        let c = self.coefficients(spot.interval, share, 0);
-        (c[0] - T::constant(2.0) / c[2], c[0])
+        let c = self.coefficients(spot.interval, spot.share(log_speed), 0);
+        (c[0] - T::constant(2.0) / c[1], c[0])
     }
 
     /// The share of hysteresis in the friction coefficient, and the contact ratio, at a speed and an approach (m).
     pub fn shares(&self, spot: &Spot, log_speed: f64, approach: f64) -> (f64, f64) {
-        let share = (log_speed - spot.start) * spot.density;
-        let i = self.piece_at(spot.interval, share, approach);
-        let point = self.at(spot, log_speed, approach);
+        let (share, i) = (spot.share(log_speed), self.piece(spot, log_speed, approach));
+        let point = self.at_piece(spot, i, log_speed, approach);
         let t = point.log_pressure - self.log_pressures[i];
         let powers = &self.shares[spot.interval * self.log_pressures.len() + i];
-        let at = |k: usize| (0..4).rev().fold(0.0, |sum, power| sum * share + powers[power][k]);
+        let at = |k: usize| (0..SAMPLES).rev().fold(0.0, |sum, power| sum * share + powers[power][k]);
         let along = |first: usize| (0..4).rev().fold(0.0, |sum, k| sum * t + at(first + k));
         let (hysteresis, ratio) = (along(0), along(4) * point.factor.min(1.0));
         (if point.friction > 0.0 { hysteresis / point.friction } else { 0.0 }, ratio)
     }
 }
 
-/// The polynomials that are 1 at one of 0, 1/3, 2/3 and 1, and 0 at the others, by power.
-const LAGRANGE: [[f64; 4]; 4] =
-    [[1.0, -5.5, 9.0, -4.5], [0.0, 9.0, -22.5, 13.5], [0.0, -4.5, 18.0, -13.5], [0.0, 1.0, -4.5, 4.5]];
+/// The polynomials that are 1 at one of 0, 1/2 and 1, and 0 at the others, by power.
+const LAGRANGE: [[f64; SAMPLES]; SAMPLES] = [[1.0, -3.0, 2.0], [0.0, 4.0, -4.0], [0.0, -1.0, 2.0]];
+
+/// How many [`Beginnings`] hold those of all pressures but the first.
+const fn beginnings_of(pressures: usize) -> usize {
+    (pressures - 1).div_ceil(WIDTH)
+}
 
 /// Bins over the logarithms of the speeds, none wider than the narrowest step, and how many there are per unit.
 fn bins(speeds: &[f64]) -> (Vec<u32>, f64) {
@@ -369,8 +419,8 @@ mod tests {
             for temperature in temperatures {
                 found.set_temperature(temperature);
                 let law = Law::new(&table, temperature);
-                for step in 0..400 {
-                    let speed = (1e-5_f64.ln() + 0.05 * f64::from(step)).exp();
+                for step in 0..1500 {
+                    let speed = (1e-5_f64.ln() + 0.0137 * f64::from(step)).exp();
                     let curve = Curve::new(&law, speed);
                     let (from, to) = (curve.touch, curve.closest());
                     let end = curve.at(to);

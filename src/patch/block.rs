@@ -4,7 +4,7 @@ use super::cut::{End, half_turn, pass_in_pieces, size};
 use super::face::{Column, Face};
 use super::motion::{Instant, Parts, Path, Run};
 use super::spring::{Hold, Piece, leap, pass};
-use crate::element::ResampledLaw;
+use crate::element::{ResampledLaw, Spot};
 use crate::math::Number;
 
 /// Elements of a block.
@@ -85,6 +85,19 @@ impl<T: Number> Sums<T> {
     pub(super) fn zero() -> Self {
         let zero = T::constant(0.0);
         Self { wrench: [zero; 6], transport: zero, slip: 0.0, release: 0.0, beyond: None }
+    }
+
+    /// Adds those of elements that follow.
+    pub(super) fn add(&mut self, further: &Self) {
+        for (sum, load) in self.wrench.iter_mut().zip(&further.wrench) {
+            *sum = *sum + *load;
+        }
+        self.transport = self.transport + further.transport;
+        self.slip += further.slip;
+        self.release += further.release;
+        if further.beyond.is_some_and(|theirs| self.beyond.is_none_or(|own| theirs.share < own.share)) {
+            self.beyond = further.beyond;
+        }
     }
 
     /// The same without derivatives.
@@ -219,11 +232,17 @@ impl<T: Number> Side<T> {
         for i in 0..BLOCK {
             self.log_speed[i] = range.logarithm(size([self.velocity[0][i], self.velocity[1][i]]));
         }
+        let (mut spots, mut pieces) = ([Spot::default(); BLOCK], [0; BLOCK]);
+        for i in 0..BLOCK {
+            spots[i] = law.spot(self.log_speed[i].value());
+        }
+        for i in 0..BLOCK {
+            pieces[i] = law.piece(&spots[i], self.log_speed[i].value(), self.approach[i].value());
+        }
         let mut factor = [T::constant(0.0); BLOCK];
         let mut friction = factor;
         for i in 0..BLOCK {
-            let spot = law.spot(self.log_speed[i].value());
-            let point = law.at(&spot, self.log_speed[i], self.approach[i]);
+            let point = law.at_piece(&spots[i], pieces[i], self.log_speed[i], self.approach[i]);
             (self.pressure[i], factor[i]) = (point.log_pressure, point.factor);
             (friction[i], self.stiffness[i]) = (point.friction, point.stiffness);
         }
@@ -275,9 +294,9 @@ impl<T: Number> Block<T> {
         self.slips = [0.0; BLOCK];
         (self.slip, self.release) = ([0.0; BLOCK], [0.0; BLOCK]);
         for side in [&mut self.begin, &mut self.end] {
-            (side.place, side.area) = ([[0.0; BLOCK]; 3], [0.0; BLOCK]);
-            side.let_go();
+            side.place.iter_mut().for_each(|lanes| lanes[count..].fill(0.0));
         }
+        self.end.let_go();
     }
 
     /// Does the step for the block's elements and adds to the sums.

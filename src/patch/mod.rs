@@ -11,6 +11,7 @@
 //! | `spring` | spring and slider of an element through a piece of a motion, in closed form |
 //! | `cut` | an element that touches or lifts |
 //! | `block` | a step of a block of elements |
+//! | `crew` | a step of all blocks, by several threads |
 //! | `definition` | a patch: face, table, parameters |
 //! | `state` | motions, errors, what a run holds |
 //! | `run` | a run |
@@ -20,6 +21,7 @@
 //! | `variables` | output variables |
 
 mod block;
+mod crew;
 mod cut;
 mod definition;
 mod derivatives;

@@ -1,6 +1,7 @@
 //! A run of a patch: steps over all its elements.
 
-use super::block::{BLOCK, Beyond, Block, Step, Sums};
+use super::block::{Beyond, Block, Step, Sums};
+use super::crew::Crew;
 use super::definition::Patch;
 use super::face::Face;
 use super::motion::{Parts, Path, Run};
@@ -8,7 +9,7 @@ use super::state::{
     MOST_PARTS, MotionError, PatchMotion, PatchStart, PatchState, Pose, RestoreError, Springs, Totals, check_duration,
 };
 use crate::element::ResampledLaw;
-use crate::math::{Dual, Number};
+use crate::math::Dual;
 use crate::scene::{PatchGroup, TableExtrapolation};
 
 /// A run of a patch. A clone continues as the original does, bit for bit.
@@ -25,11 +26,11 @@ pub struct PatchRun {
     warning: Option<String>,
 }
 
-/// One block, with derivatives where tangents are asked for.
+/// Who does the steps, with derivatives where tangents are asked for.
 #[derive(Clone, Debug)]
 enum Workspace {
-    Plain(Box<Block<f64>>),
-    Tangent(Box<Block<Dual<6>>>),
+    Plain(Crew<f64>),
+    Tangent(Crew<Dual<6>>),
 }
 
 impl PatchRun {
@@ -61,9 +62,9 @@ impl PatchRun {
             law.set_temperature(held);
         }
         let workspace = if tangents {
-            Workspace::Tangent(Box::new(Block::new()))
+            Workspace::Tangent(Crew::new(patch.count(), &law))
         } else {
-            Workspace::Plain(Box::new(Block::new()))
+            Workspace::Plain(Crew::new(patch.count(), &law))
         };
         let springs = Springs::new(patch.count());
         Self {
@@ -86,9 +87,9 @@ impl PatchRun {
         let path = Path { start: self.totals.pose.coordinates(), change: rates, duration: 1.0 };
         let face = &self.patch.face;
         let step = Step { face, path, run, parts: Parts::new(run, 0.0, 1), tread_speed };
-        let mut block = Box::new(Block::new());
-        let sums = over_blocks(&step, &self.springs, &mut self.next, &mut block, |block, sums| {
-            block.settle(&step, &mut self.law, sums);
+        let springs = (&self.springs, &mut self.next);
+        let sums = Crew::new(1, &self.law).work(&step, &mut self.law, springs, |block, law, sums| {
+            block.settle(&step, law, sums);
         });
         let mut reached = self.totals;
         reached.add(&sums, 0.0);
@@ -146,18 +147,19 @@ impl PatchRun {
         let Self { patch, law, springs, next, workspace, .. } = self;
         let face = &*patch.face;
         let (sums, tangents) = match workspace {
-            Workspace::Plain(block) => {
+            Workspace::Plain(crew) => {
                 let step = Step { face, path, run, parts, tread_speed };
                 let widest = pulp::Arch::new();
-                let advance = |block: &mut Block<f64>, sums: &mut Sums<f64>| {
+                let sums = crew.work(&step, law, (springs, next), |block, law, sums| {
                     widest.dispatch(Advance { block, step: &step, law, sums });
-                };
-                (over_blocks(&step, springs, next, block, advance), None)
+                });
+                (sums, None)
             }
-            Workspace::Tangent(block) => {
+            Workspace::Tangent(crew) => {
                 let path = Path { start, change: std::array::from_fn(|i| Dual::variable(change[i], i)), duration };
                 let step = Step { face, path, run, parts, tread_speed };
-                let sums = over_blocks(&step, springs, next, block, |block, sums| block.advance(&step, law, sums));
+                let advance = |block: &mut Block<_>, law: &mut _, sums: &mut _| block.advance(&step, law, sums);
+                let sums = crew.work(&step, law, (springs, next), advance);
                 (sums.plain(), Some(sums.wrench.map(|load| load.slopes)))
             }
         };
@@ -299,23 +301,40 @@ impl pulp::NullaryFnOnce for Advance<'_, '_> {
     }
 }
 
-/// Does something for every block of a step and stores its springs.
-fn over_blocks<T: Number>(
-    step: &Step<'_, T>,
-    springs: &Springs,
-    next: &mut Springs,
-    block: &mut Block<T>,
-    mut work: impl FnMut(&mut Block<T>, &mut Sums<T>),
-) -> Sums<T> {
-    let mut sums = Sums::zero();
-    let (first, count, entered) = step.elements();
-    for start in (0..count).step_by(BLOCK) {
-        let size = BLOCK.min(count - start);
-        let index = first + start as isize;
-        block.turn_to(start, size);
-        springs.load(block, index, size);
-        work(block, &mut sums);
-        next.store(block, index + entered, size);
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    /// A tread that rolls and turns, with and without derivatives: the same bits by one thread and by several.
+    #[test]
+    fn threads_change_nothing() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/patch");
+        for outputs in ["forces", "tangent"] {
+            let text = format!(
+                "name = \"many\"\ntable = {{ path = \"winkler.table.csv\" }}\n[patch]\nshape = \"cylinder\"\nradius = 0.3\n\
+                 length = 0.03\nwidth = 0.02\nnx = 90\nny = 40\ntransport = true\n[solver]\nrefine = 12\n[fmu]\n\
+                 outputs = [\"{outputs}\"]"
+            );
+            let patch = Patch::parse(&text, &folder.join("patch.toml")).unwrap();
+            let state_after = |threads: usize| {
+                let pose = Pose { place: [0.0, 0.0, 0.2999], angles: [0.0; 3] };
+                let start = PatchStart { pose, transport_speed: 1.0, ..PatchStart::default() };
+                let mut run = PatchRun::new(&patch, &start).unwrap();
+                match &mut run.workspace {
+                    Workspace::Plain(crew) => *crew = Crew::of(threads, &run.law),
+                    Workspace::Tangent(crew) => *crew = Crew::of(threads, &run.law),
+                }
+                let rates = [0.9, 0.1, -0.01, 0.2, 0.0, 0.3];
+                let motion = PatchMotion { duration: 1e-3, rates, transport_speed: 1.1, temperature: 0.0 };
+                (0..3).for_each(|_| run.advance(&motion).unwrap());
+                run.save()
+            };
+            let one = state_after(1);
+            assert!(one.totals.wrench[2] > 0.0 && one.totals.lost[0] > 0.0);
+            assert!([2, 5].into_iter().all(|threads| state_after(threads) == one), "{outputs}");
+        }
     }
-    sums
 }

@@ -171,30 +171,72 @@ impl Springs {
 
     /// Sets the springs of a block; its first element is the one at `start` here. Those that are not here are relaxed.
     pub(super) fn load<T: Number>(&self, block: &mut Block<T>, start: isize, count: usize) {
-        for (lane, i) in self.indices(start, count) {
+        for (lane, i) in indices((0, self.x.len()), start, count) {
             block.force[0][lane] = T::constant(self.x[i]);
             block.force[1][lane] = T::constant(self.y[i]);
             block.stiffness[lane] = T::constant(self.stiffness[i]);
         }
     }
 
-    /// Takes the springs of a block over; its first element is the one at `start` here. Those that are not here are lost.
+    /// All of them, to be set.
+    pub(super) fn all(&mut self) -> SpringsMut<'_> {
+        let Self { x, y, stiffness, mode } = self;
+        SpringsMut { first: 0, x, y, stiffness, mode }
+    }
+}
+
+/// Springs that follow each other, to be set.
+#[derive(Debug)]
+pub(super) struct SpringsMut<'a> {
+    /// The index of the first.
+    first: usize,
+    x: &'a mut [f64],
+    y: &'a mut [f64],
+    stiffness: &'a mut [f64],
+    mode: &'a mut [u8],
+}
+
+impl<'a> SpringsMut<'a> {
+    /// Takes those before the index `end` off.
+    pub(super) fn split_off_to(&mut self, end: usize) -> SpringsMut<'a> {
+        let count = end.saturating_sub(self.first).min(self.x.len());
+        let first = self.first;
+        self.first += count;
+        SpringsMut {
+            first,
+            x: take(&mut self.x, count),
+            y: take(&mut self.y, count),
+            stiffness: take(&mut self.stiffness, count),
+            mode: take(&mut self.mode, count),
+        }
+    }
+
+    /// Takes the springs of a block over; its first element has the index `start`. Those that are not here are lost.
     pub(super) fn store<T: Number>(&mut self, block: &Block<T>, start: isize, count: usize) {
-        for (lane, i) in self.indices(start, count) {
+        for (lane, i) in indices((self.first, self.x.len()), start, count) {
             self.x[i] = block.force[0][lane].value();
             self.y[i] = block.force[1][lane].value();
             self.stiffness[i] = block.stiffness[lane].value();
             self.mode[i] = block.mode[lane];
         }
     }
+}
 
-    /// The lanes of a block whose elements are here, and their indices.
-    fn indices(&self, start: isize, count: usize) -> impl Iterator<Item = (usize, usize)> + use<> {
-        let skipped = start.min(0).unsigned_abs().min(count);
-        let first = start.max(0).unsigned_abs();
-        let shared = (count - skipped).min(self.x.len().saturating_sub(first));
-        (0..shared).map(move |i| (skipped + i, first + i))
-    }
+/// The first `count` of a slice, which goes on after them.
+fn take<'a, T>(slice: &mut &'a mut [T], count: usize) -> &'a mut [T] {
+    let (front, back) = std::mem::take(slice).split_at_mut(count);
+    *slice = back;
+    front
+}
+
+/// The lanes of a block whose first element has the index `start`, as far as they are among the `length` springs from
+/// index `first` on, and their places there.
+fn indices((first, length): (usize, usize), start: isize, count: usize) -> impl Iterator<Item = (usize, usize)> {
+    let start = start - first as isize;
+    let skipped = start.min(0).unsigned_abs().min(count);
+    let place = start.max(0).unsigned_abs();
+    let shared = (count - skipped).min(length.saturating_sub(place));
+    (0..shared).map(move |i| (skipped + i, place + i))
 }
 
 /// All of a run that changes, but for the springs. SI units.

@@ -1,0 +1,137 @@
+//! A step of all blocks, by several threads where the patch is large enough to gain.
+//!
+//! Blocks are dealt out in batches, and what the batches add up to is added in their order: numbers do not depend on who
+//! did what. Threads end with the step, since a master may unload the FMU after it; patches that one thread does best
+//! start none.
+
+use std::num::NonZero;
+use std::sync::Mutex;
+use std::thread;
+
+use super::block::{BLOCK, Block, Step, Sums};
+use super::state::{Springs, SpringsMut};
+use crate::element::ResampledLaw;
+use crate::math::Number;
+
+/// Most batches of a step.
+const MOST_BATCHES: usize = 128;
+/// Blocks of a batch, at least.
+const FEWEST_BLOCKS: usize = 16;
+/// Elements times parts that are worth a thread: starting one takes as long as a few hundred of them.
+const WORTH_A_THREAD: f64 = 16384.0;
+
+/// Those who do the steps of a patch, and the sums of their batches.
+#[derive(Clone, Debug)]
+pub(super) struct Crew<T> {
+    block: Box<Block<T>>,
+    helpers: Vec<Helper<T>>,
+    sums: Vec<Sums<T>>,
+}
+
+/// Who helps, with a law of its own, since a law is computed as it is needed.
+#[derive(Clone, Debug)]
+struct Helper<T> {
+    block: Box<Block<T>>,
+    law: ResampledLaw,
+}
+
+/// Blocks that follow each other, and where their results go.
+struct Batch<'a, T> {
+    start: usize,
+    count: usize,
+    next: SpringsMut<'a>,
+    sums: &'a mut Sums<T>,
+}
+
+impl<T: Number + Send + Sync> Crew<T> {
+    /// For a patch of `count` elements: as many as the processor serves at once and the patch is worth.
+    pub(super) fn new(count: usize, law: &ResampledLaw) -> Self {
+        let threads = thread::available_parallelism().map_or(1, NonZero::get);
+        Self::of(threads.min((count as f64 / WORTH_A_THREAD) as usize), law)
+    }
+
+    /// One, or `threads` of them.
+    pub(super) fn of(threads: usize, law: &ResampledLaw) -> Self {
+        let helper = || Helper { block: Box::new(Block::new()), law: law.clone() };
+        Self {
+            block: Box::new(Block::new()),
+            helpers: (1..threads).map(|_| helper()).collect(),
+            sums: vec![Sums::zero(); MOST_BATCHES],
+        }
+    }
+
+    /// Does `work` for every block of a step, from the springs in `springs` to those in `next`; returns the sums.
+    pub(super) fn work(
+        &mut self,
+        step: &Step<'_, T>,
+        law: &mut ResampledLaw,
+        (springs, next): (&Springs, &mut Springs),
+        work: impl Fn(&mut Block<T>, &mut ResampledLaw, &mut Sums<T>) + Sync,
+    ) -> Sums<T> {
+        let Self { block, helpers, sums } = self;
+        let (first, count, entered) = step.elements();
+        let size = count.div_ceil(MOST_BATCHES).next_multiple_of(BLOCK).max(FEWEST_BLOCKS * BLOCK);
+        let batches = count.div_ceil(size);
+        let sums = &mut sums[..batches];
+        let queue = Mutex::new(batches_of(sums, (next.all(), first + entered), (count, size)));
+        let take = || queue.lock().ok().and_then(|mut queue| queue.next());
+        let serve = |block: &mut Block<T>, law: &mut ResampledLaw| {
+            while let Some(mut batch) = take() {
+                batch.serve((first, entered), springs, block, |block, sums| work(block, law, sums));
+            }
+        };
+        let worth = (count as f64 * step.parts.most() / WORTH_A_THREAD) as usize;
+        let wanted = worth.saturating_sub(1).min(helpers.len()).min(batches.saturating_sub(1));
+        if wanted == 0 {
+            serve(block, law);
+        } else {
+            let serve = &serve;
+            thread::scope(|scope| {
+                for Helper { block, law: own } in &mut helpers[..wanted] {
+                    own.set_temperature(law.temperature());
+                    scope.spawn(move || serve(block, own));
+                }
+                serve(block, law);
+            });
+        }
+        drop(queue);
+        sums.iter().fold(Sums::zero(), |mut all, batch| {
+            all.add(batch);
+            all
+        })
+    }
+}
+
+/// The batches of `count` elements, `size` of them each; the first element is at `first` in `next`.
+fn batches_of<'a, T: Number>(
+    sums: &'a mut [Sums<T>],
+    (mut next, first): (SpringsMut<'a>, isize),
+    (count, size): (usize, usize),
+) -> impl Iterator<Item = Batch<'a, T>> {
+    sums.iter_mut().enumerate().map(move |(i, sums)| {
+        let start = i * size;
+        let count = size.min(count - start);
+        let end = first + (start + count) as isize;
+        Batch { start, count, next: next.split_off_to(end.max(0).unsigned_abs()), sums }
+    })
+}
+
+impl<T: Number> Batch<'_, T> {
+    fn serve(
+        &mut self,
+        (first, entered): (isize, isize),
+        springs: &Springs,
+        block: &mut Block<T>,
+        mut work: impl FnMut(&mut Block<T>, &mut Sums<T>),
+    ) {
+        *self.sums = Sums::zero();
+        for start in (self.start..self.start + self.count).step_by(BLOCK) {
+            let size = BLOCK.min(self.start + self.count - start);
+            let index = first + start as isize;
+            block.turn_to(start, size);
+            springs.load(block, index, size);
+            work(block, self.sums);
+            self.next.store(block, index + entered, size);
+        }
+    }
+}
