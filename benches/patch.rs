@@ -8,6 +8,7 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::Command;
+use std::time::Instant;
 use std::{env, fs};
 
 use asperity::patch::{Patch, PatchMotion, PatchRun, PatchStart, Pose};
@@ -47,8 +48,8 @@ fn pose(k: f64) -> [f64; 6] {
     [1e-3 * (0.03 * k).sin() / 0.03, 2e-4 * k, z, 5e-5 * (0.07 * k).sin(), 0.0, 0.01 * (0.02 * k).sin()]
 }
 
-/// Seconds an element and step.
-fn patch_time(side: usize, tread: bool) -> f64 {
+/// Seconds an element and step, of the processor and of the clock.
+fn patch_times(side: usize, tread: bool) -> [f64; 2] {
     let folder = folder();
     fs::write(folder.join("table.csv"), table()).unwrap();
     let length = 1e-3 * side as f64;
@@ -66,9 +67,13 @@ fn patch_time(side: usize, tread: bool) -> f64 {
     };
     // The law's intervals are computed as they are met.
     (0..STEPS).for_each(|k| run.advance(&motions(k)).unwrap());
-    let start = ProcessTime::now();
+    let (start, clock) = (ProcessTime::now(), Instant::now());
     (STEPS..2 * STEPS).for_each(|k| run.advance(&motions(k)).unwrap());
-    start.elapsed().as_secs_f64() / f64::from(STEPS) / patch.count() as f64
+    [start.elapsed(), clock.elapsed()].map(|time| time.as_secs_f64() / f64::from(STEPS) / patch.count() as f64)
+}
+
+fn patch_time(side: usize, tread: bool) -> f64 {
+    patch_times(side, tread)[0]
 }
 
 /// The bare loops' seconds an element and step; `None` without a C compiler.
@@ -104,5 +109,8 @@ fn main() {
     }
     println!("{:.1} ns an element and part, {:.1} with a tread", 1e9 * own, 1e9 * own_tread);
     println!("{:.1} ns in the bare loops: {:.2} of them", 1e9 * floor, own / floor);
+    // Large enough for several threads.
+    let [work, time] = patch_times(4 * side, false);
+    println!("{:.1} ns with {} times the elements: by the clock {:.2} of that", 1e9 * work, 16, time / work);
     let _ = fs::remove_dir_all(folder());
 }

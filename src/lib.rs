@@ -35,7 +35,7 @@
 //! | an output | a variant of [`outputs::Output`] and a row in `outputs/table.rs` |
 //! | a column of a sweep's table | `element/table_format.rs`; its value in `program/sweep/point.rs` and `slide.rs` |
 //! | the rules of mode changes, the impact | `contact/laws.rs`, for both methods; stops and breaks within a time step also in `integrator/stage/modes.rs` |
-//! | an element's law in a patch, its step | `element/resampled.rs`; `patch/spring.rs` (closed form), `patch/cut.rs` (touch and lift), `patch/block.rs` |
+//! | an element's law in a patch, its step | `element/resampled.rs`; `element/spring.rs` (closed form), `patch/cut.rs` (touch and lift), `patch/block.rs` |
 //! | an output of a patch | `patch/variables.rs`, `patch/survey.rs`, `patch/derivatives.rs` |
 //! | a picture of a patch | `program/figure/patch.rs`; its maps `moment.rs` (what is drawn) and `maps.rs` (how), from `patch/plan.rs` |
 //! | what an FMU state holds | `FmuState` in `fmi/state.rs`, `RunState` in `simulation/run.rs` |

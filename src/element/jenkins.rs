@@ -1,4 +1,7 @@
-//! One Jenkins element: a spring and a slider in series.
+//! One Jenkins element: a spring and a slider in series, along x.
+//!
+//! Leaps of the law and motions at constant height are those of [`spring`](super::spring), as for the elements of a patch;
+//! what is here follows a carrier whose height changes.
 //!
 //! G = -F_x is the force in the spring, K the tangential stiffness, L = μ F_z the limit, σ the direction of slip.
 //!
@@ -12,6 +15,7 @@
 //! at most (stick) or close to one (slip).
 
 use super::law::{Contact, Curve};
+use super::spring::{Hold, Passed, Piece, leap, pass};
 use crate::math::bracketed_root;
 use crate::model::Mode;
 
@@ -59,6 +63,12 @@ struct Phase<'a> {
     rising: bool,
 }
 
+impl Contact {
+    fn hold(&self) -> Hold<f64> {
+        Hold { stiffness: self.stiffness.value, limit: self.limit.value }
+    }
+}
+
 impl Jenkins {
     pub(super) fn new(contact: &Contact) -> Self {
         let stiffness = contact.stiffness.value;
@@ -72,14 +82,9 @@ impl Jenkins {
 
     /// The speed has changed, and with it the law, at the same position.
     pub(super) fn take_over(&mut self, contact: &Contact, approach: f64, listener: &mut impl Listener) {
-        let before = self.energy();
-        let (stiffness, limit) = (contact.stiffness.value, contact.limit.value);
-        if stiffness < self.stiffness {
-            self.force *= stiffness / self.stiffness;
-        }
-        self.stiffness = stiffness;
-        self.force = self.force.clamp(-limit, limit);
-        listener.lost(approach, (before - self.energy()).max(0.0));
+        let ([force, _], lost) = leap([self.force, 0.0], self.stiffness, &contact.hold());
+        (self.force, self.stiffness) = (force, contact.stiffness.value);
+        listener.lost(approach, lost);
     }
 
     /// The carrier moves along x alone, over `time` (s).
@@ -94,16 +99,15 @@ impl Jenkins {
         if self.stiffness <= 0.0 {
             return;
         }
-        let (limit, start) = (contact.limit.value, self.force);
-        let trial = start + self.stiffness * u_rate * time;
-        self.force = trial.clamp(-limit, limit);
-        let slid = trial - self.force;
-        listener.lost(approach, slid.abs() * limit / self.stiffness);
-        if slid == 0.0 {
-            self.turn(Mode::Stick, 0.0, listener);
+        let (hold, start) = (contact.hold(), self.force);
+        let piece = Piece { begin: hold, end: hold, displacement: [u_rate * time, 0.0], half_turn: 0.0 };
+        let Passed { force: [force, _], slips, slip, .. } = pass([start, 0.0], &piece);
+        self.force = force;
+        listener.lost(approach, slip);
+        if slips && u_rate != 0.0 {
+            self.turn(Mode::along(u_rate), (force - start) / (self.stiffness * u_rate), listener);
         } else {
-            let elapsed = (self.force - start) / (self.stiffness * u_rate);
-            self.turn(Mode::along(slid), elapsed, listener);
+            self.turn(Mode::Stick, 0.0, listener);
         }
     }
 

@@ -2,7 +2,7 @@
 //!
 //! The carrier's height gives the pressure through the table's mean separation, its speed along x the friction
 //! coefficient and the tangential stiffness; F_x is the force of a spring of that stiffness, limited by μ F_z: one
-//! Jenkins element. So it knows what a layer does in steady sliding and at the start of motion, and nothing between: no
+//! Jenkins element, of the same law and spring as those of a patch. So it knows what a layer does in steady sliding and at the start of motion, and nothing between: no
 //! relaxation, no inertia, no position on the profile. Along z it is elastic at each speed and dissipates nothing.
 
 mod grid;
@@ -12,6 +12,7 @@ mod low_end;
 mod point_contact;
 mod resampled;
 mod run;
+mod spring;
 mod table;
 mod table_format;
 #[cfg(test)]
@@ -23,5 +24,6 @@ pub use low_end::LowEnd;
 pub use point_contact::{PointContact, dependencies, variables};
 pub use resampled::{LawPoint, ResampledLaw, SpeedRange, Spot};
 pub use run::{Element, ElementError, ElementState, RestoreError};
+pub(crate) use spring::{Hold, Passed, Piece, leap, pass};
 pub use table::{Node, Table};
 pub use table_format::{Basis, CONVERGED, FORMAT, Quantity, STEADY, TableError, TableHeader, TableRow, TableText};

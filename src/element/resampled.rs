@@ -12,9 +12,9 @@ use crate::math::Number;
 
 /// Width of an interval, in ln v, at most, and intervals between two speeds of a table, at least.
 ///
-/// So p, μ p and κ are met to 1e-6 of their largest values. Where the table is smooth a tenth of the intervals would do:
+/// So p, μ p and κ are met to 1e-9 where the table is smooth, and to 1e-6 of their largest values elsewhere:
 /// slopes along the pressure have a corner where they leave 0.
-const WIDEST: f64 = 0.01;
+const WIDEST: f64 = 0.006;
 const FEWEST: f64 = 8.0;
 
 /// Most bins in which the place of a speed among those of the table is looked up.

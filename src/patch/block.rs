@@ -3,8 +3,7 @@
 use super::cut::{End, half_turn, pass_in_pieces, size};
 use super::face::{Column, Face};
 use super::motion::{Instant, Parts, Path, Run};
-use super::spring::{Hold, Piece, leap, pass};
-use crate::element::{ResampledLaw, Spot};
+use crate::element::{Hold, Piece, ResampledLaw, Spot, leap, pass};
 use crate::math::Number;
 
 /// Elements of a block.

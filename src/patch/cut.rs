@@ -1,8 +1,7 @@
 //! An element whose pressure changes much in a part of a step: its passage, cut where it touches or lifts, at the least
 //! pressure of the table, and each stretch between into pieces.
 
-use super::spring::{Hold, Passed, Piece, leap, pass};
-use crate::element::ResampledLaw;
+use crate::element::{Hold, Passed, Piece, ResampledLaw, leap, pass};
 use crate::math::Number;
 
 /// Pieces of a stretch, at least.

@@ -8,7 +8,6 @@
 //! |------|---------------|
 //! | `motion` | path of the body and of the tread over a step, parts of a step |
 //! | `face` | where elements sit |
-//! | `spring` | spring and slider of an element through a piece of a motion, in closed form |
 //! | `cut` | an element that touches or lifts |
 //! | `block` | a step of a block of elements |
 //! | `crew` | a step of all blocks, by several threads |
@@ -29,7 +28,6 @@ mod face;
 mod motion;
 mod plan;
 mod run;
-mod spring;
 mod state;
 mod survey;
 mod variables;

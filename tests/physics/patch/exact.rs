@@ -328,30 +328,63 @@ fn a_straight_path_may_be_cut_anyhow() {
     }
 }
 
-/// One element of a patch, moved along x at constant height, is the point-contact element.
-#[test]
-fn one_element_is_the_point_contact_element() {
+/// F_x, F_z and E_diss of one element of a patch and of the point-contact element, moved along x and z at `rates` (m/s) for
+/// the times beside them (s), after every motion.
+fn one_element_and_the_other(height: f64, motions: &[([f64; 2], f64)]) -> Vec<[[f64; 2]; 3]> {
     let path = root().join("tests/reference/patch/block.table.csv");
     let table = Table::load(&path).unwrap();
     let (area, rest) = (table.load.area(), table.rest_separation);
     let patch = points("one", "block.table.csv", &[[0.0, 0.0, 0.0, area]]);
-    let height = 8e-6;
-    let rates = |rate: f64| [rate, 0.0, 0.0, 0.0, 0.0, 0.0];
-    let mut run = run_at(&patch, [0.0, 0.0, height, 0.0, 0.0, 0.0], rates(0.05), 0.0);
-    let start = Start { w: height - rest, u_rate: 0.05, ..Start::default() };
+    let rates = |[x, z]: [f64; 2]| [x, 0.0, z, 0.0, 0.0, 0.0];
+    let first = motions[0].0;
+    let mut run = run_at(&patch, [0.0, 0.0, height, 0.0, 0.0, 0.0], rates(first), 0.0);
+    let start = Start { w: height - rest, u_rate: first[0], ..Start::default() };
     let mut element = Element::new(&PointContact::new(table.clone()), &start).unwrap();
     let variables = element_variables(&table);
-    for (rate, duration) in [(0.05, 1e-4), (0.05, 3e-3), (-0.02, 2e-4), (-0.02, 5e-3), (0.0, 1e-3), (0.7, 1e-2)] {
-        element.advance(duration, rate, 0.0).unwrap();
-        go(&mut run, &patch, duration, rates(rate), 0.0);
+    let mut after = |&([x, z], duration): &([f64; 2], f64)| {
+        element.advance(duration, x, z).unwrap();
+        go(&mut run, &patch, duration, rates([x, z]), 0.0);
         let mut values = vec![0.0; variables.len()];
         element.evaluate(&variables, &mut values);
         let of = |name: &str| values[variables.iter().position(|variable| variable.name == name).unwrap()];
-        let [x, _, z, ..] = wrench(&mut run, &patch);
+        let [f_x, _, f_z, ..] = wrench(&mut run, &patch);
         let lost = value(&mut run, &patch, PatchOutput::Energy);
-        for (found, expected) in [(x, of("F_x")), (z, of("F_z")), (lost, of("E_diss"))] {
-            // The law, precomputed, is met to 1e-9 and better.
-            assert!((found - expected).abs() <= 1e-8 * expected.abs().max(1e-6), "{rate}: {found} {expected}");
+        [[f_x, of("F_x")], [f_z, of("F_z")], [lost, of("E_diss")]]
+    };
+    motions.iter().map(&mut after).collect()
+}
+
+/// One element of a patch, moved along x at constant height, is the point-contact element.
+#[test]
+fn one_element_is_the_point_contact_element() {
+    let speeds = [(0.05, 1e-4), (0.05, 3e-3), (-0.02, 2e-4), (-0.02, 5e-3), (0.0, 1e-3), (0.7, 1e-2)];
+    for height in [3e-6, 8e-6, 1.5e-5] {
+        for pairs in one_element_and_the_other(height, &speeds.map(|(x, time)| ([x, 0.0], time))) {
+            for [found, expected] in pairs {
+                // The law, precomputed, is met to 1e-9 and better.
+                assert!((found - expected).abs() <= 1e-9 * expected.abs().max(1e-6), "{height}: {found} {expected}");
+            }
+        }
+    }
+}
+
+/// Where its height changes too, to second order: pressed and lifted while it slides to and fro, past touch and lift.
+#[test]
+fn one_element_is_the_point_contact_element_closely_where_its_height_changes() {
+    let motions: Vec<_> = (0..160)
+        .map(|i| {
+            let phase = f64::from(i) * PI / 40.0;
+            ([0.02 * phase.cos(), -2e-3 * (2.0 * phase).sin() - 4e-4], 5e-4)
+        })
+        .collect();
+    let pairs = one_element_and_the_other(2.5e-5, &motions);
+    for i in 0..3 {
+        let largest = pairs.iter().map(|pairs| pairs[i][1].abs()).fold(0.0, f64::max);
+        assert!(largest > 0.0);
+        for pairs in &pairs {
+            let [found, expected] = pairs[i];
+            // A part of a step is of second order in its change of the law.
+            assert!((found - expected).abs() <= 5e-4 * largest, "{i}: {found} {expected} of {largest}");
         }
     }
 }

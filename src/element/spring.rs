@@ -1,4 +1,4 @@
-//! The spring and slider of an element in two dimensions: its passage through a piece of a motion, in closed form.
+//! The spring and slider of an element, in the plane or along a line of it: its passage through a piece of a motion, in closed form.
 //!
 //! G is the force of the spring on the ground, K its stiffness, L the limit, Δ the displacement of the face along the
 //! plane, e = G/K. While the stiffness grows, contacts that are made carry no force yet; while it falls, contacts that
@@ -20,32 +20,32 @@ const LONG: f64 = 300.0;
 
 /// What an element's spring is held by: its stiffness (N/m) and its limit (N); both 0 without contact.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Hold<T> {
-    pub(super) stiffness: T,
-    pub(super) limit: T,
+pub(crate) struct Hold<T> {
+    pub(crate) stiffness: T,
+    pub(crate) limit: T,
 }
 
 /// A piece of a motion as an element sees it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Piece<T> {
-    pub(super) begin: Hold<T>,
-    pub(super) end: Hold<T>,
+pub(crate) struct Piece<T> {
+    pub(crate) begin: Hold<T>,
+    pub(crate) end: Hold<T>,
     /// Δ, m.
-    pub(super) displacement: [T; 2],
+    pub(crate) displacement: [T; 2],
     /// The tangent of half the angle that the velocity turns by.
-    pub(super) half_turn: T,
+    pub(crate) half_turn: T,
 }
 
 /// What a piece makes of a spring.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Passed<T> {
+pub(crate) struct Passed<T> {
     /// G at its end, N.
-    pub(super) force: [T; 2],
+    pub(crate) force: [T; 2],
     /// Whether it slips there.
-    pub(super) slips: bool,
+    pub(crate) slips: bool,
     /// Lost by slip and by release, J.
-    pub(super) slip: f64,
-    pub(super) release: f64,
+    pub(crate) slip: f64,
+    pub(crate) release: f64,
 }
 
 /// Whether a stiffness stays, but for rounding. Where it grows and where it falls springs differ, with one value and two
@@ -63,7 +63,7 @@ fn falls<T: Number>(before: T, after: T) -> bool {
 
 /// The law has leapt: G falls with K where K falls, then is cut to L. Returns G and the energy that it took, J.
 #[inline(always)]
-pub(super) fn leap<T: Number>(force: [T; 2], stiffness: T, hold: &Hold<T>) -> ([T; 2], f64) {
+pub(crate) fn leap<T: Number>(force: [T; 2], stiffness: T, hold: &Hold<T>) -> ([T; 2], f64) {
     let square = |g: [T; 2]| g[0] * g[0] + g[1] * g[1];
     let (k, limit) = (hold.stiffness, hold.limit);
     let before = square(force).value() / (stiffness.value() + TINY);
@@ -82,7 +82,7 @@ pub(super) fn leap<T: Number>(force: [T; 2], stiffness: T, hold: &Hold<T>) -> ([
 
 /// Takes a spring with |G| ≤ L through a piece.
 #[inline(always)]
-pub(super) fn pass<T: Number>(force: [T; 2], piece: &Piece<T>) -> Passed<T> {
+pub(crate) fn pass<T: Number>(force: [T; 2], piece: &Piece<T>) -> Passed<T> {
     let (tiny, one) = (T::constant(TINY), T::constant(1.0));
     let (begin, end) = (piece.begin, piece.end);
     let (falls, level) = (falls(begin.stiffness, end.stiffness), is_level(begin.stiffness, end.stiffness));
@@ -97,6 +97,9 @@ pub(super) fn pass<T: Number>(force: [T; 2], piece: &Piece<T>) -> Passed<T> {
     let l1 = (end.limit / (k_b + tiny)).or(k_b.value() > 0.0, l0);
     let growth = l1 - l0;
     let (tx, ty) = (ex + dx, ey + dy);
+    // Exactly 1 where the stiffness stays: a spring that stands is left alone.
+    let share_kept = k_b / (k_a + tiny);
+    let stuck = [force[0] * share_kept + k_b * dx, force[1] * share_kept + k_b * dy];
     let slips = (tx * tx + ty * ty).value() > (l1 * l1).value();
 
     let square = dx * dx + dy * dy;
@@ -136,7 +139,8 @@ pub(super) fn pass<T: Number>(force: [T; 2], piece: &Piece<T>) -> Passed<T> {
     let share = |k: f64| if falls { 1.0 } else { (k_m / (k + TINY)).min(f64::MAX) };
     let (share_0, share_1) = (share(k_0), share(k_1));
     let release = 0.25 * (k_1 - k_0).abs() * (before * share_0 + after * share_1);
-    Passed { force: [k_b * x, k_b * y], slips, slip: if slips && by_slip > 0.0 { by_slip } else { 0.0 }, release }
+    let force = [(k_b * x).or(slips, stuck[0]), (k_b * y).or(slips, stuck[1])];
+    Passed { force, slips, slip: if slips && by_slip > 0.0 { by_slip } else { 0.0 }, release }
 }
 
 /// The share of a displacement after which |e| reaches the radius, which grows straight from `radius` by `growth`.
