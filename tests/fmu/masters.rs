@@ -1,16 +1,17 @@
-//! The default scene in other people's masters.
+//! The default scene and a patch in other people's masters.
 //!
-//! Each master gives the FMU u and w at even times, without rates. The carrier then goes on as it came: in the first
-//! step to u_0, in the others to u_n + (u_n - u_{n-1}). The library, moved straight along that path, gives the same.
+//! Each master gives the FMU its inputs at even times, without rates. The carrier, or the body, then goes on as it came: in
+//! the first step to u_0, in the others to u_n + (u_n - u_{n-1}). The library, moved straight along that path, gives the same.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::common::{
-    Table, difference, fmpy, interpolate, largest, library_along, masters_python, pack, root, run, scratch, simulate,
-    target,
+    Table, asperity, difference, fmpy, interpolate, largest, library, library_along, masters_python, pack, root, run,
+    scratch, simulate, target,
 };
+use asperity::patch::{COORDINATES, Patch, PatchMotion, PatchRun, PatchStart, Pose};
 use asperity::scene::Scene;
 
 /// The communication step, s, and how many there are.
@@ -86,6 +87,88 @@ fn extrapolated(values: &Table) -> Table {
     let target = |values: &[f64], i: usize| if i < 2 { values[0] } else { 2.0 * values[i - 1] - values[i - 2] };
     let row = |i| vec![time[i], target(&u, i), target(&w, i)];
     Table::new(&["time", "u", "w"], (0..time.len()).map(row).collect())
+}
+
+/// A wheel, packed, that comes down, rolls, slips and turns, and the wrench and contacts that the library gives.
+struct Rolling {
+    folder: PathBuf,
+    fmu: PathBuf,
+    motion: PathBuf,
+    own: Table,
+}
+
+/// Its communication step, s, and how many there are.
+const ROLLING_STEP: f64 = 1e-3;
+const ROLLING_STEPS: usize = 60;
+
+impl Rolling {
+    fn new(name: &str) -> Self {
+        let (folder, source) = (scratch(name), root().join("tests/reference/patch"));
+        for file in ["wheel.toml", "winkler.table.csv"] {
+            fs::copy(source.join(file), folder.join(file)).unwrap();
+        }
+        let (file, fmu) = (folder.join("wheel.toml"), folder.join("wheel.fmu"));
+        run(asperity().args(["pack", "--patch"]).arg(&file).arg("-o").arg(&fmu).arg("--library").arg(library()));
+        let patch = Patch::load(&file).unwrap();
+        let inputs: Vec<_> = (0..=ROLLING_STEPS).map(|i| inputs_at(&patch, i as f64 * ROLLING_STEP)).collect();
+        let own = wheel_along(&patch, &inputs);
+        let names: Vec<_> = ["time"].into_iter().chain(COORDINATES).chain(["transport.speed"]).collect();
+        let time = |i: usize| i as f64 * ROLLING_STEP;
+        let rows = inputs.iter().enumerate().map(|(i, inputs)| [&[time(i)], &inputs[..]].concat()).collect();
+        let motion = folder.join("motion.csv");
+        Table::new(&names, rows).write(&motion);
+        Self { folder, fmu, motion, own }
+    }
+
+    fn compare(&self, script: &str) {
+        let result = self.folder.join("result.csv");
+        let mut python = Command::new(masters_python());
+        python.arg(root().join("tests/python").join(script)).args([&self.fmu, &self.motion]).arg("-o").arg(&result);
+        run(&mut python);
+        let found = Table::read(&result);
+        for name in self.own.names() {
+            assert_close(name, &found.column(name), &self.own.column(name));
+        }
+    }
+}
+
+/// The pose and the speed of the tread, from the start values of the FMU on.
+fn inputs_at(patch: &Patch, time: f64) -> [f64; 7] {
+    let z = patch.clear_height() - 6e-5 * (time / 0.01).min(1.0);
+    [time, 0.02 * time, z, 1e-4 * (50.0 * time).sin(), 0.0, 0.2 * time, 1.1 * (time / 0.02).min(1.0)]
+}
+
+/// All outputs after every step of a wheel that goes on as it came.
+fn wheel_along(patch: &Patch, inputs: &[[f64; 7]]) -> Table {
+    let target = |i: usize| -> [f64; 7] {
+        if i < 2 { inputs[0] } else { std::array::from_fn(|k| 2.0 * inputs[i - 1][k] - inputs[i - 2][k]) }
+    };
+    let pose = |inputs: [f64; 7]| -> [f64; 6] { std::array::from_fn(|k| inputs[k]) };
+    let mut wheel =
+        PatchRun::new(patch, &PatchStart { pose: Pose::of(pose(inputs[0])), ..PatchStart::default() }).unwrap();
+    let variables = patch.variables();
+    let row = |i: usize| {
+        let (from, to) = (wheel.pose().coordinates(), target(i));
+        let rates = std::array::from_fn(|k| (to[k] - from[k]) / ROLLING_STEP);
+        let motion = PatchMotion { duration: ROLLING_STEP, rates, transport_speed: to[6], temperature: 0.0 };
+        wheel.advance(&motion).unwrap();
+        let mut values = vec![0.0; variables.len()];
+        wheel.evaluate(&variables, &mut values);
+        values
+    };
+    let rows = (1..inputs.len()).map(row).collect();
+    let names: Vec<_> = variables.iter().map(|variable| variable.name.as_str()).collect();
+    Table::new(&names, rows)
+}
+
+#[test]
+fn libcosim_gives_for_a_patch_what_the_library_gives() {
+    Rolling::new("masters-patch-libcosim").compare("in_libcosim.py");
+}
+
+#[test]
+fn ecos_gives_for_a_patch_what_the_library_gives() {
+    Rolling::new("masters-patch-ecos").compare("in_ecos.py");
 }
 
 /// Some masters do not show the values at the start.

@@ -30,9 +30,9 @@ def simulate(fmu, step, inputs, reals, integers):
         with EcosSimulation(step, structure=structure) as simulation:
             if not simulation.init():
                 raise SystemExit(f"Ecos does not take {fmu}")
-            for u, w in inputs:
-                simulation.set_real("block::u", u)
-                simulation.set_real("block::w", w)
+            for values in inputs:
+                for name, value in values.items():
+                    simulation.set_real(f"block::{name}", value)
                 time = simulation.step()
                 found = [simulation.get_real(f"block::{name}") for name in reals]
                 found += [simulation.get_integer(f"block::{name}") for name in integers]

@@ -14,12 +14,11 @@ from libcosimpy.CosimSlave import CosimLocalSlave
 import master
 
 NANOSECOND = 1e-9
-# The value references of u and w.
-INPUTS = [0, 1]
 
 
 def simulate(fmu, step, inputs, reals, integers):
     """Yields the time and the outputs after each step."""
+    references = master.variables(fmu, "input", "Real")
     execution = CosimExecution.from_step_size(round(step / NANOSECOND))
     model = CosimLocalSlave(fmu_path=fmu, instance_name="block")
     slave = execution.add_local_slave(model)
@@ -28,7 +27,7 @@ def simulate(fmu, step, inputs, reals, integers):
     if slave < 0 or not execution.add_manipulator(manipulator) or not execution.add_observer(observer):
         raise SystemExit(f"libcosim does not take {fmu}")
     for values in inputs:
-        manipulator.slave_real_values(slave, INPUTS, values)
+        manipulator.slave_real_values(slave, [references[name] for name in values], [*values.values()])
         if not execution.step():
             raise SystemExit(f"libcosim: the step at {execution.status().current_time} ns failed")
         found = observer.last_real_values(slave, [*reals.values()])

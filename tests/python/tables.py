@@ -3,6 +3,12 @@
 import csv
 
 
+def names_of(path):
+    """The names of the columns but the first, the time."""
+    with open(path, newline="") as file:
+        return next(csv.reader(file))[1:]
+
+
 def read_motion(path, names=("u", "w")):
     """The rows: the time, then the inputs of these names, 0 where the file has no such column."""
     with open(path, newline="") as file:
