@@ -148,7 +148,7 @@ pub struct ResampledLaw {
     /// Of the table, as logarithms.
     speeds: Vec<f64>,
     stretches: Vec<Stretch>,
-    /// Even bins of ln v: the last speed of the table at or below where each begins; at most one more lies in it.
+    /// Even bins of ln v: the last speed of the table at or below where each begins; seldom more than one lies in it.
     bins: Vec<u32>,
     bin_density: f64,
     /// By interval those of all pressures but the first.
@@ -234,8 +234,10 @@ impl ResampledLaw {
     #[inline(always)]
     pub fn spot(&mut self, log_speed: f64) -> Spot {
         let bin = ((log_speed - self.speeds[0]) * self.bin_density) as u32 as usize;
-        let below = self.bins[bin.min(self.bins.len() - 1)] as usize;
-        let below = (below + usize::from(log_speed >= self.stretches[below].end)).min(self.stretches.len() - 1);
+        let mut below = self.bins[bin.min(self.bins.len() - 1)] as usize;
+        while log_speed >= self.stretches[below].end && below + 1 < self.stretches.len() {
+            below += 1;
+        }
         let Stretch { start, density, width, first, count, .. } = self.stretches[below];
         let interval = (((log_speed - start) * density) as u32 as usize).min(count - 1);
         let spot = Spot { interval: first + interval, start: start + interval as f64 * width, density };
@@ -407,6 +409,33 @@ mod tests {
 
     fn table(name: &str) -> Table {
         Table::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/patch").join(name)).unwrap()
+    }
+
+    /// Where more of its speeds lie together than there are bins for.
+    #[test]
+    fn close_speeds_of_a_table_are_told_apart() {
+        let mut text = "# asperity sweep = 1\n# scene = close\n# nominal_area = 1 m2\n# rest_separation = 0 m\n\
+                        speed [m/s],pressure [Pa],temperature [K],status,friction [1],separation [m],\
+                        tangential_stiffness [N/m]\n"
+            .to_owned();
+        let speeds = [1e-3, 1.000_001e-3, 1.000_002e-3, 10.0];
+        for (j, speed) in speeds.iter().enumerate() {
+            for (pressure, separation) in [(1e5, 2e-5), (2e5, 1e-5)] {
+                let friction = 0.5 + 0.1 * j as f64;
+                text += &format!("{speed},{pressure},,steady,{friction},{separation},1e9\n");
+            }
+        }
+        let path = std::env::temp_dir().join(format!("asperity-close-{}.csv", std::process::id()));
+        std::fs::write(&path, text).unwrap();
+        let table = Table::load(&path).unwrap();
+        std::fs::remove_file(&path).unwrap();
+        let mut law = ResampledLaw::new(&table, 1.0, 0.0);
+        for (j, speed) in speeds.iter().enumerate() {
+            let log_speed = law.range().logarithm(*speed);
+            let spot = law.spot(log_speed);
+            let friction = law.at(&spot, log_speed, -1.5e-5).friction;
+            assert!((friction - 0.5 - 0.1 * j as f64).abs() < 1e-6, "{speed}: {friction}");
+        }
     }
 
     /// p, μ and κ at speeds and approaches all over the table and beyond, at temperatures between its own.
