@@ -48,8 +48,8 @@ fn pose(k: f64) -> [f64; 6] {
     [1e-3 * (0.03 * k).sin() / 0.03, 2e-4 * k, z, 5e-5 * (0.07 * k).sin(), 0.0, 0.01 * (0.02 * k).sin()]
 }
 
-/// Seconds an element and step, of the processor and of the clock.
-fn patch_times(side: usize, tread: bool) -> [f64; 2] {
+/// Seconds an element and step, of the processor and of the clock, of a patch raised by `lift` (m).
+fn patch_times(side: usize, tread: bool, lift: f64) -> [f64; 2] {
     let folder = folder();
     fs::write(folder.join("table.csv"), table()).unwrap();
     let length = 1e-3 * side as f64;
@@ -58,6 +58,10 @@ fn patch_times(side: usize, tread: bool) -> [f64; 2] {
          {length}, nx = {side}, ny = {side}, transport = {tread} }}\n[fmu]\noutputs = [\"forces\", \"dissipation\"]"
     );
     let patch = Patch::parse(&text, &folder.join("patch.toml")).unwrap();
+    let pose = |k: f64| {
+        let [x, y, z, roll, pitch, yaw] = pose(k);
+        [x, y, z + lift, roll, pitch, yaw]
+    };
     let start = PatchStart { pose: Pose::of(pose(0.0)), ..PatchStart::default() };
     let mut run = PatchRun::new(&patch, &start).unwrap();
     let motions = |k: u32| {
@@ -73,7 +77,7 @@ fn patch_times(side: usize, tread: bool) -> [f64; 2] {
 }
 
 fn patch_time(side: usize, tread: bool) -> f64 {
-    patch_times(side, tread)[0]
+    patch_times(side, tread, 0.0)[0]
 }
 
 /// The bare loops' seconds an element and step; `None` without a C compiler.
@@ -109,8 +113,9 @@ fn main() {
     }
     println!("{:.1} ns an element and part, {:.1} with a tread", 1e9 * own, 1e9 * own_tread);
     println!("{:.1} ns in the bare loops: {:.2} of them", 1e9 * floor, own / floor);
+    println!("{:.1} ns where nothing touches", 1e9 * patch_times(side, false, 1e-3)[0]);
     // Large enough for several threads.
-    let [work, time] = patch_times(4 * side, false);
+    let [work, time] = patch_times(4 * side, false, 0.0);
     println!("{:.1} ns with {} times the elements: by the clock {:.2} of that", 1e9 * work, 16, time / work);
     let _ = fs::remove_dir_all(folder());
 }

@@ -157,8 +157,8 @@ pub struct ResampledLaw {
     pieces: Vec<Piece>,
     shares: Vec<Shares>,
     /// By interval the temperature's count at which it was computed.
-    computed: Vec<u32>,
-    temperatures: u32,
+    computed: Vec<u64>,
+    temperatures: u64,
     earliest_touch: f64,
 }
 
@@ -204,7 +204,7 @@ impl ResampledLaw {
         self.temperature = kelvin;
         self.law.set_temperature(kelvin);
         self.curve.forget_speed();
-        self.temperatures = self.temperatures.wrapping_add(1);
+        self.temperatures += 1;
         self.earliest_touch = self.law.earliest_touch();
     }
 

@@ -11,7 +11,7 @@ use crate::math::Number;
 const TINY: f64 = 1e-300;
 /// Share of a stiffness by which it may change and stay the same.
 const ROUNDING: f64 = 1e-9;
-/// A displacement below this share of L/K is none.
+/// A displacement below this share of L/K counts as none.
 const STANDING: f64 = 1e-12;
 /// Below this λ the series of [`lag`] serves.
 const SHORT: f64 = 1e-2;

@@ -1,4 +1,4 @@
-//! A block of elements that a step is done for together: structure of arrays, loops without branches where it can be.
+//! A block of elements that a step is done for together: in structure of arrays and, where possible, loops without branches.
 
 use super::cut::{End, half_turn, pass_in_pieces, size};
 use super::face::{Column, Face};
@@ -42,7 +42,7 @@ pub(super) struct Sums<T> {
 /// An element beyond the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Beyond {
-    /// As it is counted in the step.
+    /// As it is counted at that instant.
     pub(super) element: usize,
     /// Of the step.
     pub(super) share: f64,
@@ -50,8 +50,6 @@ pub(super) struct Beyond {
     pub(super) pressure: f64,
     /// m/s.
     pub(super) speed: f64,
-    /// Whether it is the speed that is beyond.
-    pub(super) by_speed: bool,
 }
 
 impl<T> Step<'_, T> {
@@ -66,6 +64,13 @@ impl<T> Step<'_, T> {
                 (indices(first), columns * rows, indices(self.run.entered()))
             }
         }
+    }
+
+    /// The index after a share of the step of an element as it is counted in the step.
+    fn index_at(&self, element: usize, share: f64) -> usize {
+        let Face::Tread(tread) = self.face else { return element };
+        let columns = tread.columns_of(self.run).0 + self.run.at(share).floor();
+        element.saturating_add_signed(columns as isize * tread.rows.len() as isize).min(self.face.count() - 1)
     }
 
     /// Whether some of the `count` elements from `start` on are on the face in a part.
@@ -123,6 +128,8 @@ struct Side<T> {
     approach: Lanes<T>,
     velocity: [Lanes<T>; 2],
     log_speed: Lanes<T>,
+    /// Whether no element can be in contact: then these are 0.
+    is_free: bool,
     pressure: Lanes<T>,
     limit: Lanes<T>,
     stiffness: Lanes<T>,
@@ -161,6 +168,7 @@ impl<T: Number> Side<T> {
             approach: zero,
             velocity: [zero; 2],
             log_speed: zero,
+            is_free: true,
             pressure: zero,
             limit: zero,
             stiffness: zero,
@@ -219,7 +227,7 @@ impl<T: Number> Side<T> {
 
     /// Whether no element can be in contact.
     #[inline(always)]
-    fn is_free(&self, law: &ResampledLaw) -> bool {
+    fn is_clear(&self, law: &ResampledLaw) -> bool {
         let touch = law.earliest_touch();
         self.approach.iter().fold(f64::NEG_INFINITY, |most, a| if a.value() > most { a.value() } else { most }) <= touch
     }
@@ -295,6 +303,7 @@ impl<T: Number> Block<T> {
         for side in [&mut self.begin, &mut self.end] {
             side.place.iter_mut().for_each(|lanes| lanes[count..].fill(0.0));
         }
+        self.end.is_free = true;
         self.end.let_go();
     }
 
@@ -311,14 +320,14 @@ impl<T: Number> Block<T> {
             if !stands {
                 now = step.path.at(from);
                 self.stand(step, law, &now, from);
-                self.check(law, from, sums);
+                self.check(step, law, from, sums);
                 stands = true;
             }
             let next = step.path.at(to);
             std::mem::swap(&mut self.begin, &mut self.end);
             self.stand(step, law, &next, to);
             self.pass_part(step, law, (&now, &next), to - from);
-            self.check(law, to, sums);
+            self.check(step, law, to, sums);
             now = next;
         }
         self.add_up(step, sums);
@@ -327,7 +336,7 @@ impl<T: Number> Block<T> {
     /// Lets the springs, relaxed, take the stiffness of their contacts at the start of a step.
     pub(super) fn settle(&mut self, step: &Step<'_, T>, law: &mut ResampledLaw, sums: &mut Sums<T>) {
         self.stand(step, law, &step.path.at(0.0), 0.0);
-        self.check(law, 0.0, sums);
+        self.check(step, law, 0.0, sums);
         self.stiffness = self.end.stiffness;
         self.add_up(step, sums);
     }
@@ -338,7 +347,8 @@ impl<T: Number> Block<T> {
         let is_tread = matches!(step.face, Face::Tread(_));
         self.end.place(step, self.start, self.count, step.run.at(share));
         self.end.move_to(now, is_tread.then_some(step.tread_speed));
-        if self.end.is_free(law) { self.end.let_go() } else { self.end.look_up(law) }
+        self.end.is_free = self.end.is_clear(law);
+        if self.end.is_free { self.end.let_go() } else { self.end.look_up(law) }
     }
 
     /// Takes the springs through a part.
@@ -350,6 +360,9 @@ impl<T: Number> Block<T> {
         (now, next): (&Instant<T>, &Instant<T>),
         part: f64,
     ) {
+        if self.begin.is_free && self.end.is_free && self.stiffness.iter().all(|k| k.value() == 0.0) {
+            return;
+        }
         let displacement = self.displacements(step, (now, next), part);
         let Self { force, stiffness, slips, slip, release, begin, end, count, .. } = self;
         leap_all(force, stiffness, release, begin);
@@ -396,7 +409,10 @@ impl<T: Number> Block<T> {
 
     /// Takes note of an element beyond the table.
     #[inline(always)]
-    fn check(&self, law: &ResampledLaw, share: f64, sums: &mut Sums<T>) {
+    fn check(&self, step: &Step<'_, T>, law: &ResampledLaw, share: f64, sums: &mut Sums<T>) {
+        if self.end.is_free {
+            return;
+        }
         let (pressure, speed) = (law.largest_pressure() * (1.0 + ROUNDING), law.largest_speed() * (1.0 + ROUNDING));
         let speed_of = |i: usize| {
             let [x, y] = [0, 1].map(|axis| self.end.velocity[axis][i].value());
@@ -412,10 +428,9 @@ impl<T: Number> Block<T> {
         }
         let beyond = |i: usize| {
             let (p, v) = (self.end.pressure[i].value(), speed_of(i).sqrt());
-            let by_speed = p > 0.0 && v > speed;
-            let bears = self.end.area[i] > 0.0;
-            let element = self.start + i;
-            (bears && (p > pressure || by_speed)).then_some(Beyond { element, share, pressure: p, speed: v, by_speed })
+            let bears = p > 0.0 && self.end.area[i] > 0.0;
+            let element = step.index_at(self.start + i, share);
+            (bears && (p > pressure || v > speed)).then_some(Beyond { element, share, pressure: p, speed: v })
         };
         sums.beyond = (0..self.count).find_map(beyond).or(sums.beyond);
     }
@@ -424,6 +439,12 @@ impl<T: Number> Block<T> {
     #[inline(always)]
     fn add_up(&mut self, step: &Step<'_, T>, sums: &mut Sums<T>) {
         let end = &*self.end;
+        sums.slip += total(&self.slip);
+        sums.release += total(&self.release);
+        if end.is_free {
+            self.mode.fill(0);
+            return;
+        }
         let mut loads = [[T::constant(0.0); BLOCK]; 7];
         for i in 0..BLOCK {
             let (f_x, f_y) = (-self.force[0][i], -self.force[1][i]);
@@ -444,8 +465,6 @@ impl<T: Number> Block<T> {
             *sum = *sum + total(load);
         }
         sums.transport = sums.transport + total(&loads[6]);
-        sums.slip += total(&self.slip);
-        sums.release += total(&self.release);
         for i in 0..BLOCK {
             let mode = if self.slips[i] > 0.0 { 1 } else { 2 };
             self.mode[i] = if end.stiffness[i].value() > 0.0 { mode } else { 0 };

@@ -1,8 +1,8 @@
 //! A step of all blocks, by several threads where the patch is large enough to gain.
 //!
 //! Blocks are dealt out in batches, and what the batches add up to is added in their order: numbers do not depend on who
-//! did what. Threads end with the step, since a master may unload the FMU after it; patches that one thread does best
-//! start none.
+//! did what. Threads end with the step, since a master may unload the FMU after it: starting them is all that a step
+//! allocates. Patches that one thread does best start none.
 
 use std::num::NonZero;
 use std::sync::Mutex;
@@ -17,10 +17,10 @@ use crate::math::Number;
 const MOST_BATCHES: usize = 128;
 /// Blocks of a batch, at least.
 const FEWEST_BLOCKS: usize = 16;
-/// Elements times parts that are worth a thread: starting one takes as long as a few hundred of them.
+/// Elements times parts that are worth a thread: starting one is next to nothing beside them.
 const WORTH_A_THREAD: f64 = 16384.0;
 
-/// Those who do the steps of a patch, and the sums of their batches.
+/// The workers of a patch, and the sums of their batches.
 #[derive(Clone, Debug)]
 pub(super) struct Crew<T> {
     block: Box<Block<T>>,
@@ -28,7 +28,7 @@ pub(super) struct Crew<T> {
     sums: Vec<Sums<T>>,
 }
 
-/// Who helps, with a law of its own, since a law is computed as it is needed.
+/// A helper. It has a law of its own, since intervals of a law are computed when they are first needed.
 #[derive(Clone, Debug)]
 struct Helper<T> {
     block: Box<Block<T>>,
@@ -44,10 +44,10 @@ struct Batch<'a, T> {
 }
 
 impl<T: Number + Send + Sync> Crew<T> {
-    /// For a patch of `count` elements: as many as the processor serves at once and the patch is worth.
-    pub(super) fn new(count: usize, law: &ResampledLaw) -> Self {
+    /// For steps of so many elements times parts or more: as many as the processor serves at once and the steps are worth.
+    pub(super) fn new(elements_and_parts: f64, law: &ResampledLaw) -> Self {
         let threads = thread::available_parallelism().map_or(1, NonZero::get);
-        Self::of(threads.min((count as f64 / WORTH_A_THREAD) as usize), law)
+        Self::of(threads.min((elements_and_parts / WORTH_A_THREAD) as usize), law)
     }
 
     /// One, or `threads` of them.
@@ -80,8 +80,7 @@ impl<T: Number + Send + Sync> Crew<T> {
                 batch.serve((first, entered), springs, block, |block, sums| work(block, law, sums));
             }
         };
-        let worth = (count as f64 * step.parts.most() / WORTH_A_THREAD) as usize;
-        let wanted = worth.saturating_sub(1).min(helpers.len()).min(batches.saturating_sub(1));
+        let wanted = helpers.len().min(batches.saturating_sub(1));
         if wanted == 0 {
             serve(block, law);
         } else {
@@ -89,7 +88,10 @@ impl<T: Number + Send + Sync> Crew<T> {
             thread::scope(|scope| {
                 for Helper { block, law: own } in &mut helpers[..wanted] {
                     own.set_temperature(law.temperature());
-                    scope.spawn(move || serve(block, own));
+                    // Those whom the system gives no thread are done without.
+                    if thread::Builder::new().spawn_scoped(scope, move || serve(block, own)).is_err() {
+                        break;
+                    }
                 }
                 serve(block, law);
             });

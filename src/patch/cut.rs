@@ -8,7 +8,7 @@ use crate::math::Number;
 const FEWEST_PIECES: f64 = 4.0;
 /// Change of ln p over a piece, at most.
 const LARGEST_CHANGE: f64 = 0.125;
-/// So that quotients of vanishing speeds are none.
+/// Keeps quotients of numbers that vanish together finite.
 const TINY: f64 = 1e-300;
 
 /// An element at the beginning or the end of a part.
@@ -110,7 +110,8 @@ pub(super) fn size<T: Number>(v: [T; 2]) -> T {
     (v[0] * v[0] + v[1] * v[1]).sqrt()
 }
 
-/// The tangent of half the angle between two velocities, at most 1.
+/// The tangent of half the angle between two velocities, at most 1: where a motion turns by more than a right angle it passes
+/// near a stop, and which way it points meanwhile is not known.
 #[inline(always)]
 pub(super) fn half_turn<T: Number>(from: [T; 2], to: [T; 2]) -> T {
     let cross = from[0] * to[1] - from[1] * to[0];

@@ -199,9 +199,9 @@ impl Patch {
             Face::Tread(tread) => tread.arc.at(0.0).0[1] + tread.offset[2],
         };
         let step = law.earliest_touch().abs().max(1e-6);
-        // A round number is easier to read, and a little higher.
+        // A round number, a little higher, is easier to read.
         let digits = 10.0_f64.powf(step.log10().floor() - 1.0);
-        ((-law.earliest_touch() - lowest) / digits).ceil() * digits
+        (((-law.earliest_touch() - lowest) / digits).floor() + 1.0) * digits
     }
 
     pub(super) fn law(&self) -> ResampledLaw {

@@ -73,7 +73,7 @@ pub(super) struct Column {
     pub(super) place: [f64; 2],
     /// The direction of the arc.
     pub(super) direction: [f64; 2],
-    /// The share of the cells' area that is inside.
+    /// The share of a cell's area that is inside.
     pub(super) share: f64,
 }
 

@@ -148,9 +148,17 @@ impl Parts {
         self.refine * (self.turn * (to - from) / LARGEST_TURN).ceil().max(1.0)
     }
 
-    /// An upper bound of the number of parts.
-    pub(super) fn most(&self) -> f64 {
-        self.refine * (2.0 * (self.cuts.0 + 1.0) + self.turn / LARGEST_TURN)
+    /// The number of parts; where that is more than `most`, a lower bound above `most`.
+    pub(super) fn count(&self, most: f64) -> f64 {
+        let least = self.refine * (self.cuts.0 + 1.0).max(self.turn / LARGEST_TURN);
+        if least.is_nan() || least > most {
+            return least;
+        }
+        let stretch = |i: u32| {
+            let from = if i == 0 { 0.0 } else { self.end_of_stretch(f64::from(i) - 1.0) };
+            self.in_stretch(from, self.end_of_stretch(f64::from(i)))
+        };
+        (0..=self.cuts.0 as u32).map(stretch).sum()
     }
 
     /// The shares of the step at which the parts begin and end.
@@ -183,7 +191,7 @@ mod tests {
     fn shares(run: Run, turn: f64, refine: u32) -> Vec<(f64, f64)> {
         let parts = Parts::new(run, turn, refine);
         let shares: Vec<_> = parts.iter().collect();
-        assert!(shares.len() as f64 <= parts.most());
+        assert_eq!(shares.len() as f64, parts.count(1e5));
         shares
     }
 

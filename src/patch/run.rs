@@ -12,6 +12,10 @@ use crate::element::ResampledLaw;
 use crate::math::Dual;
 use crate::scene::{PatchGroup, TableExtrapolation};
 
+/// What `table.extrapolation = "hold"` does.
+const HELD: &str =
+    "pressures go on along their tangent, coefficients stay those of the table's end; this is said once a run";
+
 /// A run of a patch. A clone continues as the original does, bit for bit.
 #[derive(Clone, Debug)]
 pub struct PatchRun {
@@ -23,7 +27,10 @@ pub struct PatchRun {
     next: Springs,
     pub(super) tangents: Option<Box<[[f64; 6]; 6]>>,
     workspace: Workspace,
-    warning: Option<String>,
+    /// Whether it has warned of a temperature, and of an element, beyond the table: no part of a state, so that a step that
+    /// is repeated does not warn again.
+    warned: [bool; 2],
+    warnings: Vec<String>,
 }
 
 /// Who does the steps, with derivatives where tangents are asked for.
@@ -61,11 +68,9 @@ impl PatchRun {
         if let Some(held) = patch.held_temperature(temperature) {
             law.set_temperature(held);
         }
-        let workspace = if tangents {
-            Workspace::Tangent(Crew::new(patch.count(), &law))
-        } else {
-            Workspace::Plain(Crew::new(patch.count(), &law))
-        };
+        let work = patch.count() as f64 * f64::from(patch.refine);
+        let workspace =
+            if tangents { Workspace::Tangent(Crew::new(work, &law)) } else { Workspace::Plain(Crew::new(work, &law)) };
         let springs = Springs::new(patch.count());
         Self {
             law,
@@ -74,7 +79,8 @@ impl PatchRun {
             springs,
             tangents: tangents.then(|| Box::new([[0.0; 6]; 6])),
             workspace,
-            warning: None,
+            warned: [false; 2],
+            warnings: Vec::new(),
             patch: patch.clone(),
         }
     }
@@ -88,15 +94,15 @@ impl PatchRun {
         let face = &self.patch.face;
         let step = Step { face, path, run, parts: Parts::new(run, 0.0, 1), tread_speed };
         let springs = (&self.springs, &mut self.next);
-        let sums = Crew::new(1, &self.law).work(&step, &mut self.law, springs, |block, law, sums| {
+        let sums = Crew::of(1, &self.law).work(&step, &mut self.law, springs, |block, law, sums| {
             block.settle(&step, law, sums);
         });
         let mut reached = self.totals;
         reached.add(&sums, 0.0);
-        let warning = self.judge(&reached, sums.beyond, time, 0.0)?;
         reached.check(None)?;
+        self.judge(reached.temperature, sums.beyond, (time, 0.0))?;
         self.springs.clone_from(&self.next);
-        self.reach(reached, warning);
+        self.totals = reached;
         Ok(())
     }
 
@@ -115,9 +121,9 @@ impl PatchRun {
         self.totals.transport_speed
     }
 
-    /// What the run has to say about elements beyond the table, once a run.
+    /// The next warning: of the first temperature and of the first element beyond the table.
     pub fn take_warning(&mut self) -> Option<String> {
-        self.warning.take()
+        (!self.warnings.is_empty()).then(|| self.warnings.remove(0))
     }
 
     /// Follows a motion; over no time it stays as it is.
@@ -139,9 +145,9 @@ impl PatchRun {
         let run = self.run(place, tread_speed * duration);
         let path = Path { start, change, duration };
         let parts = Parts::new(run, path.turn(), self.patch.refine);
-        let most = parts.most();
-        if most > MOST_PARTS || most.is_nan() {
-            return Err(MotionError::TooManyParts { time, parts: most });
+        let count = parts.count(MOST_PARTS);
+        if count > MOST_PARTS || count.is_nan() {
+            return Err(MotionError::TooManyParts { time, parts: count });
         }
         self.set_temperature(temperature);
         let Self { patch, law, springs, next, workspace, .. } = self;
@@ -170,28 +176,17 @@ impl PatchRun {
             (transport_speed, tread_speed, temperature);
         // Just below a whole number, rounding may give 1.
         reached.place = (run.at(1.0) - run.entered()).min(1.0_f64.next_down());
-        let judged = self.judge(&reached, sums.beyond, time, duration);
-        match judged.and_then(|warning| reached.check(tangents.as_ref()).map(|()| warning)) {
-            Ok(warning) => {
-                std::mem::swap(&mut self.springs, &mut self.next);
-                if let (Some(kept), Some(found)) = (&mut self.tangents, tangents) {
-                    **kept = found;
-                }
-                self.reach(reached, warning);
-                Ok(())
-            }
-            Err(error) => {
-                self.set_temperature(temperature_before);
-                Err(error)
-            }
+        let judged = reached.check(tangents.as_ref());
+        if let Err(error) = judged.and_then(|()| self.judge(temperature, sums.beyond, (time, duration))) {
+            self.set_temperature(temperature_before);
+            return Err(error);
         }
-    }
-
-    /// Takes over what a step has reached.
-    fn reach(&mut self, reached: Totals, warning: Option<String>) {
+        std::mem::swap(&mut self.springs, &mut self.next);
+        if let (Some(kept), Some(found)) = (&mut self.tangents, tangents) {
+            **kept = found;
+        }
         self.totals = reached;
-        self.totals.beyond |= warning.is_some();
-        self.warning = warning.or(self.warning.take());
+        Ok(())
     }
 
     fn set_temperature(&mut self, kelvin: f64) {
@@ -208,28 +203,27 @@ impl PatchRun {
         }
     }
 
-    /// Refuses a temperature or an element beyond the table, or says what the first one is.
-    fn judge(
-        &self,
-        reached: &Totals,
-        beyond: Option<Beyond>,
-        time: f64,
-        duration: f64,
-    ) -> Result<Option<String>, MotionError> {
-        let kelvin = reached.temperature;
-        let error = if self.patch.held_temperature(kelvin).is_some_and(|held| held != kelvin) {
-            MotionError::TemperatureBeyondTable { time, kelvin }
-        } else if let Some(Beyond { element, share, pressure, speed, by_speed }) = beyond {
-            let (element, within) = (element + 1, share > 0.0 && !by_speed);
-            MotionError::BeyondTable { element, time: time + share * duration, pressure, speed, within }
-        } else {
-            return Ok(None);
-        };
-        match self.patch.table_extrapolation {
-            TableExtrapolation::Refuse => Err(error),
-            TableExtrapolation::Hold if self.totals.beyond => Ok(None),
-            TableExtrapolation::Hold => Ok(Some(format!("{error}: its ends hold from here on"))),
+    /// Refuses a temperature or an element beyond the table, or warns of the first.
+    fn judge(&mut self, kelvin: f64, beyond: Option<Beyond>, (time, duration): (f64, f64)) -> Result<(), MotionError> {
+        if self.patch.held_temperature(kelvin).is_some_and(|held| held != kelvin) {
+            self.refuse_or_warn(0, |_| MotionError::TemperatureBeyondTable { time, kelvin })?;
         }
+        let Some(Beyond { element, share, pressure, speed }) = beyond else { return Ok(()) };
+        self.refuse_or_warn(1, |patch| {
+            let (element, time) = (patch.element_name(element), time + share * duration);
+            MotionError::BeyondTable { element, time, pressure, speed, within: share > 0.0 }
+        })
+    }
+
+    /// Refuses what is beyond the table, or warns of this kind of it once a run.
+    fn refuse_or_warn(&mut self, kind: usize, error: impl Fn(&Patch) -> MotionError) -> Result<(), MotionError> {
+        if self.patch.table_extrapolation == TableExtrapolation::Refuse {
+            return Err(error(&self.patch));
+        }
+        if !std::mem::replace(&mut self.warned[kind], true) {
+            self.warnings.push(format!("{}; {HELD}", error(&self.patch)));
+        }
+        Ok(())
     }
 
     /// All that changes in the run.
@@ -280,7 +274,6 @@ impl PatchRun {
         if let (Some(own), Some(saved)) = (&mut self.tangents, &saved.tangents) {
             **own = **saved;
         }
-        self.warning = None;
     }
 }
 

@@ -80,21 +80,18 @@ pub enum MotionError {
         time: f64,
     },
     /// The step would take too many parts.
-    #[error("the step from t = {time} s takes {parts:.0} parts or fewer, more than {MOST_PARTS:.0}")]
+    #[error("the step from t = {time} s takes {parts:.0} parts or more: more than {MOST_PARTS:.0}")]
     TooManyParts {
         /// s.
         time: f64,
-        /// How many, at most.
+        /// How many, at least.
         parts: f64,
     },
     /// An element is beyond the table.
-    #[error(
-        "element {element} is beyond the table at t = {time} s: {pressure} Pa at {speed} m/s (table.extrapolation = \
-         \"hold\" extrapolates)"
-    )]
+    #[error("{element} is beyond the table at t = {time} s: {pressure} Pa at {speed} m/s")]
     BeyondTable {
-        /// Its number, from 1.
-        element: usize,
+        /// Its name, as its variables have it.
+        element: String,
         /// s.
         time: f64,
         /// Pa.
@@ -105,9 +102,7 @@ pub enum MotionError {
         within: bool,
     },
     /// The temperature is beyond the table.
-    #[error(
-        "the temperature {kelvin} K is beyond the table at t = {time} s (table.extrapolation = \"hold\" holds its ends)"
-    )]
+    #[error("the temperature {kelvin} K is beyond the table at t = {time} s")]
     TemperatureBeyondTable {
         /// s.
         time: f64,
@@ -259,8 +254,6 @@ pub(super) struct Totals {
     pub(super) lost: [f64; 2],
     /// Mean over the last step, W.
     pub(super) power: f64,
-    /// Whether an element has been beyond the table.
-    pub(super) beyond: bool,
 }
 
 /// All that changes in a run.

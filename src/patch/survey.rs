@@ -130,7 +130,8 @@ impl PatchRun {
             let here = self.present(i, &saved.totals, &now);
             let limit = here.area * here.pressure * here.point.friction;
             let force = saved.springs.x[i].hypot(saved.springs.y[i]);
-            if force.is_nan() || force > limit * (1.0 + ROUNDING) {
+            let is_held = force == 0.0 || saved.springs.stiffness[i] > 0.0;
+            if force.is_nan() || force > limit * (1.0 + ROUNDING) || !is_held {
                 return Err(RestoreError::Invalid { what: "the force of a spring", value: force });
             }
         }

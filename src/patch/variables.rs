@@ -184,11 +184,16 @@ impl Patch {
         (0..3).map(force).chain((0..3).map(moment)).chain(self.has_tread().then(transport)).collect()
     }
 
-    fn fields(&self, i: usize) -> [PatchVariable; 4] {
-        let element = match self.rows() {
+    /// The name of an element, before its variables' own.
+    pub(super) fn element_name(&self, i: usize) -> String {
+        match self.rows() {
             Some(rows) => format!("element[{},{}]", i / rows + 1, i % rows + 1),
             None => format!("element[{}]", i + 1),
-        };
+        }
+    }
+
+    fn fields(&self, i: usize) -> [PatchVariable; 4] {
+        let element = self.element_name(i);
         let name = |field: &str| format!("{element}.{field}");
         let real = |output, field: &str, unit, what: &str| {
             PatchVariable::real(PatchGroup::Elements, output, &name(field), unit, &format!("{what} {element}"))

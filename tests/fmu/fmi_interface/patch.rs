@@ -190,13 +190,15 @@ fn the_end_of_the_table_is_held_or_refused() {
         give(&held, pose, down);
         assert_eq!(held.step(H * f64::from(step), H), OK);
     }
-    assert!(held.message().contains("beyond the table"));
+    // The first of the two columns in the middle, where the wheel is lowest.
+    let warning = held.message();
+    assert!(warning.contains("element[3,1] is beyond the table at t = 0") && warning.contains("Pa at"), "{warning}");
     assert!(held.real("contact.beyond") > 0.5);
     let refused = pressed("refuse");
     let before = refused.bits();
     give(&refused, POSE, down);
     assert_eq!(refused.step(0.0, H), DISCARD);
-    assert!(refused.message().contains("beyond the table"));
+    assert!(refused.message().contains("element[3,1] is beyond the table at t = 0"), "{}", refused.message());
     assert_eq!(refused.bits(), before);
     assert_eq!(refused.step(0.0, 1e-5), OK);
 }
