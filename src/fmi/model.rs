@@ -58,7 +58,8 @@ impl InstanceModel {
         })
     }
 
-    /// Puts the model in `state`, of the same definition; that of a patch was checked where it was read. The processor time spent remains.
+    /// Puts the model in `state`, of the same definition; that of a patch was checked where it was read. The processor
+    /// time spent remains.
     pub(super) fn set_state(&mut self, definition: &Definition, state: &ModelState) -> Result<(), RestoreError> {
         match (&mut *self, state) {
             (Self::Layer(simulation), ModelState::Layer(state)) => simulation.set_state(state)?,

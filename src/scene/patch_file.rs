@@ -30,7 +30,7 @@ pub struct PatchFile {
     pub offset: [f64; 3],
     /// How the body moves when a master gives no rates.
     pub extrapolation: Extrapolation,
-    /// How many times finer a step is cut than it need be.
+    /// How many times finer a step is cut than it needs to be.
     pub refine: u32,
     /// Groups of outputs, in the order of the variables.
     pub outputs: Vec<PatchGroup>,

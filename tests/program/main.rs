@@ -19,6 +19,7 @@ mod element;
 mod fit;
 mod patch_check;
 mod patch_maps;
+mod patch_simulate;
 mod peers;
 mod program;
 mod report;

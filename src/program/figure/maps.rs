@@ -59,9 +59,11 @@ impl Maps {
     /// What the large map and one of the strip can show.
     pub(super) fn details(&self) -> [Detail; 2] {
         [(TILES.0, self.large), (TILES.1, self.small)].map(|(tiles, size)| {
-            let per_pixel =
-                |axis: usize, pixels: u32| (self.plan.extents[axis].1 - self.plan.extents[axis].0) / f64::from(pixels);
-            Detail { tiles, arrows: f64::from(ARROW * FINE) * per_pixel(0, size.0).min(per_pixel(1, size.1)) }
+            let distance = |axis: usize, pixels: u32| {
+                let (low, high) = self.plan.extents[axis];
+                f64::from(ARROW * FINE) * (high - low) / f64::from(pixels)
+            };
+            Detail { tiles, arrows: [distance(0, size.0), distance(1, size.1)] }
         })
     }
 

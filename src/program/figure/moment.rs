@@ -8,8 +8,8 @@ use asperity::patch::{FaceElement, FacePlan, PatchRun};
 pub(super) struct Detail {
     /// Most tiles along each axis.
     pub(super) tiles: usize,
-    /// The distance of the arrows, m.
-    pub(super) arrows: f64,
+    /// The distance of the arrows along each axis, m.
+    pub(super) arrows: [f64; 2],
 }
 
 /// Arrows among single points are so much farther apart: they hide points sooner than cells.
@@ -53,7 +53,8 @@ impl Moment {
     pub(super) fn of(run: &mut PatchRun, plan: &FacePlan, detail: Detail, force: f64) -> Self {
         let are_points = plan.rows().is_none() && plan.count <= detail.tiles * detail.tiles;
         let tiles = if are_points { Bins::cells(plan, 1, [1, 1]) } else { Bins::of_tiles(plan, detail.tiles) };
-        let arrows = Bins::of_arrows(plan, detail.arrows * if are_points { BETWEEN_POINTS } else { 1.0 });
+        let apart = if are_points { BETWEEN_POINTS } else { 1.0 };
+        let arrows = Bins::of_arrows(plan, detail.arrows.map(|distance| distance * apart));
         let mut gathered = [&tiles, &arrows].map(|bins| vec![Gathered::default(); bins.count]);
         let (time, mut pressure) = (run.time(), 0.0_f64);
         for (i, element) in run.over_face(plan).enumerate() {
@@ -77,24 +78,25 @@ struct Bins {
 enum Kind {
     /// Columns and rows of a grid with so many rows: so many of each together.
     Cells { rows: usize, together: [usize; 2] },
-    /// Points in a square, by the corner and the length of the first one (m) and the number of them along the second axis.
-    Squares { corner: [f64; 2], edge: f64, across: usize },
+    /// Points in a rectangle, by the corner and the edges of the first one (m) and the number of them along the second
+    /// axis.
+    Rectangles { corner: [f64; 2], edges: [f64; 2], across: usize },
 }
 
 impl Bins {
     fn of_tiles(plan: &FacePlan, most: usize) -> Self {
         match plan.rows() {
             Some(rows) => Self::cells(plan, rows, [plan.count / rows, rows].map(|count| count.div_ceil(most))),
-            None => Self::squares(plan, longest(plan) / most as f64),
+            None => Self::rectangles(plan, [longest(plan) / most as f64; 2]),
         }
     }
 
-    fn of_arrows(plan: &FacePlan, distance: f64) -> Self {
-        let Some(rows) = plan.rows() else { return Self::squares(plan, distance) };
+    fn of_arrows(plan: &FacePlan, distance: [f64; 2]) -> Self {
+        let Some(rows) = plan.rows() else { return Self::rectangles(plan, distance) };
         let [along, across] = [plan.count / rows, rows];
         let together = [(0, along), (1, across)].map(|(axis, count)| {
             let cell = (plan.extents[axis].1 - plan.extents[axis].0) / count as f64;
-            ((distance / cell).round() as usize).clamp(1, count)
+            ((distance[axis] / cell).round() as usize).clamp(1, count)
         });
         Self::cells(plan, rows, together)
     }
@@ -104,19 +106,20 @@ impl Bins {
         Self { count, kind: Kind::Cells { rows, together } }
     }
 
-    fn squares(plan: &FacePlan, edge: f64) -> Self {
-        let [along, across] = plan.extents.map(|(low, high)| ((high - low) / edge) as usize + 1);
+    fn rectangles(plan: &FacePlan, edges: [f64; 2]) -> Self {
+        let number = |axis: usize| ((plan.extents[axis].1 - plan.extents[axis].0) / edges[axis]) as usize + 1;
+        let (along, across) = (number(0), number(1));
         let corner = plan.extents.map(|(low, _)| low);
-        Self { count: along * across, kind: Kind::Squares { corner, edge, across } }
+        Self { count: along * across, kind: Kind::Rectangles { corner, edges, across } }
     }
 
-    /// The tiles of those with elements in them; a square is drawn whole.
+    /// The tiles of those with elements in them; a rectangle is drawn whole.
     fn tiles(&self, gathered: &[Gathered]) -> Vec<Tile> {
         let drawn = |(index, gathered): (usize, &Gathered)| {
             let tile = gathered.tile()?;
-            let Kind::Squares { corner, edge, across } = self.kind else { return Some(tile) };
+            let Kind::Rectangles { corner, edges, across } = self.kind else { return Some(tile) };
             let index = [index / across, index % across];
-            let end = |more: usize| [0, 1].map(|axis| corner[axis] + edge * (index[axis] + more) as f64);
+            let end = |more: usize| [0, 1].map(|axis| corner[axis] + edges[axis] * (index[axis] + more) as f64);
             Some(Tile { low: end(0), high: end(1), ..tile })
         };
         gathered.iter().enumerate().filter_map(drawn).collect()
@@ -127,8 +130,8 @@ impl Bins {
             Kind::Cells { rows, together: [along, across] } => {
                 (i / rows / along) * rows.div_ceil(across) + i % rows / across
             }
-            Kind::Squares { corner, edge, across } => {
-                let [x, y] = [0, 1].map(|axis| ((element.place[axis] - corner[axis]) / edge) as usize);
+            Kind::Rectangles { corner, edges, across } => {
+                let [x, y] = [0, 1].map(|axis| ((element.place[axis] - corner[axis]) / edges[axis]) as usize);
                 x * across + y
             }
         }
@@ -185,5 +188,32 @@ impl Gathered {
             traction: self.tangential.map(mean),
             sticks: self.sticking > 0.0,
         })
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use std::path::Path;
+
+    use asperity::patch::{Patch, PatchElement};
+
+    use super::super::maps::Maps;
+    use super::*;
+
+    /// Of a face 1 m long and 0.1 mm wide, which is drawn wider than it is, arrows are as far apart along it as across.
+    #[test]
+    fn a_slender_face_has_as_many_arrows_as_the_map_has_room_for() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/patch");
+        let text = "name = 'p'\n[table]\npath = 'winkler.table.csv'\n[patch]\nshape = 'flat'\nlength = 1.0\n\
+                    width = 1e-4\nnx = 1000\nny = 2\n";
+        let grid = Patch::parse(text, &folder.join("p.toml")).unwrap();
+        let in_line = |i: u32| PatchElement { index: 0, place: [f64::from(i) * 1e-3, 0.0, 0.0], area: 1e-12 };
+        for (patch, expected) in [(&grid, 21 * 2), (&grid.of_elements((0..1000).map(in_line)), 21 * 5)] {
+            let plan = patch.plan();
+            // 620 by 124 pixels, 30 from arrow to arrow: 20.7 along, 4.1 across; of the grid 48 columns go together.
+            let [large, _] = Maps::new(plan.clone()).details();
+            assert_eq!(Bins::of_arrows(&plan, large.arrows).count, expected);
+        }
     }
 }

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use asperity::patch::{MotionError, Patch, PatchError, PatchRun, PatchStart, Pose};
+use asperity::scene::{Parameter, ParameterError, TableExtrapolation, Value};
 
 use crate::program::files::{FileError, print};
 use crate::program::terminal::{LabelledLine, lines, rounded};
@@ -14,6 +15,15 @@ pub(crate) enum PatchDescribeError {
     File(#[from] FileError),
     #[error(transparent)]
     Patch(#[from] PatchError),
+}
+
+/// How much of the load lies below the table could not be found.
+#[derive(Debug, thiserror::Error)]
+enum LowEndError {
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+    #[error(transparent)]
+    Motion(#[from] MotionError),
 }
 
 /// Halvings of an interval of heights.
@@ -57,20 +67,59 @@ fn low_end(patch: &Patch) -> String {
     }
 }
 
-fn share_below_table(patch: &Patch) -> Result<f64, MotionError> {
-    let at = |z: f64| {
-        let pose = Pose { place: [0.0, 0.0, z], angles: [0.0; 3] };
-        PatchRun::new(patch, &PatchStart { pose, temperature: patch.temperature(), ..PatchStart::default() })
-    };
+fn share_below_table(patch: &Patch) -> Result<f64, LowEndError> {
+    // The search presses the face a little beyond the table.
+    let mut patch = patch.clone();
+    patch.set_parameter(Parameter::TableExtrapolation, Value::Text(TableExtrapolation::Hold.word().into()))?;
+    Ok(at_rest(&patch, height_of_largest_pressure(&patch)?)?.share_below_table())
+}
+
+/// The height (m) at which the lowest element of a level face bears the largest pressure of the table.
+fn height_of_largest_pressure(patch: &Patch) -> Result<f64, MotionError> {
+    let inside = patch.elements().filter(|element| element.area > 0.0);
+    let lowest = patch.of_elements(inside.min_by(|a, b| a.place[2].total_cmp(&b.place[2])));
     let (mut high, mut step) = (patch.clear_height(), 1e-7);
     let mut low = high - step;
-    while !at(low)?.pressure_is_beyond() && step < 1.0 {
+    while !at_rest(&lowest, low)?.pressure_is_beyond() && step < 1.0 {
         step *= 2.0;
         low = high - step;
     }
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
-        if at(middle)?.pressure_is_beyond() { low = middle } else { high = middle }
+        if at_rest(&lowest, middle)?.pressure_is_beyond() { low = middle } else { high = middle }
     }
-    Ok(at(high)?.share_below_table())
+    Ok(high)
+}
+
+/// The patch at rest, level, at a height (m).
+fn at_rest(patch: &Patch, z: f64) -> Result<PatchRun, MotionError> {
+    let pose = Pose { place: [0.0, 0.0, z], angles: [0.0; 3] };
+    PatchRun::new(patch, &PatchStart { pose, temperature: patch.temperature(), ..PatchStart::default() })
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_low_end_is_the_same_where_elements_beyond_the_table_are_refused() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/patch");
+        let with = |extrapolation: &str| {
+            let text = format!(
+                "name = 'p'\n[table]\npath = 'winkler.table.csv'\nextrapolation = '{extrapolation}'\n[patch]\nshape = \
+                 'cylinder'\nradius = 0.3\nlength = 0.03\nwidth = 0.02\nnx = 40\nny = 3\ntransport = true\noffset = \
+                 [0.0, 0.0, 0.1]\n"
+            );
+            Patch::parse(&text, &folder.join("p.toml")).unwrap()
+        };
+        let patch = with("hold");
+        // Of all elements at that height none is beyond the table, and 1 nm lower one is.
+        let height = height_of_largest_pressure(&patch).unwrap();
+        let is_beyond = |z: f64| at_rest(&patch, z).unwrap().pressure_is_beyond();
+        assert!(!is_beyond(height) && is_beyond(height - 1e-9));
+        let held = low_end(&patch);
+        assert!(held.contains(" % of the load is borne below "), "{held}");
+        assert_eq!(low_end(&with("refuse")), held);
+    }
 }

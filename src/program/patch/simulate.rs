@@ -47,7 +47,6 @@ pub(crate) fn simulate(command: &Simulate, patch_file: &Path, motion_file: &Path
             result = Err(PatchSimulateError::Run { source, time: run.time(), output: command.output.clone() });
             break;
         }
-        run.take_warning().iter().for_each(|warning| warn(warning));
         recorder.row(&mut run, motion.values(row))?;
     }
     let history = recorder.finish()?;
@@ -78,7 +77,9 @@ impl Recorder {
         })
     }
 
+    /// Writes the row of the present instant, and says what the run has to say.
     fn row(&mut self, run: &mut PatchRun, motion: Vec<f64>) -> Result<(), FileError> {
+        run.take_warning().iter().for_each(|warning| warn(warning));
         run.evaluate(&self.variables, &mut self.values);
         let variables = self.variables.iter().zip(&self.values).map(|(variable, &value)| field(variable.kind, value));
         self.writer.write(motion.into_iter().map(real).chain(variables))?;

@@ -61,7 +61,8 @@ const CYLINDER: &[Key] =
     &[SHAPE, number("radius", POSITIVE, Unit::Meter, "Radius"), LENGTH, WIDTH, NX, NY, TRANSPORT, OFFSET];
 const POINTS: &[Key] = &[SHAPE, key("path", Allowed::Text(PATH), "File of the points"), OFFSET];
 
-pub(in crate::scene) const REFINE: Key = whole("refine", 1, 1000, "How many times finer a step is cut than it need be");
+pub(in crate::scene) const REFINE: Key =
+    whole("refine", 1, 1000, "How many times finer a step is cut than it needs to be");
 
 const SOLVER: &[Key] = &[REFINE];
 

@@ -100,7 +100,7 @@ fn read_cylinder(table: &mut TableReader<'_>) -> Result<FaceShape> {
     let length = table.required("length")?;
     let grid = read_grid(table)?;
     if grid.length >= PI * radius {
-        return Err(length.refuse(format_args!("a number < {:?}, half of the cylinder", PI * radius)));
+        return Err(length.refuse(format_args!("a number < {:?}, half its circumference", PI * radius)));
     }
     Ok(FaceShape::Cylinder { radius, grid })
 }
