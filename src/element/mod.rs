@@ -2,8 +2,9 @@
 //!
 //! The carrier's height gives the pressure through the table's mean separation, its speed along x the friction
 //! coefficient and the tangential stiffness; F_x is the force of a spring of that stiffness, limited by μ F_z: one
-//! Jenkins element, of the same law and spring as those of a patch. So it knows what a layer does in steady sliding and at the start of motion, and nothing between: no
-//! relaxation, no inertia, no position on the profile. Along z it is elastic at each speed and dissipates nothing.
+//! Jenkins element, of the same law and spring as those of a patch. So it knows what a layer does in steady sliding and
+//! at the start of motion, and nothing between: no relaxation, no inertia, no position on the profile. Along z it is
+//! elastic at each speed and dissipates nothing.
 
 mod grid;
 mod jenkins;

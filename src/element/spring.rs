@@ -1,4 +1,5 @@
-//! The spring and slider of an element, in the plane or along a line of it: its passage through a piece of a motion, in closed form.
+//! The spring and slider of an element, in the plane or along a line of it: its passage through a piece of a motion, in
+//! closed form.
 //!
 //! G is the force of the spring on the ground, K its stiffness, L the limit, Δ the displacement of the face along the
 //! plane, e = G/K. While the stiffness grows, contacts that are made carry no force yet; while it falls, contacts that
