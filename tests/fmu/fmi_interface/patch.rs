@@ -6,6 +6,7 @@ use asperity::fmi::bindings::fmi2Status;
 use asperity::patch::{COORDINATES, Patch, PatchMotion, PatchRun, PatchStart, Pose};
 
 use crate::common::root;
+use crate::fmi_interface::lifecycle::try_all;
 use crate::fmi_interface::master::{DISCARD, ERROR, Fmu, OK};
 
 const WHEEL: &str = r#"
@@ -57,6 +58,39 @@ fn rolling(steps: u32) -> Fmu {
         assert_eq!(fmu.step(H * f64::from(step), H), OK);
     }
     fmu
+}
+
+/// Turns so far in a step that it is discarded.
+fn failed() -> Fmu {
+    let fmu = rolling(0);
+    assert_eq!((fmu.set_rate("roll", 1e9), fmu.step(0.0, H)), (OK, DISCARD));
+    fmu
+}
+
+fn in_error() -> Fmu {
+    let fmu = rolling(1);
+    assert_eq!((fmu.set_real("z", f64::NAN), fmu.step(H, H)), (OK, ERROR));
+    fmu
+}
+
+#[test]
+fn every_function_in_every_state() {
+    try_all([
+        ('I', || fmu(WHEEL)),
+        ('M', || {
+            let fmu = fmu(WHEEL);
+            assert_eq!((fmu.setup(0.0), fmu.enter()), (OK, OK));
+            fmu
+        }),
+        ('C', || rolling(0)),
+        ('F', failed),
+        ('T', || {
+            let fmu = rolling(1);
+            assert_eq!(fmu.terminate(), OK);
+            fmu
+        }),
+        ('E', in_error),
+    ]);
 }
 
 #[test]
