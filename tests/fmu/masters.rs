@@ -40,15 +40,6 @@ impl Case {
         Self { fmu: pack(&path, &folder), scene: Scene::load(&path).unwrap(), folder, motion, values }
     }
 
-    /// Runs a script of tests/python on the FMU and the motion.
-    fn run_script(&self, script: &str) -> Table {
-        let result = self.folder.join("result.csv");
-        let mut python = Command::new(masters_python());
-        python.arg(root().join("tests/python").join(script)).args([&self.fmu, &self.motion]).arg("-o").arg(&result);
-        run(&mut python);
-        Table::read(&result)
-    }
-
     /// Simulates an FMU by fmpy's own loop.
     fn simulate_in_fmpy(&self, fmu: &Path) -> Table {
         let result = self.folder.join("result.csv");
@@ -89,9 +80,17 @@ fn extrapolated(values: &Table) -> Table {
     Table::new(&["time", "u", "w"], (0..time.len()).map(row).collect())
 }
 
+/// Runs a script of tests/python on an FMU and a motion; its result lies beside the motion.
+fn run_script(script: &str, fmu: &Path, motion: &Path) -> Table {
+    let result = motion.with_file_name("result.csv");
+    let mut python = Command::new(masters_python());
+    python.arg(root().join("tests/python").join(script)).args([fmu, motion]).arg("-o").arg(&result);
+    run(&mut python);
+    Table::read(&result)
+}
+
 /// A wheel, packed, that comes down, rolls, slips and turns, and the wrench and contacts that the library gives.
 struct Rolling {
-    folder: PathBuf,
     fmu: PathBuf,
     motion: PathBuf,
     own: Table,
@@ -117,15 +116,11 @@ impl Rolling {
         let rows = inputs.iter().enumerate().map(|(i, inputs)| [&[time(i)], &inputs[..]].concat()).collect();
         let motion = folder.join("motion.csv");
         Table::new(&names, rows).write(&motion);
-        Self { folder, fmu, motion, own }
+        Self { fmu, motion, own }
     }
 
     fn compare(&self, script: &str) {
-        let result = self.folder.join("result.csv");
-        let mut python = Command::new(masters_python());
-        python.arg(root().join("tests/python").join(script)).args([&self.fmu, &self.motion]).arg("-o").arg(&result);
-        run(&mut python);
-        let found = Table::read(&result);
+        let found = run_script(script, &self.fmu, &self.motion);
         // An element at its limit sticks or slips by a rounding, and the masters' steps differ by one.
         for name in self.own.names().iter().filter(|name| *name != "contact.sticking") {
             assert_close(name, &found.column(name), &self.own.column(name));
@@ -188,13 +183,13 @@ fn fmpy_gives_what_the_library_gives() {
 #[test]
 fn libcosim_gives_what_the_library_gives() {
     let case = Case::new("masters-libcosim");
-    case.compare(&case.run_script("in_libcosim.py"));
+    case.compare(&run_script("in_libcosim.py", &case.fmu, &case.motion));
 }
 
 #[test]
 fn ecos_gives_what_the_library_gives() {
     let case = Case::new("masters-ecos");
-    case.compare(&case.run_script("in_ecos.py"));
+    case.compare(&run_script("in_ecos.py", &case.fmu, &case.motion));
 }
 
 /// Two of the FMU, the second with more friction, packed into one by fmu-manipulation-toolbox and simulated by fmpy.
