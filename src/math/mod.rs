@@ -10,6 +10,7 @@ mod root;
 mod spline;
 mod sums;
 mod tridiagonal;
+mod vectors;
 
 pub use fourier::{Direction, fourier};
 pub use monotone::{Expansion, cubic, interval_of, monotone_slopes};
@@ -21,3 +22,4 @@ pub use root::bracketed_root;
 pub use spline::{Bounds, Spline};
 pub use sums::{add_weighted_sum, dot, sum_of, sum_of_pairs, sum_of_triples, weighted_sum};
 pub use tridiagonal::BlockTridiagonal;
+pub use vectors::with_widest_vectors;

@@ -1,5 +1,7 @@
 //! Weighted sums of arrays, such as the terms of a Runge-Kutta stage from the stages before.
 
+use super::with_widest_vectors;
+
 /// Terms that one pass over the memory takes.
 const MOST_TERMS: usize = 8;
 
@@ -47,20 +49,24 @@ fn fill<'a>(batch: &mut [(f64, &'a [f64]); MOST_TERMS], terms: &mut impl Iterato
 }
 
 fn sum_up<const ADD: bool>(out: &mut [f64], terms: &[(f64, &[f64])]) {
-    match *terms {
-        [] if ADD => (),
-        [] => out.fill(0.0),
-        [a] => pass::<ADD, 1>(out, [a]),
-        [a, b] => pass::<ADD, 2>(out, [a, b]),
-        [a, b, c] => pass::<ADD, 3>(out, [a, b, c]),
-        [a, b, c, d] => pass::<ADD, 4>(out, [a, b, c, d]),
-        [a, b, c, d, e] => pass::<ADD, 5>(out, [a, b, c, d, e]),
-        [a, b, c, d, e, f] => pass::<ADD, 6>(out, [a, b, c, d, e, f]),
-        [a, b, c, d, e, f, g] => pass::<ADD, 7>(out, [a, b, c, d, e, f, g]),
-        [a, b, c, d, e, f, g, h, ..] => pass::<ADD, 8>(out, [a, b, c, d, e, f, g, h]),
-    }
+    with_widest_vectors(
+        #[inline(always)]
+        || match *terms {
+            [] if ADD => (),
+            [] => out.fill(0.0),
+            [a] => pass::<ADD, 1>(out, [a]),
+            [a, b] => pass::<ADD, 2>(out, [a, b]),
+            [a, b, c] => pass::<ADD, 3>(out, [a, b, c]),
+            [a, b, c, d] => pass::<ADD, 4>(out, [a, b, c, d]),
+            [a, b, c, d, e] => pass::<ADD, 5>(out, [a, b, c, d, e]),
+            [a, b, c, d, e, f] => pass::<ADD, 6>(out, [a, b, c, d, e, f]),
+            [a, b, c, d, e, f, g] => pass::<ADD, 7>(out, [a, b, c, d, e, f, g]),
+            [a, b, c, d, e, f, g, h, ..] => pass::<ADD, 8>(out, [a, b, c, d, e, f, g, h]),
+        },
+    )
 }
 
+#[inline(always)]
 fn pass<const ADD: bool, const N: usize>(out: &mut [f64], terms: [(f64, &[f64]); N]) {
     let weights = terms.map(|(weight, _)| weight);
     let terms = terms.map(|(_, term)| &term[..out.len()]);
@@ -84,14 +90,19 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
 pub fn sum_of_pairs(a: &[f64], b: &[f64], term: impl Fn(f64, f64) -> f64) -> f64 {
     let n = a.len().min(b.len());
     let ((a, a_rest), (b, b_rest)) = (a[..n].as_chunks::<LANES>(), b[..n].as_chunks::<LANES>());
-    let mut sums = [0.0; LANES];
-    for (a, b) in a.iter().zip(b) {
-        for lane in 0..LANES {
-            sums[lane] += term(a[lane], b[lane]);
-        }
-    }
-    let rest: f64 = a_rest.iter().zip(b_rest).map(|(&a, &b)| term(a, b)).sum();
-    sums.iter().sum::<f64>() + rest
+    with_widest_vectors(
+        #[inline(always)]
+        || {
+            let mut sums = [0.0; LANES];
+            for (a, b) in a.iter().zip(b) {
+                for lane in 0..LANES {
+                    sums[lane] += term(a[lane], b[lane]);
+                }
+            }
+            let rest: f64 = a_rest.iter().zip(b_rest).map(|(&a, &b)| term(a, b)).sum();
+            sums.iter().sum::<f64>() + rest
+        },
+    )
 }
 
 /// Σ_i term(a_i, b_i, c_i) over the shortest of the three, in `LANES` partial sums.
@@ -101,14 +112,19 @@ pub fn sum_of_triples(a: &[f64], b: &[f64], c: &[f64], term: impl Fn(f64, f64, f
     let (a, a_rest) = a[..n].as_chunks::<LANES>();
     let (b, b_rest) = b[..n].as_chunks::<LANES>();
     let (c, c_rest) = c[..n].as_chunks::<LANES>();
-    let mut sums = [0.0; LANES];
-    for ((a, b), c) in a.iter().zip(b).zip(c) {
-        for lane in 0..LANES {
-            sums[lane] += term(a[lane], b[lane], c[lane]);
-        }
-    }
-    let rest: f64 = a_rest.iter().zip(b_rest).zip(c_rest).map(|((&a, &b), &c)| term(a, b, c)).sum();
-    sums.iter().sum::<f64>() + rest
+    with_widest_vectors(
+        #[inline(always)]
+        || {
+            let mut sums = [0.0; LANES];
+            for ((a, b), c) in a.iter().zip(b).zip(c) {
+                for lane in 0..LANES {
+                    sums[lane] += term(a[lane], b[lane], c[lane]);
+                }
+            }
+            let rest: f64 = a_rest.iter().zip(b_rest).zip(c_rest).map(|((&a, &b), &c)| term(a, b, c)).sum();
+            sums.iter().sum::<f64>() + rest
+        },
+    )
 }
 
 /// Σ_i term(i) for i = 0 … n-1, in `LANES` partial sums.
@@ -158,5 +174,19 @@ mod tests {
             assert_eq!(sum_of(n, |i| a[i] * b[i]), expected);
             assert_eq!(sum_of_triples(&a, &b, &a, |a, b, c| a * b + c), expected + a.iter().sum::<f64>());
         }
+    }
+
+    /// Numbers whose products and sums are rounded, against the same operations one by one.
+    #[test]
+    fn vectors_change_no_bits() {
+        let array = |seed: usize| -> Vec<f64> { (0..37).map(|i| ((i * seed) as f64).sin()).collect() };
+        let (a, b, c) = (array(1), array(2), array(3));
+        let mut out = vec![0.0; 37];
+        weighted_sum(&mut out, [(0.1, &a[..]), (0.7, &b), (1e-3, &c)]);
+        assert!((0..37).all(|i| out[i] == 0.1 * a[i] + 0.7 * b[i] + 1e-3 * c[i]));
+        let mut sums = [0.0; LANES];
+        (0..32).for_each(|i| sums[i % LANES] += a[i] * b[i]);
+        let rest: f64 = (32..37).map(|i| a[i] * b[i]).sum();
+        assert_eq!(dot(&a, &b), sums.iter().sum::<f64>() + rest);
     }
 }

@@ -151,6 +151,7 @@ impl Forces {
 
     /// Evaluates the forces F = c e + d ė + `known` of all links, with c (N/m) and d (N s/m) by kind in `laws`, and their
     /// sums on the masses, but not ė. Only links that the scene does not have are without `known` forces (N).
+    #[inline(always)]
     pub fn evaluate_with(&mut self, laws: [(f64, f64); 4], motion: &LinkMotion<'_>, known: &[Vec<f64>; 4]) {
         let [vertical, horizontal, lateral_x, lateral_z] = &mut self.link;
         let axis = |carrier: LinkKind, lateral: LinkKind| AxisForces {
@@ -269,6 +270,7 @@ impl<'a> LinkMotion<'a> {
     }
 
     /// Writes ė of the links of a kind, m/s; `rate` is empty where the scene has no such link.
+    #[inline(always)]
     pub fn elongation_rates(&self, kind: LinkKind, rate: &mut [f64]) {
         let (_, velocity, carrier_rate) = self.along(kind);
         if kind.is_lateral() {
@@ -279,6 +281,7 @@ impl<'a> LinkMotion<'a> {
         }
     }
 
+    #[inline(always)]
     fn along(&self, kind: LinkKind) -> (&'a [f64], &'a [f64], f64) {
         if kind.is_along_x() {
             (self.elongation_x, self.velocity_x, self.carrier_rates.0)
@@ -300,6 +303,7 @@ struct AxisForces<'a> {
 
 impl AxisForces<'_> {
     /// Writes the forces of the links to the carrier, of the lateral links, and the sums on the masses, N.
+    #[inline(always)]
     fn evaluate(&self, to_carrier: &mut [f64], lateral: &mut [f64], on_mass: &mut [f64]) {
         self.set_lateral(lateral);
         let k = on_mass.len();
@@ -323,6 +327,7 @@ impl AxisForces<'_> {
         on_mass[k - 1] -= last;
     }
 
+    #[inline(always)]
     fn set_to_carrier(&self, force: &mut [f64]) {
         let ((elongation, velocity, carrier_rate), ((stiffness, damping), known)) = (self.motion, self.to_carrier);
         for ((force, (e, v)), known) in force.iter_mut().zip(elongation.iter().zip(velocity)).zip(known) {
@@ -330,6 +335,7 @@ impl AxisForces<'_> {
         }
     }
 
+    #[inline(always)]
     fn set_lateral(&self, force: &mut [f64]) {
         let ((elongation, velocity, _), ((stiffness, damping), known)) = (self.motion, self.lateral);
         let elongations = elongation.iter().zip(&elongation[1..]);
@@ -365,6 +371,7 @@ fn sum(forces: &[f64]) -> f64 {
     sum_of(forces.len(), |i| forces[i])
 }
 
+#[inline(always)]
 fn sum_on_masses(sum: &mut [f64], to_carrier: &[f64], lateral: &[f64]) {
     let Some((last, first)) = lateral.last().zip(lateral.first()) else {
         return negate(sum, to_carrier);
@@ -383,6 +390,7 @@ fn sum_on_masses(sum: &mut [f64], to_carrier: &[f64], lateral: &[f64]) {
 }
 
 /// sum = -forces, or 0 where there are none.
+#[inline(always)]
 fn negate(sum: &mut [f64], forces: &[f64]) {
     if forces.is_empty() {
         sum.fill(0.0);

@@ -18,7 +18,7 @@ use nalgebra::Vector2;
 
 use super::error::{NEWTON_SHARE, Tolerance};
 use super::rates::Rates;
-use crate::math::BlockTridiagonal;
+use crate::math::{BlockTridiagonal, with_widest_vectors};
 use crate::model::{CarrierPoint, ContactForces, Forces, LinkKind, LinkMotion, Mode, Model, State};
 use newton::{Climb, NeighbourWeights, RateFriction, RowShares, largest};
 
@@ -302,8 +302,7 @@ impl StageSolver {
         self.history.subtract_frozen(model);
         self.move_bodies(Vector2::zeros(), point);
         self.start_sticks_from_rest();
-        self.set_positions(model, point);
-        self.set_forces(point);
+        self.evaluate(model, point);
         if self.slips.is_empty() {
             self.solve_linear(model, point)?;
         }
@@ -322,8 +321,7 @@ impl StageSolver {
         let of_bodies = self.complete_border();
         let change = self.correct().max(of_bodies.amax());
         self.move_bodies(of_bodies, point);
-        self.set_positions(model, point);
-        self.set_forces(point);
+        self.evaluate(model, point);
         if change.is_finite() { Ok(()) } else { Err(NoConvergence) }
     }
 
@@ -346,8 +344,7 @@ impl StageSolver {
             };
             let change = self.correct().max(steep).max(of_bodies.amax());
             self.move_bodies(of_bodies, point);
-            self.set_positions(model, point);
-            self.set_forces(point);
+            self.evaluate(model, point);
             let left = self.residuals(model, point.beta);
             let next = change * (left / residual);
             let falls = !held || left <= HELD_FALL * residual;
@@ -381,7 +378,19 @@ impl StageSolver {
         }
     }
 
+    /// Computes the positions and the forces from the velocities.
+    fn evaluate(&mut self, model: &Model, point: &StagePoint) {
+        with_widest_vectors(
+            #[inline(always)]
+            || {
+                self.set_positions(model, point);
+                self.set_forces(point);
+            },
+        );
+    }
+
     /// Computes the positions from the velocities and puts the contact constraint in.
+    #[inline(always)]
     fn set_positions(&mut self, model: &Model, point: &StagePoint) {
         let (beta, profile_position, w) = (point.beta, point.profile_position(), point.w());
         let (state, history) = (&mut self.state, &self.history);
@@ -405,6 +414,7 @@ impl StageSolver {
     }
 
     /// Computes the forces of the links and on the masses by the stage's law.
+    #[inline(always)]
     fn set_forces(&mut self, point: &StagePoint) {
         let motion = LinkMotion::of(&self.state, &point.carrier);
         let laws = self.laws.map(|law| (law.stiffness, law.damping));
@@ -424,6 +434,15 @@ impl StageSolver {
 
     /// Writes the rates of the solved stage.
     fn write_rates(&mut self, model: &Model, point: &StagePoint, rates: &mut Rates) {
+        with_widest_vectors(
+            #[inline(always)]
+            || self.set_rates(point, rates),
+        );
+        self.set_contact_rates(model, rates);
+    }
+
+    #[inline(always)]
+    fn set_rates(&self, point: &StagePoint, rates: &mut Rates) {
         let per_beta = 1.0 / point.beta;
         let (state, history) = (&self.state, &self.history);
         rates.velocity_x.copy_from_slice(&state.velocity_x);
@@ -435,6 +454,11 @@ impl StageSolver {
             motion.elongation_rates(kind, rate);
         }
         rates.clear_contacts();
+    }
+
+    /// Sets the rates of the masses in contact.
+    fn set_contact_rates(&self, model: &Model, rates: &mut Rates) {
+        let state = &self.state;
         let k = state.mode.len();
         let (modes, velocities, surfaces) = (&state.mode[..k], &state.velocity_x[..k], &state.surface[..k]);
         let (f_x, f_z) = (&self.forces.on_mass_x[..k], &self.forces.on_mass_z[..k]);
@@ -449,6 +473,7 @@ impl StageSolver {
 }
 
 /// e = e* + β v less the carrier's displacement.
+#[inline(always)]
 fn set_elongations(elongation: &mut [f64], star: &[f64], beta: f64, velocity: &[f64], moved: f64) {
     for (elongation, (star, velocity)) in elongation.iter_mut().zip(star.iter().zip(velocity)) {
         *elongation = star + beta * velocity - moved;
@@ -456,6 +481,7 @@ fn set_elongations(elongation: &mut [f64], star: &[f64], beta: f64, velocity: &[
 }
 
 /// rate = (now - before) / β.
+#[inline(always)]
 fn rate_of_change(rate: &mut [f64], now: &[f64], before: &[f64], per_beta: f64) {
     for (rate, (now, before)) in rate.iter_mut().zip(now.iter().zip(before)) {
         *rate = (now - before) * per_beta;

@@ -25,8 +25,7 @@ impl StageSolver {
         }
         if changed {
             self.collect_slips(model, point.beta);
-            self.set_positions(model, point);
-            self.set_forces(point);
+            self.evaluate(model, point);
         }
         changed
     }

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::{StageLaw, StageSolver};
+use crate::math::with_widest_vectors;
 use crate::model::Axis;
 use crate::model::{ContactForces, Forces, FrictionCurve, Mode, Model, State, SurfacePoint};
 
@@ -26,14 +27,10 @@ impl StageSolver {
 
     /// Writes the negative residuals of the equations of motion at the present velocities to the right sides.
     pub(super) fn set_residuals(&mut self, model: &Model, beta: f64) {
-        let inertia = model.mass / beta;
-        let velocities = self.state.velocity_x.iter().zip(&self.state.velocity_z);
-        let starred = self.history.velocity_x.iter().zip(&self.history.velocity_z);
-        let forces = self.forces.on_mass_x.iter().zip(&self.forces.on_mass_z);
-        let known = velocities.zip(starred).zip(forces);
-        for (right, (((v_x, v_z), (star_x, star_z)), (f_x, f_z))) in self.system.right.iter_mut().zip(known) {
-            *right = Vector2::new(f_x - inertia * (v_x - star_x), f_z - inertia * (v_z - star_z));
-        }
+        with_widest_vectors(
+            #[inline(always)]
+            || self.set_residuals_as_of_free_masses(model, beta),
+        );
         for &i in &self.contacts {
             self.system.right[i] = Vector2::zeros();
         }
@@ -42,6 +39,18 @@ impl StageSolver {
             self.add_rate_shear(model, beta);
         }
         self.set_border_residuals(beta);
+    }
+
+    #[inline(always)]
+    fn set_residuals_as_of_free_masses(&mut self, model: &Model, beta: f64) {
+        let inertia = model.mass / beta;
+        let velocities = self.state.velocity_x.iter().zip(&self.state.velocity_z);
+        let starred = self.history.velocity_x.iter().zip(&self.history.velocity_z);
+        let forces = self.forces.on_mass_x.iter().zip(&self.forces.on_mass_z);
+        let known = velocities.zip(starred).zip(forces);
+        for (right, (((v_x, v_z), (star_x, star_z)), (f_x, f_z))) in self.system.right.iter_mut().zip(known) {
+            *right = Vector2::new(f_x - inertia * (v_x - star_x), f_z - inertia * (v_z - star_z));
+        }
     }
 
     /// Of mass `i`, which slips: the factor with which a force on it along `axis` enters its equation, and how its elongation
@@ -159,6 +168,14 @@ fn neighbours(i: usize, k: usize) -> f64 {
 
 /// The largest of all numbers; NaN where one is not finite.
 pub(super) fn largest(values: &[Vector2<f64>]) -> f64 {
+    with_widest_vectors(
+        #[inline(always)]
+        || largest_of(values),
+    )
+}
+
+#[inline(always)]
+fn largest_of(values: &[Vector2<f64>]) -> f64 {
     // A comparison ignores NaN, the sum does not.
     let greater = |a: f64, b: f64| if a > b { a } else { b };
     let (mut largest, mut sum) = ([Vector2::zeros(); LANES], [Vector2::zeros(); LANES]);
