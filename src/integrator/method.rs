@@ -280,7 +280,7 @@ impl Stages {
         self.carrier[i] = point.carrier;
         if self.tracks_energy {
             let solver = &self.solver;
-            self.exchange[i] = Exchange::evaluate(model, &solver.state, &point.carrier, &solver.forces);
+            self.exchange[i] = Exchange::with_friction(model, &solver.friction_power, &point.carrier, &solver.forces);
             self.exchange[i].add_bodies(model, carrier, s, &point.carrier);
         }
         Ok(())

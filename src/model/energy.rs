@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::math::dot;
 use crate::scene::Axis;
 
-use super::{Carrier, CarrierPoint, Forces, FrictionCurve, LinkKind, Model, State};
+use super::{Carrier, CarrierPoint, ContactForces, Forces, FrictionCurve, LinkKind, Mode, Model, State};
 
 /// Power through the channels, W.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -27,7 +27,7 @@ impl Powers {
         Self {
             damper: LinkKind::ALL.map(|kind| damper(model, forces, kind)).iter().sum(),
             maxwell: maxwell(model, state),
-            friction: friction(model, state, forces).0,
+            friction: FrictionPower::evaluate(model, state, forces).friction(),
             input: input(model, forces, carrier),
         }
     }
@@ -94,7 +94,12 @@ pub struct Exchange {
 impl Exchange {
     /// The powers in `state` with the forces there.
     pub fn evaluate(model: &Model, state: &State, carrier: &CarrierPoint, forces: &Forces) -> Self {
-        let (friction, shear) = friction(model, state, forces);
+        Self::with_friction(model, &FrictionPower::evaluate(model, state, forces), carrier, forces)
+    }
+
+    /// The same where the power of friction is known.
+    pub fn with_friction(model: &Model, power: &FrictionPower, carrier: &CarrierPoint, forces: &Forces) -> Self {
+        let (friction, shear) = (power.friction(), power.shear(model));
         Self { friction, shear, input: input(model, forces, carrier), carrier: 0.0 }
     }
 
@@ -126,26 +131,51 @@ fn maxwell(model: &Model, state: &State) -> f64 {
     model.rows.iter().map(row_power).sum()
 }
 
-/// P_friction and P_shear, W; the latter is 0 where the scene does not tell the two apart.
-fn friction(model: &Model, state: &State, forces: &Forces) -> (f64, f64) {
-    if !model.has_friction {
-        return (0.0, 0.0);
+/// The power of friction, summed mass by mass.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FrictionPower {
+    /// Of T(0), W.
+    at_rest: f64,
+    /// Of its part μ F_N, W; 0 where the scene does not tell the two apart.
+    coulomb: f64,
+    /// Of A τ_f(v) - A τ_f(v_c), W.
+    excess: f64,
+}
+
+impl FrictionPower {
+    /// Of all masses in `state` with the forces there.
+    fn evaluate(model: &Model, state: &State, forces: &Forces) -> Self {
+        let mut power = Self::default();
+        for i in (0..model.masses()).filter(|&i| model.has_friction && state.mode[i].slips()) {
+            let v = state.velocity_x[i];
+            power.add(model, state.mode[i], v, &forces.contact(model, i, v, &state.surface[i]));
+        }
+        power
     }
-    let (mut at_rest, mut coulomb, mut excess) = (0.0, 0.0, 0.0);
-    for i in (0..model.masses()).filter(|&i| state.mode[i].slips()) {
-        let (sigma, v) = (state.mode[i].direction(), state.velocity_x[i]);
-        let contact = forces.contact(model, i, v, &state.surface[i]);
-        at_rest += sigma * contact.limit * v * contact.q;
+
+    /// Adds that of a mass which slips in `mode` with the velocity ẋ (m/s) under the forces of `contact`.
+    #[inline]
+    pub fn add(&mut self, model: &Model, mode: Mode, velocity_x: f64, contact: &ContactForces) {
+        let (sigma, v) = (mode.direction(), velocity_x);
+        self.at_rest += sigma * contact.limit * v * contact.q;
         if model.has_both_frictions {
-            coulomb += sigma * (model.friction_coefficient * contact.normal) * v * contact.q;
+            self.coulomb += sigma * (model.friction_coefficient * contact.normal) * v * contact.q;
         }
         if let Some(curve) = model.slip_curve(contact.normal) {
             let speed = sigma * v * contact.q;
-            excess += curve.excess(speed) * speed;
+            self.excess += curve.excess(speed) * speed;
         }
     }
-    let shear = if model.has_both_frictions { (at_rest - coulomb) + excess } else { 0.0 };
-    (at_rest + excess, shear)
+
+    /// P_friction, W.
+    fn friction(&self) -> f64 {
+        self.at_rest + self.excess
+    }
+
+    /// P_shear, W; 0 where the scene does not tell the two apart.
+    fn shear(&self, model: &Model) -> f64 {
+        if model.has_both_frictions { (self.at_rest - self.coulomb) + self.excess } else { 0.0 }
+    }
 }
 
 /// The power of a prescribed carrier into the layer, W. One at rest does no work, whatever the forces.

@@ -19,7 +19,7 @@ use nalgebra::Vector2;
 use super::error::{NEWTON_SHARE, Tolerance};
 use super::rates::Rates;
 use crate::math::{BlockTridiagonal, with_widest_vectors};
-use crate::model::{CarrierPoint, ContactForces, Forces, LinkKind, LinkMotion, Mode, Model, State};
+use crate::model::{CarrierPoint, ContactForces, Forces, FrictionPower, LinkKind, LinkMotion, Mode, Model, State};
 use newton::{Climb, NeighbourWeights, RateFriction, RowShares, largest};
 
 pub(super) use border::{BodyHistory, Border};
@@ -166,6 +166,8 @@ pub(super) struct StageSolver {
     pub state: State,
     /// The forces at the stage.
     pub forces: Forces,
+    /// The power of friction at the solved stage.
+    pub friction_power: FrictionPower,
     friction: Friction,
     /// By kind of link.
     pub laws: [StageLaw; 4],
@@ -203,6 +205,7 @@ impl StageSolver {
             history: StageHistory::new(model),
             state: State::new(k, model.maxwell_variables()),
             forces: Forces::new(model),
+            friction_power: FrictionPower::default(),
             friction: Friction::Held,
             laws: [StageLaw::default(); 4],
             contacts: Vec::with_capacity(k),
@@ -456,8 +459,9 @@ impl StageSolver {
         rates.clear_contacts();
     }
 
-    /// Sets the rates of the masses in contact.
-    fn set_contact_rates(&self, model: &Model, rates: &mut Rates) {
+    /// Sets the rates of the masses in contact, and the power of friction.
+    fn set_contact_rates(&mut self, model: &Model, rates: &mut Rates) {
+        let mut friction_power = FrictionPower::default();
         let state = &self.state;
         let k = state.mode.len();
         let (modes, velocities, surfaces) = (&state.mode[..k], &state.velocity_x[..k], &state.surface[..k]);
@@ -467,8 +471,13 @@ impl StageSolver {
             if mode == Mode::Stick {
                 rates.acceleration_x[i] = 0.0;
             }
-            rates.set_contact(model, i, mode, v, surface, &ContactForces::new(model, (f_x[i], f_z[i]), v, surface));
+            let contact = ContactForces::new(model, (f_x[i], f_z[i]), v, surface);
+            rates.set_contact(model, i, mode, v, surface, &contact);
+            if mode.slips() && model.has_friction {
+                friction_power.add(model, mode, v, &contact);
+            }
         }
+        self.friction_power = friction_power;
     }
 }
 
