@@ -13,7 +13,7 @@ mod tests;
 /// let line = Spline::natural(&[0.0, 1.0], &[0.0, 0.5]);
 /// assert_eq!(line.evaluate(4.0), (2.0, 0.5, 0.0, 0.0));
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Spline {
     pieces: Vec<Piece>,
     grid: Grid,
@@ -23,14 +23,14 @@ pub struct Spline {
     inside: Bounds,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 enum Ends {
     Periodic { period: f64 },
     Tangents { left: Piece, right: Piece },
 }
 
 /// One interval as a polynomial in t = x - start. Aligned so that a look-up touches one cache line.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(64))]
 struct Piece {
     start: f64,
@@ -69,9 +69,13 @@ impl Spline {
 
     fn assemble(pieces: Vec<Piece>, ends: Ends) -> Self {
         let grid = Grid::new(&pieces);
-        let extents: Vec<Bounds> = pieces.iter().map(|piece| piece.extent(piece.start, piece.end)).collect();
-        let inside = extents.iter().copied().fold(Bounds::EMPTY, Bounds::and);
-        let tops = extents.iter().map(|extent| extent.z_max).collect();
+        let mut inside = Bounds::EMPTY;
+        let mut top = |piece: &Piece| {
+            let extent = piece.extent(piece.start, piece.end);
+            inside = inside.and(extent);
+            extent.z_max
+        };
+        let tops = pieces.iter().map(&mut top).collect();
         Self { pieces, grid, ends, tops, inside }
     }
 
@@ -83,6 +87,11 @@ impl Spline {
     pub fn evaluate(&self, x: f64) -> (f64, f64, f64, f64) {
         let x = self.reduce(x);
         self.piece_at(x).evaluate(x)
+    }
+
+    /// Whether it has a finite curvature everywhere: heights and widths that differ too much overflow.
+    pub fn is_finite(&self) -> bool {
+        self.pieces.iter().all(|piece| piece.curvature.is_finite() && piece.third.is_finite())
     }
 
     /// The period, m; `None` for a natural spline.
@@ -180,7 +189,7 @@ fn pieces(x: &[f64], z: &[f64], curvatures: &[f64]) -> Vec<Piece> {
 
 /// Finds the interval of an x without a search: a grid of equal cells over the data points, as many as there are
 /// intervals.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 struct Grid {
     first: f64,
     last: f64,
@@ -381,12 +390,15 @@ impl Piece {
     /// The x between `low` and `high` where z' = 0, clamped to the range; none where the slopes there have one sign.
     fn level(&self, low: f64, high: f64, slopes: [f64; 3]) -> impl Iterator<Item = f64> {
         let one_sign = slopes.iter().all(|&slope| slope >= 0.0) || slopes.iter().all(|&slope| slope <= 0.0);
+        let roots = if one_sign { [f64::NAN; 2] } else { self.slope_roots() };
+        roots.into_iter().filter(|t| t.is_finite()).map(move |t| (self.start + t).clamp(low, high))
+    }
+
+    /// Both roots of ½ z''' t² + z'' t + z' = 0, without cancellation; not finite where there are fewer.
+    fn slope_roots(&self) -> [f64; 2] {
         let discriminant = self.curvature * self.curvature - 2.0 * self.third * self.slope;
-        // Both roots of ½ z''' t² + z'' t + z' = 0 without cancellation.
         let sum = -(self.curvature + discriminant.max(0.0).sqrt().copysign(self.curvature));
-        let roots = [sum / self.third, 2.0 * self.slope / sum];
-        let real = move |t: &f64| !one_sign && t.is_finite();
-        roots.into_iter().filter(real).map(move |t| (self.start + t).clamp(low, high))
+        [sum / self.third, 2.0 * self.slope / sum]
     }
 }
 
@@ -397,23 +409,21 @@ impl Piece {
 //
 // (Stoer & Bulirsch, Introduction to Numerical Analysis, 2.4.2). The equations are diagonally dominant: no pivoting.
 
-/// One equation of a tridiagonal system; the diagonal is 2 except where the cyclic solution changes it.
+/// One equation of a tridiagonal system with `N` right sides.
 #[derive(Clone, Copy, Debug)]
-struct Equation {
+struct Equation<const N: usize> {
     lower: f64,
     diagonal: f64,
     upper: f64,
-    right: f64,
+    right: [f64; N],
 }
 
 /// The curvatures at the points of a natural spline: 0 at both ends.
 fn natural_curvatures(x: &[f64], z: &[f64]) -> Vec<f64> {
-    let inner: Vec<Equation> = (1..x.len() - 1)
-        .map(|i| equation(x[i] - x[i - 1], x[i + 1] - x[i], z[i] - z[i - 1], z[i + 1] - z[i]))
-        .collect();
+    let inner = (1..x.len() - 1).map(|i| equation(x[i] - x[i - 1], x[i + 1] - x[i], z[i] - z[i - 1], z[i + 1] - z[i]));
     let mut curvatures = Vec::with_capacity(x.len());
     curvatures.push(0.0);
-    curvatures.extend(solve_tridiagonal(&inner, inner.iter().map(|row| row.right)));
+    curvatures.extend(solve_tridiagonal(inner).into_iter().flatten());
     curvatures.push(0.0);
     curvatures
 }
@@ -424,63 +434,67 @@ fn periodic_curvatures(x: &[f64], z: &[f64]) -> Vec<f64> {
     let before = |i: usize| if i == 0 { intervals - 1 } else { i - 1 };
     let width = |i: usize| x[i + 1] - x[i];
     let rise = |i: usize| z[i + 1] - z[i];
-    let rows: Vec<Equation> =
-        (0..intervals).map(|i| equation(width(before(i)), width(i), rise(before(i)), rise(i))).collect();
-    let mut curvatures = solve_cyclic(&rows);
-    curvatures.push(curvatures[0]);
-    curvatures
+    let row = |i: usize| equation(width(before(i)), width(i), rise(before(i)), rise(i));
+    // With fewer than three unknowns the entries that wrap around the matrix fall onto others.
+    match intervals {
+        // One interval from a height to the same height: flat.
+        0 | 1 => vec![0.0; intervals + 1],
+        // lower + upper = 1 and the right sides are opposite: 2 M_0 + M_1 = r, M_0 + 2 M_1 = -r.
+        2 => {
+            let [right] = row(0).right;
+            vec![right, -right, right]
+        }
+        _ => solve_cyclic(intervals, row),
+    }
 }
 
-fn equation(h_left: f64, h_right: f64, rise_left: f64, rise_right: f64) -> Equation {
+fn equation(h_left: f64, h_right: f64, rise_left: f64, rise_right: f64) -> Equation<1> {
     let span = h_left + h_right;
     let right = 6.0 * (rise_right / h_right - rise_left / h_left) / span;
-    Equation { lower: h_left / span, diagonal: 2.0, upper: h_right / span, right }
+    Equation { lower: h_left / span, diagonal: 2.0, upper: h_right / span, right: [right] }
 }
 
 /// Gauss's elimination of a tridiagonal system.
-fn solve_tridiagonal(rows: &[Equation], right: impl Iterator<Item = f64>) -> Vec<f64> {
+fn solve_tridiagonal<const N: usize>(rows: impl ExactSizeIterator<Item = Equation<N>>) -> Vec<[f64; N]> {
     let mut uppers = Vec::with_capacity(rows.len());
-    let mut solution: Vec<f64> = Vec::with_capacity(rows.len());
-    let (mut upper_before, mut right_before) = (0.0, 0.0);
-    for (row, right) in rows.iter().zip(right) {
+    let mut solution = Vec::with_capacity(rows.len());
+    let (mut upper_before, mut before) = (0.0, [0.0; N]);
+    for row in rows {
         let pivot = row.diagonal - row.lower * upper_before;
         upper_before = row.upper / pivot;
-        right_before = (right - row.lower * right_before) / pivot;
+        before = std::array::from_fn(|k| (row.right[k] - row.lower * before[k]) / pivot);
         uppers.push(upper_before);
-        solution.push(right_before);
+        solution.push(before);
     }
     for i in (1..solution.len()).rev() {
-        solution[i - 1] -= uppers[i - 1] * solution[i];
+        let behind = solution[i];
+        (0..N).for_each(|k| solution[i - 1][k] -= uppers[i - 1] * behind[k]);
     }
     solution
 }
 
-/// A tridiagonal system whose first row's `lower` and last row's `upper` wrap around the matrix.
+/// The curvatures from the `n` ≥ 3 equations of a periodic spline; the first row's `lower` and the last row's `upper` wrap
+/// around the matrix.
 ///
-/// With fewer than three unknowns the wrapped entries fall onto others.
-fn solve_cyclic(rows: &[Equation]) -> Vec<f64> {
-    match rows {
-        [] => Vec::new(),
-        // One interval from a height to the same height: flat.
-        [_] => vec![0.0],
-        // lower + upper = 1 and the right sides are opposite: 2 M_0 + M_1 = r, M_0 + 2 M_1 = -r.
-        [first, _] => vec![first.right, -first.right],
-        _ => solve_sherman_morrison(rows),
-    }
-}
-
 /// Sherman and Morrison: the cyclic matrix is a tridiagonal one plus the dyad (γ, 0, …, α)ᵀ (1, 0, …, β/γ).
-fn solve_sherman_morrison(rows: &[Equation]) -> Vec<f64> {
-    let last = rows.len() - 1;
-    let (alpha, beta, gamma) = (rows[last].upper, rows[0].lower, -rows[0].diagonal);
-    let mut plain = rows.to_vec();
-    plain[0].diagonal -= gamma;
-    plain[last].diagonal -= alpha * beta / gamma;
-    let mut solution = solve_tridiagonal(&plain, rows.iter().map(|row| row.right));
-    let dyad = (0..=last).map(|i| [0.0, gamma, alpha][usize::from(i == 0) + 2 * usize::from(i == last)]);
-    let correction = solve_tridiagonal(&plain, dyad);
-    let along = |v: &[f64]| v[0] + beta / gamma * v[last];
-    let factor = along(&solution) / (1.0 + along(&correction));
-    solution.iter_mut().zip(&correction).for_each(|(value, shift)| *value -= factor * shift);
-    solution
+fn solve_cyclic(n: usize, row: impl Fn(usize) -> Equation<1>) -> Vec<f64> {
+    let (first, last) = (row(0), row(n - 1));
+    let (alpha, beta, gamma) = (last.upper, first.lower, -first.diagonal);
+    let with_dyad = |i: usize| {
+        let Equation { lower, diagonal, upper, right: [right] } = row(i);
+        let (diagonal, dyad) = match i {
+            0 => (diagonal - gamma, gamma),
+            _ if i == n - 1 => (diagonal - alpha * beta / gamma, alpha),
+            _ => (diagonal, 0.0),
+        };
+        Equation { lower, diagonal, upper, right: [right, dyad] }
+    };
+    let solution = solve_tridiagonal((0..n).map(with_dyad));
+    let along = |k: usize| solution[0][k] + beta / gamma * solution[n - 1][k];
+    let factor = along(0) / (1.0 + along(1));
+    let mut curvatures: Vec<f64> =
+        solution.into_iter().map(|[plain, correction]| plain - factor * correction).collect();
+    // The point behind the last interval is the first one again.
+    curvatures.push(curvatures[0]);
+    curvatures
 }

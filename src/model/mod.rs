@@ -21,6 +21,8 @@ pub use reduction::{Reduction, Replaced, Replacement};
 pub use state::{Mode, State};
 pub use tangents::{Tangents, TangentsOf};
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
 use crate::math::Spline;
@@ -61,7 +63,7 @@ pub struct Model {
     /// whatever `solver.reduce` replaces.
     pub glassy: [f64; 4],
     /// The rigid profile z_r(x).
-    pub profile: Spline,
+    pub profile: Arc<Spline>,
     /// The carrier as a body along x and z; `None` where its displacement is prescribed.
     pub bodies: [Option<Body>; 2],
     /// Coulomb's coefficient μ.
@@ -106,7 +108,7 @@ impl Model {
             rows,
             relaxation_times,
             glassy: LinkKind::ALL.map(|kind| scene.link(kind).as_ref().map_or(0.0, scales::glassy)),
-            profile: scene.surface.spline(),
+            profile: Arc::clone(scene.surface.spline()),
             bodies: Body::of(scene),
             friction_coefficient: coulomb,
             shear_force: shear_force + rate_shear.map_or(0.0, |rate_shear| rate_shear.plateau()),

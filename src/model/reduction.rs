@@ -147,7 +147,7 @@ fn passage_frequency(scene: &Scene) -> f64 {
     let speeds =
         scene.excitation.iter().map(|phase| phase.u.rate.abs() + phase.u.amplitude.abs() * TAU / phase.u.period());
     let speed = speeds.fold(0.0, f64::max);
-    if speed > 0.0 { speed * shortest_wave(&scene.surface.x, &scene.surface.spline()) } else { 0.0 }
+    if speed > 0.0 { speed * shortest_wave(scene.surface.x(), scene.surface.spline()) } else { 0.0 }
 }
 
 /// q of the profile's shortest waves, rad/m.

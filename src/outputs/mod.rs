@@ -184,9 +184,11 @@ pub fn variables(scene: &Scene) -> Vec<Variable> {
 }
 
 fn group_variables(scene: &Scene, group: OutputGroup) -> Vec<Variable> {
-    let rows = || TABLE.iter().filter(|row| row.group == group && (row.exists)(scene));
-    let of_layer = rows().filter_map(|row| row.of_layer().map(|output| Variable::of_layer(row, output)));
-    let of_mass = |i| rows().filter_map(move |row| row.of_mass(i).map(|output| Variable::of_mass(row, output, i)));
+    let rows = TABLE.iter().filter(|row| row.group == group && (row.exists)(scene));
+    let (of_layer, of_masses): (Vec<_>, Vec<_>) = rows.partition(|row| row.of_layer().is_some());
+    let of_layer = of_layer.iter().filter_map(|row| row.of_layer().map(|output| Variable::of_layer(row, output)));
+    let named = |row: &'static OutputRow, i| row.of_mass(i).map(|output| Variable::of_mass(row, output, i));
+    let of_mass = |i| of_masses.iter().filter_map(move |row| named(row, i));
     of_layer.chain((0..scene.layer.masses).flat_map(of_mass)).collect()
 }
 

@@ -189,13 +189,13 @@ fn order_as_coded(scene: &Scene) -> String {
 }
 
 fn profile(surface: &Surface) -> String {
-    let length = surface.x[surface.x.len() - 1] - surface.x[0];
-    let kind = if surface.periodic { "periodic" } else { "natural" };
+    let length = surface.x()[surface.x().len() - 1] - surface.x()[0];
+    let kind = if surface.is_periodic() { "periodic" } else { "natural" };
     format!(
         "{} points over {} m, {kind}, {:.3e} m peak to valley, steepest slope between points {:.3}",
-        surface.x.len(),
+        surface.x().len(),
         number(length),
-        peak_to_valley(&surface.z),
+        peak_to_valley(surface.z()),
         steepest_slope(surface)
     )
 }
@@ -206,8 +206,8 @@ fn peak_to_valley(heights: &[f64]) -> f64 {
 }
 
 fn steepest_slope(surface: &Surface) -> f64 {
-    let runs = surface.x.windows(2).map(|x| x[1] - x[0]);
-    let rises = surface.z.windows(2).map(|z| (z[1] - z[0]).abs());
+    let runs = surface.x().windows(2).map(|x| x[1] - x[0]);
+    let rises = surface.z().windows(2).map(|z| (z[1] - z[0]).abs());
     rises.zip(runs).map(|(rise, run)| rise / run).fold(0.0, f64::max)
 }
 

@@ -44,8 +44,8 @@ pub(crate) fn simulate(command: &Simulate, path: &Path) -> Result<(), SimulateEr
 }
 
 fn run(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<(), SimulateError> {
-    let shown = recorder.history.as_ref().map_or_else(|| scene.clone(), |history| history.scene().clone());
-    let mut runner = Runner::new(&shown, Rows::PerPhase(command.points), 0.0).map_err(SimulateError::Start)?;
+    let shown = recorder.history.as_ref().map_or(scene, History::scene);
+    let mut runner = Runner::new(shown, Rows::PerPhase(command.points), 0.0).map_err(SimulateError::Start)?;
     let result = runner.run(&scene.excitation, |carrier, snapshot| recorder.row(carrier, snapshot));
     print_method_switches(&runner.take_method_switches());
     if let Some(divergence) = runner.simulation().divergence() {

@@ -22,7 +22,7 @@ impl Scene {
         let RealArea { rms_slope, wavelength, modulus, cut_off_wavelength } = self.friction.as_ref()?.real_area?;
         let bands = match (rms_slope, cut_off_wavelength) {
             (Some(slope), _) => vec![(wavelength.map(|length| TAU / length), slope * slope)],
-            (None, Some(cut_off)) => self.surface.self_affine?.continued(cut_off),
+            (None, Some(cut_off)) => self.surface.self_affine()?.continued(cut_off),
             (None, None) => return None,
         };
         Some(FineRoughness { bands, modulus })

@@ -443,7 +443,7 @@ impl Scene {
     /// The scene's height, m: the peak-to-valley heights of the profile's data points and of the layer's roughness
     /// together, the spacing of the masses where both are flat.
     pub fn height(&self) -> f64 {
-        let height = surface::peak_to_valley(&self.surface.z) + surface::peak_to_valley(&self.layer.roughness);
+        let height = surface::peak_to_valley(self.surface.z()) + surface::peak_to_valley(&self.layer.roughness);
         if height > 0.0 { height } else { self.layer.spacing }
     }
 

@@ -40,14 +40,14 @@ impl Spectrum {
     /// any other the tilt is removed, and a Hann window is applied and its loss of power (3/8) corrected; the longest
     /// wavelength is then unreliable.
     pub fn of(surface: &Surface) -> Self {
-        let x = &surface.x;
+        let x = surface.x();
         let (start, length) = (x[0], x[x.len() - 1] - x[0]);
         let n = (x.len() - 1).clamp(4, MOST_POINTS);
         let (spline, line) = (surface.spline(), surface.line());
         let position = |i: usize| start + length * (i as f64 / n as f64);
-        let tilt = |x: f64| if surface.periodic { line.z } else { line.at(x) };
+        let tilt = |x: f64| if surface.is_periodic() { line.z } else { line.at(x) };
         let heights = (0..n).map(|i| spline.evaluate(position(i)).0 - tilt(position(i))).collect();
-        Self::of_heights(heights, length, surface.periodic)
+        Self::of_heights(heights, length, surface.is_periodic())
     }
 
     /// The spectrum of the roughness of a layer of this length (m): heights at its masses, m, as of a profile that is not
@@ -239,7 +239,7 @@ mod tests {
     fn cosine(periodic: bool, amplitude: f64) -> Surface {
         let x = (0..=1000).map(|i| f64::from(i) * 1e-6).collect();
         let z = (0..=1000).map(|i| amplitude * (TAU * f64::from(i % 25) / 25.0).cos()).collect();
-        Surface { x, z, periodic, self_affine: None }
+        Surface::new(x, z, periodic)
     }
 
     /// The integral of the spectrum is the mean square height, with a window or without one.

@@ -2,6 +2,7 @@
 //! surfaces with a given power spectrum.
 
 use std::f64::consts::{LN_2, PI, SQRT_2, TAU};
+use std::sync::Arc;
 
 use nalgebra::Complex;
 use serde::Serialize;
@@ -11,23 +12,31 @@ use crate::math::{Direction, Spline, SplitMix64, fourier};
 /// Periodic ends may differ by rounding: by this part of the peak-to-valley height.
 const ROUNDING: f64 = 1.0e-12;
 
-/// The data points of the rigid profile; the model puts a spline through them.
+/// The rigid profile: its data points and the spline through them, which copies share.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Surface {
-    /// Positions of the data points, m, strictly rising; at least two.
-    pub x: Vec<f64>,
-    /// Heights of the data points, m. Periodic: the last equals the first.
-    pub z: Vec<f64>,
-    /// Whether the profile is repeated without end, or else continued along its end tangents.
-    pub periodic: bool,
-    /// The power law that it was made of; `None` for every other profile.
+    x: Vec<f64>,
+    z: Vec<f64>,
+    periodic: bool,
     #[serde(skip)]
-    pub self_affine: Option<SelfAffine>,
+    self_affine: Option<SelfAffine>,
+    #[serde(skip)]
+    spline: Arc<Spline>,
 }
 
 impl Surface {
+    /// The profile through the points (x, z), m: at least two, `x` strictly rising. A periodic one is repeated without end,
+    /// and its last height equals the first; any other is continued along its end tangents.
+    ///
+    /// # Panics
+    /// With fewer than two points.
+    pub fn new(x: Vec<f64>, z: Vec<f64>, periodic: bool) -> Self {
+        let spline = Arc::new(if periodic { Spline::periodic(&x, &z) } else { Spline::natural(&x, &z) });
+        Self { x, z, periodic, self_affine: None, spline }
+    }
+
     pub(super) fn flat() -> Self {
-        Self { x: vec![0.0, 1.0], z: vec![0.0, 0.0], periodic: false, self_affine: None }
+        Self::new(vec![0.0, 1.0], vec![0.0, 0.0], false)
     }
 
     /// One wavelength of a sine, by `points` intervals.
@@ -36,12 +45,32 @@ impl Surface {
         let x = (0..=points).map(|i| wavelength * phase(i)).collect();
         // The last point is the first one again: without the rounding of sin 2π.
         let z = (0..=points).map(|i| amplitude * (TAU * phase(i % points)).sin()).collect();
-        Self { x, z, periodic: true, self_affine: None }
+        Self::new(x, z, true)
+    }
+
+    /// Positions of the data points, m, strictly rising; at least two.
+    pub fn x(&self) -> &[f64] {
+        &self.x
+    }
+
+    /// Heights of the data points, m. Periodic: the last equals the first.
+    pub fn z(&self) -> &[f64] {
+        &self.z
+    }
+
+    /// Whether the profile is repeated without end, or else continued along its end tangents.
+    pub fn is_periodic(&self) -> bool {
+        self.periodic
+    }
+
+    /// The power law that it was made of; `None` for every other profile.
+    pub fn self_affine(&self) -> Option<SelfAffine> {
+        self.self_affine
     }
 
     /// The cubic spline through the data points.
-    pub fn spline(&self) -> Spline {
-        if self.periodic { Spline::periodic(&self.x, &self.z) } else { Spline::natural(&self.x, &self.z) }
+    pub fn spline(&self) -> &Arc<Spline> {
+        &self.spline
     }
 
     /// The least squares line through the profile's data points.
@@ -66,7 +95,7 @@ impl Surface {
         if self.periodic {
             heights[self.x.len() - 1] = heights[0];
         }
-        Self { x: self.x.clone(), z: heights, periodic: self.periodic, self_affine: None }
+        Self::new(self.x.clone(), heights, self.periodic)
     }
 
     /// The data points, and those of as many periods beside them as reach over `margin`, m.
@@ -213,7 +242,7 @@ impl SelfAffine {
         let x = (0..=self.points).map(|i| self.length * share(i)).collect();
         let mut z = self.heights();
         z.push(z[0]);
-        Surface { x, z, periodic: true, self_affine: Some(*self) }
+        Surface { self_affine: Some(*self), ..Surface::new(x, z, true) }
     }
 
     /// The heights at the points of one period, m.
@@ -299,7 +328,7 @@ mod tests {
         wave(1, 0.5);
         wave(2, 0.0625);
         let x: Vec<f64> = (0..=100).map(f64::from).collect();
-        let line = Surface { z: x.clone(), x, periodic: false, self_affine: None };
+        let line = Surface::new(x.clone(), x, false);
         let found = line.smoothed(20.0);
         assert!((21..=79).all(|i| (found.z[i] - line.z[i]).abs() < 1e-12) && found.z[0] > 0.5);
     }
@@ -353,7 +382,8 @@ mod tests {
         let profile = SelfAffine { points: 10_000, ..ROUGH };
         let (powers, q) = (powers(&profile), |m: usize| TAU * m as f64 / 0.1);
         let formula = powers.iter().enumerate().map(|(m, power)| power * q(m) * q(m)).sum::<f64>().sqrt();
-        let spline = profile.surface().spline();
+        let surface = profile.surface();
+        let spline = surface.spline();
         let slopes: Vec<f64> = (0..40_000).map(|i| spline.evaluate(0.1 * i as f64 / 40_000.0).1).collect();
         // A cubic spline is wrong by (q h)⁴/120, that is 1e-3, at the shortest wavelength.
         assert!((rms(&slopes) / formula - 1.0).abs() < 1e-3, "{} {formula}", rms(&slopes));

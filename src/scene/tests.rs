@@ -93,18 +93,18 @@ fn output_groups_have_the_names_that_a_scene_uses() {
 fn a_sinusoid_closes_exactly() {
     let rest = "[surface]\nkind = 'sinusoid'\namplitude = 2\nwavelength = 4\npoints_per_wavelength = 8";
     let surface = scene("", rest).surface;
-    assert!(surface.periodic);
-    assert_eq!(surface.x, [0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0]);
-    assert_eq!((surface.z[0], surface.z[2], surface.z[8]), (0.0, 2.0, 0.0));
+    assert!(surface.is_periodic());
+    assert_eq!(surface.x(), [0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0]);
+    assert_eq!((surface.z()[0], surface.z()[2], surface.z()[8]), (0.0, 2.0, 0.0));
     let defaulted = scene("", "[surface]\nkind = 'sinusoid'\namplitude = 2\nwavelength = 4").surface;
-    assert_eq!(defaulted.x.len(), 65);
+    assert_eq!(defaulted.x().len(), 65);
 }
 
 #[test]
 fn reads_points() {
     let rest = "[surface]\nkind = 'points'\nx = [0, 1, 2.5]\nz = [1, 0, 1]\nperiodic = true";
     let surface = scene("", rest).surface;
-    assert_eq!((surface.x.as_slice(), surface.z.as_slice()), ([0.0, 1.0, 2.5].as_slice(), [1.0, 0.0, 1.0].as_slice()));
+    assert_eq!((surface.x(), surface.z()), ([0.0, 1.0, 2.5].as_slice(), [1.0, 0.0, 1.0].as_slice()));
     assert_eq!(surface.spline().period(), Some(2.5));
 }
 
@@ -149,6 +149,6 @@ fn reads_files_once_each_from_beside_the_scene() {
     std::fs::write(folder.join("s.toml"), format!("\u{feff}{text}roughness = {{ {} }}", file(""))).unwrap();
     let scene = Scene::load(&folder.join("s.toml")).unwrap();
     assert_eq!(scene.files, [PathBuf::from("profiles/a.csv")]);
-    assert_eq!((scene.surface.z, scene.layer.roughness), (vec![0.5, 0.5], vec![0.5]));
+    assert_eq!((scene.surface.z(), scene.layer.roughness.as_slice()), ([0.5, 0.5].as_slice(), [0.5].as_slice()));
     std::fs::remove_dir_all(folder).unwrap();
 }

@@ -58,15 +58,15 @@ pub(super) fn cold_temperatures(material: &Material) -> Option<String> {
 impl Surface {
     fn reach(&self) -> Reach {
         let end = |x: Option<&f64>| x.copied().unwrap_or(0.0);
-        Reach { low: end(self.x.first()), high: end(self.x.last()) }
+        Reach { low: end(self.x().first()), high: end(self.x().last()) }
     }
 
     /// A level profile is continued as it is, and is never too short.
     fn too_short_for(&self, travel: Reach) -> bool {
         let reach = self.reach();
         let rounding = ROUNDING * (reach.high - reach.low);
-        let level = || self.z.windows(2).all(|pair| pair[0] == pair[1]);
-        !self.periodic && (travel.low < reach.low - rounding || reach.high + rounding < travel.high) && !level()
+        let level = || self.z().windows(2).all(|pair| pair[0] == pair[1]);
+        !self.is_periodic() && (travel.low < reach.low - rounding || reach.high + rounding < travel.high) && !level()
     }
 }
 

@@ -89,10 +89,10 @@ fn a_measured_surface_is_found_as_it_was_made() {
     let surface = Scene::load(&source).unwrap().surface;
     fs::write(&source, scene("kind = 'file'\npath = 'plain.csv'\nperiodic = true")).unwrap();
     let read = Scene::load(&source).unwrap().surface;
-    assert_eq!((read.x, read.z), (surface.x.clone(), surface.z.clone()), "what is written is the same to the last bit");
+    assert_eq!((read.x(), read.z()), (surface.x(), surface.z()), "what is written is the same to the last bit");
 
     let mut text = "Profile 1\r\nx [mm];z [µm]\r\n".to_owned();
-    for (i, (x, z)) in surface.x.iter().zip(&surface.z).enumerate() {
+    for (i, (x, z)) in surface.x().iter().zip(surface.z()).enumerate() {
         let height = if i == 4000 { "***".into() } else { format!("{}", (z + 2e-3 * x) * 1e6).replace('.', ",") };
         text += &format!("{};{height}\r\n", format!("{}", x * 1e3).replace('.', ","));
     }

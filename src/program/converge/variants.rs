@@ -267,7 +267,7 @@ mod tests {
             .replace("seed = 5", "seed = 8");
         assert_eq!(template.text_of(variant), expected);
         let scene = template.scene(variant).unwrap();
-        assert_eq!((scene.layer.masses, scene.layer.roughness.len(), scene.surface.x.len()), (128, 128, 129));
+        assert_eq!((scene.layer.masses, scene.layer.roughness.len(), scene.surface.x().len()), (128, 128, 129));
         assert_eq!(template.dimensions(variant), Dimensions { masses: 128, spacing: 2.5e-5, seed: Some(8) });
         assert!(scene.layer.roughness.iter().any(|height| *height != 0.0));
     }

@@ -56,7 +56,7 @@ impl<'a> LayerPicture<'a> {
         let pitch = layer.spacing * masses as f64 / WIDTH;
         let left = layer.origin - layer.spacing / 2.0;
         let rest: Vec<f64> = (0..masses).map(|i| layer.clearance + layer.roughness.get(i).unwrap_or(&0.0)).collect();
-        let profile = heights(&scene.surface.spline(), left, pitch);
+        let profile = heights(scene.surface.spline(), left, pitch);
         let row = rows(rest.iter().chain(&profile));
         let column = |i: usize| (i as f64 + 0.5) * WIDTH / masses as f64;
         let centre = |(i, z): (usize, &f64)| (column(i), row(*z) - MASS);

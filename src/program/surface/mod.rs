@@ -88,7 +88,7 @@ const EVEN: f64 = 0.02;
 
 impl Statistics {
     fn of(surface: &scene::Surface) -> Self {
-        let (x, z) = (&surface.x, &surface.z);
+        let (x, z) = (surface.x(), surface.z());
         let spline = surface.spline();
         let line = surface.line();
         let length = x[x.len() - 1] - x[0];
@@ -103,7 +103,7 @@ impl Statistics {
             points: x.len(),
             length,
             steps: steps.fold([f64::MAX, 0.0], |[low, high], step| [step.min(low), step.max(high)]),
-            periodic: surface.periodic,
+            periodic: surface.is_periodic(),
             mean_height: line.z,
             tilt: line.slope,
             rms_height: mean_square(&|i| z[i] - line.z).sqrt(),
@@ -136,8 +136,8 @@ struct Removed {
 
 impl Removed {
     fn of(read: &scene::Surface, smoothed: &scene::Surface, cut_off: f64) -> Self {
-        let z = read.z.iter().zip(&smoothed.z).map(|(before, after)| before - after).collect();
-        let difference = scene::Surface { z, ..smoothed.clone() };
+        let z = read.z().iter().zip(smoothed.z()).map(|(before, after)| before - after).collect();
+        let difference = scene::Surface::new(smoothed.x().to_vec(), z, smoothed.is_periodic());
         Self { cut_off, rms_slope: Statistics::of(&difference).rms_slope }
     }
 }
@@ -160,7 +160,8 @@ impl Analysis {
         let bands = Spectrum::of(surface).bands();
         let law = PowerLaw::of(&bands, command.wavelengths.as_ref());
         let points = if statistics.is_even() { "" } else { "at even points of the spline, " };
-        let window = if surface.periodic { "over one period, as it is" } else { "without tilt, under a Hann window" };
+        let window =
+            if surface.is_periodic() { "over one period, as it is" } else { "without tilt, under a Hann window" };
         Self { statistics, removed: None, law, taken: format!("{points}{window}"), spectrum: bands }
     }
 
@@ -220,7 +221,7 @@ fn picture(surface: &scene::Surface, analysis: &Analysis, file: &Path) -> Profil
     let hurst = analysis.law.map(|law| format!(", Hurst exponent {:.2}", law.hurst)).unwrap_or_default();
     ProfilePicture {
         title: format!("{}: rms height {:.3e} m{hurst}", name_of(file), analysis.statistics.rms_height),
-        heights: surface.x.iter().copied().zip(surface.z.iter().copied()).collect(),
+        heights: surface.x().iter().copied().zip(surface.z().iter().copied()).collect(),
         spectrum: analysis.spectrum.iter().map(|band| (band.wave_number, band.density)).collect(),
         law,
     }
@@ -228,7 +229,7 @@ fn picture(surface: &scene::Surface, analysis: &Analysis, file: &Path) -> Profil
 
 fn columns(surface: &scene::Surface) -> String {
     let row = |(x, z): (&f64, &f64)| format!("{},{}\n", real(*x), real(*z));
-    let rows: String = surface.x.iter().zip(&surface.z).map(row).collect();
+    let rows: String = surface.x().iter().zip(surface.z()).map(row).collect();
     format!("x [m],z [m]\n{rows}")
 }
 
@@ -242,7 +243,7 @@ mod tests {
     fn a_cosine_has_its_known_numbers() {
         let x: Vec<f64> = (0..=1000).map(|i| f64::from(i) * 1e-6).collect();
         let z: Vec<f64> = (0..=1000).map(|i| 2e-6 * (TAU * f64::from(i % 250) / 250.0).cos() + 1e-6).collect();
-        let numbers = Statistics::of(&scene::Surface { x, z, periodic: true, self_affine: None });
+        let numbers = Statistics::of(&scene::Surface::new(x, z, true));
         let slope = 2e-6 * TAU / 250e-6;
         // The spline through 250 points a wavelength is wrong by some 1e-8 of its slope.
         let near = |found: f64, exact: f64| assert!((found / exact - 1.0).abs() < 1e-7, "{found} {exact}");
@@ -258,7 +259,7 @@ mod tests {
     fn a_ramp_is_all_tilt() {
         let x = vec![0.0, 1.0, 4.0, 5.0];
         let z = x.iter().map(|x| 0.25 * x).collect();
-        let numbers = Statistics::of(&scene::Surface { x, z, periodic: false, self_affine: None });
+        let numbers = Statistics::of(&scene::Surface::new(x, z, false));
         assert!((numbers.tilt - 0.25).abs() < 1e-15 && (numbers.rms_slope - 0.25).abs() < 1e-15);
         assert!(numbers.rms_height_without_tilt < 1e-15 && !numbers.is_even());
     }

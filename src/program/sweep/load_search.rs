@@ -148,7 +148,7 @@ impl WinklerFoundation {
 /// Heights of the profile at evenly spaced positions over the whole of it, m.
 pub(super) fn heights(scene: &Scene, model: &Model) -> Vec<f64> {
     let (first, last) = ends(scene);
-    let count = 4 * scene.surface.x.len();
+    let count = 4 * scene.surface.x().len();
     let position = |i: usize| first + (last - first) * (i as f64 + 0.5) / count as f64;
     (0..count).map(|i| model.surface_at(position(i)).height).collect()
 }
@@ -161,7 +161,7 @@ pub(super) fn rest_separation(model: &Model, heights: &[f64]) -> f64 {
 
 /// First and last position of the profile, m.
 pub(super) fn ends(scene: &Scene) -> (f64, f64) {
-    let x = &scene.surface.x;
+    let x = scene.surface.x();
     (x.first().copied().unwrap_or(0.0), x.last().copied().unwrap_or(1.0))
 }
 

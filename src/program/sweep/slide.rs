@@ -91,13 +91,13 @@ impl Blocks {
     pub(super) fn new(scene: &Scene, speed: f64) -> Self {
         let (first, last) = ends(scene);
         let layer = scene.layer.spacing * scene.layer.masses as f64;
-        let flat = scene.surface.z.iter().all(|z| *z == scene.surface.z[0]);
+        let flat = scene.surface.z().iter().all(|z| *z == scene.surface.z()[0]);
         let period = last - first;
-        let whole = scene.surface.periodic && !flat && period <= LONGEST_PERIOD * layer;
+        let whole = scene.surface.is_periodic() && !flat && period <= LONGEST_PERIOD * layer;
         let block = if whole { period } else { layer };
-        let points = block / period * scene.surface.x.len() as f64;
+        let points = block / period * scene.surface.x().len() as f64;
         let samples = points.clamp(SAMPLES.0, SAMPLES.1) as u32;
-        if flat || scene.surface.periodic {
+        if flat || scene.surface.is_periodic() {
             return Self { speed, length: block, samples, start: 0.0, longest: f64::INFINITY };
         }
         let longest = (period - layer + scene.layer.spacing).max(0.0);

@@ -112,13 +112,13 @@ fn steep_slopes(foundation: &Foundation) -> Option<String> {
 impl Surface {
     /// The period of a profile that is not level, m.
     fn period(&self) -> Option<f64> {
-        let level = self.z.windows(2).all(|pair| pair[0] == pair[1]);
-        (self.periodic && !level).then(|| self.x[self.x.len() - 1] - self.x[0])
+        let level = self.z().windows(2).all(|pair| pair[0] == pair[1]);
+        (self.is_periodic() && !level).then(|| self.x()[self.x().len() - 1] - self.x()[0])
     }
 
     /// The wavelength above which the spectrum is constant, m: as given, or of the law that the spectrum follows.
     fn roll_off_wavelength(&self) -> Option<f64> {
-        let given = self.self_affine.map(|law| law.roll_off);
+        let given = self.self_affine().map(|law| law.roll_off);
         given.or_else(|| PowerLaw::of(&Spectrum::of(self).bands(), None)?.roll_off_wavelength)
     }
 }

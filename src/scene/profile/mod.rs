@@ -3,6 +3,7 @@
 //! Text holds two columns x, z, see [`text`]; an X3P file holds an image of heights, see [`x3p`].
 
 mod options;
+mod plain;
 mod text;
 #[cfg(feature = "x3p")]
 mod x3p;
@@ -134,7 +135,7 @@ fn finish(mut raw: MeasuredPoints, options: &ProfileOptions) -> Result<Parsed, C
         remove_tilt(&raw.x, &mut raw.z);
     }
     check(&mut raw, options.periodic)?;
-    let surface = Surface { x: raw.x, z: raw.z, periodic: options.periodic, self_affine: None };
+    let surface = Surface::new(raw.x, raw.z, options.periodic);
     Ok(Parsed { surface, warnings: raw.warnings, extract: None })
 }
 

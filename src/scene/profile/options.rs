@@ -123,6 +123,19 @@ pub(super) struct MeasuredPoints {
 }
 
 impl MeasuredPoints {
+    /// None so far, with memory for up to `most`.
+    pub(super) fn with_capacity(most: usize) -> Self {
+        let numbers = || Vec::with_capacity(most);
+        Self { x: numbers(), z: numbers(), lines: Vec::with_capacity(most), ..Self::default() }
+    }
+
+    /// Adds a point in a line of the file.
+    pub(super) fn push(&mut self, line: usize, x: f64, z: f64) {
+        self.x.push(x);
+        self.z.push(z);
+        self.lines.push(line);
+    }
+
     /// Refuses point `i`, by its line or else by its number from 1.
     pub(super) fn refuse(&self, i: usize, axis: &str, given: &str, expected: &str) -> ContentError {
         match self.lines.get(i) {

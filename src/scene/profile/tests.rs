@@ -10,7 +10,7 @@ fn filled() -> ProfileOptions {
 
 fn points_of(bytes: &[u8], options: &ProfileOptions) -> Vec<(f64, f64)> {
     let surface = parse(bytes, options, false).unwrap_or_else(|error| unreachable!("{error:?}")).surface;
-    surface.x.into_iter().zip(surface.z).collect()
+    surface.x().iter().copied().zip(surface.z().iter().copied()).collect()
 }
 
 fn points(text: &str) -> Vec<(f64, f64)> {

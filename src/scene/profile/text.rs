@@ -4,6 +4,7 @@
 use std::fmt::Write as _;
 
 use super::options::{LengthUnit, MeasuredPoints, Missing, ProfileOptions, ThirdColumn};
+use super::plain::PlainLine;
 use crate::scene::error::ContentError;
 use crate::scene::text_table::Columns;
 use crate::scene::values::ANY;
@@ -21,14 +22,14 @@ pub(super) fn read(text: &str, options: &ProfileOptions) -> Result<MeasuredPoint
     check_header(&above)?;
     let lines: Vec<&str> = above.iter().map(|(_, line)| *line).collect();
     let header = Header::read(&lines);
-    let mut reader = PointsReader::new(header.third_column, options);
+    let most = text.bytes().filter(|&byte| byte == b'\n').count() + 1;
+    let mut reader = PointsReader::new(header.third_column, options, most);
     reader.raw.units = header.units;
     if header.is_one_sided && (options.x_unit.is_none() || options.z_unit.is_none()) {
         reader.raw.warnings.push(ONE_UNIT.into());
     }
-    for (number, line) in numbered().skip(above.len()).filter(|(_, line)| !is_comment(line)) {
-        reader.add(number, line)?;
-    }
+    let start = text.split_inclusive('\n').take(first - 1).map(str::len).sum::<usize>();
+    reader.add_lines(&text[start..], first)?;
     Ok(reader.raw)
 }
 
@@ -126,8 +127,41 @@ struct PointsReader {
 }
 
 impl PointsReader {
-    fn new(named: Option<ThirdColumn>, options: &ProfileOptions) -> Self {
-        Self { raw: MeasuredPoints::default(), third_column: options.third_column.or(named), missing: options.missing }
+    /// A reader of up to `most` points, with the third column as the header has `named` it.
+    fn new(named: Option<ThirdColumn>, options: &ProfileOptions, most: usize) -> Self {
+        let raw = MeasuredPoints::with_capacity(most);
+        Self { raw, third_column: options.third_column.or(named), missing: options.missing }
+    }
+
+    /// Adds the points in the lines of `text`, the first of which has the number `first`.
+    fn add_lines(&mut self, text: &str, first: usize) -> Result<(), ContentError> {
+        let mut rest = text;
+        for number in first.. {
+            if rest.is_empty() {
+                break;
+            }
+            if let Some(length) = self.add_plain(number, rest) {
+                rest = &rest[length..];
+                continue;
+            }
+            let (line, behind) = rest.split_once('\n').unwrap_or((rest, ""));
+            let line = trim(line);
+            if !line.is_empty() && !is_comment(line) {
+                self.add(number, line)?;
+            }
+            rest = behind;
+        }
+        Ok(())
+    }
+
+    /// Adds the first line of `text` if it is plain and its numbers are possible, and returns its bytes.
+    fn add_plain(&mut self, number: usize, text: &str) -> Option<usize> {
+        if self.third_column.is_some() {
+            return None;
+        }
+        let PlainLine { x, z, length } = PlainLine::read(text).filter(|line| ANY.holds(line.x) && ANY.holds(line.z))?;
+        self.raw.push(number, x, z);
+        Some(length)
     }
 
     fn add(&mut self, number: usize, line: &str) -> Result<(), ContentError> {
@@ -141,15 +175,15 @@ impl PointsReader {
             return Err(refuse_count(&row, number, line));
         }
         let in_range = |column: usize| row.number(column).filter(|&value| ANY.holds(value));
-        self.raw.x.push(in_range(0).ok_or_else(|| refuse_field(&row, 0, number))?);
+        let x = in_range(0).ok_or_else(|| refuse_field(&row, 0, number))?;
         let z = if self.is_invalid(&row) { None } else { in_range(1) };
-        self.raw.z.push(match z {
+        let z = match z {
             Some(z) => z,
             None if self.missing == Missing::Fill && self.is_gap(&row) => f64::NAN,
             None if self.is_invalid(&row) => return Err(refuse_invalid(&row, number)),
             None => return Err(refuse_field(&row, 1, number)),
-        });
-        self.raw.lines.push(number);
+        };
+        self.raw.push(number, x, z);
         Ok(())
     }
 

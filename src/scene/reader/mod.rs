@@ -227,7 +227,7 @@ fn read_real_area(entry: &Entry<'_>, surface: &Surface) -> Result<RealArea> {
     let RealArea { rms_slope, wavelength, modulus, cut_off_wavelength } = roughness;
     match (rms_slope, wavelength, modulus, cut_off_wavelength) {
         (Some(_), Some(_), None, None) | (Some(_), None, Some(_), None) => Ok(roughness),
-        (None, None, None, Some(cut_off)) => match surface.self_affine {
+        (None, None, None, Some(cut_off)) => match surface.self_affine() {
             Some(law) if cut_off < law.cut_off => Ok(roughness),
             Some(law) => {
                 Err(entry.refuse(format_args!("a cut_off_wavelength < {:?} m, the surface's own", law.cut_off)))

@@ -48,8 +48,7 @@ pub(super) fn read(entry: &Entry<'_>, found: &mut Found) -> Result<Surface> {
     table.finish()?;
     let spline = surface.spline();
     let bounds = spline.bounds();
-    let finite = surface.x.iter().all(|&x| spline.evaluate(x).2.is_finite());
-    if finite && bounds.slope_max_abs <= STEEPEST && bounds.curvature_max_abs <= LARGEST {
+    if spline.is_finite() && bounds.slope_max_abs <= STEEPEST && bounds.curvature_max_abs <= LARGEST {
         return Ok(surface);
     }
     let limits = format!("slopes up to {STEEPEST:e} and curvatures up to {LARGEST:e} 1/m");
@@ -101,7 +100,7 @@ fn read_points(table: &mut TableReader<'_>) -> Result<Surface> {
             None => entry.refuse_count(x.len(), &error.expected),
         }
     })?;
-    Ok(Surface { x, z, periodic, self_affine: None })
+    Ok(Surface::new(x, z, periodic))
 }
 
 fn read_file(table: &mut TableReader<'_>, found: &mut Found) -> Result<Surface> {

@@ -76,7 +76,7 @@ fn archive(bytes: &[u8]) -> Vec<u8> {
 fn check_extract(scene: &Scene, extract: &Extract, scene_file: &Path, keys: &str) {
     fs::remove_file(folder().join("profile.csv")).unwrap();
     fs::write(folder().join(&extract.name), &extract.text).unwrap();
-    let carried = Scene::parse(&self::scene(scene.surface.periodic, keys), scene_file).unwrap();
+    let carried = Scene::parse(&self::scene(scene.surface.is_periodic(), keys), scene_file).unwrap();
     fs::remove_file(folder().join(&extract.name)).unwrap();
     assert_eq!((&carried.surface, &carried.files), (&scene.surface, &scene.files));
 }
@@ -116,7 +116,7 @@ fn with_links(mut scene: Scene, method: Method) -> Scene {
 
 /// The properties of every profile.
 fn check(scene: &Scene, periodic: bool) {
-    let (x, z) = (&scene.surface.x, &scene.surface.z);
+    let (x, z) = (scene.surface.x(), scene.surface.z());
     assert!(x.len() == z.len() && x.len() >= if periodic { 3 } else { 2 });
     assert!(x.windows(2).all(|pair| pair[0] < pair[1]));
     assert!(!periodic || z[0] == z[z.len() - 1]);

@@ -107,8 +107,8 @@ impl Case {
         );
         let surface = &self.scene.surface;
         let tail = vec![
-            format!("[surface]\nkind = \"points\"\nperiodic = {}\n", surface.periodic),
-            format!("x = {:?}\nz = {:?}\n", surface.x, surface.z),
+            format!("[surface]\nkind = \"points\"\nperiodic = {}\n", surface.is_periodic()),
+            format!("x = {:?}\nz = {:?}\n", surface.x(), surface.z()),
             self.scene.friction.as_ref().map_or(String::new(), friction),
             Axis::ALL.into_iter().map(|axis| carrier(&self.scene, axis)).collect(),
             format!("[solver]\nmethod = \"{}\"\n", format!("{method:?}").to_lowercase()),

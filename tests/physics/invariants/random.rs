@@ -193,12 +193,12 @@ fn link(scales: Scales, share: f64) -> impl Strategy<Value = Option<Link>> {
 
 /// Flat, a sine, or points: even or not, coarse or fine, periodic or natural.
 fn surface(scales: Scales) -> impl Strategy<Value = Surface> {
-    let flat = Just(Surface { x: vec![0.0, 1.0], z: vec![0.0, 0.0], periodic: false, self_affine: None });
+    let flat = Just(Surface::new(vec![0.0, 1.0], vec![0.0, 0.0], false));
     let sine = (decades(-0.5..1.5), 4_usize..=48).prop_map(move |(wavelength, points)| {
         let phase = |i: usize| i as f64 / points as f64;
         let x = (0..=points).map(|i| wavelength * scales.spacing * phase(i)).collect();
         let z = (0..=points).map(|i| 0.5 * scales.height * (TAU * phase(i % points)).sin()).collect();
-        Surface { x, z, periodic: true, self_affine: None }
+        Surface::new(x, z, true)
     });
     let point = (0.3..1.7_f64, -0.5..0.5_f64);
     let points = (decades(-1.0..0.7), vec(point, 3..=40), any::<bool>(), any::<bool>(), -1.0..0.0_f64).prop_map(
@@ -216,7 +216,7 @@ fn surface(scales: Scales) -> impl Strategy<Value = Surface> {
             if periodic {
                 z[points.len() - 1] = z[0];
             }
-            Surface { x, z, periodic, self_affine: None }
+            Surface::new(x, z, periodic)
         },
     );
     prop_oneof![1 => flat, 2 => sine, 5 => points]

@@ -1,6 +1,6 @@
 //! No unit is special: a scene in other units gives the same.
 
-use asperity::scene::{CarrierBody, Force, Link, Path, Unit};
+use asperity::scene::{CarrierBody, Force, Link, Path, Surface, Unit};
 use asperity::simulation::{Motion, Start};
 use proptest::prelude::*;
 
@@ -89,7 +89,9 @@ impl Powers {
         let links = [&mut layer.vertical, &mut layer.horizontal, &mut layer.lateral_x, &mut layer.lateral_z];
         links.into_iter().flatten().for_each(|link| self.link(link));
         scene.carrier.x.iter_mut().chain(&mut scene.carrier.z).for_each(|body| self.body(body));
-        scene.surface.x.iter_mut().chain(&mut scene.surface.z).for_each(|value| *value *= length);
+        let [x, z] =
+            [scene.surface.x(), scene.surface.z()].map(|points| points.iter().map(|value| value * length).collect());
+        scene.surface = Surface::new(x, z, scene.surface.is_periodic());
         let shear = scene.friction.iter_mut().flat_map(|friction| &mut friction.shear_force);
         shear.for_each(|force| *force *= self.of(1, 1, -2));
         for law in scene.friction.iter_mut().flat_map(|friction| &mut friction.rate_shear) {

@@ -13,11 +13,12 @@ use crate::invariants::trust::{Compared, Series, Trusted};
 /// The case seen in a mirror, x → -x.
 fn mirrored(case: &Case) -> Case {
     let mut mirror = case.clone();
-    let (layer, surface) = (&mut mirror.scene.layer, &mut mirror.scene.surface);
+    let layer = &mut mirror.scene.layer;
     layer.origin = 0.0 - layer.rest_position(layer.masses - 1);
     layer.roughness.reverse();
-    surface.x = surface.x.iter().rev().map(|x| 0.0 - x).collect();
-    surface.z.reverse();
+    let surface = &case.scene.surface;
+    let x = surface.x().iter().rev().map(|x| 0.0 - x).collect();
+    mirror.scene.surface = Surface::new(x, surface.z().iter().rev().copied().collect(), surface.is_periodic());
     mirror.start = Start { u: 0.0 - case.start.u, u_rate: 0.0 - case.start.u_rate, ..case.start };
     for motion in &mut mirror.motions {
         motion.u = Path { rate: 0.0 - motion.u.rate, amplitude: 0.0 - motion.u.amplitude, ..motion.u };
@@ -70,7 +71,7 @@ fn one_mass_over_a_plane_is_mirrored_to_the_last_bit() {
     check("one mass mirrored", 150, cases(), |mut case| {
         case.scene.layer.masses = 1;
         case.scene.layer.roughness.truncate(1);
-        case.scene.surface = Surface { x: vec![0.0, 1.0], z: vec![0.0, 0.0], periodic: false, self_affine: None };
+        case.scene.surface = Surface::new(vec![0.0, 1.0], vec![0.0, 0.0], false);
         let run = |case: &Case| case.run(4).map_err(|error| TestCaseError::fail(format!("{error}")));
         let (one, other) = (run(&case)?, run(&mirrored(&case))?);
         let turns = [
@@ -108,17 +109,18 @@ fn one_mass_over_a_plane_is_mirrored_to_the_last_bit() {
 /// not periodic.
 fn with_exact_u(case: &Case) -> Case {
     let mut case = case.clone();
-    if !case.scene.surface.periodic {
+    if !case.scene.surface.is_periodic() {
         let x: Vec<f64> = (0..=8).map(|i| 0.4 * f64::from(i) * case.scene.layer.spacing).collect();
         let height = 0.1 * case.scene.layer.spacing;
         let z = [0.0, 0.7, 0.2, -0.3, 0.5, 0.1, -0.9, -0.4, 0.0].map(|z| z * height).to_vec();
-        case.scene.surface = Surface { x, z, periodic: true, self_affine: None };
+        case.scene.surface = Surface::new(x, z, true);
     }
-    let surface = &mut case.scene.surface;
-    let width = surface.x.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+    let surface = &case.scene.surface;
+    let width = surface.x().windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
     let quantum = (width.log2().floor() - 6.0).exp2();
     let whole = |x: f64| (x / quantum).round() * quantum;
-    surface.x.iter_mut().for_each(|x| *x = whole(*x));
+    let x = surface.x().iter().map(|&x| whole(x)).collect();
+    case.scene.surface = Surface::new(x, surface.z().to_vec(), true);
     case.start.u = whole(case.start.u);
     for motion in &mut case.motions {
         let duration = motion.duration.log2().floor().exp2();
@@ -135,7 +137,7 @@ fn a_shift_by_periods_of_the_profile_changes_no_bit() {
     check("a shift by periods", 150, (cases(), -1000_i32..1000), |(case, periods)| {
         let case = with_exact_u(&case);
         let mut far = case.clone();
-        let x = &case.scene.surface.x;
+        let x = case.scene.surface.x();
         far.start.u += f64::from(periods) * (x[x.len() - 1] - x[0]);
         let run = |case: &Case| case.run(4).map_err(|error| TestCaseError::fail(format!("{error}")));
         let (one, other) = (run(&case)?, run(&far)?);
@@ -159,11 +161,12 @@ fn a_periodic_profile_may_be_cut_anywhere() {
     check("a profile cut elsewhere", 20, (cases(), 0.0..1.0_f64), |(case, share)| {
         let case = with_exact_u(&case);
         let mut cut = case.clone();
-        let Surface { x, z, .. } = &case.scene.surface;
+        let (x, z) = (case.scene.surface.x(), case.scene.surface.z());
         let (n, period) = (x.len() - 1, x[x.len() - 1] - x[0]);
         let from = (share * n as f64) as usize;
-        cut.scene.surface.x = x[from..n].iter().copied().chain(x[..=from].iter().map(|x| x + period)).collect();
-        cut.scene.surface.z = z[from..n].iter().chain(&z[..=from]).copied().collect();
+        let cut_x = x[from..n].iter().copied().chain(x[..=from].iter().map(|x| x + period)).collect();
+        let cut_z = z[from..n].iter().chain(&z[..=from]).copied().collect();
+        cut.scene.surface = Surface::new(cut_x, cut_z, true);
         let trusted = |case: &Case| {
             let run = Trusted::where_a_perturbed_run_agrees(case, |case| case.run(6));
             run.map_err(|error| TestCaseError::fail(format!("{error}")))
