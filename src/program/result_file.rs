@@ -1,6 +1,7 @@
 //! CSV files with a header; result files among them: columns `time` and the inputs, then the output variables.
 
 use std::borrow::Cow;
+use std::fmt::{self, Display, Formatter};
 use std::fs::File;
 use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
@@ -11,7 +12,7 @@ use asperity::scene::text_table::{self, Row};
 
 use super::files::{FileError, read};
 use super::runner::CarrierSample;
-pub(crate) use super::terminal::real;
+use super::terminal::file_decimal;
 
 /// A result file cannot be read.
 #[derive(Debug, thiserror::Error)]
@@ -47,6 +48,17 @@ impl CsvWriter {
         writeln!(self.file, "{}", fields.join(",")).map_err(FileError::io("write", &self.path))
     }
 
+    /// Writes a line of values, none of which needs quotation marks.
+    pub(crate) fn write_values(&mut self, values: impl IntoIterator<Item = Field>) -> Result<(), FileError> {
+        let write = || {
+            for (i, value) in values.into_iter().enumerate() {
+                write!(self.file, "{}{value}", if i > 0 { "," } else { "" })?;
+            }
+            writeln!(self.file)
+        };
+        write().map_err(FileError::io("write", &self.path))
+    }
+
     /// Flushes the file.
     pub(crate) fn finish(mut self) -> Result<(), FileError> {
         self.file.flush().map_err(FileError::io("write", &self.path))
@@ -71,9 +83,10 @@ impl ResultWriter {
     }
 
     pub(crate) fn write(&mut self, carrier: CarrierSample, values: &[f64]) -> Result<(), FileError> {
-        let variables = self.kinds.iter().zip(values).map(|(&kind, &value)| field(kind, value));
+        let real = |value: f64| Field { kind: Kind::Real, value };
+        let variables = self.kinds.iter().zip(values).map(|(&kind, &value)| Field { kind, value });
         let inputs = self.inputs.iter().map(|&input| real(carrier.input(input)));
-        self.file.write(std::iter::once(real(carrier.time)).chain(inputs).chain(variables))
+        self.file.write_values(std::iter::once(real(carrier.time)).chain(inputs).chain(variables))
     }
 
     /// Flushes the file.
@@ -83,10 +96,18 @@ impl ResultWriter {
 }
 
 /// A value as files have it.
-pub(crate) fn field(kind: Kind, value: f64) -> String {
-    match kind {
-        Kind::Real => real(value),
-        Kind::Integer => format!("{value:.0}"),
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Field {
+    pub(crate) kind: Kind,
+    pub(crate) value: f64,
+}
+
+impl Display for Field {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self.kind {
+            Kind::Real => file_decimal(self.value).fmt(f),
+            Kind::Integer => write!(f, "{:.0}", self.value),
+        }
     }
 }
 
@@ -186,6 +207,6 @@ mod tests {
 
     #[test]
     fn integers_have_no_exponent() {
-        assert_eq!(field(Kind::Integer, 1e7), "10000000");
+        assert_eq!(Field { kind: Kind::Integer, value: 1e7 }.to_string(), "10000000");
     }
 }

@@ -107,7 +107,7 @@ impl Recorder {
             history.add(carrier.time, snapshot);
         }
         self.time = carrier.time;
-        if self.duration > 0.0 {
+        if self.duration > 0.0 && !self.progress.is_hidden() {
             self.progress.set_position((PROGRESS_LENGTH * self.time / self.duration) as u64);
             self.progress.set_message(format!("t = {:.4e} s", self.time));
         }

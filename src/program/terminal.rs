@@ -1,5 +1,6 @@
 //! Text for terminal and files: numbers, aligned lines, warnings, the progress bar.
 
+use std::fmt::{self, Display, Formatter, LowerExp};
 use std::ops::Range;
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -19,12 +20,31 @@ pub(crate) fn labelled(label: &'static str, texts: impl IntoIterator<Item = Stri
 
 /// The shortest decimal that reads back as the same number; with an exponent outside the magnitudes `plain`.
 pub(crate) fn decimal(value: f64, plain: Range<f64>) -> String {
-    if value == 0.0 || plain.contains(&value.abs()) { format!("{value}") } else { format!("{value:e}") }
+    Decimal { value, plain }.to_string()
 }
 
 /// A number as files have it: the shortest decimal that reads back as the same number.
 pub(crate) fn real(value: f64) -> String {
-    decimal(value, 1e-4..1e16)
+    file_decimal(value).to_string()
+}
+
+/// [`real`], to be written without a text of its own.
+pub(crate) fn file_decimal(value: f64) -> Decimal {
+    Decimal { value, plain: 1e-4..1e16 }
+}
+
+/// The shortest decimal that reads back as the same number; with an exponent outside the magnitudes `plain`.
+#[derive(Debug)]
+pub(crate) struct Decimal {
+    value: f64,
+    plain: Range<f64>,
+}
+
+impl Display for Decimal {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Self { value, plain } = self;
+        if *value == 0.0 || plain.contains(&value.abs()) { Display::fmt(value, f) } else { LowerExp::fmt(value, f) }
+    }
 }
 
 /// The number rounded to `digits` significant digits.

@@ -121,8 +121,8 @@ impl ErrorRun {
                 None => self.run.next_step(self.duration, &mut self.work)?,
             };
             let end = self.run.end_of(&step, self.duration);
-            let theta = (s - self.run.state.s) / step.h;
-            if !ends && s < end && self.run.can_show_within(step.h, theta) {
+            if !ends && s < end && self.run.can_show_within() {
+                let theta = (s - self.run.state.s) / step.h;
                 self.pending = Some(step);
                 return Ok(self.run.snapshot_within(step.h, theta, 0.0).monitored(tracked));
             }

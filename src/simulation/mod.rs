@@ -303,8 +303,8 @@ impl Simulation {
     ) -> Result<(f64, bool), SimulationError> {
         let (mut end, mut shortened) = (self.run.end_of(step, duration), false);
         while let Some(time) = observer.next_before(end) {
-            let theta = (time - self.run.state.s) / step.h;
-            if self.run.can_show_within(step.h, theta) {
+            if self.run.can_show_within() {
+                let theta = (time - self.run.state.s) / step.h;
                 self.show_within(step, theta, observer);
             } else {
                 (*step, end) = self.run.cut_step_at(time, duration, work)?;

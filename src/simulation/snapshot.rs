@@ -11,9 +11,6 @@ use crate::outputs::{Energies, Snapshot};
 /// Recommended 1 to 5: the residual oscillates about 0 through the step, so less of it is left in the velocity; with 5
 /// the errors of whole runs are those of 1, and fewer steps are repeated.
 const LARGEST_DEFECT: f64 = 5.0;
-/// The largest where a row is shown within a step, from which the run does not go on. In smooth motion it is some tens;
-/// where a step passes over a fast transient after an event, thousands and more.
-const LARGEST_DEFECT_SHOWN: f64 = 100.0;
 /// The most that mode changes not yet corrected may change F_z where a row is shown within a time step, as a multiple of
 /// the relative tolerance. That bounds all of them together at the step's end; the error of a row is a third of it, and
 /// less.
@@ -89,17 +86,15 @@ impl Run {
         self.workspace.forces.on_carrier_z()
     }
 
-    /// Whether the dense output of the step of length `h` tried last is good enough to be shown at its fraction
-    /// `theta`. A time step's touches and lifts are corrected at its end, and its dense output is not: it is shown where
-    /// that changes F_z little.
-    pub(super) fn can_show_within(&mut self, h: f64, theta: f64) -> bool {
-        if self.state.time_stepping {
-            let force = self.workspace.integrator.end_forces().on_carrier_z().abs();
-            let allowed = MOST_UNCORRECTED * self.settings.tolerance.relative * force;
-            self.workspace.end_correction.uncorrected_force() <= allowed
-        } else {
-            self.defect_within(h, theta) <= LARGEST_DEFECT_SHOWN
+    /// Whether the dense output of the step tried last is good enough to be shown. A time step's touches and lifts are
+    /// corrected at its end, and its dense output is not: it is shown where that changes F_z little.
+    pub(super) fn can_show_within(&self) -> bool {
+        if !self.state.time_stepping {
+            return true;
         }
+        let force = self.workspace.integrator.end_forces().on_carrier_z().abs();
+        let allowed = MOST_UNCORRECTED * self.settings.tolerance.relative * force;
+        self.workspace.end_correction.uncorrected_force() <= allowed
     }
 
     /// Whether the run can go on from the fraction `share` of the step of length `h` tried last.

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use asperity::outputs::Kind;
 use asperity::patch::{MotionError, Patch, PatchError, PatchRun, PatchVariable};
 use asperity::scene::ParameterError;
 
@@ -10,8 +11,8 @@ use super::sources;
 use crate::program::cli::Simulate;
 use crate::program::figure::{Figure as _, PatchHistory};
 use crate::program::files::{FileError, check_outputs};
-use crate::program::result_file::{CsvWriter, ResultFileError, field};
-use crate::program::terminal::{real, warn};
+use crate::program::result_file::{CsvWriter, Field, ResultFileError};
+use crate::program::terminal::warn;
 
 /// `asperity simulate --patch` failed.
 #[derive(Debug, thiserror::Error)]
@@ -81,8 +82,10 @@ impl Recorder {
     fn row(&mut self, run: &mut PatchRun, motion: Vec<f64>) -> Result<(), FileError> {
         run.take_warning().iter().for_each(|warning| warn(warning));
         run.evaluate(&self.variables, &mut self.values);
-        let variables = self.variables.iter().zip(&self.values).map(|(variable, &value)| field(variable.kind, value));
-        self.writer.write(motion.into_iter().map(real).chain(variables))?;
+        let variables = self.variables.iter().zip(&self.values);
+        let variables = variables.map(|(variable, &value)| Field { kind: variable.kind, value });
+        let motion = motion.into_iter().map(|value| Field { kind: Kind::Real, value });
+        self.writer.write_values(motion.chain(variables))?;
         if let Some(history) = &mut self.history {
             history.add(run);
         }
