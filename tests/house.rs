@@ -11,7 +11,7 @@ const ROOMS: [(&str, &[&str]); 11] = [
     ("model", &["math", "scene"]),
     ("integrator", &["math", "model"]),
     ("contact", &["math", "scene", "model", "integrator"]),
-    ("outputs", &["math", "scene", "model"]),
+    ("outputs", &["math", "scene", "model", "integrator"]),
     ("simulation", &["math", "scene", "model", "integrator", "contact", "outputs"]),
     ("robustness", &["scene", "simulation"]),
     ("element", &["math", "scene", "model", "outputs", "simulation"]),

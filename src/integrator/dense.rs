@@ -1,21 +1,17 @@
-//! Dense output of both methods: the motion and the state within a step (docs/theory.md, section 5).
+//! Dense output of event-driven steps: the motion and the state within a step (docs/theory.md, section 5).
 //!
-//! [`DenseOutput`] belongs to event-driven steps. Velocities are combinations of those at the stages
-//! ([`StageInterpolation`]), positions their integrals. The Maxwell elements follow these velocities by the exact
-//! solution of ȧ = ė - a/τ, for any τ; its difference from the step's own end is distributed linearly over the step.
-//!
-//! [`TwoStageDense`] belongs to the method of two stages. Positions are the parabolas through the start and the end with
-//! the velocity of the first stage there. Velocities and Maxwell elements, which may have followed a jump in no time, are
-//! linear from the start to the first stage and from there to the end, so they do not oscillate. Both are of the
-//! method's own order.
+//! Velocities are combinations of those at the stages ([`StageInterpolation`]), positions their integrals. The Maxwell
+//! elements follow these velocities by the exact solution of ȧ = ė - a/τ, for any τ; its difference from the step's own end
+//! is distributed linearly over the step.
 
+use super::carrier_sums::{AxisSums, CarrierSums, ElementWeights, Motion};
 use super::error::Tolerance;
 use super::interpolation::StageInterpolation;
 use super::rates::Rates;
-use super::tableau::{GAMMA, STAGES, sdirk2_weights};
-use crate::math::{Relaxation, weighted_sum};
+use super::tableau::STAGES;
+use crate::math::{Relaxation, dot, weighted_sum};
 use crate::model::{
-    BodyStep, Carrier, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint,
+    Carrier, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint,
 };
 
 /// Where a step lies in time.
@@ -186,6 +182,23 @@ impl DenseOutput<'_> {
         }
     }
 
+    /// The sums of the elongations and of the velocities of all masses at the fraction `theta`, from the `sums` of the step.
+    pub(super) fn summed_motion(&self, theta: f64, sums: &CarrierSums, workspace: &mut DenseWorkspace) -> Motion {
+        workspace.set_weights(self, theta);
+        let (carrier, n) = (self.carrier_at(theta, workspace), sums.free);
+        let moved = |axis: &AxisSums| axis.elongation[0] + dot(&workspace.integral, &axis.velocity);
+        let velocity = |axis: &AxisSums| dot(&workspace.values, &axis.velocity);
+        let mut all = Motion {
+            elongation: (moved(&sums.x) - n * carrier.integrated.0, moved(&sums.z) - n * carrier.integrated.1),
+            velocity: (velocity(&sums.x) + n * carrier.missing_rate.0, velocity(&sums.z) + n * carrier.missing_rate.1),
+        };
+        let modes = &self.start.state.mode;
+        for i in (0..modes.len()).filter(|&i| modes[i].in_contact()) {
+            all.add(&self.mass_at(i, &carrier, workspace).motion());
+        }
+        all
+    }
+
     /// Mass `i`, in contact, with the elongation and velocity `along_x` (m, m/s) if it slips.
     fn on_profile(&self, i: usize, along_x: (f64, f64), carrier: &CarrierWithin) -> MassPoint {
         let start = self.start.state;
@@ -269,10 +282,16 @@ struct CarrierWithin {
 }
 
 /// A mass at one instant within a step; along x and z.
-struct MassPoint {
-    elongation: (f64, f64),
-    velocity: (f64, f64),
-    surface: SurfacePoint,
+pub(super) struct MassPoint {
+    pub elongation: (f64, f64),
+    pub velocity: (f64, f64),
+    pub surface: SurfacePoint,
+}
+
+impl MassPoint {
+    pub(super) fn motion(&self) -> Motion {
+        Motion { elongation: self.elongation, velocity: self.velocity }
+    }
 }
 
 /// The links at one mass, or between two, at one instant within a step; along x and z.
@@ -357,6 +376,12 @@ impl DenseWorkspace {
         self.acceleration.iter().map(|array| array.len() * size_of::<f64>()).sum()
     }
 
+    /// The weights of the elements of one row at the fraction for which the weights are set.
+    pub(super) fn of_elements(&self, row: &MaxwellRow) -> ElementWeights {
+        let RelaxationWeights { start, rate } = self.relaxation[row.time_index];
+        ElementWeights { ends: [start, self.at.0], rates: rate }
+    }
+
     /// Sets the weights at the fraction `theta` of `step`, unless they are there already.
     fn set_weights(&mut self, step: &DenseOutput<'_>, theta: f64) {
         let h = step.span.length;
@@ -391,153 +416,5 @@ impl DenseWorkspace {
         let missing_x = missing(carrier.u_acceleration, |at| at.u_rate);
         step.combine(x, &slope, None, |stage| &stage.velocity_x, missing_x);
         step.combine(z, &slope, None, |stage| &stage.velocity_z, missing(carrier.w_acceleration, |at| at.w_rate));
-    }
-}
-
-/// The interpolant of one step of the method of two stages.
-#[derive(Clone, Copy, Debug)]
-pub struct TwoStageDense<'a> {
-    /// The model.
-    pub model: &'a Model,
-    /// The carrier's motion.
-    pub carrier: &'a Carrier,
-    /// The step.
-    pub span: StepSpan,
-    /// State at the start.
-    pub start: &'a State,
-    /// Rates at the first stage.
-    pub first: &'a Rates,
-    /// State at the end.
-    pub end: &'a State,
-    /// Rates at the end.
-    pub last: &'a Rates,
-    /// u as a position on the profile and w at the start, m.
-    carrier_start: (f64, f64),
-    /// Displacement of the carrier through the step, m.
-    carrier_moved: (f64, f64),
-}
-
-impl<'a> TwoStageDense<'a> {
-    /// The step over `span`, between the states at its start and its end and with the rates at its first stage and its
-    /// end.
-    pub fn new(
-        model: &'a Model,
-        carrier: &'a Carrier,
-        span: StepSpan,
-        start: &'a State,
-        first: &'a Rates,
-        end: &'a State,
-        last: &'a Rates,
-    ) -> Self {
-        let at = carrier.at(span.start);
-        let carrier_start = (carrier.profile_position + at.du, carrier.w + at.dw);
-        let carrier_moved = carrier.moved(span.start, span.length);
-        Self { model, carrier, span, start, first, end, last, carrier_start, carrier_moved }
-    }
-
-    /// The fraction of the step at which its first stage lies.
-    pub const FIRST_STAGE: f64 = GAMMA;
-
-    /// The position of mass `i` on the profile at the fraction `theta` of the step, m.
-    #[inline(always)]
-    pub fn position(&self, i: usize, theta: f64) -> f64 {
-        let (start, end) = (self.start.elongation_x[i], self.end.elongation_x[i]);
-        let middle = GAMMA * self.span.length * self.first.velocity_x[i];
-        self.model.rest_x[i]
-            + (self.carrier_start.0 + (start + parabola(theta, middle, self.carrier_moved.0 + (end - start))))
-    }
-
-    /// The height of mass `i` above the profile's datum at the fraction `theta` of the step, m.
-    #[inline(always)]
-    pub fn height(&self, i: usize, theta: f64) -> f64 {
-        let (start, end) = (self.start.elongation_z[i], self.end.elongation_z[i]);
-        let middle = GAMMA * self.span.length * self.first.velocity_z[i];
-        self.model.rest_z[i]
-            + (self.carrier_start.1 + (start + parabola(theta, middle, self.carrier_moved.1 + (end - start))))
-    }
-
-    /// The velocity of mass `i` at the fraction `theta` of the step, m/s.
-    pub fn velocity(&self, i: usize, theta: f64) -> (f64, f64) {
-        let weights = piecewise_linear(theta);
-        let of = |values: [f64; 3]| values.iter().zip(weights).map(|(value, weight)| weight * value).sum();
-        (
-            of([self.start.velocity_x[i], self.first.velocity_x[i], self.end.velocity_x[i]]),
-            of([self.start.velocity_z[i], self.first.velocity_z[i], self.end.velocity_z[i]]),
-        )
-    }
-
-    /// Writes the state at the fraction `theta` of the step into `state`, without the Maxwell elements.
-    pub fn state_at(&self, theta: f64, state: &mut State) {
-        let StepSpan { start: s, length: h } = self.span;
-        let (from, first, to) = (self.start, self.first, self.end);
-        let ((u, w), (end_u, end_w)) = (self.carrier.moved(s, theta * h), self.carrier_moved);
-        for (mode, (from, to)) in state.mode.iter_mut().zip(from.mode.iter().zip(&to.mode)) {
-            // A mass that stops or breaks loose on the way moves within the step.
-            *mode = if from.slips() { *from } else { *to };
-        }
-        state.surface.copy_from_slice(&from.surface);
-        let elongations = |out: &mut [f64], start: &[f64], velocity: &[f64], end: &[f64], moved: f64, in_step: f64| {
-            for (out, ((start, end), velocity)) in out.iter_mut().zip(start.iter().zip(end).zip(velocity)) {
-                *out = start + (parabola(theta, GAMMA * h * velocity, in_step + (end - start)) - moved);
-            }
-        };
-        let (e_x, e_z) = (&mut state.elongation_x, &mut state.elongation_z);
-        elongations(e_x, &from.elongation_x, &first.velocity_x, &to.elongation_x, u, end_u);
-        elongations(e_z, &from.elongation_z, &first.velocity_z, &to.elongation_z, w, end_w);
-        let weights = piecewise_linear(theta);
-        let velocities = |out: &mut [f64], values: [&[f64]; 3]| {
-            weighted_sum(out, weights.into_iter().zip(values).filter(|(weight, _)| *weight != 0.0));
-        };
-        velocities(&mut state.velocity_x, [&from.velocity_x, &first.velocity_x, &to.velocity_x]);
-        velocities(&mut state.velocity_z, [&from.velocity_z, &first.velocity_z, &to.velocity_z]);
-        let here = self.carrier.at(self.span.at(theta));
-        for i in 0..self.model.masses() {
-            self.constrain(i, &here, state);
-        }
-    }
-
-    /// Puts mass `i`, where it is in contact, on the profile.
-    fn constrain(&self, i: usize, here: &CarrierPoint, state: &mut State) {
-        let mode = state.mode[i];
-        if mode == Mode::Free {
-            return;
-        }
-        if mode == Mode::Stick {
-            state.velocity_x[i] = 0.0;
-        } else {
-            let x = self.model.rest_x[i] + (self.carrier.profile_position + (here.du + state.elongation_x[i]));
-            state.surface[i] = self.model.surface_at(x);
-        }
-        state.velocity_z[i] = state.surface[i].slope * state.velocity_x[i];
-        state.elongation_z[i] = state.surface[i].height - self.model.rest_z[i] - (self.carrier.w + here.dw);
-    }
-}
-
-/// The parabola from 0 at the start to `end` whose velocity at the first stage makes `middle` in the fraction γ: the
-/// integral of the straight line through the velocities at the stages.
-#[inline(always)]
-fn parabola(theta: f64, middle: f64, end: f64) -> f64 {
-    let (first, last) = sdirk2_weights(theta);
-    let (of_middle, of_end) = ((first - last * ((1.0 - GAMMA) / GAMMA)) / GAMMA, last / GAMMA);
-    of_middle * middle + of_end * end
-}
-
-/// The motion of a body through a step of length `h` (s), from its displacement, speed and acceleration at the start, at
-/// the first stage and at the end.
-pub(super) fn two_stage_body_step(h: f64, [start, first, end]: [[f64; 3]; 3]) -> BodyStep {
-    let (middle, moved) = (GAMMA * h * first[1], end[0] - start[0]);
-    let half = parabola(0.5, middle, moved);
-    let displacement = [4.0 * half - moved, 2.0 * moved - 4.0 * half];
-    BodyStep::TwoStages { length: h, node: GAMMA, displacement, speed: [first[1], end[1]] }
-}
-
-/// Weights of the values at the start, at the first stage and at the end in their piecewise linear interpolant.
-#[inline]
-pub(super) fn piecewise_linear(theta: f64) -> [f64; 3] {
-    if theta < GAMMA {
-        [1.0 - theta / GAMMA, theta / GAMMA, 0.0]
-    } else {
-        let share = (theta - GAMMA) / (1.0 - GAMMA);
-        [0.0, 1.0 - share, share]
     }
 }

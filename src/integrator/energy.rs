@@ -104,8 +104,29 @@ pub(super) struct StepPowers<'a, const STAGES: usize> {
     pub exchange: &'a [Exchange],
     /// The length of the step, s.
     pub h: f64,
-    /// The weights of the stages; they add up to the fraction of the step that they are for.
+    /// The weights of the stages.
     pub weights: &'a [f64; STAGES],
+    /// What they make of the values at the stages.
+    pub measure: Measure,
+}
+
+/// What weights of the stages stand for.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Measure {
+    /// The integral up to a fraction of the step, over its length.
+    Integral(f64),
+    /// The value at a fraction of the step.
+    Value(f64),
+}
+
+impl Measure {
+    /// That of e^(-zθ).
+    fn of_decay(self, z: f64) -> f64 {
+        match self {
+            Self::Integral(theta) => -(-z * theta).exp_m1() / z,
+            Self::Value(theta) => (-z * theta).exp(),
+        }
+    }
 }
 
 impl<const STAGES: usize> StepPowers<'_, STAGES> {
@@ -123,14 +144,14 @@ impl<const STAGES: usize> StepPowers<'_, STAGES> {
 
     /// Energies lost in the dampers and Maxwell elements, J.
     fn lost(&self) -> ChannelEnergies {
-        let Self { model, maxwell, sums, h, weights, .. } = *self;
+        let Self { model, maxwell, sums, h, weights, measure, .. } = *self;
         let mut energy = ChannelEnergies::default();
         for (link, products) in model.links.iter().zip(&sums.rates) {
             let squares: f64 = (0..STAGES).map(|i| weights[i] * products[i][i]).sum();
             energy.damper += h * link.damping * squares;
         }
         for (index, coefficients) in maxwell.coefficients().iter().enumerate() {
-            let squares = SquareWeights::new(coefficients, h / model.relaxation_times[index], weights);
+            let squares = SquareWeights::new(coefficients, h / model.relaxation_times[index], weights, measure);
             let rows = model.rows.iter().zip(&sums.elements).filter(|(row, _)| row.time_index == index);
             for (row, elements) in rows {
                 let kind = row.kind as usize;
@@ -186,18 +207,18 @@ struct SquareWeights<const STAGES: usize> {
 /// co-simulation master are, and the loss must not depend on the rounding of their length.
 const RESOLVED: f64 = 1.0;
 
-/// The difference between the integral and the quadrature over the stages for l = a_0 - τė_0, which decays as e^(-zθ)
-/// beside τė_0.
+/// The difference between the integral, or value, and what the stages make of it for l = a_0 - τė_0, which decays as
+/// e^(-zθ) beside τė_0.
 struct UnresolvedRelaxation {
-    /// Of l²: ∫ e^(-2zθ) dθ less Σ_i weight_i p_i².
+    /// Of l²: that of e^(-2zθ) less Σ_i weight_i p_i².
     square: f64,
-    /// Of 2 l τė_0: ∫ e^(-zθ) dθ less Σ_i weight_i p_i.
+    /// Of 2 l τė_0: that of e^(-zθ) less Σ_i weight_i p_i.
     mixed: f64,
 }
 
 impl<const STAGES: usize> SquareWeights<STAGES> {
     /// For the ratio `z` of step and relaxation time.
-    fn new(coefficients: &StageCoefficients<STAGES>, z: f64, weights: &[f64; STAGES]) -> Self {
+    fn new(coefficients: &StageCoefficients<STAGES>, z: f64, weights: &[f64; STAGES], measure: Measure) -> Self {
         let mut squares =
             Self { start: weights[0], mixed: [0.0; STAGES], rates: [[0.0; STAGES]; STAGES], unresolved: None };
         for i in 1..STAGES {
@@ -212,7 +233,8 @@ impl<const STAGES: usize> SquareWeights<STAGES> {
                 squares.rates[j][j] += weighed * q[j];
             }
         }
-        squares.unresolved = (z > RESOLVED).then(|| UnresolvedRelaxation::new(z, coefficients, weights, squares.start));
+        let unresolved = || UnresolvedRelaxation::new(z, coefficients, weights, squares.start, measure);
+        squares.unresolved = (z > RESOLVED).then(unresolved);
         squares
     }
 
@@ -234,13 +256,12 @@ impl UnresolvedRelaxation {
         coefficients: &StageCoefficients<STAGES>,
         weights: &[f64; STAGES],
         squares: f64,
+        measure: Measure,
     ) -> Self {
-        let fraction = weights.iter().sum::<f64>();
-        let integral = |z: f64| -(-z * fraction).exp_m1() / z;
         let share = (z / RESOLVED - 1.0).min(1.0);
         Self {
-            square: share * (integral(2.0 * z) - squares),
-            mixed: share * (integral(z) - dot(weights, &coefficients.start)),
+            square: share * (measure.of_decay(2.0 * z) - squares),
+            mixed: share * (measure.of_decay(z) - dot(weights, &coefficients.start)),
         }
     }
 
@@ -290,7 +311,8 @@ mod tests {
         let weights: [f64; STAGES] = std::array::from_fn(|_| number());
         let mut sums = StepSums::new(&model, true);
         sums.collect(&model, &ESDIRK5, &start, &stages, h);
-        let powers = StepPowers { model: &model, maxwell: &maxwell, sums: &sums, exchange: &[], h, weights: &weights };
+        let (measure, weights) = (Measure::Integral(weights.iter().sum()), &weights);
+        let powers = StepPowers { model: &model, maxwell: &maxwell, sums: &sums, exchange: &[], h, weights, measure };
         let found = powers.lost();
 
         let mut expected = ChannelEnergies::default();

@@ -13,7 +13,9 @@
 //! number.
 
 use super::Tableau;
+use super::carrier_sums::ElementWeights;
 use super::rates::Rates;
+use super::tableau::STAGES as ALL_STAGES;
 use crate::math::weighted_sum;
 use crate::model::{LinkKind, MaxwellRow, Model};
 
@@ -122,13 +124,27 @@ impl<const STAGES: usize> Maxwell<STAGES> {
         a: &mut [f64],
     ) {
         for row in &model.rows {
-            let (coefficients, range) = (&self.coefficients[row.time_index], row.range.clone());
-            let ends = [(of_start + of_stage * coefficients.start[i], start), (of_end, end)];
-            let ends = ends.into_iter().filter(|(weight, _)| *weight != 0.0);
-            let driven = coefficients.rate[i].map(|weight| of_stage * weight);
-            let terms = ends.map(|(weight, end)| (weight, &end[range.clone()]));
-            weighted_sum(&mut a[range.clone()], terms.chain(by_rate(row.kind, &driven[..=i], stages)));
+            let weights = self.weights_between(row, i, [of_start, of_stage, of_end]);
+            let ends = weights.ends.into_iter().zip([start, end]).filter(|(weight, _)| *weight != 0.0);
+            let terms = ends.map(|(weight, end)| (weight, &end[row.range.clone()]));
+            weighted_sum(&mut a[row.range.clone()], terms.chain(by_rate(row.kind, &weights.rates[..=i], stages)));
         }
+    }
+
+    /// The weights of the elements of a row in such a sum.
+    pub(super) fn weights_between(
+        &self,
+        row: &MaxwellRow,
+        i: usize,
+        [of_start, of_stage, of_end]: [f64; 3],
+    ) -> ElementWeights {
+        let coefficients = &self.coefficients[row.time_index];
+        let mut weights =
+            ElementWeights { ends: [of_start + of_stage * coefficients.start[i], of_end], rates: [0.0; ALL_STAGES] };
+        for (weight, rate) in weights.rates.iter_mut().zip(&coefficients.rate[i][..=i]) {
+            *weight = of_stage * rate;
+        }
+        weights
     }
 
     pub(super) fn floats(&self) -> usize {

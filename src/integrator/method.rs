@@ -1,7 +1,7 @@
 //! One Runge-Kutta method: the stages of an attempted step, from their history to their error test and energies.
 
 use super::dense::StepSpan;
-use super::energy::{StepPowers, StepSums};
+use super::energy::{Measure, StepPowers, StepSums};
 use super::error::{ErrorTest, ErrorWorkspace, StepAttempt, Tolerance};
 use super::maxwell::Maxwell;
 use super::rates::{Rates, StepStart};
@@ -138,9 +138,34 @@ impl<const N: usize> RungeKutta<N> {
         theta: f64,
     ) -> ChannelEnergies {
         let weights = if theta < 1.0 { &self.continuous_weights.at(theta) } else { self.tableau.weights() };
+        self.measure(stages, (model, start), h, (weights, Measure::Integral(theta)))
+    }
+
+    /// P_diss at the fraction `theta` of the step of length `h` from `start`, where the values at the stages have these
+    /// `weights`, W.
+    pub(super) fn dissipated_power(
+        &mut self,
+        stages: &Stages,
+        (model, start): (&Model, &State),
+        h: f64,
+        theta: f64,
+        weights: &[f64; N],
+    ) -> f64 {
+        // Powers that fall steeply through a step have combinations below 0.
+        (self.measure(stages, (model, start), h, (weights, Measure::Value(theta))).dissipated() / h).max(0.0)
+    }
+
+    /// The energies that weighted powers at the stages make in a step of length `h` from `start`, J.
+    fn measure(
+        &mut self,
+        stages: &Stages,
+        (model, start): (&Model, &State),
+        h: f64,
+        (weights, measure): (&[f64; N], Measure),
+    ) -> ChannelEnergies {
         self.sums.collect(model, self.tableau, &start.maxwell, &stages.rates[..N], h);
         let (maxwell, sums) = (&self.maxwell, &self.sums);
-        StepPowers { model, maxwell, sums, exchange: &stages.exchange, h, weights }.energies()
+        StepPowers { model, maxwell, sums, exchange: &stages.exchange, h, weights, measure }.energies()
     }
 }
 

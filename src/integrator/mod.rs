@@ -5,6 +5,7 @@
 //! of order 2 with two implicit stages, for time-stepping. The pairs hold the contact modes through a step; in the steps of
 //! two stages contacts stop and break loose as the forces at the stages say.
 
+mod carrier_sums;
 mod dense;
 mod energy;
 mod error;
@@ -18,8 +19,10 @@ mod rates;
 mod sensitivity;
 mod stage;
 mod tableau;
+mod two_stage_dense;
+mod within;
 
-pub use dense::{DenseOutput, DenseWorkspace, StepBoundary, StepSpan, TwoStageDense};
+pub use dense::{DenseOutput, DenseWorkspace, StepBoundary, StepSpan};
 pub use error::{StepAttempt, Tolerance};
 pub use event_method::Pair;
 pub use interpolation::StageInterpolation;
@@ -28,10 +31,12 @@ pub use motions::Motions;
 pub use rates::{NO_LIMIT, Rates, StepStart};
 pub use stage::NoConvergence;
 pub use tableau::{ContinuousWeights, ESDIRK3, ESDIRK5, SDIRK2, STAGES, TWO_STAGES, Tableau};
+pub use two_stage_dense::TwoStageDense;
+pub use within::LayerWithin;
 
 use crate::model::{Axis, Tangents};
-use crate::model::{BodyStep, Carrier, CarrierPoint, ChannelEnergies, Exchange, Forces, Model, State};
-use dense::{piecewise_linear, two_stage_body_step};
+use crate::model::{BodyStep, Carrier, CarrierPoint, ChannelEnergies, Exchange, Forces, MaxwellRow, Model, State};
+use carrier_sums::CarrierSums;
 use energy::StepSums;
 use error::ErrorWorkspace;
 use event_method::EventMethod;
@@ -40,6 +45,7 @@ use method::{InitialGuess, RungeKutta, Stages, StepInput};
 use sensitivity::Tangent;
 use stage::{ConvergenceTest, Friction, StageSolver};
 use tableau::{GAMMA, SDIRK2_ESTIMATE};
+use two_stage_dense::{piecewise_linear, two_stage_body_step};
 
 /// The error tolerance of Newton's iterations in a step of two stages, as a multiple of the one in an event-driven step. Iterations are the cost of such a step, and the error that they leave is known to be smaller than this.
 const NEWTON_SLACK: f64 = 2.0;
@@ -56,6 +62,7 @@ pub struct Integrator {
     stages: Stages,
     /// Of the pair.
     interpolation: StageInterpolation,
+    carrier_sums: CarrierSums,
     error_workspace: ErrorWorkspace,
 }
 
@@ -132,6 +139,7 @@ impl Integrator {
                 tangents: inputs.into_iter().map(|input| Tangent::new(model, input, steps.stages())).collect(),
             },
             interpolation: pair.interpolation(),
+            carrier_sums: CarrierSums::new(model),
             error_workspace: ErrorWorkspace::new(model),
         }
     }
@@ -175,6 +183,7 @@ impl Integrator {
     ) -> Result<StepAttempt, NoConvergence> {
         let step = StepInput { model, start, carrier, span, beta: self.event_method.gamma() * span.length };
         let convergence = ConvergenceTest::new(tolerance, step.beta, 1.0);
+        self.carrier_sums.forget();
         self.event_method.attempt(&mut self.stages, &step, convergence)?;
         Ok(self.event_method.test(&self.stages, &step, tolerance, &mut self.error_workspace))
     }
@@ -194,6 +203,7 @@ impl Integrator {
         let step = StepInput { model, start, carrier, span, beta: self.two_stages.tableau.gamma() * span.length };
         let slack = if model.friction_depends_on_speed() { STEEP_SLACK } else { NEWTON_SLACK };
         let convergence = ConvergenceTest::new(tolerance, step.beta, slack);
+        self.carrier_sums.forget();
         self.two_stages.attempt(&mut self.stages, &step, convergence)?;
         let attempt = self.two_stages.test(&self.stages, &step, tolerance, &mut self.error_workspace);
         // Touches are looked for at the end of the step alone, so the carrier's motion must be resolved over all masses.
@@ -301,6 +311,52 @@ impl Integrator {
         self.two_stages.maxwell.between(model, 1, piecewise_linear(theta), ends, &self.stages.rates, a);
     }
 
+    /// F_x and F_z at the fraction `theta` of the last attempted event-driven step, from `start`, N.
+    pub fn on_carrier(
+        &mut self,
+        model: &Model,
+        carrier: &Carrier,
+        start: &StepStart,
+        span: StepSpan,
+        theta: f64,
+        workspace: &mut DenseWorkspace,
+    ) -> (f64, f64) {
+        let (stages, end) = (&self.stages.rates[..self.pair.stages()], &self.stages.solver.state);
+        self.carrier_sums.collect(model, &start.state, end, stages);
+        let motion = self.dense(model, carrier, start, span).summed_motion(theta, &self.carrier_sums, workspace);
+        let point = carrier.at(span.at(theta));
+        self.carrier_sums.forces(model, &motion, &point, |row| workspace.of_elements(row))
+    }
+
+    /// The same of the last attempted two-stage step.
+    pub fn two_stage_on_carrier(
+        &mut self,
+        model: &Model,
+        carrier: &Carrier,
+        start: &StepStart,
+        span: StepSpan,
+        theta: f64,
+    ) -> (f64, f64) {
+        let (stages, end) = (&self.stages.rates[..TWO_STAGES], &self.stages.solver.state);
+        self.carrier_sums.collect(model, &start.state, end, stages);
+        let motion = self.two_stage_dense(model, carrier, start, span).summed_motion(theta, &self.carrier_sums);
+        let (point, weights) = (carrier.at(span.at(theta)), piecewise_linear(theta));
+        let of_elements = |row: &MaxwellRow| self.two_stages.maxwell.weights_between(row, 1, weights);
+        self.carrier_sums.forces(model, &motion, &point, of_elements)
+    }
+
+    /// P_diss at the fraction `theta` of the last attempted event-driven step, of length `h` from `start`, by its powers at
+    /// the stages, W, where these have its accuracy; only where energies are tracked.
+    pub fn dissipated_power(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> Option<f64> {
+        let weights = self.interpolation.values(theta);
+        self.event_method.dissipated_power(&self.stages, (model, start), h, theta, weights)
+    }
+
+    /// The same of the last attempted two-stage step.
+    pub fn two_stage_dissipated_power(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> f64 {
+        self.two_stages.dissipated_power(&self.stages, (model, start), h, theta, &piecewise_linear(theta))
+    }
+
     /// Energies through the channels over the last attempted event-driven step, of length `h` from `start`, up to its
     /// fraction `theta`, J.
     pub fn energies(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> ChannelEnergies {
@@ -386,8 +442,9 @@ impl Integrator {
         let links: usize = rates.elongation_rate.iter().map(Vec::len).sum();
         // With those at the start of the next step, in the state and in the one to go back to.
         let stages = self.stages.rates.len() + 2;
-        // Per mass: rates and starred values; six blocks and a right side; row shares and neighbour weights; errors.
-        let by_mass = stages * 6 + 4 + (6 * 4 + 2) + (3 + 3) + 5;
+        // Per mass: rates and starred values; six blocks and a right side; row shares and neighbour weights; errors; whether
+        // it is free.
+        let by_mass = stages * 6 + 4 + (6 * 4 + 2) + (3 + 3) + 5 + 1;
         let elements = 2 * (self.event_method.floats() + self.two_stages.maxwell.floats());
         let tangents: usize = self.stages.tangents.iter().map(Tangent::floats).sum();
         (by_mass * masses + stages * links + elements + tangents) * size_of::<f64>()

@@ -6,7 +6,7 @@ mod snapshot;
 mod table;
 
 pub use accounts::{Accounts, Counters, Energies, Monitored};
-pub use snapshot::Snapshot;
+pub use snapshot::{LayerView, Snapshot};
 
 use crate::scene::{Input, OutputGroup, Scene, Unit};
 use table::{OutputRow, TABLE};

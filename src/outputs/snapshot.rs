@@ -5,26 +5,58 @@
 //! changes by -(c + Σ c_j) δu; that of a vertical link likewise with δw. On its mass a link's force counts negative:
 //! f_x,i grows by (c + Σ c_j) δu, and the contact forces follow.
 
-use std::cell::OnceCell;
+use std::cell::{Cell, OnceCell, RefCell};
 
 use super::{Counters, Energies, Monitored, Variable};
+use crate::integrator::LayerWithin;
 use crate::model::{
     AreaShare, BodyEnergy, Carrier, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, Powers,
     State, Tangents, elastic_energy, kinetic_energy,
 };
 use crate::scene::Axis;
 
+/// The layer's state and the forces in it. Within a step they are computed when they are first asked for: F_x, F_z and
+/// the energies do without.
+#[derive(Debug)]
+pub struct LayerView<'a> {
+    known: Cell<(&'a State, &'a Forces)>,
+    /// The layer that is still to be computed in place of the known one.
+    within: RefCell<Option<LayerWithin<'a>>>,
+}
+
+impl<'a> LayerView<'a> {
+    /// The layer as it stands.
+    pub(crate) fn at(state: &'a State, forces: &'a Forces) -> Self {
+        Self { known: Cell::new((state, forces)), within: RefCell::new(None) }
+    }
+
+    /// The layer within a step.
+    pub(crate) fn within(within: LayerWithin<'a>) -> Self {
+        let end = (within.integrator.end(), within.integrator.end_forces());
+        Self { known: Cell::new(end), within: RefCell::new(Some(within)) }
+    }
+
+    fn get(&self) -> (&'a State, &'a Forces) {
+        if let Some(within) = self.within.take() {
+            self.known.set(within.evaluate());
+        }
+        self.known.get()
+    }
+}
+
 /// A run at one instant.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 pub struct Snapshot<'a> {
     /// The model.
     pub model: &'a Model,
     /// The time, s.
     pub time: f64,
-    /// The layer's state.
-    pub state: &'a State,
-    /// The forces in that state.
-    pub forces: &'a Forces,
+    /// F_x and F_z, N.
+    pub on_carrier: (f64, f64),
+    /// P_diss, W, where it is known without the layer.
+    pub dissipated_power: Option<f64>,
+    /// The layer's state and the forces in it.
+    pub layer: LayerView<'a>,
     /// The carrier's rates.
     pub carrier: CarrierPoint,
     /// The carrier's motion, and the time since the start of its piece, s.
@@ -45,8 +77,8 @@ pub struct Snapshot<'a> {
 
 /// A snapshot with the sums that several outputs need: each is evaluated once, when it is first asked for.
 #[derive(Debug)]
-pub(super) struct Evaluation<'a> {
-    pub(super) at: &'a Snapshot<'a>,
+pub(super) struct Evaluation<'a, 's> {
+    pub(super) at: &'a Snapshot<'s>,
     contact_sums: OnceCell<ContactSums>,
     kinetic_energy: OnceCell<f64>,
     elastic_energy: OnceCell<f64>,
@@ -64,8 +96,8 @@ pub(super) struct ContactSums {
     pub(super) real_area: f64,
 }
 
-impl<'a> Evaluation<'a> {
-    fn new(at: &'a Snapshot<'a>) -> Self {
+impl<'a, 's> Evaluation<'a, 's> {
+    fn new(at: &'a Snapshot<'s>) -> Self {
         let (kinetic_energy, elastic_energy) = (OnceCell::new(), OnceCell::new());
         Self { at, contact_sums: OnceCell::new(), kinetic_energy, elastic_energy }
     }
@@ -76,12 +108,12 @@ impl<'a> Evaluation<'a> {
 
     /// T, J.
     pub(super) fn kinetic_energy(&self) -> f64 {
-        *self.kinetic_energy.get_or_init(|| kinetic_energy(self.at.model, self.at.state))
+        *self.kinetic_energy.get_or_init(|| kinetic_energy(self.at.model, self.at.state()))
     }
 
     /// V, J.
     pub(super) fn elastic_energy(&self) -> f64 {
-        *self.elastic_energy.get_or_init(|| elastic_energy(self.at.model, self.at.state))
+        *self.elastic_energy.get_or_init(|| elastic_energy(self.at.model, self.at.state()))
     }
 
     /// E_in - Δ(T + V + T_c + V_c) - E_diss - E_c, J.
@@ -92,7 +124,17 @@ impl<'a> Evaluation<'a> {
     }
 }
 
-impl Snapshot<'_> {
+impl<'a> Snapshot<'a> {
+    /// The layer's state.
+    pub fn state(&self) -> &'a State {
+        self.layer.get().0
+    }
+
+    /// The forces in that state.
+    pub fn forces(&self) -> &'a Forces {
+        self.layer.get().1
+    }
+
     /// Writes the values of `variables`, in their order, into `values`; Integers as whole numbers. What no variable
     /// asks for is not computed.
     pub fn evaluate(&self, variables: &[Variable], values: &mut [f64]) {
@@ -114,7 +156,7 @@ impl Snapshot<'_> {
     /// The quantities whose error is estimated; E_diss where it is `tracked`.
     pub(crate) fn monitored(&self, tracked: bool) -> Monitored {
         Monitored {
-            forces: [self.forces.on_carrier_x(), self.forces.on_carrier_z()],
+            forces: [self.on_carrier.0, self.on_carrier.1],
             ways: self.ways(),
             dissipated: tracked.then(|| self.energies.dissipated()),
         }
@@ -127,8 +169,9 @@ impl Snapshot<'_> {
         [way(x.is_some(), self.displacement.0, self.start[0]), way(z.is_some(), self.displacement.1, self.start[1])]
     }
 
-    pub(super) fn powers(&self) -> Powers {
-        Powers::evaluate(self.model, self.state, &self.carrier, self.forces)
+    pub(super) fn dissipated_power(&self) -> f64 {
+        let powers = || Powers::evaluate(self.model, self.state(), &self.carrier, self.forces());
+        self.dissipated_power.unwrap_or_else(|| powers().dissipated())
     }
 
     /// R, the drive's force on the body along `axis`, N; 0 without one.
@@ -145,20 +188,20 @@ impl Snapshot<'_> {
 
     /// |F_x|/F_z, 0 where F_z ≤ 0; at most the largest number where F_z is next to nothing.
     pub(super) fn friction_coefficient(&self) -> f64 {
-        let normal = self.forces.on_carrier_z();
-        if normal > 0.0 { (self.forces.on_carrier_x().abs() / normal).min(f64::MAX) } else { 0.0 }
+        let normal = self.on_carrier.1;
+        if normal > 0.0 { (self.on_carrier.0.abs() / normal).min(f64::MAX) } else { 0.0 }
     }
 
     /// The number of masses whose mode passes `test`.
     pub(super) fn count(&self, test: fn(Mode) -> bool) -> f64 {
-        self.state.mode.iter().filter(|&&mode| test(mode)).count() as f64
+        self.state().mode.iter().filter(|&&mode| test(mode)).count() as f64
     }
 
     /// Position of mass `i` along x and z, m.
     pub(super) fn position(&self, i: usize) -> (f64, f64) {
         (
-            self.model.rest_x[i] + (self.displacement.0 + self.state.elongation_x[i]),
-            self.model.rest_z[i] + (self.displacement.1 + self.state.elongation_z[i]),
+            self.model.rest_x[i] + (self.displacement.0 + self.state().elongation_x[i]),
+            self.model.rest_z[i] + (self.displacement.1 + self.state().elongation_z[i]),
         )
     }
 
@@ -177,7 +220,7 @@ impl Snapshot<'_> {
         let mut sums = ContactSums::default();
         for i in 0..self.model.masses() {
             let Some(contact) = self.contact(i) else { continue };
-            let s = self.state.surface[i].slope;
+            let s = self.state().surface[i].slope;
             let friction = self.friction(i, &contact);
             sums.hysteresis -= contact.normal * s / contact.q;
             sums.adhesion -= friction / contact.q;
@@ -190,21 +233,21 @@ impl Snapshot<'_> {
 
     /// The forces in the contact at mass `i`; `None` where it is free.
     fn contact(&self, i: usize) -> Option<ContactForces> {
-        let v = self.state.velocity_x[i];
-        self.state.mode[i].in_contact().then(|| self.forces.contact(self.model, i, v, &self.state.surface[i]))
+        let v = self.state().velocity_x[i];
+        self.state().mode[i].in_contact().then(|| self.forces().contact(self.model, i, v, &self.state().surface[i]))
     }
 
     fn friction(&self, i: usize, contact: &ContactForces) -> f64 {
-        let (mode, v) = (self.state.mode[i], self.state.velocity_x[i]);
+        let (mode, v) = (self.state().mode[i], self.state().velocity_x[i]);
         if self.model.has_friction { contact.friction(self.model, mode, v) } else { 0.0 }
     }
 
     /// The part of the `friction` on mass `i` (N) that is shear force, N: of a sticking mass, as the two limits share it.
     fn shear(&self, i: usize, contact: &ContactForces, friction: f64) -> f64 {
-        match self.state.mode[i] {
+        match self.state().mode[i] {
             Mode::Stick => contact.shear_share(self.model) * friction,
             _ if self.model.has_friction => {
-                friction - self.state.mode[i].direction() * self.model.friction_coefficient * contact.normal
+                friction - self.state().mode[i].direction() * self.model.friction_coefficient * contact.normal
             }
             _ => 0.0,
         }
@@ -213,14 +256,14 @@ impl Snapshot<'_> {
     /// The share of the area of mass `i`, in contact, that touches: all of it without a law.
     fn area_share(&self, i: usize, contact: &ContactForces) -> AreaShare {
         let whole = AreaShare { value: 1.0, ..AreaShare::default() };
-        let speed = self.state.velocity_x[i] * contact.q;
+        let speed = self.state().velocity_x[i] * contact.q;
         self.model.real_area.as_ref().map_or(whole, |area| area.share(contact.normal, speed))
     }
 
     /// The mode of mass `i`; without friction a contact slips in the direction of its velocity.
     pub(super) fn mode(&self, i: usize) -> Mode {
-        match self.state.mode[i] {
-            mode if mode.slips() && !self.model.has_friction => Mode::along(self.state.velocity_x[i]),
+        match self.state().mode[i] {
+            mode if mode.slips() && !self.model.has_friction => Mode::along(self.state().velocity_x[i]),
             mode => mode,
         }
     }
@@ -321,7 +364,7 @@ impl Snapshot<'_> {
 
     /// Of |F_x|/F_z; 0 where F_x = 0, the kink of |F_x|.
     pub(super) fn friction_coefficient_change(&self, shift: &CarrierShift) -> f64 {
-        let (x, z) = (self.forces.on_carrier_x(), self.forces.on_carrier_z());
+        let (x, z) = (self.on_carrier.0, self.on_carrier.1);
         if z <= 0.0 || x == 0.0 {
             return 0.0;
         }
@@ -331,16 +374,16 @@ impl Snapshot<'_> {
 
     /// δF_N = (s δf_x - δf_z)/q; δF_T = (δf_x + s δf_z)/q where the mass sticks, σ ∂T/∂F_N δF_N where it slips.
     pub(super) fn contact_change(&self, i: usize, shift: &CarrierShift) -> ContactChange {
-        let mode = self.state.mode[i];
+        let mode = self.state().mode[i];
         if !mode.in_contact() {
             return ContactChange { q: 1.0, ..ContactChange::default() };
         }
-        let slope = self.state.surface[i].slope;
+        let slope = self.state().surface[i].slope;
         let q = (1.0 + slope * slope).sqrt();
         let (f_x, f_z) = shift.on_mass;
         let normal = (slope * f_x - f_z) / q;
-        let contact = self.forces.contact(self.model, i, self.state.velocity_x[i], &self.state.surface[i]);
-        let by_normal = contact.limit_by_normal(self.model, self.state.velocity_x[i].abs() * q);
+        let contact = self.forces().contact(self.model, i, self.state().velocity_x[i], &self.state().surface[i]);
+        let by_normal = contact.limit_by_normal(self.model, self.state().velocity_x[i].abs() * q);
         let mu = self.model.friction_coefficient;
         let (friction, shear) = match mode {
             Mode::Stick => {
@@ -362,7 +405,7 @@ impl Snapshot<'_> {
     pub(super) fn friction_power_change(&self, shift: &CarrierShift) -> f64 {
         let power = |i| {
             let contact = self.contact_change(i, shift);
-            contact.friction * self.state.velocity_x[i] * contact.q
+            contact.friction * self.state().velocity_x[i] * contact.q
         };
         (0..self.model.masses()).map(power).sum()
     }
@@ -380,8 +423,8 @@ impl Snapshot<'_> {
                 if law.frozen > 0.0 { law.frozen * self.model.frozen_dashpots(kind).sum::<f64>() } else { 0.0 };
             moved * (law.stiffness * elongations.iter().sum::<f64>() - frozen)
         };
-        spring(LinkKind::Horizontal, &self.state.elongation_x, shift.elongation.0)
-            + spring(LinkKind::Vertical, &self.state.elongation_z, shift.elongation.1)
+        spring(LinkKind::Horizontal, &self.state().elongation_x, shift.elongation.0)
+            + spring(LinkKind::Vertical, &self.state().elongation_z, shift.elongation.1)
             + self.maxwell_sum(shift, |row| row.stiffness)
     }
 
@@ -393,7 +436,7 @@ impl Snapshot<'_> {
             LinkKind::LateralX | LinkKind::LateralZ => 0.0,
         };
         let of_row = |row: &MaxwellRow| {
-            weight(row) * moved(row.kind) * self.state.maxwell[row.range.clone()].iter().sum::<f64>()
+            weight(row) * moved(row.kind) * self.state().maxwell[row.range.clone()].iter().sum::<f64>()
         };
         self.model.rows.iter().map(of_row).sum()
     }

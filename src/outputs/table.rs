@@ -49,14 +49,14 @@ pub(super) enum Scope {
     /// A quantity of the whole layer.
     Layer {
         output: Output,
-        value: fn(&Evaluation<'_>) -> f64,
-        derivative: Option<fn(&Evaluation<'_>, &CarrierShift) -> f64>,
+        value: fn(&Evaluation<'_, '_>) -> f64,
+        derivative: Option<fn(&Evaluation<'_, '_>, &CarrierShift) -> f64>,
     },
     /// A quantity of each mass i (from 0).
     Mass {
         output: fn(usize) -> Output,
-        value: fn(&Evaluation<'_>, usize) -> f64,
-        derivative: Option<fn(&Evaluation<'_>, usize, &CarrierShift) -> f64>,
+        value: fn(&Evaluation<'_, '_>, usize) -> f64,
+        derivative: Option<fn(&Evaluation<'_, '_>, usize, &CarrierShift) -> f64>,
     },
 }
 
@@ -93,7 +93,7 @@ impl OutputRow {
     }
 
     /// The value in `now`; of mass `i` if it is a quantity of single masses.
-    pub(super) fn value(&self, now: &Evaluation<'_>, i: usize) -> f64 {
+    pub(super) fn value(&self, now: &Evaluation<'_, '_>, i: usize) -> f64 {
         match self.scope {
             Scope::Layer { value, .. } => value(now),
             Scope::Mass { value, .. } => value(now, i),
@@ -101,7 +101,7 @@ impl OutputRow {
     }
 
     /// The derivative in `now` as the carrier is shifted; of mass `i` if it is a quantity of single masses.
-    pub(super) fn derivative(&self, now: &Evaluation<'_>, i: usize, shift: &CarrierShift) -> f64 {
+    pub(super) fn derivative(&self, now: &Evaluation<'_, '_>, i: usize, shift: &CarrierShift) -> f64 {
         match self.scope {
             Scope::Layer { derivative, .. } => derivative.map_or(0.0, |derivative| derivative(now, shift)),
             Scope::Mass { derivative, .. } => derivative.map_or(0.0, |derivative| derivative(now, i, shift)),
@@ -118,7 +118,7 @@ impl OutputRow {
     const fn depending(
         mut self,
         dependencies: fn(&Scene) -> Dependencies,
-        change: fn(&Evaluation<'_>, &CarrierShift) -> f64,
+        change: fn(&Evaluation<'_, '_>, &CarrierShift) -> f64,
     ) -> Self {
         self.dependencies = dependencies;
         if let Scope::Layer { derivative, .. } = &mut self.scope {
@@ -131,7 +131,7 @@ impl OutputRow {
     const fn each_depending(
         mut self,
         dependencies: fn(&Scene) -> Dependencies,
-        change: fn(&Evaluation<'_>, usize, &CarrierShift) -> f64,
+        change: fn(&Evaluation<'_, '_>, usize, &CarrierShift) -> f64,
     ) -> Self {
         self.dependencies = dependencies;
         if let Scope::Mass { derivative, .. } = &mut self.scope {
@@ -149,7 +149,7 @@ const fn layer(
     kind: Kind,
     unit: Unit,
     description: &'static str,
-    value: fn(&Evaluation<'_>) -> f64,
+    value: fn(&Evaluation<'_, '_>) -> f64,
 ) -> OutputRow {
     let scope = Scope::Layer { output, value, derivative: None };
     OutputRow { group, name, kind, unit, description, exists: always, dependencies: none, scope }
@@ -162,7 +162,7 @@ const fn mass(
     kind: Kind,
     unit: Unit,
     description: &'static str,
-    value: fn(&Evaluation<'_>, usize) -> f64,
+    value: fn(&Evaluation<'_, '_>, usize) -> f64,
 ) -> OutputRow {
     let group = OutputGroup::Elements;
     let scope = Scope::Mass { output, value, derivative: None };
@@ -180,10 +180,10 @@ pub(super) static TABLE: [OutputRow; 70] = {
     };
     [
         layer(Output::ForceX, Forces, "F_x", Real, Newton, "Force of the layer on the carrier along x",
-            |now| now.at.forces.on_carrier_x())
+            |now| now.at.on_carrier.0)
             .depending(elastic_x, |now, shift| now.at.force_changes(shift).0),
         layer(Output::ForceZ, Forces, "F_z", Real, Newton, "Force of the layer on the carrier along z, positive when compressed",
-            |now| now.at.forces.on_carrier_z())
+            |now| now.at.on_carrier.1)
             .depending(elastic_z, |now, shift| now.at.force_changes(shift).1),
         layer(Output::CarrierU, Carrier, "carrier.u", Real, Meter, "Displacement of the carrier along x",
             |now| now.at.displacement.0)
@@ -206,7 +206,7 @@ pub(super) static TABLE: [OutputRow; 70] = {
             .depending(drive_z, |now, shift| now.at.drive_force_change(Axis::Z, shift))
             .only_where(|scene| has_drive(scene, Axis::Z)),
         layer(Output::DissipatedPower, Dissipation, "P_diss", Real, Watt, "Power dissipated at present",
-            |now| now.at.powers().dissipated())
+            |now| now.at.dissipated_power())
             .depending(dissipated_power, |now, shift| now.at.maxwell_power_change(shift) + now.at.friction_power_change(shift)),
         layer(Output::DissipatedEnergy, Dissipation, "E_diss", Real, Joule, "Energy dissipated since the start, all channels",
             |now| now.at.energies.dissipated()),

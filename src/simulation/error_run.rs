@@ -242,7 +242,7 @@ mod tests {
             w: Path { rate: -0.01, ..Path::default() },
             ..Motion::default()
         };
-        let force = 2.0 * simulation.snapshot().forces.on_carrier_z();
+        let force = 2.0 * simulation.snapshot().on_carrier.1;
         let risen = simulation.advance_observed(&press, Some(force), &[1e-5, 2e-5], |_, _| ()).unwrap();
         assert!(risen.is_some_and(|s| s > 0.0 && s < press.duration), "{risen:?}");
         assert!(stands_beside(&simulation));

@@ -1,9 +1,10 @@
 //! The run at an instant: as it stands, or within the step tried last.
 
 use super::driver::TrialStep;
-use super::run::Run;
+use super::run::{Run, RunState};
+use crate::integrator::LayerWithin;
 use crate::math::bracketed_root;
-use crate::outputs::{Energies, Snapshot};
+use crate::outputs::{Energies, LayerView, Snapshot};
 
 /// The largest residual of the equations of motion that the dense output may have where a step is cut at an event, as a
 /// velocity gained over the step, against the tolerance.
@@ -20,41 +21,64 @@ impl Run {
     /// The run as it stands; `run_time` is the processor time since the start, s.
     pub(super) fn snapshot(&mut self, run_time: f64) -> Snapshot<'_> {
         let carrier = self.evaluate_forces();
+        let (state, forces) = (&self.state, &self.workspace.forces);
         Snapshot {
             model: &self.model,
-            time: self.state.time(),
-            state: &self.state.layer.state,
-            forces: &self.workspace.forces,
+            time: state.time(),
+            on_carrier: (forces.on_carrier_x(), forces.on_carrier_z()),
+            dissipated_power: None,
+            layer: LayerView::at(&state.layer.state, forces),
             carrier,
-            motion: (&self.state.carrier, self.state.s),
-            displacement: self.state.displacement(),
-            start: self.state.start,
-            energies: self.state.energies,
-            tangents: self.state.tangents,
-            counters: self.state.counters,
+            motion: (&state.carrier, state.s),
+            displacement: state.displacement(),
+            start: state.start,
+            energies: state.energies,
+            tangents: state.tangents,
+            counters: state.counters,
             run_time,
         }
     }
 
     /// The run at the fraction `theta` of the step of length `h` tried last.
     pub(super) fn snapshot_within(&mut self, h: f64, theta: f64, run_time: f64) -> Snapshot<'_> {
-        let energies = self.energies_within(h, theta);
-        self.evaluate_within(h, theta);
+        let (energies, dissipated_power) = (self.energies_within(h, theta), self.dissipated_power_within(h, theta));
+        let on_carrier = self.on_carrier_within(h, theta);
         let s = self.state.s + theta * h;
+        let (within, state) = self.within(h, theta);
         Snapshot {
-            model: &self.model,
-            time: self.state.carrier.time + s,
-            state: &self.workspace.interpolated,
-            forces: &self.workspace.forces,
-            carrier: self.state.carrier.at(s),
-            motion: (&self.state.carrier, s),
-            displacement: self.state.displacement_at(s),
-            start: self.state.start,
+            model: within.model,
+            time: state.carrier.time + s,
+            on_carrier,
+            dissipated_power,
+            layer: LayerView::within(within),
+            carrier: state.carrier.at(s),
+            motion: (&state.carrier, s),
+            displacement: state.displacement_at(s),
+            start: state.start,
             energies,
-            tangents: self.state.tangents,
-            counters: self.state.counters,
+            tangents: state.tangents,
+            counters: state.counters,
             run_time,
         }
+    }
+
+    /// The layer at the fraction `theta` of the step of length `h` tried last, and the run at the step's start.
+    fn within(&mut self, h: f64, theta: f64) -> (LayerWithin<'_>, &RunState) {
+        let Self { model, state, workspace, .. } = self;
+        let within = LayerWithin {
+            model,
+            carrier: &state.carrier,
+            start: &state.layer,
+            span: state.span(h),
+            time_step: state.time_stepping,
+            theta,
+            integrator: &workspace.integrator,
+            workspace: &mut workspace.dense,
+            state: &mut workspace.interpolated,
+            state_at: &mut workspace.interpolated_at,
+            forces: &mut workspace.forces,
+        };
+        (within, state)
     }
 
     /// Energies since the start at the fraction `theta` of the step of length `h` tried last.
@@ -82,8 +106,31 @@ impl Run {
 
     /// F_z at the fraction `theta` of the step of length `h` tried last, N.
     pub(super) fn force_z_within(&mut self, h: f64, theta: f64) -> f64 {
-        self.evaluate_within(h, theta);
-        self.workspace.forces.on_carrier_z()
+        self.on_carrier_within(h, theta).1
+    }
+
+    /// F_x and F_z at the fraction `theta` of the step of length `h` tried last, N.
+    fn on_carrier_within(&mut self, h: f64, theta: f64) -> (f64, f64) {
+        let Self { model, state, workspace, .. } = self;
+        let (carrier, start, span) = (&state.carrier, &state.layer, state.span(h));
+        if state.time_stepping {
+            workspace.integrator.two_stage_on_carrier(model, carrier, start, span, theta)
+        } else {
+            workspace.integrator.on_carrier(model, carrier, start, span, theta, &mut workspace.dense)
+        }
+    }
+
+    /// P_diss at the fraction `theta` of the step of length `h` tried last, W, where the powers at its stages say it.
+    fn dissipated_power_within(&mut self, h: f64, theta: f64) -> Option<f64> {
+        let Self { model, state, workspace, settings, .. } = self;
+        let (integrator, start) = (&mut workspace.integrator, &state.layer.state);
+        if !settings.accounts.energy {
+            None
+        } else if state.time_stepping {
+            Some(integrator.two_stage_dissipated_power(model, start, h, theta))
+        } else {
+            integrator.dissipated_power(model, start, h, theta)
+        }
     }
 
     /// Whether the dense output of the step tried last is good enough to be shown. A time step's touches and lifts are
@@ -105,7 +152,7 @@ impl Run {
     /// The residual of the equations of motion in the dense output of the step of length `h` tried last at its fraction
     /// `share`, in the tolerance's norm.
     fn defect_within(&mut self, h: f64, share: f64) -> f64 {
-        self.evaluate_within(h, share);
+        self.within(h, share).0.evaluate();
         let Self { model, settings, state, workspace, .. } = self;
         let (interpolated, forces) = (&workspace.interpolated, &workspace.forces);
         let dense = workspace.integrator.dense(model, &state.carrier, &state.layer, state.span(h));
@@ -114,28 +161,7 @@ impl Run {
 
     /// The state at the fraction `theta` of the step of length `h` tried last, into `interpolated`.
     pub(super) fn interpolate(&mut self, h: f64, theta: f64) {
-        let Self { model, state, workspace, .. } = self;
-        if workspace.interpolated_at == Some((h, theta)) {
-            return;
-        }
-        workspace.interpolated_at = Some((h, theta));
-        let (integrator, start) = (&workspace.integrator, &state.layer);
-        let interpolated = &mut workspace.interpolated;
-        if state.time_stepping {
-            integrator.two_stage_maxwell(model, &start.state, theta, &mut interpolated.maxwell);
-            let dense = integrator.two_stage_dense(model, &state.carrier, start, state.span(h));
-            dense.state_at(theta, interpolated);
-        } else {
-            let dense = integrator.dense(model, &state.carrier, start, state.span(h));
-            dense.state_at(theta, &mut workspace.dense, interpolated);
-        }
-    }
-
-    /// The state and the forces at the fraction `theta` of the step of length `h` tried last.
-    fn evaluate_within(&mut self, h: f64, theta: f64) {
-        self.interpolate(h, theta);
-        let carrier = self.state.carrier.at(self.state.s + theta * h);
-        self.workspace.forces.evaluate(&self.model, &self.workspace.interpolated, &carrier);
+        self.within(h, theta).0.interpolate();
     }
 }
 

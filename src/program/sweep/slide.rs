@@ -175,7 +175,7 @@ impl Slide {
         self.simulation.advance_observed(&motion, None, &self.times, |_, snapshot| {
             snapshot.evaluate(sampled, &mut values);
             add(&mut sums, &values);
-            add(elongations, &snapshot.state.maxwell);
+            add(elongations, &snapshot.state().maxwell);
             w += snapshot.displacement.1;
             w_rate = snapshot.carrier.w_rate;
         })?;

@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 
 use crate::kernels::convergence::{Exact, PATHS, chain, differences, displaced, slider, sliding};
 use crate::kernels::equations::{random_layer, random_state};
-use crate::kernels::layer::{Layer, Link, Random, Stepper, at_rate, last_order};
+use crate::kernels::layer::{Layer, Link, Method, Random, SEVEN_STAGES, Stepper, at_rate, last_order};
 
 const THETAS: [f64; 6] = [0.0, 0.13, 0.37, 0.5, 0.81, 1.0];
 
@@ -133,6 +133,26 @@ fn one_contact_within_a_step_is_that_of_the_whole_state() {
             // Sums of some twenty forces up to 1e3 N in another order.
             let error = (found.normal - expected.normal).abs().max((found.tangential - expected.tangential).abs());
             assert!(error < 1e-11, "case {case}, mass {i}: {found:?} {expected:?}");
+        }
+    }
+}
+
+/// F_x and F_z by sums over the free masses are those of the whole state within the step, for all methods.
+#[test]
+fn forces_on_the_carrier_by_sums_are_those_of_the_whole_state() {
+    let mut random = Random(8);
+    for case in 0..200 {
+        let layer = random_layer(&mut random, 1 + case % 11);
+        let model = layer.model();
+        let state = random_state(&mut random, &model, &Vector2::zeros());
+        let steppers: [Method; 3] = [SEVEN_STAGES, Stepper::by_four_stages, Stepper::by_two_stages];
+        let mut stepper = steppers[case % 3](Stepper::new(model, PATHS, state, 1e-12));
+        stepper.attempt(1e-3);
+        for theta in [0.0, random.between(0.0, 1.0), 1.0] {
+            let [found, expected] = stepper.on_carrier(1e-3, theta);
+            // Sums of some hundred forces up to 1e3 N in another order.
+            let error = (found.0 - expected.0).abs().max((found.1 - expected.1).abs());
+            assert!(error < 1e-10, "case {case}, {theta}: {found:?} {expected:?}");
         }
     }
 }

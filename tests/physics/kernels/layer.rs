@@ -198,6 +198,21 @@ impl Stepper {
         dense.state_at(theta, &mut state);
         state
     }
+
+    /// F_x and F_z at the fraction `theta` of the last attempted step, of length `h`: from sums, and from its state there.
+    pub fn on_carrier(&mut self, h: f64, theta: f64) -> [(f64, f64); 2] {
+        let state = if self.two_stages { self.within_two_stages(h, theta) } else { self.within(h, theta) };
+        let span = StepSpan { start: self.s, length: h };
+        let mut forces = Forces::new(&self.model);
+        forces.evaluate(&self.model, &state, &self.carrier.at(span.at(theta)));
+        let Self { model, carrier, start, integrator, .. } = self;
+        let summed = if self.two_stages {
+            integrator.two_stage_on_carrier(model, carrier, start, span, theta)
+        } else {
+            integrator.on_carrier(model, carrier, start, span, theta, &mut DenseWorkspace::new(model))
+        };
+        [summed, (forces.on_carrier_x(), forces.on_carrier_z())]
+    }
 }
 
 /// A τ_f(v), N, of the speed in the direction of slip, by its formula.

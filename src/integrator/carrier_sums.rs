@@ -1,0 +1,151 @@
+//! F_x and F_z within a step, from sums over the layer that are taken once a step.
+//!
+//! All that the forces on the carrier consist of is linear in the values at the stages and at both ends of the step, but
+//! for the masses in contact, which are put on the profile. So a force needs these one by one, and of the others sums.
+
+use super::rates::Rates;
+use super::tableau::STAGES;
+use crate::math::{dot, sum_of_pairs};
+use crate::model::{CarrierPoint, LinkKind, MaxwellRow, Model, State};
+
+/// Elongations of links to the carrier (m) and velocities of masses (m/s), along x and z: of one mass, or summed.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Motion {
+    pub elongation: (f64, f64),
+    pub velocity: (f64, f64),
+}
+
+impl Motion {
+    pub(super) fn add(&mut self, other: &Self) {
+        self.elongation = (self.elongation.0 + other.elongation.0, self.elongation.1 + other.elongation.1);
+        self.velocity = (self.velocity.0 + other.velocity.0, self.velocity.1 + other.velocity.1);
+    }
+}
+
+/// The weights of an element's elongation at the start and at the end of a step, and of its link's rates at the stages (s),
+/// in its elongation within the step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ElementWeights {
+    pub ends: [f64; 2],
+    pub rates: [f64; STAGES],
+}
+
+/// Sums over the masses and the links to the carrier of the last attempted step.
+#[derive(Clone, Debug)]
+pub(super) struct CarrierSums {
+    /// Whether they are those of the last attempted step.
+    known: bool,
+    /// 1 for a free mass, 0 for one in contact.
+    is_free: Vec<f64>,
+    /// Number of free masses.
+    pub free: f64,
+    pub x: AxisSums,
+    pub z: AxisSums,
+}
+
+/// The sums along one axis.
+#[derive(Clone, Debug)]
+pub(super) struct AxisSums {
+    kind: LinkKind,
+    /// Σ e of the free masses at the start and at the end, m.
+    pub elongation: [f64; 2],
+    /// Σ v of the free masses at the stages, m/s.
+    pub velocity: [f64; STAGES],
+    /// Σ ė of all links at the stages, m/s; 0 without Maxwell elements.
+    rate: [f64; STAGES],
+    /// Σ a of all links at the start and at the end, m, by row of elements of this kind.
+    elements: Vec<[f64; 2]>,
+}
+
+impl CarrierSums {
+    /// Workspace for the steps of `model`.
+    pub(super) fn new(model: &Model) -> Self {
+        let (x, z) = (AxisSums::new(model, LinkKind::Horizontal), AxisSums::new(model, LinkKind::Vertical));
+        Self { known: false, is_free: vec![0.0; model.masses()], free: 0.0, x, z }
+    }
+
+    /// A new step is attempted.
+    pub(super) fn forget(&mut self) {
+        self.known = false;
+    }
+
+    /// Takes the sums of a step from `start` to `end` with these `stages`, unless they are known.
+    pub(super) fn collect(&mut self, model: &Model, start: &State, end: &State, stages: &[Rates]) {
+        if self.known {
+            return;
+        }
+        self.known = true;
+        for (is_free, mode) in self.is_free.iter_mut().zip(&start.mode) {
+            *is_free = f64::from(u8::from(!mode.in_contact()));
+        }
+        self.free = sum(&self.is_free);
+        let of_free = |values: &[f64]| dot(&self.is_free, values);
+        self.x.elongation = [of_free(&start.elongation_x), of_free(&end.elongation_x)];
+        self.z.elongation = [of_free(&start.elongation_z), of_free(&end.elongation_z)];
+        for (j, stage) in stages.iter().enumerate() {
+            (self.x.velocity[j], self.z.velocity[j]) = (of_free(&stage.velocity_x), of_free(&stage.velocity_z));
+        }
+        self.x.collect_links(model, [start, end], stages);
+        self.z.collect_links(model, [start, end], stages);
+    }
+
+    /// F_x and F_z (N) where all masses together move as `motion` says, under the `carrier`, with these weights of the
+    /// Maxwell elements.
+    pub(super) fn forces(
+        &self,
+        model: &Model,
+        motion: &Motion,
+        carrier: &CarrierPoint,
+        weights: impl Fn(&MaxwellRow) -> ElementWeights,
+    ) -> (f64, f64) {
+        let masses = model.masses() as f64;
+        let rate = (motion.velocity.0 - masses * carrier.u_rate, motion.velocity.1 - masses * carrier.w_rate);
+        (
+            self.x.force(model, (motion.elongation.0, rate.0), &weights),
+            self.z.force(model, (motion.elongation.1, rate.1), &weights),
+        )
+    }
+}
+
+impl AxisSums {
+    fn new(model: &Model, kind: LinkKind) -> Self {
+        let none = [0.0; STAGES];
+        let elements = vec![[0.0; 2]; model.rows_of(kind).count()];
+        Self { kind, elongation: [0.0; 2], velocity: none, rate: none, elements }
+    }
+
+    fn collect_links(&mut self, model: &Model, ends: [&State; 2], stages: &[Rates]) {
+        for (row, sums) in model.rows_of(self.kind).zip(&mut self.elements) {
+            *sums = ends.map(|state| sum(&state.maxwell[row.range.clone()]));
+        }
+        if !self.elements.is_empty() {
+            for (rate, stage) in self.rate.iter_mut().zip(stages) {
+                *rate = sum(&stage.elongation_rate[self.kind as usize]);
+            }
+        }
+    }
+
+    /// The force of all links with these sums of elongations (m) and of their rates (m/s), N.
+    fn force(
+        &self,
+        model: &Model,
+        (elongation, rate): (f64, f64),
+        weights: impl Fn(&MaxwellRow) -> ElementWeights,
+    ) -> f64 {
+        let law = &model.links[self.kind as usize];
+        let mut force = law.stiffness * elongation + law.damping * rate;
+        if law.frozen > 0.0 {
+            force -= law.frozen * model.frozen_dashpots(self.kind).sum::<f64>();
+        }
+        for (row, [start, end]) in model.rows_of(self.kind).zip(&self.elements) {
+            let ElementWeights { ends, rates } = weights(row);
+            let driven: f64 = rates.iter().zip(&self.rate).map(|(weight, rate)| weight * rate).sum();
+            force += row.stiffness * (ends[0] * start + ends[1] * end + driven);
+        }
+        force
+    }
+}
+
+fn sum(values: &[f64]) -> f64 {
+    sum_of_pairs(values, values, |value, _| value)
+}
