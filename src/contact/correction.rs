@@ -303,24 +303,9 @@ impl<'a> Correction<'a> {
     fn move_to(&mut self, i: usize, from: (f64, f64), x: f64, surface: SurfacePoint, time: f64) {
         let moved = (x - from.0, surface.height - from.1);
         let state = &mut *self.end.state;
-        state.elongation_x[i] += moved.0;
+        state.displace(self.step.model, i, moved, time);
         state.elongation_z[i] = surface.height - self.step.model.rest_z[i] - (self.step.carrier.w + self.carrier.dw);
         state.surface[i] = surface;
-        for row in &self.step.model.rows {
-            let along = if row.kind.is_along_x() { moved.0 } else { moved.1 };
-            let by = along * row.relaxation_time / (row.relaxation_time + time);
-            let a = &mut state.maxwell[row.range.clone()];
-            if !row.kind.is_lateral() {
-                a[i] += by;
-                continue;
-            }
-            if let Some(a) = a.get_mut(i) {
-                *a -= by;
-            }
-            if i > 0 {
-                a[i - 1] += by;
-            }
-        }
         self.end.forces.refresh(self.step.model, self.end.state, &self.carrier, i);
         for (axis, moved) in Axis::ALL.into_iter().zip([moved.0, moved.1]) {
             self.pass_impulse_to_body(axis, moved, time);

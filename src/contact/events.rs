@@ -5,8 +5,9 @@ use crate::integrator::{DenseOutput, DenseWorkspace, Motions, Rates, Tolerance};
 use crate::math::{Spline, bracketed_root};
 use crate::model::{CarrierPosition, LinkKind, Mode, Model, State};
 
-/// How far a quantity may pass its limit before the mode changes. An event is located where the quantity is half as far
-/// past it, so that the limit has been passed for certain.
+/// How far a quantity may pass its limit before the mode changes: as far as a step may err. An event is located where the
+/// quantity is half as far past it, so that the limit has been passed for certain, and other changes that are about to come
+/// are made at the same instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EventTolerance {
     /// Of the gap, m.
@@ -20,12 +21,6 @@ pub struct EventTolerance {
     /// The velocity that such a force makes in a horizontal link, by its damper and against the mass, m/(N s).
     mobility: f64,
 }
-
-/// Event tolerances as a share of the step tolerances.
-///
-/// Recommended 0.01 to 1. The error of a late lift, break or stop grows with the square of its delay, so events do not
-/// limit the accuracy; smaller values only cost steps.
-const SHARE: f64 = 0.1;
 
 /// The rounding error of a force, as a number of roundings of a position.
 const ROUNDINGS: f64 = 4.0;
@@ -41,9 +36,9 @@ impl EventTolerance {
         let link = LinkKind::Horizontal;
         let impedance = model.links[link as usize].damping + (model.glassy[link as usize] * model.mass).sqrt();
         Self {
-            gap: SHARE * tolerance.position,
-            velocity: SHARE * tolerance.velocity,
-            force: (SHARE * tolerance.position * stiffness).max(rounding),
+            gap: tolerance.position,
+            velocity: tolerance.velocity,
+            force: (tolerance.position * stiffness).max(rounding),
             rounding,
             mobility: if impedance > 0.0 { 1.0 / impedance } else { f64::MAX },
         }
@@ -52,7 +47,7 @@ impl EventTolerance {
     /// The same where the force of one mass may err by no more than `force` (N).
     #[must_use]
     pub fn within(&self, force: f64) -> Self {
-        let force = self.force.min(SHARE * force).max(self.rounding);
+        let force = self.force.min(force).max(self.rounding);
         Self { velocity: self.velocity.min(force * self.mobility), force, ..*self }
     }
 

@@ -1,7 +1,9 @@
 //! The rules of mode changes, at the start and during a run: impact, lift, stop, stick, break. They are those of
 //! docs/model.md.
 
-use crate::model::{CarrierPoint, CarrierPosition, ChannelEnergies, Forces, Mode, Model, State, SurfacePoint};
+use crate::model::{
+    CarrierPoint, CarrierPosition, ChannelEnergies, Forces, Mode, Model, State, SurfacePoint, vertical_spring_energy_at,
+};
 use crate::scene::Initial;
 
 /// Places every mass at its rest position, moving with the carrier. A mass that would lie under the profile is lifted
@@ -61,7 +63,16 @@ pub fn free_unloaded(model: &Model, state: &mut State, at: CarrierPosition, forc
 
 /// Applies the impacts due: every free mass within `reach` (m) of the profile that moves into it has an impact. Each
 /// impact depends on the velocity of its own mass alone, so their order does not matter. Returns the energy lost, J.
-pub fn impacts_due(model: &Model, state: &mut State, at: CarrierPosition, reach: f64) -> f64 {
+///
+/// A mass that has gone below the profile is lifted onto it, which raises the energy of its springs. It has lost as much on its
+/// way down to its velocity, which the impact takes, and to the dampers, from whose part of `energies` the rest is taken back.
+pub fn impacts_due(
+    model: &Model,
+    state: &mut State,
+    at: CarrierPosition,
+    reach: f64,
+    energies: &mut ChannelEnergies,
+) -> f64 {
     let mut lost = 0.0;
     for i in 0..model.masses() {
         if state.mode[i] != Mode::Free {
@@ -70,17 +81,24 @@ pub fn impacts_due(model: &Model, state: &mut State, at: CarrierPosition, reach:
         let surface = model.surface_at(model.rest_x[i] + (at.profile_position + state.elongation_x[i]));
         let gap = model.rest_z[i] + (at.w + state.elongation_z[i]) - surface.height;
         if gap <= reach && state.velocity_z[i] < surface.slope * state.velocity_x[i] {
-            lost += impact(model, state, i, at.w, &surface);
+            let of_impact = impact(model, state, i, at.w, &surface);
+            lost += of_impact.max(0.0);
+            energies.damper += of_impact.min(0.0);
         }
     }
     lost
 }
 
+/// The energy that mass `i` loses in its impact on the surface, less what it gains where it is lifted onto it, J.
 fn impact(model: &Model, state: &mut State, i: usize, w: f64, surface: &SurfacePoint) -> f64 {
     let (after, lost) = collision(model, (state.velocity_x[i], state.velocity_z[i]), surface.slope);
+    let before = vertical_spring_energy_at(model, state, i);
+    let lift = (surface.height - model.rest_z[i] - w) - state.elongation_z[i];
+    let since_touch = (lift / (surface.slope * state.velocity_x[i] - state.velocity_z[i])).abs();
+    state.displace(model, i, (0.0, lift), since_touch);
     touch_down(model, state, i, w, surface, after / (1.0 + surface.slope * surface.slope).sqrt());
     state.mode[i] = Mode::along(after);
-    lost
+    lost - (vertical_spring_energy_at(model, state, i) - before)
 }
 
 /// The law of impact, perfectly inelastic along n with Coulomb's friction along t: v_n⁺ = 0 by the impulse J = -m v_n,

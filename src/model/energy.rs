@@ -200,6 +200,21 @@ pub fn elastic_energy(model: &Model, state: &State) -> f64 {
     springs + model.rows.iter().map(row_energy).sum::<f64>()
 }
 
+/// ½ c e² + Σ_j ½ c_j (e - y_j)² of the links along z at mass `i`, J, frozen dashpots included.
+pub fn vertical_spring_energy_at(model: &Model, state: &State, i: usize) -> f64 {
+    let e = &state.elongation_z;
+    let of_link = |kind: LinkKind, link: usize, e: f64| {
+        let law = &model.links[kind as usize];
+        let frozen = if law.frozen == 0.0 { 0.0 } else { e - model.frozen_dashpot(kind, link) };
+        let of_row = |row: &super::MaxwellRow| row.stiffness * state.maxwell[row.range.start + link].powi(2);
+        let elements: f64 = model.rows_of(kind).map(of_row).sum();
+        0.5 * ((law.stiffness - law.frozen) * e * e + law.frozen * frozen * frozen + elements)
+    };
+    let beside = i.saturating_sub(1)..(i + 1).min(e.len() - 1);
+    let lateral: f64 = beside.map(|link| of_link(LinkKind::LateralZ, link, e[link + 1] - e[link])).sum();
+    of_link(LinkKind::Vertical, i, e[i]) + lateral
+}
+
 fn spring_energy(model: &Model, state: &State, kind: LinkKind) -> f64 {
     let law = &model.links[kind as usize];
     match kind {

@@ -13,7 +13,9 @@ mod state;
 mod tangents;
 
 pub use carrier::{Body, BodyEnergy, BodyStart, BodyStep, Carrier, CarrierPoint, CarrierPosition, Outside, Piece};
-pub use energy::{ChannelEnergies, Exchange, FrictionPower, Powers, elastic_energy, kinetic_energy};
+pub use energy::{
+    ChannelEnergies, Exchange, FrictionPower, Powers, elastic_energy, kinetic_energy, vertical_spring_energy_at,
+};
 pub use forces::{Forces, LinkLaw, LinkMotion, MaxwellRow};
 pub use friction::{ContactForces, FrictionCurve, RateShear, SlipCurve};
 pub use real_area::{AreaShare, RealArea};

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::SurfacePoint;
+use super::{Model, SurfacePoint};
 
 /// The contact mode of a mass, with the conditions that hold in it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -82,6 +82,27 @@ pub struct State {
 }
 
 impl State {
+    /// Moves mass `i` by this much along x and z, m. Its dashpots follow by what they do in the last `time` (s) only.
+    pub fn displace(&mut self, model: &Model, i: usize, moved: (f64, f64), time: f64) {
+        self.elongation_x[i] += moved.0;
+        self.elongation_z[i] += moved.1;
+        for row in &model.rows {
+            let along = if row.kind.is_along_x() { moved.0 } else { moved.1 };
+            let by = along * row.relaxation_time / (row.relaxation_time + time);
+            let a = &mut self.maxwell[row.range.clone()];
+            if !row.kind.is_lateral() {
+                a[i] += by;
+                continue;
+            }
+            if let Some(a) = a.get_mut(i) {
+                *a -= by;
+            }
+            if i > 0 {
+                a[i - 1] += by;
+            }
+        }
+    }
+
     /// All masses at rest and free.
     pub fn new(masses: usize, maxwell_variables: usize) -> Self {
         let zero = vec![0.0; masses];

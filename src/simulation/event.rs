@@ -20,8 +20,8 @@ const LEAST_SHARE: f64 = 1e-6;
 /// The longest step, as a multiple of the mean time between events: a longer one would be cut, after a search through
 /// all of it.
 ///
-/// Recommended 2 to 5: shorter ones end before there is an event, longer ones are less accurate where they are cut.
-const OF_SPACING: f64 = 4.0;
+/// Recommended 4 to 10: shorter ones end before there is an event, longer ones are less accurate where they are cut.
+const OF_SPACING: f64 = 8.0;
 /// Steps up to this multiple of the shortest are not shortened for the sake of energies: what friction or a damper does
 /// in less than the resolution of time is over within it.
 const RESOLVED: f64 = 5.0;

@@ -370,7 +370,7 @@ impl Run {
         let Self { model, state: run, workspace, .. } = self;
         let (layer, forces) = (&mut run.layer.state, &mut workspace.forces);
         workspace.modes_before.copy_from_slice(&layer.mode);
-        run.energies.impact += impacts_due(model, layer, at, reach);
+        run.energies.impact += impacts_due(model, layer, at, reach, &mut run.energies.channels);
         stop_reversed(model, layer, forces, &mut run.energies.channels);
         forces.evaluate(model, layer, &carrier);
         decide_modes(model, layer, forces);
