@@ -22,6 +22,12 @@ pub struct EventTolerance {
     mobility: f64,
 }
 
+/// The velocity tolerance of stops as a share of that of steps.
+///
+/// Recommended 0.001 to 0.1. Until a slip that has reversed is stopped, friction drives it on; where the reversal is slow, it
+/// goes far in the meantime.
+const OF_STOPS: f64 = 0.01;
+
 /// The rounding error of a force, as a number of roundings of a position.
 const ROUNDINGS: f64 = 4.0;
 
@@ -37,7 +43,7 @@ impl EventTolerance {
         let impedance = model.links[link as usize].damping + (model.glassy[link as usize] * model.mass).sqrt();
         Self {
             gap: tolerance.position,
-            velocity: tolerance.velocity,
+            velocity: OF_STOPS * tolerance.velocity,
             force: (tolerance.position * stiffness).max(rounding),
             rounding,
             mobility: if impedance > 0.0 { 1.0 / impedance } else { f64::MAX },
@@ -48,7 +54,7 @@ impl EventTolerance {
     #[must_use]
     pub fn within(&self, force: f64) -> Self {
         let force = self.force.min(force).max(self.rounding);
-        Self { velocity: self.velocity.min(force * self.mobility), force, ..*self }
+        Self { velocity: self.velocity.min(OF_STOPS * force * self.mobility), force, ..*self }
     }
 
     /// The tolerance of [`Rates::margin`] in `mode`.
