@@ -5,7 +5,7 @@ use crate::integrator::{DenseOutput, DenseWorkspace, Motions, Rates, Tolerance};
 use crate::math::{Spline, bracketed_root};
 use crate::model::{CarrierPosition, LinkKind, Mode, Model, State};
 
-/// How far a quantity may pass its limit before the mode changes: as far as a step may err. An event is located where the
+/// How far a quantity may pass its limit before the mode changes: as far as a step may err, velocities less. An event is located where the
 /// quantity is half as far past it, so that the limit has been passed for certain, and other changes that are about to come
 /// are made at the same instant.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -82,7 +82,8 @@ pub struct State {
 }
 
 impl State {
-    /// Moves mass `i` by this much along x and z, m. Its dashpots follow by what they do in the last `time` (s) only.
+    /// Moves mass `i` by `moved` along x and z, m. Its dashpots have `time` (s) to follow: of an element with the relaxation
+    /// time τ, τ/(τ + `time`) of the way is left in its spring.
     pub fn displace(&mut self, model: &Model, i: usize, moved: (f64, f64), time: f64) {
         self.elongation_x[i] += moved.0;
         self.elongation_z[i] += moved.1;

@@ -28,74 +28,13 @@ impl PlainLine {
     }
 }
 
-/// The powers of ten that are doubles.
-const POWERS: [f64; 23] = [
-    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20,
-    1e21, 1e22,
-];
-
-/// Whole numbers up to this are doubles.
-const LARGEST_EXACT: u64 = 1 << 53;
-
-/// So many digits fit into 64 bits.
-const MOST_DIGITS: usize = 19;
-
-/// The decimal that `text` begins with, and its bytes.
-///
-/// Few digits and a small power of ten are both exact, and so one operation on them rounds as it should (Clinger 1990, How
-/// to read floating point numbers accurately); other numbers are left to the standard library.
+/// The decimal that `text` begins with, and its bytes. A sign `+` and long exponents are left to the general reader.
 fn decimal(text: &str) -> Option<(f64, usize)> {
-    let bytes = text.as_bytes();
-    let sign = usize::from(bytes.first() == Some(&b'-'));
-    let (whole, count) = digits(&bytes[sign..], 0);
-    let mut end = sign + count;
-    let (mut mantissa, mut decimals) = (whole, 0);
-    if bytes.get(end) == Some(&b'.') {
-        (mantissa, decimals) = digits(&bytes[end + 1..], whole);
-        end += 1 + decimals;
-    }
-    if count + decimals == 0 {
-        return None;
-    }
-    let (exponent, length) = exponent(&bytes[end..])?;
-    end += length;
-    let places = exponent - decimals as i64;
-    let exact = count + decimals <= MOST_DIGITS && mantissa <= LARGEST_EXACT;
-    let value = match (exact, POWERS.get(places.unsigned_abs() as usize)) {
-        (true, Some(power)) if places < 0 => mantissa as f64 / power,
-        (true, Some(power)) => mantissa as f64 * power,
-        _ => return Some((text[..end].parse().ok()?, end)),
-    };
-    Some((if sign == 1 { -value } else { value }, end))
-}
-
-/// The exponent that `bytes` begin with and its length: 0 where there is none; `None` for an `e` without digits or with
-/// many.
-fn exponent(bytes: &[u8]) -> Option<(i64, usize)> {
-    let negative = match bytes {
-        [b'e' | b'E', b'-', ..] => Some(true),
-        [b'e' | b'E', b'+', ..] => Some(false),
-        [b'e' | b'E', ..] => None,
-        _ => return Some((0, 0)),
-    };
-    let before = 1 + usize::from(negative.is_some());
-    let (size, count) = digits(&bytes[before..], 0);
-    let size = i64::try_from(size).ok().filter(|_| (1..=4).contains(&count))?;
-    Some((if negative == Some(true) { -size } else { size }, before + count))
-}
-
-/// The digits that `bytes` begin with put behind `value`, and their number; more than fit wrap around.
-fn digits(bytes: &[u8], mut value: u64) -> (u64, usize) {
-    let mut count = 0;
-    for byte in bytes {
-        let digit = byte.wrapping_sub(b'0');
-        if digit > 9 {
-            break;
-        }
-        value = value.wrapping_mul(10).wrapping_add(digit.into());
-        count += 1;
-    }
-    (value, count)
+    let of_number = |byte: &u8| matches!(byte, b'0'..=b'9' | b'.' | b'e' | b'E' | b'+' | b'-');
+    let number = &text[..text.bytes().take_while(of_number).count()];
+    let short_exponent = number.split_once(['e', 'E']).is_none_or(|(_, exponent)| exponent.len() <= 4);
+    let plain = !number.starts_with('+') && short_exponent;
+    Some((number.parse().ok().filter(|_| plain)?, number.len()))
 }
 
 #[cfg(test)]
