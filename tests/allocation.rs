@@ -190,6 +190,27 @@ fn rows_within_steps_allocate_nothing() {
     assert_eq!((count, rows), (0, 404));
 }
 
+/// 200 masses, so that mode changes are taken in steps of the masses near them alone.
+#[test]
+fn steps_of_some_masses_allocate_nothing() {
+    let text = RATTLE.replace("masses = 20", "masses = 200") + "\n[solver]\nrelative_tolerance = 1e-4";
+    let scene = Scene::parse(&text, FilePath::new("rattle.toml")).unwrap();
+    let mut simulation = Simulation::new(&scene, &Start { w: -5e-6, ..Start::default() }).unwrap();
+    let variables = variables(&scene);
+    let mut values = vec![0.0; variables.len()];
+    let times: [f64; 11] = std::array::from_fn(|i| 1e-5 * i as f64);
+    let count = allocations(|| {
+        for _ in 0..4 {
+            let row = |_: f64, now: &Snapshot<'_>| now.evaluate(&variables, &mut values);
+            simulation.advance_observed(&SWING, None, &times, row).unwrap();
+        }
+    });
+    simulation.evaluate(&variables, &mut values);
+    let [steps, events] = ["solver.steps", "solver.events"].map(|name| value(&variables, &values, name));
+    assert_eq!(count, 0);
+    assert!(events > 5.0 * steps, "{events} mode changes in {steps} steps");
+}
+
 #[test]
 fn a_refused_motion_allocates_nothing() {
     let (mut simulation, ..) = rattling();

@@ -1,4 +1,4 @@
-//! The first mode change within a step: touch, lift, stop or break.
+//! The mode changes within a step, or the first of them: touch, lift, stop or break.
 
 use super::gap::first_touch;
 use crate::integrator::{DenseOutput, DenseWorkspace, Motions, Rates, Tolerance};
@@ -76,6 +76,25 @@ pub fn first_event(step: &DenseOutput<'_>, tolerance: &EventTolerance, workspace
     first
 }
 
+/// The first mode change of each mass within the step, as its fraction and the mass, into `changes`.
+pub fn mode_changes(
+    step: &DenseOutput<'_>,
+    tolerance: &EventTolerance,
+    workspace: &mut DenseWorkspace,
+    changes: &mut Vec<(f64, usize)>,
+) {
+    changes.clear();
+    let mut contacts = Contacts { step, tolerance, workspace };
+    contacts.all_changes(changes);
+    let (motions, profile) = (Motions::new(step), &step.model.profile);
+    for i in 0..step.model.masses() {
+        if step.start.state.mode[i] == Mode::Free && may_touch(&motions, i, profile, tolerance.gap) {
+            let motion = (motions.position(i), motions.height(i));
+            changes.extend(first_touch(profile, motion, tolerance.gap, 1.0).map(|theta| (theta, i)));
+        }
+    }
+}
+
 /// Whether mass `i` may come below -`tolerance` (m) above the profile. Bounds that are nearly free are enough for most.
 fn may_touch(motions: &Motions<'_>, i: usize, profile: &Spline, tolerance: f64) -> bool {
     let least = motions.least_height(i);
@@ -119,6 +138,21 @@ impl Limit {
 }
 
 impl Contacts<'_> {
+    fn all_changes(&mut self, changes: &mut Vec<(f64, usize)>) {
+        let force = self.tolerance.force;
+        let swings = self.step.carrier.shortest_period() < f64::INFINITY;
+        for i in (0..self.step.model.masses()).filter(|&i| self.step.start.state.mode[i].in_contact()) {
+            let of_margin = self.tolerance.margin(self.step.start.state.mode[i]);
+            let mut first = self.fall(i, Limit::Normal, force, None);
+            first = self.fall(i, Limit::Margin, of_margin, first);
+            if swings {
+                first = self.dip(i, Limit::Normal, force, first);
+                first = self.dip(i, Limit::Margin, of_margin, first);
+            }
+            changes.extend(first.map(|theta| (theta, i)));
+        }
+    }
+
     fn first_change(&mut self) -> Option<f64> {
         let mut first = None;
         let force = self.tolerance.force;

@@ -9,7 +9,7 @@ mod laws;
 mod stability;
 
 pub use correction::{CorrectionEnergies, EndCorrection, FixedModeStep};
-pub use events::{EventTolerance, first_event, is_due};
+pub use events::{EventTolerance, first_event, is_due, mode_changes};
 pub use gap::first_touch;
 pub use laws::{decide_modes, free_unloaded, impacts_due, place_layer, stop_reversed};
 pub use stability::{longest_unstable, longest_weakening};

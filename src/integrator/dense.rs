@@ -238,7 +238,30 @@ impl DenseOutput<'_> {
             force_x += sign * self.link_force(LinkKind::LateralX, link, theta, &between, workspace);
             force_z += sign * self.link_force(LinkKind::LateralZ, link, theta, &between, workspace);
         }
+        let [of_end_x, of_end_z] = carrier.now.on_end(i, self.model.masses());
+        (force_x, force_z) = (force_x + of_end_x, force_z + of_end_z);
         ContactForces::new(self.model, (force_x, force_z), here.velocity.0, &here.surface)
+    }
+
+    /// The forces along x and z of the lateral links between mass `i` and the next at the fraction `theta`, N.
+    pub fn lateral_forces(&self, i: usize, theta: f64, workspace: &mut DenseWorkspace) -> [f64; 2] {
+        workspace.set_weights(self, theta);
+        let carrier = self.carrier_at(theta, workspace);
+        let (here, there) = (self.mass_at(i, &carrier, workspace), self.mass_at(i + 1, &carrier, workspace));
+        let between = LinkPoint::between(&here, &there, 1.0);
+        [LinkKind::LateralX, LinkKind::LateralZ].map(|kind| {
+            let present = self.model.links[kind as usize].present;
+            if present { self.link_force(kind, i, theta, &between, workspace) } else { 0.0 }
+        })
+    }
+
+    /// Elongations of the links of mass `i` to the carrier (m) and its velocities (m/s), along x and z, at the fraction
+    /// `theta`.
+    pub fn motion(&self, i: usize, theta: f64, workspace: &mut DenseWorkspace) -> [(f64, f64); 2] {
+        workspace.set_weights(self, theta);
+        let carrier = self.carrier_at(theta, workspace);
+        let MassPoint { elongation, velocity, .. } = self.mass_at(i, &carrier, workspace);
+        [elongation, velocity]
     }
 
     /// The force of one link at the fraction `theta`, for which the weights of `workspace` are set, N.
@@ -369,6 +392,16 @@ impl DenseWorkspace {
             of_rate: [[0.0; STAGES]; 4],
             acceleration: [vec![0.0; model.masses()], vec![0.0; model.masses()]],
         }
+    }
+
+    /// Workspace for the weights alone, without that for [`DenseOutput::defect`].
+    pub fn of_weights(model: &Model) -> Self {
+        Self { acceleration: [Vec::new(), Vec::new()], ..Self::new(model) }
+    }
+
+    /// Forgets the weights: the model has changed.
+    pub fn forget(&mut self) {
+        self.at = (f64::NAN, f64::NAN);
     }
 
     /// Bytes that this holds.

@@ -11,7 +11,7 @@ use super::rates::Rates;
 use crate::math::{dot, sum_of_pairs};
 use crate::model::{ChannelEnergies, Exchange, LinkKind, MaxwellRow, Model};
 
-/// Σ ė_i ė_j over the links of one kind, m²/s², for j ≤ i, where they are needed.
+/// Σ ė_i ė_j over the links of one kind, m²/s², where they are needed; 0 elsewhere.
 type RateProducts<const STAGES: usize> = [[f64; STAGES]; STAGES];
 
 /// The sums over the layer from which the energies up to any fraction of a step follow.
@@ -30,10 +30,8 @@ pub(super) struct StepSums<const STAGES: usize> {
 /// The sums over one row of Maxwell elements.
 #[derive(Clone, Debug)]
 struct ElementSums<const STAGES: usize> {
-    /// Σ a_0², m².
-    start: f64,
-    /// Σ a_0 ė_j, m²/s; 0 for stages that do not drive the elements.
-    mixed: [f64; STAGES],
+    /// Σ a_i² at the stages, m².
+    squares: [f64; STAGES],
     /// Σ l² (m²) and Σ l τė_0 (m²) of l = a_0 - τė_0; `None` for elements slower than the step.
     relaxing: Option<(f64, f64)>,
 }
@@ -41,7 +39,7 @@ struct ElementSums<const STAGES: usize> {
 impl<const STAGES: usize> StepSums<STAGES> {
     /// Workspace for the elements of `model`; empty for a method that is not `used`.
     pub(super) fn new(model: &Model, used: bool) -> Self {
-        let none = ElementSums { start: 0.0, mixed: [0.0; STAGES], relaxing: None };
+        let none = ElementSums { squares: [0.0; STAGES], relaxing: None };
         Self {
             known: false,
             rates: [[[0.0; STAGES]; STAGES]; 4],
@@ -57,7 +55,14 @@ impl<const STAGES: usize> StepSums<STAGES> {
 
     /// Takes the sums of the step of length `h` (s) with these `stages`, from the elongations `a` (m) of the elements, unless
     /// they are known.
-    pub(super) fn collect(&mut self, model: &Model, tableau: &Tableau<STAGES>, a: &[f64], stages: &[Rates], h: f64) {
+    pub(super) fn collect(
+        &mut self,
+        model: &Model,
+        (tableau, maxwell): (&Tableau<STAGES>, &Maxwell<STAGES>),
+        a: &[f64],
+        stages: &[Rates],
+        h: f64,
+    ) {
         if self.known {
             return;
         }
@@ -73,24 +78,41 @@ impl<const STAGES: usize> StepSums<STAGES> {
             self.changes[kind as usize] = if unresolved { largest_change(stages, kind) } else { 0.0 };
         }
         for (row, sums) in model.rows.iter().zip(&mut self.elements) {
-            *sums = ElementSums::new(row, &a[row.range.clone()], stages, first, h);
+            let coefficients = &maxwell.coefficients()[row.time_index];
+            let products = &self.rates[row.kind as usize];
+            *sums = ElementSums::new(row, &a[row.range.clone()], (stages, first), (coefficients, products), h);
         }
     }
 }
 
 impl<const STAGES: usize> ElementSums<STAGES> {
-    fn new(row: &MaxwellRow, a: &[f64], stages: &[Rates], first: usize, h: f64) -> Self {
+    /// The sums over the elements of `row` from the elongations `a` (m), which the `stages` from the `first` on drive: a_i =
+    /// p_i a_0 + h Σ_j q_ij ė_j multiplied out, with the `products` of the rates.
+    fn new(
+        row: &MaxwellRow,
+        a: &[f64],
+        (stages, first): (&[Rates], usize),
+        (coefficients, products): (&StageCoefficients<STAGES>, &RateProducts<STAGES>),
+        h: f64,
+    ) -> Self {
         let (tau, rate) = (row.relaxation_time, |j: usize| &stages[j].elongation_rate[row.kind as usize][..]);
         let l = |a: f64, rate: f64| a - tau * rate;
         let relaxing = || {
             let square = sum_of_pairs(a, rate(0), |a, rate| l(a, rate) * l(a, rate));
             (square, tau * sum_of_pairs(a, rate(0), |a, rate| l(a, rate) * rate))
         };
-        Self {
-            start: dot(a, a),
-            mixed: std::array::from_fn(|j| if j < first { 0.0 } else { dot(a, rate(j)) }),
-            relaxing: (h / tau > RESOLVED).then(relaxing),
-        }
+        let start = dot(a, a);
+        let mixed: [f64; STAGES] = std::array::from_fn(|j| if j < first { 0.0 } else { dot(a, rate(j)) });
+        let square = |i: usize| {
+            let (p, q) = (coefficients.start[i], &coefficients.rate[i]);
+            // Rates that do not drive the elements have q = 0.
+            let of_rate = |j: usize| {
+                let with_others: f64 = (0..STAGES).map(|l| q[l] * products[j][l]).sum();
+                q[j] * (2.0 * p * mixed[j] + with_others)
+            };
+            p * p * start + (0..STAGES).map(of_rate).sum::<f64>()
+        };
+        Self { squares: std::array::from_fn(square), relaxing: (h / tau > RESOLVED).then(relaxing) }
     }
 }
 
@@ -151,12 +173,15 @@ impl<const STAGES: usize> StepPowers<'_, STAGES> {
             energy.damper += h * link.damping * squares;
         }
         for (index, coefficients) in maxwell.coefficients().iter().enumerate() {
-            let squares = SquareWeights::new(coefficients, h / model.relaxation_times[index], weights, measure);
+            let z = h / model.relaxation_times[index];
+            let unresolved = (z > RESOLVED).then(|| UnresolvedRelaxation::new(z, coefficients, weights, measure));
             let rows = model.rows.iter().zip(&sums.elements).filter(|(row, _)| row.time_index == index);
             for (row, elements) in rows {
-                let kind = row.kind as usize;
-                let sum = squares.sum(elements, &sums.rates[kind], row.relaxation_time, sums.changes[kind]);
-                energy.maxwell += h * row.stiffness / row.relaxation_time * sum;
+                let explained = row.relaxation_time * row.relaxation_time * sums.changes[row.kind as usize];
+                let resolved: f64 = weights.iter().zip(elements.squares).map(|(weight, square)| weight * square).sum();
+                let missed = unresolved.iter().zip(elements.relaxing);
+                let missed: f64 = missed.map(|(unresolved, sums)| unresolved.sum(sums, explained)).sum();
+                energy.maxwell += h * row.stiffness / row.relaxation_time * (resolved + missed);
             }
         }
         energy
@@ -170,6 +195,7 @@ fn rate_products<const STAGES: usize>(stages: &[Rates], kind: LinkKind, first: O
         let rate = &stages[i].elongation_rate[kind as usize];
         for j in first.unwrap_or(i).min(i)..=i {
             products[i][j] = dot(rate, &stages[j].elongation_rate[kind as usize]);
+            products[j][i] = products[i][j];
         }
     }
     products
@@ -186,22 +212,6 @@ fn largest_change(stages: &[Rates], kind: LinkKind) -> f64 {
     later.iter().map(change).fold(0.0, f64::max)
 }
 
-/// The weights of Σ_i weight_i a_i² of an element: a_i = p_i a_0 + h Σ_j q_ij ė_j multiplied out.
-///
-/// An element that does not yet follow its link, a_0 ≠ τė_0, after a start undeformed or a jump of ė, may relax in a
-/// time far shorter than the step, without any stage that resolves it. So the part of the sum that belongs to a_0 - τė_0
-/// is replaced by the integral that the sum stands for.
-struct SquareWeights<const STAGES: usize> {
-    /// Of a_0².
-    start: f64,
-    /// Of a_0 ė_j, s.
-    mixed: [f64; STAGES],
-    /// Of ė_j ė_l for l ≤ j, s².
-    rates: [[f64; STAGES]; STAGES],
-    /// `None` for an element slower than the step, which the stages resolve.
-    unresolved: Option<UnresolvedRelaxation>,
-}
-
 /// The ratio of step and relaxation time up to which the stages resolve an element. From twice this ratio on, all that
 /// they miss is put in; in between it grows linearly. Steps as long as the relaxation time are usual where those of a
 /// co-simulation master are, and the loss must not depend on the rounding of their length.
@@ -209,6 +219,10 @@ const RESOLVED: f64 = 1.0;
 
 /// The difference between the integral, or value, and what the stages make of it for l = a_0 - τė_0, which decays as
 /// e^(-zθ) beside τė_0.
+///
+/// An element that does not yet follow its link, a_0 ≠ τė_0, after a start undeformed or a jump of ė, may relax in a
+/// time far shorter than the step, without any stage that resolves it. So the part of Σ_i weight_i a_i² that belongs to
+/// a_0 - τė_0 is replaced by the integral that the sum stands for.
 struct UnresolvedRelaxation {
     /// Of l²: that of e^(-2zθ) less Σ_i weight_i p_i².
     square: f64,
@@ -216,48 +230,14 @@ struct UnresolvedRelaxation {
     mixed: f64,
 }
 
-impl<const STAGES: usize> SquareWeights<STAGES> {
-    /// For the ratio `z` of step and relaxation time.
-    fn new(coefficients: &StageCoefficients<STAGES>, z: f64, weights: &[f64; STAGES], measure: Measure) -> Self {
-        let mut squares =
-            Self { start: weights[0], mixed: [0.0; STAGES], rates: [[0.0; STAGES]; STAGES], unresolved: None };
-        for i in 1..STAGES {
-            let (p, q) = (coefficients.start[i], &coefficients.rate[i]);
-            squares.start += weights[i] * p * p;
-            for j in 0..=i {
-                let weighed = weights[i] * q[j];
-                squares.mixed[j] += 2.0 * weighed * p;
-                for l in 0..j {
-                    squares.rates[j][l] += 2.0 * weighed * q[l];
-                }
-                squares.rates[j][j] += weighed * q[j];
-            }
-        }
-        let unresolved = || UnresolvedRelaxation::new(z, coefficients, weights, squares.start, measure);
-        squares.unresolved = (z > RESOLVED).then(unresolved);
-        squares
-    }
-
-    /// Σ_i weight_i a_i² over the elements of one row, of relaxation time `tau` (s), whose links change their rates by
-    /// `change`, the [`largest_change`].
-    fn sum(&self, elements: &ElementSums<STAGES>, rates: &RateProducts<STAGES>, tau: f64, change: f64) -> f64 {
-        let of_rates = self.rates.iter().flatten().zip(rates.iter().flatten());
-        let resolved = self.start * elements.start
-            + dot(&self.mixed, &elements.mixed)
-            + of_rates.map(|(factor, product)| factor * product).sum::<f64>();
-        let unresolved = self.unresolved.iter().zip(elements.relaxing);
-        resolved + unresolved.map(|(unresolved, sums)| unresolved.sum(sums, tau * tau * change)).sum::<f64>()
-    }
-}
-
 impl UnresolvedRelaxation {
     fn new<const STAGES: usize>(
         z: f64,
         coefficients: &StageCoefficients<STAGES>,
         weights: &[f64; STAGES],
-        squares: f64,
         measure: Measure,
     ) -> Self {
+        let squares: f64 = weights.iter().zip(coefficients.start).map(|(weight, p)| weight * p * p).sum();
         let share = (z / RESOLVED - 1.0).min(1.0);
         Self {
             square: share * (measure.of_decay(2.0 * z) - squares),
@@ -310,7 +290,7 @@ mod tests {
         maxwell.begin(&model, &ESDIRK5, &start, h);
         let weights: [f64; STAGES] = std::array::from_fn(|_| number());
         let mut sums = StepSums::new(&model, true);
-        sums.collect(&model, &ESDIRK5, &start, &stages, h);
+        sums.collect(&model, (&ESDIRK5, &maxwell), &start, &stages, h);
         let (measure, weights) = (Measure::Integral(weights.iter().sum()), &weights);
         let powers = StepPowers { model: &model, maxwell: &maxwell, sums: &sums, exchange: &[], h, weights, measure };
         let found = powers.lost();

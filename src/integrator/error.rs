@@ -24,6 +24,8 @@ pub struct Tolerance {
     rods: [Option<Rod>; 4],
     /// [`Model::long_term_stiffness`], N/m.
     long_term_stiffness: Option<f64>,
+    /// Number of masses of the layer, over which their errors are averaged.
+    pub(super) masses: usize,
     /// Absolute tolerance of the speed of a body along x and z, m/s: that of positions times its natural frequency on the
     /// layer and the drive.
     body_velocity: [f64; 2],
@@ -77,6 +79,7 @@ impl Tolerance {
             force_scale: LinkKind::ALL.map(force_scale),
             rods: LinkKind::ALL.map(rod),
             long_term_stiffness: model.long_term_stiffness(),
+            masses: model.masses(),
             body_velocity: Axis::ALL.map(|axis| absolute * model.body_frequency(axis)),
         }
     }
@@ -229,7 +232,7 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
         }
         let resolvable = self.exchange.filter(|_| h * model.stiffest_frequency() > SHORTEST_RESOLVED);
         let of_energies = resolvable.map_or(0.0, |exchange| self.energy_square(model, exchange, h, tolerance));
-        let mean = |sum: f64| (sum / model.masses() as f64).sqrt();
+        let mean = |sum: f64| (sum / tolerance.masses as f64).sqrt();
         let of_bodies = if model.has_bodies() { self.body_squares(model, &carrier_error, tolerance) } else { 0.0 };
         let motion_error = mean(sum).hypot(of_bodies.sqrt()).hypot(self.tableau.run_weight * of_forces.sqrt());
         let error = motion_error.hypot(self.tableau.run_weight * of_energies.sqrt());

@@ -89,6 +89,15 @@ impl EventMethod {
         }
     }
 
+    /// Takes over a step of the whole layer, of which this one is a part: for the energies over it.
+    pub(super) fn take_part(&mut self, whole: &Self) {
+        match (self, whole) {
+            (Self::Third(method), Self::Third(whole)) => method.take_part(whole),
+            (Self::Fifth(method), Self::Fifth(whole)) => method.take_part(whole),
+            _ => {}
+        }
+    }
+
     /// The error test of the step whose stages are solved.
     pub(super) fn test(
         &self,

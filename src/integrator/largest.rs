@@ -40,7 +40,7 @@ impl Largest {
     /// independent, make one of F_x or F_z within the relative tolerance.
     pub fn allowed_of_mass(self, model: &Model, tolerance: &Tolerance) -> f64 {
         let (x, z) = self.force_scales(model, tolerance);
-        tolerance.relative * x.min(z) / (model.masses() as f64).sqrt()
+        tolerance.relative * x.min(z) / (tolerance.masses as f64).sqrt()
     }
 
     /// What the errors of F_x and F_z are measured by in a layer of `model`, N. Forces that are still to come, or that

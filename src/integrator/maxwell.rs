@@ -76,6 +76,11 @@ impl<const STAGES: usize> Maxwell<STAGES> {
         }
     }
 
+    /// Takes over the coefficients of a step of the whole layer, of which this one is a part.
+    pub(super) fn copy_coefficients(&mut self, whole: &Self) {
+        self.coefficients.clone_from_slice(&whole.coefficients);
+    }
+
     /// Whether the links of `kind` have Maxwell elements.
     pub(super) fn has_elements(&self, kind: LinkKind) -> bool {
         !self.kinds[kind as usize].error_start.is_empty()

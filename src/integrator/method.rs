@@ -10,7 +10,7 @@ use super::stage::{BodyHistory, ConvergenceTest, Friction, NoConvergence, StageP
 use super::tableau::{ContinuousWeights, STAGES, Tableau};
 use crate::math::weighted_sum;
 use crate::model::Axis;
-use crate::model::{Carrier, CarrierPoint, ChannelEnergies, Exchange, Mode, Model, State};
+use crate::model::{Carrier, CarrierPoint, ChannelEnergies, Exchange, LinkKind, Mode, Model, State};
 
 /// One Runge-Kutta method with its workspace.
 #[derive(Clone, Debug)]
@@ -32,6 +32,8 @@ pub(super) struct Stages {
     pub carrier: [CarrierPoint; STAGES],
     /// The powers through the surface and the carrier; computed if `tracks_energy`.
     pub exchange: [Exchange; STAGES],
+    /// The forces of the horizontal and vertical links; kept where energies of parts of the layer may be asked for.
+    pub link_forces: Vec<[Vec<f64>; 2]>,
     pub solver: StageSolver,
     pub tracks_energy: bool,
     /// The sensitivities to the targets of the inputs; empty if they are not asked for.
@@ -128,6 +130,12 @@ impl<const N: usize> RungeKutta<N> {
         test.run(step.model, step.span.length, tolerance, workspace)
     }
 
+    /// Takes over a step of the whole layer, of which this one is a part: for the energies over it.
+    pub(super) fn take_part(&mut self, whole: &Self) {
+        self.maxwell.copy_coefficients(&whole.maxwell);
+        self.sums.forget();
+    }
+
     /// Energies through the channels over the step of length `h` from `start`, up to its fraction `theta`, J.
     pub(super) fn energies(
         &mut self,
@@ -163,7 +171,7 @@ impl<const N: usize> RungeKutta<N> {
         h: f64,
         (weights, measure): (&[f64; N], Measure),
     ) -> ChannelEnergies {
-        self.sums.collect(model, self.tableau, &start.maxwell, &stages.rates[..N], h);
+        self.sums.collect(model, (self.tableau, &self.maxwell), &start.maxwell, &stages.rates[..N], h);
         let (maxwell, sums) = (&self.maxwell, &self.sums);
         StepPowers { model, maxwell, sums, exchange: &stages.exchange, h, weights, measure }.energies()
     }
@@ -303,6 +311,10 @@ impl Stages {
         let StepInput { model, carrier, .. } = *step;
         self.solver.solve(model, point, convergence, &mut self.rates[i])?;
         self.carrier[i] = point.carrier;
+        if let Some([x, z]) = self.link_forces.get_mut(i) {
+            x.copy_from_slice(&self.solver.forces.link[LinkKind::Horizontal as usize]);
+            z.copy_from_slice(&self.solver.forces.link[LinkKind::Vertical as usize]);
+        }
         if self.tracks_energy {
             let solver = &self.solver;
             self.exchange[i] = Exchange::with_friction(model, &solver.friction_power, &point.carrier, &solver.forces);

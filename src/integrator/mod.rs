@@ -32,7 +32,7 @@ pub use rates::{NO_LIMIT, Rates, StepStart};
 pub use stage::NoConvergence;
 pub use tableau::{ContinuousWeights, ESDIRK3, ESDIRK5, SDIRK2, STAGES, TWO_STAGES, Tableau};
 pub use two_stage_dense::TwoStageDense;
-pub use within::LayerWithin;
+pub use within::{LayerWithin, Overlay};
 
 use crate::model::{Axis, Tangents};
 use crate::model::{BodyStep, Carrier, CarrierPoint, ChannelEnergies, Exchange, Forces, MaxwellRow, Model, State};
@@ -134,6 +134,7 @@ impl Integrator {
                 rates: vec![Rates::new(model); steps.stages()],
                 carrier: [CarrierPoint::default(); STAGES],
                 exchange: [Exchange::default(); STAGES],
+                link_forces: Vec::new(),
                 solver: StageSolver::new(model),
                 tracks_energy: tracked.energy,
                 tangents: inputs.into_iter().map(|input| Tangent::new(model, input, steps.stages())).collect(),
@@ -433,6 +434,43 @@ impl Integrator {
             tangents.set(tangent.input(), tangent.tangents(model, s));
         }
         tangents
+    }
+
+    /// Keeps what the energies of parts of the layer need of a step.
+    pub fn keep_link_forces(&mut self, model: &Model) {
+        if self.stages.tracks_energy {
+            let links = || {
+                let [vertical, horizontal, ..] = Forces::new(model).link;
+                [horizontal, vertical]
+            };
+            self.stages.link_forces = std::iter::repeat_with(links).take(self.stages.rates.len()).collect();
+        }
+    }
+
+    /// Takes over the last attempted event-driven step of `whole`, the integrator of a layer, for a part of it from mass
+    /// `first` on: as if it had been tried here. `models` are those of the part and of the whole, `forces` those of the part at
+    /// the start of the step.
+    pub fn take_part(&mut self, models: (&Model, &Model), whole: &Self, first: usize, forces: &Forces) {
+        let stages = &mut self.stages;
+        for (mine, theirs) in stages.rates.iter_mut().zip(&whole.stages.rates) {
+            mine.copy_part(theirs, first);
+        }
+        stages.carrier = whole.stages.carrier;
+        stages.solver.state.copy_part(models, whole.end(), first);
+        self.event_method.take_part(&whole.event_method);
+        self.carrier_sums.forget();
+        for (stage, links) in whole.stages.link_forces.iter().enumerate() {
+            let rates = &stages.rates[stage];
+            let sum = |links: &[f64]| links.get(first..first + models.0.masses()).map_or(0.0, |part| part.iter().sum());
+            let on_carrier = if stage == 0 {
+                (forces.on_carrier_x(), forces.on_carrier_z())
+            } else {
+                (sum(&links[0]), sum(&links[1]))
+            };
+            let motion = (&rates.velocity_x[..], &rates.velocity_z[..], &rates.normal[..]);
+            let modes = &stages.solver.state.mode;
+            stages.exchange[stage] = Exchange::of_forces(models.0, modes, motion, &stages.carrier[stage], on_carrier);
+        }
     }
 
     /// Bytes that the stages hold, those of a copy to go back to included.

@@ -96,6 +96,7 @@ impl KnownMotion {
             velocity_x: &self.velocity_x,
             velocity_z: &self.velocity_z,
             carrier_rates: (carrier.u_rate, carrier.w_rate),
+            ends: [[0.0; 2]; 2],
         }
     }
 }
@@ -272,6 +273,7 @@ impl Tangent {
             velocity_x: &start.v_x,
             velocity_z: &start.v_z,
             carrier_rates: (carrier.u_rate, carrier.w_rate),
+            ends: [[0.0; 2]; 2],
         };
         for kind in LinkKind::ALL {
             let law = &model.links[kind as usize];
@@ -391,6 +393,7 @@ impl Tangent {
             velocity_x: &end.v_x,
             velocity_z: &end.v_z,
             carrier_rates: (carrier.u_rate, carrier.w_rate),
+            ends: [[0.0; 2]; 2],
         };
         for kind in LinkKind::ALL {
             self.forces.spring_and_damper(kind, 0.0, 0.0, &motion, &[]);

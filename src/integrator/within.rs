@@ -5,6 +5,12 @@ use super::dense::{DenseWorkspace, StepSpan};
 use super::rates::StepStart;
 use crate::model::{Carrier, Forces, Model, State};
 
+/// What replaces some of the masses of an interpolated state.
+pub trait Overlay: std::fmt::Debug {
+    /// Writes those masses at the time `s` after the start of the carrier's piece (s) into `state`, of the layer of `model`.
+    fn write(&mut self, model: &Model, state: &mut State, s: f64);
+}
+
 /// The layer at one fraction of the step tried last, and where its state and forces there are to be written.
 #[derive(Debug)]
 pub struct LayerWithin<'a> {
@@ -30,6 +36,8 @@ pub struct LayerWithin<'a> {
     pub state_at: &'a mut Option<(f64, f64)>,
     /// The forces to be written.
     pub forces: &'a mut Forces,
+    /// What replaces some masses in it.
+    pub overlay: Option<&'a mut dyn Overlay>,
 }
 
 impl<'a> LayerWithin<'a> {
@@ -46,6 +54,9 @@ impl<'a> LayerWithin<'a> {
             integrator.two_stage_dense(model, carrier, start, span).state_at(theta, self.state);
         } else {
             integrator.dense(model, carrier, start, span).state_at(theta, self.workspace, self.state);
+        }
+        if let Some(overlay) = &mut self.overlay {
+            overlay.write(model, self.state, span.at(theta));
         }
     }
 

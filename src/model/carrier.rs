@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Forces, Model};
+use super::{EndForces, Forces, Model};
 use crate::math::Spline;
 use crate::scene::{Axis, Force, Path, Scene};
 
@@ -24,6 +24,9 @@ pub struct Carrier {
     w_path: Path,
     /// The bodies along x and z; `None` where the displacement is prescribed.
     bodies: [Option<BodyMotion>; 2],
+    /// What acts on the ends of a part of a layer; `None` for a whole layer.
+    #[serde(skip)]
+    pub ends: Option<EndForces>,
 }
 
 /// The carrier at one instant of a piece.
@@ -41,6 +44,10 @@ pub struct CarrierPoint {
     pub u_acceleration: f64,
     /// ẅ, m/s².
     pub w_acceleration: f64,
+    /// What acts on the first and on the last mass from beyond a part of a layer, along x and z, N; 0 for a whole
+    /// layer.
+    #[serde(skip)]
+    pub ends: [[f64; 2]; 2],
 }
 
 impl CarrierPoint {
@@ -257,7 +264,7 @@ impl Carrier {
     /// A piece that starts at `time` (s) from `u`, `w` (m) over `profile`, with the displacement prescribed along both
     /// axes.
     pub fn new(time: f64, (u, w): (f64, f64), (u_path, w_path): (Path, Path), profile: &Spline) -> Self {
-        Self { time, u, w, profile_position: profile.reduce(u), u_path, w_path, bodies: [None; 2] }
+        Self { time, u, w, profile_position: profile.reduce(u), u_path, w_path, bodies: [None; 2], ends: None }
     }
 
     /// The same with a body along an axis, whose drive follows the path there.
@@ -324,7 +331,8 @@ impl Carrier {
     pub fn at(&self, s: f64) -> CarrierPoint {
         let [du, u_rate, u_acceleration] = self.motion(Axis::X, s);
         let [dw, w_rate, w_acceleration] = self.motion(Axis::Z, s);
-        CarrierPoint { du, dw, u_rate, w_rate, u_acceleration, w_acceleration }
+        let ends = self.ends.as_ref().map_or([[0.0; 2]; 2], |ends| ends.at(s));
+        CarrierPoint { du, dw, u_rate, w_rate, u_acceleration, w_acceleration, ends }
     }
 
     #[inline]
@@ -462,7 +470,7 @@ impl Carrier {
 
     /// All numbers of the piece, to be checked.
     pub fn numbers(&self) -> impl Iterator<Item = f64> {
-        let Self { time, u, w, profile_position, u_path, w_path, bodies } = *self;
+        let Self { time, u, w, profile_position, u_path, w_path, bodies, ends: _ } = *self;
         let of_path = |Path { rate, amplitude, frequency }: Path| [rate, amplitude, frequency];
         let paths = [u_path, w_path].into_iter().flat_map(of_path);
         [time, u, w, profile_position]

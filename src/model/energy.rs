@@ -67,6 +67,16 @@ impl ChannelEnergies {
         self.shear += shear_share * energy;
     }
 
+    /// Subtracts `other`.
+    pub fn subtract(&mut self, other: &Self) {
+        self.damper -= other.damper;
+        self.maxwell -= other.maxwell;
+        self.friction -= other.friction;
+        self.shear -= other.shear;
+        self.input -= other.input;
+        self.carrier -= other.carrier;
+    }
+
     /// Adds `other`.
     pub fn add(&mut self, other: &Self) {
         self.damper += other.damper;
@@ -99,8 +109,28 @@ impl Exchange {
 
     /// The same where the power of friction is known.
     pub fn with_friction(model: &Model, power: &FrictionPower, carrier: &CarrierPoint, forces: &Forces) -> Self {
-        let (friction, shear) = (power.friction(), power.shear(model));
-        Self { friction, shear, input: input(model, forces, carrier), carrier: 0.0 }
+        Self::with_powers(model, power, input(model, forces, carrier))
+    }
+
+    /// The powers of a layer, or of a part of one, whose slipping masses have these modes, velocities along x and z (m/s) and
+    /// normal forces (N), and whose links exert the forces `on_carrier` along x and z (N) on a prescribed carrier.
+    pub fn of_forces(
+        model: &Model,
+        modes: &[Mode],
+        (velocity_x, velocity_z, normal): (&[f64], &[f64], &[f64]),
+        carrier: &CarrierPoint,
+        on_carrier: (f64, f64),
+    ) -> Self {
+        let mut power = FrictionPower::default();
+        for i in (0..modes.len()).filter(|&i| model.has_friction && modes[i].slips() && velocity_x[i] != 0.0) {
+            let contact = ContactForces::of_slip(model, normal[i], (velocity_x[i], velocity_z[i]));
+            power.add(model, modes[i], velocity_x[i], &contact);
+        }
+        Self::with_powers(model, &power, -(on_carrier.0 * carrier.u_rate + on_carrier.1 * carrier.w_rate))
+    }
+
+    fn with_powers(model: &Model, power: &FrictionPower, input: f64) -> Self {
+        Self { friction: power.friction(), shear: power.shear(model), input, carrier: 0.0 }
     }
 
     /// Adds the powers of what acts on the bodies from outside, at the time `s` after the start of the `carrier`'s piece (s).

@@ -124,6 +124,8 @@ impl Forces {
             add_weighted_sum(&mut self.link[kind as usize], elements);
         }
         self.sum_on_masses();
+        add_ends(&mut self.on_mass_x, carrier.ends.map(|end| end[0]));
+        add_ends(&mut self.on_mass_z, carrier.ends.map(|end| end[1]));
     }
 
     /// Evaluates ė and F = c e + d ė of every link of a kind with c = `stiffness` (N/m) and d = `damping` (N s/m), and
@@ -156,6 +158,7 @@ impl Forces {
         let [vertical, horizontal, lateral_x, lateral_z] = &mut self.link;
         let axis = |carrier: LinkKind, lateral: LinkKind| AxisForces {
             motion: motion.along(carrier),
+            ends: motion.ends.map(|end| if carrier.is_along_x() { end[0] } else { end[1] }),
             to_carrier: (laws[carrier as usize], &known[carrier as usize]),
             lateral: (laws[lateral as usize], &known[lateral as usize]),
         };
@@ -182,8 +185,9 @@ impl Forces {
         }
         for i in i.saturating_sub(1)..(i + 2).min(k) {
             let [vertical, horizontal, lateral_x, lateral_z] = &self.link;
-            self.on_mass_x[i] = sum_on_mass(i, horizontal, lateral_x);
-            self.on_mass_z[i] = sum_on_mass(i, vertical, lateral_z);
+            let [of_end_x, of_end_z] = carrier.on_end(i, k);
+            self.on_mass_x[i] = sum_on_mass(i, horizontal, lateral_x) + of_end_x;
+            self.on_mass_z[i] = sum_on_mass(i, vertical, lateral_z) + of_end_z;
         }
     }
 
@@ -255,6 +259,8 @@ pub struct LinkMotion<'a> {
     pub velocity_z: &'a [f64],
     /// u̇ and ẇ, m/s.
     pub carrier_rates: (f64, f64),
+    /// [`CarrierPoint::ends`], N.
+    pub ends: [[f64; 2]; 2],
 }
 
 impl<'a> LinkMotion<'a> {
@@ -266,6 +272,7 @@ impl<'a> LinkMotion<'a> {
             velocity_x: &state.velocity_x,
             velocity_z: &state.velocity_z,
             carrier_rates: (carrier.u_rate, carrier.w_rate),
+            ends: carrier.ends,
         }
     }
 
@@ -295,6 +302,8 @@ impl<'a> LinkMotion<'a> {
 struct AxisForces<'a> {
     /// Elongations of the links to the carrier (m), velocities of the masses and of the carrier (m/s).
     motion: (&'a [f64], &'a [f64], f64),
+    /// What acts on the first and on the last mass from beyond a part of a layer, N.
+    ends: [f64; 2],
     /// c (N/m), d (N s/m) and the known forces (N) of the links to the carrier.
     to_carrier: ((f64, f64), &'a [f64]),
     /// The same of the lateral links.
@@ -309,7 +318,8 @@ impl AxisForces<'_> {
         let k = on_mass.len();
         if to_carrier.is_empty() || lateral.is_empty() {
             self.set_to_carrier(to_carrier);
-            return sum_on_masses(on_mass, to_carrier, lateral);
+            sum_on_masses(on_mass, to_carrier, lateral);
+            return add_ends(on_mass, self.ends);
         }
         self.set_to_carrier(&mut to_carrier[..1]);
         (on_mass[0], on_mass[k - 1]) = (lateral[0] - to_carrier[0], -lateral[k - 2]);
@@ -325,6 +335,7 @@ impl AxisForces<'_> {
         let last = stiffness * elongation[k - 1] + damping * (velocity[k - 1] - carrier_rate) + known[k - 1];
         to_carrier[k - 1] = last;
         on_mass[k - 1] -= last;
+        add_ends(on_mass, self.ends);
     }
 
     #[inline(always)]
@@ -387,6 +398,17 @@ fn sum_on_masses(sum: &mut [f64], to_carrier: &[f64], lateral: &[f64]) {
     let of_carrier = |i: usize| to_carrier.get(i).copied().unwrap_or(0.0);
     sum[0] = first - of_carrier(0);
     sum[lateral.len()] = -of_carrier(lateral.len()) - last;
+}
+
+/// Adds the forces on the first and on the last mass, N.
+#[inline(always)]
+fn add_ends(on_mass: &mut [f64], ends: [f64; 2]) {
+    if let [first, ..] = on_mass {
+        *first += ends[0];
+    }
+    if let [.., last] = on_mass {
+        *last += ends[1];
+    }
 }
 
 /// sum = -forces, or 0 where there are none.

@@ -43,6 +43,12 @@ impl ContactForces {
         Self { normal, tangential: (f_x + s * f_z) / q, limit, q }
     }
 
+    /// Those of a slipping mass with a normal force (N) and velocities ẋ ≠ 0 and ż (m/s), but for f·t.
+    pub fn of_slip(model: &Model, normal: f64, (velocity_x, velocity_z): (f64, f64)) -> Self {
+        let limit = model.friction_coefficient * normal + model.shear_at_rest(normal);
+        Self { normal, tangential: 0.0, limit, q: (velocity_z / velocity_x).hypot(1.0) }
+    }
+
     /// ∂T/∂F_N, 1, at the `speed` of slip, m/s.
     pub fn limit_by_normal(&self, model: &Model, speed: f64) -> f64 {
         model.friction_coefficient + SlipCurve { model, normal: self.normal }.by_normal(speed)

@@ -3,9 +3,11 @@
 //! (`ContactForces`), and the energies.
 
 mod carrier;
+mod ends;
 mod energy;
 mod forces;
 mod friction;
+mod part;
 mod real_area;
 mod reduction;
 mod scales;
@@ -13,6 +15,7 @@ mod state;
 mod tangents;
 
 pub use carrier::{Body, BodyEnergy, BodyStart, BodyStep, Carrier, CarrierPoint, CarrierPosition, Outside, Piece};
+pub use ends::EndForces;
 pub use energy::{
     ChannelEnergies, Exchange, FrictionPower, Powers, elastic_energy, kinetic_energy, vertical_spring_energy_at,
 };

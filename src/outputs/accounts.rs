@@ -43,6 +43,12 @@ pub struct Energies {
 }
 
 impl Energies {
+    /// Adds what `other` has gained through the channels and in impacts.
+    pub fn gain(&mut self, other: &Self) {
+        self.channels.add(&other.channels);
+        self.impact += other.impact;
+    }
+
     /// Energy dissipated in all channels and in impacts, J.
     pub fn dissipated(&self) -> f64 {
         self.channels.dissipated() + self.impact
@@ -104,9 +110,9 @@ const ROUNDING: f64 = 1e-13;
 /// The solver's counts since the start, and its error estimate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Counters {
-    /// Accepted steps.
+    /// Accepted steps of the whole layer.
     pub steps: u64,
-    /// Rejected steps.
+    /// Rejected steps of the whole layer.
     pub rejected: u64,
     /// Mode changes.
     pub events: u64,

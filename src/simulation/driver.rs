@@ -123,6 +123,9 @@ impl Run {
         let (mut length, any_error) = (h, self.shorter_is_no_worse());
         loop {
             if self.try_step(length, any_error).is_some() {
+                if !self.state.time_stepping {
+                    self.plan_windows(length, 0.0);
+                }
                 return Ok(TrialStep { h: length, share: 1.0 });
             }
             self.count_work(work)?;
@@ -159,7 +162,8 @@ impl Run {
 
     /// Accepts a step, which ends at the time `end` of the piece, and makes the mode changes due there.
     pub(super) fn take_step(&mut self, step: &TrialStep, end: f64) {
-        let (before, auto) = (self.state.counters.events, self.settings.method == Method::Auto);
+        let before = self.state.counters.events - self.changes_in_windows();
+        let auto = self.settings.method == Method::Auto;
         let mut time_step = step.h;
         if self.state.time_stepping {
             self.accept_time_step(step.h, end);

@@ -45,8 +45,8 @@ pub(super) struct ErrorRun {
     work: WorkLimit,
     /// Steps that the run beside it has tried in this motion.
     steps_beside: u64,
-    /// The step tried last, of which only a part may have been asked for.
-    pending: Option<TrialStep>,
+    /// The step tried last, of which only a part may have been asked for, and its end, s after the start of the motion.
+    pending: Option<(TrialStep, f64)>,
     /// Whether it could not go on in this motion.
     failed: bool,
 }
@@ -116,18 +116,22 @@ impl ErrorRun {
             if steps > LEAST_WORK + MORE_WORK.saturating_mul(self.steps_beside) {
                 return Err(SimulationError::TooManySteps { time: self.run.state.time(), steps });
             }
-            let step = match self.pending.take() {
-                Some(step) => step,
-                None => self.run.next_step(self.duration, &mut self.work)?,
+            let (mut step, mut end) = match self.pending.take() {
+                Some(pending) => pending,
+                None => {
+                    let step = self.run.next_step(self.duration, &mut self.work)?;
+                    (step, self.run.end_of(&step, self.duration))
+                }
             };
-            let end = self.run.end_of(&step, self.duration);
-            if !ends && s < end && self.run.can_show_within() {
+            if s < end && (ends || !self.run.can_show_within()) {
+                (step, end) = self.run.cut_step_at(s, self.duration, &mut self.work)?;
+            }
+            end = self.run.advance_windows(&mut step, (s.min(end), end), &mut self.work)?;
+            if s < end {
                 let theta = (s - self.run.state.s) / step.h;
-                self.pending = Some(step);
+                self.pending = Some((step, end));
                 return Ok(self.run.snapshot_within(step.h, theta, 0.0).monitored(tracked));
             }
-            let (step, end) =
-                if s < end { self.run.cut_step_at(s, self.duration, &mut self.work)? } else { (step, end) };
             self.run.take_step(&step, end);
         }
         Ok(self.run.snapshot(0.0).monitored(tracked))
@@ -161,6 +165,7 @@ impl Settings {
             max_steps: self.max_steps.saturating_mul(MORE_WORK),
             accounts: Accounts { energy: self.accounts.dissipation_error, ..Accounts::default() },
             method: self.method,
+            is_of_window: false,
         }
     }
 }

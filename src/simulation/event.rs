@@ -1,5 +1,5 @@
-//! The event-driven method: the modes are held through a step, the first mode change is located on the dense output, and
-//! the step ends there.
+//! The event-driven method: the modes are held through a step, and its mode changes are located on the dense output. Where
+//! windows take them (`windows`) the step goes on; where not it ends at the first.
 
 use super::driver::{AFTER_FAILURE, StepBounds, TrialStep, WorkLimit};
 use super::motion::SimulationError;
@@ -25,11 +25,15 @@ const OF_SPACING: f64 = 8.0;
 /// Steps up to this multiple of the shortest are not shortened for the sake of energies: what friction or a damper does
 /// in less than the resolution of time is over within it.
 const RESOLVED: f64 = 5.0;
+/// The longest step after one that its windows cut short, as a multiple of the part that was kept.
+///
+/// Recommended 1 to 3.
+const AFTER_CUT: f64 = 1.5;
 /// Share of a sine's amplitude by which the dense output may be off it with a quarter of the period in a step.
 const UNSEEN: f64 = 2e-2;
 /// Cuts of one step at events after which each further cut leaves at most half of it. By rounding, an event can be found
 /// at the very end of the shortened step again and again.
-const MOST_CUTS: u32 = 50;
+pub(super) const MOST_CUTS: u32 = 50;
 
 impl Run {
     /// Tries steps until one is good up to its first event.
@@ -60,7 +64,8 @@ impl Run {
             };
             let limit = bounds.remaining.min(limit);
             let proposed = *proposal.get_or_insert_with(|| self.propose(h, limit, attempt.error, starts_anew));
-            let share = self.share_before_event(h, shortest_cut);
+            let in_windows = h > shortest_cut && self.plan_windows(h, LEAST_SHARE.max(shortest_cut / h));
+            let share = if in_windows { 1.0 } else { self.share_before_event(h, shortest_cut) };
             if share >= 1.0 || (share >= LEAST_SHARE && self.can_resume_within(h, share)) {
                 self.state.step_size = proposed;
                 self.workspace.stall.note_step(share * h, cuts > 0, self.state.counters.events);
@@ -74,6 +79,7 @@ impl Run {
     /// Tries a step of length `h`; `None` where it is rejected: the run's step size is then a better length. Energies do not
     /// count unless what changes them is `resolvable` by a shorter step.
     pub(super) fn try_event_driven_step(&mut self, h: f64, any_error: bool, resolvable: bool) -> Option<StepAttempt> {
+        self.discard_windows();
         let Self { model, settings, state, workspace, .. } = self;
         workspace.interpolated_at = None;
         let span = state.span(h);
@@ -146,7 +152,7 @@ impl Run {
         self.workspace.integrator.pair()
     }
 
-    fn event_tolerance(&self) -> EventTolerance {
+    pub(super) fn event_tolerance(&self) -> EventTolerance {
         let Settings { tolerance, events, .. } = &self.settings;
         events.within(self.state.layer.largest.allowed_of_mass(&self.model, tolerance))
     }
@@ -165,24 +171,51 @@ impl Run {
             let gain = workspace.integrator.energies(model, &state.layer.state, h, share);
             state.energies.channels.add(&gain);
         }
+        let in_windows = self.energies_of_windows(end);
+        self.state.energies.gain(&in_windows);
         self.state.counters.steps += 1;
         self.state.since_event += share * h;
         if share < 1.0 {
-            self.state.note_event();
-            self.interpolate(h, share);
-            std::mem::swap(&mut self.state.layer.state, &mut self.workspace.interpolated);
-            self.workspace.interpolated_at = None;
-            let point = self.state.carrier.at(self.state.s + share * h);
-            self.state.carrier.take_step(end, &point);
-            self.state.s = end;
-            self.change_modes(self.settings.events.gap);
+            self.accept_part(step, end);
         } else {
-            self.state.event_spacing = self.state.event_spacing.max(self.state.since_event);
-            self.state.carrier.take_step(end, &self.workspace.integrator.end_carrier(false));
-            self.workspace.integrator.accept(&mut self.state.layer);
-            self.state.s = end;
-            self.change_modes_if_due();
+            self.accept_whole(end);
         }
+        self.forget_windows();
+    }
+
+    /// Accepts a step up to its first event, or to where its windows could not go on.
+    fn accept_part(&mut self, step: &TrialStep, end: f64) {
+        let TrialStep { h, share } = *step;
+        self.state.note_event();
+        // The windows have moved on since a row was shown there.
+        self.workspace.interpolated_at = None;
+        self.interpolate(h, share);
+        std::mem::swap(&mut self.state.layer.state, &mut self.workspace.interpolated);
+        self.workspace.interpolated_at = None;
+        let point = self.state.carrier.at(self.state.s + share * h);
+        self.state.carrier.take_step(end, &point);
+        self.state.s = end;
+        if self.has_windows() {
+            self.evaluate_forces();
+            let next = (AFTER_CUT * share * h).max(self.state.step_after_event);
+            self.state.step_size = self.state.step_size.min(next);
+        }
+        self.change_modes(self.settings.events.gap);
+    }
+
+    fn accept_whole(&mut self, end: f64) {
+        let largest = self.state.layer.largest;
+        self.state.event_spacing = self.state.event_spacing.max(self.state.since_event);
+        self.state.carrier.take_step(end, &self.workspace.integrator.end_carrier(false));
+        self.workspace.integrator.accept(&mut self.state.layer);
+        self.state.s = end;
+        if self.has_windows() {
+            // The forces at its end are without their mode changes.
+            self.state.layer.largest = largest;
+            self.overlay_windows(end);
+            self.evaluate_start();
+        }
+        self.change_modes_if_due();
     }
 
     fn change_modes_if_due(&mut self) {

@@ -5,6 +5,8 @@
 //! - `run` holds all that changes in a run (`RunState`), apart from its workspace; `state` saves and restores it.
 //! - `driver` is the skeleton of both methods: step, mode changes, step; `event` and `time_stepping` are where they
 //!   differ.
+//! - `windows` takes the mode changes of an event-driven step in steps of the masses near them alone, each `window` a run of its
+//!   own.
 //! - `snapshot` shows the run at an instant, at the end of a step or within it.
 //! - `error_run` estimates the run's error.
 
@@ -19,6 +21,8 @@ mod state;
 #[cfg(test)]
 pub(crate) mod tests;
 mod time_stepping;
+mod window;
+mod windows;
 
 use std::sync::Arc;
 
@@ -251,6 +255,7 @@ impl Simulation {
             self.heat(temperature)?;
         }
         self.run.enter(motion);
+        self.run.workspace.may_open_windows = until_force.is_none();
         if let Some(error_run) = &mut self.error_run {
             error_run.enter(motion);
         }
@@ -292,8 +297,8 @@ impl Simulation {
         Ok((step, at_force))
     }
 
-    /// Shows the rows that lie within `step`; where its dense output is not good enough, the step is shortened to end at
-    /// the row. Returns the end of the step, s after the start of the motion, and whether it was shortened.
+    /// Shows the rows that lie within `step`. Where its dense output is not good enough, the step is shortened to end at
+    /// the row; where its windows cannot go on, it is cut there. Returns the end of the step, s after the start of the motion, and whether it was shortened.
     fn show_rows_within(
         &mut self,
         step: &mut TrialStep,
@@ -304,13 +309,17 @@ impl Simulation {
         let (mut end, mut shortened) = (self.run.end_of(step, duration), false);
         while let Some(time) = observer.next_before(end) {
             if self.run.can_show_within() {
-                let theta = (time - self.run.state.s) / step.h;
-                self.show_within(step, theta, observer);
+                end = self.run.advance_windows(step, (time, end), work)?;
+                if time < end {
+                    let theta = (time - self.run.state.s) / step.h;
+                    self.show_within(step, theta, observer);
+                }
             } else {
                 (*step, end) = self.run.cut_step_at(time, duration, work)?;
                 shortened = true;
             }
         }
+        end = self.run.advance_windows(step, (end, end), work)?;
         Ok((end, shortened))
     }
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::motion::{MethodSwitch, ModeChange, Motion, OutOfRange, Start};
+use super::windows::Windows;
 use crate::contact::{
     EndCorrection, EventTolerance, decide_modes, free_unloaded, impacts_due, place_layer, stop_reversed,
 };
@@ -164,9 +165,17 @@ pub(super) struct Settings {
     pub max_steps: u64,
     pub accounts: Accounts,
     pub method: Method,
+    /// Whether these are the settings of a window's run.
+    pub is_of_window: bool,
 }
 
 impl Settings {
+    /// The settings of a window of a layer with these.
+    pub(super) fn of_window(&self) -> Self {
+        let accounts = Accounts { energy: self.accounts.energy, ..Accounts::default() };
+        Self { accounts, method: Method::Event, is_of_window: true, ..self.clone() }
+    }
+
     pub(super) fn new(scene: &Scene, model: &Model) -> Self {
         let tolerance = Tolerance::new(model, scene.solver.relative_tolerance, scene.absolute_tolerance());
         let events = EventTolerance::new(model, &tolerance);
@@ -176,6 +185,7 @@ impl Settings {
             max_steps: scene.solver.max_steps,
             accounts: Accounts::new(scene),
             method: scene.solver.method,
+            is_of_window: false,
         }
     }
 }
@@ -207,6 +217,10 @@ pub(super) struct Workspace {
     pub end_correction: EndCorrection,
     /// The steps of the motion under way that make no progress.
     pub stall: Stall,
+    /// The windows of event-driven steps; `None` where they would not be much smaller than the layer.
+    pub windows: Option<Box<Windows>>,
+    /// Whether the motion under way may open them.
+    pub may_open_windows: bool,
     /// The modes before the mode changes under way.
     pub modes_before: Vec<Mode>,
     /// The run before the motion under way, and how long its records were.
@@ -226,11 +240,14 @@ impl Run {
             dense: DenseWorkspace::new(&model),
             end_correction: EndCorrection::new(&model),
             stall: Stall::new(&model),
+            windows: Windows::new(&model, &settings),
+            may_open_windows: true,
             modes_before: state.layer.state.mode.clone(),
             checkpoint: state.clone(),
             recorded: [0; 2],
         };
         let mut run = Self { model, settings, state, workspace, mode_changes: None, method_switches: None };
+        run.keep_link_forces();
         run.place_layer();
         run
     }
@@ -259,10 +276,12 @@ impl Run {
             + self.workspace.integrator.bytes()
             + 2 * self.workspace.forces.bytes()
             + self.workspace.dense.bytes()
+            + self.workspace.windows.as_ref().map_or(0, |windows| windows.bytes())
     }
 
     pub(super) fn newton_iterations(&self) -> u64 {
-        self.workspace.integrator.iterations()
+        let in_windows = self.workspace.windows.as_ref().map_or(0, |windows| windows.newton_iterations());
+        self.workspace.integrator.iterations() + in_windows
     }
 
     /// Keeps the run as it stands, to roll back to.
@@ -292,6 +311,7 @@ impl Run {
         let jumps = state.carrier.begin(state.s, &piece, &self.model);
         state.s = 0.0;
         self.workspace.stall.reset();
+        self.forget_windows();
         self.workspace.integrator.begin_tangents(motion.duration);
         if !self.state.rates_valid || rates(&self.state.carrier, 0.0) != before {
             self.change_modes(0.0);
@@ -318,9 +338,20 @@ impl Run {
         (self.state.temperature, self.state.rates_valid) = (temperature, false);
         self.workspace.integrator = Self::integrator(&self.model, &self.settings);
         self.workspace.dense = DenseWorkspace::new(&self.model);
+        self.keep_link_forces();
+        if let Some(windows) = &mut self.workspace.windows {
+            windows.heat(&self.model, &self.settings);
+        }
     }
 
-    fn integrator(model: &Model, settings: &Settings) -> Integrator {
+    /// Lets the integrator keep what the energies of windows need.
+    fn keep_link_forces(&mut self) {
+        if self.workspace.windows.is_some() {
+            self.workspace.integrator.keep_link_forces(&self.model);
+        }
+    }
+
+    pub(super) fn integrator(model: &Model, settings: &Settings) -> Integrator {
         let tracked = Tracked { energy: settings.accounts.energy, tangents: settings.accounts.tangents };
         let pair = Pair::at_tolerance(settings.tolerance.relative);
         let steps = match settings.method {
@@ -391,6 +422,14 @@ impl Run {
                 record.push(ModeChange { time, mass, from: from.number(), to: to.number() });
             }
         }
+    }
+
+    /// Computes the rates at the start of the next step from the state alone.
+    pub(super) fn evaluate_start(&mut self) {
+        self.evaluate_forces();
+        let Self { model, state, workspace, .. } = self;
+        let (carrier, forces) = ((&state.carrier, state.s), &workspace.forces);
+        workspace.integrator.evaluate_start(model, &mut state.layer, carrier, forces, state.step_size);
     }
 
     /// Evaluates the link forces in the current state and returns the carrier there.

@@ -2,7 +2,7 @@
 
 use super::driver::TrialStep;
 use super::run::{Run, RunState};
-use crate::integrator::LayerWithin;
+use crate::integrator::{LayerWithin, Overlay};
 use crate::math::bracketed_root;
 use crate::outputs::{Energies, LayerView, Snapshot};
 
@@ -11,7 +11,7 @@ use crate::outputs::{Energies, LayerView, Snapshot};
 ///
 /// Recommended 1 to 5: the residual oscillates about 0 through the step, so less of it is left in the velocity; with 5
 /// the errors of whole runs are those of 1, and fewer steps are repeated.
-const LARGEST_DEFECT: f64 = 5.0;
+pub(super) const LARGEST_DEFECT: f64 = 5.0;
 /// The most that mode changes not yet corrected may change F_z where a row is shown within a time step, as a multiple of
 /// the relative tolerance. That bounds all of them together at the step's end; the error of a row is a third of it, and
 /// less.
@@ -77,12 +77,13 @@ impl Run {
             state: &mut workspace.interpolated,
             state_at: &mut workspace.interpolated_at,
             forces: &mut workspace.forces,
+            overlay: workspace.windows.as_deref_mut().map(|windows| windows as &mut dyn Overlay),
         };
         (within, state)
     }
 
     /// Energies since the start at the fraction `theta` of the step of length `h` tried last.
-    fn energies_within(&mut self, h: f64, theta: f64) -> Energies {
+    pub(super) fn energies_within(&mut self, h: f64, theta: f64) -> Energies {
         let mut energies = self.state.energies;
         if self.settings.accounts.energy {
             let Self { model, state, workspace, .. } = self;
@@ -94,6 +95,7 @@ impl Run {
             };
             energies.channels.add(&gain);
         }
+        energies.gain(&self.energies_of_windows(self.state.s + theta * h));
         energies
     }
 
@@ -110,18 +112,21 @@ impl Run {
     }
 
     /// F_x and F_z at the fraction `theta` of the step of length `h` tried last, N.
-    fn on_carrier_within(&mut self, h: f64, theta: f64) -> (f64, f64) {
+    pub(super) fn on_carrier_within(&mut self, h: f64, theta: f64) -> (f64, f64) {
+        let (windows_x, windows_z) = self.forces_of_windows(self.state.s + theta * h);
         let Self { model, state, workspace, .. } = self;
         let (carrier, start, span) = (&state.carrier, &state.layer, state.span(h));
         if state.time_stepping {
             workspace.integrator.two_stage_on_carrier(model, carrier, start, span, theta)
         } else {
-            workspace.integrator.on_carrier(model, carrier, start, span, theta, &mut workspace.dense)
+            let (x, z) = workspace.integrator.on_carrier(model, carrier, start, span, theta, &mut workspace.dense);
+            (x + windows_x, z + windows_z)
         }
     }
 
     /// P_diss at the fraction `theta` of the step of length `h` tried last, W, where the powers at its stages say it.
-    fn dissipated_power_within(&mut self, h: f64, theta: f64) -> Option<f64> {
+    pub(super) fn dissipated_power_within(&mut self, h: f64, theta: f64) -> Option<f64> {
+        let in_windows = self.dissipated_power_of_windows(self.state.s + theta * h);
         let Self { model, state, workspace, settings, .. } = self;
         let (integrator, start) = (&mut workspace.integrator, &state.layer.state);
         if !settings.accounts.energy {
@@ -129,7 +134,7 @@ impl Run {
         } else if state.time_stepping {
             Some(integrator.two_stage_dissipated_power(model, start, h, theta))
         } else {
-            integrator.dissipated_power(model, start, h, theta)
+            Some((integrator.dissipated_power(model, start, h, theta)? + in_windows).max(0.0))
         }
     }
 
