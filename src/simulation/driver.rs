@@ -2,8 +2,8 @@
 //!
 //! Method *auto* goes from events to time-stepping where mode changes come fast, and back where they are few again. What
 //! decides is the number of mode changes per time step, in the mean over the last [`MEMORY`] of them. An event costs the
-//! event-driven method a step of three or six stages, which is cut there; a time step costs two and takes any number of
-//! changes. So time-stepping is cheaper from a third of a change per step on.
+//! event-driven method a step of three or six stages, which is cut there, or of a window; a time step costs two and takes any
+//! number of changes. So time-stepping is cheaper from a third of a change per step on.
 
 use super::motion::{MethodSwitch, SimulationError};
 use super::run::Run;

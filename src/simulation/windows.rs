@@ -70,9 +70,9 @@ enum Cut {
     Unresolved(f64),
 }
 
-/// The step under way.
+/// The step of the whole layer that windows follow.
 #[derive(Clone, Copy, Debug)]
-struct Under {
+struct StepUnderWay {
     span: StepSpan,
     /// Its end, s after the start of the carrier's piece.
     end: f64,
@@ -157,7 +157,7 @@ impl Windows {
         None
     }
 
-    /// The masses within the reach of some of a layer of `masses`.
+    /// The masses that feel a mode change of those in `changed`, in a layer of `masses`.
     fn around(&self, changed: Range<usize>, masses: usize) -> Range<usize> {
         changed.start.saturating_sub(self.reach)..(changed.end + self.reach).min(masses)
     }
@@ -168,7 +168,7 @@ impl Windows {
         &mut self,
         masses: Range<usize>,
         run: &Run,
-        (under, s): (Under, f64),
+        (under, s): (StepUnderWay, f64),
         work: &mut WorkLimit,
     ) -> Result<Option<Cut>, SimulationError> {
         let Some((index, range)) = self.fitting(masses, run.model.masses()) else { return Ok(Some(Cut::Crowded(s))) };
@@ -212,8 +212,8 @@ impl Windows {
     }
 }
 
-/// The number of masses over which what a mode change does falls below the tolerance; `None` where it does not in a layer of
-/// `model`.
+/// The number of masses over which the effect of a mode change falls below the tolerance; `None` where it does not within the
+/// layer of `model`.
 ///
 /// A chain of links of stiffness c_l between masses on links of stiffness c to the carrier bends by the ratio r from mass to
 /// mass, r + 1/r = 2 + c/c_l.
@@ -225,7 +225,7 @@ fn reach(model: &Model, relative: f64) -> Option<usize> {
         };
         let long_term = |kind: LinkKind| model.links[kind as usize].stiffness;
         let glassy = |kind: LinkKind| model.glassy[kind as usize];
-        // The least that holds a mass while its motion through a damper fades, over all times.
+        // Within a time t a mass is held by m/t + d + ct, at least by d + 2√(mc), and a damper passes d_l on.
         let damping = |kind: LinkKind| model.links[kind as usize].damping;
         let held = damping(own) + 2.0 * (model.mass * glassy(own)).sqrt();
         of(long_term(own), long_term(lateral)).max(of(glassy(own), glassy(lateral))).max(of(held, damping(lateral)))
@@ -281,7 +281,7 @@ impl Run {
     ) -> Result<f64, SimulationError> {
         let (mut end, mut cuts) = (end, 0);
         while let Some(mut windows) = self.workspace.windows.take() {
-            let under = Under { span: self.state.span(step.h), end };
+            let under = StepUnderWay { span: self.state.span(step.h), end };
             let cut = self.follow_in(&mut windows, (under, s.min(end)), work);
             // Once it is cut, the windows stay where they are.
             windows.planned &= matches!(cut, Ok(None));
@@ -310,7 +310,7 @@ impl Run {
     fn follow_in(
         &mut self,
         windows: &mut Windows,
-        (under, s): (Under, f64),
+        (under, s): (StepUnderWay, f64),
         work: &mut WorkLimit,
     ) -> Result<Option<Cut>, SimulationError> {
         let mut cut = None;
@@ -338,7 +338,7 @@ impl Run {
         &mut self,
         windows: &mut Windows,
         index: usize,
-        under: Under,
+        under: StepUnderWay,
         work: &mut WorkLimit,
     ) -> Result<Option<Cut>, SimulationError> {
         let k = self.model.masses();
