@@ -2,7 +2,7 @@
 
 use super::gap::first_touch;
 use crate::integrator::{DenseOutput, DenseWorkspace, Motions, Rates, Tolerance};
-use crate::math::{Spline, bracketed_root};
+use crate::math::{Spline, bracketed_root, with_widest_vectors};
 use crate::model::{CarrierPosition, LinkKind, Mode, Model, State};
 
 /// How far a quantity may pass its limit before the mode changes: as far as a step may err, velocities less. An event is located where the
@@ -137,45 +137,67 @@ impl Limit {
     }
 }
 
+/// Masses taken together in the search for contacts that may change.
+const BLOCK: usize = 64;
+
 impl Contacts<'_> {
+    /// Whether the carrier may turn between the stages without the error test noticing.
+    fn carrier_swings(&self) -> bool {
+        self.step.carrier.shortest_period() < f64::INFINITY
+    }
+
+    /// As a bit each, the masses in contact of which a quantity may pass its limit within the step, of the [`BLOCK`] from mass
+    /// `first` on: those of which one does at a stage or on a parabola through its values there.
+    fn suspects(&self, first: usize) -> u64 {
+        let modes = &self.step.start.state.mode[first..];
+        let overshoot = if self.carrier_swings() { self.step.interpolation.overshoot() } else { 0.0 };
+        let range = |limit: Limit| {
+            let stages = self.step.stages.iter().map(|stage| &limit.of(stage)[first..]);
+            let (mut least, mut most) = ([f64::MAX; BLOCK], [f64::MIN; BLOCK]);
+            widen(&mut least, &mut most, stages);
+            least.iter_mut().zip(&most).for_each(|(least, most)| *least -= overshoot * (most - *least));
+            least
+        };
+        let (normal, margin) = (range(Limit::Normal), range(Limit::Margin));
+        let falls = |i: usize| normal[i] < -self.tolerance.force || margin[i] < -self.tolerance.margin(modes[i]);
+        let in_contact = (0..modes.len().min(BLOCK)).filter(|&i| modes[i].in_contact());
+        in_contact.filter(|&i| falls(i)).fold(0, |suspects, i| suspects | 1 << i)
+    }
+
+    /// The masses in contact that may change their modes within the step, from `first` on in a block.
+    fn suspects_from(&self, first: usize) -> impl Iterator<Item = usize> + use<> {
+        let suspects = self.suspects(first);
+        (0..BLOCK).filter(move |bit| suspects >> bit & 1 == 1).map(move |bit| first + bit)
+    }
+
     fn all_changes(&mut self, changes: &mut Vec<(f64, usize)>) {
-        let force = self.tolerance.force;
-        let swings = self.step.carrier.shortest_period() < f64::INFINITY;
-        for i in (0..self.step.model.masses()).filter(|&i| self.step.start.state.mode[i].in_contact()) {
-            let of_margin = self.tolerance.margin(self.step.start.state.mode[i]);
-            let mut first = self.fall(i, Limit::Normal, force, None);
-            first = self.fall(i, Limit::Margin, of_margin, first);
-            if swings {
-                first = self.dip(i, Limit::Normal, force, first);
-                first = self.dip(i, Limit::Margin, of_margin, first);
+        for block in (0..self.step.model.masses()).step_by(BLOCK) {
+            for i in self.suspects_from(block) {
+                changes.extend(self.change_of(i, None).map(|theta| (theta, i)));
             }
-            changes.extend(first.map(|theta| (theta, i)));
         }
     }
 
     fn first_change(&mut self) -> Option<f64> {
         let mut first = None;
-        let force = self.tolerance.force;
-        if self.step.stages[1..].iter().any(|stage| any_below(&stage.normal, -force)) {
-            for i in 0..self.step.model.masses() {
-                first = self.fall(i, Limit::Normal, force, first);
-            }
-        }
-        let margin = self.tolerance.velocity.min(force);
-        if self.step.stages[1..].iter().any(|stage| any_below(&stage.margin, -margin)) {
-            for i in 0..self.step.model.masses() {
-                let mode = self.step.start.state.mode[i];
-                first = self.fall(i, Limit::Margin, self.tolerance.margin(mode), first);
-            }
-        }
-        // The carrier turns between the stages without the masses' motion telling the error test.
-        if self.step.carrier.shortest_period() < f64::INFINITY {
-            for i in (0..self.step.model.masses()).filter(|&i| self.step.start.state.mode[i].in_contact()) {
-                first = self.dip(i, Limit::Normal, force, first);
-                first = self.dip(i, Limit::Margin, self.tolerance.margin(self.step.start.state.mode[i]), first);
+        for block in (0..self.step.model.masses()).step_by(BLOCK) {
+            for i in self.suspects_from(block) {
+                first = self.change_of(i, first);
             }
         }
         first
+    }
+
+    /// The fraction at which mass `i`, in contact, first changes its mode; `first` if it does not before that.
+    fn change_of(&mut self, i: usize, first: Option<f64>) -> Option<f64> {
+        let (force, of_margin) = (self.tolerance.force, self.tolerance.margin(self.step.start.state.mode[i]));
+        let first = self.fall(i, Limit::Normal, force, first);
+        let first = self.fall(i, Limit::Margin, of_margin, first);
+        if !self.carrier_swings() {
+            return first;
+        }
+        let first = self.dip(i, Limit::Normal, force, first);
+        self.dip(i, Limit::Margin, of_margin, first)
     }
 
     /// The same as [`fall`](Self::fall) where a quantity falls below its tolerance between the stages alone: at the vertex
@@ -263,8 +285,19 @@ fn vertex(before: (f64, f64), here: (f64, f64), after: (f64, f64)) -> Option<(f6
     (bend > 0.0 && place > before.0 && place < after.0 && value.is_finite()).then_some((place, value))
 }
 
-fn any_below(values: &[f64], limit: f64) -> bool {
-    values.iter().fold(f64::MAX, |least, &value| if value < least { value } else { least }) < limit
+/// Widens the ranges from `least` to `most` by these `values`.
+fn widen<'a>(least: &mut [f64; BLOCK], most: &mut [f64; BLOCK], values: impl Iterator<Item = &'a [f64]>) {
+    with_widest_vectors(
+        #[inline(always)]
+        || {
+            for values in values {
+                for ((least, most), &value) in least.iter_mut().zip(&mut *most).zip(values) {
+                    *least = if value < *least { value } else { *least };
+                    *most = if value > *most { value } else { *most };
+                }
+            }
+        },
+    );
 }
 
 /// Share of an event tolerance by which a limit must be passed at the end of a step for an event to be due.

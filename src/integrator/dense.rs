@@ -127,7 +127,7 @@ impl DenseOutput<'_> {
         };
         let mut largest = 0.0_f64;
         for i in 0..self.model.masses() {
-            let (a_x, a_z) = (workspace.acceleration[0][i], workspace.acceleration[1][i]);
+            let (a_x, a_z) = (workspace.of_masses[0][i], workspace.of_masses[1][i]);
             let (v_x, v_z) = (state.velocity_x[i] - carrier.u_rate, state.velocity_z[i] - carrier.w_rate);
             let here = match state.mode[i] {
                 Mode::Stick => 0.0,
@@ -192,9 +192,12 @@ impl DenseOutput<'_> {
             elongation: (moved(&sums.x) - n * carrier.integrated.0, moved(&sums.z) - n * carrier.integrated.1),
             velocity: (velocity(&sums.x) + n * carrier.missing_rate.0, velocity(&sums.z) + n * carrier.missing_rate.1),
         };
-        let modes = &self.start.state.mode;
-        for i in (0..modes.len()).filter(|&i| modes[i].in_contact()) {
-            all.add(&self.mass_at(i, &carrier, workspace).motion());
+        let DenseWorkspace { values, integral, of_masses: [x, v_x], .. } = workspace;
+        let start = self.start.state;
+        self.combine(x, integral, Some(&start.elongation_x), |stage| &stage.velocity_x, -carrier.integrated.0);
+        self.combine(v_x, values, None, |stage| &stage.velocity_x, carrier.missing_rate.0);
+        for i in (0..start.mode.len()).filter(|&i| start.mode[i].in_contact()) {
+            all.add(&self.on_profile(i, (x[i], v_x[i]), &carrier).motion());
         }
         all
     }
@@ -369,8 +372,8 @@ pub struct DenseWorkspace {
     relaxation: Vec<RelaxationWeights>,
     /// By kind of link: of the stages' elongation rates in the force of all Maxwell elements, N s/m.
     of_rate: [[f64; STAGES]; 4],
-    /// Along x and z: the accelerations of the interpolant, m/s².
-    acceleration: [Vec<f64>; 2],
+    /// Two numbers of every mass.
+    of_masses: [Vec<f64>; 2],
 }
 
 /// The weights of a Maxwell element's elongation at the start and of its link's rates at the stages (s). They make the
@@ -390,13 +393,13 @@ impl DenseWorkspace {
             integral: [0.0; STAGES],
             relaxation: vec![RelaxationWeights::default(); model.relaxation_times.len()],
             of_rate: [[0.0; STAGES]; 4],
-            acceleration: [vec![0.0; model.masses()], vec![0.0; model.masses()]],
+            of_masses: [vec![0.0; model.masses()], vec![0.0; model.masses()]],
         }
     }
 
-    /// Workspace for the weights alone, without that for [`DenseOutput::defect`].
+    /// Workspace for single masses alone, not for [`DenseOutput::defect`] nor for sums over the layer.
     pub fn of_weights(model: &Model) -> Self {
-        Self { acceleration: [Vec::new(), Vec::new()], ..Self::new(model) }
+        Self { of_masses: [Vec::new(), Vec::new()], ..Self::new(model) }
     }
 
     /// Forgets the weights: the model has changed.
@@ -406,7 +409,7 @@ impl DenseWorkspace {
 
     /// Bytes that this holds.
     pub fn bytes(&self) -> usize {
-        self.acceleration.iter().map(|array| array.len() * size_of::<f64>()).sum()
+        self.of_masses.iter().map(|array| array.len() * size_of::<f64>()).sum()
     }
 
     /// The weights of the elements of one row at the fraction for which the weights are set.
@@ -439,13 +442,14 @@ impl DenseWorkspace {
         }
     }
 
-    /// Computes the accelerations of the interpolant at the fraction `theta` of `step`, with the carrier there.
+    /// Computes the accelerations of the interpolant along x and z (m/s²) at the fraction `theta` of `step`, with the carrier
+    /// there.
     fn set_accelerations(&mut self, step: &DenseOutput<'_>, theta: f64, carrier: &CarrierPoint) {
         let slope = step.interpolation.slope(theta).map(|weight| weight / step.span.length);
         let missing = |of_carrier: f64, rate: fn(&CarrierPoint) -> f64| {
             of_carrier - slope.iter().zip(step.carriers).map(|(weight, at)| weight * rate(at)).sum::<f64>()
         };
-        let [x, z] = &mut self.acceleration;
+        let [x, z] = &mut self.of_masses;
         let missing_x = missing(carrier.u_acceleration, |at| at.u_rate);
         step.combine(x, &slope, None, |stage| &stage.velocity_x, missing_x);
         step.combine(z, &slope, None, |stage| &stage.velocity_z, missing(carrier.w_acceleration, |at| at.w_rate));

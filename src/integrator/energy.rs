@@ -7,6 +7,7 @@
 
 use super::Tableau;
 use super::maxwell::{Maxwell, StageCoefficients};
+use super::method::Usage;
 use super::rates::Rates;
 use crate::math::{dot, sum_of_pairs};
 use crate::model::{ChannelEnergies, Exchange, LinkKind, MaxwellRow, Model};
@@ -37,14 +38,14 @@ struct ElementSums<const STAGES: usize> {
 }
 
 impl<const STAGES: usize> StepSums<STAGES> {
-    /// Workspace for the elements of `model`; empty for a method that is not `used`.
-    pub(super) fn new(model: &Model, used: bool) -> Self {
+    /// Workspace for the elements of `model` and a method that is for `usage`.
+    pub(super) fn new(model: &Model, usage: Usage) -> Self {
         let none = ElementSums { squares: [0.0; STAGES], relaxing: None };
         Self {
             known: false,
             rates: [[[0.0; STAGES]; STAGES]; 4],
             changes: [0.0; 4],
-            elements: vec![none; if used { model.rows.len() } else { 0 }],
+            elements: vec![none; if usage == Usage::Nothing { 0 } else { model.rows.len() }],
         }
     }
 

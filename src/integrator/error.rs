@@ -148,7 +148,7 @@ pub struct StepAttempt {
 }
 
 /// Workspace for the estimated errors of one step.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct ErrorWorkspace {
     x: Vec<f64>,
     z: Vec<f64>,

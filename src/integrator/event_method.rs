@@ -1,10 +1,12 @@
 //! The Runge-Kutta pair of event-driven steps.
 
+use std::sync::LazyLock;
+
 use super::energy::StepSums;
 use super::error::{ErrorWorkspace, StepAttempt, Tolerance};
 use super::interpolation::StageInterpolation;
 use super::maxwell::Maxwell;
-use super::method::{InitialGuess, RungeKutta, Stages, StepInput};
+use super::method::{InitialGuess, RungeKutta, Stages, StepInput, Usage};
 use super::stage::{ConvergenceTest, Friction, NoConvergence};
 use super::tableau::{ContinuousWeights, ESDIRK3, ESDIRK5, FOUR_STAGES, STAGES, Tableau};
 use crate::model::{ChannelEnergies, Model, State};
@@ -44,10 +46,12 @@ impl Pair {
         }
     }
 
-    pub(super) fn interpolation(self) -> StageInterpolation {
+    pub(super) fn interpolation(self) -> &'static StageInterpolation {
+        static THIRD: LazyLock<StageInterpolation> = LazyLock::new(|| StageInterpolation::new(&ESDIRK3));
+        static FIFTH: LazyLock<StageInterpolation> = LazyLock::new(|| StageInterpolation::new(&ESDIRK5));
         match self {
-            Self::Third => StageInterpolation::new(&ESDIRK3),
-            Self::Fifth => StageInterpolation::new(&ESDIRK5),
+            Self::Third => &THIRD,
+            Self::Fifth => &FIFTH,
         }
     }
 }
@@ -60,11 +64,13 @@ pub(super) enum EventMethod {
 }
 
 impl EventMethod {
-    /// A pair for `model`; without workspace where it is not `used`.
-    pub(super) fn new(pair: Pair, model: &Model, used: bool) -> Self {
+    /// A pair for `model` and `usage`.
+    pub(super) fn new(pair: Pair, model: &Model, usage: Usage) -> Self {
+        static THIRD: LazyLock<ContinuousWeights<FOUR_STAGES>> = LazyLock::new(|| ContinuousWeights::new(&ESDIRK3));
+        static FIFTH: LazyLock<ContinuousWeights<STAGES>> = LazyLock::new(|| ContinuousWeights::new(&ESDIRK5));
         match pair {
-            Pair::Third => Self::Third(Box::new(runge_kutta(&ESDIRK3, model, used))),
-            Pair::Fifth => Self::Fifth(Box::new(runge_kutta(&ESDIRK5, model, used))),
+            Pair::Third => Self::Third(Box::new(runge_kutta((&ESDIRK3, &THIRD), model, usage))),
+            Pair::Fifth => Self::Fifth(Box::new(runge_kutta((&ESDIRK5, &FIFTH), model, usage))),
         }
     }
 
@@ -150,13 +156,17 @@ impl EventMethod {
     }
 }
 
-fn runge_kutta<const N: usize>(tableau: &'static Tableau<N>, model: &Model, used: bool) -> RungeKutta<N> {
+fn runge_kutta<const N: usize>(
+    (tableau, continuous_weights): (&'static Tableau<N>, &'static ContinuousWeights<N>),
+    model: &Model,
+    usage: Usage,
+) -> RungeKutta<N> {
     RungeKutta {
         tableau,
-        continuous_weights: ContinuousWeights::new(tableau),
+        continuous_weights,
         initial_guess: InitialGuess::extrapolated(&tableau.c),
-        maxwell: Maxwell::new(model, used),
-        sums: StepSums::new(model, used),
+        maxwell: Maxwell::new(model, usage),
+        sums: StepSums::new(model, usage),
         friction: Friction::Held,
     }
 }

@@ -14,6 +14,7 @@
 
 use super::Tableau;
 use super::carrier_sums::ElementWeights;
+use super::method::Usage;
 use super::rates::Rates;
 use super::tableau::STAGES as ALL_STAGES;
 use crate::math::weighted_sum;
@@ -52,11 +53,11 @@ struct KindSums<const STAGES: usize> {
 }
 
 impl<const STAGES: usize> Maxwell<STAGES> {
-    /// Workspace for the elements of `model`; empty for a method that is not `used`.
-    pub(super) fn new(model: &Model, used: bool) -> Self {
-        let times = if used { model.relaxation_times.len() } else { 0 };
+    /// Workspace for the elements of `model` and a method that is for `usage`.
+    pub(super) fn new(model: &Model, usage: Usage) -> Self {
+        let times = if usage == Usage::Nothing { 0 } else { model.relaxation_times.len() };
         let kinds = LinkKind::ALL.map(|kind| {
-            let present = used && model.rows.iter().any(|row| row.kind == kind);
+            let present = usage == Usage::Solving && model.rows.iter().any(|row| row.kind == kind);
             KindSums::new(if present { kind.count(model.masses()) } else { 0 })
         });
         Self { coefficients: vec![StageCoefficients::new(); times], kinds }

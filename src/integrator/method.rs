@@ -16,13 +16,24 @@ use crate::model::{Carrier, CarrierPoint, ChannelEnergies, Exchange, LinkKind, M
 #[derive(Clone, Debug)]
 pub(super) struct RungeKutta<const N: usize> {
     pub tableau: &'static Tableau<N>,
-    pub continuous_weights: ContinuousWeights<N>,
+    pub continuous_weights: &'static ContinuousWeights<N>,
     pub initial_guess: InitialGuess<N>,
     pub maxwell: Maxwell<N>,
     /// For the energies over the last attempted step.
     pub sums: StepSums<N>,
     /// How friction is treated within a step.
     pub friction: Friction,
+}
+
+/// What a method is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Usage {
+    /// It is not used.
+    Nothing,
+    /// Steps that are taken over from another integrator.
+    TakenSteps,
+    /// To solve steps.
+    Solving,
 }
 
 /// The values at the stages of the last attempted step, of either method. Stage 0 is the start of the step.

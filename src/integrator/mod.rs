@@ -41,7 +41,7 @@ use energy::StepSums;
 use error::ErrorWorkspace;
 use event_method::EventMethod;
 use maxwell::Maxwell;
-use method::{InitialGuess, RungeKutta, Stages, StepInput};
+use method::{InitialGuess, RungeKutta, Stages, StepInput, Usage};
 use sensitivity::Tangent;
 use stage::{ConvergenceTest, Friction, StageSolver};
 use tableau::{GAMMA, SDIRK2_ESTIMATE};
@@ -61,7 +61,7 @@ pub struct Integrator {
     two_stages: RungeKutta<TWO_STAGES>,
     stages: Stages,
     /// Of the pair.
-    interpolation: StageInterpolation,
+    interpolation: &'static StageInterpolation,
     carrier_sums: CarrierSums,
     error_workspace: ErrorWorkspace,
 }
@@ -95,18 +95,31 @@ pub enum Steps {
     TwoStages,
     /// Both.
     Both(Pair),
+    /// None, but event-driven steps of this pair may be [taken over](Integrator::take_part).
+    Taken(Pair),
 }
 
 impl Steps {
     fn pair(self) -> Option<Pair> {
         match self {
-            Self::EventDriven(pair) | Self::Both(pair) => Some(pair),
+            Self::EventDriven(pair) | Self::Both(pair) | Self::Taken(pair) => Some(pair),
             Self::TwoStages => None,
         }
     }
 
-    fn two_stages(self) -> bool {
-        !matches!(self, Self::EventDriven(_))
+    fn use_of_pair(self) -> Usage {
+        match self {
+            Self::EventDriven(_) | Self::Both(_) => Usage::Solving,
+            Self::Taken(_) => Usage::TakenSteps,
+            Self::TwoStages => Usage::Nothing,
+        }
+    }
+
+    fn use_of_two_stages(self) -> Usage {
+        match self {
+            Self::TwoStages | Self::Both(_) => Usage::Solving,
+            Self::EventDriven(_) | Self::Taken(_) => Usage::Nothing,
+        }
     }
 
     fn stages(self) -> usize {
@@ -118,16 +131,17 @@ impl Integrator {
     /// An integrator for `model` with workspace for `steps`.
     pub fn new(model: &Model, tracked: Tracked, steps: Steps) -> Self {
         let pair = steps.pair().unwrap_or(Pair::Fifth);
+        let solves = !matches!(steps, Steps::Taken(_));
         let inputs = if tracked.tangents { model.inputs() } else { Vec::new() };
         Self {
             pair,
-            event_method: EventMethod::new(pair, model, steps.pair().is_some()),
+            event_method: EventMethod::new(pair, model, steps.use_of_pair()),
             two_stages: RungeKutta {
                 tableau: &SDIRK2,
                 continuous_weights: ContinuousWeights::sdirk2(),
                 initial_guess: InitialGuess::Limited,
-                maxwell: Maxwell::new(model, steps.two_stages()),
-                sums: StepSums::new(model, steps.two_stages()),
+                maxwell: Maxwell::new(model, steps.use_of_two_stages()),
+                sums: StepSums::new(model, steps.use_of_two_stages()),
                 friction: Friction::SetValued,
             },
             stages: Stages {
@@ -135,13 +149,13 @@ impl Integrator {
                 carrier: [CarrierPoint::default(); STAGES],
                 exchange: [Exchange::default(); STAGES],
                 link_forces: Vec::new(),
-                solver: StageSolver::new(model),
+                solver: if solves { StageSolver::new(model) } else { StageSolver::of_end(model) },
                 tracks_energy: tracked.energy,
                 tangents: inputs.into_iter().map(|input| Tangent::new(model, input, steps.stages())).collect(),
             },
             interpolation: pair.interpolation(),
             carrier_sums: CarrierSums::new(model),
-            error_workspace: ErrorWorkspace::new(model),
+            error_workspace: if solves { ErrorWorkspace::new(model) } else { ErrorWorkspace::default() },
         }
     }
 
@@ -289,7 +303,7 @@ impl Integrator {
             end: StepBoundary { state: self.end(), carrier: carriers[carriers.len() - 1] },
             stages: &self.stages()[..carriers.len()],
             carriers,
-            interpolation: &self.interpolation,
+            interpolation: self.interpolation,
         }
     }
 
@@ -440,7 +454,7 @@ impl Integrator {
     pub fn keep_link_forces(&mut self, model: &Model) {
         if self.stages.tracks_energy {
             let links = || {
-                let [vertical, horizontal, ..] = Forces::new(model).link;
+                let [vertical, horizontal, ..] = Forces::of_links(model);
                 [horizontal, vertical]
             };
             self.stages.link_forces = std::iter::repeat_with(links).take(self.stages.rates.len()).collect();

@@ -47,7 +47,7 @@ impl Rates {
             velocity_z: zero.clone(),
             acceleration_x: zero.clone(),
             acceleration_z: zero.clone(),
-            elongation_rate: Forces::new(model).rate,
+            elongation_rate: Forces::of_links(model),
             normal: zero.clone(),
             margin: zero,
         }

@@ -1,5 +1,7 @@
 //! The coefficients of the two Runge-Kutta methods and of their continuous extensions.
 
+use std::sync::LazyLock;
+
 use nalgebra::{DMatrix, SMatrix, SVector};
 
 /// A diagonally implicit Runge-Kutta method with an explicit first stage, the same γ in every other stage, and the end
@@ -240,11 +242,14 @@ pub(super) fn sdirk2_weights(theta: f64) -> (f64, f64) {
 
 impl ContinuousWeights<TWO_STAGES> {
     /// Those of `sdirk2_weights`, by powers of θ.
-    pub(super) fn sdirk2() -> Self {
-        let bend = 0.5 / (1.0 - GAMMA);
-        let mut by_power = [SVector::zeros(); 5];
-        by_power[0] = SVector::from([0.0, 1.0 + 2.0 * GAMMA * bend, -2.0 * GAMMA * bend]);
-        by_power[1] = SVector::from([0.0, -bend, bend]);
-        Self { by_power }
+    pub(super) fn sdirk2() -> &'static Self {
+        static WEIGHTS: LazyLock<ContinuousWeights<TWO_STAGES>> = LazyLock::new(|| {
+            let bend = 0.5 / (1.0 - GAMMA);
+            let mut by_power = [SVector::zeros(); 5];
+            by_power[0] = SVector::from([0.0, 1.0 + 2.0 * GAMMA * bend, -2.0 * GAMMA * bend]);
+            by_power[1] = SVector::from([0.0, -bend, bend]);
+            ContinuousWeights { by_power }
+        });
+        &WEIGHTS
     }
 }

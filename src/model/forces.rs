@@ -105,10 +105,17 @@ pub struct Forces {
 impl Forces {
     /// Workspace for the forces of `model`.
     pub fn new(model: &Model) -> Self {
-        let k = model.masses();
-        let links = |kind: LinkKind| if model.links[kind as usize].present { kind.count(k) } else { 0 };
-        let by_kind = || LinkKind::ALL.map(|kind| vec![0.0; links(kind)]);
-        Self { link: by_kind(), rate: by_kind(), on_mass_x: vec![0.0; k], on_mass_z: vec![0.0; k] }
+        let of_masses = || vec![0.0; model.masses()];
+        let (link, rate) = (Self::of_links(model), Self::of_links(model));
+        Self { link, rate, on_mass_x: of_masses(), on_mass_z: of_masses() }
+    }
+
+    /// A zero for each link of `model` by kind; none of a kind that it has not.
+    pub fn of_links(model: &Model) -> [Vec<f64>; 4] {
+        LinkKind::ALL.map(|kind| {
+            let present = model.links[kind as usize].present;
+            vec![0.0; if present { kind.count(model.masses()) } else { 0 }]
+        })
     }
 
     /// Evaluates the forces in `state` with the carrier's rates.

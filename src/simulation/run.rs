@@ -176,6 +176,11 @@ impl Settings {
         Self { accounts, method: Method::Event, is_of_window: true, ..self.clone() }
     }
 
+    /// What the steps compute in addition to the state.
+    pub(super) fn tracked(&self) -> Tracked {
+        Tracked { energy: self.accounts.energy, tangents: self.accounts.tangents }
+    }
+
     pub(super) fn new(scene: &Scene, model: &Model) -> Self {
         let tolerance = Tolerance::new(model, scene.solver.relative_tolerance, scene.absolute_tolerance());
         let events = EventTolerance::new(model, &tolerance);
@@ -352,14 +357,13 @@ impl Run {
     }
 
     pub(super) fn integrator(model: &Model, settings: &Settings) -> Integrator {
-        let tracked = Tracked { energy: settings.accounts.energy, tangents: settings.accounts.tangents };
         let pair = Pair::at_tolerance(settings.tolerance.relative);
         let steps = match settings.method {
             Method::Event => Steps::EventDriven(pair),
             Method::Step => Steps::TwoStages,
             Method::Auto => Steps::Both(pair),
         };
-        Integrator::new(model, tracked, steps)
+        Integrator::new(model, settings.tracked(), steps)
     }
 
     /// Computes the bodies' accelerations anew from the forces, of which one from outside has jumped. No force on a mass has.

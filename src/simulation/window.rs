@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::driver::{TrialStep, WorkLimit};
 use super::motion::{SimulationError, Start};
 use super::run::{Run, Settings};
-use crate::integrator::{DenseWorkspace, Integrator, STAGES, StepSpan, StepStart};
+use crate::integrator::{DenseWorkspace, Integrator, Pair, STAGES, StepSpan, StepStart, Steps};
 use crate::model::{ChannelEnergies, EndForces, LinkKind, Model, State};
 use crate::outputs::{Counters, Energies};
 
@@ -45,11 +45,12 @@ impl StepOfPart {
 }
 
 impl Window {
-    /// A window of `masses` in the layer of `model` with these settings.
-    pub(super) fn new(model: &Model, settings: &Settings, masses: usize) -> Self {
-        let (part, settings) = (Arc::new(model.part(masses)), settings.of_window());
+    /// A window of the masses of `part`, in a layer with these settings.
+    pub(super) fn new(part: Model, settings: &Settings) -> Self {
+        let (part, settings) = (Arc::new(part), settings.of_window());
+        let pair = Pair::at_tolerance(settings.tolerance.relative);
         let whole = StepOfPart {
-            integrator: Run::integrator(&part, &settings),
+            integrator: Integrator::new(&part, settings.tracked(), Steps::Taken(pair)),
             start: StepStart::new(&part),
             span: StepSpan { start: 0.0, length: 0.0 },
             dense: DenseWorkspace::new(&part),
@@ -62,7 +63,7 @@ impl Window {
     /// Changes to another temperature: `model` and `settings` are those of the layer there.
     pub(super) fn heat(&mut self, model: &Model, settings: &Settings) {
         if self.run.model.relaxation_times.len() != model.relaxation_times.len() {
-            *self = Self::new(model, settings, self.len());
+            *self = Self::new(model.part(self.len()), settings);
             return;
         }
         Arc::make_mut(&mut self.run.model).set_temperature_of(model);

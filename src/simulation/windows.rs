@@ -31,7 +31,8 @@ const DISTURBANCE: f64 = 0.3;
 const LEAST_WINDOWS: usize = 4;
 /// Windows may hold at most the layer's masses divided by this: beyond that it is better to cut the step.
 const OF_MASSES: usize = 2;
-/// The most windows of one width: more are seldom open at once, and each takes memory.
+/// The most windows of the least width, of twice this width half as many, and so on: more are seldom open at once, and each
+/// takes memory.
 const MOST_WINDOWS: usize = 16;
 /// The force by which the links at a window's ends may be off, as a share of the error allowed in the force of one mass.
 ///
@@ -91,11 +92,12 @@ impl Windows {
         if LEAST_WINDOWS * width > model.masses() {
             return None;
         }
-        let mut windows = Vec::new();
+        let (mut windows, mut most) = (Vec::new(), MOST_WINDOWS);
         while 2 * width <= most_masses {
-            let count = (most_masses / width).min(MOST_WINDOWS);
-            windows.extend((0..count).map(|_| Window::new(model, settings, width)));
-            width *= 2;
+            let count = (most_masses / width).min(most);
+            let part = model.part(width);
+            windows.extend((0..count).map(|_| Window::new(part.clone(), settings)));
+            (width, most) = (2 * width, (most / 2).max(1));
         }
         Some(Box::new(Self {
             windows,

@@ -30,7 +30,7 @@ pub(super) use newton::SlippingMass;
 pub struct NoConvergence;
 
 /// Contributions of the earlier stages to a stage: the starred values and the known forces of the Maxwell elements.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct StageHistory {
     /// e*_x, m: as if the carrier stood where it was at the start of the step.
     pub elongation_x: Vec<f64>,
@@ -52,7 +52,7 @@ impl StageHistory {
             elongation_z: zero.clone(),
             velocity_x: zero.clone(),
             velocity_z: zero,
-            force: Forces::new(model).link,
+            force: Forces::of_links(model),
         }
     }
 
@@ -129,9 +129,10 @@ impl StageLaw {
 
 /// Which slipping stages the factors of the Jacobian serve. It changes little through a step, so that those of one stage
 /// nearly always do for the others.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Factors {
     /// None: they are of another step.
+    #[default]
     Outdated,
     /// The further stages of the step, too.
     Held,
@@ -140,9 +141,10 @@ enum Factors {
 }
 
 /// How the friction of the contacts is treated within a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Friction {
     /// Slips go on in their direction, sticks hold, whatever the forces.
+    #[default]
     Held,
     /// A slip that would reverse stops, a stick that would need more than T(0) breaks loose.
     SetValued,
@@ -158,7 +160,7 @@ impl Friction {
 }
 
 /// Solver of the stages of one model.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct StageSolver {
     /// To be set before a stage is solved.
     pub history: StageHistory,
@@ -218,6 +220,11 @@ impl StageSolver {
             factors: Factors::Outdated,
             iterations: 0,
         }
+    }
+
+    /// The state at the end of a step alone, without workspace to solve stages of `model`.
+    pub(super) fn of_end(model: &Model) -> Self {
+        Self { state: State::new(model.masses(), model.maxwell_variables()), ..Self::default() }
     }
 
     /// Prepares the stages of a step from `state`. Its modes are held through the step, but where `friction` is of
