@@ -382,6 +382,8 @@ pub struct DenseWorkspace {
 struct RelaxationWeights {
     start: f64,
     rate: [f64; STAGES],
+    /// The exact solution over the whole step.
+    whole: Relaxation,
 }
 
 impl DenseWorkspace {
@@ -414,7 +416,7 @@ impl DenseWorkspace {
 
     /// The weights of the elements of one row at the fraction for which the weights are set.
     pub(super) fn of_elements(&self, row: &MaxwellRow) -> ElementWeights {
-        let RelaxationWeights { start, rate } = self.relaxation[row.time_index];
+        let RelaxationWeights { start, rate, .. } = self.relaxation[row.time_index];
         ElementWeights { ends: [start, self.at.0], rates: rate }
     }
 
@@ -424,12 +426,16 @@ impl DenseWorkspace {
         if self.at == (theta, h) {
             return;
         }
+        let is_other_step = self.at.1 != h;
         self.at = (theta, h);
         self.values = step.interpolation.values(theta);
         self.integral = step.interpolation.integral(theta).map(|weight| h * weight);
         self.of_rate = [[0.0; STAGES]; 4];
         for (relaxation, tau) in self.relaxation.iter_mut().zip(&step.model.relaxation_times) {
-            let (here, whole) = (Relaxation::new(h / tau, theta), Relaxation::new(h / tau, 1.0));
+            if is_other_step {
+                relaxation.whole = Relaxation::new(h / tau, 1.0);
+            }
+            let (here, whole) = (Relaxation::new(h / tau, theta), relaxation.whole);
             let driven = std::array::from_fn(|power| h * (here.driven[power] - theta * whole.driven[power]));
             relaxation.start = here.decay - theta * whole.decay;
             relaxation.rate = step.interpolation.combined(&driven);

@@ -5,11 +5,10 @@
 //! (`maxwell`). So sums over the layer are taken of their products, once per step, and not of every element at every
 //! stage.
 
-use super::Tableau;
 use super::maxwell::{Maxwell, StageCoefficients};
 use super::method::Usage;
 use super::rates::Rates;
-use crate::math::{dot, sum_of_pairs};
+use crate::math::{dot, dots, sum_of_pairs};
 use crate::model::{ChannelEnergies, Exchange, LinkKind, MaxwellRow, Model};
 
 /// Σ ė_i ė_j over the links of one kind, m²/s², where they are needed; 0 elsewhere.
@@ -59,7 +58,7 @@ impl<const STAGES: usize> StepSums<STAGES> {
     pub(super) fn collect(
         &mut self,
         model: &Model,
-        (tableau, maxwell): (&Tableau<STAGES>, &Maxwell<STAGES>),
+        maxwell: &Maxwell<STAGES>,
         a: &[f64],
         stages: &[Rates],
         h: f64,
@@ -68,12 +67,10 @@ impl<const STAGES: usize> StepSums<STAGES> {
             return;
         }
         self.known = true;
-        // The first stage whose rates drive the elements: in most methods the start of the step does not.
-        let first = usize::from(tableau.a.iter().all(|row| row[0] == 0.0));
         for kind in LinkKind::ALL {
             let has_elements = model.rows_of(kind).next().is_some();
             if has_elements || model.links[kind as usize].damping > 0.0 {
-                self.rates[kind as usize] = rate_products(stages, kind, has_elements.then_some(first));
+                self.rates[kind as usize] = rate_products(stages, kind, has_elements);
             }
             let unresolved = model.rows_of(kind).any(|row| h / row.relaxation_time > RESOLVED);
             self.changes[kind as usize] = if unresolved { largest_change(stages, kind) } else { 0.0 };
@@ -81,18 +78,18 @@ impl<const STAGES: usize> StepSums<STAGES> {
         for (row, sums) in model.rows.iter().zip(&mut self.elements) {
             let coefficients = &maxwell.coefficients()[row.time_index];
             let products = &self.rates[row.kind as usize];
-            *sums = ElementSums::new(row, &a[row.range.clone()], (stages, first), (coefficients, products), h);
+            *sums = ElementSums::new(row, &a[row.range.clone()], stages, (coefficients, products), h);
         }
     }
 }
 
 impl<const STAGES: usize> ElementSums<STAGES> {
-    /// The sums over the elements of `row` from the elongations `a` (m), which the `stages` from the `first` on drive: a_i =
-    /// p_i a_0 + h Σ_j q_ij ė_j multiplied out, with the `products` of the rates.
+    /// The sums over the elements of `row` from the elongations `a` (m), which the `stages` drive: a_i = p_i a_0 + h Σ_j q_ij
+    /// ė_j multiplied out, with the `products` of the rates.
     fn new(
         row: &MaxwellRow,
         a: &[f64],
-        (stages, first): (&[Rates], usize),
+        stages: &[Rates],
         (coefficients, products): (&StageCoefficients<STAGES>, &RateProducts<STAGES>),
         h: f64,
     ) -> Self {
@@ -103,15 +100,14 @@ impl<const STAGES: usize> ElementSums<STAGES> {
             (square, tau * sum_of_pairs(a, rate(0), |a, rate| l(a, rate) * rate))
         };
         let start = dot(a, a);
-        let mixed: [f64; STAGES] = std::array::from_fn(|j| if j < first { 0.0 } else { dot(a, rate(j)) });
+        let mixed: [f64; STAGES] = dots(std::array::from_fn(|j| (a, rate(j))));
         let square = |i: usize| {
             let (p, q) = (coefficients.start[i], &coefficients.rate[i]);
-            // Rates that do not drive the elements have q = 0.
             let of_rate = |j: usize| {
-                let with_others: f64 = (0..STAGES).map(|l| q[l] * products[j][l]).sum();
-                q[j] * (2.0 * p * mixed[j] + with_others)
+                let with_earlier: f64 = (0..j).map(|l| q[l] * products[j][l]).sum();
+                q[j] * (2.0 * (p * mixed[j] + with_earlier) + q[j] * products[j][j])
             };
-            p * p * start + (0..STAGES).map(of_rate).sum::<f64>()
+            p * p * start + (0..=i).map(of_rate).sum::<f64>()
         };
         Self { squares: std::array::from_fn(square), relaxing: (h / tau > RESOLVED).then(relaxing) }
     }
@@ -189,14 +185,16 @@ impl<const STAGES: usize> StepPowers<'_, STAGES> {
     }
 }
 
-/// The products of one kind of link: of each stage with itself, and of all from the `first` on with each other.
-fn rate_products<const STAGES: usize>(stages: &[Rates], kind: LinkKind, first: Option<usize>) -> RateProducts<STAGES> {
+/// The products of one kind of link: of each stage with itself, and of `all` with each other.
+fn rate_products<const STAGES: usize>(stages: &[Rates], kind: LinkKind, all: bool) -> RateProducts<STAGES> {
+    let rate = |i: usize| &stages[i].elongation_rate[kind as usize][..];
     let mut products = [[0.0; STAGES]; STAGES];
-    for i in 0..STAGES {
-        let rate = &stages[i].elongation_rate[kind as usize];
-        for j in first.unwrap_or(i).min(i)..=i {
-            products[i][j] = dot(rate, &stages[j].elongation_rate[kind as usize]);
-            products[j][i] = products[i][j];
+    // Each stage with the one that is so many behind it, around the end: half of the distances make all pairs.
+    for distance in 0..=if all { STAGES / 2 } else { 0 } {
+        let other = |i: usize| (i + distance) % STAGES;
+        let sums: [f64; STAGES] = dots(std::array::from_fn(|i| (rate(i), rate(other(i)))));
+        for (i, sum) in sums.into_iter().enumerate() {
+            (products[i][other(i)], products[other(i)][i]) = (sum, sum);
         }
     }
     products
@@ -287,11 +285,11 @@ mod tests {
         let start: Vec<f64> =
             model.rows.iter().flat_map(|row| row.range.clone().map(|_| row.relaxation_time)).collect();
         let start: Vec<f64> = start.into_iter().map(|tau| tau.min(1.0) * number()).collect();
-        let mut maxwell = Maxwell::<STAGES>::new(&model, true);
+        let mut maxwell = Maxwell::<STAGES>::new(&model, Usage::Solving);
         maxwell.begin(&model, &ESDIRK5, &start, h);
         let weights: [f64; STAGES] = std::array::from_fn(|_| number());
-        let mut sums = StepSums::new(&model, true);
-        sums.collect(&model, (&ESDIRK5, &maxwell), &start, &stages, h);
+        let mut sums = StepSums::new(&model, Usage::Solving);
+        sums.collect(&model, &maxwell, &start, &stages, h);
         let (measure, weights) = (Measure::Integral(weights.iter().sum()), &weights);
         let powers = StepPowers { model: &model, maxwell: &maxwell, sums: &sums, exchange: &[], h, weights, measure };
         let found = powers.lost();

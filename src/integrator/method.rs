@@ -182,7 +182,7 @@ impl<const N: usize> RungeKutta<N> {
         h: f64,
         (weights, measure): (&[f64; N], Measure),
     ) -> ChannelEnergies {
-        self.sums.collect(model, (self.tableau, &self.maxwell), &start.maxwell, &stages.rates[..N], h);
+        self.sums.collect(model, &self.maxwell, &start.maxwell, &stages.rates[..N], h);
         let (maxwell, sums) = (&self.maxwell, &self.sums);
         StepPowers { model, maxwell, sums, exchange: &stages.exchange, h, weights, measure }.energies()
     }

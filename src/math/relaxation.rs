@@ -39,9 +39,9 @@ fn phi_functions(x: f64) -> [f64; 5] {
         }
     } else {
         let mut term = INVERSE_FACTORIAL[5];
-        for n in 1..=TERMS {
+        for divisor in INVERSE_DIVISORS {
             phi[4] += term;
-            term *= -x / (5 + n) as f64;
+            term *= -x * divisor;
         }
         for k in (1..5).rev() {
             phi[k - 1] = INVERSE_FACTORIAL[k] - x * phi[k];
@@ -54,6 +54,17 @@ const INVERSE_FACTORIAL: [f64; 6] = [1.0, 1.0, 1.0 / 2.0, 1.0 / 6.0, 1.0 / 24.0,
 
 /// 1/(5 + 14)! is below the last digit of 1/5!.
 const TERMS: usize = 14;
+
+/// 1/(5 + n) for n = 1 … [`TERMS`].
+const INVERSE_DIVISORS: [f64; TERMS] = {
+    let mut inverse = [0.0; TERMS];
+    let mut n = 0;
+    while n < TERMS {
+        inverse[n] = 1.0 / (6 + n) as f64;
+        n += 1;
+    }
+    inverse
+};
 
 #[cfg(test)]
 mod tests {

@@ -8,18 +8,15 @@ const MOST_TERMS: usize = 8;
 /// Numbers taken together, so that the compiler uses vector instructions.
 const LANES: usize = 8;
 
+/// The same where several sums share a pass.
+const DOT_LANES: usize = 4;
+
 /// out_i = Σ_t weight_t term_t,i. Terms may be longer than `out`.
 ///
 /// # Panics
 /// Where a term is shorter than `out`.
 pub fn weighted_sum<'a>(out: &mut [f64], terms: impl IntoIterator<Item = (f64, &'a [f64])>) {
-    let mut terms = terms.into_iter();
-    let mut batch = [(0.0, &[][..]); MOST_TERMS];
-    let filled = fill(&mut batch, &mut terms);
-    sum_up::<false>(out, &batch[..filled]);
-    if filled == MOST_TERMS {
-        add_weighted_sum(out, terms);
-    }
+    sum_in_batches(out, false, terms);
 }
 
 /// out_i += Σ_t weight_t term_t,i. Terms may be longer than `out`.
@@ -27,28 +24,31 @@ pub fn weighted_sum<'a>(out: &mut [f64], terms: impl IntoIterator<Item = (f64, &
 /// # Panics
 /// Where a term is shorter than `out`.
 pub fn add_weighted_sum<'a>(out: &mut [f64], terms: impl IntoIterator<Item = (f64, &'a [f64])>) {
-    let mut terms = terms.into_iter();
-    let mut batch = [(0.0, &[][..]); MOST_TERMS];
-    let mut filled = MOST_TERMS;
-    while filled == MOST_TERMS {
-        filled = fill(&mut batch, &mut terms);
-        sum_up::<true>(out, &batch[..filled]);
-    }
+    sum_in_batches(out, true, terms);
 }
 
-/// Takes the next terms and returns their number.
-fn fill<'a>(batch: &mut [(f64, &'a [f64]); MOST_TERMS], terms: &mut impl Iterator<Item = (f64, &'a [f64])>) -> usize {
-    let mut filled = 0;
-    while filled < MOST_TERMS
-        && let Some(term) = terms.next()
-    {
+/// Sums up [`MOST_TERMS`] terms at a time; `add`s the first of them to what is there.
+#[inline]
+fn sum_in_batches<'a>(out: &mut [f64], add: bool, terms: impl IntoIterator<Item = (f64, &'a [f64])>) {
+    let mut batch = [(0.0, &[][..]); MOST_TERMS];
+    let (mut filled, mut add) = (0, add);
+    // Chained iterators are faster where they drive the loop.
+    terms.into_iter().for_each(|term| {
+        if filled == MOST_TERMS {
+            sum_up(out, add, &batch);
+            (filled, add) = (0, true);
+        }
         batch[filled] = term;
         filled += 1;
-    }
-    filled
+    });
+    sum_up(out, add, &batch[..filled]);
 }
 
-fn sum_up<const ADD: bool>(out: &mut [f64], terms: &[(f64, &[f64])]) {
+fn sum_up(out: &mut [f64], add: bool, terms: &[(f64, &[f64])]) {
+    if add { sum_of_terms::<true>(out, terms) } else { sum_of_terms::<false>(out, terms) }
+}
+
+fn sum_of_terms<const ADD: bool>(out: &mut [f64], terms: &[(f64, &[f64])]) {
     with_widest_vectors(
         #[inline(always)]
         || match *terms {
@@ -103,6 +103,52 @@ pub fn sum_of_pairs(a: &[f64], b: &[f64], term: impl Fn(f64, f64) -> f64) -> f64
             sums.iter().sum::<f64>() + rest
         },
     )
+}
+
+/// Σ_i a_i b_i of several pairs of arrays, over the shortest of all.
+pub fn dots<const N: usize>(pairs: [(&[f64], &[f64]); N]) -> [f64; N] {
+    let mut sums = [0.0; N];
+    let (fours, rest) = pairs.as_chunks::<4>();
+    let (sums_of_fours, sums_of_rest) = sums.as_chunks_mut::<4>();
+    sums_of_fours.iter_mut().zip(fours).for_each(|(sums, pairs)| *sums = dots_in_a_pass(*pairs));
+    match *rest {
+        [a] => sums_of_rest.copy_from_slice(&dots_in_a_pass([a])),
+        [a, b] => sums_of_rest.copy_from_slice(&dots_in_a_pass([a, b])),
+        [a, b, c] => sums_of_rest.copy_from_slice(&dots_in_a_pass([a, b, c])),
+        _ => (),
+    }
+    sums
+}
+
+/// The same for as many pairs as there are registers for.
+fn dots_in_a_pass<const N: usize>(pairs: [(&[f64], &[f64]); N]) -> [f64; N] {
+    let n = pairs.iter().map(|(a, b)| a.len().min(b.len())).min().unwrap_or(0);
+    let whole = n - n % DOT_LANES;
+    let sums = with_widest_vectors(
+        #[inline(always)]
+        || {
+            let chunks = pairs.map(|(a, b)| (chunks_of(&a[..whole]), chunks_of(&b[..whole])));
+            let mut sums = [[0.0; DOT_LANES]; N];
+            for i in 0..whole / DOT_LANES {
+                for (sums, (a, b)) in sums.iter_mut().zip(chunks) {
+                    for lane in 0..DOT_LANES {
+                        sums[lane] += a[i][lane] * b[i][lane];
+                    }
+                }
+            }
+            sums
+        },
+    );
+    std::array::from_fn(|pair| {
+        let (a, b) = pairs[pair];
+        let rest: f64 = a[whole..n].iter().zip(&b[whole..n]).map(|(a, b)| a * b).sum();
+        sums[pair].iter().sum::<f64>() + rest
+    })
+}
+
+#[inline(always)]
+fn chunks_of(values: &[f64]) -> &[[f64; DOT_LANES]] {
+    values.as_chunks().0
 }
 
 /// Σ_i term(a_i, b_i, c_i) over the shortest of the three, in `LANES` partial sums.
