@@ -5,7 +5,7 @@
 
 use super::rates::Rates;
 use super::tableau::STAGES;
-use crate::math::{dot, sum_of_pairs};
+use crate::math::{dot, sum};
 use crate::model::{CarrierPoint, LinkKind, MaxwellRow, Model, State};
 
 /// Elongations of links to the carrier (m) and velocities of masses (m/s), along x and z: of one mass, or summed.
@@ -144,8 +144,4 @@ impl AxisSums {
         }
         force
     }
-}
-
-fn sum(values: &[f64]) -> f64 {
-    sum_of_pairs(values, values, |value, _| value)
 }

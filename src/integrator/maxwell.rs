@@ -218,14 +218,16 @@ impl<const STAGES: usize> KindSums<STAGES> {
         };
         for i in 1..STAGES {
             weighted_sum(&mut self.start[i], start(i));
-            for j in 0..=i {
-                self.rate[i][j] = rows().map(|(row, coefficients)| row.stiffness * coefficients.rate[i][j]).sum();
-            }
         }
         let error = rows().map(|(row, coefficients)| (row.stiffness * coefficients.error_start, &a[row.range.clone()]));
         weighted_sum(&mut self.error_start, error);
-        self.error_rate =
-            std::array::from_fn(|j| rows().map(|(row, coefficients)| row.stiffness * coefficients.error_rate[j]).sum());
+        (self.rate, self.error_rate) = ([[0.0; STAGES]; STAGES], [0.0; STAGES]);
+        for (row, coefficients) in rows() {
+            let sums = self.rate.iter_mut().chain([&mut self.error_rate]);
+            for (sums, rates) in sums.zip(coefficients.rate.iter().chain([&coefficients.error_rate])) {
+                sums.iter_mut().zip(rates).for_each(|(sum, rate)| *sum += row.stiffness * rate);
+            }
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use super::rates::{Rates, StepStart};
 use super::sensitivity::{SolvedStage, Tangent};
 use super::stage::{BodyHistory, ConvergenceTest, Friction, NoConvergence, StagePoint, StageSolver};
 use super::tableau::{ContinuousWeights, STAGES, Tableau};
-use crate::math::weighted_sum;
+use crate::math::{weighted_sum, with_widest_vectors};
 use crate::model::Axis;
 use crate::model::{Carrier, CarrierPoint, ChannelEnergies, Exchange, LinkKind, Mode, Model, State};
 
@@ -292,6 +292,14 @@ impl Stages {
     }
 
     fn guess_limited(&mut self, step: &StepInput<'_>, i: usize) {
+        with_widest_vectors(
+            #[inline(always)]
+            || self.set_limited_guess(step, i),
+        );
+    }
+
+    #[inline(always)]
+    fn set_limited_guess(&mut self, step: &StepInput<'_>, i: usize) {
         let (known, guess, history) = (&self.rates[i - 1], &mut self.solver.state, &self.solver.history);
         let carrier = self.carrier[i].u_rate.abs() + self.carrier[i].w_rate.abs();
         // Slices of one length, so that an index into one of them is one into all.
@@ -304,8 +312,8 @@ impl Stages {
             let (v_x, v_z) = (star_x[i], star_z[i]);
             let most = carrier + v_x.abs() + v_z.abs();
             let moves = if mode[i] == Mode::Stick { 0.0 } else { 1.0 };
-            guess_x[i] = moves * (v_x + (step.beta * known_x[i]).clamp(-most, most));
-            guess_z[i] = moves * (v_z + (step.beta * known_z[i]).clamp(-most, most));
+            guess_x[i] = moves * (v_x + (step.beta * known_x[i]).min(most).max(-most));
+            guess_z[i] = moves * (v_z + (step.beta * known_z[i]).min(most).max(-most));
         }
     }
 

@@ -149,8 +149,10 @@ impl<'a> TwoStageDense<'a> {
             let (start, end) = (self.start.elongation_x[i], self.end.elongation_x[i]);
             let middle = GAMMA * self.span.length * self.first.velocity_x[i];
             let x = start + (parabola(theta, middle, self.carrier_moved.0 + (end - start)) - moved.0);
-            let at_stages = [self.start.velocity_x[i], self.first.velocity_x[i], self.end.velocity_x[i]];
-            all.add(&self.on_profile(i, (x, dot(&weights, &at_stages)), &here).motion());
+            let v_x = weights[0] * self.start.velocity_x[i]
+                + weights[1] * self.first.velocity_x[i]
+                + weights[2] * self.end.velocity_x[i];
+            all.add(&self.on_profile(i, (x, v_x), &here).motion());
         }
         all
     }

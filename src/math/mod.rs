@@ -20,6 +20,6 @@ pub use random::SplitMix64;
 pub use relaxation::Relaxation;
 pub use root::bracketed_root;
 pub use spline::{Bounds, Spline};
-pub use sums::{add_weighted_sum, dot, dots, sum_of, sum_of_pairs, sum_of_triples, weighted_sum};
+pub use sums::{add_weighted_sum, dot, dots, sum, sum_of, sum_of_pairs, sum_of_triples, weighted_sum};
 pub use tridiagonal::BlockTridiagonal;
 pub use vectors::with_widest_vectors;

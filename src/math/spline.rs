@@ -18,8 +18,8 @@ pub struct Spline {
     pieces: Vec<Piece>,
     grid: Grid,
     ends: Ends,
-    /// The highest z, by interval, m.
-    tops: Vec<f64>,
+    /// The bounds of each interval.
+    extents: Vec<Bounds>,
     inside: Bounds,
 }
 
@@ -69,14 +69,9 @@ impl Spline {
 
     fn assemble(pieces: Vec<Piece>, ends: Ends) -> Self {
         let grid = Grid::new(&pieces);
-        let mut inside = Bounds::EMPTY;
-        let mut top = |piece: &Piece| {
-            let extent = piece.extent(piece.start, piece.end);
-            inside = inside.and(extent);
-            extent.z_max
-        };
-        let tops = pieces.iter().map(&mut top).collect();
-        Self { pieces, grid, ends, tops, inside }
+        let extents: Vec<_> = pieces.iter().map(|piece| piece.extent(piece.start, piece.end)).collect();
+        let inside = Bounds::over(&extents);
+        Self { pieces, grid, ends, extents, inside }
     }
 
     /// Height z (m), slope z' (1), curvature z'' (1/m) and z''' (1/m², constant between two points) at `x`.
@@ -279,6 +274,11 @@ pub struct Bounds {
 impl Bounds {
     const EMPTY: Self = Self { z_max: f64::NEG_INFINITY, slope_max_abs: 0.0, curvature_max_abs: 0.0 };
 
+    /// The bounds over all these ranges together.
+    fn over(ranges: &[Self]) -> Self {
+        ranges.iter().fold(Self::EMPTY, |all, range| all.and(*range))
+    }
+
     /// The bounds over two ranges together.
     fn and(self, other: Self) -> Self {
         Self {
@@ -311,9 +311,8 @@ impl Spline {
             return self.bounds().z_max;
         }
         let (from, to) = (self.grid.interval(&self.pieces, low), self.grid.interval(&self.pieces, high));
-        let tops = self.tops.get(from..=to).filter(|tops| tops.len() <= INTERVALS_SCANNED);
-        let highest = |tops: &[f64]| tops.iter().fold(f64::NEG_INFINITY, |top, &z| if z > top { z } else { top });
-        tops.map_or_else(|| self.bounds().z_max, highest)
+        let extents = self.extents.get(from..=to).filter(|extents| extents.len() <= INTERVALS_SCANNED);
+        extents.map_or_else(|| self.bounds(), Bounds::over).z_max
     }
 
     /// Bounds over the range from `x_low` to `x_high`, m: the true extremes over a few intervals, those of all
@@ -360,7 +359,8 @@ impl Spline {
             return self.inside;
         }
         let within = |piece: &Piece| piece.extent(low.max(piece.start), high.min(piece.end));
-        self.pieces[from..=to.max(from)].iter().map(within).fold(Bounds::EMPTY, Bounds::and)
+        let ends = within(&self.pieces[from]).and(within(&self.pieces[to.max(from)]));
+        ends.and(Bounds::over(self.extents.get(from + 1..to).unwrap_or_default()))
     }
 }
 

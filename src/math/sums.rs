@@ -80,6 +80,11 @@ fn pass<const ADD: bool, const N: usize>(out: &mut [f64], terms: [(f64, &[f64]);
     }
 }
 
+/// Σ_i a_i.
+pub fn sum(values: &[f64]) -> f64 {
+    sum_of_pairs(values, values, |value, _| value)
+}
+
 /// Σ_i a_i b_i over the shorter of both.
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     sum_of_pairs(a, b, |a, b| a * b)

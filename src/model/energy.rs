@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::math::dot;
+use crate::math::{dot, sum};
 use crate::scene::Axis;
 
 use super::{Carrier, CarrierPoint, ContactForces, Forces, FrictionCurve, LinkKind, Mode, Model, State};
@@ -181,6 +181,13 @@ impl FrictionPower {
             power.add(model, state.mode[i], v, &forces.contact(model, i, v, &state.surface[i]));
         }
         power
+    }
+
+    /// Under a linear law of friction: of masses with these σ v_t (m/s; 0 of those that do not slip) and normal forces (N).
+    pub fn of_linear_law(model: &Model, slip_speeds: &[f64], normal: &[f64]) -> Self {
+        let coulomb = model.friction_coefficient * dot(slip_speeds, normal);
+        let shear = if model.shear_force > 0.0 { model.shear_force * sum(slip_speeds) } else { 0.0 };
+        Self { at_rest: coulomb + shear, coulomb: if model.has_both_frictions { coulomb } else { 0.0 }, excess: 0.0 }
     }
 
     /// Adds that of a mass which slips in `mode` with the velocity ẋ (m/s) under the forces of `contact`.

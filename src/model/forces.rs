@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::reduction::{Reduction, Replacement};
 use super::{CarrierPoint, Model, State};
-use crate::math::{add_weighted_sum, sum_of};
+use crate::math::{add_weighted_sum, sum};
 use crate::scene::{Initial, LinkKind, Scene};
 
 /// The spring and the damper of one kind of link.
@@ -383,10 +383,6 @@ fn set_link_forces(
             (*force, *rate) = (law(e, e_rate) + known, e_rate);
         }
     }
-}
-
-fn sum(forces: &[f64]) -> f64 {
-    sum_of(forces.len(), |i| forces[i])
 }
 
 #[inline(always)]

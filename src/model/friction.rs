@@ -34,13 +34,20 @@ impl ContactForces {
     /// The contact forces that follow from the links' force on the mass (f_x, f_z), N, its velocity ẋ, m/s, and the
     /// surface under it.
     #[inline]
-    pub fn new(model: &Model, (f_x, f_z): (f64, f64), velocity_x: f64, surface: &SurfacePoint) -> Self {
+    pub fn new(model: &Model, forces: (f64, f64), velocity_x: f64, surface: &SurfacePoint) -> Self {
+        let contact = Self::without_limit(model, forces, velocity_x, surface);
+        let limit = model.friction_coefficient * contact.normal + model.shear_at_rest(contact.normal);
+        Self { limit, ..contact }
+    }
+
+    /// The same without T(0).
+    #[inline(always)]
+    pub fn without_limit(model: &Model, (f_x, f_z): (f64, f64), velocity_x: f64, surface: &SurfacePoint) -> Self {
         let s = surface.slope;
         let q = (1.0 + s * s).sqrt();
         // From (6)-(9): the normal force needs no acceleration.
         let normal = (model.mass * surface.curvature * velocity_x * velocity_x - f_z + s * f_x) / q;
-        let limit = model.friction_coefficient * normal + model.shear_at_rest(normal);
-        Self { normal, tangential: (f_x + s * f_z) / q, limit, q }
+        Self { normal, tangential: (f_x + s * f_z) / q, limit: 0.0, q }
     }
 
     /// Those of a slipping mass with a normal force (N) and velocities ẋ ≠ 0 and ż (m/s), but for f·t.

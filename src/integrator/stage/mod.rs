@@ -17,7 +17,7 @@ mod newton;
 use nalgebra::Vector2;
 
 use super::error::{NEWTON_SHARE, Tolerance};
-use super::rates::Rates;
+use super::rates::{NO_LIMIT, Rates};
 use crate::math::{BlockTridiagonal, with_widest_vectors};
 use crate::model::{CarrierPoint, ContactForces, Forces, FrictionPower, LinkKind, LinkMotion, Mode, Model, State};
 use newton::{Climb, NeighbourWeights, RateFriction, RowShares, largest};
@@ -170,6 +170,8 @@ pub(super) struct StageSolver {
     pub forces: Forces,
     /// The power of friction at the solved stage.
     pub friction_power: FrictionPower,
+    /// σ v_t of the slipping masses at the solved stage, 0 of the others, m/s.
+    slip_speed: Vec<f64>,
     friction: Friction,
     /// By kind of link.
     pub laws: [StageLaw; 4],
@@ -208,6 +210,7 @@ impl StageSolver {
             state: State::new(k, model.maxwell_variables()),
             forces: Forces::new(model),
             friction_power: FrictionPower::default(),
+            slip_speed: vec![0.0; k],
             friction: Friction::Held,
             laws: [StageLaw::default(); 4],
             contacts: Vec::with_capacity(k),
@@ -446,9 +449,19 @@ impl StageSolver {
     fn write_rates(&mut self, model: &Model, point: &StagePoint, rates: &mut Rates) {
         with_widest_vectors(
             #[inline(always)]
-            || self.set_rates(point, rates),
+            || {
+                self.set_rates(point, rates);
+                if model.friction_is_linear() {
+                    self.set_linear_contact_rates(model, rates);
+                }
+            },
         );
-        self.set_contact_rates(model, rates);
+        if model.friction_is_linear() {
+            self.set_stick_rates(model, rates);
+            self.friction_power = FrictionPower::of_linear_law(model, &self.slip_speed, &rates.normal);
+        } else {
+            self.set_contact_rates(model, rates);
+        }
     }
 
     #[inline(always)]
@@ -463,12 +476,44 @@ impl StageSolver {
         for (kind, rate) in LinkKind::ALL.into_iter().zip(&mut rates.elongation_rate) {
             motion.elongation_rates(kind, rate);
         }
-        rates.clear_contacts();
+    }
+
+    /// Sets the contact rates of all masses, of sticking ones as of slipping ones, and the speeds of slip under a linear law
+    /// of friction.
+    #[inline(always)]
+    fn set_linear_contact_rates(&mut self, model: &Model, rates: &mut Rates) {
+        let slip_speed = &mut self.slip_speed[..];
+        // Slices of one length, so that an index into one of them is one into all.
+        let k = slip_speed.len();
+        let (mode, surface, v_x) = (&self.state.mode[..k], &self.state.surface[..k], &self.state.velocity_x[..k]);
+        let (f_x, f_z) = (&self.forces.on_mass_x[..k], &self.forces.on_mass_z[..k]);
+        let (a_x, a_z) = (&rates.acceleration_x[..k], &mut rates.acceleration_z[..k]);
+        let (normal, margin) = (&mut rates.normal[..k], &mut rates.margin[..k]);
+        for i in 0..k {
+            let (v, surface, sigma) = (v_x[i], &surface[i], mode[i].direction());
+            let (is_free, slips) = (mode[i] == Mode::Free, sigma != 0.0);
+            let contact = ContactForces::without_limit(model, (f_x[i], f_z[i]), v, surface);
+            a_z[i] = if is_free { a_z[i] } else { surface.slope * a_x[i] + surface.curvature * v * v };
+            normal[i] = if is_free { NO_LIMIT } else { contact.normal };
+            margin[i] = if slips && model.has_friction { sigma * v } else { NO_LIMIT };
+            slip_speed[i] = if slips { sigma * v * contact.q } else { 0.0 };
+        }
+    }
+
+    /// Sets what differs of sticking masses from slipping ones.
+    fn set_stick_rates(&self, model: &Model, rates: &mut Rates) {
+        for &i in self.contacts.iter().filter(|&&i| self.state.mode[i] == Mode::Stick) {
+            let surface = &self.state.surface[i];
+            let contact = self.forces.contact(model, i, 0.0, surface);
+            (rates.acceleration_x[i], rates.acceleration_z[i]) = (0.0, 0.0);
+            rates.margin[i] = contact.limit - contact.tangential.abs();
+        }
     }
 
     /// Sets the rates of the masses in contact, and the power of friction.
     fn set_contact_rates(&mut self, model: &Model, rates: &mut Rates) {
         let mut friction_power = FrictionPower::default();
+        rates.clear_contacts();
         let state = &self.state;
         let k = state.mode.len();
         let (modes, velocities, surfaces) = (&state.mode[..k], &state.velocity_x[..k], &state.surface[..k]);

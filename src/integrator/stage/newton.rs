@@ -29,27 +29,37 @@ impl StageSolver {
     pub(super) fn set_residuals(&mut self, model: &Model, beta: f64) {
         with_widest_vectors(
             #[inline(always)]
-            || self.set_residuals_as_of_free_masses(model, beta),
+            || self.set_linear_residuals(model, beta),
         );
-        for &i in &self.contacts {
-            self.system.right[i] = Vector2::zeros();
+        if !model.friction_is_linear() {
+            self.slip_residuals(model, 1.0 / beta);
         }
-        self.slip_residuals(model, 1.0 / beta);
         if model.friction_depends_on_speed() {
             self.add_rate_shear(model, beta);
         }
         self.set_border_residuals(beta);
     }
 
+    /// The same of all masses under a linear law of friction.
     #[inline(always)]
-    fn set_residuals_as_of_free_masses(&mut self, model: &Model, beta: f64) {
-        let inertia = model.mass / beta;
-        let velocities = self.state.velocity_x.iter().zip(&self.state.velocity_z);
-        let starred = self.history.velocity_x.iter().zip(&self.history.velocity_z);
-        let forces = self.forces.on_mass_x.iter().zip(&self.forces.on_mass_z);
-        let known = velocities.zip(starred).zip(forces);
-        for (right, (((v_x, v_z), (star_x, star_z)), (f_x, f_z))) in self.system.right.iter_mut().zip(known) {
-            *right = Vector2::new(f_x - inertia * (v_x - star_x), f_z - inertia * (v_z - star_z));
+    fn set_linear_residuals(&mut self, model: &Model, beta: f64) {
+        let (inertia, per_beta) = (model.mass / beta, 1.0 / beta);
+        let right = &mut self.system.right[..];
+        // Slices of one length, so that an index into one of them is one into all.
+        let k = right.len();
+        let (v_x, v_z) = (&self.state.velocity_x[..k], &self.state.velocity_z[..k]);
+        let (star_x, star_z) = (&self.history.velocity_x[..k], &self.history.velocity_z[..k]);
+        let (f_x, f_z) = (&self.forces.on_mass_x[..k], &self.forces.on_mass_z[..k]);
+        let (mode, surface) = (&self.state.mode[..k], &self.state.surface[..k]);
+        let law = TangentLaw { normal: 0.0, mu: model.friction_coefficient, shear: model.shear_force };
+        for i in 0..k {
+            let (gained_x, gained_z) = (v_x[i] - star_x[i], v_z[i] - star_z[i]);
+            let sigma = mode[i].direction();
+            let slip = SlippingMass::under(law, sigma, &surface[i], (v_x[i], gained_x * per_beta));
+            let of_slip = if sigma == 0.0 { 0.0 } else { -slip.residual(model, (f_x[i], f_z[i])) };
+            let is_free = mode[i] == Mode::Free;
+            let along_x = if is_free { f_x[i] - inertia * gained_x } else { of_slip };
+            right[i] = Vector2::new(along_x, if is_free { f_z[i] - inertia * gained_z } else { 0.0 });
         }
     }
 
@@ -234,14 +244,22 @@ impl SlippingMass {
     /// the law's.
     #[inline]
     fn new(model: &Model, mode: Mode, surface: &SurfacePoint, motion: (f64, f64), forces: (f64, f64)) -> Self {
-        let (s, (velocity, acceleration)) = (surface.slope, motion);
         let sigma = mode.direction();
-        let q2 = 1.0 + s * s;
-        let (normal, mu, shear) = if model.real_area.is_some() {
-            tangent_of_friction(model, &ContactForces::new(model, forces, velocity, surface), sigma * velocity)
+        let law = if model.real_area.is_some() {
+            let (velocity, _) = motion;
+            TangentLaw::new(model, &ContactForces::new(model, forces, velocity, surface), sigma * velocity)
         } else {
-            (0.0, model.friction_coefficient, model.shear_force)
+            TangentLaw { normal: 0.0, mu: model.friction_coefficient, shear: model.shear_force }
         };
+        Self::under(law, sigma, surface, motion)
+    }
+
+    /// A mass that slips in the direction `sigma` over `surface` with ẋ and ẍ (`motion`), under this law of friction.
+    #[inline(always)]
+    fn under(law: TangentLaw, sigma: f64, surface: &SurfacePoint, (velocity, acceleration): (f64, f64)) -> Self {
+        let TangentLaw { normal, mu, shear } = law;
+        let s = surface.slope;
+        let q2 = 1.0 + s * s;
         let sigma_mu = sigma * mu;
         Self {
             s,
@@ -277,6 +295,7 @@ impl SlippingMass {
     /// shear force at rest (for the rate-dependent part see [`RateFriction`]):
     ///
     ///   m q² ẍ + m κ ẋ² (s + σμ) - (1 - σμs) f_x - (s + σμ) f_z + σ A τ_0 q = 0
+    #[inline(always)]
     fn residual(&self, model: &Model, (f_x, f_z): (f64, f64)) -> f64 {
         let centripetal = self.kappa * self.velocity * self.velocity * self.share_z;
         model.mass * (self.q2 * self.acceleration + centripetal) - self.share_x * f_x - self.share_z * f_z
@@ -345,11 +364,24 @@ impl SlippingMass {
     }
 }
 
-/// F_N, ∂T/∂F_N at the `speed` σẋ, and what these leave of T(0), N: out of the way of the usual, linear law.
-#[inline(never)]
-fn tangent_of_friction(model: &Model, contact: &ContactForces, speed: f64) -> (f64, f64, f64) {
-    let mu = contact.limit_by_normal(model, speed * contact.q);
-    (contact.normal, mu, contact.limit - mu * contact.normal)
+/// A law of friction that is linear in the normal force, or its tangent.
+#[derive(Clone, Copy, Debug)]
+struct TangentLaw {
+    /// F_N, N; 0 where the law is linear.
+    normal: f64,
+    /// ∂T/∂F_N.
+    mu: f64,
+    /// T(0) less that times F_N, N.
+    shear: f64,
+}
+
+impl TangentLaw {
+    /// At the forces of `contact` and the `speed` σẋ: out of the way of the usual, linear law.
+    #[inline(never)]
+    fn new(model: &Model, contact: &ContactForces, speed: f64) -> Self {
+        let mu = contact.limit_by_normal(model, speed * contact.q);
+        Self { normal: contact.normal, mu, shear: contact.limit - mu * contact.normal }
+    }
 }
 
 /// The factors with which the forces f_x, f_z on a mass enter its two equations.
