@@ -55,14 +55,7 @@ impl<const STAGES: usize> StepSums<STAGES> {
 
     /// Takes the sums of the step of length `h` (s) with these `stages`, from the elongations `a` (m) of the elements, unless
     /// they are known.
-    pub(super) fn collect(
-        &mut self,
-        model: &Model,
-        maxwell: &Maxwell<STAGES>,
-        a: &[f64],
-        stages: &[Rates],
-        h: f64,
-    ) {
+    pub(super) fn collect(&mut self, model: &Model, maxwell: &Maxwell<STAGES>, a: &[f64], stages: &[Rates], h: f64) {
         if self.known {
             return;
         }

@@ -46,7 +46,14 @@ impl StageInterpolation {
         let mut in_time = std::array::from_fn(|stage| stage);
         in_time[..N].sort_by(|&a, &b| f64::total_cmp(&nodes[a], &nodes[b]));
         let overshoot = overshoot(&in_time.map(|stage: usize| nodes[stage])[..N]);
-        Self { nodes, in_time, stages: N, overshoot, bernstein_integral: integral_in_bernstein_basis(&by_power), by_power }
+        Self {
+            nodes,
+            in_time,
+            stages: N,
+            overshoot,
+            bernstein_integral: integral_in_bernstein_basis(&by_power),
+            by_power,
+        }
     }
 
     /// How far a parabola through the values at three stages that follow each other leaves their range between them, as a share
