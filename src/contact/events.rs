@@ -155,7 +155,9 @@ impl Contacts<'_> {
             let stages = self.step.stages.iter().map(|stage| &limit.of(stage)[first..]);
             let (mut least, mut most) = ([f64::MAX; BLOCK], [f64::MIN; BLOCK]);
             widen(&mut least, &mut most, stages);
-            least.iter_mut().zip(&most).for_each(|(least, most)| *least -= overshoot * (most - *least));
+            if overshoot > 0.0 {
+                least.iter_mut().zip(&most).for_each(|(least, most)| *least -= overshoot * (most - *least));
+            }
             least
         };
         let (normal, margin) = (range(Limit::Normal), range(Limit::Margin));

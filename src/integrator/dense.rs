@@ -194,8 +194,10 @@ impl DenseOutput<'_> {
         };
         let DenseWorkspace { values, integral, of_masses: [x, v_x], .. } = workspace;
         let start = self.start.state;
-        self.combine(x, integral, Some(&start.elongation_x), |stage| &stage.velocity_x, -carrier.integrated.0);
-        self.combine(v_x, values, None, |stage| &stage.velocity_x, carrier.missing_rate.0);
+        if start.mode.iter().any(|mode| mode.slips()) {
+            self.combine(x, integral, Some(&start.elongation_x), |stage| &stage.velocity_x, -carrier.integrated.0);
+            self.combine(v_x, values, None, |stage| &stage.velocity_x, carrier.missing_rate.0);
+        }
         for i in (0..start.mode.len()).filter(|&i| start.mode[i].in_contact()) {
             all.add(&self.on_profile(i, (x[i], v_x[i]), &carrier).motion());
         }
@@ -372,7 +374,7 @@ pub struct DenseWorkspace {
     relaxation: Vec<RelaxationWeights>,
     /// By kind of link: of the stages' elongation rates in the force of all Maxwell elements, N s/m.
     of_rate: [[f64; STAGES]; 4],
-    /// Two numbers of every mass.
+    /// Of every mass: its accelerations in the defect, x and v_x in sums.
     of_masses: [Vec<f64>; 2],
 }
 

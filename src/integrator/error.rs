@@ -138,7 +138,7 @@ const SHORTEST_RESOLVED: f64 = 1e-9;
 /// The outcome of a step attempt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepAttempt {
-    /// The error estimate over the tolerance: at most 1 for a step that passes the error test.
+    /// The error estimate over the tolerance.
     pub error: f64,
     /// The same without the energies.
     pub motion_error: f64,

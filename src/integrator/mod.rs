@@ -495,8 +495,8 @@ impl Integrator {
         // With those at the start of the next step, in the state and in the one to go back to.
         let stages = self.stages.rates.len() + 2;
         // Per mass: rates and starred values; six blocks and a right side; row shares and neighbour weights; errors; whether
-        // it is free.
-        let by_mass = stages * 6 + 4 + (6 * 4 + 2) + (3 + 3) + 5 + 1;
+        // it is free; the speed of its slip.
+        let by_mass = stages * 6 + 4 + (6 * 4 + 2) + (3 + 3) + 5 + 1 + 1;
         let elements = 2 * (self.event_method.floats() + self.two_stages.maxwell.floats());
         let tangents: usize = self.stages.tangents.iter().map(Tangent::floats).sum();
         (by_mass * masses + stages * links + elements + tangents) * size_of::<f64>()

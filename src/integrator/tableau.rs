@@ -16,8 +16,8 @@ pub struct Tableau<const STAGES: usize> {
     pub error: [f64; STAGES],
     /// Order of the embedded method. That of the method itself is one higher.
     pub embedded_order: i32,
-    /// Weight of the errors of the forces on the carrier and of the energies in the error test: what makes the errors of
-    /// whole runs about the relative tolerance.
+    /// Weight of the errors of the forces on the carrier and of the energies in the error test: that with
+    /// which a given error takes the least time, where it also makes the errors of whole runs about the relative tolerance.
     pub run_weight: f64,
 }
 
@@ -187,7 +187,7 @@ pub const ESDIRK3: Tableau<FOUR_STAGES> = {
         [0.0, 2.0 * GAMMA, 0.6, 1.0],
         EMBEDDED,
         2,
-        8.0,
+        20.0,
     )
 };
 
@@ -229,7 +229,7 @@ pub const SDIRK2: Tableau<TWO_STAGES> = Tableau {
     c: [0.0, GAMMA, 1.0],
     error: [0.0, -SDIRK2_ESTIMATE, SDIRK2_ESTIMATE],
     embedded_order: 1,
-    run_weight: 0.2,
+    run_weight: 0.1,
 };
 
 /// The continuous weights of the two implicit stages of [`SDIRK2`]: the straight line through their rates, integrated

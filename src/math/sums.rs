@@ -10,6 +10,8 @@ const LANES: usize = 8;
 
 /// The same where several sums share a pass.
 const DOT_LANES: usize = 4;
+/// Pairs of arrays whose products are summed together: as many as there are registers for.
+const PAIRS_IN_A_PASS: usize = 4;
 
 /// out_i = Σ_t weight_t term_t,i. Terms may be longer than `out`.
 ///
@@ -110,11 +112,11 @@ pub fn sum_of_pairs(a: &[f64], b: &[f64], term: impl Fn(f64, f64) -> f64) -> f64
     )
 }
 
-/// Σ_i a_i b_i of several pairs of arrays, over the shortest of all.
+/// Σ_i a_i b_i of several pairs of arrays of one length.
 pub fn dots<const N: usize>(pairs: [(&[f64], &[f64]); N]) -> [f64; N] {
     let mut sums = [0.0; N];
-    let (fours, rest) = pairs.as_chunks::<4>();
-    let (sums_of_fours, sums_of_rest) = sums.as_chunks_mut::<4>();
+    let (fours, rest) = pairs.as_chunks::<PAIRS_IN_A_PASS>();
+    let (sums_of_fours, sums_of_rest) = sums.as_chunks_mut::<PAIRS_IN_A_PASS>();
     sums_of_fours.iter_mut().zip(fours).for_each(|(sums, pairs)| *sums = dots_in_a_pass(*pairs));
     match *rest {
         [a] => sums_of_rest.copy_from_slice(&dots_in_a_pass([a])),
@@ -125,7 +127,7 @@ pub fn dots<const N: usize>(pairs: [(&[f64], &[f64]); N]) -> [f64; N] {
     sums
 }
 
-/// The same for as many pairs as there are registers for.
+/// The same for at most [`PAIRS_IN_A_PASS`].
 fn dots_in_a_pass<const N: usize>(pairs: [(&[f64], &[f64]); N]) -> [f64; N] {
     let n = pairs.iter().map(|(a, b)| a.len().min(b.len())).min().unwrap_or(0);
     let whole = n - n % DOT_LANES;
@@ -211,6 +213,32 @@ mod tests {
                 add_weighted_sum(&mut out, weighted.iter().copied());
                 assert!((0..n).all(|i| out[i] == 2.0 * expected(i)), "{terms} terms, {n} numbers: {out:?}");
             }
+        }
+    }
+
+    /// Fewer pairs than are summed in a pass, as many, and several passes with a rest; bit for bit as one at a time.
+    #[test]
+    fn several_dots_are_those_of_each_pair() {
+        fn check<const N: usize>(n: usize) {
+            let arrays: [Vec<f64>; N] =
+                std::array::from_fn(|pair| (0..n).map(|i| ((i + 1) as f64 * (pair + 2) as f64).sqrt()).collect());
+            let pairs: [(&[f64], &[f64]); N] =
+                std::array::from_fn(|pair| (&arrays[pair][..], &arrays[(pair + 1) % N][..]));
+            let expected = pairs.map(|pair| dots([pair])[0]);
+            assert_eq!(dots(pairs), expected, "{N} pairs of {n}");
+            for ((a, b), sum) in pairs.into_iter().zip(expected) {
+                // The two add in different orders.
+                assert!((sum - dot(a, b)).abs() <= 1e-14 * sum, "{sum} {}", dot(a, b));
+            }
+        }
+        for n in 0..14 {
+            check::<1>(n);
+            check::<2>(n);
+            check::<3>(n);
+            check::<4>(n);
+            check::<5>(n);
+            check::<7>(n);
+            check::<8>(n);
         }
     }
 

@@ -72,7 +72,7 @@ impl Window {
         self.whole.dense.forget();
     }
 
-    /// Memory in bytes, without some hundreds: two runs but for a state.
+    /// Memory in bytes, without some hundreds, at most: the whole layer's step takes less than a run.
     pub(super) fn bytes(&self) -> usize {
         2 * self.run.bytes()
     }
