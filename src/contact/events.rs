@@ -172,8 +172,16 @@ impl Contacts<'_> {
         (0..BLOCK).filter(move |bit| suspects >> bit & 1 == 1).map(move |bit| first + bit)
     }
 
+    /// Whether no contact of the block from mass `first` on that is not suspected changes its mode.
+    fn others_hold(&mut self, first: usize) -> bool {
+        let (suspects, modes) = (self.suspects(first), &self.step.start.state.mode);
+        let mut others = (first..modes.len().min(first + BLOCK)).filter(|i| suspects >> (i - first) & 1 == 0);
+        others.all(|i| !modes[i].in_contact() || self.change_of(i, None).is_none())
+    }
+
     fn all_changes(&mut self, changes: &mut Vec<(f64, usize)>) {
         for block in (0..self.step.model.masses()).step_by(BLOCK) {
+            debug_assert!(self.others_hold(block), "a mode change of a mass from {block} on would be missed");
             for i in self.suspects_from(block) {
                 changes.extend(self.change_of(i, None).map(|theta| (theta, i)));
             }
