@@ -237,15 +237,16 @@ impl Run {
     /// A run with the layer placed under the carrier at `start`.
     pub(super) fn new(model: Arc<Model>, settings: Settings, start: &Start, bodies: &[Option<BodyStart>; 2]) -> Self {
         let state = RunState::new(&model, start, bodies, settings.method == Method::Step);
+        let windows = Windows::new(&model, &settings);
         let workspace = Workspace {
             forces: Forces::new(&model),
-            integrator: Self::integrator(&model, &settings),
+            integrator: Self::integrator(&model, &settings, windows.is_some()),
             interpolated: state.layer.state.clone(),
             interpolated_at: None,
             dense: DenseWorkspace::new(&model),
             end_correction: EndCorrection::new(&model),
             stall: Stall::new(&model),
-            windows: Windows::new(&model, &settings),
+            windows,
             may_open_windows: true,
             modes_before: state.layer.state.mode.clone(),
             checkpoint: state.clone(),
@@ -341,7 +342,7 @@ impl Run {
     pub(super) fn heat(&mut self, temperature: f64, settings: Settings) {
         self.settings = settings;
         (self.state.temperature, self.state.rates_valid) = (temperature, false);
-        self.workspace.integrator = Self::integrator(&self.model, &self.settings);
+        self.workspace.integrator = Self::integrator(&self.model, &self.settings, self.workspace.windows.is_some());
         self.workspace.dense = DenseWorkspace::new(&self.model);
         self.keep_link_forces();
         if let Some(windows) = &mut self.workspace.windows {
@@ -356,8 +357,10 @@ impl Run {
         }
     }
 
-    pub(super) fn integrator(model: &Model, settings: &Settings) -> Integrator {
-        let pair = Pair::at_tolerance(settings.tolerance.relative);
+    fn integrator(model: &Model, settings: &Settings, has_windows: bool) -> Integrator {
+        let relative = settings.tolerance.relative;
+        let in_wide_layer = has_windows || settings.is_of_window;
+        let pair = if in_wide_layer { Pair::in_wide_layer(relative) } else { Pair::at_tolerance(relative) };
         let steps = match settings.method {
             Method::Event => Steps::EventDriven(pair),
             Method::Step => Steps::TwoStages,

@@ -48,7 +48,7 @@ impl Window {
     /// A window of the masses of `part`, in a layer with these settings.
     pub(super) fn new(part: Model, settings: &Settings) -> Self {
         let (part, settings) = (Arc::new(part), settings.of_window());
-        let pair = Pair::at_tolerance(settings.tolerance.relative);
+        let pair = Pair::in_wide_layer(settings.tolerance.relative);
         let whole = StepOfPart {
             integrator: Integrator::new(&part, settings.tracked(), Steps::Taken(pair)),
             start: StepStart::new(&part),

@@ -108,7 +108,7 @@ impl Windows {
             planned: false,
             counted: 0,
             gained: Energies::default(),
-            nodes: vec![DenseWorkspace::of_weights(model); Pair::at_tolerance(settings.tolerance.relative).stages()],
+            nodes: vec![DenseWorkspace::of_weights(model); Pair::in_wide_layer(settings.tolerance.relative).stages()],
         }))
     }
 
