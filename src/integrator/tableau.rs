@@ -16,8 +16,8 @@ pub struct Tableau<const STAGES: usize> {
     pub error: [f64; STAGES],
     /// Order of the embedded method. That of the method itself is one higher.
     pub embedded_order: i32,
-    /// Weight of the errors of the forces on the carrier and of the energies in the error test: that with
-    /// which a given error takes the least time, where it also makes the errors of whole runs about the relative tolerance.
+    /// Weight of the errors of the forces on the carrier and of the energies in the error test: what makes the errors of
+    /// whole runs about the relative tolerance and, among such weights, a given error cheap.
     pub run_weight: f64,
 }
 

@@ -10,7 +10,8 @@ const LANES: usize = 8;
 
 /// The same where several sums share a pass.
 const DOT_LANES: usize = 4;
-/// Pairs of arrays whose products are summed together: as many as there are registers for.
+/// Pairs of arrays whose products are summed together: as many as there are registers for. [`dots`] has a case for each
+/// smaller number.
 const PAIRS_IN_A_PASS: usize = 4;
 
 /// out_i = Σ_t weight_t term_t,i. Terms may be longer than `out`.
