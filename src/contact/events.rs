@@ -2,7 +2,7 @@
 
 use super::gap::first_touch;
 use crate::integrator::{DenseOutput, DenseWorkspace, Motions, Rates, Tolerance};
-use crate::math::{Spline, bracketed_root, with_widest_vectors};
+use crate::math::{Spline, root_between, with_widest_vectors};
 use crate::model::{CarrierPosition, LinkKind, Mode, Model, State};
 
 /// How far a quantity may pass its limit before the mode changes: as far as a step may err, velocities less. An event is located where the
@@ -219,10 +219,11 @@ impl Contacts<'_> {
         let [before, here, after] =
             [rank - 1, rank, rank + 1].map(|rank| (self.node(rank), self.at_stage(rank, i, limit)));
         let Some((theta, value)) = vertex(before, here, after) else { return first };
-        if value >= -tolerance || theta >= first.unwrap_or(1.0) || self.value(i, limit, theta) >= -tolerance {
+        if value >= -tolerance || theta >= first.unwrap_or(1.0) {
             return first;
         }
-        Some(self.locate(i, limit, tolerance, (before.0, theta)))
+        let value = self.value(i, limit, theta);
+        if value < -tolerance { Some(self.locate(i, limit, tolerance, before.0, (theta, value))) } else { first }
     }
 
     /// The fraction at which a quantity of mass `i` first falls below -`tolerance`, located where it is -`tolerance`/2;
@@ -235,27 +236,30 @@ impl Contacts<'_> {
         let ranks = self.step.stages.len();
         let rank = (1..ranks).find(|&rank| self.at_stage(rank, i, limit) < -tolerance);
         let Some(rank) = rank.filter(|&rank| self.node(rank - 1) < latest) else { return first };
-        let falls_until = |contacts: &mut Self, rank: usize| {
-            let theta = contacts.node(rank).min(latest);
-            contacts.at_stage(rank, i, limit) < -tolerance && contacts.value(i, limit, theta) < -tolerance
-        };
-        let Some(below) = (rank..ranks).find(|&rank| falls_until(self, rank)) else { return first };
-        let bracket = (self.node(below - 1).min(latest), self.node(below).min(latest));
-        Some(self.locate(i, limit, tolerance, bracket))
+        for rank in rank..ranks {
+            if self.at_stage(rank, i, limit) >= -tolerance {
+                continue;
+            }
+            let (before, below) = (self.node(rank - 1).min(latest), self.node(rank).min(latest));
+            let value = self.value(i, limit, below);
+            if value < -tolerance {
+                return Some(self.locate(i, limit, tolerance, before, (below, value)));
+            }
+        }
+        first
     }
 
-    /// Where a quantity of mass `i` is -`tolerance`/2, between two fractions at the second of which it is below
-    /// -`tolerance`; the first if it is that far below there.
-    fn locate(&mut self, i: usize, limit: Limit, tolerance: f64, bracket: (f64, f64)) -> f64 {
+    /// Where a quantity of mass `i` is -`tolerance`/2, between a fraction `before` and one `below` which it has passed:
+    /// that one and the value there, less than -`tolerance`. `before` itself if the quantity is that far below there.
+    fn locate(&mut self, i: usize, limit: Limit, tolerance: f64, before: f64, below: (f64, f64)) -> f64 {
         let aim = 0.5 * tolerance;
-        if self.value(i, limit, bracket.0) <= -aim {
-            return bracket.0;
+        let value = self.value(i, limit, before);
+        if value <= -aim {
+            return before;
         }
-        let beyond = |theta: f64| {
-            let beyond = self.value(i, limit, theta) + aim;
-            if beyond.abs() < NEAR * tolerance { 0.0 } else { beyond }
-        };
-        bracketed_root(beyond, bracket, LOCATED)
+        let beyond = |value: f64| if (value + aim).abs() < NEAR * tolerance { 0.0 } else { value + aim };
+        let ends = [(before, beyond(value)), (below.0, beyond(below.1))];
+        root_between(|theta| beyond(self.value(i, limit, theta)), ends, LOCATED)
     }
 
     /// The fraction of the step at which the stage lies that is `rank`-th in time.

@@ -8,44 +8,54 @@
 use super::maxwell::{Maxwell, StageCoefficients};
 use super::method::Usage;
 use super::rates::Rates;
-use crate::math::{dot, dots, sum_of_pairs};
+use crate::math::{dot, dots, square_and_dots, sum_of_pairs};
 use crate::model::{ChannelEnergies, Exchange, LinkKind, MaxwellRow, Model};
 
 /// Σ ė_i ė_j over the links of one kind, m²/s², where they are needed; 0 elsewhere.
 type RateProducts<const STAGES: usize> = [[f64; STAGES]; STAGES];
 
-/// The sums over the layer from which the energies up to any fraction of a step follow.
+/// What the energies up to any fraction of a step follow from: the powers at its stages, summed over the layer.
 #[derive(Clone, Debug)]
 pub(super) struct StepSums<const STAGES: usize> {
     /// Whether they are those of the last attempted step.
     known: bool,
-    /// By kind of link.
-    rates: [RateProducts<STAGES>; 4],
-    /// The largest Σ (ė_i - ė_0)² of a stage, by kind of link, m²/s²; 0 where the stages resolve all elements.
-    changes: [f64; 4],
-    /// By row of elements.
-    elements: Vec<ElementSums<STAGES>>,
+    /// The power lost in dampers, W.
+    dampers: [f64; STAGES],
+    /// The power lost in Maxwell elements, W.
+    elements: [f64; STAGES],
+    /// Of the elements by relaxation time.
+    by_time: Vec<ElementSums<STAGES>>,
 }
 
-/// The sums over one row of Maxwell elements.
+/// Sums over all elements of one relaxation time, from which the power lost in them at the stages follows.
 #[derive(Clone, Debug)]
 struct ElementSums<const STAGES: usize> {
-    /// Σ a_i² at the stages, m².
-    squares: [f64; STAGES],
-    /// Σ l² (m²) and Σ l τė_0 (m²) of l = a_0 - τė_0; `None` for elements slower than the step.
-    relaxing: Option<(f64, f64)>,
+    /// Σ c a_0²/τ, W.
+    square: f64,
+    /// Σ c a_0 ė_j/τ, W/s.
+    mixed: [f64; STAGES],
+    /// Σ c ė_i ė_j/τ, W/s².
+    rates: RateProducts<STAGES>,
+    /// What the stages do not resolve.
+    relaxing: RelaxingPower,
+}
+
+/// The power lost in the elements of one relaxation time that do not follow their links yet: of l = a_0 - τė_0, over all of
+/// them; 0 where the stages resolve it.
+#[derive(Clone, Copy, Debug, Default)]
+struct RelaxingPower {
+    /// Σ c l²/τ, W.
+    square: f64,
+    /// Σ c l ė_0, W.
+    mixed: f64,
 }
 
 impl<const STAGES: usize> StepSums<STAGES> {
     /// Workspace for the elements of `model` and a method that is for `usage`.
     pub(super) fn new(model: &Model, usage: Usage) -> Self {
-        let none = ElementSums { squares: [0.0; STAGES], relaxing: None };
-        Self {
-            known: false,
-            rates: [[[0.0; STAGES]; STAGES]; 4],
-            changes: [0.0; 4],
-            elements: vec![none; if usage == Usage::Nothing { 0 } else { model.rows.len() }],
-        }
+        let times = if usage == Usage::Nothing { 0 } else { model.relaxation_times.len() };
+        let none = [0.0; STAGES];
+        Self { known: false, dampers: none, elements: none, by_time: vec![ElementSums::zero(); times] }
     }
 
     /// A new step is attempted.
@@ -60,49 +70,77 @@ impl<const STAGES: usize> StepSums<STAGES> {
             return;
         }
         self.known = true;
+        (self.dampers, self.elements) = ([0.0; STAGES], [0.0; STAGES]);
+        self.by_time.fill(ElementSums::zero());
         for kind in LinkKind::ALL {
-            let has_elements = model.rows_of(kind).next().is_some();
-            if has_elements || model.links[kind as usize].damping > 0.0 {
-                self.rates[kind as usize] = rate_products(stages, kind, has_elements);
+            let (damping, has_elements) = (model.links[kind as usize].damping, model.rows_of(kind).next().is_some());
+            if !has_elements && damping == 0.0 {
+                continue;
             }
-            let unresolved = model.rows_of(kind).any(|row| h / row.relaxation_time > RESOLVED);
-            self.changes[kind as usize] = if unresolved { largest_change(stages, kind) } else { 0.0 };
+            let products = rate_products(stages, kind, has_elements);
+            for (i, power) in self.dampers.iter_mut().enumerate() {
+                *power += damping * products[i][i];
+            }
+            let is_unresolved = |row: &MaxwellRow| h / row.relaxation_time > RESOLVED;
+            let change = if model.rows_of(kind).any(is_unresolved) { largest_change(stages, kind) } else { 0.0 };
+            for row in model.rows_of(kind) {
+                let (sums, a) = (&mut self.by_time[row.time_index], &a[row.range.clone()]);
+                sums.add(row, a, stages, &products);
+                if is_unresolved(row) {
+                    sums.relaxing.add(row, a, &stages[0].elongation_rate[kind as usize], change);
+                }
+            }
         }
-        for (row, sums) in model.rows.iter().zip(&mut self.elements) {
-            let coefficients = &maxwell.coefficients()[row.time_index];
-            let products = &self.rates[row.kind as usize];
-            *sums = ElementSums::new(row, &a[row.range.clone()], stages, (coefficients, products), h);
+        for (sums, coefficients) in self.by_time.iter().zip(maxwell.coefficients()) {
+            self.elements.iter_mut().enumerate().for_each(|(i, power)| *power += sums.power(coefficients, i));
         }
     }
 }
 
 impl<const STAGES: usize> ElementSums<STAGES> {
-    /// The sums over the elements of `row` from the elongations `a` (m), which the `stages` drive: a_i = p_i a_0 + h Σ_j q_ij
-    /// ė_j multiplied out, with the `products` of the rates.
-    fn new(
-        row: &MaxwellRow,
-        a: &[f64],
-        stages: &[Rates],
-        (coefficients, products): (&StageCoefficients<STAGES>, &RateProducts<STAGES>),
-        h: f64,
-    ) -> Self {
-        let (tau, rate) = (row.relaxation_time, |j: usize| &stages[j].elongation_rate[row.kind as usize][..]);
+    fn zero() -> Self {
+        let none = [0.0; STAGES];
+        Self { square: 0.0, mixed: none, rates: [none; STAGES], relaxing: RelaxingPower::default() }
+    }
+
+    /// Adds the elements of `row` with the elongations `a` (m) at the start of a step with these `stages`, with the `products`
+    /// of their rates.
+    fn add(&mut self, row: &MaxwellRow, a: &[f64], stages: &[Rates], products: &RateProducts<STAGES>) {
+        let power = row.stiffness / row.relaxation_time;
+        let rates = std::array::from_fn(|j| &stages[j].elongation_rate[row.kind as usize][..]);
+        let (square, mixed): (f64, [f64; STAGES]) = square_and_dots(a, rates);
+        self.square += power * square;
+        self.mixed.iter_mut().zip(mixed).for_each(|(sum, mixed)| *sum += power * mixed);
+        let rates = self.rates.as_flattened_mut().iter_mut().zip(products.as_flattened());
+        rates.for_each(|(sum, product)| *sum += power * product);
+    }
+
+    /// Σ c a_i²/τ at stage `i`, W: a_i = p_i a_0 + h Σ_j q_ij ė_j multiplied out.
+    fn power(&self, coefficients: &StageCoefficients<STAGES>, i: usize) -> f64 {
+        let (p, q) = (coefficients.start[i], &coefficients.rate[i]);
+        let of_rate = |j: usize| {
+            let with_earlier: f64 = (0..j).map(|l| q[l] * self.rates[j][l]).sum();
+            q[j] * (2.0 * (p * self.mixed[j] + with_earlier) + q[j] * self.rates[j][j])
+        };
+        p * p * self.square + (0..=i).map(of_rate).sum::<f64>()
+    }
+}
+
+impl RelaxingPower {
+    /// Adds that of the elements of `row` with the elongations `a` (m) and the rates `rate` of their links (m/s) at the start of
+    /// a step through which Σ (ė - ė_0)² changes by up to `change` (m²/s²).
+    ///
+    /// Where l is no larger than τ times that change, the stages resolve it. The power is 0 there, and goes there
+    /// continuously.
+    fn add(&mut self, row: &MaxwellRow, a: &[f64], rate: &[f64], change: f64) {
+        let tau = row.relaxation_time;
         let l = |a: f64, rate: f64| a - tau * rate;
-        let relaxing = || {
-            let square = sum_of_pairs(a, rate(0), |a, rate| l(a, rate) * l(a, rate));
-            (square, tau * sum_of_pairs(a, rate(0), |a, rate| l(a, rate) * rate))
-        };
-        let start = dot(a, a);
-        let mixed: [f64; STAGES] = dots(std::array::from_fn(|j| (a, rate(j))));
-        let square = |i: usize| {
-            let (p, q) = (coefficients.start[i], &coefficients.rate[i]);
-            let of_rate = |j: usize| {
-                let with_earlier: f64 = (0..j).map(|l| q[l] * products[j][l]).sum();
-                q[j] * (2.0 * (p * mixed[j] + with_earlier) + q[j] * products[j][j])
-            };
-            p * p * start + (0..=i).map(of_rate).sum::<f64>()
-        };
-        Self { squares: std::array::from_fn(square), relaxing: (h / tau > RESOLVED).then(relaxing) }
+        let (square, explained) = (sum_of_pairs(a, rate, |a, rate| l(a, rate) * l(a, rate)), tau * tau * change);
+        if square > explained {
+            let share = row.stiffness / tau * (1.0 - explained / square);
+            self.square += share * square;
+            self.mixed += share * tau * sum_of_pairs(a, rate, |a, rate| l(a, rate) * rate);
+        }
     }
 }
 
@@ -157,24 +195,16 @@ impl<const STAGES: usize> StepPowers<'_, STAGES> {
     /// Energies lost in the dampers and Maxwell elements, J.
     fn lost(&self) -> ChannelEnergies {
         let Self { model, maxwell, sums, h, weights, measure, .. } = *self;
-        let mut energy = ChannelEnergies::default();
-        for (link, products) in model.links.iter().zip(&sums.rates) {
-            let squares: f64 = (0..STAGES).map(|i| weights[i] * products[i][i]).sum();
-            energy.damper += h * link.damping * squares;
+        let mut missed = 0.0;
+        let times = maxwell.coefficients().iter().zip(&model.relaxation_times).zip(&sums.by_time);
+        for ((coefficients, tau), ElementSums { relaxing, .. }) in times.filter(|(_, sums)| sums.relaxing.square > 0.0) {
+            missed += UnresolvedRelaxation::new(h / tau, coefficients, weights, measure).of(relaxing);
         }
-        for (index, coefficients) in maxwell.coefficients().iter().enumerate() {
-            let z = h / model.relaxation_times[index];
-            let unresolved = (z > RESOLVED).then(|| UnresolvedRelaxation::new(z, coefficients, weights, measure));
-            let rows = model.rows.iter().zip(&sums.elements).filter(|(row, _)| row.time_index == index);
-            for (row, elements) in rows {
-                let explained = row.relaxation_time * row.relaxation_time * sums.changes[row.kind as usize];
-                let resolved: f64 = weights.iter().zip(elements.squares).map(|(weight, square)| weight * square).sum();
-                let missed = unresolved.iter().zip(elements.relaxing);
-                let missed: f64 = missed.map(|(unresolved, sums)| unresolved.sum(sums, explained)).sum();
-                energy.maxwell += h * row.stiffness / row.relaxation_time * (resolved + missed);
-            }
+        ChannelEnergies {
+            damper: h * dot(weights, &sums.dampers),
+            maxwell: h * (dot(weights, &sums.elements) + missed),
+            ..ChannelEnergies::default()
         }
-        energy
     }
 }
 
@@ -237,15 +267,9 @@ impl UnresolvedRelaxation {
         }
     }
 
-    /// The sum over elements with these Σ l² and Σ l τė_0 (m²), where the change of ė in the step explains `explained` (m²)
-    /// of the first.
-    ///
-    /// Where l is no larger than that, the stages resolve it: the sum is 0 then, and goes there continuously.
-    fn sum(&self, (square, mixed): (f64, f64), explained: f64) -> f64 {
-        if square <= explained {
-            return 0.0;
-        }
-        (1.0 - explained / square) * (self.square * square + 2.0 * self.mixed * mixed)
+    /// The power, W, in elements that relax with this.
+    fn of(&self, relaxing: &RelaxingPower) -> f64 {
+        self.square * relaxing.square + 2.0 * self.mixed * relaxing.mixed
     }
 }
 

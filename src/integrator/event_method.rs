@@ -142,18 +142,21 @@ impl EventMethod {
     }
 
     /// P_diss at the fraction `theta` of the step of length `h` from `start`, W; the values at the stages have these `weights`.
-    /// `None` of the pair of order 5: combinations of powers have order 3 at most.
     pub(super) fn dissipated_power(
         &mut self,
         stages: &Stages,
         start: (&Model, &State),
         h: f64,
         theta: f64,
-        weights: [f64; STAGES],
-    ) -> Option<f64> {
-        let Self::Third(method) = self else { return None };
-        let weights = std::array::from_fn(|stage| weights[stage]);
-        Some(method.dissipated_power(stages, start, h, theta, &weights))
+        weights: &[f64; STAGES],
+    ) -> f64 {
+        match self {
+            Self::Third(method) => {
+                let weights = std::array::from_fn(|stage| weights[stage]);
+                method.dissipated_power(stages, start, h, theta, &weights)
+            }
+            Self::Fifth(method) => method.dissipated_power(stages, start, h, theta, weights),
+        }
     }
 
     pub(super) fn floats(&self) -> usize {

@@ -361,10 +361,10 @@ impl Integrator {
     }
 
     /// P_diss at the fraction `theta` of the last attempted event-driven step, of length `h` from `start`, by its powers at
-    /// the stages, W, where these have its accuracy; only where energies are tracked.
-    pub fn dissipated_power(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> Option<f64> {
+    /// the stages, W: of order 2 by the pair of order 3, of order 3 by that of order 5. Only where energies are tracked.
+    pub fn dissipated_power(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> f64 {
         let weights = self.interpolation.values(theta);
-        self.event_method.dissipated_power(&self.stages, (model, start), h, theta, weights)
+        self.event_method.dissipated_power(&self.stages, (model, start), h, theta, &weights)
     }
 
     /// The same of the last attempted two-stage step.

@@ -6,8 +6,15 @@
 /// bisection. The bracket only shrinks, so the result lies in it, whatever `f` is. Stops at a bracket of width
 /// `tolerance` or at `f = 0`; the work is bounded.
 pub fn bracketed_root(mut f: impl FnMut(f64) -> f64, (a, b): (f64, f64), tolerance: f64) -> f64 {
-    let (mut newest, mut other) = ((a, f(a)), (b, f(b)));
-    let mut fraction = 0.5;
+    let ends = [(a, f(a)), (b, f(b))];
+    root_between(f, ends, tolerance)
+}
+
+/// The same where the values at the ends of the bracket are known: `ends` are places and values.
+pub fn root_between(mut f: impl FnMut(f64) -> f64, ends: [(f64, f64); 2], tolerance: f64) -> f64 {
+    let [mut newest, mut other] = ends;
+    // The chord's root; NaN where both are 0.
+    let mut fraction = (newest.1 / (newest.1 - other.1)).max(0.0);
     for _ in 0..MOST_STEPS {
         let x = newest.0 + fraction * (other.0 - newest.0);
         let point = (x, f(x));

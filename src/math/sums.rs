@@ -154,6 +154,37 @@ fn dots_in_a_pass<const N: usize>(pairs: [(&[f64], &[f64]); N]) -> [f64; N] {
     })
 }
 
+/// Σ_i a_i², and Σ_i a_i b_i of several `b` of its length or longer.
+///
+/// # Panics
+/// Where one is shorter than `a`.
+pub fn square_and_dots<const N: usize>(a: &[f64], others: [&[f64]; N]) -> (f64, [f64; N]) {
+    let others = others.map(|b| b[..a.len()].as_chunks::<DOT_LANES>());
+    let (a, a_rest) = a.as_chunks::<DOT_LANES>();
+    let (square, sums) = with_widest_vectors(
+        #[inline(always)]
+        || {
+            let (mut square, mut sums) = ([0.0; DOT_LANES], [[0.0; DOT_LANES]; N]);
+            let others = others.map(|(b, _)| &b[..a.len()]);
+            for i in 0..a.len() {
+                for lane in 0..DOT_LANES {
+                    square[lane] += a[i][lane] * a[i][lane];
+                }
+                for (sums, b) in sums.iter_mut().zip(others) {
+                    for lane in 0..DOT_LANES {
+                        sums[lane] += a[i][lane] * b[i][lane];
+                    }
+                }
+            }
+            (square, sums)
+        },
+    );
+    let with_rest = |sums: [f64; DOT_LANES], b_rest: &[f64]| {
+        sums.iter().sum::<f64>() + a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum::<f64>()
+    };
+    (with_rest(square, a_rest), std::array::from_fn(|other| with_rest(sums[other], others[other].1)))
+}
+
 #[inline(always)]
 fn chunks_of(values: &[f64]) -> &[[f64; DOT_LANES]] {
     values.as_chunks().0

@@ -264,8 +264,8 @@ impl Window {
         let whole_theta = self.whole.theta(s);
         let mine = self.theta(s).and_then(|theta| self.run.dissipated_power_within(self.trial.h, theta));
         let StepOfPart { integrator, start, span, .. } = &mut self.whole;
-        let theirs = integrator.dissipated_power(&self.run.model, &start.state, span.length, whole_theta);
-        mine.zip(theirs).map_or(0.0, |(mine, theirs)| mine - theirs)
+        let mut theirs = || integrator.dissipated_power(&self.run.model, &start.state, span.length, whole_theta);
+        mine.map_or(0.0, |mine| mine - theirs())
     }
 
     /// F_x and F_z of its masses in its run at the time `s`, less those in the whole layer's step, N.
