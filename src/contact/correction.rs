@@ -77,6 +77,8 @@ pub struct EndCorrection {
     changed: Vec<usize>,
     /// Bound of the change of the forces on the carrier by the correction, N.
     force: f64,
+    /// The fraction of the step up to which it has none of the violations that make this change.
+    clean: f64,
     /// By mass: whether a correction changes its forces.
     concerned: Vec<bool>,
     profile: Bounds,
@@ -90,6 +92,7 @@ impl EndCorrection {
             touches: Vec::with_capacity(k),
             changed: Vec::with_capacity(k),
             force: 0.0,
+            clean: 1.0,
             concerned: vec![false; k],
             profile: model.profile.bounds(),
         }
@@ -100,7 +103,7 @@ impl EndCorrection {
     pub fn detect(&mut self, step: &TwoStageDense<'_>, tolerance: &Tolerance) -> f64 {
         self.touches.clear();
         self.changed.clear();
-        self.force = 0.0;
+        (self.force, self.clean) = (0.0, 1.0);
         let frequency = step.model.frequency_without_rods();
         let stiffness = step.model.mass * frequency * frequency;
         let mut sum = 0.0;
@@ -110,6 +113,7 @@ impl EndCorrection {
                 _ => self.detect_lift(step, i, stiffness).or_else(|| self.detect_stop(step, i)),
             };
             if let Some(late) = late {
+                self.clean = self.clean.min(1.0 - late.time / step.span.length);
                 let error = LATENESS * late.error(frequency);
                 sum += error * error / tolerance.of_position(step.end.elongation_x[i]);
             }
@@ -121,6 +125,11 @@ impl EndCorrection {
     /// the forces of springs and dampers by the penetrations, and those past the limits.
     pub fn uncorrected_force(&self) -> f64 {
         self.force
+    }
+
+    /// Whether the step is as it would be corrected up to its fraction `theta`: no mode was violated by then.
+    pub fn comes_after(&self, theta: f64) -> bool {
+        theta <= self.clean
     }
 
     /// The lateness of the touch of free mass `i`, if there is one.

@@ -272,7 +272,9 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
             errors.iter_mut().zip(powers).for_each(|(sum, power)| *sum += h * error * power);
             input += h * weight * exchange.input;
         }
-        let allowed = tolerance.relative * self.largest.energy_scale(model, tolerance).max(input.abs());
+        let carrier = &self.carrier[STAGES - 1];
+        let scale = self.largest.energy_scale(model, tolerance, carrier.u_rate.hypot(carrier.w_rate));
+        let allowed = tolerance.relative * scale.max(input.abs());
         errors.iter().map(|error| square(error / allowed)).sum()
     }
 

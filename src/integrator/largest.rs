@@ -5,12 +5,14 @@ use serde::{Deserialize, Serialize};
 use super::error::Tolerance;
 use crate::model::{Forces, Model};
 
-/// The least scale of the errors of one force, as a share of the other, and as one of the force that the scene's height
-/// makes on a mass.
+/// The least scale of the errors of one force, as a share of the other, and as one of the force that the scene's height makes
+/// on all masses: the first touches are not resolved down to forces that do not matter later.
 const LEAST_FORCE: f64 = 1e-3;
-/// The elongation whose energy is the least scale of the errors of energies, as a share of the one whose force is that
-/// of forces: a light layer moves with energies far below those of its springs.
-const LEAST_ENERGY: f64 = 1e-6;
+/// The least scale of the errors of energies: that of one mass's springs at this share of the scene's height, or, where less,
+/// the energy that moves the layer at the carrier's speed. A light layer moves with energies far below those of its springs.
+const LEAST_ENERGY: f64 = 0.1;
+/// The same where the carrier stands.
+const LEAST_ENERGY_AT_REST: f64 = 1e-9;
 /// The least scale of the errors of F_x as a share of the friction that a slide under F_z would have.
 const EXPECTED_FRICTION: f64 = 0.5;
 
@@ -47,17 +49,20 @@ impl Largest {
     /// symmetry makes nothing, are not resolved down to their rounding.
     pub(super) fn force_scales(self, model: &Model, tolerance: &Tolerance) -> (f64, f64) {
         let expected = LEAST_FORCE.max(EXPECTED_FRICTION * model.friction_coefficient);
-        let least = least_elongation(tolerance) * model.effective_stiffness();
+        let least = LEAST_FORCE * height(tolerance) * model.effective_stiffness() * tolerance.masses as f64;
         (self.force_x.max(expected * self.force_z).max(least), self.force_z.max(LEAST_FORCE * self.force_x).max(least))
     }
 
-    /// What the errors of energies are measured by, J.
-    pub(super) fn energy_scale(self, model: &Model, tolerance: &Tolerance) -> f64 {
-        self.energy.max((LEAST_ENERGY * least_elongation(tolerance)).powi(2) * model.effective_stiffness())
+    /// What the errors of energies are measured by, J, under a carrier that moves at `speed` (m/s).
+    pub(super) fn energy_scale(self, model: &Model, tolerance: &Tolerance, speed: f64) -> f64 {
+        let of_springs = |share: f64| (share * height(tolerance)).powi(2) * model.effective_stiffness();
+        let of_motion = tolerance.masses as f64 * model.mass * speed * speed;
+        let least = of_springs(LEAST_ENERGY).min(of_motion).max(of_springs(LEAST_ENERGY_AT_REST));
+        self.energy.max(least)
     }
 }
 
-/// An elongation that does not matter, m: the scene's height is the absolute tolerance over the relative one.
-fn least_elongation(tolerance: &Tolerance) -> f64 {
-    LEAST_FORCE * tolerance.position / tolerance.relative
+/// The scene's height, m.
+fn height(tolerance: &Tolerance) -> f64 {
+    tolerance.position / tolerance.relative
 }

@@ -123,7 +123,8 @@ impl ErrorRun {
                     (step, self.run.end_of(&step, self.duration))
                 }
             };
-            if s < end && (ends || !self.run.can_show_within()) {
+            let theta = (s - self.run.state.s) / step.h;
+            if s < end && (ends || !self.run.can_show_within(theta)) {
                 (step, end) = self.run.cut_step_at(s, self.duration, &mut self.work)?;
             }
             end = self.run.advance_windows(&mut step, (s.min(end), end), &mut self.work)?;

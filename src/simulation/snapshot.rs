@@ -145,10 +145,11 @@ impl Run {
         }
     }
 
-    /// Whether the dense output of the step tried last is good enough to be shown. A time step's touches and lifts are
-    /// corrected at its end, and its dense output is not: it is shown where that changes F_z little.
-    pub(super) fn can_show_within(&self) -> bool {
-        if !self.state.time_stepping {
+    /// Whether the dense output of the step tried last is good enough to be shown at its fraction `theta`. A time step's touches
+    /// and lifts are corrected at its end, and its dense output is not: it is shown before them, and where they change F_z
+    /// little.
+    pub(super) fn can_show_within(&self, theta: f64) -> bool {
+        if !self.state.time_stepping || self.workspace.end_correction.comes_after(theta) {
             return true;
         }
         let force = self.workspace.integrator.end_forces().on_carrier_z().abs();

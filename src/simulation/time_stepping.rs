@@ -11,9 +11,8 @@ use crate::model::ChannelEnergies;
 /// A new step is this share of what the error allows. Mode changes come unforeseen, so it is less than in smooth
 /// motion.
 const SAFETY: f64 = 0.8;
-/// The least and the most by which one step differs from the one before. A step that grows slowly meets fewer changes
-/// that are too late.
-const GROWTH: (f64, f64) = (0.2, 2.0);
+/// The least and the most by which one step differs from the one before.
+const GROWTH: (f64, f64) = (0.2, 5.0);
 
 impl Run {
     /// Tries steps until one is good. The shortest is accepted whatever its error: its mode changes are corrected as
