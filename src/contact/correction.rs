@@ -77,8 +77,8 @@ pub struct EndCorrection {
     changed: Vec<usize>,
     /// Bound of the change of the forces on the carrier by the correction, N.
     force: f64,
-    /// The fraction of the step up to which it has none of the violations that make this change.
-    clean: f64,
+    /// The fraction of the step up to which all contacts press.
+    pressed: f64,
     /// By mass: whether a correction changes its forces.
     concerned: Vec<bool>,
     profile: Bounds,
@@ -92,7 +92,7 @@ impl EndCorrection {
             touches: Vec::with_capacity(k),
             changed: Vec::with_capacity(k),
             force: 0.0,
-            clean: 1.0,
+            pressed: 1.0,
             concerned: vec![false; k],
             profile: model.profile.bounds(),
         }
@@ -103,7 +103,7 @@ impl EndCorrection {
     pub fn detect(&mut self, step: &TwoStageDense<'_>, tolerance: &Tolerance) -> f64 {
         self.touches.clear();
         self.changed.clear();
-        (self.force, self.clean) = (0.0, 1.0);
+        (self.force, self.pressed) = (0.0, 1.0);
         let frequency = step.model.frequency_without_rods();
         let stiffness = step.model.mass * frequency * frequency;
         let mut sum = 0.0;
@@ -113,7 +113,6 @@ impl EndCorrection {
                 _ => self.detect_lift(step, i, stiffness).or_else(|| self.detect_stop(step, i)),
             };
             if let Some(late) = late {
-                self.clean = self.clean.min(1.0 - late.time / step.span.length);
                 let error = LATENESS * late.error(frequency);
                 sum += error * error / tolerance.of_position(step.end.elongation_x[i]);
             }
@@ -127,9 +126,9 @@ impl EndCorrection {
         self.force
     }
 
-    /// Whether the step is as it would be corrected up to its fraction `theta`: no mode was violated by then.
-    pub fn comes_after(&self, theta: f64) -> bool {
-        theta <= self.clean
+    /// Whether nothing of what [`detect`](Self::detect) found is in `step` up to its fraction `theta`.
+    pub fn comes_after(&self, step: &TwoStageDense<'_>, theta: f64) -> bool {
+        theta <= self.pressed && self.touches.iter().all(|&i| step.gap(i, theta) >= 0.0)
     }
 
     /// The lateness of the touch of free mass `i`, if there is one.
@@ -171,7 +170,9 @@ impl EndCorrection {
         }
         self.changed.push(i);
         self.force -= last;
-        Some(Lateness { length: -last / stiffness, time: step.time_below(first, last) })
+        let time = step.time_below(first, last);
+        self.pressed = self.pressed.min(1.0 - time / step.span.length);
+        Some(Lateness { length: -last / stiffness, time })
     }
 
     /// The lateness of a contact that slipped at the start and sticks at the first stage already: none of the way of its

@@ -124,7 +124,7 @@ impl ErrorRun {
                 }
             };
             let theta = (s - self.run.state.s) / step.h;
-            if s < end && (ends || !self.run.can_show_within(theta)) {
+            if s < end && (ends || !self.run.can_show_within(step.h, theta)) {
                 (step, end) = self.run.cut_step_at(s, self.duration, &mut self.work)?;
             }
             end = self.run.advance_windows(&mut step, (s.min(end), end), &mut self.work)?;

@@ -145,16 +145,18 @@ impl Run {
         }
     }
 
-    /// Whether the dense output of the step tried last is good enough to be shown at its fraction `theta`. A time step's touches
-    /// and lifts are corrected at its end, and its dense output is not: it is shown before them, and where they change F_z
-    /// little.
-    pub(super) fn can_show_within(&self, theta: f64) -> bool {
-        if !self.state.time_stepping || self.workspace.end_correction.comes_after(theta) {
+    /// Whether the dense output of the step of length `h` tried last is good enough to be shown at its fraction `theta`. A time
+    /// step's touches and lifts are corrected at its end, and its dense output is not: it is shown before them, and where they
+    /// change F_z little.
+    pub(super) fn can_show_within(&self, h: f64, theta: f64) -> bool {
+        let Self { model, settings, state, workspace, .. } = self;
+        if !state.time_stepping {
             return true;
         }
-        let force = self.workspace.integrator.end_forces().on_carrier_z().abs();
-        let allowed = MOST_UNCORRECTED * self.settings.tolerance.relative * force;
-        self.workspace.end_correction.uncorrected_force() <= allowed
+        let (integrator, correction) = (&workspace.integrator, &workspace.end_correction);
+        let allowed = MOST_UNCORRECTED * settings.tolerance.relative * integrator.end_forces().on_carrier_z().abs();
+        let step = || integrator.two_stage_dense(model, &state.carrier, &state.layer, state.span(h));
+        correction.uncorrected_force() < allowed || correction.comes_after(&step(), theta)
     }
 
     /// Whether the run can go on from the fraction `share` of the step of length `h` tried last.
