@@ -197,7 +197,8 @@ impl<const STAGES: usize> StepPowers<'_, STAGES> {
         let Self { model, maxwell, sums, h, weights, measure, .. } = *self;
         let mut missed = 0.0;
         let times = maxwell.coefficients().iter().zip(&model.relaxation_times).zip(&sums.by_time);
-        for ((coefficients, tau), ElementSums { relaxing, .. }) in times.filter(|(_, sums)| sums.relaxing.square > 0.0) {
+        for ((coefficients, tau), ElementSums { relaxing, .. }) in times.filter(|(_, sums)| sums.relaxing.square > 0.0)
+        {
             missed += UnresolvedRelaxation::new(h / tau, coefficients, weights, measure).of(relaxing);
         }
         ChannelEnergies {

@@ -3,16 +3,19 @@
 use serde::{Deserialize, Serialize};
 
 use super::error::Tolerance;
-use crate::model::{Forces, Model};
+use crate::model::{Forces, LinkKind, Model};
 
 /// The least scale of the errors of one force, as a share of the other, and as one of the force that the scene's height makes
-/// on all masses: the first touches are not resolved down to forces that do not matter later.
+/// on a mass.
 const LEAST_FORCE: f64 = 1e-3;
-/// The least scale of the errors of energies: that of one mass's springs at this share of the scene's height, or, where less,
-/// the energy that moves the layer at the carrier's speed. A light layer moves with energies far below those of its springs.
-const LEAST_ENERGY: f64 = 0.1;
-/// The same where the carrier stands.
-const LEAST_ENERGY_AT_REST: f64 = 1e-9;
+/// The same as a share of the force that it makes on all masses in the long term: the first touches are not resolved down to
+/// forces that do not matter later.
+const LEAST_OF_LAYER: f64 = 1e-3;
+/// The least scale of the errors of energies: that of the layer compressed by this share of the scene's height, or, where less,
+/// the energy of its masses at the carrier's speed. A light layer moves with energies far below those of its springs.
+const LEAST_COMPRESSION: f64 = 0.01;
+/// The elongation of one mass's links whose energy is the least scale in any case, as a share of the scene's height.
+const LEAST_ELONGATION: f64 = 1e-9;
 /// The least scale of the errors of F_x as a share of the friction that a slide under F_z would have.
 const EXPECTED_FRICTION: f64 = 0.5;
 
@@ -49,17 +52,24 @@ impl Largest {
     /// symmetry makes nothing, are not resolved down to their rounding.
     pub(super) fn force_scales(self, model: &Model, tolerance: &Tolerance) -> (f64, f64) {
         let expected = LEAST_FORCE.max(EXPECTED_FRICTION * model.friction_coefficient);
-        let least = LEAST_FORCE * height(tolerance) * model.effective_stiffness() * tolerance.masses as f64;
+        let of_mass = LEAST_FORCE * height(tolerance) * model.effective_stiffness();
+        let of_layer = LEAST_OF_LAYER * height(tolerance) * layer_stiffness(model, tolerance);
+        let least = of_mass.max(of_layer);
         (self.force_x.max(expected * self.force_z).max(least), self.force_z.max(LEAST_FORCE * self.force_x).max(least))
     }
 
     /// What the errors of energies are measured by, J, under a carrier that moves at `speed` (m/s).
     pub(super) fn energy_scale(self, model: &Model, tolerance: &Tolerance, speed: f64) -> f64 {
-        let of_springs = |share: f64| (share * height(tolerance)).powi(2) * model.effective_stiffness();
+        let of_layer = layer_stiffness(model, tolerance) * (LEAST_COMPRESSION * height(tolerance)).powi(2);
         let of_motion = tolerance.masses as f64 * model.mass * speed * speed;
-        let least = of_springs(LEAST_ENERGY).min(of_motion).max(of_springs(LEAST_ENERGY_AT_REST));
-        self.energy.max(least)
+        let of_mass = (LEAST_ELONGATION * height(tolerance)).powi(2) * model.effective_stiffness();
+        self.energy.max(of_layer.min(of_motion)).max(of_mass)
     }
+}
+
+/// The long-term stiffness of the vertical links of the whole layer, N/m.
+fn layer_stiffness(model: &Model, tolerance: &Tolerance) -> f64 {
+    tolerance.masses as f64 * model.links[LinkKind::Vertical as usize].stiffness
 }
 
 /// The scene's height, m.

@@ -99,10 +99,11 @@ fn static_areas_are_those_of_the_body() {
     }
 }
 
-/// Sliding friction and area at half the spacing of the files, within 13 and 17 %.
+/// Sliding friction and area at half the spacing of the files, within 13 and 17 %, at a tolerance that adds less than 1 % to that.
 fn slides(name: &str, speeds: &str) {
     let folder = scratch(&format!("half-plane-slide-{name}"));
-    let scene = write(name, &text(name, 2), &folder);
+    let text = text(name, 2).replace("relative_tolerance = 3.0e-3", "relative_tolerance = 1.0e-3");
+    let scene = write(name, &text, &folder);
     let table = folder.join("table.csv");
     let expected = Table::read(&file(name, "slide.csv"));
     let columns = ["pressure [Pa]", "speed [m/s]", "area_ratio [1]", "friction [1]"];
