@@ -169,7 +169,8 @@ fn judge_run(case: &Case, way: Way, mut outcome: Outcome, straight: Way, tight: 
         error: outcome.error,
         findings: outcome.findings,
     };
-    if !way.is_fmu() {
+    // What a sensitive motion is compared with is one draw of it.
+    if !way.is_fmu() && case.sensitive.is_none() {
         judged.findings.extend([judged.forces, judged.losses].iter().filter_map(Estimate::underestimate));
     }
     judged
