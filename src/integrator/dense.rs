@@ -205,6 +205,7 @@ impl DenseOutput<'_> {
     }
 
     /// Mass `i`, in contact, with the elongation and velocity `along_x` (m, m/s) if it slips.
+    #[inline(always)]
     fn on_profile(&self, i: usize, along_x: (f64, f64), carrier: &CarrierWithin) -> MassPoint {
         let start = self.start.state;
         let (elongation_x, v_x, surface) = if start.mode[i].slips() {

@@ -118,6 +118,7 @@ impl<'a> TwoStageDense<'a> {
     }
 
     /// Mass `i`, in contact, with the elongation and velocity `along_x` (m, m/s) if it slips.
+    #[inline(always)]
     fn on_profile(&self, i: usize, along_x: (f64, f64), here: &CarrierPoint) -> MassPoint {
         let (v_x, surface) = if self.mode(i) == Mode::Stick {
             (0.0, self.start.surface[i])

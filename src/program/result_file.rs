@@ -52,7 +52,8 @@ impl CsvWriter {
     pub(crate) fn write_values(&mut self, values: impl IntoIterator<Item = Field>) -> Result<(), FileError> {
         let write = || {
             for (i, value) in values.into_iter().enumerate() {
-                write!(self.file, "{}{value}", if i > 0 { "," } else { "" })?;
+                self.file.write_all(if i > 0 { b"," } else { b"" })?;
+                write!(self.file, "{value}")?;
             }
             writeln!(self.file)
         };

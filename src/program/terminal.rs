@@ -43,7 +43,16 @@ pub(crate) struct Decimal {
 impl Display for Decimal {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let Self { value, plain } = self;
-        if *value == 0.0 || plain.contains(&value.abs()) { Display::fmt(value, f) } else { LowerExp::fmt(value, f) }
+        let is_plain = *value == 0.0 || plain.contains(&value.abs());
+        let mut buffer = zmij::Buffer::new();
+        let shortest = buffer.format(*value);
+        if is_plain != shortest.contains('e') {
+            f.write_str(shortest.strip_suffix(".0").unwrap_or(shortest))
+        } else if is_plain {
+            Display::fmt(value, f)
+        } else {
+            LowerExp::fmt(value, f)
+        }
     }
 }
 

@@ -30,12 +30,23 @@ impl PlainLine {
 
 /// The decimal that `text` begins with, and its bytes. A sign `+` and long exponents are left to the general reader.
 fn decimal(text: &str) -> Option<(f64, usize)> {
-    let of_number = |byte: &u8| matches!(byte, b'0'..=b'9' | b'.' | b'e' | b'E' | b'+' | b'-');
-    let number = &text[..text.bytes().take_while(of_number).count()];
-    let short_exponent = number.split_once(['e', 'E']).is_none_or(|(_, exponent)| exponent.len() <= 4);
-    let plain = !number.starts_with('+') && short_exponent;
-    Some((number.parse().ok().filter(|_| plain)?, number.len()))
+    let bytes = text.as_bytes();
+    let run = |from: usize, of_run: fn(&u8) -> bool| bytes[from..].iter().take_while(|byte| of_run(byte)).count();
+    let sign = usize::from(bytes.first() == Some(&b'-'));
+    let mut end = sign + run(sign, |byte| byte.is_ascii_digit() || *byte == b'.');
+    if matches!(bytes.get(end), Some(b'e' | b'E')) {
+        let sign = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
+        let digits = run(end + 1 + sign, u8::is_ascii_digit);
+        if sign + digits > MOST_OF_EXPONENT {
+            return None;
+        }
+        end += 1 + sign + digits;
+    }
+    Some((text[..end].parse().ok()?, end))
 }
+
+/// The longest exponent, its sign included.
+const MOST_OF_EXPONENT: usize = 4;
 
 #[cfg(test)]
 mod tests {
