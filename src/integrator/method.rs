@@ -281,11 +281,8 @@ impl Stages {
 
     fn guess_extrapolated(&mut self, step: &StepInput<'_>, weights: &[f64]) {
         let (solver, state) = (&mut self.solver, &step.start.state);
-        solver.state.velocity_x.copy_from_slice(&state.velocity_x);
-        solver.state.velocity_z.copy_from_slice(&state.velocity_z);
         let earlier = self.rates.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
-        let accelerations = earlier.map(|(stage, weight)| (step.beta * weight, &stage.acceleration_x[..]));
-        solver.guess_slips(accelerations);
+        solver.guess(state, earlier.map(|(stage, weight)| (step.beta * weight, &stage.acceleration_x[..])));
         if step.model.friction_depends_on_speed() {
             solver.limit_guess(&state.velocity_x, MOST_GUESSED);
         }

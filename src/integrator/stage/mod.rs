@@ -18,7 +18,7 @@ use nalgebra::Vector2;
 
 use super::error::{NEWTON_SHARE, Tolerance};
 use super::rates::{NO_LIMIT, Rates};
-use crate::math::{BlockTridiagonal, with_widest_vectors};
+use crate::math::{BlockTridiagonal, weighted_sum, with_widest_vectors};
 use crate::model::{CarrierPoint, ContactForces, Forces, FrictionPower, LinkKind, LinkMotion, Mode, Model, State};
 use newton::{Climb, NeighbourWeights, RateFriction, RowShares, largest};
 
@@ -277,17 +277,15 @@ impl StageSolver {
         &self.contacts
     }
 
-    /// Guesses the velocities of the slipping masses: the starred ones and the sum of these accelerations, m/s², with
-    /// their weights, s.
-    pub(super) fn guess_slips<'a>(&mut self, accelerations: impl Iterator<Item = (f64, &'a [f64])>) {
-        let (velocity, star) = (&mut self.state.velocity_x, &self.history.velocity_x);
-        for &i in &self.slips {
-            velocity[i] = star[i];
-        }
-        for (weight, acceleration) in accelerations {
-            for &i in &self.slips {
-                velocity[i] += weight * acceleration[i];
-            }
+    /// Guesses the velocities: of the slipping masses the starred ones and the sum of these accelerations, m/s², with their
+    /// weights, s; of the others those of `start`.
+    pub(super) fn guess<'a>(&mut self, start: &State, accelerations: impl Iterator<Item = (f64, &'a [f64])>) {
+        let (guess, star) = (&mut self.state, &self.history.velocity_x);
+        guess.velocity_z.copy_from_slice(&start.velocity_z);
+        let accelerations = accelerations.map(|(weight, acceleration)| (weight, &acceleration[..]));
+        weighted_sum(&mut guess.velocity_x, std::iter::once((1.0, &star[..])).chain(accelerations));
+        for ((velocity, start), mode) in guess.velocity_x.iter_mut().zip(&start.velocity_x).zip(&guess.mode) {
+            *velocity = if mode.slips() { *velocity } else { *start };
         }
     }
 

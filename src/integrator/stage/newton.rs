@@ -165,6 +165,7 @@ impl StageSolver {
     }
 
     /// Sets the blocks between mass `i` and the next.
+    #[inline(always)]
     fn couple(&mut self, i: usize) {
         self.system.upper[i] = self.rows[i].coupling(&self.columns[i + 1]);
         self.system.lower[i + 1] = self.rows[i + 1].coupling(&self.columns[i]);
@@ -279,6 +280,7 @@ impl SlippingMass {
     }
 
     /// Mass `i` of `state`, which slips, with ẍ = `acceleration` under the `forces` of the links.
+    #[inline(always)]
     pub(in crate::integrator) fn of(
         model: &Model,
         state: &State,
