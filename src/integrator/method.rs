@@ -282,7 +282,7 @@ impl Stages {
     fn guess_extrapolated(&mut self, step: &StepInput<'_>, weights: &[f64]) {
         let (solver, state) = (&mut self.solver, &step.start.state);
         let earlier = self.rates.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
-        solver.guess(state, earlier.map(|(stage, weight)| (step.beta * weight, &stage.acceleration_x[..])));
+        solver.guess(state, earlier.map(|(stage, weight)| (step.beta * weight, stage)));
         if step.model.friction_depends_on_speed() {
             solver.limit_guess(&state.velocity_x, MOST_GUESSED);
         }

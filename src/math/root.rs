@@ -13,8 +13,8 @@ pub fn bracketed_root(mut f: impl FnMut(f64) -> f64, (a, b): (f64, f64), toleran
 /// The same where the values at the ends of the bracket are known: `ends` are places and values.
 pub fn root_between(mut f: impl FnMut(f64) -> f64, ends: [(f64, f64); 2], tolerance: f64) -> f64 {
     let [mut newest, mut other] = ends;
-    // The chord's root; NaN where both are 0.
-    let mut fraction = (newest.1 / (newest.1 - other.1)).max(0.0);
+    let chord = newest.1 / (newest.1 - other.1);
+    let mut fraction = if (0.0..=1.0).contains(&chord) { chord } else { 0.5 };
     for _ in 0..MOST_STEPS {
         let x = newest.0 + fraction * (other.0 - newest.0);
         let point = (x, f(x));
@@ -67,6 +67,17 @@ mod tests {
     fn takes_a_root_at_either_end() {
         assert_eq!(bracketed_root(|x| x, (0.0, 1.0), 1e-12), 0.0);
         assert_eq!(bracketed_root(|x| 1.0 - x, (0.0, 1.0), 1e-12), 1.0);
+    }
+
+    #[test]
+    fn known_ends_are_not_evaluated_again() {
+        let mut places = Vec::new();
+        let f = |x: f64| {
+            places.push(x);
+            2.0 * x - 1.0
+        };
+        assert_eq!(root_between(f, [(0.0, -1.0), (2.0, 3.0)], 1e-12), 0.5);
+        assert_eq!(places, [0.5]);
     }
 
     #[test]

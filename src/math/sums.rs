@@ -275,6 +275,19 @@ mod tests {
     }
 
     #[test]
+    fn a_square_and_dots_are_those_of_each_pair() {
+        for n in 0..11 {
+            let arrays: [Vec<f64>; 3] =
+                std::array::from_fn(|array| (0..n + array).map(|i| (i * (array + 2) + 1) as f64).collect());
+            let (square, others) = square_and_dots(&arrays[0], [&arrays[1][..], &arrays[2]]);
+            assert_eq!(
+                (square, others),
+                (dot(&arrays[0], &arrays[0]), [1, 2].map(|other| dot(&arrays[0], &arrays[other])))
+            );
+        }
+    }
+
+    #[test]
     fn sums_are_those_of_whole_numbers() {
         for n in 0..11 {
             let a: Vec<f64> = (0..n).map(|i| (i + 1) as f64).collect();

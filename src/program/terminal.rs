@@ -102,6 +102,18 @@ mod tests {
         }
     }
 
+    /// The text of the standard library, bit for bit of the number and letter for letter.
+    #[test]
+    fn numbers_in_files_are_those_of_the_standard_library() {
+        let edges =
+            [-0.0, 5e-324, f64::MIN_POSITIVE, f64::MAX, 1e-4, 9.999e-5, 1e15, 1e16, 1e22, 123_456_789_012_345_680.0];
+        let others = (-330..310).map(|power| 1.234_567_890_123_4 * 10_f64.powi(power));
+        for value in edges.into_iter().chain(others).chain([f64::INFINITY, f64::NEG_INFINITY, f64::NAN]) {
+            let is_plain = value == 0.0 || (1e-4..1e16).contains(&value.abs());
+            assert_eq!(real(value), if is_plain { format!("{value}") } else { format!("{value:e}") });
+        }
+    }
+
     #[test]
     fn lines_are_aligned() {
         assert_eq!(lines(&labelled("Scene", ["a".into(), "b".into()])), "Scene       a\n            b\n");

@@ -297,9 +297,12 @@ mod tests {
             for tolerance in [1e-2, 1e-3] {
                 (scene.solver.method, scene.solver.relative_tolerance) = (method, tolerance);
                 let mut simulation = Simulation::new(&scene, &Start::default()).unwrap();
-                // Compared at the end of each.
-                (0..30).for_each(|_| simulation.advance(&slide).unwrap());
-                assert!(simulation.divergence().is_some(), "{method:?}, {tolerance}");
+                // Compared at the end of each; at one of them the numbers of mode changes may be the same by chance.
+                let mut diverges_after = |slides: usize| {
+                    (0..slides).for_each(|_| simulation.advance(&slide).unwrap());
+                    simulation.divergence().is_some()
+                };
+                assert!(diverges_after(30) || diverges_after(1), "{method:?}, {tolerance}");
             }
         }
     }

@@ -277,13 +277,14 @@ impl StageSolver {
         &self.contacts
     }
 
-    /// Guesses the velocities: of the slipping masses the starred ones and the sum of these accelerations, m/s², with their
-    /// weights, s; of the others those of `start`.
-    pub(super) fn guess<'a>(&mut self, start: &State, accelerations: impl Iterator<Item = (f64, &'a [f64])>) {
+    /// Guesses the velocities: of the slipping masses the starred ones and the sum of the accelerations at `earlier` stages, with
+    /// their weights, s; of the others those of `start`.
+    pub(super) fn guess<'a>(&mut self, start: &State, earlier: impl Iterator<Item = (f64, &'a Rates)>) {
         let (guess, star) = (&mut self.state, &self.history.velocity_x);
         guess.velocity_z.copy_from_slice(&start.velocity_z);
-        let accelerations = accelerations.map(|(weight, acceleration)| (weight, &acceleration[..]));
-        weighted_sum(&mut guess.velocity_x, std::iter::once((1.0, &star[..])).chain(accelerations));
+        let of_star = std::iter::once((1.0, &star[..]));
+        let of_stages = earlier.map(|(weight, stage)| (weight, &stage.acceleration_x[..]));
+        weighted_sum(&mut guess.velocity_x, of_star.chain(of_stages));
         for ((velocity, start), mode) in guess.velocity_x.iter_mut().zip(&start.velocity_x).zip(&guess.mode) {
             *velocity = if mode.slips() { *velocity } else { *start };
         }
