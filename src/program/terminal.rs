@@ -44,9 +44,11 @@ impl Display for Decimal {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let Self { value, plain } = self;
         let is_plain = *value == 0.0 || plain.contains(&value.abs());
+        // Of the same digits, in fewer instructions; exponents begin elsewhere, and have a sign.
         let mut buffer = zmij::Buffer::new();
         let shortest = buffer.format(*value);
-        if is_plain != shortest.contains('e') {
+        let is_as_asked = if is_plain { !shortest.contains('e') } else { shortest.contains("e-") };
+        if is_as_asked {
             f.write_str(shortest.strip_suffix(".0").unwrap_or(shortest))
         } else if is_plain {
             Display::fmt(value, f)
