@@ -234,8 +234,8 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
         let of_energies = resolvable.map_or(0.0, |exchange| self.energy_square(model, exchange, h, tolerance));
         let mean = |sum: f64| (sum / tolerance.masses as f64).sqrt();
         let of_bodies = if model.has_bodies() { self.body_squares(model, &carrier_error, tolerance) } else { 0.0 };
-        let motion_error = mean(sum).hypot(of_bodies.sqrt()).hypot(self.tableau.run_weight * of_forces.sqrt());
-        let error = motion_error.hypot(self.tableau.run_weight * of_energies.sqrt());
+        let motion_error = mean(sum).hypot(of_bodies.sqrt()).hypot(self.tableau.force_weight * of_forces.sqrt());
+        let error = motion_error.hypot(self.tableau.energy_weight * of_energies.sqrt());
         StepAttempt { error, motion_error, carrier_error: mean(free) }
     }
 

@@ -16,9 +16,11 @@ pub struct Tableau<const STAGES: usize> {
     pub error: [f64; STAGES],
     /// Order of the embedded method. That of the method itself is one higher.
     pub embedded_order: i32,
-    /// Weight of the errors of the forces on the carrier and of the energies in the error test: what makes the errors of
-    /// whole runs about the relative tolerance and, among such weights, a given error cheap.
-    pub run_weight: f64,
+    /// Weight of the errors of the forces on the carrier in the error test: what makes the errors of whole runs about the
+    /// relative tolerance and, among such weights, a given error cheap.
+    pub force_weight: f64,
+    /// The same of the energies.
+    pub energy_weight: f64,
 }
 
 impl<const STAGES: usize> Tableau<STAGES> {
@@ -48,7 +50,7 @@ impl<const STAGES: usize> Tableau<STAGES> {
             error[j] -= embedded[j];
             j += 1;
         }
-        Self { a, c, error, embedded_order, run_weight }
+        Self { a, c, error, embedded_order, force_weight: run_weight, energy_weight: run_weight }
     }
 
     /// The weights b.
@@ -229,7 +231,8 @@ pub const SDIRK2: Tableau<TWO_STAGES> = Tableau {
     c: [0.0, GAMMA, 1.0],
     error: [0.0, -SDIRK2_ESTIMATE, SDIRK2_ESTIMATE],
     embedded_order: 1,
-    run_weight: 0.1,
+    force_weight: 0.1,
+    energy_weight: 0.05,
 };
 
 /// The continuous weights of the two implicit stages of [`SDIRK2`]: the straight line through their rates, integrated

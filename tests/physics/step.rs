@@ -352,7 +352,8 @@ fn auto_hands_over_where_mode_changes_crowd_and_back() {
 /// ∂F/∂u and ∂F/∂w at the end of a motion against a difference quotient by rollback; no mode changes on the way.
 #[test]
 fn tangents_are_those_of_a_difference_quotient() {
-    let scene = rough(6, "step", "absolute_tolerance = 1e-12");
+    let mut scene = rough(6, "step", "absolute_tolerance = 1e-12");
+    scene.solver.relative_tolerance = 1e-4;
     let start = Simulation::new(&scene, &Start { w: -8e-6, u_rate: 0.5, ..Start::default() }).unwrap();
     let after = |u: f64, w: f64| {
         let mut simulation = start.clone();
@@ -368,8 +369,9 @@ fn tangents_are_those_of_a_difference_quotient() {
         assert_eq!(up[2], down[2], "a mode has changed");
         for force in 0..2 {
             let (found, quotient) = (tangents[3 + 2 * axis + force], (up[force] - down[force]) / (2.0 * moved));
-            // Steps are chosen anew for every run; with them the error, 1e-4 of what changes, and roundings.
-            assert!((found - quotient).abs() < 6e-3 * quotient.abs() + 1.0, "{axis} {force}: {found} {quotient}");
+            // Steps are chosen anew for every run, and with them the error, which the quotient magnifies: by 1e-3 N/m at most
+            // at this tolerance, by 0.1 at ten times it.
+            assert!((found - quotient).abs() < 1e-2, "{axis} {force}: {found} {quotient}");
         }
     }
 }
