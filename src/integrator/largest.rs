@@ -11,8 +11,9 @@ const LEAST_FORCE: f64 = 1e-3;
 /// The same as a share of the force that it makes on all masses in the long term: the first touches are not resolved down to
 /// forces that do not matter later.
 const LEAST_OF_LAYER: f64 = 1e-3;
-/// The least scale of the errors of energies: that of the layer compressed by this share of the scene's height, or, where less,
-/// the energy of its masses at the carrier's speed. A light layer moves with energies far below those of its springs.
+/// The share of the scene's height by which the layer is compressed in the least scale of the errors of energies; the least scale
+/// is lower where the masses have less energy at the carrier's speed. A light layer moves with energies far below those of its
+/// springs.
 const LEAST_COMPRESSION: f64 = 0.01;
 /// The elongation of one mass's links whose energy is the least scale in any case, as a share of the scene's height.
 const LEAST_ELONGATION: f64 = 1e-9;
@@ -75,4 +76,31 @@ fn layer_stiffness(model: &Model, tolerance: &Tolerance) -> f64 {
 /// The scene's height, m.
 fn height(tolerance: &Tolerance) -> f64 {
     tolerance.position / tolerance.relative
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SCENE: &str = "name = 'a'
+        layer = { masses = 40, spacing = 1.0, mass = 1e-7, vertical = { stiffness = 2e3 } }
+        surface = { kind = 'flat' }";
+
+    /// Of a layer that is 1e-5 m high: 40 · 2000 N/m · (1e-7 m)², 40 · 1e-7 kg · v², and 2000 N/m · (1e-14 m)².
+    #[test]
+    fn nothing_yet_is_measured_by_the_layer_or_by_its_motion() {
+        let model = Model::of_text(SCENE);
+        let (tolerance, nothing) = (Tolerance::new(&model, 1e-3, 1e-8), Largest::default());
+        for (speed, expected) in [(1.0, 8e-10), (1e-3, 4e-12), (0.0, 2e-25)] {
+            let found = nothing.energy_scale(&model, &tolerance, speed);
+            assert!((found / expected - 1.0).abs() < 1e-12, "{speed} m/s: {found:e} J");
+        }
+        let (x, z) = nothing.force_scales(&model, &tolerance);
+        assert!((x / 8e-4 - 1.0).abs() < 1e-12 && x == z, "{x:e} and {z:e} N");
+        let known = Largest { force_z: 2.0, energy: 1e-3, ..nothing };
+        assert_eq!(
+            (known.force_scales(&model, &tolerance).1, known.energy_scale(&model, &tolerance, 1.0)),
+            (2.0, 1e-3)
+        );
+    }
 }
