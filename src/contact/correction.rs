@@ -126,7 +126,8 @@ impl EndCorrection {
         self.force
     }
 
-    /// Whether nothing of what [`detect`](Self::detect) found is in `step` up to its fraction `theta`.
+    /// Whether the touches and lifts that [`detect`](Self::detect) found in `step` come after its fraction `theta`. Of dips,
+    /// which the correction leaves alone, and of breaks, which begin at the end, nothing is asked.
     pub fn comes_after(&self, step: &TwoStageDense<'_>, theta: f64) -> bool {
         theta <= self.pressed && self.touches.iter().all(|&i| step.gap(i, theta) >= 0.0)
     }

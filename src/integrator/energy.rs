@@ -23,12 +23,11 @@ pub(super) struct StepSums<const STAGES: usize> {
     dampers: [f64; STAGES],
     /// The power lost in Maxwell elements, W.
     elements: [f64; STAGES],
-    /// Of the elements by relaxation time.
-    by_time: Vec<ElementSums<STAGES>>,
+    /// What the stages do not resolve of it, by relaxation time.
+    relaxing: Vec<RelaxingPower>,
 }
 
 /// Sums over all elements of one relaxation time, from which the power lost in them at the stages follows.
-#[derive(Clone, Debug)]
 struct ElementSums<const STAGES: usize> {
     /// Σ c a_0²/τ, W.
     square: f64,
@@ -36,8 +35,6 @@ struct ElementSums<const STAGES: usize> {
     mixed: [f64; STAGES],
     /// Σ c ė_i ė_j/τ, W/s².
     rates: RateProducts<STAGES>,
-    /// What the stages do not resolve.
-    relaxing: RelaxingPower,
 }
 
 /// The power lost in the elements of one relaxation time that do not follow their links yet: of l = a_0 - τė_0, over all of
@@ -55,7 +52,7 @@ impl<const STAGES: usize> StepSums<STAGES> {
     pub(super) fn new(model: &Model, usage: Usage) -> Self {
         let times = if usage == Usage::Nothing { 0 } else { model.relaxation_times.len() };
         let none = [0.0; STAGES];
-        Self { known: false, dampers: none, elements: none, by_time: vec![ElementSums::zero(); times] }
+        Self { known: false, dampers: none, elements: none, relaxing: vec![RelaxingPower::default(); times] }
     }
 
     /// A new step is attempted.
@@ -70,28 +67,25 @@ impl<const STAGES: usize> StepSums<STAGES> {
             return;
         }
         self.known = true;
-        (self.dampers, self.elements) = ([0.0; STAGES], [0.0; STAGES]);
-        self.by_time.fill(ElementSums::zero());
-        for kind in LinkKind::ALL {
-            let (damping, has_elements) = (model.links[kind as usize].damping, model.rows_of(kind).next().is_some());
-            if !has_elements && damping == 0.0 {
-                continue;
-            }
-            let products = rate_products(stages, kind, has_elements);
-            for (i, power) in self.dampers.iter_mut().enumerate() {
-                *power += damping * products[i][i];
-            }
-            let is_unresolved = |row: &MaxwellRow| h / row.relaxation_time > RESOLVED;
-            let change = if model.rows_of(kind).any(is_unresolved) { largest_change(stages, kind) } else { 0.0 };
-            for row in model.rows_of(kind) {
-                let (sums, a) = (&mut self.by_time[row.time_index], &a[row.range.clone()]);
-                sums.add(row, a, stages, &products);
-                if is_unresolved(row) {
-                    sums.relaxing.add(row, a, &stages[0].elongation_rate[kind as usize], change);
+        let products = LinkKind::ALL.map(|kind| rate_products(model, stages, kind));
+        self.dampers = std::array::from_fn(|i| {
+            model.links.iter().zip(&products).map(|(link, products)| link.damping * products[i][i]).sum()
+        });
+        let changes = LinkKind::ALL.map(|kind| {
+            let unresolved = model.rows_of(kind).any(|row| h / row.relaxation_time > RESOLVED);
+            if unresolved { largest_change(stages, kind) } else { 0.0 }
+        });
+        self.elements = [0.0; STAGES];
+        for (index, (coefficients, relaxing)) in maxwell.coefficients().iter().zip(&mut self.relaxing).enumerate() {
+            let mut sums = ElementSums::zero();
+            *relaxing = RelaxingPower::default();
+            for row in model.rows.iter().filter(|row| row.time_index == index) {
+                let (a, kind) = (&a[row.range.clone()], row.kind as usize);
+                sums.add(row, a, stages, &products[kind]);
+                if h / row.relaxation_time > RESOLVED {
+                    relaxing.add(row, a, &stages[0].elongation_rate[kind], changes[kind]);
                 }
             }
-        }
-        for (sums, coefficients) in self.by_time.iter().zip(maxwell.coefficients()) {
             self.elements.iter_mut().enumerate().for_each(|(i, power)| *power += sums.power(coefficients, i));
         }
     }
@@ -100,7 +94,7 @@ impl<const STAGES: usize> StepSums<STAGES> {
 impl<const STAGES: usize> ElementSums<STAGES> {
     fn zero() -> Self {
         let none = [0.0; STAGES];
-        Self { square: 0.0, mixed: none, rates: [none; STAGES], relaxing: RelaxingPower::default() }
+        Self { square: 0.0, mixed: none, rates: [none; STAGES] }
     }
 
     /// Adds the elements of `row` with the elongations `a` (m) at the start of a step with these `stages`, with the `products`
@@ -128,10 +122,9 @@ impl<const STAGES: usize> ElementSums<STAGES> {
 
 impl RelaxingPower {
     /// Adds that of the elements of `row` with the elongations `a` (m) and the rates `rate` of their links (m/s) at the start of
-    /// a step through which Σ (ė - ė_0)² changes by up to `change` (m²/s²).
+    /// a step through which Σ (ė - ė_0)² comes to `change` (m²/s²).
     ///
-    /// Where l is no larger than τ times that change, the stages resolve it. The power is 0 there, and goes there
-    /// continuously.
+    /// Where Σ l² is no larger than τ² times that, the stages resolve it. The power is 0 there, and goes there continuously.
     fn add(&mut self, row: &MaxwellRow, a: &[f64], rate: &[f64], change: f64) {
         let tau = row.relaxation_time;
         let l = |a: f64, rate: f64| a - tau * rate;
@@ -196,9 +189,8 @@ impl<const STAGES: usize> StepPowers<'_, STAGES> {
     fn lost(&self) -> ChannelEnergies {
         let Self { model, maxwell, sums, h, weights, measure, .. } = *self;
         let mut missed = 0.0;
-        let times = maxwell.coefficients().iter().zip(&model.relaxation_times).zip(&sums.by_time);
-        for ((coefficients, tau), ElementSums { relaxing, .. }) in times.filter(|(_, sums)| sums.relaxing.square > 0.0)
-        {
+        let times = maxwell.coefficients().iter().zip(&model.relaxation_times).zip(&sums.relaxing);
+        for ((coefficients, tau), relaxing) in times.filter(|(_, relaxing)| relaxing.square > 0.0) {
             missed += UnresolvedRelaxation::new(h / tau, coefficients, weights, measure).of(relaxing);
         }
         ChannelEnergies {
@@ -209,8 +201,13 @@ impl<const STAGES: usize> StepPowers<'_, STAGES> {
     }
 }
 
-/// The products of one kind of link: of each stage with itself, and of `all` with each other.
-fn rate_products<const STAGES: usize>(stages: &[Rates], kind: LinkKind, all: bool) -> RateProducts<STAGES> {
+/// The products of one kind of link: of each stage with itself where there are dampers, of all with each other where there
+/// are elements; 0 elsewhere.
+fn rate_products<const STAGES: usize>(model: &Model, stages: &[Rates], kind: LinkKind) -> RateProducts<STAGES> {
+    let all = model.rows_of(kind).next().is_some();
+    if !all && model.links[kind as usize].damping == 0.0 {
+        return [[0.0; STAGES]; STAGES];
+    }
     let rate = |i: usize| &stages[i].elongation_rate[kind as usize][..];
     let mut products = [[0.0; STAGES]; STAGES];
     // Each stage with the one that is so many behind it, around the end: half of the distances make all pairs.

@@ -25,13 +25,13 @@ pub struct Tableau<const STAGES: usize> {
 
 impl<const STAGES: usize> Tableau<STAGES> {
     /// A method from A without its first column, c, b̂ and the order of b̂. The first column of A follows from
-    /// Σ_j a_ij = c_i; the last row is b.
+    /// Σ_j a_ij = c_i; the last row is b. The `weight` is that of the forces and of the energies.
     const fn new(
         mut a: [[f64; STAGES]; STAGES],
         c: [f64; STAGES],
         embedded: [f64; STAGES],
         embedded_order: i32,
-        run_weight: f64,
+        weight: f64,
     ) -> Self {
         let mut i = 1;
         while i < STAGES - 1 {
@@ -50,7 +50,7 @@ impl<const STAGES: usize> Tableau<STAGES> {
             error[j] -= embedded[j];
             j += 1;
         }
-        Self { a, c, error, embedded_order, force_weight: run_weight, energy_weight: run_weight }
+        Self { a, c, error, embedded_order, force_weight: weight, energy_weight: weight }
     }
 
     /// The weights b.

@@ -123,8 +123,7 @@ impl ErrorRun {
                     (step, self.run.end_of(&step, self.duration))
                 }
             };
-            let theta = (s - self.run.state.s) / step.h;
-            if s < end && (ends || !self.run.can_show_within(step.h, theta)) {
+            if s < end && (ends || !self.run.can_show_within(&step, s)) {
                 (step, end) = self.run.cut_step_at(s, self.duration, &mut self.work)?;
             }
             end = self.run.advance_windows(&mut step, (s.min(end), end), &mut self.work)?;

@@ -308,8 +308,7 @@ impl Simulation {
     ) -> Result<(f64, bool), SimulationError> {
         let (mut end, mut shortened) = (self.run.end_of(step, duration), false);
         while let Some(time) = observer.next_before(end) {
-            let theta = (time - self.run.state.s) / step.h;
-            if self.run.can_show_within(step.h, theta) {
+            if self.run.can_show_within(step, time) {
                 end = self.run.advance_windows(step, (time, end), work)?;
                 if time < end {
                     let theta = (time - self.run.state.s) / step.h;

@@ -131,32 +131,36 @@ impl Run {
 
     /// P_diss at the fraction `theta` of the step of length `h` tried last, W, where the powers at its stages say it.
     pub(super) fn dissipated_power_within(&mut self, h: f64, theta: f64) -> Option<f64> {
-        let in_windows = self.dissipated_power_of_windows(self.state.s + theta * h);
-        let Self { model, state, workspace, settings, .. } = self;
-        let (integrator, start) = (&mut workspace.integrator, &state.layer.state);
-        if !settings.accounts.energy {
-            None
-        } else if state.time_stepping {
-            Some(integrator.two_stage_dissipated_power(model, start, h, theta))
-        } else if settings.tolerance.relative >= POWERS_OF_STAGES_FROM {
-            Some((integrator.dissipated_power(model, start, h, theta) + in_windows).max(0.0))
-        } else {
-            None
+        if !self.settings.accounts.energy || !self.has_powers_within() {
+            return None;
         }
+        let in_windows = self.dissipated_power_of_windows(self.state.s + theta * h);
+        let Self { model, state, workspace, .. } = self;
+        let (integrator, start) = (&mut workspace.integrator, &state.layer.state);
+        Some(if state.time_stepping {
+            integrator.two_stage_dissipated_power(model, start, h, theta)
+        } else {
+            (integrator.dissipated_power(model, start, h, theta) + in_windows).max(0.0)
+        })
     }
 
-    /// Whether the dense output of the step of length `h` tried last is good enough to be shown at its fraction `theta`. A time
-    /// step's touches and lifts are corrected at its end, and its dense output is not: it is shown before them, and where they
-    /// change F_z little.
-    pub(super) fn can_show_within(&self, h: f64, theta: f64) -> bool {
+    /// Whether the powers at the stages say P_diss within a step.
+    fn has_powers_within(&self) -> bool {
+        self.state.time_stepping || self.settings.tolerance.relative >= POWERS_OF_STAGES_FROM
+    }
+
+    /// Whether the dense output of `step`, tried last, is good enough to be shown at the time `s` after the start of the
+    /// carrier's piece. A time step's touches and lifts are corrected at its end, and its dense output is not: it is shown
+    /// before them, and where they change F_z little.
+    pub(super) fn can_show_within(&self, step: &TrialStep, s: f64) -> bool {
         let Self { model, settings, state, workspace, .. } = self;
         if !state.time_stepping {
             return true;
         }
         let (integrator, correction) = (&workspace.integrator, &workspace.end_correction);
         let allowed = MOST_UNCORRECTED * settings.tolerance.relative * integrator.end_forces().on_carrier_z().abs();
-        let step = || integrator.two_stage_dense(model, &state.carrier, &state.layer, state.span(h));
-        correction.uncorrected_force() < allowed || correction.comes_after(&step(), theta)
+        let dense = || integrator.two_stage_dense(model, &state.carrier, &state.layer, state.span(step.h));
+        correction.uncorrected_force() < allowed || correction.comes_after(&dense(), (s - state.s) / step.h)
     }
 
     /// Whether the run can go on from the fraction `share` of the step of length `h` tried last.

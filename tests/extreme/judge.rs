@@ -169,8 +169,7 @@ fn judge_run(case: &Case, way: Way, mut outcome: Outcome, straight: Way, tight: 
         error: outcome.error,
         findings: outcome.findings,
     };
-    // What a sensitive motion is compared with is one draw of it.
-    if !way.is_fmu() && case.sensitive.is_none() {
+    if !way.is_fmu() {
         judged.findings.extend([judged.forces, judged.losses].iter().filter_map(Estimate::underestimate));
     }
     judged

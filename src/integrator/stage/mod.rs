@@ -282,6 +282,10 @@ impl StageSolver {
     pub(super) fn guess<'a>(&mut self, start: &State, earlier: impl Iterator<Item = (f64, &'a Rates)>) {
         let (guess, star) = (&mut self.state, &self.history.velocity_x);
         guess.velocity_z.copy_from_slice(&start.velocity_z);
+        if self.slips.is_empty() {
+            guess.velocity_x.copy_from_slice(&start.velocity_x);
+            return;
+        }
         let of_star = std::iter::once((1.0, &star[..]));
         let of_stages = earlier.map(|(weight, stage)| (weight, &stage.acceleration_x[..]));
         weighted_sum(&mut guess.velocity_x, of_star.chain(of_stages));
