@@ -35,18 +35,18 @@ impl ContactForces {
     /// surface under it.
     #[inline]
     pub fn new(model: &Model, forces: (f64, f64), velocity_x: f64, surface: &SurfacePoint) -> Self {
-        let contact = Self::without_limit(model, forces, velocity_x, surface);
+        let contact = Self::without_limit(model.mass, forces, velocity_x, surface);
         let limit = model.friction_coefficient * contact.normal + model.shear_at_rest(contact.normal);
         Self { limit, ..contact }
     }
 
-    /// The same without T(0).
+    /// The same without T(0), of a mass of `mass`, kg.
     #[inline(always)]
-    pub fn without_limit(model: &Model, (f_x, f_z): (f64, f64), velocity_x: f64, surface: &SurfacePoint) -> Self {
+    pub fn without_limit(mass: f64, (f_x, f_z): (f64, f64), velocity_x: f64, surface: &SurfacePoint) -> Self {
         let s = surface.slope;
         let q = (1.0 + s * s).sqrt();
         // From (6)-(9): the normal force needs no acceleration.
-        let normal = (model.mass * surface.curvature * velocity_x * velocity_x - f_z + s * f_x) / q;
+        let normal = (mass * surface.curvature * velocity_x * velocity_x - f_z + s * f_x) / q;
         Self { normal, tangential: (f_x + s * f_z) / q, limit: 0.0, q }
     }
 

@@ -14,6 +14,8 @@ mod border;
 mod modes;
 mod newton;
 
+use std::hint::select_unpredictable;
+
 use nalgebra::Vector2;
 
 use super::error::{NEWTON_SHARE, Tolerance};
@@ -455,7 +457,9 @@ impl StageSolver {
             || {
                 self.set_rates(point, rates);
                 if model.friction_is_linear() {
-                    self.set_linear_contact_rates(model, rates);
+                    let Rates { acceleration_x, acceleration_z, normal, margin, .. } = rates;
+                    set_contact_motion(acceleration_z, normal, acceleration_x, model, &self.state, &self.forces);
+                    set_slips(&mut self.slip_speed, margin, model, &self.state);
                 }
             },
         );
@@ -478,28 +482,6 @@ impl StageSolver {
         let motion = LinkMotion::of(state, &point.carrier);
         for (kind, rate) in LinkKind::ALL.into_iter().zip(&mut rates.elongation_rate) {
             motion.elongation_rates(kind, rate);
-        }
-    }
-
-    /// Sets the contact rates of all masses, of sticking ones as of slipping ones, and the speeds of slip under a linear law
-    /// of friction.
-    #[inline(always)]
-    fn set_linear_contact_rates(&mut self, model: &Model, rates: &mut Rates) {
-        let slip_speed = &mut self.slip_speed[..];
-        // Slices of one length, so that an index into one of them is one into all.
-        let k = slip_speed.len();
-        let (mode, surface, v_x) = (&self.state.mode[..k], &self.state.surface[..k], &self.state.velocity_x[..k]);
-        let (f_x, f_z) = (&self.forces.on_mass_x[..k], &self.forces.on_mass_z[..k]);
-        let (a_x, a_z) = (&rates.acceleration_x[..k], &mut rates.acceleration_z[..k]);
-        let (normal, margin) = (&mut rates.normal[..k], &mut rates.margin[..k]);
-        for i in 0..k {
-            let (v, surface, sigma) = (v_x[i], &surface[i], mode[i].direction());
-            let (is_free, slips) = (mode[i] == Mode::Free, sigma != 0.0);
-            let contact = ContactForces::without_limit(model, (f_x[i], f_z[i]), v, surface);
-            a_z[i] = if is_free { a_z[i] } else { surface.slope * a_x[i] + surface.curvature * v * v };
-            normal[i] = if is_free { NO_LIMIT } else { contact.normal };
-            margin[i] = if slips && model.has_friction { sigma * v } else { NO_LIMIT };
-            slip_speed[i] = if slips { sigma * v * contact.q } else { 0.0 };
         }
     }
 
@@ -549,5 +531,50 @@ fn set_elongations(elongation: &mut [f64], star: &[f64], beta: f64, velocity: &[
 fn rate_of_change(rate: &mut [f64], now: &[f64], before: &[f64], per_beta: f64) {
     for (rate, (now, before)) in rate.iter_mut().zip(now.iter().zip(before)) {
         *rate = (now - before) * per_beta;
+    }
+}
+
+// What the following functions write are arguments, which by that overlap nothing else: else no loop becomes vector
+// instructions.
+
+/// Sets z̈ and F_N of the masses in contact, of sticking ones as of slipping ones, and F_N of free ones.
+#[inline(always)]
+fn set_contact_motion(
+    acceleration_z: &mut [f64],
+    normal: &mut [f64],
+    acceleration_x: &[f64],
+    model: &Model,
+    state: &State,
+    forces: &Forces,
+) {
+    // Slices of one length, so that an index into one of them is one into all.
+    let k = normal.len();
+    let (a_z, a_x) = (&mut acceleration_z[..k], &acceleration_x[..k]);
+    let (mode, surface, v_x) = (&state.mode[..k], &state.surface[..k], &state.velocity_x[..k]);
+    let (f_x, f_z) = (&forces.on_mass_x[..k], &forces.on_mass_z[..k]);
+    let mass = model.mass;
+    for i in 0..k {
+        let (v, is_free) = (v_x[i], mode[i] == Mode::Free);
+        let of_contact = ContactForces::without_limit(mass, (f_x[i], f_z[i]), v, &surface[i]).normal;
+        let along_surface = surface[i].slope * a_x[i] + surface[i].curvature * v * v;
+        a_z[i] = select_unpredictable(is_free, a_z[i], along_surface);
+        normal[i] = select_unpredictable(is_free, NO_LIMIT, of_contact);
+    }
+}
+
+/// Sets the speeds of slip, and the margins of the slipping masses as those of the others, under a linear law of friction.
+#[inline(always)]
+fn set_slips(slip_speed: &mut [f64], margin: &mut [f64], model: &Model, state: &State) {
+    // Slices of one length, so that an index into one of them is one into all.
+    let k = slip_speed.len();
+    let (margin, mode) = (&mut margin[..k], &state.mode[..k]);
+    let (surface, v_x) = (&state.surface[..k], &state.velocity_x[..k]);
+    let has_friction = model.has_friction;
+    for i in 0..k {
+        let (sigma, s) = (mode[i].direction(), surface[i].slope);
+        let along_x = sigma * v_x[i];
+        let speed = along_x * (1.0 + s * s).sqrt();
+        margin[i] = select_unpredictable(sigma != 0.0 && has_friction, along_x, NO_LIMIT);
+        slip_speed[i] = select_unpredictable(sigma != 0.0, speed, 0.0);
     }
 }

@@ -1,8 +1,10 @@
 //! Newton's equations of a stage: residuals, Jacobian, and the correction for rate-dependent friction.
 
+use std::hint::select_unpredictable;
+
 use nalgebra::{Matrix2, Vector2};
 
-use super::{StageLaw, StageSolver};
+use super::{StageHistory, StageLaw, StageSolver};
 use crate::math::with_widest_vectors;
 use crate::model::Axis;
 use crate::model::{ContactForces, Forces, FrictionCurve, Mode, Model, State, SurfacePoint};
@@ -27,9 +29,10 @@ impl StageSolver {
 
     /// Writes the negative residuals of the equations of motion at the present velocities to the right sides.
     pub(super) fn set_residuals(&mut self, model: &Model, beta: f64) {
+        let Self { state, history, forces, system, .. } = self;
         with_widest_vectors(
             #[inline(always)]
-            || self.set_linear_residuals(model, beta),
+            || set_linear_residuals(&mut system.right, model, state, history, forces, beta),
         );
         if !model.friction_is_linear() {
             self.slip_residuals(model, 1.0 / beta);
@@ -38,29 +41,6 @@ impl StageSolver {
             self.add_rate_shear(model, beta);
         }
         self.set_border_residuals(beta);
-    }
-
-    /// The same of all masses under a linear law of friction.
-    #[inline(always)]
-    fn set_linear_residuals(&mut self, model: &Model, beta: f64) {
-        let (inertia, per_beta) = (model.mass / beta, 1.0 / beta);
-        let right = &mut self.system.right[..];
-        // Slices of one length, so that an index into one of them is one into all.
-        let k = right.len();
-        let (v_x, v_z) = (&self.state.velocity_x[..k], &self.state.velocity_z[..k]);
-        let (star_x, star_z) = (&self.history.velocity_x[..k], &self.history.velocity_z[..k]);
-        let (f_x, f_z) = (&self.forces.on_mass_x[..k], &self.forces.on_mass_z[..k]);
-        let (mode, surface) = (&self.state.mode[..k], &self.state.surface[..k]);
-        let law = TangentLaw { normal: 0.0, mu: model.friction_coefficient, shear: model.shear_force };
-        for i in 0..k {
-            let (gained_x, gained_z) = (v_x[i] - star_x[i], v_z[i] - star_z[i]);
-            let sigma = mode[i].direction();
-            let slip = SlippingMass::under(law, sigma, &surface[i], (v_x[i], gained_x * per_beta));
-            let of_slip = if sigma == 0.0 { 0.0 } else { -slip.residual(model, (f_x[i], f_z[i])) };
-            let is_free = mode[i] == Mode::Free;
-            let along_x = if is_free { f_x[i] - inertia * gained_x } else { of_slip };
-            right[i] = Vector2::new(along_x, if is_free { f_z[i] - inertia * gained_z } else { 0.0 });
-        }
     }
 
     /// Of mass `i`, which slips: the factor with which a force on it along `axis` enters its equation, and how its elongation
@@ -84,7 +64,7 @@ impl StageSolver {
             let acceleration = (velocity[i] - star[i]) * per_beta;
             let forces = (f_x[i], f_z[i]);
             let slip = SlippingMass::new(model, mode[i], &surface[i], (velocity[i], acceleration), forces);
-            right[i].x = -slip.residual(model, forces);
+            right[i].x = -slip.residual(model.mass, forces);
         }
     }
 
@@ -114,7 +94,11 @@ impl StageSolver {
         self.system.upper.fill(beside);
         self.system.lower.fill(beside);
         for n in 0..self.contacts.len() {
-            self.hold(self.contacts[n]);
+            let i = self.contacts[n];
+            // The rows and columns of a slip are assembled whole.
+            if !self.state.mode[i].slips() {
+                self.hold(i);
+            }
         }
     }
 
@@ -169,6 +153,38 @@ impl StageSolver {
     fn couple(&mut self, i: usize) {
         self.system.upper[i] = self.rows[i].coupling(&self.columns[i + 1]);
         self.system.lower[i + 1] = self.rows[i + 1].coupling(&self.columns[i]);
+    }
+}
+
+/// Writes the negative residuals of all masses under a linear law of friction to `right`.
+// A function with `right` as an argument, which by that overlaps nothing else: else no loop becomes vector instructions.
+#[inline(always)]
+fn set_linear_residuals(
+    right: &mut [Vector2<f64>],
+    model: &Model,
+    state: &State,
+    history: &StageHistory,
+    forces: &Forces,
+    beta: f64,
+) {
+    let (inertia, per_beta) = (model.mass / beta, 1.0 / beta);
+    // Slices of one length, so that an index into one of them is one into all.
+    let k = right.len();
+    let (v_x, v_z) = (&state.velocity_x[..k], &state.velocity_z[..k]);
+    let (star_x, star_z) = (&history.velocity_x[..k], &history.velocity_z[..k]);
+    let (f_x, f_z) = (&forces.on_mass_x[..k], &forces.on_mass_z[..k]);
+    let (mode, surface) = (&state.mode[..k], &state.surface[..k]);
+    let law = TangentLaw { normal: 0.0, mu: model.friction_coefficient, shear: model.shear_force };
+    let mass = model.mass;
+    for i in 0..k {
+        let (gained_x, gained_z) = (v_x[i] - star_x[i], v_z[i] - star_z[i]);
+        let sigma = mode[i].direction();
+        let slip = SlippingMass::under(law, sigma, &surface[i], (v_x[i], gained_x * per_beta));
+        let of_slip = select_unpredictable(sigma != 0.0, -slip.residual(mass, (f_x[i], f_z[i])), 0.0);
+        let (free_x, free_z) = (f_x[i] - inertia * gained_x, f_z[i] - inertia * gained_z);
+        let is_free = mode[i] == Mode::Free;
+        right[i] =
+            Vector2::new(select_unpredictable(is_free, free_x, of_slip), select_unpredictable(is_free, free_z, 0.0));
     }
 }
 
@@ -298,9 +314,9 @@ impl SlippingMass {
     ///
     ///   m q² ẍ + m κ ẋ² (s + σμ) - (1 - σμs) f_x - (s + σμ) f_z + σ A τ_0 q = 0
     #[inline(always)]
-    fn residual(&self, model: &Model, (f_x, f_z): (f64, f64)) -> f64 {
+    fn residual(&self, mass: f64, (f_x, f_z): (f64, f64)) -> f64 {
         let centripetal = self.kappa * self.velocity * self.velocity * self.share_z;
-        model.mass * (self.q2 * self.acceleration + centripetal) - self.share_x * f_x - self.share_z * f_z
+        mass * (self.q2 * self.acceleration + centripetal) - self.share_x * f_x - self.share_z * f_z
             + self.sigma_shear * self.q
     }
 

@@ -25,6 +25,7 @@ pub(crate) struct Arguments {
 }
 
 #[derive(Debug, Subcommand)]
+#[command(defer = true)]
 pub(crate) enum Command {
     /// Simulates a scene along its excitation and writes a result file.
     Simulate(Simulate),
