@@ -19,7 +19,7 @@ pub use quintic::{Jet, Quintic};
 pub use random::SplitMix64;
 pub use relaxation::Relaxation;
 pub use root::{bracketed_root, root_between};
-pub use spline::{Bounds, Spline};
+pub use spline::{BLOCK, Bounds, Spline};
 pub use sums::{add_weighted_sum, dot, dots, square_and_dots, sum, sum_of, sum_of_pairs, sum_of_triples, weighted_sum};
 pub use tridiagonal::BlockTridiagonal;
 pub use vectors::with_widest_vectors;

@@ -1,7 +1,10 @@
 //! Cubic splines: the rigid profile z_r(x) with its slope z_r', curvature z_r'' and z_r''' (5), (9).
 
+mod block;
 #[cfg(test)]
 mod tests;
+
+pub use block::BLOCK;
 
 /// A cubic spline through data points: C², and C^∞ between the points.
 ///
@@ -161,7 +164,12 @@ impl Piece {
 
     #[inline]
     fn evaluate(&self, x: f64) -> (f64, f64, f64, f64) {
-        let t = x - self.start;
+        self.at_distance(x - self.start)
+    }
+
+    /// The same at the distance `t` from its start, m.
+    #[inline(always)]
+    fn at_distance(&self, t: f64) -> (f64, f64, f64, f64) {
         let z = self.z + t * (self.slope + t * (0.5 * self.curvature + t * (self.third * (1.0 / 6.0))));
         let slope = self.slope + t * (self.curvature + t * (0.5 * self.third));
         (z, slope, self.curvature + t * self.third, self.third)
@@ -222,6 +230,15 @@ impl Grid {
     #[inline]
     fn cell(&self, x: f64) -> usize {
         (((x - self.first) * self.cells_per_meter) as u32 as usize).min(self.last_cell)
+    }
+
+    /// Writes the number of the cell of each `x`, or of some cell where `x` is outside.
+    #[inline(always)]
+    fn cells(&self, x: &[f64], cells: &mut [u32]) {
+        let (first, cells_per_meter) = (self.first, self.cells_per_meter);
+        for (x, cell) in x.iter().zip(cells) {
+            *cell = ((x - first) * cells_per_meter) as i32 as u32;
+        }
     }
 
     /// The polynomial of the interval of `x`: nearly always that of the cell.

@@ -47,6 +47,29 @@ pub struct SurfacePoint {
     pub third: f64,
 }
 
+impl SurfacePoint {
+    /// The `profile` at the position `x`, m.
+    #[inline(always)]
+    pub fn on(profile: &Spline, x: f64) -> Self {
+        let (height, slope, curvature, third) = profile.evaluate(x);
+        Self { height, slope, curvature, third }
+    }
+}
+
+impl From<[f64; 4]> for SurfacePoint {
+    #[inline(always)]
+    fn from([height, slope, curvature, third]: [f64; 4]) -> Self {
+        Self { height, slope, curvature, third }
+    }
+}
+
+impl From<SurfacePoint> for [f64; 4] {
+    #[inline(always)]
+    fn from(point: SurfacePoint) -> Self {
+        [point.height, point.slope, point.curvature, point.third]
+    }
+}
+
 /// A scene as numbers to compute with. It does not change through a run.
 #[derive(Clone, Debug)]
 pub struct Model {
@@ -193,8 +216,7 @@ impl Model {
     /// The profile at the position `x`, m.
     #[inline(always)]
     pub fn surface_at(&self, x: f64) -> SurfacePoint {
-        let (height, slope, curvature, third) = self.profile.evaluate(x);
-        SurfacePoint { height, slope, curvature, third }
+        SurfacePoint::on(&self.profile, x)
     }
 
     /// The Maxwell elements of the links of `kind`.

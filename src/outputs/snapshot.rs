@@ -212,20 +212,23 @@ impl<'a> Snapshot<'a> {
 
     /// F_T on mass `i` against v_t, N; 0 where it is free.
     pub(super) fn friction_force(&self, i: usize) -> f64 {
-        self.contact(i).map_or(0.0, |contact| self.friction(i, &contact))
+        let motion = (self.state().mode[i], self.state().velocity_x[i]);
+        self.contact(i).map_or(0.0, |contact| self.friction(motion, &contact))
     }
 
     /// The surface pushes a mass with F_N n - F_T t, n = (-s, 1)/q, t = (1, s)/q (6), (7).
     fn contact_sums(&self) -> ContactSums {
+        let (state, forces) = (self.state(), self.forces());
         let mut sums = ContactSums::default();
-        for i in 0..self.model.masses() {
-            let Some(contact) = self.contact(i) else { continue };
-            let s = self.state().surface[i].slope;
-            let friction = self.friction(i, &contact);
+        for i in (0..state.mode.len()).filter(|&i| state.mode[i].in_contact()) {
+            let (mode, v, surface) = (state.mode[i], state.velocity_x[i], &state.surface[i]);
+            let contact = forces.contact(self.model, i, v, surface);
+            let s = surface.slope;
+            let friction = self.friction((mode, v), &contact);
             sums.hysteresis -= contact.normal * s / contact.q;
             sums.adhesion -= friction / contact.q;
-            sums.shear -= self.shear(i, &contact, friction) / contact.q;
-            sums.real_area += self.area_share(i, &contact).value * self.model.element_area;
+            sums.shear -= self.shear(mode, &contact, friction) / contact.q;
+            sums.real_area += self.area_share(v, &contact).value * self.model.element_area;
             sums.force_z += (contact.normal - friction * s) / contact.q;
         }
         sums
@@ -237,26 +240,26 @@ impl<'a> Snapshot<'a> {
         self.state().mode[i].in_contact().then(|| self.forces().contact(self.model, i, v, &self.state().surface[i]))
     }
 
-    fn friction(&self, i: usize, contact: &ContactForces) -> f64 {
-        let (mode, v) = (self.state().mode[i], self.state().velocity_x[i]);
+    /// F_T (N) in a `contact` of this mode and ẋ (m/s).
+    fn friction(&self, (mode, v): (Mode, f64), contact: &ContactForces) -> f64 {
         if self.model.has_friction { contact.friction(self.model, mode, v) } else { 0.0 }
     }
 
-    /// The part of the `friction` on mass `i` (N) that is shear force, N: of a sticking mass, as the two limits share it.
-    fn shear(&self, i: usize, contact: &ContactForces, friction: f64) -> f64 {
-        match self.state().mode[i] {
+    /// The part of the `friction` in a `contact` (N) that is shear force, N: of a sticking mass, as the two limits share it.
+    fn shear(&self, mode: Mode, contact: &ContactForces, friction: f64) -> f64 {
+        match mode {
             Mode::Stick => contact.shear_share(self.model) * friction,
             _ if self.model.has_friction => {
-                friction - self.state().mode[i].direction() * self.model.friction_coefficient * contact.normal
+                friction - mode.direction() * self.model.friction_coefficient * contact.normal
             }
             _ => 0.0,
         }
     }
 
-    /// The share of the area of mass `i`, in contact, that touches: all of it without a law.
-    fn area_share(&self, i: usize, contact: &ContactForces) -> AreaShare {
+    /// The share of the area of a mass with ẋ (m/s), in `contact`, that touches: all of it without a law.
+    fn area_share(&self, v: f64, contact: &ContactForces) -> AreaShare {
         let whole = AreaShare { value: 1.0, ..AreaShare::default() };
-        let speed = self.state().velocity_x[i] * contact.q;
+        let speed = v * contact.q;
         self.model.real_area.as_ref().map_or(whole, |area| area.share(contact.normal, speed))
     }
 
@@ -393,7 +396,8 @@ impl Snapshot<'_> {
             }
             _ => (mode.direction() * by_normal * normal, mode.direction() * (by_normal - mu) * normal),
         };
-        let real_area = self.area_share(i, &contact).by_normal * normal * self.model.element_area;
+        let real_area =
+            self.area_share(self.state().velocity_x[i], &contact).by_normal * normal * self.model.element_area;
         ContactChange { normal, friction, shear, real_area, slope, q }
     }
 

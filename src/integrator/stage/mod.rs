@@ -15,13 +15,16 @@ mod modes;
 mod newton;
 
 use std::hint::select_unpredictable;
+use std::ops::Range;
 
 use nalgebra::Vector2;
 
 use super::error::{NEWTON_SHARE, Tolerance};
 use super::rates::{NO_LIMIT, Rates};
-use crate::math::{BlockTridiagonal, weighted_sum, with_widest_vectors};
-use crate::model::{CarrierPoint, ContactForces, Forces, FrictionPower, LinkKind, LinkMotion, Mode, Model, State};
+use crate::math::{BLOCK, BlockTridiagonal, Spline, weighted_sum, with_widest_vectors};
+use crate::model::{
+    CarrierPoint, ContactForces, Forces, FrictionPower, LinkKind, LinkMotion, Mode, Model, State, SurfacePoint,
+};
 use newton::{Climb, NeighbourWeights, RateFriction, RowShares, largest};
 
 pub(super) use border::{BodyHistory, Border};
@@ -124,6 +127,7 @@ pub(super) struct StageLaw {
 
 impl StageLaw {
     /// ∂F/∂ẋ of a vertical link to a slipping mass.
+    #[inline(always)]
     fn along(&self, climb: Climb) -> f64 {
         self.stiffness * climb.height + self.damping * climb.rate
     }
@@ -181,6 +185,8 @@ pub(super) struct StageSolver {
     contacts: Vec<usize>,
     /// Those of them that slip, in their order; without any the equations are linear.
     slips: Vec<usize>,
+    /// The same as runs of masses that follow one another.
+    slip_runs: Vec<Range<usize>>,
     /// The rate-dependent part of their friction; empty where the scene has none.
     rate: Vec<RateFriction>,
     rows: Vec<RowShares>,
@@ -217,6 +223,7 @@ impl StageSolver {
             laws: [StageLaw::default(); 4],
             contacts: Vec::with_capacity(k),
             slips: Vec::with_capacity(k),
+            slip_runs: Vec::with_capacity(k.div_ceil(2)),
             rate: Vec::with_capacity(if model.friction_depends_on_speed() { k } else { 0 }),
             rows: vec![RowShares::default(); k],
             columns: vec![NeighbourWeights::default(); k],
@@ -249,6 +256,9 @@ impl StageSolver {
         let state = &self.state;
         self.slips.clear();
         self.slips.extend(self.contacts.iter().filter(|&&i| state.mode[i].slips()));
+        self.slip_runs.clear();
+        let runs = self.slips.chunk_by(|&i, &next| i + 1 == next);
+        self.slip_runs.extend(runs.map(|run| run[0]..run[0] + run.len()));
         if model.friction_depends_on_speed() {
             self.rate.resize(self.slips.len(), RateFriction::default());
         }
@@ -414,20 +424,18 @@ impl StageSolver {
         let (state, history) = (&mut self.state, &self.history);
         set_elongations(&mut state.elongation_x, &history.elongation_x, beta, &state.velocity_x, point.integrated.0);
         set_elongations(&mut state.elongation_z, &history.elongation_z, beta, &state.velocity_z, point.integrated.1);
-        // Slices of one length, so that an index into one of them is one into all.
-        let k = state.mode.len();
-        let (mode, surface) = (&state.mode[..k], &mut state.surface[..k]);
-        let (e_x, e_z) = (&mut state.elongation_x[..k], &mut state.elongation_z[..k]);
-        let (v_x, v_z) = (&state.velocity_x[..k], &mut state.velocity_z[..k]);
-        let (star_x, rest_x, rest_z) = (&history.elongation_x[..k], &model.rest_x[..k], &model.rest_z[..k]);
-        for &i in &self.contacts {
-            if mode[i] == Mode::Stick {
-                e_x[i] = star_x[i] - point.moved;
-            } else {
-                surface[i] = model.surface_at(rest_x[i] + (profile_position + e_x[i]));
-                v_z[i] = surface[i].slope * v_x[i];
+        if self.slips.len() < self.contacts.len() {
+            for &i in self.contacts.iter().filter(|&&i| state.mode[i] == Mode::Stick) {
+                state.elongation_x[i] = history.elongation_x[i] - point.moved;
+                state.elongation_z[i] = state.surface[i].height - model.rest_z[i] - w;
             }
-            e_z[i] = surface[i].height - rest_z[i] - w;
+        }
+        for slips in &self.slip_runs {
+            let (surface, e_z) = (&mut state.surface[slips.clone()], &mut state.elongation_z[slips.clone()]);
+            let (e_x, v_x) = (&state.elongation_x[slips.clone()], &state.velocity_x[slips.clone()]);
+            let (rest_x, rest_z) = (&model.rest_x[slips.clone()], &model.rest_z[slips.clone()]);
+            set_surface(surface, &model.profile, rest_x, e_x, profile_position);
+            set_on_surface(&mut state.velocity_z[slips.clone()], e_z, surface, v_x, rest_z, w);
         }
     }
 
@@ -536,6 +544,39 @@ fn rate_of_change(rate: &mut [f64], now: &[f64], before: &[f64], per_beta: f64) 
 
 // What the following functions write are arguments, which by that overlap nothing else: else no loop becomes vector
 // instructions.
+
+/// A run of slipping masses that is shorter is put on the profile one by one.
+const SHORT_RUN: usize = 6;
+
+/// Sets the profile under slipping masses that follow one another.
+#[inline(always)]
+fn set_surface(surface: &mut [SurfacePoint], profile: &Spline, rest_x: &[f64], e_x: &[f64], profile_position: f64) {
+    let place = |rest: &f64, e: &f64| rest + (profile_position + e);
+    if surface.len() < SHORT_RUN {
+        for (surface, (rest, e)) in surface.iter_mut().zip(rest_x.iter().zip(e_x)) {
+            *surface = SurfacePoint::on(profile, place(rest, e));
+        }
+        return;
+    }
+    let mut places = [0.0; BLOCK];
+    for (surface, (rest_x, e_x)) in surface.chunks_mut(BLOCK).zip(rest_x.chunks(BLOCK).zip(e_x.chunks(BLOCK))) {
+        let places = &mut places[..surface.len()];
+        for (at, (rest, e)) in places.iter_mut().zip(rest_x.iter().zip(e_x)) {
+            *at = place(rest, e);
+        }
+        profile.evaluate_block(places, surface);
+    }
+}
+
+/// Sets ż and e_z of slipping masses that follow one another, on the `surface`, under the carrier at `w` (m).
+#[inline(always)]
+fn set_on_surface(v_z: &mut [f64], e_z: &mut [f64], surface: &[SurfacePoint], v_x: &[f64], rest_z: &[f64], w: f64) {
+    let masses = v_z.iter_mut().zip(e_z).zip(v_x.iter().zip(rest_z));
+    for (((v_z, e_z), (v_x, rest_z)), surface) in masses.zip(surface) {
+        *v_z = surface.slope * v_x;
+        *e_z = surface.height - rest_z - w;
+    }
+}
 
 /// Sets z̈ and F_N of the masses in contact, of sticking ones as of slipping ones, and F_N of free ones.
 #[inline(always)]

@@ -118,42 +118,124 @@ impl StageSolver {
 
     /// Assembles the rows and columns of slipping masses at the velocities of the last residuals.
     pub(super) fn assemble_slips(&mut self, model: &Model, beta: f64) {
-        let k = self.state.mode.len();
-        let [vertical, horizontal, lateral_x, lateral_z] = self.laws;
-        for &i in &self.slips {
-            let slip = self.slipping_mass(model, i, beta);
-            let neighbours = neighbours(i, k);
-            let climb = slip.climb(beta);
-            let weight = |law: &StageLaw| law.along(climb);
-            let weights = (
-                horizontal.weight + neighbours * lateral_x.weight,
-                weight(&vertical) + neighbours * weight(&lateral_z),
+        let Self { rows, columns, state, history, forces, laws, slip_runs, system, .. } = self;
+        let stage = EvaluatedStage { model, state, history, forces, laws, beta };
+        if model.real_area.is_some() {
+            for i in slip_runs.iter().cloned().flatten() {
+                (system.diagonal[i], rows[i], columns[i]) = stage.assembled(i, &stage.slipping_mass(i));
+            }
+        } else {
+            with_widest_vectors(
+                #[inline(always)]
+                || {
+                    for run in slip_runs.iter() {
+                        let blocks = (&mut system.diagonal[run.clone()], &mut rows[run.clone()]);
+                        stage.assemble_run(blocks.0, blocks.1, &mut columns[run.clone()], run.start);
+                    }
+                },
             );
-            let forces = (self.forces.on_mass_x[i], self.forces.on_mass_z[i]);
-            self.system.diagonal[i] = Matrix2::new(slip.derivative(model, beta, forces, weights), 0.0, 0.0, 1.0);
-            self.rows[i] = RowShares { x_by_x: slip.share_x, x_by_z: slip.share_z, z_by_z: 0.0 };
-            self.columns[i] = NeighbourWeights { x: lateral_x.weight, z_by_x: weight(&lateral_z), z: 0.0 };
         }
         if model.friction_depends_on_speed() {
             self.assemble_rate_shear(model, beta);
         }
-        for slip in 0..self.slips.len() {
-            let i = self.slips[slip];
-            if i > 0 {
-                self.couple(i - 1);
-            }
-            if i + 1 < k && self.slips.get(slip + 1) != Some(&(i + 1)) {
-                self.couple(i);
-            }
+        self.couple_slips();
+    }
+
+    /// Sets the blocks between slipping masses and their neighbours.
+    fn couple_slips(&mut self) {
+        let Self { rows, columns, slip_runs, system, .. } = self;
+        let last = rows.len() - 1;
+        with_widest_vectors(
+            #[inline(always)]
+            || {
+                for run in slip_runs.iter() {
+                    let (first, end) = (run.start.saturating_sub(1), run.end.min(last));
+                    let masses = first..end + 1;
+                    let (upper, lower) = (&mut system.upper[first..end], &mut system.lower[first + 1..end + 1]);
+                    couple(upper, lower, &rows[masses.clone()], &columns[masses]);
+                }
+            },
+        );
+    }
+}
+
+/// What the equations of the slipping masses follow from.
+struct EvaluatedStage<'a> {
+    model: &'a Model,
+    state: &'a State,
+    history: &'a StageHistory,
+    forces: &'a Forces,
+    laws: &'a [StageLaw; 4],
+    beta: f64,
+}
+
+impl EvaluatedStage<'_> {
+    /// Writes the diagonal blocks, rows and columns of slipping masses that follow one another from mass `start` on, under
+    /// a linear law of friction.
+    // What it writes are arguments, see `set_linear_residuals`.
+    #[inline(always)]
+    fn assemble_run(
+        &self,
+        diagonal: &mut [Matrix2<f64>],
+        rows: &mut [RowShares],
+        columns: &mut [NeighbourWeights],
+        start: usize,
+    ) {
+        let (rows, columns) = (&mut rows[..diagonal.len()], &mut columns[..diagonal.len()]);
+        for n in 0..diagonal.len() {
+            let i = start + n;
+            let slip = self.slipping_mass_under(TangentLaw::linear(self.model), i);
+            (diagonal[n], rows[n], columns[n]) = self.assembled(i, &slip);
         }
     }
 
-    /// Sets the blocks between mass `i` and the next.
-    #[inline(always)]
-    fn couple(&mut self, i: usize) {
-        self.system.upper[i] = self.rows[i].coupling(&self.columns[i + 1]);
-        self.system.lower[i + 1] = self.rows[i + 1].coupling(&self.columns[i]);
+    /// The equation of mass `i`, which slips.
+    fn slipping_mass(&self, i: usize) -> SlippingMass {
+        SlippingMass::of(self.model, self.state, self.forces, i, self.acceleration(i))
     }
+
+    #[inline(always)]
+    fn slipping_mass_under(&self, law: TangentLaw, i: usize) -> SlippingMass {
+        let (sigma, surface) = (self.state.mode[i].direction(), &self.state.surface[i]);
+        SlippingMass::under(law, sigma, surface, (self.state.velocity_x[i], self.acceleration(i)))
+    }
+
+    #[inline(always)]
+    fn acceleration(&self, i: usize) -> f64 {
+        (self.state.velocity_x[i] - self.history.velocity_x[i]) / self.beta
+    }
+
+    /// The diagonal block, row and column of mass `i`, which slips.
+    #[inline(always)]
+    fn assembled(&self, i: usize, slip: &SlippingMass) -> (Matrix2<f64>, RowShares, NeighbourWeights) {
+        let [vertical, horizontal, lateral_x, lateral_z] = self.laws;
+        let (neighbours, climb) = (neighbours(i, self.state.mode.len()), slip.climb(self.beta));
+        let along_z = lateral_z.along(climb);
+        let weights = (horizontal.weight + neighbours * lateral_x.weight, vertical.along(climb) + neighbours * along_z);
+        let forces = (self.forces.on_mass_x[i], self.forces.on_mass_z[i]);
+        let derivative = slip.derivative(self.model, self.beta, forces, weights);
+        (
+            Matrix2::new(derivative, 0.0, 0.0, 1.0),
+            RowShares { x_by_x: slip.share_x, x_by_z: slip.share_z, z_by_z: 0.0 },
+            NeighbourWeights { x: lateral_x.weight, z_by_x: along_z, z: 0.0 },
+        )
+    }
+}
+
+/// Sets the blocks beside the diagonal between masses that follow one another.
+#[inline(always)]
+fn couple(upper: &mut [Matrix2<f64>], lower: &mut [Matrix2<f64>], rows: &[RowShares], columns: &[NeighbourWeights]) {
+    let pairs = rows.iter().zip(&rows[1..]).zip(columns.iter().zip(&columns[1..]));
+    for ((upper, lower), ((row, next_row), (column, next_column))) in upper.iter_mut().zip(lower).zip(pairs) {
+        *upper = row.coupling(next_column);
+        *lower = next_row.coupling(column);
+    }
+}
+
+/// The number of neighbours of mass `i` of `k`.
+#[inline(always)]
+fn neighbours(i: usize, k: usize) -> f64 {
+    f64::from(u8::from(i > 0) + u8::from(i + 1 < k))
 }
 
 /// Writes the negative residuals of all masses under a linear law of friction to `right`.
@@ -174,8 +256,7 @@ fn set_linear_residuals(
     let (star_x, star_z) = (&history.velocity_x[..k], &history.velocity_z[..k]);
     let (f_x, f_z) = (&forces.on_mass_x[..k], &forces.on_mass_z[..k]);
     let (mode, surface) = (&state.mode[..k], &state.surface[..k]);
-    let law = TangentLaw { normal: 0.0, mu: model.friction_coefficient, shear: model.shear_force };
-    let mass = model.mass;
+    let (law, mass) = (TangentLaw::linear(model), model.mass);
     for i in 0..k {
         let (gained_x, gained_z) = (v_x[i] - star_x[i], v_z[i] - star_z[i]);
         let sigma = mode[i].direction();
@@ -186,11 +267,6 @@ fn set_linear_residuals(
         right[i] =
             Vector2::new(select_unpredictable(is_free, free_x, of_slip), select_unpredictable(is_free, free_z, 0.0));
     }
-}
-
-/// The number of neighbours of mass `i` of `k`.
-fn neighbours(i: usize, k: usize) -> f64 {
-    f64::from(u8::from(i > 0) + u8::from(i + 1 < k))
 }
 
 /// The largest of all numbers; NaN where one is not finite.
@@ -266,7 +342,7 @@ impl SlippingMass {
             let (velocity, _) = motion;
             TangentLaw::new(model, &ContactForces::new(model, forces, velocity, surface), sigma * velocity)
         } else {
-            TangentLaw { normal: 0.0, mu: model.friction_coefficient, shear: model.shear_force }
+            TangentLaw::linear(model)
         };
         Self::under(law, sigma, surface, motion)
     }
@@ -321,6 +397,7 @@ impl SlippingMass {
     }
 
     /// The derivative of the residual by the stage's ẋ; those of f_x and f_z are minus the weights.
+    #[inline(always)]
     fn derivative(&self, model: &Model, beta: f64, (f_x, f_z): (f64, f64), (weight_x, weight_z): (f64, f64)) -> f64 {
         let Self { s, kappa, velocity: v, share_z, .. } = *self;
         // ∂x/∂ẋ = β, so ∂s/∂ẋ = βκ and ∂κ/∂ẋ = βz'''.
@@ -377,6 +454,7 @@ impl SlippingMass {
         self.q2
     }
 
+    #[inline(always)]
     fn climb(&self, beta: f64) -> Climb {
         Climb { height: beta * self.s, rate: self.s + beta * self.kappa * self.velocity }
     }
@@ -394,6 +472,11 @@ struct TangentLaw {
 }
 
 impl TangentLaw {
+    #[inline(always)]
+    fn linear(model: &Model) -> Self {
+        Self { normal: 0.0, mu: model.friction_coefficient, shear: model.shear_force }
+    }
+
     /// At the forces of `contact` and the `speed` σẋ: out of the way of the usual, linear law.
     #[inline(never)]
     fn new(model: &Model, contact: &ContactForces, speed: f64) -> Self {
@@ -426,6 +509,7 @@ pub(super) struct NeighbourWeights {
 
 impl RowShares {
     /// The block beside the diagonal: the derivative of this row by the neighbour's unknowns.
+    #[inline(always)]
     fn coupling(&self, column: &NeighbourWeights) -> Matrix2<f64> {
         Matrix2::new(
             -(self.x_by_x * column.x + self.x_by_z * column.z_by_x),

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Spline, floor};
+use super::{BLOCK, Spline, floor};
 
 const UNEVEN: [f64; 9] = [-1.0, -0.97, -0.2, -0.19, 0.4, 1.3, 1.31, 1.7, 3.0];
 const HEIGHTS: [f64; 9] = [0.3, 0.1, -0.4, -0.38, 0.9, 0.2, 0.25, -0.7, 0.3];
@@ -200,6 +200,28 @@ fn finds_every_interval() {
         for (i, pair) in x.windows(2).enumerate() {
             for place in [pair[0], 0.5 * (pair[0] + pair[1]), pair[1].next_down()] {
                 assert_eq!(spline.grid.interval(&spline.pieces, place), i, "{place} in {pair:?}");
+            }
+        }
+    }
+}
+
+/// Inside and outside of the points, at them, periods away, and where nothing is.
+#[test]
+fn a_block_has_the_bits_of_single_places() {
+    let x = even(0.1, 0.7, 50);
+    let z: Vec<f64> = x.iter().map(|x| (2.0 * PI * x / 0.6).sin()).collect();
+    let evenly = [Spline::natural(&x, &z), Spline::periodic(&x, &z)];
+    let edges = [-1.0, 3.0, 3.0_f64.next_down(), 0.1, 0.7, 7.0, -9.0, 1e9, -1e300, 1e300, f64::INFINITY, f64::NAN];
+    let places: Vec<f64> = edges.into_iter().chain(UNEVEN).chain(x).chain(even(-1.2, 3.2, 1000)).collect();
+    for spline in both().iter().chain(&evenly) {
+        for together in [1, 3, BLOCK] {
+            for places in places.chunks(together) {
+                let mut values = [[0.0; 4]; BLOCK];
+                spline.evaluate_block(places, &mut values[..places.len()]);
+                for (&x, found) in places.iter().zip(values) {
+                    let expected: [f64; 4] = spline.evaluate(x).into();
+                    assert_eq!(found.map(f64::to_bits), expected.map(f64::to_bits), "at {x}: {found:?} {expected:?}");
+                }
             }
         }
     }
