@@ -5,8 +5,8 @@
 
 use super::rates::Rates;
 use super::tableau::STAGES;
-use crate::math::{dot, sum};
-use crate::model::{CarrierPoint, LinkKind, MaxwellRow, Model, State};
+use crate::math::{BLOCK, dot, sum};
+use crate::model::{Carrier, CarrierPoint, LinkKind, MaxwellRow, Model, State, SurfacePoint};
 
 /// Elongations of links to the carrier (m) and velocities of masses (m/s), along x and z: of one mass, or summed.
 #[derive(Clone, Copy, Debug, Default)]
@@ -16,9 +16,53 @@ pub(super) struct Motion {
 }
 
 impl Motion {
+    #[inline(always)]
     pub(super) fn add(&mut self, other: &Self) {
         self.elongation = (self.elongation.0 + other.elongation.0, self.elongation.1 + other.elongation.1);
         self.velocity = (self.velocity.0 + other.velocity.0, self.velocity.1 + other.velocity.1);
+    }
+}
+
+/// The carrier under which masses are put on the profile.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Over {
+    /// u as a position on the profile at the start of the carrier's piece, m.
+    pub profile_position: f64,
+    /// Its displacement along x since then, m.
+    pub du: f64,
+    /// w, m.
+    pub w: f64,
+}
+
+impl Over {
+    pub(super) fn new(carrier: &Carrier, now: &CarrierPoint) -> Self {
+        Self { profile_position: carrier.profile_position, du: now.du, w: carrier.w + now.dw }
+    }
+
+    /// The position on the profile of a mass with the rest position `rest_x` and the elongation `x`, m.
+    #[inline(always)]
+    pub(super) fn place(&self, rest_x: f64, x: f64) -> f64 {
+        rest_x + (self.profile_position + (self.du + x))
+    }
+}
+
+impl Motion {
+    /// Adds up to [`BLOCK`] masses, one after another from mass `first` on, that slip with the elongations `x` (m) and
+    /// velocities `v_x` (m/s), on the profile. For use with vector instructions.
+    #[inline(always)]
+    pub(super) fn add_slips(&mut self, model: &Model, first: usize, (x, v_x): (&[f64], &[f64]), over: &Over) {
+        let masses = first..first + x.len();
+        let (rest_x, rest_z) = (&model.rest_x[masses.clone()], &model.rest_z[masses]);
+        let (mut places, mut surface) = ([0.0; BLOCK], [SurfacePoint::default(); BLOCK]);
+        let (places, surface) = (&mut places[..x.len()], &mut surface[..x.len()]);
+        for (place, (rest_x, x)) in places.iter_mut().zip(rest_x.iter().zip(x)) {
+            *place = over.place(*rest_x, *x);
+        }
+        model.profile.evaluate_block(places, surface);
+        for ((x, v_x), (rest_z, surface)) in x.iter().zip(v_x).zip(rest_z.iter().zip(surface)) {
+            let (elongation, velocity) = ((*x, surface.height - rest_z - over.w), (*v_x, surface.slope * v_x));
+            self.add(&Self { elongation, velocity });
+        }
     }
 }
 

@@ -4,12 +4,12 @@
 //! elements follow these velocities by the exact solution of ȧ = ė - a/τ, for any τ; its difference from the step's own end
 //! is distributed linearly over the step.
 
-use super::carrier_sums::{AxisSums, CarrierSums, ElementWeights, Motion};
+use super::carrier_sums::{AxisSums, CarrierSums, ElementWeights, Motion, Over};
 use super::error::Tolerance;
 use super::interpolation::StageInterpolation;
 use super::rates::Rates;
 use super::tableau::STAGES;
-use crate::math::{Relaxation, dot, weighted_sum};
+use crate::math::{BLOCK, Relaxation, dot, weighted_sum, with_widest_vectors};
 use crate::model::{
     Carrier, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint,
 };
@@ -198,10 +198,32 @@ impl DenseOutput<'_> {
             self.combine(x, integral, Some(&start.elongation_x), |stage| &stage.velocity_x, -carrier.integrated.0);
             self.combine(v_x, values, None, |stage| &stage.velocity_x, carrier.missing_rate.0);
         }
-        for i in (0..start.mode.len()).filter(|&i| start.mode[i].in_contact()) {
-            all.add(&self.on_profile(i, (x[i], v_x[i]), &carrier).motion());
-        }
+        with_widest_vectors(
+            #[inline(always)]
+            || self.add_contacts(&mut all, (x, v_x), &carrier),
+        );
         all
+    }
+
+    /// Adds the masses in contact, of which those that slip have the elongations `x` (m) and velocities `v_x` (m/s).
+    #[inline(always)]
+    fn add_contacts(&self, all: &mut Motion, (x, v_x): (&[f64], &[f64]), carrier: &CarrierWithin) {
+        let (modes, over) = (&self.start.state.mode, Over::new(self.carrier, &carrier.now));
+        let mut first = 0;
+        for run in modes.chunk_by(|mode, next| mode.slips() == next.slips()) {
+            let masses = first..first + run.len();
+            first = masses.end;
+            if run[0].slips() {
+                for block in masses.clone().step_by(BLOCK) {
+                    let block = block..masses.end.min(block + BLOCK);
+                    all.add_slips(self.model, block.start, (&x[block.clone()], &v_x[block]), &over);
+                }
+            } else {
+                for i in masses.filter(|&i| modes[i].in_contact()) {
+                    all.add(&self.on_profile(i, (x[i], v_x[i]), carrier).motion());
+                }
+            }
+        }
     }
 
     /// Mass `i`, in contact, with the elongation and velocity `along_x` (m, m/s) if it slips.
@@ -209,8 +231,8 @@ impl DenseOutput<'_> {
     fn on_profile(&self, i: usize, along_x: (f64, f64), carrier: &CarrierWithin) -> MassPoint {
         let start = self.start.state;
         let (elongation_x, v_x, surface) = if start.mode[i].slips() {
-            let at = self.model.rest_x[i] + (self.carrier.profile_position + (carrier.now.du + along_x.0));
-            (along_x.0, along_x.1, self.model.surface_at(at))
+            let over = Over::new(self.carrier, &carrier.now);
+            (along_x.0, along_x.1, self.model.surface_at(over.place(self.model.rest_x[i], along_x.0)))
         } else {
             (start.elongation_x[i] - carrier.moved_x, 0.0, start.surface[i])
         };

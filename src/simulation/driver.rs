@@ -7,7 +7,6 @@
 
 use super::motion::{MethodSwitch, SimulationError};
 use super::run::Run;
-use crate::integrator::StepAttempt;
 use crate::scene::Method;
 
 /// The longest step, as a share of the period of the carrier's sine: a longer one could alias the excitation, all
@@ -95,12 +94,12 @@ impl Run {
         }
     }
 
-    /// Tries a step of length `h`; `None` where it is rejected: the run's step size is then a better length.
-    fn try_step(&mut self, h: f64, any_error: bool) -> Option<StepAttempt> {
+    /// Tries a step of length `h`. Returns whether it is good: where it is rejected, the run's step size is a better length.
+    fn try_step(&mut self, h: f64, any_error: bool) -> bool {
         if self.state.time_stepping {
-            self.try_time_step(h, any_error)
+            self.try_time_step(h, any_error).is_some()
         } else {
-            self.try_event_driven_step(h, any_error, true)
+            self.try_event_driven_step(h, any_error, true).is_some()
         }
     }
 
@@ -122,7 +121,7 @@ impl Run {
     pub(super) fn cut_step(&mut self, h: f64, work: &mut WorkLimit) -> Result<TrialStep, SimulationError> {
         let (mut length, any_error) = (h, self.shorter_is_no_worse());
         loop {
-            if self.try_step(length, any_error).is_some() {
+            if self.try_step(length, any_error) {
                 if !self.state.time_stepping {
                     self.plan_windows(length, 0.0);
                 }

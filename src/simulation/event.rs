@@ -40,6 +40,15 @@ const UNSEEN: f64 = 2e-2;
 /// at the very end of the shortened step again and again.
 pub(super) const MOST_CUTS: u32 = 50;
 
+/// An event-driven step that was tried and not rejected.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct GoodStep {
+    /// Its error over the tolerance.
+    error: f64,
+    /// The longest next one, s, that lets unstable contacts move away; the largest number where any error is good.
+    longest: f64,
+}
+
 impl Run {
     /// Tries steps until one is good up to its first event.
     pub(super) fn next_event_driven_step(
@@ -60,7 +69,7 @@ impl Run {
             self.count_work(work)?;
             let any_error = proposal.is_some() && self.shorter_is_no_worse();
             let resolvable = h > RESOLVED * bounds.shortest;
-            let Some(attempt) = self.try_event_driven_step(h, any_error, resolvable) else {
+            let Some(tried) = self.try_event_driven_step(h, any_error, resolvable) else {
                 if h <= bounds.shortest {
                     return Err(self.step_too_small(h));
                 }
@@ -68,7 +77,7 @@ impl Run {
                 continue;
             };
             let limit = bounds.remaining.min(limit);
-            let proposed = *proposal.get_or_insert_with(|| self.propose(h, limit, attempt.error, starts_anew));
+            let proposed = *proposal.get_or_insert_with(|| self.propose(h, limit, &tried, starts_anew));
             let in_windows = h > shortest_cut && self.plan_windows(h, LEAST_SHARE.max(shortest_cut / h));
             let share = if in_windows { 1.0 } else { self.share_before_event(h, shortest_cut) };
             if share >= 1.0 || (share >= LEAST_SHARE && self.can_resume_within(h, share)) {
@@ -83,7 +92,7 @@ impl Run {
 
     /// Tries a step of length `h`; `None` where it is rejected: the run's step size is then a better length. Energies do not
     /// count unless what changes them is `resolvable` by a shorter step.
-    pub(super) fn try_event_driven_step(&mut self, h: f64, any_error: bool, resolvable: bool) -> Option<StepAttempt> {
+    pub(super) fn try_event_driven_step(&mut self, h: f64, any_error: bool, resolvable: bool) -> Option<GoodStep> {
         self.discard_windows();
         let Self { model, settings, state, workspace, .. } = self;
         workspace.interpolated_at = None;
@@ -97,12 +106,13 @@ impl Run {
             error = attempt.map_or(error, |attempt| attempt.carrier_error);
             allowed = 1.0;
         }
+        let good = |longest| attempt.ok().map(|attempt| GoodStep { error: attempt.error, longest });
         if any_error && error.is_finite() {
-            return attempt.ok();
+            return good(f64::MAX);
         }
         let longest = self.longest_unstable();
         if error <= allowed && h <= longest {
-            return attempt.ok();
+            return good(longest);
         }
         self.state.counters.rejected += 1;
         self.state.step_size = if error.is_finite() {
@@ -122,13 +132,13 @@ impl Run {
 
     /// The length of the next step after a good one of length `h`. One that was cut short to `limit` by the end of a
     /// piece or by the events says nothing; one that `starts_anew` says how long the first after the next event may be.
-    fn propose(&mut self, h: f64, limit: f64, error: f64, starts_anew: bool) -> f64 {
-        let grown = h * growth(self.pair(), error);
+    fn propose(&mut self, h: f64, limit: f64, tried: &GoodStep, starts_anew: bool) -> f64 {
+        let grown = h * growth(self.pair(), tried.error);
         if starts_anew {
             self.state.step_after_event = grown;
         }
         let next = if h < limit { grown } else { grown.max(self.state.step_size) };
-        next.min(self.longest_unstable())
+        next.min(tried.longest)
     }
 
     /// The share of the step of length `h` tried last that lies before its first event, 1 where there is none. A cut

@@ -1,6 +1,7 @@
 //! Newton's equations of a stage: residuals, Jacobian, and the correction for rate-dependent friction.
 
 use std::hint::select_unpredictable;
+use std::ops::Range;
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -78,28 +79,42 @@ impl StageSolver {
     /// masses.
     pub(super) fn assemble_constant_rows(&mut self, model: &Model, beta: f64) {
         let k = self.state.mode.len();
+        let mut from = 0;
+        for run in 0..=self.slip_runs.len() {
+            let (to, next) = self.slip_runs.get(run).map_or((k, k), |slips| (slips.start, slips.end));
+            self.assemble_free_rows(model, beta, from..to);
+            from = next;
+        }
+        for n in 0..self.contacts.len() {
+            let i = self.contacts[n];
+            if !self.state.mode[i].slips() {
+                self.hold(i);
+            }
+        }
+    }
+
+    /// Assembles the rows and columns of masses that follow one another as those of free ones.
+    fn assemble_free_rows(&mut self, model: &Model, beta: f64, masses: Range<usize>) {
+        if masses.is_empty() {
+            return;
+        }
+        let k = self.state.mode.len();
         let inertia = model.mass / beta;
         let [vertical, horizontal, lateral_x, lateral_z] = self.laws.map(|law| law.weight);
         let diagonal = |neighbours: f64| {
             let weights = (horizontal + neighbours * lateral_x, vertical + neighbours * lateral_z);
             Matrix2::new(inertia + weights.0, 0.0, 0.0, inertia + weights.1)
         };
-        self.rows.fill(RowShares { x_by_x: 1.0, x_by_z: 0.0, z_by_z: 1.0 });
-        self.columns.fill(NeighbourWeights { x: lateral_x, z_by_x: 0.0, z: lateral_z });
-        self.system.diagonal.fill(diagonal(2.0));
-        for end in [0, k - 1] {
-            self.system.diagonal[end] = diagonal(neighbours(end, k));
+        let system = &mut self.system;
+        self.rows[masses.clone()].fill(RowShares { x_by_x: 1.0, x_by_z: 0.0, z_by_z: 1.0 });
+        self.columns[masses.clone()].fill(NeighbourWeights { x: lateral_x, z_by_x: 0.0, z: lateral_z });
+        system.diagonal[masses.clone()].fill(diagonal(2.0));
+        for end in [0, k - 1].into_iter().filter(|end| masses.contains(end)) {
+            system.diagonal[end] = diagonal(neighbours(end, k));
         }
         let beside = Matrix2::new(-lateral_x, 0.0, 0.0, -lateral_z);
-        self.system.upper.fill(beside);
-        self.system.lower.fill(beside);
-        for n in 0..self.contacts.len() {
-            let i = self.contacts[n];
-            // The rows and columns of a slip are assembled whole.
-            if !self.state.mode[i].slips() {
-                self.hold(i);
-            }
-        }
+        system.upper[masses.clone()].fill(beside);
+        system.lower[masses].fill(beside);
     }
 
     /// Makes the equations of mass `i`, in contact, those of a mass that keeps its velocity.
