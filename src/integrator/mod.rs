@@ -145,7 +145,7 @@ impl Integrator {
                 friction: Friction::SetValued,
             },
             stages: Stages {
-                rates: vec![Rates::new(model); steps.stages()],
+                rates: (0..steps.stages()).map(|_| Rates::new(model)).collect(),
                 carrier: [CarrierPoint::default(); STAGES],
                 exchange: [Exchange::default(); STAGES],
                 link_forces: Vec::new(),

@@ -40,16 +40,15 @@ pub struct Rates {
 impl Rates {
     /// Zero rates for the masses and links of `model`.
     pub fn new(model: &Model) -> Self {
-        let k = model.masses();
-        let zero = vec![0.0; k];
+        let zeros = || vec![0.0; model.masses()];
         Self {
-            velocity_x: zero.clone(),
-            velocity_z: zero.clone(),
-            acceleration_x: zero.clone(),
-            acceleration_z: zero.clone(),
+            velocity_x: zeros(),
+            velocity_z: zeros(),
+            acceleration_x: zeros(),
+            acceleration_z: zeros(),
             elongation_rate: Forces::of_links(model),
-            normal: zero.clone(),
-            margin: zero,
+            normal: zeros(),
+            margin: zeros(),
         }
     }
 

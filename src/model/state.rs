@@ -104,12 +104,12 @@ impl State {
 
     /// All masses at rest and free.
     pub fn new(masses: usize, maxwell_variables: usize) -> Self {
-        let zero = vec![0.0; masses];
+        let zeros = || vec![0.0; masses];
         Self {
-            elongation_x: zero.clone(),
-            elongation_z: zero.clone(),
-            velocity_x: zero.clone(),
-            velocity_z: zero,
+            elongation_x: zeros(),
+            elongation_z: zeros(),
+            velocity_x: zeros(),
+            velocity_z: zeros(),
             maxwell: vec![0.0; maxwell_variables],
             mode: vec![Mode::Free; masses],
             surface: vec![SurfacePoint::default(); masses],

@@ -229,7 +229,7 @@ impl Simulation {
 
     /// The model at the temperature of the checkpoint, which a motion that fails may have changed.
     fn cool_back(&mut self) {
-        let before = self.run.checkpoint().temperature;
+        let before = self.run.temperature_before();
         if before != self.run.state.temperature {
             // It was that of the run before: it is valid.
             let _ = self.heat(before);

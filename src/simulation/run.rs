@@ -228,8 +228,9 @@ pub(super) struct Workspace {
     pub may_open_windows: bool,
     /// The modes before the mode changes under way.
     pub modes_before: Vec<Mode>,
-    /// The run before the motion under way, and how long its records were.
-    checkpoint: RunState,
+    /// The run before the motion under way; `None` in a window, which is never rolled back.
+    checkpoint: Option<Box<RunState>>,
+    /// How long its records were then.
     recorded: [usize; 2],
 }
 
@@ -241,7 +242,7 @@ impl Run {
         let workspace = Workspace {
             forces: Forces::new(&model),
             integrator: Self::integrator(&model, &settings, windows.is_some()),
-            interpolated: state.layer.state.clone(),
+            interpolated: State::new(model.masses(), model.maxwell_variables()),
             interpolated_at: None,
             dense: DenseWorkspace::new(&model),
             end_correction: EndCorrection::new(&model),
@@ -249,7 +250,7 @@ impl Run {
             windows,
             may_open_windows: true,
             modes_before: state.layer.state.mode.clone(),
-            checkpoint: state.clone(),
+            checkpoint: (!settings.is_of_window).then(|| Box::new(state.clone())),
             recorded: [0; 2],
         };
         let mut run = Self { model, settings, state, workspace, mode_changes: None, method_switches: None };
@@ -292,14 +293,18 @@ impl Run {
 
     /// Keeps the run as it stands, to roll back to.
     pub(super) fn keep_checkpoint(&mut self) {
-        self.workspace.checkpoint.copy_from(&self.state);
+        if let Some(checkpoint) = &mut self.workspace.checkpoint {
+            checkpoint.copy_from(&self.state);
+        }
         let lengths = (self.mode_changes.as_ref().map(Vec::len), self.method_switches.as_ref().map(Vec::len));
         self.workspace.recorded = [lengths.0.unwrap_or(0), lengths.1.unwrap_or(0)];
     }
 
     pub(super) fn roll_back(&mut self) {
         let [mode_changes, method_switches] = self.workspace.recorded;
-        self.state.copy_from(&self.workspace.checkpoint);
+        if let Some(checkpoint) = &self.workspace.checkpoint {
+            self.state.copy_from(checkpoint);
+        }
         if let Some(record) = &mut self.mode_changes {
             record.truncate(mode_changes);
         }
@@ -332,9 +337,9 @@ impl Run {
         }
     }
 
-    /// The run before the motion under way.
-    pub(super) fn checkpoint(&self) -> &RunState {
-        &self.workspace.checkpoint
+    /// The layer's temperature before the motion under way, K; 0 where it is no input.
+    pub(super) fn temperature_before(&self) -> f64 {
+        self.workspace.checkpoint.as_ref().map_or(self.state.temperature, |before| before.temperature)
     }
 
     /// Takes over another temperature (K) and the settings for the model there, which is set. The dampers' forces jump, so the
