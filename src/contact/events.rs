@@ -28,6 +28,15 @@ pub struct EventTolerance {
 /// goes far in the meantime.
 const OF_STOPS: f64 = 0.01;
 
+/// The gap tolerance as a share of the position tolerance, over the relative tolerance.
+///
+/// A mass that grazes the profile less deep than the gap tolerance is not seen to touch. It touches later, by a time that
+/// goes with the root of that depth, and friction and impact come later by as much: for an error of the forces that falls
+/// with the tolerance, the depth has to fall with its square. Coarse steps know dips only to the position tolerance.
+const SHARE_OF_DIPS: f64 = 1e3;
+/// The least such share: beyond it a touch is looked for in the rounding of positions.
+const LEAST_SHARE_OF_DIPS: f64 = 0.01;
+
 /// The rounding error of a force, as a number of roundings of a position.
 const ROUNDINGS: f64 = 4.0;
 
@@ -42,7 +51,7 @@ impl EventTolerance {
         let link = LinkKind::Horizontal;
         let impedance = model.links[link as usize].damping + (model.glassy[link as usize] * model.mass).sqrt();
         Self {
-            gap: tolerance.position,
+            gap: (SHARE_OF_DIPS * tolerance.relative).clamp(LEAST_SHARE_OF_DIPS, 1.0) * tolerance.position,
             velocity: OF_STOPS * tolerance.velocity,
             force: (tolerance.position * stiffness).max(rounding),
             rounding,
