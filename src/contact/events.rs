@@ -31,11 +31,14 @@ const OF_STOPS: f64 = 0.01;
 /// The gap tolerance as a share of the position tolerance, over the relative tolerance.
 ///
 /// A mass that grazes the profile less deep than the gap tolerance is not seen to touch. It touches later, by a time that
-/// goes with the root of that depth, and friction and impact come later by as much: for an error of the forces that falls
-/// with the tolerance, the depth has to fall with its square. Coarse steps know dips only to the position tolerance.
+/// goes with the root of that depth, and friction and impact come later by as much. Coarse steps know dips only to the
+/// position tolerance.
 const SHARE_OF_DIPS: f64 = 1e3;
-/// The least such share: beyond it a touch is looked for in the rounding of positions.
-const LEAST_SHARE_OF_DIPS: f64 = 0.01;
+/// The least such share.
+///
+/// Recommended 0.03 to 0.3. With 0.01 a mass that is held nearly still by dampers, and falls as slowly as it rises, touches
+/// and lifts without end.
+const LEAST_SHARE_OF_DIPS: f64 = 0.1;
 
 /// The rounding error of a force, as a number of roundings of a position.
 const ROUNDINGS: f64 = 4.0;
