@@ -21,48 +21,47 @@ impl Motion {
         self.elongation = (self.elongation.0 + other.elongation.0, self.elongation.1 + other.elongation.1);
         self.velocity = (self.velocity.0 + other.velocity.0, self.velocity.1 + other.velocity.1);
     }
+
+    /// Adds up to [`BLOCK`] masses, one after another from mass `first` on, that slip with the elongations `x` (m) and
+    /// velocities `v_x` (m/s), on the profile. For use with vector instructions.
+    #[inline(always)]
+    pub(super) fn add_slips(&mut self, model: &Model, first: usize, (x, v_x): (&[f64], &[f64]), placement: &Placement) {
+        let masses = first..first + x.len();
+        let (rest_x, rest_z) = (&model.rest_x[masses.clone()], &model.rest_z[masses]);
+        let (mut places, mut surface) = ([0.0; BLOCK], [SurfacePoint::default(); BLOCK]);
+        let (places, surface) = (&mut places[..x.len()], &mut surface[..x.len()]);
+        for (place, (rest_x, x)) in places.iter_mut().zip(rest_x.iter().zip(x)) {
+            *place = placement.position(*rest_x, *x);
+        }
+        model.profile.evaluate_block(places, surface);
+        for ((x, v_x), (rest_z, surface)) in x.iter().zip(v_x).zip(rest_z.iter().zip(surface)) {
+            let (elongation, velocity) = ((*x, surface.height - rest_z - placement.w), (*v_x, surface.slope * v_x));
+            self.add(&Self { elongation, velocity });
+        }
+    }
 }
 
-/// The carrier under which masses are put on the profile.
+/// Where the carrier is at one instant, as masses that slip are put on the profile.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Over {
+pub(super) struct Placement {
     /// u as a position on the profile at the start of the carrier's piece, m.
-    pub profile_position: f64,
+    profile_position: f64,
     /// Its displacement along x since then, m.
-    pub du: f64,
+    du: f64,
     /// w, m.
-    pub w: f64,
+    w: f64,
 }
 
-impl Over {
+impl Placement {
+    /// Under the `carrier`, which is at `now`.
     pub(super) fn new(carrier: &Carrier, now: &CarrierPoint) -> Self {
         Self { profile_position: carrier.profile_position, du: now.du, w: carrier.w + now.dw }
     }
 
     /// The position on the profile of a mass with the rest position `rest_x` and the elongation `x`, m.
     #[inline(always)]
-    pub(super) fn place(&self, rest_x: f64, x: f64) -> f64 {
+    pub(super) fn position(&self, rest_x: f64, x: f64) -> f64 {
         rest_x + (self.profile_position + (self.du + x))
-    }
-}
-
-impl Motion {
-    /// Adds up to [`BLOCK`] masses, one after another from mass `first` on, that slip with the elongations `x` (m) and
-    /// velocities `v_x` (m/s), on the profile. For use with vector instructions.
-    #[inline(always)]
-    pub(super) fn add_slips(&mut self, model: &Model, first: usize, (x, v_x): (&[f64], &[f64]), over: &Over) {
-        let masses = first..first + x.len();
-        let (rest_x, rest_z) = (&model.rest_x[masses.clone()], &model.rest_z[masses]);
-        let (mut places, mut surface) = ([0.0; BLOCK], [SurfacePoint::default(); BLOCK]);
-        let (places, surface) = (&mut places[..x.len()], &mut surface[..x.len()]);
-        for (place, (rest_x, x)) in places.iter_mut().zip(rest_x.iter().zip(x)) {
-            *place = over.place(*rest_x, *x);
-        }
-        model.profile.evaluate_block(places, surface);
-        for ((x, v_x), (rest_z, surface)) in x.iter().zip(v_x).zip(rest_z.iter().zip(surface)) {
-            let (elongation, velocity) = ((*x, surface.height - rest_z - over.w), (*v_x, surface.slope * v_x));
-            self.add(&Self { elongation, velocity });
-        }
     }
 }
 

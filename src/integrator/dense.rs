@@ -4,7 +4,7 @@
 //! elements follow these velocities by the exact solution of ȧ = ė - a/τ, for any τ; its difference from the step's own end
 //! is distributed linearly over the step.
 
-use super::carrier_sums::{AxisSums, CarrierSums, ElementWeights, Motion, Over};
+use super::carrier_sums::{AxisSums, CarrierSums, ElementWeights, Motion, Placement};
 use super::error::Tolerance;
 use super::interpolation::StageInterpolation;
 use super::rates::Rates;
@@ -208,7 +208,7 @@ impl DenseOutput<'_> {
     /// Adds the masses in contact, of which those that slip have the elongations `x` (m) and velocities `v_x` (m/s).
     #[inline(always)]
     fn add_contacts(&self, all: &mut Motion, (x, v_x): (&[f64], &[f64]), carrier: &CarrierWithin) {
-        let (modes, over) = (&self.start.state.mode, Over::new(self.carrier, &carrier.now));
+        let (modes, placement) = (&self.start.state.mode, Placement::new(self.carrier, &carrier.now));
         let mut first = 0;
         for run in modes.chunk_by(|mode, next| mode.slips() == next.slips()) {
             let masses = first..first + run.len();
@@ -216,7 +216,7 @@ impl DenseOutput<'_> {
             if run[0].slips() {
                 for block in masses.clone().step_by(BLOCK) {
                     let block = block..masses.end.min(block + BLOCK);
-                    all.add_slips(self.model, block.start, (&x[block.clone()], &v_x[block]), &over);
+                    all.add_slips(self.model, block.start, (&x[block.clone()], &v_x[block]), &placement);
                 }
             } else {
                 for i in masses.filter(|&i| modes[i].in_contact()) {
@@ -231,8 +231,9 @@ impl DenseOutput<'_> {
     fn on_profile(&self, i: usize, along_x: (f64, f64), carrier: &CarrierWithin) -> MassPoint {
         let start = self.start.state;
         let (elongation_x, v_x, surface) = if start.mode[i].slips() {
-            let over = Over::new(self.carrier, &carrier.now);
-            (along_x.0, along_x.1, self.model.surface_at(over.place(self.model.rest_x[i], along_x.0)))
+            let placement = Placement::new(self.carrier, &carrier.now);
+            let at = placement.position(self.model.rest_x[i], along_x.0);
+            (along_x.0, along_x.1, self.model.surface_at(at))
         } else {
             (start.elongation_x[i] - carrier.moved_x, 0.0, start.surface[i])
         };

@@ -542,8 +542,8 @@ fn rate_of_change(rate: &mut [f64], now: &[f64], before: &[f64], per_beta: f64) 
     }
 }
 
-// What the following functions write are arguments, which by that overlap nothing else: else no loop becomes vector
-// instructions.
+// The slices that the following functions write are arguments of their own. By that the compiler knows that they do not
+// overlap what is read, and makes vector instructions of the loops.
 
 /// A run of slipping masses that is shorter is put on the profile one by one.
 const SHORT_RUN: usize = 6;

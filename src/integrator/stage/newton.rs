@@ -71,8 +71,8 @@ impl StageSolver {
 
     /// The equation of mass `i`, which slips, at the present velocities.
     fn slipping_mass(&self, model: &Model, i: usize, beta: f64) -> SlippingMass {
-        let acceleration = (self.state.velocity_x[i] - self.history.velocity_x[i]) / beta;
-        SlippingMass::of(model, &self.state, &self.forces, i, acceleration)
+        let Self { state, history, forces, laws, .. } = self;
+        EvaluatedStage { model, state, history, forces, laws, beta }.slipping_mass(i)
     }
 
     /// Assembles the part of the Jacobian that is constant through a step: all but the rows and columns of slipping
@@ -187,7 +187,7 @@ struct EvaluatedStage<'a> {
 impl EvaluatedStage<'_> {
     /// Writes the diagonal blocks, rows and columns of slipping masses that follow one another from mass `start` on, under
     /// a linear law of friction.
-    // What it writes are arguments, see `set_linear_residuals`.
+    // As for `set_linear_residuals`, what it writes are arguments.
     #[inline(always)]
     fn assemble_run(
         &self,
@@ -254,7 +254,8 @@ fn neighbours(i: usize, k: usize) -> f64 {
 }
 
 /// Writes the negative residuals of all masses under a linear law of friction to `right`.
-// A function with `right` as an argument, which by that overlaps nothing else: else no loop becomes vector instructions.
+// `right` is an argument of its own. By that the compiler knows that it does not overlap what is read, and makes vector
+// instructions of the loop.
 #[inline(always)]
 fn set_linear_residuals(
     right: &mut [Vector2<f64>],
