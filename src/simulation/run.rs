@@ -276,10 +276,10 @@ impl Run {
     pub(super) fn bytes(&self) -> usize {
         let layer = &self.state.layer.state;
         let (masses, maxwell) = (layer.mode.len(), layer.maxwell.len());
-        // The state, its checkpoint, the one within a step and the stage's.
-        let states = 4 * (masses * (4 * size_of::<f64>() + size_of_val(&layer.surface[0]) + 1));
-        states
-            + 4 * maxwell * size_of::<f64>()
+        // The state, the one within a step, the stage's and the checkpoint.
+        let states = 3 + usize::from(self.workspace.checkpoint.is_some());
+        let by_mass = 4 * size_of::<f64>() + size_of_val(&layer.surface[0]) + 1;
+        states * (masses * by_mass + maxwell * size_of::<f64>())
             + self.workspace.integrator.bytes()
             + 2 * self.workspace.forces.bytes()
             + self.workspace.dense.bytes()
