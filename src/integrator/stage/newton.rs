@@ -144,8 +144,8 @@ impl StageSolver {
                 #[inline(always)]
                 || {
                     for run in slip_runs.iter() {
-                        let blocks = (&mut system.diagonal[run.clone()], &mut rows[run.clone()]);
-                        stage.assemble_run(blocks.0, blocks.1, &mut columns[run.clone()], run.start);
+                        let (rows, columns) = (&mut rows[run.clone()], &mut columns[run.clone()]);
+                        stage.assemble_run(&mut system.diagonal[run.clone()], rows, columns, run.start);
                     }
                 },
             );
@@ -181,6 +181,7 @@ struct EvaluatedStage<'a> {
     history: &'a StageHistory,
     forces: &'a Forces,
     laws: &'a [StageLaw; 4],
+    /// β of the stage, s.
     beta: f64,
 }
 
@@ -209,12 +210,14 @@ impl EvaluatedStage<'_> {
         SlippingMass::of(self.model, self.state, self.forces, i, self.acceleration(i))
     }
 
+    /// The same under this law of friction.
     #[inline(always)]
     fn slipping_mass_under(&self, law: TangentLaw, i: usize) -> SlippingMass {
         let (sigma, surface) = (self.state.mode[i].direction(), &self.state.surface[i]);
         SlippingMass::under(law, sigma, surface, (self.state.velocity_x[i], self.acceleration(i)))
     }
 
+    /// ẍ of mass `i`, (ẋ - ẋ*)/β, m/s².
     #[inline(always)]
     fn acceleration(&self, i: usize) -> f64 {
         (self.state.velocity_x[i] - self.history.velocity_x[i]) / self.beta
