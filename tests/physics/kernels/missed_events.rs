@@ -53,17 +53,18 @@ fn a_dip_into_a_smooth_crest_is_found() {
     assert!(step > 0.2, "{step}");
 }
 
-/// A mass that grazes a crest by a third of the position tolerance hits it at a fine relative tolerance and passes it at a coarse
-/// one: touches are looked for to all of that tolerance from 1e-3 on, to a tenth of it from 1e-4 down.
+/// A mass that grazes a crest by a third or a hundredth of the position tolerance hits it at a fine relative tolerance and
+/// passes it at a coarse one: touches are looked for to all of that tolerance from 1e-3 on, to a thousandth of it at 1e-6.
 #[test]
 fn fine_tolerances_see_shallower_dips() {
     let surface = points(&[0.0, 1.0, 2.0], &[0.0, 0.01, 0.0], false);
-    let hits = |relative: &str| {
+    let hits = |depth: f64, relative: &str| {
         let solver = format!("absolute_tolerance = 3e-9\nrelative_tolerance = {relative}");
-        let (lost, ..) = fly(&Layer { solver, ..over(&surface, -NANOMETRE) }, 1.0);
+        let (lost, ..) = fly(&Layer { solver, ..over(&surface, -depth) }, 1.0);
         lost > 0.0
     };
-    assert_eq!(["1e-2", "1e-3", "1e-4", "1e-6"].map(hits), [false, false, true, true]);
+    assert_eq!(["1e-2", "1e-3", "1e-4", "1e-6"].map(|relative| hits(NANOMETRE, relative)), [false, false, true, true]);
+    assert_eq!(["1e-3", "1e-4", "1e-6"].map(|relative| hits(0.03 * NANOMETRE, relative)), [false, false, true]);
 }
 
 /// A mass on a weak spring, thrown down with the carrier and brought back by the spring: a sine whose lowest part dips
