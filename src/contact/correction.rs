@@ -31,14 +31,14 @@ use crate::scene::Axis;
 
 /// Weight of the lateness of mode changes in the error of a step.
 ///
-/// Recommended 3 to 10. With 5, masses that touch and lift at a relative tolerance of 1e-2 add errors of some 1e-2 to
-/// the forces of a layer; larger values reject more steps where many masses do.
-const LATENESS: f64 = 5.0;
+/// Recommended 5 to 10. With less, single late changes are the largest errors of a layer's forces; with more, steps become
+/// shorter where many masses touch and lift.
+const LATENESS: f64 = 8.0;
 /// The relative tolerance below which that weight grows, with the root of its ratio to the tolerance.
 ///
-/// Recommended 3e-4 to 1e-2. A mean over all masses and smooth steps says less of a single change the fewer of them a step
+/// Recommended 1e-4 to 1e-3. A mean over all masses and smooth steps says less of a single change the fewer of them a step
 /// has: with a constant weight, forces just after a change are 20 to 200 tolerances off at 1e-6.
-const GROWS_BELOW: f64 = 1e-3;
+const GROWS_BELOW: f64 = 3e-4;
 
 /// Number of masses to each side that a correction concerns: the neighbours receive impulses, and their neighbours the
 /// forces that these change.
