@@ -10,7 +10,7 @@ use super::stage::{BodyHistory, ConvergenceTest, Friction, NoConvergence, StageP
 use super::tableau::{ContinuousWeights, STAGES, Tableau};
 use crate::math::{weighted_sum, with_widest_vectors};
 use crate::model::Axis;
-use crate::model::{Carrier, CarrierPoint, ChannelEnergies, Exchange, LinkKind, Mode, Model, State};
+use crate::model::{Carrier, CarrierPoint, ChannelEnergies, Exchange, Mode, Model, State};
 
 /// One Runge-Kutta method with its workspace.
 #[derive(Clone, Debug)]
@@ -43,7 +43,8 @@ pub(super) struct Stages {
     pub carrier: [CarrierPoint; STAGES],
     /// The powers through the surface and the carrier; computed if `tracks_energy`.
     pub exchange: [Exchange; STAGES],
-    /// The forces of the horizontal and vertical links; kept where energies of parts of the layer may be asked for.
+    /// The forces of the horizontal and vertical links at the stages between the first and the last; kept where energies of
+    /// parts of the layer may be asked for.
     pub link_forces: Vec<[Vec<f64>; 2]>,
     pub solver: StageSolver,
     pub tracks_energy: bool,
@@ -115,6 +116,9 @@ impl<const N: usize> RungeKutta<N> {
             stages.guess(step, i, &self.initial_guess);
             stages.solve(step, &mut point, i, s, convergence)?;
             stages.vary(step, &point, i, s, weights);
+            if i + 1 < N {
+                stages.keep_link_forces(i);
+            }
         }
         self.maxwell.at_stage(model, N - 1, &state.maxwell, &stages.rates, &mut stages.solver.state.maxwell);
         Ok(())
@@ -327,16 +331,22 @@ impl Stages {
         let StepInput { model, carrier, .. } = *step;
         self.solver.solve(model, point, convergence, &mut self.rates[i])?;
         self.carrier[i] = point.carrier;
-        if let Some([x, z]) = self.link_forces.get_mut(i) {
-            x.copy_from_slice(&self.solver.forces.link[LinkKind::Horizontal as usize]);
-            z.copy_from_slice(&self.solver.forces.link[LinkKind::Vertical as usize]);
-        }
         if self.tracks_energy {
             let solver = &self.solver;
             self.exchange[i] = Exchange::with_friction(model, &solver.friction_power, &point.carrier, &solver.forces);
             self.exchange[i].add_bodies(model, carrier, s, &point.carrier);
         }
         Ok(())
+    }
+
+    /// Keeps the forces of the links at stage `i`, just solved. The next stage writes its own over those that the solver gets in
+    /// exchange.
+    fn keep_link_forces(&mut self, i: usize) {
+        if let Some([x, z]) = self.link_forces.get_mut(i - 1) {
+            let [vertical, horizontal, ..] = &mut self.solver.forces.link;
+            std::mem::swap(x, horizontal);
+            std::mem::swap(z, vertical);
+        }
     }
 
     /// Computes the tangents at stage `i`, just solved, at `s` seconds after the start of the carrier's motion; the stages

@@ -457,7 +457,7 @@ impl Integrator {
                 let [vertical, horizontal, ..] = Forces::of_links(model);
                 [horizontal, vertical]
             };
-            self.stages.link_forces = std::iter::repeat_with(links).take(self.stages.rates.len()).collect();
+            self.stages.link_forces = std::iter::repeat_with(links).take(self.pair.stages() - 2).collect();
         }
     }
 
@@ -473,14 +473,18 @@ impl Integrator {
         stages.solver.state.copy_part(models, whole.end(), first);
         self.event_method.take_part(&whole.event_method);
         self.carrier_sums.forget();
-        for (stage, links) in whole.stages.link_forces.iter().enumerate() {
+        if whole.stages.link_forces.is_empty() {
+            return;
+        }
+        let masses = first..first + models.0.masses();
+        let [vertical, horizontal, ..] = &whole.end_forces().link;
+        let of_part = |links: &[f64]| links.get(masses.clone()).map_or(0.0, |part| part.iter().sum());
+        let between = whole.stages.link_forces.iter().map(|[x, z]| (of_part(x), of_part(z)));
+        let on_carrier = std::iter::once((forces.on_carrier_x(), forces.on_carrier_z()))
+            .chain(between)
+            .chain(std::iter::once((of_part(horizontal), of_part(vertical))));
+        for (stage, on_carrier) in on_carrier.enumerate() {
             let rates = &stages.rates[stage];
-            let sum = |links: &[f64]| links.get(first..first + models.0.masses()).map_or(0.0, |part| part.iter().sum());
-            let on_carrier = if stage == 0 {
-                (forces.on_carrier_x(), forces.on_carrier_z())
-            } else {
-                (sum(&links[0]), sum(&links[1]))
-            };
             let motion = (&rates.velocity_x[..], &rates.velocity_z[..], &rates.normal[..]);
             let modes = &stages.solver.state.mode;
             stages.exchange[stage] = Exchange::of_forces(models.0, modes, motion, &stages.carrier[stage], on_carrier);

@@ -88,16 +88,15 @@ impl Windows {
             return None;
         }
         let (reach, most_masses) = (reach(model, settings.tolerance.relative)?, model.masses() / OF_MASSES);
-        let mut width = 2 * reach + 1;
+        let width = 2 * reach + 1;
         if LEAST_WINDOWS * width > model.masses() {
             return None;
         }
-        let (mut windows, mut most) = (Vec::new(), MOST_WINDOWS);
-        while 2 * width <= most_masses {
-            let count = (most_masses / width).min(most);
+        let levels: Vec<_> = levels(width, most_masses).collect();
+        let mut windows = Vec::with_capacity(levels.iter().map(|&(_, count)| count).sum());
+        for (width, count) in levels {
             let part = model.part(width);
             windows.extend((0..count).map(|_| Window::new(part.clone(), settings)));
-            (width, most) = (2 * width, (most / 2).max(1));
         }
         Some(Box::new(Self {
             windows,
@@ -212,6 +211,15 @@ impl Windows {
             range = union;
         }
     }
+}
+
+/// The widths of windows, from the `least` one on, and the number of windows of each: all of one width have at most
+/// `most_masses`, and there is room for two.
+fn levels(least: usize, most_masses: usize) -> impl Iterator<Item = (usize, usize)> {
+    let wider = |&(width, most): &(usize, usize)| Some((2 * width, (most / 2).max(1)));
+    std::iter::successors(Some((least, MOST_WINDOWS)), wider)
+        .take_while(move |(width, _)| 2 * width <= most_masses)
+        .map(move |(width, most)| (width, most.min(most_masses / width)))
 }
 
 /// The number of masses over which the effect of a mode change falls below the tolerance; `None` where it does not within the

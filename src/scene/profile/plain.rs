@@ -31,22 +31,73 @@ impl PlainLine {
 /// The decimal that `text` begins with, and its bytes. A sign `+` and long exponents are left to the general reader.
 fn decimal(text: &str) -> Option<(f64, usize)> {
     let bytes = text.as_bytes();
-    let run = |from: usize, of_run: fn(&u8) -> bool| bytes[from..].iter().take_while(|byte| of_run(byte)).count();
     let sign = usize::from(bytes.first() == Some(&b'-'));
-    let mut end = sign + run(sign, |byte| byte.is_ascii_digit() || *byte == b'.');
-    if matches!(bytes.get(end), Some(b'e' | b'E')) {
-        let sign = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
-        let digits = run(end + 1 + sign, u8::is_ascii_digit);
-        if sign + digits > MOST_OF_EXPONENT {
-            return None;
-        }
-        end += 1 + sign + digits;
-    }
-    Some((text[..end].parse().ok()?, end))
+    let (digits, end) = Digits::read(bytes, sign);
+    let (exponent, end) = match bytes.get(end) {
+        Some(b'e' | b'E') => exponent(bytes, end + 1)?,
+        _ => (0, end),
+    };
+    let size = digits.exact(exponent).or_else(|| text[sign..end].parse().ok())?;
+    Some((if sign == 1 { -size } else { size }, end))
 }
 
 /// The longest exponent, its sign included.
 const MOST_OF_EXPONENT: usize = 4;
+
+/// The exponent in `bytes` from `from` on, and where it ends.
+fn exponent(bytes: &[u8], from: usize) -> Option<(i32, usize)> {
+    let signs = usize::from(matches!(bytes.get(from), Some(b'+' | b'-')));
+    let (digits, end) = Digits::read(bytes, from + signs);
+    let is_exponent = digits.count > 0 && digits.points == 0 && end - from <= MOST_OF_EXPONENT;
+    let sign = if bytes.get(from) == Some(&b'-') { -1 } else { 1 };
+    is_exponent.then_some((sign * i32::try_from(digits.whole).ok()?, end))
+}
+
+/// A run of digits with or without a point.
+#[derive(Clone, Copy, Debug, Default)]
+struct Digits {
+    /// The digits without the point, as far as they fit.
+    whole: u64,
+    /// Number of digits, and of those behind a point.
+    count: i32,
+    behind: i32,
+    points: i32,
+}
+
+impl Digits {
+    /// The digits in `bytes` from `from` on, and where they end.
+    fn read(bytes: &[u8], from: usize) -> (Self, usize) {
+        let (mut digits, mut end) = (Self::default(), from);
+        while let Some(byte @ (b'0'..=b'9' | b'.')) = bytes.get(end) {
+            if *byte == b'.' {
+                digits.points += 1;
+            } else {
+                digits.whole = digits.whole.saturating_mul(10).saturating_add(u64::from(byte - b'0'));
+                digits.count += 1;
+                digits.behind += digits.points;
+            }
+            end += 1;
+        }
+        (digits, end)
+    }
+
+    /// The number times ten to the `exponent`, where one division or product of exact numbers gives it, which rounds as the
+    /// standard library does (W. D. Clinger, How to read floating point numbers accurately, 1990).
+    fn exact(self, exponent: i32) -> Option<f64> {
+        const MOST: u64 = 1 << f64::MANTISSA_DIGITS;
+        let exponent = exponent - self.behind;
+        let power = POWERS.get(exponent.unsigned_abs() as usize)?;
+        let is_number = self.count > 0 && self.points <= 1 && self.whole <= MOST;
+        let whole = self.whole as f64;
+        is_number.then_some(if exponent < 0 { whole / power } else { whole * power })
+    }
+}
+
+/// The powers of ten that are exact.
+const POWERS: [f64; 23] = [
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20,
+    1e21, 1e22,
+];
 
 #[cfg(test)]
 mod tests {
