@@ -107,6 +107,8 @@ impl Display for Field {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self.kind {
             Kind::Real => file_decimal(self.value).fmt(f),
+            // A whole number is written faster as one.
+            Kind::Integer if self.value == self.value as i64 as f64 => (self.value as i64).fmt(f),
             Kind::Integer => write!(f, "{:.0}", self.value),
         }
     }
