@@ -36,8 +36,8 @@ const OF_STOPS: f64 = 0.01;
 const SHARE_OF_DIPS: f64 = 1e3;
 /// The least such share.
 ///
-/// Recommended 0.0001 to 0.1. The less, the more grazing touches are found, and the more steps are cut at them.
-const LEAST_SHARE_OF_DIPS: f64 = 0.001;
+/// Recommended 1e-5 to 0.1. The less, the more grazing touches are found, and the more steps are cut at them.
+const LEAST_SHARE_OF_DIPS: f64 = 1e-4;
 
 /// The rounding error of a force, as a number of roundings of a position.
 const ROUNDINGS: f64 = 4.0;
