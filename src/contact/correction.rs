@@ -36,8 +36,8 @@ use crate::scene::Axis;
 const LATENESS: f64 = 8.0;
 /// The relative tolerance below which that weight grows, with the root of its ratio to the tolerance.
 ///
-/// Recommended 1e-4 to 1e-3. A mean over all masses and smooth steps says less of a single change the fewer of them a step
-/// has: with a constant weight, forces just after a change are 20 to 200 tolerances off at 1e-6.
+/// Recommended 1e-4 to 1e-3. The finer the steps, the fewer changes one has, and the less a mean over all masses says of each:
+/// with a constant weight of 5, forces just after a change were 10 to 200 tolerances off at 1e-6.
 const GROWS_BELOW: f64 = 3e-4;
 
 /// Number of masses to each side that a correction concerns: the neighbours receive impulses, and their neighbours the

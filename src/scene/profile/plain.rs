@@ -74,7 +74,7 @@ impl Digits {
             } else {
                 digits.whole = digits.whole.saturating_mul(10).saturating_add(u64::from(byte - b'0'));
                 digits.count += 1;
-                digits.behind += digits.points;
+                digits.behind += i32::from(digits.points > 0);
             }
             end += 1;
         }
