@@ -56,11 +56,13 @@ fn exponent(bytes: &[u8], from: usize) -> Option<(i32, usize)> {
 /// A run of digits with or without a point.
 #[derive(Clone, Copy, Debug, Default)]
 struct Digits {
-    /// The digits without the point, as far as they fit.
+    /// The digits without the point as a number; the largest where it does not fit.
     whole: u64,
-    /// Number of digits, and of those behind a point.
+    /// Number of digits.
     count: i32,
+    /// Number of digits behind a point.
     behind: i32,
+    /// Number of points: in a number at most one.
     points: i32,
 }
 
@@ -82,7 +84,7 @@ impl Digits {
     }
 
     /// The number times ten to the `exponent`, where one division or product of exact numbers gives it, which rounds as the
-    /// standard library does (W. D. Clinger, How to read floating point numbers accurately, 1990).
+    /// standard library does; `None` elsewhere (W. D. Clinger, How to read floating point numbers accurately, 1990).
     fn exact(self, exponent: i32) -> Option<f64> {
         const MOST: u64 = 1 << f64::MANTISSA_DIGITS;
         let exponent = exponent - self.behind;
