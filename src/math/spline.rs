@@ -21,8 +21,7 @@ pub struct Spline {
     pieces: Vec<Piece>,
     grid: Grid,
     ends: Ends,
-    /// The bounds of each interval.
-    extents: Vec<Bounds>,
+    /// The bounds between the data points.
     inside: Bounds,
 }
 
@@ -32,12 +31,21 @@ enum Ends {
     Tangents { left: Piece, right: Piece },
 }
 
-/// One interval as a polynomial in t = x - start. Aligned so that a look-up touches one cache line.
+/// One interval. Aligned so that a look-up touches one cache line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(64))]
 struct Piece {
     start: f64,
     end: f64,
+    cubic: Cubic,
+    /// The highest z and the largest |z'| in it.
+    z_max: f64,
+    slope_max_abs: f64,
+}
+
+/// A polynomial in t by its value and derivatives at t = 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Cubic {
     z: f64,
     slope: f64,
     curvature: f64,
@@ -54,7 +62,7 @@ impl Spline {
         let pieces = pieces(x, z, &natural_curvatures(x, z));
         let (first, last) = (pieces[0], pieces[pieces.len() - 1]);
         let (z_end, slope_end, ..) = last.evaluate(last.end);
-        let left = Piece::line(first.start, first.z, first.slope);
+        let left = Piece::line(first.start, first.cubic.z, first.cubic.slope);
         let right = Piece::line(last.end, z_end, slope_end);
         Self::assemble(pieces, Ends::Tangents { left, right })
     }
@@ -72,9 +80,8 @@ impl Spline {
 
     fn assemble(pieces: Vec<Piece>, ends: Ends) -> Self {
         let grid = Grid::new(&pieces);
-        let extents: Vec<_> = pieces.iter().map(|piece| piece.extent(piece.start, piece.end)).collect();
-        let inside = Bounds::over(&extents);
-        Self { pieces, grid, ends, extents, inside }
+        let inside = Bounds::over(&pieces);
+        Self { pieces, grid, ends, inside }
     }
 
     /// Height z (m), slope z' (1), curvature z'' (1/m) and z''' (1/m², constant between two points) at `x`.
@@ -89,7 +96,7 @@ impl Spline {
 
     /// Whether it has a finite curvature everywhere: heights and widths that differ too much overflow.
     pub fn is_finite(&self) -> bool {
-        self.pieces.iter().all(|piece| piece.curvature.is_finite() && piece.third.is_finite())
+        self.pieces.iter().all(|piece| piece.cubic.curvature.is_finite() && piece.cubic.third.is_finite())
     }
 
     /// The period, m; `None` for a natural spline.
@@ -158,18 +165,26 @@ fn floor(x: f64) -> f64 {
 }
 
 impl Piece {
+    fn new(start: f64, end: f64, cubic: Cubic) -> Self {
+        let piece = Self { start, end, cubic, z_max: f64::NAN, slope_max_abs: f64::NAN };
+        let Bounds { z_max, slope_max_abs, .. } = piece.extent(start, end);
+        Self { z_max, slope_max_abs, ..piece }
+    }
+
+    /// The line through the height `z` at `start`, without an end.
     fn line(start: f64, z: f64, slope: f64) -> Self {
-        Self { start, end: start, z, slope, curvature: 0.0, third: 0.0 }
+        Self::new(start, start, Cubic { z, slope, curvature: 0.0, third: 0.0 })
     }
 
     #[inline]
     fn evaluate(&self, x: f64) -> (f64, f64, f64, f64) {
-        self.at_distance(x - self.start)
+        self.cubic.evaluate(x - self.start)
     }
+}
 
-    /// The same at the distance `t` from its start, m.
+impl Cubic {
     #[inline(always)]
-    fn at_distance(&self, t: f64) -> (f64, f64, f64, f64) {
+    fn evaluate(&self, t: f64) -> (f64, f64, f64, f64) {
         let z = self.z + t * (self.slope + t * (0.5 * self.curvature + t * (self.third * (1.0 / 6.0))));
         let slope = self.slope + t * (self.curvature + t * (0.5 * self.third));
         (z, slope, self.curvature + t * self.third, self.third)
@@ -185,7 +200,7 @@ fn pieces(x: &[f64], z: &[f64], curvatures: &[f64]) -> Vec<Piece> {
             let h = x[i + 1] - x[i];
             let third = (curvatures[i + 1] - curvatures[i]) / h;
             let slope = (z[i + 1] - z[i]) / h - h * (2.0 * curvatures[i] + curvatures[i + 1]) / 6.0;
-            Piece { start: x[i], end: x[i + 1], z: z[i], slope, curvature: curvatures[i], third }
+            Piece::new(x[i], x[i + 1], Cubic { z: z[i], slope, curvature: curvatures[i], third })
         })
         .collect()
 }
@@ -291,9 +306,9 @@ pub struct Bounds {
 impl Bounds {
     const EMPTY: Self = Self { z_max: f64::NEG_INFINITY, slope_max_abs: 0.0, curvature_max_abs: 0.0 };
 
-    /// The bounds over all these ranges together.
-    fn over(ranges: &[Self]) -> Self {
-        ranges.iter().fold(Self::EMPTY, |all, range| all.and(*range))
+    /// The bounds over all these intervals together.
+    fn over(pieces: &[Piece]) -> Self {
+        pieces.iter().fold(Self::EMPTY, |all, piece| all.and(piece.bounds()))
     }
 
     /// The bounds over two ranges together.
@@ -311,7 +326,7 @@ impl Spline {
     pub fn bounds(&self) -> Bounds {
         match &self.ends {
             Ends::Periodic { .. } => self.inside,
-            Ends::Tangents { left, right } if left.slope < 0.0 || right.slope > 0.0 => {
+            Ends::Tangents { left, right } if left.cubic.slope < 0.0 || right.cubic.slope > 0.0 => {
                 Bounds { z_max: f64::INFINITY, ..self.inside }
             }
             Ends::Tangents { .. } => self.inside,
@@ -328,8 +343,12 @@ impl Spline {
             return self.bounds().z_max;
         }
         let (from, to) = (self.grid.interval(&self.pieces, low), self.grid.interval(&self.pieces, high));
-        let extents = self.extents.get(from..=to).filter(|extents| extents.len() <= INTERVALS_SCANNED);
-        extents.map_or_else(|| self.bounds(), Bounds::over).z_max
+        match self.pieces.get(from..=to) {
+            Some(pieces) if pieces.len() <= INTERVALS_SCANNED => {
+                pieces.iter().fold(f64::NEG_INFINITY, |top, piece| top.max(piece.z_max))
+            }
+            _ => self.bounds().z_max,
+        }
     }
 
     /// Bounds over the range from `x_low` to `x_high`, m: the true extremes over a few intervals, those of all
@@ -377,11 +396,18 @@ impl Spline {
         }
         let within = |piece: &Piece| piece.extent(low.max(piece.start), high.min(piece.end));
         let ends = within(&self.pieces[from]).and(within(&self.pieces[to.max(from)]));
-        ends.and(Bounds::over(self.extents.get(from + 1..to).unwrap_or_default()))
+        ends.and(Bounds::over(self.pieces.get(from + 1..to).unwrap_or_default()))
     }
 }
 
 impl Piece {
+    /// The bounds over the interval.
+    fn bounds(&self) -> Bounds {
+        let Self { start, end, cubic, z_max, slope_max_abs } = *self;
+        let curvature_max_abs = cubic.curvature.abs().max((cubic.curvature + (end - start) * cubic.third).abs());
+        Bounds { z_max, slope_max_abs, curvature_max_abs }
+    }
+
     /// The extremes of this polynomial from `low` to `high`.
     fn extent(&self, low: f64, high: f64) -> Bounds {
         let ((z_low, slope_low, curvature_low, _), (z_high, slope_high, curvature_high, _)) =
@@ -400,7 +426,7 @@ impl Piece {
 
     /// The slope where z'' = 0, if that is between `low` and `high`; else 0.
     fn steepest(&self, low: f64, high: f64) -> f64 {
-        let inflection = self.start - self.curvature / self.third;
+        let inflection = self.start - self.cubic.curvature / self.cubic.third;
         if low < inflection && inflection < high { self.evaluate(inflection).1 } else { 0.0 }
     }
 
@@ -413,9 +439,10 @@ impl Piece {
 
     /// Both roots of ½ z''' t² + z'' t + z' = 0, without cancellation; not finite where there are fewer.
     fn slope_roots(&self) -> [f64; 2] {
-        let discriminant = self.curvature * self.curvature - 2.0 * self.third * self.slope;
-        let sum = -(self.curvature + discriminant.max(0.0).sqrt().copysign(self.curvature));
-        [sum / self.third, 2.0 * self.slope / sum]
+        let Cubic { slope, curvature, third, .. } = self.cubic;
+        let discriminant = curvature * curvature - 2.0 * third * slope;
+        let sum = -(curvature + discriminant.max(0.0).sqrt().copysign(curvature));
+        [sum / third, 2.0 * slope / sum]
     }
 }
 

@@ -34,6 +34,10 @@ const OF_MASSES: usize = 2;
 /// The most windows of the least width, of twice this width half as many, and so on: more are seldom open at once, and each
 /// takes memory.
 const MOST_WINDOWS: usize = 16;
+/// There are windows of the two least widths where so many of them would have room.
+const ROOM: [usize; 2] = [2, 2];
+/// The same of wider ones: the steps of the few widest cost about as much as to cut that of the layer, and they take memory.
+const ROOM_FOR_WIDE: usize = 4;
 /// The force by which the links at a window's ends may be off, as a share of the error allowed in the force of one mass.
 ///
 /// Recommended 0.1 to 1.
@@ -214,12 +218,13 @@ impl Windows {
 }
 
 /// The widths of windows, from the `least` one on, and the number of windows of each: all of one width have at most
-/// `most_masses`, and there is room for two.
+/// `most_masses`, and there is [`ROOM`] for some.
 fn levels(least: usize, most_masses: usize) -> impl Iterator<Item = (usize, usize)> {
     let wider = |&(width, most): &(usize, usize)| Some((2 * width, (most / 2).max(1)));
     std::iter::successors(Some((least, MOST_WINDOWS)), wider)
-        .take_while(move |(width, _)| 2 * width <= most_masses)
-        .map(move |(width, most)| (width, most.min(most_masses / width)))
+        .zip(ROOM.into_iter().chain(std::iter::repeat(ROOM_FOR_WIDE)))
+        .take_while(move |((width, _), room)| room * width <= most_masses)
+        .map(move |((width, most), _)| (width, most.min(most_masses / width)))
 }
 
 /// The number of masses over which the effect of a mode change falls below the tolerance; `None` where it does not within the

@@ -2,7 +2,7 @@
 
 use std::hint::select_unpredictable;
 
-use super::{Ends, Piece, Spline};
+use super::{Cubic, Ends, Piece, Spline};
 
 /// The most places at once.
 pub const BLOCK: usize = 16;
@@ -27,7 +27,8 @@ impl Spline {
                     self.piece_at_any(*t)
                 }
             };
-            *value = [piece.z, piece.slope, piece.curvature, piece.third].into();
+            let Cubic { z, slope, curvature, third } = piece.cubic;
+            *value = [z, slope, curvature, third].into();
             *t -= piece.start;
         }
         evaluate_pieces(&near[..x.len()], values);
@@ -58,7 +59,7 @@ where
 {
     for (t, value) in t.iter().zip(values) {
         let [z, slope, curvature, third] = (*value).into();
-        let (z, slope, curvature, third) = Piece { start: 0.0, end: 0.0, z, slope, curvature, third }.at_distance(*t);
+        let (z, slope, curvature, third) = Cubic { z, slope, curvature, third }.evaluate(*t);
         *value = [z, slope, curvature, third].into();
     }
 }
