@@ -3,6 +3,8 @@
 //! All that the forces on the carrier consist of is linear in the values at the stages and at both ends of the step, but
 //! for the masses in contact, which are put on the profile. So a force needs these one by one, and of the others sums.
 
+use std::ops::Range;
+
 use super::rates::Rates;
 use super::tableau::STAGES;
 use crate::math::{BLOCK, dot, sum};
@@ -73,7 +75,7 @@ pub(super) struct ElementWeights {
     pub rates: [f64; STAGES],
 }
 
-/// Sums over the masses and the links to the carrier of the last attempted step.
+/// Sums over the masses, or some of them, and their links to the carrier of the last attempted step.
 #[derive(Clone, Debug)]
 pub(super) struct CarrierSums {
     /// Whether they are those of the last attempted step.
@@ -101,7 +103,7 @@ pub(super) struct AxisSums {
 }
 
 impl CarrierSums {
-    /// Workspace for the steps of `model`.
+    /// Workspace for all masses of `model`.
     pub(super) fn new(model: &Model) -> Self {
         let (x, z) = (AxisSums::new(model, LinkKind::Horizontal), AxisSums::new(model, LinkKind::Vertical));
         Self { known: false, is_free: vec![0.0; model.masses()], free: 0.0, x, z }
@@ -112,28 +114,35 @@ impl CarrierSums {
         self.known = false;
     }
 
-    /// Takes the sums of a step from `start` to `end` with these `stages`, unless they are known.
-    pub(super) fn collect(&mut self, model: &Model, start: &State, end: &State, stages: &[Rates]) {
+    /// Takes the sums over `masses` of a layer of `model`, of its step from `start` to `end` with these `stages`, unless they
+    /// are known.
+    pub(super) fn collect(
+        &mut self,
+        model: &Model,
+        masses: &Range<usize>,
+        (start, end): (&State, &State),
+        stages: &[Rates],
+    ) {
         if self.known {
             return;
         }
         self.known = true;
-        for (is_free, mode) in self.is_free.iter_mut().zip(&start.mode) {
+        for (is_free, mode) in self.is_free.iter_mut().zip(&start.mode[masses.clone()]) {
             *is_free = f64::from(u8::from(!mode.in_contact()));
         }
         self.free = sum(&self.is_free);
-        let of_free = |values: &[f64]| dot(&self.is_free, values);
+        let of_free = |values: &[f64]| dot(&self.is_free, &values[masses.start..]);
         self.x.elongation = [of_free(&start.elongation_x), of_free(&end.elongation_x)];
         self.z.elongation = [of_free(&start.elongation_z), of_free(&end.elongation_z)];
         for (j, stage) in stages.iter().enumerate() {
             (self.x.velocity[j], self.z.velocity[j]) = (of_free(&stage.velocity_x), of_free(&stage.velocity_z));
         }
-        self.x.collect_links(model, [start, end], stages);
-        self.z.collect_links(model, [start, end], stages);
+        self.x.collect_links(model, masses, [start, end], stages);
+        self.z.collect_links(model, masses, [start, end], stages);
     }
 
-    /// F_x and F_z (N) where all masses together move as `motion` says, under the `carrier`, with these weights of the
-    /// Maxwell elements.
+    /// F_x and F_z (N) where the masses, of `model`, together move as `motion` says, under the `carrier`, with these weights of
+    /// the Maxwell elements.
     pub(super) fn forces(
         &self,
         model: &Model,
@@ -157,13 +166,13 @@ impl AxisSums {
         Self { kind, elongation: [0.0; 2], velocity: none, rate: none, elements }
     }
 
-    fn collect_links(&mut self, model: &Model, ends: [&State; 2], stages: &[Rates]) {
+    fn collect_links(&mut self, model: &Model, masses: &Range<usize>, ends: [&State; 2], stages: &[Rates]) {
         for (row, sums) in model.rows_of(self.kind).zip(&mut self.elements) {
-            *sums = ends.map(|state| sum(&state.maxwell[row.range.clone()]));
+            *sums = ends.map(|state| sum(&state.maxwell[row.range.clone()][masses.clone()]));
         }
         if !self.elements.is_empty() {
             for (rate, stage) in self.rate.iter_mut().zip(stages) {
-                *rate = sum(&stage.elongation_rate[self.kind as usize]);
+                *rate = sum(&stage.elongation_rate[self.kind as usize][masses.clone()]);
             }
         }
     }

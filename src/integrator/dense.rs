@@ -4,6 +4,8 @@
 //! elements follow these velocities by the exact solution of ȧ = ė - a/τ, for any τ; its difference from the step's own end
 //! is distributed linearly over the step.
 
+use std::ops::Range;
+
 use super::carrier_sums::{AxisSums, CarrierSums, ElementWeights, Motion, Placement};
 use super::error::Tolerance;
 use super::interpolation::StageInterpolation;
@@ -40,10 +42,12 @@ pub struct StepBoundary<'a> {
 }
 
 /// The interpolant of one step by the values at its stages.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct DenseOutput<'a> {
     /// The model.
     pub model: &'a Model,
+    /// The masses whose states, sums and defects are meant: all of the layer, or a part of it.
+    pub masses: Range<usize>,
     /// The carrier's motion.
     pub carrier: &'a Carrier,
     /// The step.
@@ -61,12 +65,18 @@ pub struct DenseOutput<'a> {
 }
 
 impl DenseOutput<'_> {
+    /// Of these masses alone.
+    #[must_use]
+    pub fn of(self, masses: Range<usize>) -> Self {
+        Self { masses, ..self }
+    }
+
     /// Writes the state at the fraction `theta` of the step.
     pub fn state_at(&self, theta: f64, workspace: &mut DenseWorkspace, state: &mut State) {
         workspace.set_weights(self, theta);
-        let start = self.start.state;
-        state.mode.copy_from_slice(&start.mode);
-        state.surface.copy_from_slice(&start.surface);
+        let (start, masses) = (self.start.state, self.masses.clone());
+        state.mode.copy_from_slice(&start.mode[masses.clone()]);
+        state.surface.copy_from_slice(&start.surface[masses.clone()]);
         let carrier = self.carrier_at(theta, workspace);
         let DenseWorkspace { values, integral, .. } = &*workspace;
         self.combine(&mut state.velocity_x, values, None, |stage| &stage.velocity_x, carrier.missing_rate.0);
@@ -74,22 +84,26 @@ impl DenseOutput<'_> {
         let (from_x, from_z) = (Some(&start.elongation_x[..]), Some(&start.elongation_z[..]));
         self.combine(&mut state.elongation_x, integral, from_x, |stage| &stage.velocity_x, -carrier.integrated.0);
         self.combine(&mut state.elongation_z, integral, from_z, |stage| &stage.velocity_z, -carrier.integrated.1);
-        for i in (0..start.mode.len()).filter(|&i| start.mode[i].in_contact()) {
-            let mass = self.on_profile(i, (state.elongation_x[i], state.velocity_x[i]), &carrier);
+        for i in (0..masses.len()).filter(|&i| state.mode[i].in_contact()) {
+            let mass = self.on_profile(masses.start + i, (state.elongation_x[i], state.velocity_x[i]), &carrier);
             (state.elongation_x[i], state.elongation_z[i]) = mass.elongation;
             (state.velocity_x[i], state.velocity_z[i]) = mass.velocity;
             state.surface[i] = mass.surface;
         }
+        let mut elements = &mut state.maxwell[..];
         for row in &self.model.rows {
+            let (of_row, further) = elements.split_at_mut(row.kind.count(masses.len()));
+            elements = further;
             let weights = &workspace.relaxation[row.time_index];
             let ends = [(weights.start, start), (theta, self.end.state)];
-            let ends = ends.into_iter().map(|(weight, state)| (weight, &state.maxwell[row.range.clone()]));
-            let rates = self.stages.iter().map(|stage| &stage.elongation_rate[row.kind as usize][..]);
-            weighted_sum(&mut state.maxwell[row.range.clone()], ends.chain(weights.rate.into_iter().zip(rates)));
+            let ends =
+                ends.into_iter().map(|(weight, state)| (weight, &state.maxwell[row.range.start + masses.start..]));
+            let rates = self.stages.iter().map(|stage| &stage.elongation_rate[row.kind as usize][masses.start..]);
+            weighted_sum(of_row, ends.chain(weights.rate.into_iter().zip(rates)));
         }
     }
 
-    /// `from` plus the weighted values of the stages plus `shift`.
+    /// `from` plus the weighted values of the stages plus `shift`, of the masses that are meant.
     fn combine(
         &self,
         out: &mut [f64],
@@ -99,7 +113,8 @@ impl DenseOutput<'_> {
         shift: f64,
     ) {
         let stages = weights.iter().zip(self.stages).map(|(&weight, stage)| (weight, value(stage)));
-        weighted_sum(out, from.map(|from| (1.0, from)).into_iter().chain(stages));
+        let terms = from.map(|from| (1.0, from)).into_iter().chain(stages);
+        weighted_sum(out, terms.map(|(weight, values)| (weight, &values[self.masses.start..])));
         if shift != 0.0 {
             out.iter_mut().for_each(|value| *value += shift);
         }
@@ -126,7 +141,7 @@ impl DenseOutput<'_> {
             (gained * gained / tolerance.of_velocity(velocity)).max(moved * moved / tolerance.of_position(0.0))
         };
         let mut largest = 0.0_f64;
-        for i in 0..self.model.masses() {
+        for i in 0..self.masses.len() {
             let (a_x, a_z) = (workspace.of_masses[0][i], workspace.of_masses[1][i]);
             let (v_x, v_z) = (state.velocity_x[i] - carrier.u_rate, state.velocity_z[i] - carrier.w_rate);
             let here = match state.mode[i] {
@@ -193,8 +208,8 @@ impl DenseOutput<'_> {
             velocity: (velocity(&sums.x) + n * carrier.missing_rate.0, velocity(&sums.z) + n * carrier.missing_rate.1),
         };
         let DenseWorkspace { values, integral, of_masses: [x, v_x], .. } = workspace;
-        let start = self.start.state;
-        if start.mode.iter().any(|mode| mode.slips()) {
+        let (x, v_x, start) = (&mut x[..self.masses.len()], &mut v_x[..self.masses.len()], self.start.state);
+        if start.mode[self.masses.clone()].iter().any(|mode| mode.slips()) {
             self.combine(x, integral, Some(&start.elongation_x), |stage| &stage.velocity_x, -carrier.integrated.0);
             self.combine(v_x, values, None, |stage| &stage.velocity_x, carrier.missing_rate.0);
         }
@@ -208,7 +223,8 @@ impl DenseOutput<'_> {
     /// Adds the masses in contact, of which those that slip have the elongations `x` (m) and velocities `v_x` (m/s).
     #[inline(always)]
     fn add_contacts(&self, all: &mut Motion, (x, v_x): (&[f64], &[f64]), carrier: &CarrierWithin) {
-        let (modes, placement) = (&self.start.state.mode, Placement::new(self.carrier, &carrier.now));
+        let modes = &self.start.state.mode[self.masses.clone()];
+        let (placement, of_layer) = (Placement::new(self.carrier, &carrier.now), self.masses.start);
         let mut first = 0;
         for run in modes.chunk_by(|mode, next| mode.slips() == next.slips()) {
             let masses = first..first + run.len();
@@ -216,11 +232,11 @@ impl DenseOutput<'_> {
             if run[0].slips() {
                 for block in masses.clone().step_by(BLOCK) {
                     let block = block..masses.end.min(block + BLOCK);
-                    all.add_slips(self.model, block.start, (&x[block.clone()], &v_x[block]), &placement);
+                    all.add_slips(self.model, of_layer + block.start, (&x[block.clone()], &v_x[block]), &placement);
                 }
             } else {
                 for i in masses.filter(|&i| modes[i].in_contact()) {
-                    all.add(&self.on_profile(i, (x[i], v_x[i]), carrier).motion());
+                    all.add(&self.on_profile(of_layer + i, (x[i], v_x[i]), carrier).motion());
                 }
             }
         }
@@ -398,7 +414,7 @@ pub struct DenseWorkspace {
     relaxation: Vec<RelaxationWeights>,
     /// By kind of link: of the stages' elongation rates in the force of all Maxwell elements, N s/m.
     of_rate: [[f64; STAGES]; 4],
-    /// Of every mass: its accelerations in the defect, x and v_x in sums.
+    /// Of the masses that are meant: their accelerations in the defect, x and v_x in sums.
     of_masses: [Vec<f64>; 2],
 }
 
@@ -481,7 +497,7 @@ impl DenseWorkspace {
         let missing = |of_carrier: f64, rate: fn(&CarrierPoint) -> f64| {
             of_carrier - slope.iter().zip(step.carriers).map(|(weight, at)| weight * rate(at)).sum::<f64>()
         };
-        let [x, z] = &mut self.of_masses;
+        let [x, z] = self.of_masses.each_mut().map(|values| &mut values[..step.masses.len()]);
         let missing_x = missing(carrier.u_acceleration, |at| at.u_rate);
         step.combine(x, &slope, None, |stage| &stage.velocity_x, missing_x);
         step.combine(z, &slope, None, |stage| &stage.velocity_z, missing(carrier.w_acceleration, |at| at.w_rate));

@@ -5,18 +5,21 @@
 //! (`maxwell`). So sums over the layer are taken of their products, once per step, and not of every element at every
 //! stage.
 
+use std::ops::Range;
+
 use super::maxwell::{Maxwell, StageCoefficients};
-use super::method::Usage;
 use super::rates::Rates;
+use super::tableau::STAGES;
 use crate::math::{dot, dots, square_and_dots, sum_of_pairs};
-use crate::model::{ChannelEnergies, Exchange, LinkKind, MaxwellRow, Model};
+use crate::model::{ChannelEnergies, Exchange, LinkKind, MaxwellRow, Model, State};
 
 /// Σ ė_i ė_j over the links of one kind, m²/s², where they are needed; 0 elsewhere.
-type RateProducts<const STAGES: usize> = [[f64; STAGES]; STAGES];
+type RateProducts<const N: usize> = [[f64; N]; N];
 
-/// What the energies up to any fraction of a step follow from: the powers at its stages, summed over the layer.
+/// What the energies up to any fraction of a step follow from: the powers at its stages, summed over the layer or a part of
+/// it.
 #[derive(Clone, Debug)]
-pub(super) struct StepSums<const STAGES: usize> {
+pub(super) struct StepSums {
     /// Whether they are those of the last attempted step.
     known: bool,
     /// The power lost in dampers, W.
@@ -28,13 +31,13 @@ pub(super) struct StepSums<const STAGES: usize> {
 }
 
 /// Sums over all elements of one relaxation time, from which the power lost in them at the stages follows.
-struct ElementSums<const STAGES: usize> {
+struct ElementSums<const N: usize> {
     /// Σ c a_0²/τ, W.
     square: f64,
     /// Σ c a_0 ė_j/τ, W/s.
-    mixed: [f64; STAGES],
+    mixed: [f64; N],
     /// Σ c ė_i ė_j/τ, W/s².
-    rates: RateProducts<STAGES>,
+    rates: RateProducts<N>,
 }
 
 /// The power lost in the elements of one relaxation time that do not follow their links yet: of l = a_0 - τė_0, over all of
@@ -47,12 +50,44 @@ struct RelaxingPower {
     mixed: f64,
 }
 
-impl<const STAGES: usize> StepSums<STAGES> {
-    /// Workspace for the elements of `model` and a method that is for `usage`.
-    pub(super) fn new(model: &Model, usage: Usage) -> Self {
-        let times = if usage == Usage::Nothing { 0 } else { model.relaxation_times.len() };
+/// Some masses of a layer in a step from its `start`, of length `h` (s), with these `stages`.
+#[derive(Clone, Copy)]
+pub(super) struct MassesInStep<'a> {
+    pub model: &'a Model,
+    pub masses: &'a Range<usize>,
+    pub start: &'a State,
+    pub stages: &'a [Rates],
+    pub h: f64,
+}
+
+impl<'a> MassesInStep<'a> {
+    /// ė at stage `i` of the links of one kind, m/s.
+    fn rate(&self, kind: LinkKind, i: usize) -> &'a [f64] {
+        let links = self.masses.start..self.masses.start + kind.count(self.masses.len());
+        self.stages[i].elongation_rate[kind as usize].get(links).unwrap_or_default()
+    }
+
+    /// The elongations of the elements of `row` at the start, m.
+    fn elements(&self, row: &MaxwellRow) -> &'a [f64] {
+        let first = row.range.start + self.masses.start;
+        &self.start.maxwell[first..first + row.kind.count(self.masses.len())]
+    }
+}
+
+/// A step with sums over some of its masses.
+pub(super) struct SummedStep<'a> {
+    pub of: MassesInStep<'a>,
+    pub sums: &'a mut StepSums,
+    /// The powers of these masses through the surface and the carrier at the stages.
+    pub exchange: &'a [Exchange],
+}
+
+impl StepSums {
+    /// Workspace for the elements of `model`.
+    pub(super) fn new(model: &Model) -> Self {
         let none = [0.0; STAGES];
-        Self { known: false, dampers: none, elements: none, relaxing: vec![RelaxingPower::default(); times] }
+        let relaxing = vec![RelaxingPower::default(); model.relaxation_times.len()];
+        Self { known: false, dampers: none, elements: none, relaxing }
     }
 
     /// A new step is attempted.
@@ -60,49 +95,48 @@ impl<const STAGES: usize> StepSums<STAGES> {
         self.known = false;
     }
 
-    /// Takes the sums of the step of length `h` (s) with these `stages`, from the elongations `a` (m) of the elements, unless
-    /// they are known.
-    pub(super) fn collect(&mut self, model: &Model, maxwell: &Maxwell<STAGES>, a: &[f64], stages: &[Rates], h: f64) {
+    /// Takes the sums over the masses of `step`, unless they are known.
+    pub(super) fn collect<const N: usize>(&mut self, step: &MassesInStep<'_>, maxwell: &Maxwell<N>) {
         if self.known {
             return;
         }
         self.known = true;
-        let products = LinkKind::ALL.map(|kind| rate_products(model, stages, kind));
-        self.dampers = std::array::from_fn(|i| {
-            model.links.iter().zip(&products).map(|(link, products)| link.damping * products[i][i]).sum()
-        });
+        let MassesInStep { model, h, .. } = *step;
+        let products: [RateProducts<N>; 4] = LinkKind::ALL.map(|kind| rate_products(step, kind));
+        (self.dampers, self.elements) = ([0.0; STAGES], [0.0; STAGES]);
+        for (i, power) in self.dampers[..N].iter_mut().enumerate() {
+            *power = model.links.iter().zip(&products).map(|(link, products)| link.damping * products[i][i]).sum();
+        }
         let changes = LinkKind::ALL.map(|kind| {
             let unresolved = model.rows_of(kind).any(|row| h / row.relaxation_time > RESOLVED);
-            if unresolved { largest_change(stages, kind) } else { 0.0 }
+            if unresolved { largest_change::<N>(step, kind) } else { 0.0 }
         });
-        self.elements = [0.0; STAGES];
         for (index, (coefficients, relaxing)) in maxwell.coefficients().iter().zip(&mut self.relaxing).enumerate() {
             let mut sums = ElementSums::zero();
             *relaxing = RelaxingPower::default();
             for row in model.rows.iter().filter(|row| row.time_index == index) {
-                let (a, kind) = (&a[row.range.clone()], row.kind as usize);
-                sums.add(row, a, stages, &products[kind]);
+                let (a, kind) = (step.elements(row), row.kind as usize);
+                sums.add(row, step, &products[kind]);
                 if h / row.relaxation_time > RESOLVED {
-                    relaxing.add(row, a, &stages[0].elongation_rate[kind], changes[kind]);
+                    relaxing.add(row, a, step.rate(row.kind, 0), changes[kind]);
                 }
             }
-            self.elements.iter_mut().enumerate().for_each(|(i, power)| *power += sums.power(coefficients, i));
+            self.elements[..N].iter_mut().enumerate().for_each(|(i, power)| *power += sums.power(coefficients, i));
         }
     }
 }
 
-impl<const STAGES: usize> ElementSums<STAGES> {
+impl<const N: usize> ElementSums<N> {
     fn zero() -> Self {
-        let none = [0.0; STAGES];
-        Self { square: 0.0, mixed: none, rates: [none; STAGES] }
+        let none = [0.0; N];
+        Self { square: 0.0, mixed: none, rates: [none; N] }
     }
 
-    /// Adds the elements of `row` with the elongations `a` (m) at the start of a step with these `stages`, with the `products`
-    /// of their rates.
-    fn add(&mut self, row: &MaxwellRow, a: &[f64], stages: &[Rates], products: &RateProducts<STAGES>) {
+    /// Adds the elements of `row` over `step`, with the `products` of their rates.
+    fn add(&mut self, row: &MaxwellRow, step: &MassesInStep<'_>, products: &RateProducts<N>) {
         let power = row.stiffness / row.relaxation_time;
-        let rates = std::array::from_fn(|j| &stages[j].elongation_rate[row.kind as usize][..]);
-        let (square, mixed): (f64, [f64; STAGES]) = square_and_dots(a, rates);
+        let rates = std::array::from_fn(|j| step.rate(row.kind, j));
+        let (square, mixed): (f64, [f64; N]) = square_and_dots(step.elements(row), rates);
         self.square += power * square;
         self.mixed.iter_mut().zip(mixed).for_each(|(sum, mixed)| *sum += power * mixed);
         let rates = self.rates.as_flattened_mut().iter_mut().zip(products.as_flattened());
@@ -110,7 +144,7 @@ impl<const STAGES: usize> ElementSums<STAGES> {
     }
 
     /// Σ c a_i²/τ at stage `i`, W: a_i = p_i a_0 + h Σ_j q_ij ė_j multiplied out.
-    fn power(&self, coefficients: &StageCoefficients<STAGES>, i: usize) -> f64 {
+    fn power(&self, coefficients: &StageCoefficients<N>, i: usize) -> f64 {
         let (p, q) = (coefficients.start[i], &coefficients.rate[i]);
         let of_rate = |j: usize| {
             let with_earlier: f64 = (0..j).map(|l| q[l] * self.rates[j][l]).sum();
@@ -139,16 +173,16 @@ impl RelaxingPower {
 
 /// A step over which energies are to be integrated.
 #[derive(Clone, Copy)]
-pub(super) struct StepPowers<'a, const STAGES: usize> {
+pub(super) struct StepPowers<'a, const N: usize> {
     pub model: &'a Model,
-    pub maxwell: &'a Maxwell<STAGES>,
-    pub sums: &'a StepSums<STAGES>,
+    pub maxwell: &'a Maxwell<N>,
+    pub sums: &'a StepSums,
     /// The powers through the surface and the carrier at the stages.
     pub exchange: &'a [Exchange],
     /// The length of the step, s.
     pub h: f64,
     /// The weights of the stages.
-    pub weights: &'a [f64; STAGES],
+    pub weights: &'a [f64; N],
     /// What they make of the values at the stages.
     pub measure: Measure,
 }
@@ -172,7 +206,7 @@ impl Measure {
     }
 }
 
-impl<const STAGES: usize> StepPowers<'_, STAGES> {
+impl<const N: usize> StepPowers<'_, N> {
     /// Energies through all channels, J.
     pub(super) fn energies(&self) -> ChannelEnergies {
         let mut energy = self.lost();
@@ -203,17 +237,16 @@ impl<const STAGES: usize> StepPowers<'_, STAGES> {
 
 /// The products of one kind of link: of each stage with itself where there are dampers, of all with each other where there
 /// are elements; 0 elsewhere.
-fn rate_products<const STAGES: usize>(model: &Model, stages: &[Rates], kind: LinkKind) -> RateProducts<STAGES> {
-    let all = model.rows_of(kind).next().is_some();
-    if !all && model.links[kind as usize].damping == 0.0 {
-        return [[0.0; STAGES]; STAGES];
+fn rate_products<const N: usize>(step: &MassesInStep<'_>, kind: LinkKind) -> RateProducts<N> {
+    let all = step.model.rows_of(kind).next().is_some();
+    if !all && step.model.links[kind as usize].damping == 0.0 {
+        return [[0.0; N]; N];
     }
-    let rate = |i: usize| &stages[i].elongation_rate[kind as usize][..];
-    let mut products = [[0.0; STAGES]; STAGES];
+    let mut products = [[0.0; N]; N];
     // Each stage with the one that is so many behind it, around the end: half of the distances make all pairs.
-    for distance in 0..=if all { STAGES / 2 } else { 0 } {
-        let other = |i: usize| (i + distance) % STAGES;
-        let sums: [f64; STAGES] = dots(std::array::from_fn(|i| (rate(i), rate(other(i)))));
+    for distance in 0..=if all { N / 2 } else { 0 } {
+        let other = |i: usize| (i + distance) % N;
+        let sums: [f64; N] = dots(std::array::from_fn(|i| (step.rate(kind, i), step.rate(kind, other(i)))));
         for (i, sum) in sums.into_iter().enumerate() {
             (products[i][other(i)], products[other(i)][i]) = (sum, sum);
         }
@@ -221,15 +254,12 @@ fn rate_products<const STAGES: usize>(model: &Model, stages: &[Rates], kind: Lin
     products
 }
 
-/// The largest Σ (ė_i - ė_0)² of a stage over the links of one kind, m²/s². It does not use the products, whose rounding
-/// errors exceed the change in a steady motion.
-fn largest_change(stages: &[Rates], kind: LinkKind) -> f64 {
-    let [start, later @ ..] = stages else { return 0.0 };
-    let start = &start.elongation_rate[kind as usize];
-    let change = |stage: &Rates| {
-        sum_of_pairs(&stage.elongation_rate[kind as usize], start, |rate, start| (rate - start) * (rate - start))
-    };
-    later.iter().map(change).fold(0.0, f64::max)
+/// The largest Σ (ė_i - ė_0)² of one of `N` stages over the links of one kind, m²/s². It does not use the products, whose
+/// rounding errors exceed the change in a steady motion.
+fn largest_change<const N: usize>(step: &MassesInStep<'_>, kind: LinkKind) -> f64 {
+    let change =
+        |i: usize| sum_of_pairs(step.rate(kind, i), step.rate(kind, 0), |rate, start| (rate - start) * (rate - start));
+    (1..N).map(change).fold(0.0, f64::max)
 }
 
 /// The ratio of step and relaxation time up to which the stages resolve an element. From twice this ratio on, all that
@@ -251,12 +281,7 @@ struct UnresolvedRelaxation {
 }
 
 impl UnresolvedRelaxation {
-    fn new<const STAGES: usize>(
-        z: f64,
-        coefficients: &StageCoefficients<STAGES>,
-        weights: &[f64; STAGES],
-        measure: Measure,
-    ) -> Self {
+    fn new<const N: usize>(z: f64, coefficients: &StageCoefficients<N>, weights: &[f64; N], measure: Measure) -> Self {
         let squares: f64 = weights.iter().zip(coefficients.start).map(|(weight, p)| weight * p * p).sum();
         let share = (z / RESOLVED - 1.0).min(1.0);
         Self {
@@ -274,7 +299,7 @@ impl UnresolvedRelaxation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::integrator::{ESDIRK5, STAGES};
+    use crate::integrator::ESDIRK5;
 
     const SCENE: &str = "name = 'a'
         layer = { masses = 5, spacing = 1.0, mass = 1.0,
@@ -297,14 +322,16 @@ mod tests {
         let mut stages = vec![Rates::new(&model); STAGES];
         stages.iter_mut().flat_map(|stage| &mut stage.elongation_rate).flatten().for_each(|rate| *rate = number());
         // An elongation of the order of its relaxation time.
-        let start: Vec<f64> =
-            model.rows.iter().flat_map(|row| row.range.clone().map(|_| row.relaxation_time)).collect();
-        let start: Vec<f64> = start.into_iter().map(|tau| tau.min(1.0) * number()).collect();
-        let mut maxwell = Maxwell::<STAGES>::new(&model, Usage::Solving);
-        maxwell.begin(&model, &ESDIRK5, &start, h);
+        let mut start = State::new(model.masses(), model.maxwell_variables());
+        for row in &model.rows {
+            start.maxwell[row.range.clone()].iter_mut().for_each(|a| *a = row.relaxation_time.min(1.0) * number());
+        }
+        let mut maxwell = Maxwell::<STAGES>::new(&model, true);
+        maxwell.begin(&model, &ESDIRK5, &start.maxwell, h);
         let weights: [f64; STAGES] = std::array::from_fn(|_| number());
-        let mut sums = StepSums::new(&model, Usage::Solving);
-        sums.collect(&model, &maxwell, &start, &stages, h);
+        let mut sums = StepSums::new(&model);
+        let step = MassesInStep { model: &model, masses: &(0..5), start: &start, stages: &stages, h };
+        sums.collect(&step, &maxwell);
         let (measure, weights) = (Measure::Integral(weights.iter().sum()), &weights);
         let powers = StepPowers { model: &model, maxwell: &maxwell, sums: &sums, exchange: &[], h, weights, measure };
         let found = powers.lost();
@@ -316,7 +343,7 @@ mod tests {
                 expected.damper += h * weight * model.links[kind as usize].damping * squares;
                 for row in model.rows_of(kind) {
                     let coefficients = &maxwell.coefficients()[row.time_index];
-                    for (link, a) in start[row.range.clone()].iter().enumerate() {
+                    for (link, a) in start.maxwell[row.range.clone()].iter().enumerate() {
                         let rate = |j: usize| coefficients.rate[i][j] * stages[j].elongation_rate[kind as usize][link];
                         let a = coefficients.start[i] * a + (0..=i).map(rate).sum::<f64>();
                         expected.maxwell += h * weight * row.stiffness * a * a / row.relaxation_time;

@@ -2,14 +2,14 @@
 
 use std::sync::LazyLock;
 
-use super::energy::StepSums;
+use super::energy::SummedStep;
 use super::error::{ErrorWorkspace, StepAttempt, Tolerance};
 use super::interpolation::StageInterpolation;
 use super::maxwell::Maxwell;
-use super::method::{InitialGuess, RungeKutta, Stages, StepInput, Usage};
+use super::method::{InitialGuess, RungeKutta, Stages, StepInput};
 use super::stage::{ConvergenceTest, Friction, NoConvergence};
 use super::tableau::{ContinuousWeights, ESDIRK3, ESDIRK5, FOUR_STAGES, STAGES, Tableau};
-use crate::model::{ChannelEnergies, Model, State};
+use crate::model::{ChannelEnergies, Model};
 
 /// The pairs of event-driven steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,13 +72,13 @@ pub(super) enum EventMethod {
 }
 
 impl EventMethod {
-    /// A pair for `model` and `usage`.
-    pub(super) fn new(pair: Pair, model: &Model, usage: Usage) -> Self {
+    /// A pair for `model`, if it `is_used`.
+    pub(super) fn new(pair: Pair, model: &Model, is_used: bool) -> Self {
         static THIRD: LazyLock<ContinuousWeights<FOUR_STAGES>> = LazyLock::new(|| ContinuousWeights::new(&ESDIRK3));
         static FIFTH: LazyLock<ContinuousWeights<STAGES>> = LazyLock::new(|| ContinuousWeights::new(&ESDIRK5));
         match pair {
-            Pair::Third => Self::Third(Box::new(runge_kutta((&ESDIRK3, &THIRD), model, usage))),
-            Pair::Fifth => Self::Fifth(Box::new(runge_kutta((&ESDIRK5, &FIFTH), model, usage))),
+            Pair::Third => Self::Third(Box::new(runge_kutta((&ESDIRK3, &THIRD), model, is_used))),
+            Pair::Fifth => Self::Fifth(Box::new(runge_kutta((&ESDIRK5, &FIFTH), model, is_used))),
         }
     }
 
@@ -103,15 +103,6 @@ impl EventMethod {
         }
     }
 
-    /// Takes over a step of the whole layer, of which this one is a part: for the energies over it.
-    pub(super) fn take_part(&mut self, whole: &Self) {
-        match (self, whole) {
-            (Self::Third(method), Self::Third(whole)) => method.take_part(whole),
-            (Self::Fifth(method), Self::Fifth(whole)) => method.take_part(whole),
-            _ => {}
-        }
-    }
-
     /// The error test of the step whose stages are solved.
     pub(super) fn test(
         &self,
@@ -126,36 +117,22 @@ impl EventMethod {
         }
     }
 
-    /// Energies through the channels over the step of length `h` from `start`, up to its fraction `theta`, J.
-    pub(super) fn energies(
-        &mut self,
-        stages: &Stages,
-        model: &Model,
-        start: &State,
-        h: f64,
-        theta: f64,
-    ) -> ChannelEnergies {
+    /// Energies through the channels over `step` up to its fraction `theta`, J.
+    pub(super) fn energies(&self, step: SummedStep<'_>, theta: f64) -> ChannelEnergies {
         match self {
-            Self::Third(method) => method.energies(stages, model, start, h, theta),
-            Self::Fifth(method) => method.energies(stages, model, start, h, theta),
+            Self::Third(method) => method.energies(step, theta),
+            Self::Fifth(method) => method.energies(step, theta),
         }
     }
 
-    /// P_diss at the fraction `theta` of the step of length `h` from `start`, W; the values at the stages have these `weights`.
-    pub(super) fn dissipated_power(
-        &mut self,
-        stages: &Stages,
-        start: (&Model, &State),
-        h: f64,
-        theta: f64,
-        weights: &[f64; STAGES],
-    ) -> f64 {
+    /// P_diss at the fraction `theta` of `step`, W; the values at the stages have these `weights`.
+    pub(super) fn dissipated_power(&self, step: SummedStep<'_>, theta: f64, weights: &[f64; STAGES]) -> f64 {
         match self {
             Self::Third(method) => {
                 let weights = std::array::from_fn(|stage| weights[stage]);
-                method.dissipated_power(stages, start, h, theta, &weights)
+                method.dissipated_power(step, theta, &weights)
             }
-            Self::Fifth(method) => method.dissipated_power(stages, start, h, theta, weights),
+            Self::Fifth(method) => method.dissipated_power(step, theta, weights),
         }
     }
 
@@ -170,14 +147,13 @@ impl EventMethod {
 fn runge_kutta<const N: usize>(
     (tableau, continuous_weights): (&'static Tableau<N>, &'static ContinuousWeights<N>),
     model: &Model,
-    usage: Usage,
+    is_used: bool,
 ) -> RungeKutta<N> {
     RungeKutta {
         tableau,
         continuous_weights,
         initial_guess: InitialGuess::extrapolated(&tableau.c),
-        maxwell: Maxwell::new(model, usage),
-        sums: StepSums::new(model, usage),
+        maxwell: Maxwell::new(model, is_used),
         friction: Friction::Held,
     }
 }

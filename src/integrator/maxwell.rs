@@ -14,7 +14,6 @@
 
 use super::Tableau;
 use super::carrier_sums::ElementWeights;
-use super::method::Usage;
 use super::rates::Rates;
 use super::tableau::STAGES as ALL_STAGES;
 use crate::math::weighted_sum;
@@ -53,11 +52,11 @@ struct KindSums<const STAGES: usize> {
 }
 
 impl<const STAGES: usize> Maxwell<STAGES> {
-    /// Workspace for the elements of `model` and a method that is for `usage`.
-    pub(super) fn new(model: &Model, usage: Usage) -> Self {
-        let times = if usage == Usage::Nothing { 0 } else { model.relaxation_times.len() };
+    /// Workspace for the elements of `model`, if the method `is_used`.
+    pub(super) fn new(model: &Model, is_used: bool) -> Self {
+        let times = if is_used { model.relaxation_times.len() } else { 0 };
         let kinds = LinkKind::ALL.map(|kind| {
-            let present = usage == Usage::Solving && model.rows.iter().any(|row| row.kind == kind);
+            let present = is_used && model.rows.iter().any(|row| row.kind == kind);
             KindSums::new(if present { kind.count(model.masses()) } else { 0 })
         });
         Self { coefficients: vec![StageCoefficients::new(); times], kinds }
@@ -75,11 +74,6 @@ impl<const STAGES: usize> Maxwell<STAGES> {
             let coefficients = &self.coefficients;
             sums.collect(a, || model.rows_of(kind).map(|row| (row, &coefficients[row.time_index])));
         }
-    }
-
-    /// Takes over the coefficients of a step of the whole layer, of which this one is a part.
-    pub(super) fn copy_coefficients(&mut self, whole: &Self) {
-        self.coefficients.clone_from_slice(&whole.coefficients);
     }
 
     /// Whether the links of `kind` have Maxwell elements.

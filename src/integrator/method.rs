@@ -1,7 +1,7 @@
 //! One Runge-Kutta method: the stages of an attempted step, from their history to their error test and energies.
 
 use super::dense::StepSpan;
-use super::energy::{Measure, StepPowers, StepSums};
+use super::energy::{Measure, StepPowers, SummedStep};
 use super::error::{ErrorTest, ErrorWorkspace, StepAttempt, Tolerance};
 use super::maxwell::Maxwell;
 use super::rates::{Rates, StepStart};
@@ -19,21 +19,8 @@ pub(super) struct RungeKutta<const N: usize> {
     pub continuous_weights: &'static ContinuousWeights<N>,
     pub initial_guess: InitialGuess<N>,
     pub maxwell: Maxwell<N>,
-    /// For the energies over the last attempted step.
-    pub sums: StepSums<N>,
     /// How friction is treated within a step.
     pub friction: Friction,
-}
-
-/// What a method is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Usage {
-    /// It is not used.
-    Nothing,
-    /// Steps that are taken over from another integrator.
-    TakenSteps,
-    /// To solve steps.
-    Solving,
 }
 
 /// The values at the stages of the last attempted step, of either method. Stage 0 is the start of the step.
@@ -107,7 +94,6 @@ impl<const N: usize> RungeKutta<N> {
         stages.carrier[0] = carrier.at(span.start);
         stages.solver.begin(model, state, beta, self.friction);
         self.maxwell.begin(model, self.tableau, &state.maxwell, span.length);
-        self.sums.forget();
         for i in 1..N {
             let (weights, s) = (&self.tableau.a[i][..], span.at(self.tableau.c[i]));
             let moved = carrier.moved(span.start, self.tableau.c[i] * span.length).0;
@@ -145,50 +131,24 @@ impl<const N: usize> RungeKutta<N> {
         test.run(step.model, step.span.length, tolerance, workspace)
     }
 
-    /// Takes over a step of the whole layer, of which this one is a part: for the energies over it.
-    pub(super) fn take_part(&mut self, whole: &Self) {
-        self.maxwell.copy_coefficients(&whole.maxwell);
-        self.sums.forget();
-    }
-
-    /// Energies through the channels over the step of length `h` from `start`, up to its fraction `theta`, J.
-    pub(super) fn energies(
-        &mut self,
-        stages: &Stages,
-        model: &Model,
-        start: &State,
-        h: f64,
-        theta: f64,
-    ) -> ChannelEnergies {
+    /// Energies through the channels over `step` up to its fraction `theta`, J.
+    pub(super) fn energies(&self, step: SummedStep<'_>, theta: f64) -> ChannelEnergies {
         let weights = if theta < 1.0 { &self.continuous_weights.at(theta) } else { self.tableau.weights() };
-        self.measure(stages, (model, start), h, (weights, Measure::Integral(theta)))
+        self.measure(step, (weights, Measure::Integral(theta)))
     }
 
-    /// P_diss at the fraction `theta` of the step of length `h` from `start`, where the values at the stages have these
-    /// `weights`, W.
-    pub(super) fn dissipated_power(
-        &mut self,
-        stages: &Stages,
-        (model, start): (&Model, &State),
-        h: f64,
-        theta: f64,
-        weights: &[f64; N],
-    ) -> f64 {
+    /// P_diss at the fraction `theta` of `step`, where the values at the stages have these `weights`, W.
+    pub(super) fn dissipated_power(&self, step: SummedStep<'_>, theta: f64, weights: &[f64; N]) -> f64 {
+        let h = step.of.h;
         // Powers that fall steeply through a step have combinations below 0.
-        (self.measure(stages, (model, start), h, (weights, Measure::Value(theta))).dissipated() / h).max(0.0)
+        (self.measure(step, (weights, Measure::Value(theta))).dissipated() / h).max(0.0)
     }
 
-    /// The energies that weighted powers at the stages make in a step of length `h` from `start`, J.
-    fn measure(
-        &mut self,
-        stages: &Stages,
-        (model, start): (&Model, &State),
-        h: f64,
-        (weights, measure): (&[f64; N], Measure),
-    ) -> ChannelEnergies {
-        self.sums.collect(model, &self.maxwell, &start.maxwell, &stages.rates[..N], h);
-        let (maxwell, sums) = (&self.maxwell, &self.sums);
-        StepPowers { model, maxwell, sums, exchange: &stages.exchange, h, weights, measure }.energies()
+    /// The energies that weighted powers at the stages make in `step`, J.
+    fn measure(&self, step: SummedStep<'_>, (weights, measure): (&[f64; N], Measure)) -> ChannelEnergies {
+        let (maxwell, SummedStep { of, sums, exchange }) = (&self.maxwell, step);
+        sums.collect(&of, maxwell);
+        StepPowers { model: of.model, maxwell, sums, exchange, h: of.h, weights, measure }.energies()
     }
 }
 

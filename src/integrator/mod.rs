@@ -15,6 +15,7 @@ mod largest;
 mod maxwell;
 mod method;
 mod motions;
+mod part;
 mod rates;
 mod sensitivity;
 mod stage;
@@ -28,6 +29,7 @@ pub use event_method::Pair;
 pub use interpolation::StageInterpolation;
 pub use largest::Largest;
 pub use motions::Motions;
+pub use part::{LayerStep, PartOfStep};
 pub use rates::{NO_LIMIT, Rates, StepStart};
 pub use stage::NoConvergence;
 pub use tableau::{ContinuousWeights, ESDIRK3, ESDIRK5, SDIRK2, STAGES, TWO_STAGES, Tableau};
@@ -37,11 +39,11 @@ pub use within::{LayerWithin, Overlay};
 use crate::model::{Axis, Tangents};
 use crate::model::{BodyStep, Carrier, CarrierPoint, ChannelEnergies, Exchange, Forces, MaxwellRow, Model, State};
 use carrier_sums::CarrierSums;
-use energy::StepSums;
+use energy::{MassesInStep, StepSums, SummedStep};
 use error::ErrorWorkspace;
 use event_method::EventMethod;
 use maxwell::Maxwell;
-use method::{InitialGuess, RungeKutta, Stages, StepInput, Usage};
+use method::{InitialGuess, RungeKutta, Stages, StepInput};
 use sensitivity::Tangent;
 use stage::{ConvergenceTest, Friction, StageSolver};
 use tableau::{GAMMA, SDIRK2_ESTIMATE};
@@ -63,6 +65,7 @@ pub struct Integrator {
     /// Of the pair.
     interpolation: &'static StageInterpolation,
     carrier_sums: CarrierSums,
+    energy_sums: StepSums,
     error_workspace: ErrorWorkspace,
 }
 
@@ -95,30 +98,13 @@ pub enum Steps {
     TwoStages,
     /// Both.
     Both(Pair),
-    /// None, but event-driven steps of this pair may be [taken over](Integrator::take_part).
-    Taken(Pair),
 }
 
 impl Steps {
     fn pair(self) -> Option<Pair> {
         match self {
-            Self::EventDriven(pair) | Self::Both(pair) | Self::Taken(pair) => Some(pair),
+            Self::EventDriven(pair) | Self::Both(pair) => Some(pair),
             Self::TwoStages => None,
-        }
-    }
-
-    fn use_of_pair(self) -> Usage {
-        match self {
-            Self::EventDriven(_) | Self::Both(_) => Usage::Solving,
-            Self::Taken(_) => Usage::TakenSteps,
-            Self::TwoStages => Usage::Nothing,
-        }
-    }
-
-    fn use_of_two_stages(self) -> Usage {
-        match self {
-            Self::TwoStages | Self::Both(_) => Usage::Solving,
-            Self::EventDriven(_) | Self::Taken(_) => Usage::Nothing,
         }
     }
 
@@ -131,17 +117,16 @@ impl Integrator {
     /// An integrator for `model` with workspace for `steps`.
     pub fn new(model: &Model, tracked: Tracked, steps: Steps) -> Self {
         let pair = steps.pair().unwrap_or(Pair::Fifth);
-        let solves = !matches!(steps, Steps::Taken(_));
+        let (has_pair, has_two_stages) = (steps.pair().is_some(), !matches!(steps, Steps::EventDriven(_)));
         let inputs = if tracked.tangents { model.inputs() } else { Vec::new() };
         Self {
             pair,
-            event_method: EventMethod::new(pair, model, steps.use_of_pair()),
+            event_method: EventMethod::new(pair, model, has_pair),
             two_stages: RungeKutta {
                 tableau: &SDIRK2,
                 continuous_weights: ContinuousWeights::sdirk2(),
                 initial_guess: InitialGuess::Limited,
-                maxwell: Maxwell::new(model, steps.use_of_two_stages()),
-                sums: StepSums::new(model, steps.use_of_two_stages()),
+                maxwell: Maxwell::new(model, has_two_stages),
                 friction: Friction::SetValued,
             },
             stages: Stages {
@@ -149,13 +134,14 @@ impl Integrator {
                 carrier: [CarrierPoint::default(); STAGES],
                 exchange: [Exchange::default(); STAGES],
                 link_forces: Vec::new(),
-                solver: if solves { StageSolver::new(model) } else { StageSolver::of_end(model) },
+                solver: StageSolver::new(model),
                 tracks_energy: tracked.energy,
                 tangents: inputs.into_iter().map(|input| Tangent::new(model, input, steps.stages())).collect(),
             },
             interpolation: pair.interpolation(),
             carrier_sums: CarrierSums::new(model),
-            error_workspace: if solves { ErrorWorkspace::new(model) } else { ErrorWorkspace::default() },
+            energy_sums: StepSums::new(model),
+            error_workspace: ErrorWorkspace::new(model),
         }
     }
 
@@ -198,7 +184,7 @@ impl Integrator {
     ) -> Result<StepAttempt, NoConvergence> {
         let step = StepInput { model, start, carrier, span, beta: self.event_method.gamma() * span.length };
         let convergence = ConvergenceTest::new(tolerance, step.beta, 1.0);
-        self.carrier_sums.forget();
+        self.forget_sums();
         self.event_method.attempt(&mut self.stages, &step, convergence)?;
         Ok(self.event_method.test(&self.stages, &step, tolerance, &mut self.error_workspace))
     }
@@ -218,11 +204,16 @@ impl Integrator {
         let step = StepInput { model, start, carrier, span, beta: self.two_stages.tableau.gamma() * span.length };
         let slack = if model.friction_depends_on_speed() { STEEP_SLACK } else { NEWTON_SLACK };
         let convergence = ConvergenceTest::new(tolerance, step.beta, slack);
-        self.carrier_sums.forget();
+        self.forget_sums();
         self.two_stages.attempt(&mut self.stages, &step, convergence)?;
         let attempt = self.two_stages.test(&self.stages, &step, tolerance, &mut self.error_workspace);
         // Touches are looked for at the end of the step alone, so the carrier's motion must be resolved over all masses.
         Ok(StepAttempt { error: attempt.error.hypot(attempt.carrier_error), ..attempt })
+    }
+
+    fn forget_sums(&mut self) {
+        self.carrier_sums.forget();
+        self.energy_sums.forget();
     }
 
     /// The ratio of the length of a two-stage step with an error of the tolerance to `h`, the length of the last
@@ -291,15 +282,16 @@ impl Integrator {
         &'a self,
         model: &'a Model,
         carrier: &'a Carrier,
-        start: &'a StepStart,
+        start: &'a State,
         span: StepSpan,
     ) -> DenseOutput<'a> {
         let carriers = &self.stages.carrier[..self.pair.stages()];
         DenseOutput {
             model,
+            masses: 0..model.masses(),
             carrier,
             span,
-            start: StepBoundary { state: &start.state, carrier: carriers[0] },
+            start: StepBoundary { state: start, carrier: carriers[0] },
             end: StepBoundary { state: self.end(), carrier: carriers[carriers.len() - 1] },
             stages: &self.stages()[..carriers.len()],
             carriers,
@@ -312,11 +304,11 @@ impl Integrator {
         &'a self,
         model: &'a Model,
         carrier: &'a Carrier,
-        start: &'a StepStart,
+        start: &'a State,
         span: StepSpan,
     ) -> TwoStageDense<'a> {
         let stages = self.stages();
-        TwoStageDense::new(model, carrier, span, &start.state, &stages[1], self.end(), &stages[TWO_STAGES - 1])
+        TwoStageDense::new(model, carrier, span, start, &stages[1], self.end(), &stages[TWO_STAGES - 1])
     }
 
     /// The Maxwell elements' elongations at the fraction `theta` of the last attempted two-stage step from `start`, into
@@ -331,13 +323,13 @@ impl Integrator {
         &mut self,
         model: &Model,
         carrier: &Carrier,
-        start: &StepStart,
+        start: &State,
         span: StepSpan,
         theta: f64,
         workspace: &mut DenseWorkspace,
     ) -> (f64, f64) {
         let (stages, end) = (&self.stages.rates[..self.pair.stages()], &self.stages.solver.state);
-        self.carrier_sums.collect(model, &start.state, end, stages);
+        self.carrier_sums.collect(model, &(0..model.masses()), (start, end), stages);
         let motion = self.dense(model, carrier, start, span).summed_motion(theta, &self.carrier_sums, workspace);
         let point = carrier.at(span.at(theta));
         self.carrier_sums.forces(model, &motion, &point, |row| workspace.of_elements(row))
@@ -348,12 +340,12 @@ impl Integrator {
         &mut self,
         model: &Model,
         carrier: &Carrier,
-        start: &StepStart,
+        start: &State,
         span: StepSpan,
         theta: f64,
     ) -> (f64, f64) {
         let (stages, end) = (&self.stages.rates[..TWO_STAGES], &self.stages.solver.state);
-        self.carrier_sums.collect(model, &start.state, end, stages);
+        self.carrier_sums.collect(model, &(0..model.masses()), (start, end), stages);
         let motion = self.two_stage_dense(model, carrier, start, span).summed_motion(theta, &self.carrier_sums);
         let (point, weights) = (carrier.at(span.at(theta)), piecewise_linear(theta));
         let of_elements = |row: &MaxwellRow| self.two_stages.maxwell.weights_between(row, 1, weights);
@@ -364,24 +356,33 @@ impl Integrator {
     /// the stages, W: of order 2 by the pair of order 3, of order 3 by that of order 5. Only where energies are tracked.
     pub fn dissipated_power(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> f64 {
         let weights = self.interpolation.values(theta);
-        self.event_method.dissipated_power(&self.stages, (model, start), h, theta, &weights)
+        let Self { event_method, stages, energy_sums: sums, .. } = self;
+        let of = MassesInStep { model, masses: &(0..model.masses()), start, stages: &stages.rates, h };
+        event_method.dissipated_power(SummedStep { of, sums, exchange: &stages.exchange }, theta, &weights)
     }
 
     /// The same of the last attempted two-stage step.
     pub fn two_stage_dissipated_power(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> f64 {
-        self.two_stages.dissipated_power(&self.stages, (model, start), h, theta, &piecewise_linear(theta))
+        let Self { two_stages, stages, energy_sums: sums, .. } = self;
+        let of = MassesInStep { model, masses: &(0..model.masses()), start, stages: &stages.rates, h };
+        let step = SummedStep { of, sums, exchange: &stages.exchange };
+        two_stages.dissipated_power(step, theta, &piecewise_linear(theta))
     }
 
     /// Energies through the channels over the last attempted event-driven step, of length `h` from `start`, up to its
     /// fraction `theta`, J.
     pub fn energies(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> ChannelEnergies {
-        self.event_method.energies(&self.stages, model, start, h, theta)
+        let Self { event_method, stages, energy_sums: sums, .. } = self;
+        let of = MassesInStep { model, masses: &(0..model.masses()), start, stages: &stages.rates, h };
+        event_method.energies(SummedStep { of, sums, exchange: &stages.exchange }, theta)
     }
 
     /// Energies through the channels over the last attempted two-stage step, of length `h` from `start`, up to its
     /// fraction `theta`, J.
     pub fn two_stage_energies(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> ChannelEnergies {
-        self.two_stages.energies(&self.stages, model, start, h, theta)
+        let Self { two_stages, stages, energy_sums: sums, .. } = self;
+        let of = MassesInStep { model, masses: &(0..model.masses()), start, stages: &stages.rates, h };
+        two_stages.energies(SummedStep { of, sums, exchange: &stages.exchange }, theta)
     }
 
     /// The energy of friction, J, that the powers at the stages of the last attempted two-stage step, of length `h` from
@@ -458,36 +459,6 @@ impl Integrator {
                 [horizontal, vertical]
             };
             self.stages.link_forces = std::iter::repeat_with(links).take(self.pair.stages() - 2).collect();
-        }
-    }
-
-    /// Takes over the last attempted event-driven step of `whole`, the integrator of a layer, for a part of it from mass
-    /// `first` on: as if it had been tried here. `models` are those of the part and of the whole, `forces` those of the part at
-    /// the start of the step.
-    pub fn take_part(&mut self, models: (&Model, &Model), whole: &Self, first: usize, forces: &Forces) {
-        let stages = &mut self.stages;
-        for (mine, theirs) in stages.rates.iter_mut().zip(&whole.stages.rates) {
-            mine.copy_part(theirs, first);
-        }
-        stages.carrier = whole.stages.carrier;
-        stages.solver.state.copy_part(models, whole.end(), first);
-        self.event_method.take_part(&whole.event_method);
-        self.carrier_sums.forget();
-        if whole.stages.link_forces.is_empty() {
-            return;
-        }
-        let masses = first..first + models.0.masses();
-        let [vertical, horizontal, ..] = &whole.end_forces().link;
-        let of_part = |links: &[f64]| links.get(masses.clone()).map_or(0.0, |part| part.iter().sum());
-        let between = whole.stages.link_forces.iter().map(|[x, z]| (of_part(x), of_part(z)));
-        let on_carrier = std::iter::once((forces.on_carrier_x(), forces.on_carrier_z()))
-            .chain(between)
-            .chain(std::iter::once((of_part(horizontal), of_part(vertical))));
-        for (stage, on_carrier) in on_carrier.enumerate() {
-            let rates = &stages.rates[stage];
-            let motion = (&rates.velocity_x[..], &rates.velocity_z[..], &rates.normal[..]);
-            let modes = &stages.solver.state.mode;
-            stages.exchange[stage] = Exchange::of_forces(models.0, modes, motion, &stages.carrier[stage], on_carrier);
         }
     }
 

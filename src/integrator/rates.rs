@@ -76,23 +76,6 @@ impl Rates {
         }
     }
 
-    /// Copies the part of `whole`, the rates of a layer, from mass `first` on.
-    pub fn copy_part(&mut self, whole: &Self, first: usize) {
-        let pairs = [
-            (&mut self.velocity_x, &whole.velocity_x),
-            (&mut self.velocity_z, &whole.velocity_z),
-            (&mut self.acceleration_x, &whole.acceleration_x),
-            (&mut self.acceleration_z, &whole.acceleration_z),
-            (&mut self.normal, &whole.normal),
-            (&mut self.margin, &whole.margin),
-        ];
-        let links = self.elongation_rate.iter_mut().zip(&whole.elongation_rate);
-        for (mine, theirs) in pairs.into_iter().chain(links) {
-            let part = first..first + mine.len();
-            mine.copy_from_slice(theirs.get(part).unwrap_or_default());
-        }
-    }
-
     /// Computes the rates that the forces give in `state`: the explicit first stage of a step whose implicit stages have
     /// β = `beta` (s).
     pub fn evaluate(&mut self, model: &Model, state: &State, forces: &Forces, beta: f64) {

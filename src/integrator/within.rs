@@ -2,7 +2,6 @@
 
 use super::Integrator;
 use super::dense::{DenseWorkspace, StepSpan};
-use super::rates::StepStart;
 use crate::model::{Carrier, Forces, Model, State};
 
 /// What replaces some of the masses of an interpolated state.
@@ -18,8 +17,8 @@ pub struct LayerWithin<'a> {
     pub model: &'a Model,
     /// The carrier's motion.
     pub carrier: &'a Carrier,
-    /// The start of the step.
-    pub start: &'a StepStart,
+    /// The state at the start of the step.
+    pub start: &'a State,
     /// The step.
     pub span: StepSpan,
     /// Whether it is a time step.
@@ -50,7 +49,7 @@ impl<'a> LayerWithin<'a> {
         *self.state_at = at;
         let Self { model, carrier, start, span, theta, integrator, .. } = *self;
         if self.time_step {
-            integrator.two_stage_maxwell(model, &start.state, theta, &mut self.state.maxwell);
+            integrator.two_stage_maxwell(model, start, theta, &mut self.state.maxwell);
             integrator.two_stage_dense(model, carrier, start, span).state_at(theta, self.state);
         } else {
             integrator.dense(model, carrier, start, span).state_at(theta, self.workspace, self.state);

@@ -40,21 +40,6 @@ impl Model {
 }
 
 impl State {
-    /// Copies the part of `whole` from mass `first` on; `models` are those of this state and of `whole`.
-    pub fn copy_part(&mut self, models: (&Model, &Model), whole: &Self, first: usize) {
-        let masses = first..first + self.mode.len();
-        self.elongation_x.copy_from_slice(&whole.elongation_x[masses.clone()]);
-        self.elongation_z.copy_from_slice(&whole.elongation_z[masses.clone()]);
-        self.velocity_x.copy_from_slice(&whole.velocity_x[masses.clone()]);
-        self.velocity_z.copy_from_slice(&whole.velocity_z[masses.clone()]);
-        self.mode.copy_from_slice(&whole.mode[masses.clone()]);
-        self.surface.copy_from_slice(&whole.surface[masses]);
-        for (mine, theirs) in models.0.rows.iter().zip(&models.1.rows) {
-            let start = theirs.range.start + first;
-            self.maxwell[mine.range.clone()].copy_from_slice(&whole.maxwell[start..start + mine.range.len()]);
-        }
-    }
-
     /// Writes this state into the part of `whole` from mass `first` on; `models` are those of this state and of `whole`.
     pub fn write_part(&self, models: (&Model, &Model), whole: &mut Self, first: usize) {
         let masses = first..first + self.mode.len();

@@ -168,7 +168,7 @@ impl Run {
         let events = self.event_tolerance();
         let Self { model, state, workspace, .. } = self;
         let integrator = &workspace.integrator;
-        let dense = integrator.dense(model, &state.carrier, &state.layer, state.span(h));
+        let dense = integrator.dense(model, &state.carrier, &state.layer.state, state.span(h));
         first_event(&dense, &events, &mut workspace.dense)
     }
 
@@ -184,7 +184,7 @@ impl Run {
     /// The dense output of the step of length `h` tried last.
     pub(super) fn dense_output(&self, h: f64) -> DenseOutput<'_> {
         let state = &self.state;
-        self.workspace.integrator.dense(&self.model, &state.carrier, &state.layer, state.span(h))
+        self.workspace.integrator.dense(&self.model, &state.carrier, &state.layer.state, state.span(h))
     }
 
     /// Accepts a step, which ends at the time `end` of the piece, and changes the modes if that is due.

@@ -73,7 +73,7 @@ impl Run {
         let within = LayerWithin {
             model,
             carrier: &state.carrier,
-            start: &state.layer,
+            start: &state.layer.state,
             span: state.span(h),
             time_step: state.time_stepping,
             theta,
@@ -120,7 +120,7 @@ impl Run {
     pub(super) fn on_carrier_within(&mut self, h: f64, theta: f64) -> (f64, f64) {
         let (windows_x, windows_z) = self.forces_of_windows(self.state.s + theta * h);
         let Self { model, state, workspace, .. } = self;
-        let (carrier, start, span) = (&state.carrier, &state.layer, state.span(h));
+        let (carrier, start, span) = (&state.carrier, &state.layer.state, state.span(h));
         if state.time_stepping {
             workspace.integrator.two_stage_on_carrier(model, carrier, start, span, theta)
         } else {
@@ -159,7 +159,7 @@ impl Run {
         }
         let (integrator, correction) = (&workspace.integrator, &workspace.end_correction);
         let allowed = MOST_UNCORRECTED * settings.tolerance.relative * integrator.end_forces().on_carrier_z().abs();
-        let dense = || integrator.two_stage_dense(model, &state.carrier, &state.layer, state.span(step.h));
+        let dense = || integrator.two_stage_dense(model, &state.carrier, &state.layer.state, state.span(step.h));
         correction.uncorrected_force() < allowed || correction.comes_after(&dense(), (s - state.s) / step.h)
     }
 
@@ -174,7 +174,7 @@ impl Run {
         self.within(h, share).0.evaluate();
         let Self { model, settings, state, workspace, .. } = self;
         let (interpolated, forces) = (&workspace.interpolated, &workspace.forces);
-        let dense = workspace.integrator.dense(model, &state.carrier, &state.layer, state.span(h));
+        let dense = workspace.integrator.dense(model, &state.carrier, &state.layer.state, state.span(h));
         dense.defect(share, interpolated, forces, &mut workspace.dense, &settings.tolerance)
     }
 

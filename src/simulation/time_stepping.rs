@@ -65,7 +65,7 @@ impl Run {
     /// The attempt of length `h` with the error that the lateness of its mode changes adds.
     fn with_lateness(&mut self, h: f64, attempt: StepAttempt) -> StepAttempt {
         let Self { model, settings, state, workspace, .. } = self;
-        let step = workspace.integrator.two_stage_dense(model, &state.carrier, &state.layer, state.span(h));
+        let step = workspace.integrator.two_stage_dense(model, &state.carrier, &state.layer.state, state.span(h));
         let late = workspace.end_correction.detect(&step, &settings.tolerance);
         StepAttempt { error: attempt.error.hypot(late), ..attempt }
     }

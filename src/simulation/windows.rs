@@ -14,11 +14,11 @@ use std::ops::Range;
 use super::driver::{TrialStep, WorkLimit};
 use super::event::MOST_CUTS;
 use super::motion::{ModeChange, SimulationError};
-use super::run::{Run, Settings};
+use super::run::{Run, RunState, Settings, Workspace};
 use super::snapshot::LARGEST_DEFECT;
 use super::window::Window;
 use crate::contact::mode_changes;
-use crate::integrator::{DenseWorkspace, Overlay, Pair, StepSpan};
+use crate::integrator::{DenseWorkspace, Integrator, LayerStep, Overlay, Pair, StepSpan};
 use crate::model::{LinkKind, Model, State};
 use crate::outputs::Energies;
 use crate::scene::Method;
@@ -62,7 +62,11 @@ pub(super) struct Windows {
     counted: u64,
     /// What windows that others have absorbed have gained beyond the whole layer's step.
     gained: Energies,
-    /// Workspace for each stage of the step.
+    /// The step of the whole layer that they follow.
+    span: StepSpan,
+    /// Workspace for that step.
+    workspace: DenseWorkspace,
+    /// The same for each of its stages.
     nodes: Vec<DenseWorkspace>,
 }
 
@@ -73,14 +77,6 @@ enum Cut {
     Crowded(f64),
     /// The step's dense output is too far off there for the run to go on from it.
     Unresolved(f64),
-}
-
-/// The step of the whole layer that windows follow.
-#[derive(Clone, Copy, Debug)]
-struct StepUnderWay {
-    span: StepSpan,
-    /// Its end, s after the start of the carrier's piece.
-    end: f64,
 }
 
 impl Windows {
@@ -111,6 +107,8 @@ impl Windows {
             planned: false,
             counted: 0,
             gained: Energies::default(),
+            span: StepSpan { start: 0.0, length: 0.0 },
+            workspace: DenseWorkspace::new(model),
             nodes: vec![DenseWorkspace::of_weights(model); Pair::in_wide_layer(settings.tolerance.relative).stages()],
         }))
     }
@@ -118,12 +116,13 @@ impl Windows {
     /// Changes to another temperature: `model` and `settings` are those of the layer there.
     pub(super) fn heat(&mut self, model: &Model, settings: &Settings) {
         self.windows.iter_mut().for_each(|window| window.heat(model, settings));
+        self.workspace = DenseWorkspace::new(model);
         self.nodes.fill(DenseWorkspace::of_weights(model));
     }
 
     /// Memory in bytes, without some hundreds for each window.
     pub(super) fn bytes(&self) -> usize {
-        self.windows.iter().map(Window::bytes).sum()
+        self.windows.iter().map(Window::bytes).sum::<usize>() + self.workspace.bytes()
     }
 
     pub(super) fn newton_iterations(&self) -> u64 {
@@ -136,6 +135,18 @@ impl Windows {
 
     fn open_mut(&mut self) -> impl Iterator<Item = &mut Window> {
         self.windows.iter_mut().filter(|window| window.open)
+    }
+
+    /// The windows, and the step that they follow: `integrator` has tried it from `state`.
+    fn in_step<'a>(
+        &'a mut self,
+        model: &'a Model,
+        state: &'a RunState,
+        integrator: &'a Integrator,
+    ) -> (&'a mut [Window], LayerStep<'a>) {
+        let Self { windows, span, workspace, .. } = self;
+        let start = &state.layer.state;
+        (windows, LayerStep { integrator, model, carrier: &state.carrier, start, span: *span, workspace })
     }
 
     /// Closes all windows.
@@ -168,32 +179,36 @@ impl Windows {
     }
 
     /// Opens a window over `masses`, and over those of open windows among them, at the time `s` of the step that `run` has
-    /// tried. Says how the step has to be cut where that cannot be.
+    /// tried, which has its `end`. Says how the step has to be cut where that cannot be.
     fn open_over(
         &mut self,
         masses: Range<usize>,
         run: &Run,
-        (under, s): (StepUnderWay, f64),
+        (s, end): (f64, f64),
         work: &mut WorkLimit,
     ) -> Result<Option<Cut>, SimulationError> {
         let Some((index, range)) = self.fitting(masses, run.model.masses()) else { return Ok(Some(Cut::Crowded(s))) };
-        let is_absorbed = |window: &Window| range.start <= window.first && window.masses().end <= range.end;
+        let is_absorbed = |window: &Window| range.start <= window.masses().start && window.masses().end <= range.end;
         let kept: usize = self.open().filter(|window| !is_absorbed(window)).map(Window::len).sum();
         if kept + range.len() > self.most_masses {
             return Ok(Some(Cut::Crowded(s)));
         }
         let absorbs = self.open().any(is_absorbed);
-        let (others, rest) = self.windows.split_at_mut(index);
+        let Self { windows, span, workspace, nodes, gained, .. } = self;
+        let Run { model, state, workspace: Workspace { integrator, .. }, .. } = run;
+        let start = &state.layer.state;
+        let mut step = LayerStep { integrator, model, carrier: &state.carrier, start, span: *span, workspace };
+        let (others, rest) = windows.split_at_mut(index);
         let Some((window, more)) = rest.split_first_mut() else { return Ok(Some(Cut::Crowded(s))) };
-        window.open_at(run, (under.span, s), range.start, &mut self.nodes);
+        window.open_at(run, (&mut step, s), range.start, nodes);
         // One that absorbs others does not go on from the whole layer's step alone.
-        if !absorbs && !window.is_resolved(LARGEST_DEFECT) {
+        if !absorbs && !window.is_resolved(&mut step, LARGEST_DEFECT) {
             return Ok(Some(Cut::Unresolved(s)));
         }
         for other in others.iter_mut().chain(more).filter(|other| other.open && is_absorbed(other)) {
-            self.gained.gain(&window.absorb(other, s));
+            gained.gain(&window.absorb(other, (&step, s)));
         }
-        window.start(under.end, work)?;
+        window.start(end, work)?;
         Ok(None)
     }
 
@@ -259,7 +274,7 @@ impl Run {
         let events = self.event_tolerance();
         let Self { model, state, workspace, .. } = self;
         let Some(windows) = workspace.windows.as_mut().filter(|_| workspace.may_open_windows) else { return false };
-        let step = workspace.integrator.dense(model, &state.carrier, &state.layer, state.span(h));
+        let step = workspace.integrator.dense(model, &state.carrier, &state.layer.state, state.span(h));
         mode_changes(&step, &events, &mut workspace.dense, &mut windows.changes);
         windows.changes.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         windows.planned = windows.changes.first().is_none_or(|(theta, _)| *theta >= least);
@@ -296,8 +311,8 @@ impl Run {
     ) -> Result<f64, SimulationError> {
         let (mut end, mut cuts) = (end, 0);
         while let Some(mut windows) = self.workspace.windows.take() {
-            let under = StepUnderWay { span: self.state.span(step.h), end };
-            let cut = self.follow_in(&mut windows, (under, s.min(end)), work);
+            windows.span = self.state.span(step.h);
+            let cut = self.follow_in(&mut windows, (s.min(end), end), work);
             // Once it is cut, the windows stay where they are.
             windows.planned &= matches!(cut, Ok(None));
             self.workspace.windows = Some(windows);
@@ -321,24 +336,24 @@ impl Run {
         Ok(end)
     }
 
-    /// Lets `windows` follow the step to the time `s`. Returns where it has to be cut, if it has.
+    /// Lets `windows` follow the step to the time `s`; it has its `end`. Returns where it has to be cut, if it has.
     fn follow_in(
         &mut self,
         windows: &mut Windows,
-        (under, s): (StepUnderWay, f64),
+        (s, end): (f64, f64),
         work: &mut WorkLimit,
     ) -> Result<Option<Cut>, SimulationError> {
         let mut cut = None;
         while windows.planned && cut.is_none() {
             let window = windows.first_to_end().filter(|(_, time)| *time <= s);
-            let change = windows.next_change().map(|(theta, mass)| (under.span.at(theta), mass));
+            let change = windows.next_change().map(|(theta, mass)| (windows.span.at(theta), mass));
             let change = change.filter(|(time, _)| *time < s && window.is_none_or(|(_, first)| *time < first));
             let next = match (change, window) {
                 (Some((time, mass)), _) => {
                     let masses = windows.around(mass..mass + 1, self.model.masses());
-                    windows.open_over(masses, self, (under, time), work)
+                    windows.open_over(masses, self, (time, end), work)
                 }
-                (None, Some((index, _))) => self.accept_in_window(windows, index, under, work),
+                (None, Some((index, _))) => self.accept_in_window(windows, index, end, work),
                 (None, None) => return Ok(None),
             };
             self.count_in_windows(windows);
@@ -348,36 +363,40 @@ impl Run {
     }
 
     /// Accepts the step that a window has tried, and lets it try the next one: wider where its ends are off. Returns where the
-    /// step of the whole layer has to be cut if that cannot be.
+    /// step of the whole layer, which has its `end`, has to be cut if that cannot be.
     fn accept_in_window(
         &mut self,
         windows: &mut Windows,
         index: usize,
-        under: StepUnderWay,
+        end: f64,
         work: &mut WorkLimit,
     ) -> Result<Option<Cut>, SimulationError> {
         let k = self.model.masses();
         let allowed = MISMATCH * self.state.layer.largest.allowed_of_mass(&self.model, &self.settings.tolerance);
+        let near = windows.reach / 2;
+        let (all, mut step) = windows.in_step(&self.model, &self.state, &self.workspace.integrator);
+        let changed = all[index].accept();
+        let is_near = changed && all[index].has_changed_near_end(near, k);
+        let is_wide_enough = !is_near && all[index].mismatch(&mut step) <= allowed;
         let window = &mut windows.windows[index];
-        let changed = window.accept();
         self.state.step_after_event = window.run.state.step_after_event;
-        let is_near = changed && window.has_changed_near_end(windows.reach / 2, k);
-        if !is_near && window.mismatch(k) <= allowed {
-            window.try_next(under.end, work)?;
+        if is_wide_enough {
+            window.try_next(end, work)?;
             return Ok(None);
         }
         let (s, masses) = (window.reached(), window.masses());
-        windows.open_over(windows.around(masses, k), self, (under, s), work)
+        windows.open_over(windows.around(masses, k), self, (s, end), work)
     }
 
     /// Counts and records the mode changes in windows since the last call.
     fn count_in_windows(&mut self, windows: &mut Windows) {
         for window in &mut windows.windows {
+            let first = window.masses().start;
             let events = std::mem::take(&mut window.run.state.counters.events);
             windows.counted += events;
             self.state.counters.events += events;
             if let (Some(record), Some(of_window)) = (&mut self.mode_changes, &mut window.run.mode_changes) {
-                let of_layer = |change: ModeChange| ModeChange { mass: change.mass + window.first, ..change };
+                let of_layer = |change: ModeChange| ModeChange { mass: change.mass + first, ..change };
                 record.extend(of_window.drain(..).map(of_layer));
             }
         }
@@ -395,23 +414,29 @@ impl Run {
 
     /// The energies in windows up to the time `s` beyond those of the whole layer's step, J.
     pub(super) fn energies_of_windows(&mut self, s: f64) -> Energies {
-        let Some(windows) = &mut self.workspace.windows else { return Energies::default() };
+        let Self { model, state, workspace: Workspace { integrator, windows, .. }, .. } = self;
+        let Some(windows) = windows else { return Energies::default() };
         let mut sum = windows.gained;
-        windows.open_mut().for_each(|window| sum.gain(&window.energies(s)));
+        let (windows, step) = windows.in_step(model, state, integrator);
+        windows.iter_mut().filter(|window| window.open).for_each(|window| sum.gain(&window.energies(&step, s)));
         sum
     }
 
     /// F_x and F_z of the windows at the time `s` beyond those in the whole layer's step, N.
     pub(super) fn forces_of_windows(&mut self, s: f64) -> (f64, f64) {
-        let Some(windows) = &mut self.workspace.windows else { return (0.0, 0.0) };
-        let forces = windows.open_mut().map(|window| window.forces(s));
+        let Self { model, state, workspace: Workspace { integrator, windows, .. }, .. } = self;
+        let Some(windows) = windows else { return (0.0, 0.0) };
+        let (windows, mut step) = windows.in_step(model, state, integrator);
+        let forces = windows.iter_mut().filter(|window| window.open).map(|window| window.forces(&mut step, s));
         forces.fold((0.0, 0.0), |sum, force| (sum.0 + force.0, sum.1 + force.1))
     }
 
     /// P_diss of the windows at the time `s` beyond that in the whole layer's step, W, where the powers at the stages say it.
     pub(super) fn dissipated_power_of_windows(&mut self, s: f64) -> f64 {
-        let Some(windows) = &mut self.workspace.windows else { return 0.0 };
-        windows.open_mut().map(|window| window.dissipated_power(s)).sum()
+        let Self { model, state, workspace: Workspace { integrator, windows, .. }, .. } = self;
+        let Some(windows) = windows else { return 0.0 };
+        let (windows, step) = windows.in_step(model, state, integrator);
+        windows.iter_mut().filter(|window| window.open).map(|window| window.dissipated_power(&step, s)).sum()
     }
 
     /// Puts the masses of the windows at the time `s` into the run's state.

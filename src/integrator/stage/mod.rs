@@ -234,11 +234,6 @@ impl StageSolver {
         }
     }
 
-    /// The state at the end of a step alone, without workspace to solve stages of `model`.
-    pub(super) fn of_end(model: &Model) -> Self {
-        Self { state: State::new(model.masses(), model.maxwell_variables()), ..Self::default() }
-    }
-
     /// Prepares the stages of a step from `state`. Its modes are held through the step, but where `friction` is of
     /// [`Friction::SetValued`] contacts may stop and break loose.
     pub(super) fn begin(&mut self, model: &Model, state: &State, beta: f64, friction: Friction) {

@@ -179,7 +179,7 @@ impl Stepper {
 
     /// The dense output of the last attempted step, of length `h`.
     pub fn dense(&self, h: f64) -> DenseOutput<'_> {
-        self.integrator.dense(&self.model, &self.carrier, &self.start, StepSpan { start: self.s, length: h })
+        self.integrator.dense(&self.model, &self.carrier, &self.start.state, StepSpan { start: self.s, length: h })
     }
 
     /// The state at the fraction `theta` of the last attempted step, of length `h`.
@@ -194,7 +194,7 @@ impl Stepper {
         let mut state = self.start.state.clone();
         let span = StepSpan { start: self.s, length: h };
         self.integrator.two_stage_maxwell(&self.model, &self.start.state, theta, &mut state.maxwell);
-        let dense = self.integrator.two_stage_dense(&self.model, &self.carrier, &self.start, span);
+        let dense = self.integrator.two_stage_dense(&self.model, &self.carrier, &self.start.state, span);
         dense.state_at(theta, &mut state);
         state
     }
@@ -207,9 +207,9 @@ impl Stepper {
         forces.evaluate(&self.model, &state, &self.carrier.at(span.at(theta)));
         let Self { model, carrier, start, integrator, .. } = self;
         let summed = if self.two_stages {
-            integrator.two_stage_on_carrier(model, carrier, start, span, theta)
+            integrator.two_stage_on_carrier(model, carrier, &start.state, span, theta)
         } else {
-            integrator.on_carrier(model, carrier, start, span, theta, &mut DenseWorkspace::new(model))
+            integrator.on_carrier(model, carrier, &start.state, span, theta, &mut DenseWorkspace::new(model))
         };
         [summed, (forces.on_carrier_x(), forces.on_carrier_z())]
     }
