@@ -61,10 +61,10 @@ pub(super) struct MassesInStep<'a> {
 }
 
 impl<'a> MassesInStep<'a> {
-    /// ė at stage `i` of the links of one kind, m/s.
-    fn rate(&self, kind: LinkKind, i: usize) -> &'a [f64] {
+    /// ė of the links of one kind at the first `N` stages, m/s; none where there is no such link.
+    fn rates<const N: usize>(&self, kind: LinkKind) -> [&'a [f64]; N] {
         let links = self.masses.start..self.masses.start + kind.count(self.masses.len());
-        self.stages[i].elongation_rate[kind as usize].get(links).unwrap_or_default()
+        std::array::from_fn(|i| self.stages[i].elongation_rate[kind as usize].get(links.clone()).unwrap_or_default())
     }
 
     /// The elongations of the elements of `row` at the start, m.
@@ -102,23 +102,24 @@ impl StepSums {
         }
         self.known = true;
         let MassesInStep { model, h, .. } = *step;
-        let products: [RateProducts<N>; 4] = LinkKind::ALL.map(|kind| rate_products(step, kind));
+        let rates: [[&[f64]; N]; 4] = LinkKind::ALL.map(|kind| step.rates(kind));
+        let products = LinkKind::ALL.map(|kind| rate_products(model, &rates[kind as usize], kind));
         (self.dampers, self.elements) = ([0.0; STAGES], [0.0; STAGES]);
         for (i, power) in self.dampers[..N].iter_mut().enumerate() {
             *power = model.links.iter().zip(&products).map(|(link, products)| link.damping * products[i][i]).sum();
         }
         let changes = LinkKind::ALL.map(|kind| {
             let unresolved = model.rows_of(kind).any(|row| h / row.relaxation_time > RESOLVED);
-            if unresolved { largest_change::<N>(step, kind) } else { 0.0 }
+            if unresolved { largest_change(&rates[kind as usize]) } else { 0.0 }
         });
         for (index, (coefficients, relaxing)) in maxwell.coefficients().iter().zip(&mut self.relaxing).enumerate() {
             let mut sums = ElementSums::zero();
             *relaxing = RelaxingPower::default();
             for row in model.rows.iter().filter(|row| row.time_index == index) {
                 let (a, kind) = (step.elements(row), row.kind as usize);
-                sums.add(row, step, &products[kind]);
+                sums.add(row, a, &rates[kind], &products[kind]);
                 if h / row.relaxation_time > RESOLVED {
-                    relaxing.add(row, a, step.rate(row.kind, 0), changes[kind]);
+                    relaxing.add(row, a, rates[kind][0], changes[kind]);
                 }
             }
             self.elements[..N].iter_mut().enumerate().for_each(|(i, power)| *power += sums.power(coefficients, i));
@@ -132,11 +133,11 @@ impl<const N: usize> ElementSums<N> {
         Self { square: 0.0, mixed: none, rates: [none; N] }
     }
 
-    /// Adds the elements of `row` over `step`, with the `products` of their rates.
-    fn add(&mut self, row: &MaxwellRow, step: &MassesInStep<'_>, products: &RateProducts<N>) {
+    /// Adds the elements of `row` with the elongations `a` (m) at the start of a step, with the `rates` of their links at its
+    /// stages (m/s) and the `products` of these.
+    fn add(&mut self, row: &MaxwellRow, a: &[f64], rates: &[&[f64]; N], products: &RateProducts<N>) {
         let power = row.stiffness / row.relaxation_time;
-        let rates = std::array::from_fn(|j| step.rate(row.kind, j));
-        let (square, mixed): (f64, [f64; N]) = square_and_dots(step.elements(row), rates);
+        let (square, mixed) = square_and_dots(a, *rates);
         self.square += power * square;
         self.mixed.iter_mut().zip(mixed).for_each(|(sum, mixed)| *sum += power * mixed);
         let rates = self.rates.as_flattened_mut().iter_mut().zip(products.as_flattened());
@@ -237,16 +238,16 @@ impl<const N: usize> StepPowers<'_, N> {
 
 /// The products of one kind of link: of each stage with itself where there are dampers, of all with each other where there
 /// are elements; 0 elsewhere.
-fn rate_products<const N: usize>(step: &MassesInStep<'_>, kind: LinkKind) -> RateProducts<N> {
-    let all = step.model.rows_of(kind).next().is_some();
-    if !all && step.model.links[kind as usize].damping == 0.0 {
+fn rate_products<const N: usize>(model: &Model, rates: &[&[f64]; N], kind: LinkKind) -> RateProducts<N> {
+    let all = model.rows_of(kind).next().is_some();
+    if !all && model.links[kind as usize].damping == 0.0 {
         return [[0.0; N]; N];
     }
     let mut products = [[0.0; N]; N];
     // Each stage with the one that is so many behind it, around the end: half of the distances make all pairs.
     for distance in 0..=if all { N / 2 } else { 0 } {
         let other = |i: usize| (i + distance) % N;
-        let sums: [f64; N] = dots(std::array::from_fn(|i| (step.rate(kind, i), step.rate(kind, other(i)))));
+        let sums: [f64; N] = dots(std::array::from_fn(|i| (rates[i], rates[other(i)])));
         for (i, sum) in sums.into_iter().enumerate() {
             (products[i][other(i)], products[other(i)][i]) = (sum, sum);
         }
@@ -254,12 +255,12 @@ fn rate_products<const N: usize>(step: &MassesInStep<'_>, kind: LinkKind) -> Rat
     products
 }
 
-/// The largest Σ (ė_i - ė_0)² of one of `N` stages over the links of one kind, m²/s². It does not use the products, whose
-/// rounding errors exceed the change in a steady motion.
-fn largest_change<const N: usize>(step: &MassesInStep<'_>, kind: LinkKind) -> f64 {
-    let change =
-        |i: usize| sum_of_pairs(step.rate(kind, i), step.rate(kind, 0), |rate, start| (rate - start) * (rate - start));
-    (1..N).map(change).fold(0.0, f64::max)
+/// The largest Σ (ė_i - ė_0)² of a stage over the links with these rates at the stages, m²/s². It does not use the products,
+/// whose rounding errors exceed the change in a steady motion.
+fn largest_change(rates: &[&[f64]]) -> f64 {
+    let [start, later @ ..] = rates else { return 0.0 };
+    let change = |rate: &&[f64]| sum_of_pairs(rate, start, |rate, start| (rate - start) * (rate - start));
+    later.iter().map(change).fold(0.0, f64::max)
 }
 
 /// The ratio of step and relaxation time up to which the stages resolve an element. From twice this ratio on, all that

@@ -1,6 +1,6 @@
 //! The dense output of the method of seven stages, against exact solutions.
 
-use asperity::integrator::{DenseWorkspace, Motions};
+use asperity::integrator::{DenseWorkspace, LayerStep, Motions, PartOfStep, StepSpan};
 use asperity::model::{Forces, State};
 use nalgebra::Vector2;
 
@@ -155,6 +155,63 @@ fn forces_on_the_carrier_by_sums_are_those_of_the_whole_state() {
             assert!(error < 1e-10, "case {case}, {theta}: {found:?} {expected:?}");
         }
     }
+}
+
+/// The states, forces and energies of two parts make those of the layer, whose masses are joined to the carrier alone.
+#[test]
+fn parts_of_a_step_make_the_whole() {
+    let (mut random, mut compared) = (Random(9), 0);
+    for case in 0..100 {
+        let layer = random_layer(&mut random, 2 + case % 10);
+        let [vertical, horizontal, ..] = layer.links;
+        let model = Layer { links: [vertical, horizontal, None, None], ..layer }.model();
+        let state = random_state(&mut random, &model, &Vector2::zeros());
+        let stepper = Stepper::new(model, PATHS, state, 1e-12);
+        let mut stepper = if case % 2 == 0 { stepper } else { stepper.by_four_stages() }.with_energies();
+        let (h, theta) = (1e-3, random.between(0.0, 1.0));
+        stepper.attempt(h);
+        let (state, on_carrier) = (stepper.within(h, theta), stepper.on_carrier(h, theta)[0]);
+        let Stepper { model, carrier, start, integrator, .. } = &mut stepper;
+        let energies = integrator.energies(model, &start.state, h, theta);
+        let power = integrator.dissipated_power(model, &start.state, h, 1.0);
+
+        let mut workspace = DenseWorkspace::new(model);
+        let span = StepSpan { start: 0.0, length: h };
+        let start = &start.state;
+        let mut step = LayerStep { integrator, model, carrier, start, span, workspace: &mut workspace };
+        let mut joined = State::new(model.masses(), model.maxwell_variables());
+        let (mut sums, mut powers) = ([0.0; 7], Vec::new());
+        let middle = 1 + case % (model.masses() - 1);
+        for masses in [0..middle, middle..model.masses()] {
+            let mut part = model.part(masses.len());
+            part.move_part(model, masses.start);
+            let mut of_part = PartOfStep::new(&part, 0);
+            of_part.begin(&mut step, &part, masses.start);
+            let mut state = State::new(part.masses(), part.maxwell_variables());
+            let (dense, workspace) = step.dense(&masses);
+            dense.state_at(theta, workspace, &mut state);
+            state.write_part((&part, model), &mut joined, masses.start);
+            let (f_x, f_z) = of_part.on_carrier(&mut step, &part, theta);
+            let e = of_part.energies(&step, theta);
+            let values = [f_x, f_z, e.damper, e.maxwell, e.friction, e.shear, e.input];
+            sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
+            powers.push(of_part.dissipated_power(&step, 1.0));
+        }
+        assert_eq!(joined, state, "case {case}");
+        let e = energies;
+        let whole = [on_carrier.0, on_carrier.1, e.damper, e.maxwell, e.friction, e.shear, e.input];
+        for (i, (sum, whole)) in sums.into_iter().zip(whole).enumerate() {
+            // Sums of some hundred forces up to 1e3 N, and of their powers over 1e-3 s, in another order.
+            assert!((sum - whole).abs() < 1e-10, "case {case}, {i}: {sum} {whole}");
+        }
+        // Friction in a direction against the modes, as random states have it, may make a power below 0, which is cut off.
+        if power > 0.0 && powers.iter().all(|power| *power > 0.0) {
+            let sum: f64 = powers.iter().sum();
+            assert!((sum - power).abs() < 1e-10 * power, "case {case}: {sum} {power}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 50, "{compared}");
 }
 
 /// The polynomials of a free mass are its motion within the step, and its speeds bound them.

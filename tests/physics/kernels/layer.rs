@@ -145,6 +145,18 @@ impl Stepper {
         Self { integrator, ..self }
     }
 
+    /// The same with the energies of the layer and of parts of it.
+    pub fn with_energies(self) -> Self {
+        let Self { model, carrier, mut start, .. } = self;
+        let tracked = Tracked { energy: true, ..Tracked::default() };
+        let mut integrator = Integrator::new(&model, tracked, Steps::EventDriven(self.integrator.pair()));
+        integrator.keep_link_forces(&model);
+        let mut forces = Forces::new(&model);
+        forces.evaluate(&model, &start.state, &carrier.at(0.0));
+        integrator.evaluate_start(&model, &mut start, (&carrier, 0.0), &forces, 1e-9);
+        Self { model, carrier, start, integrator, ..self }
+    }
+
     /// The same by the method of two stages.
     pub fn by_two_stages(self) -> Self {
         Self { two_stages: true, ..self }
