@@ -38,8 +38,12 @@ const SHARE_OF_DIPS: f64 = 1e3;
 ///
 /// Recommended 1e-5 to 0.1. The less, the more grazing touches are found, and the more steps are cut at them.
 const LEAST_SHARE_OF_DIPS: f64 = 1e-4;
+/// The least gap tolerance as a share of the scene's height, up to the position tolerance.
+///
+/// Recommended 1e-13 to 1e-12. Less comes near to roundings, by which masses touch and lift without end.
+const LEAST_DIP: f64 = 1e-12;
 
-/// The rounding error of a force, as a number of roundings of a position.
+/// The rounding error of a force or of a gap, as a number of roundings of a position.
 const ROUNDINGS: f64 = 4.0;
 
 impl EventTolerance {
@@ -52,8 +56,10 @@ impl EventTolerance {
         let rounding = ROUNDINGS * f64::EPSILON * height * model.rounding_stiffness();
         let link = LinkKind::Horizontal;
         let impedance = model.links[link as usize].damping + (model.glassy[link as usize] * model.mass).sqrt();
+        let share_of_dips = (SHARE_OF_DIPS * tolerance.relative).clamp(LEAST_SHARE_OF_DIPS, 1.0);
+        let least_gap = (LEAST_DIP * height).max(rounding_of_gap(model, height));
         Self {
-            gap: (SHARE_OF_DIPS * tolerance.relative).clamp(LEAST_SHARE_OF_DIPS, 1.0) * tolerance.position,
+            gap: (share_of_dips * tolerance.position).max(least_gap.min(tolerance.position)),
             velocity: OF_STOPS * tolerance.velocity,
             force: (tolerance.position * stiffness).max(rounding),
             rounding,
@@ -72,6 +78,13 @@ impl EventTolerance {
     fn margin(&self, mode: Mode) -> f64 {
         if mode == Mode::Stick { self.force } else { self.velocity }
     }
+}
+
+/// The rounding error of a mass's gap to the profile in a scene of this `height`, m: the height at a position along x is as far
+/// off as that position, times the slope.
+fn rounding_of_gap(model: &Model, height: f64) -> f64 {
+    let reach = model.rest_x.iter().fold(0.0, |most: f64, x| most.max(x.abs())) + model.profile.reach();
+    ROUNDINGS * f64::EPSILON * (height + model.profile.bounds().slope_max_abs * reach)
 }
 
 /// The fraction of the step at which the first mode change is due; `None` if none is.

@@ -107,6 +107,11 @@ impl Spline {
         }
     }
 
+    /// The largest |x| of its data points, m.
+    pub fn reach(&self) -> f64 {
+        self.first().abs().max(self.last().abs())
+    }
+
     /// The x within the data points at which a periodic spline is the same as at `x`; `x` itself for a natural one.
     #[inline(always)]
     pub fn reduce(&self, x: f64) -> f64 {

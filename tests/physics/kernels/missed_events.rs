@@ -67,6 +67,33 @@ fn fine_tolerances_see_shallower_dips() {
     assert_eq!(["1e-3", "1e-4", "1e-6"].map(|relative| hits(0.03 * NANOMETRE, relative)), [false, false, true]);
 }
 
+/// A mass that rattles over waves at a tolerance of 1e-12, with a dip of which no touch may be looked for below the roundings of
+/// its gap: it would touch and lift by these without end. Steps shorten with the fifth root of the tolerance, by 2.5.
+#[test]
+fn no_dip_is_so_shallow_that_roundings_make_it() {
+    let steps = |relative: &str| {
+        let vertical = Link::new(1e3, 2e-3, &[(5e2, 1e-4)]);
+        let layer = Layer {
+            mass: 2e-7,
+            spacing: 1e-4,
+            clearance: 1e-6,
+            links: [vertical, Link::new(2e3, 8e-3, &[]), None, None],
+            surface: "kind = \"sinusoid\"\namplitude = 1e-5\nwavelength = 5e-4".into(),
+            friction: Some((0.2, 0.0)),
+            solver: format!("relative_tolerance = {relative}\nmax_steps = 100000"),
+            ..Layer::default()
+        };
+        let scene = layer.scene();
+        let mut simulation = Simulation::new(&scene, &Start { w_rate: -0.04, ..Start::default() }).unwrap();
+        for (duration, u, w) in [(2e-4, 0.0, -0.04), (2e-3, 4.0, 0.0)] {
+            simulation.advance(&Motion { duration, u: at_rate(u), w: at_rate(w), ..Motion::default() }).unwrap();
+        }
+        output(&scene, &simulation.snapshot(), "solver.steps")
+    };
+    let (coarse, fine) = (steps("1e-10"), steps("1e-12"));
+    assert!(coarse > 1000.0 && fine < 4.0 * coarse, "{coarse} and {fine}");
+}
+
 /// A mass on a weak spring, thrown down with the carrier and brought back by the spring: a sine whose lowest part dips
 /// below a flat surface.
 fn thrown(clearance: f64) -> Layer {
