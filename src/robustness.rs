@@ -110,7 +110,11 @@ impl ScaledQuantity {
         }
     }
 
-    fn scale(self, scene: &mut Scene, factor: f64) -> Result<(), ParameterError> {
+    /// Scales it in `scene` by `factor`; the communication step is not part of a scene.
+    ///
+    /// # Errors
+    /// A parameter that is out of range.
+    pub fn scale(self, scene: &mut Scene, factor: f64) -> Result<(), ParameterError> {
         if self == Self::Speed {
             scene.excitation.iter_mut().for_each(|phase| hasten(phase, factor));
         }

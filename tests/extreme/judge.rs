@@ -1,11 +1,11 @@
 //! Judges the runs of a case: method against method, and both against a tight run.
 
-use asperity::robustness::{Accuracy, Force, KEPT, Perturbation, Verdict};
+use asperity::robustness::{Accuracy, Force, KEPT, Perturbation, ScaledQuantity, Verdict};
 
 use crate::catalogue::{Case, number};
 use crate::fmu::by_fmu;
 use crate::rules::{ENERGY, Finding, energy_scale};
-use crate::run::{Outcome, Stop, by_library};
+use crate::run::{Outcome, Stop, by_library, by_library_scaled};
 
 /// Which run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,6 +59,11 @@ pub struct Judged {
     pub verdict: Option<Verdict>,
     /// Of the worse of F_x and F_z, each over its largest value: `solver.error`.
     pub forces: Estimate,
+    /// The relative tolerance.
+    pub tolerance: f64,
+    /// The largest change of F_x or F_z, each over its largest value, where the scene's numbers change by the tolerance; 0 where
+    /// the error of the forces is kept and the change not known.
+    pub conditioning: f64,
     /// Of E_diss: `solver.error_E_diss`.
     pub losses: Estimate,
     /// Processor time, s.
@@ -95,6 +100,17 @@ impl Estimate {
 }
 
 impl Judged {
+    /// Whether the errors of its forces over the tolerance are to be counted: a run of the library that has a tight one beside
+    /// it and is not sensitive.
+    pub fn has_force_error(&self) -> bool {
+        !self.way.is_fmu() && self.forces.true_error.is_finite() && self.verdict != Some(Verdict::Sensitive)
+    }
+
+    /// Whether the forces are known within ten times the tolerance.
+    pub fn keeps_forces(&self) -> bool {
+        self.forces.true_error <= KEPT * self.tolerance
+    }
+
     /// A run that panicked.
     pub fn panicked(case: &Case, text: String) -> Self {
         let stop = Stop { name: "panic", text: text.clone() };
@@ -123,7 +139,25 @@ pub fn judge(case: &Case) -> Vec<Judged> {
     let straight = *straight;
     // Where the run stops, a tight one does.
     let tight = if first.error.is_some() { Outcome::default() } else { straight.run(case, case.tight) };
-    outcomes.into_iter().map(|(way, outcome)| judge_run(case, way, outcome, straight, &tight)).collect()
+    let mut judged: Vec<Judged> =
+        outcomes.into_iter().map(|(way, outcome)| judge_run(case, way, outcome, straight, &tight)).collect();
+    if judged.iter().any(|run| run.has_force_error() && !run.keeps_forces()) {
+        let conditioning = conditioning(case, &tight);
+        judged.iter_mut().for_each(|run| run.conditioning = conditioning);
+    }
+    judged
+}
+
+/// The change of the worse of F_x and F_z, each over its largest value, where all stiffnesses and masses, or the speed, change
+/// by the relative tolerance. No run on numbers that are known within the tolerance is known better.
+fn conditioning(case: &Case, tight: &Outcome) -> f64 {
+    let factor = 1.0 + relative_tolerance(case);
+    let changed = [&[ScaledQuantity::Stiffness, ScaledQuantity::Mass][..], &[ScaledQuantity::Speed]];
+    let change = |quantities: &[ScaledQuantity]| {
+        let run = by_library_scaled(case, Way::Event.method(), case.tight, (quantities, factor));
+        if run.error.is_some() { 0.0 } else { worse_force(&run, Some(tight)).true_error }
+    };
+    changed.into_iter().map(change).fold(0.0, f64::max)
 }
 
 /// Judges one run by the tight one, which was run the way `straight`.
@@ -159,6 +193,8 @@ fn judge_run(case: &Case, way: Way, mut outcome: Outcome, straight: Way, tight: 
         way,
         verdict: accuracy.map(|accuracy| accuracy.verdict(relative_tolerance(case))),
         forces,
+        tolerance: relative_tolerance(case),
+        conditioning: 0.0,
         losses,
         steps: outcome.last("solver.steps"),
         events: outcome.last("solver.events"),

@@ -54,6 +54,7 @@ fn every_scene_keeps_what_must_hold() {
     report::write(&runs);
     report::write_scenes(&cases, &runs);
     report::print_counts(&cases, &runs);
+    report::print_errors(&runs);
     report::print_ratios(&runs);
     let line = |run: &Judged, finding: &Finding| {
         format!("{} [{}]: {}: {}", run.case, run.way.name(), finding.rule, finding.text)
@@ -64,6 +65,7 @@ fn every_scene_keeps_what_must_hold() {
     let chatter = runs.iter().filter(|run| run.item == "10⁴ changes" && run.way == Way::Event);
     chatter.for_each(|run| assert!(run.events >= 1e4, "{}: {} mode changes", run.case, run.events));
     if std::env::var_os("EXTREME").is_none() {
+        report::check_errors(&runs);
         report::check_estimates(&runs);
     }
 }

@@ -3,12 +3,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 
-use asperity::robustness::Verdict;
+use asperity::robustness::{KEPT, Verdict};
 
 use crate::catalogue::Case;
 use crate::common;
 use crate::html::{self, Cell};
-use crate::judge::{Estimate, Judged};
+use crate::judge::{Estimate, Judged, Way};
 use crate::run;
 
 const COLUMNS: &str = "scene,phrase,item,method,status,verdict,steps,events,rejected,energy_residual,true_error,estimate,\
@@ -124,6 +124,40 @@ pub fn print_counts(cases: &[Case], runs: &[Judged]) {
     for ((phrase, item), (scenes, runs)) in items {
         println!("{scenes:5} scenes {runs:5} runs  {phrase}: {item}");
     }
+}
+
+/// The least share of a method's runs whose forces err by at most ten tolerances: 90 and 92 % of some 290 did.
+const KEPT_FORCES: f64 = 0.87;
+/// The same with those that err by at most ten times what a change of the scene's numbers by the tolerance makes: 95 and 96 %.
+const KEPT_OR_ILL_CONDITIONED: f64 = 0.93;
+
+/// Prints how many runs keep ten tolerances.
+pub fn print_errors(runs: &[Judged]) {
+    for way in [Way::Event, Way::Step] {
+        let [kept, or_ill_conditioned] = kept_forces(runs, way).map(|share| 100.0 * share);
+        println!(
+            "{}: forces within ten tolerances in {kept:.1} % of the runs, in {or_ill_conditioned:.1} % within these or ten \
+             times what a change of the scene's numbers by the tolerance makes",
+            way.name()
+        );
+    }
+}
+
+/// Most runs keep ten tolerances.
+pub fn check_errors(runs: &[Judged]) {
+    for way in [Way::Event, Way::Step] {
+        let [kept, or_ill_conditioned] = kept_forces(runs, way);
+        assert!(kept >= KEPT_FORCES && or_ill_conditioned >= KEPT_OR_ILL_CONDITIONED, "{kept} {or_ill_conditioned}");
+    }
+}
+
+/// The shares of one method's runs that keep ten tolerances, and that do or are as ill-conditioned.
+fn kept_forces(runs: &[Judged], way: Way) -> [f64; 2] {
+    let runs: Vec<&Judged> = runs.iter().filter(|run| run.way == way && run.has_force_error()).collect();
+    let share =
+        |kept: fn(&Judged) -> bool| runs.iter().filter(|run| kept(run)).count() as f64 / runs.len().max(1) as f64;
+    let or_ill_conditioned = |run: &Judged| run.keeps_forces() || run.forces.true_error <= KEPT * run.conditioning;
+    [share(Judged::keeps_forces), share(or_ill_conditioned)]
 }
 
 /// One of the estimates of a run.

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use asperity::outputs::{self, Snapshot, Variable};
-use asperity::robustness::ForceHistory;
+use asperity::robustness::{ForceHistory, ScaledQuantity};
 use asperity::scene::Scene;
 use asperity::simulation::{Motion, Simulation, SimulationError, Start};
 use toml::{Table, Value};
@@ -118,7 +118,23 @@ pub fn scene(case: &Case, method: &str, tight: f64) -> Scene {
 
 /// Follows the excitation by the library.
 pub fn by_library(case: &Case, method: &str, tight: f64) -> Outcome {
-    let scene = scene(case, method, tight);
+    follow(case, &scene(case, method, tight))
+}
+
+/// The same with these quantities `factor` times as large.
+pub fn by_library_scaled(
+    case: &Case,
+    method: &str,
+    tight: f64,
+    (quantities, factor): (&[ScaledQuantity], f64),
+) -> Outcome {
+    let mut scene = scene(case, method, tight);
+    let scaled = quantities.iter().try_for_each(|quantity| quantity.scale(&mut scene, factor));
+    scaled.unwrap_or_else(|error| panic!("{}: {error}", case.name));
+    follow(case, &scene)
+}
+
+fn follow(case: &Case, scene: &Scene) -> Outcome {
     let first = scene.excitation.first();
     let start = Start {
         u_rate: first.map_or(0.0, |phase| phase.u.velocity(0.0)),
@@ -127,8 +143,8 @@ pub fn by_library(case: &Case, method: &str, tight: f64) -> Outcome {
         pull: scene.first_pull(),
         ..case.start
     };
-    let mut watch = Watch::new(&scene, case.undamped);
-    let mut simulation = match Simulation::new(&scene, &start) {
+    let mut watch = Watch::new(scene, case.undamped);
+    let mut simulation = match Simulation::new(scene, &start) {
         Ok(simulation) => simulation,
         Err(error) => return watch.end(Some(error.into())),
     };
