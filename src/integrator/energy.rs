@@ -51,10 +51,9 @@ struct RelaxingPower {
 }
 
 /// Some masses of a layer in a step from its `start`, of length `h` (s), with these `stages`.
-#[derive(Clone, Copy)]
 pub(super) struct MassesInStep<'a> {
     pub model: &'a Model,
-    pub masses: &'a Range<usize>,
+    pub masses: Range<usize>,
     pub start: &'a State,
     pub stages: &'a [Rates],
     pub h: f64,
@@ -331,7 +330,7 @@ mod tests {
         maxwell.begin(&model, &ESDIRK5, &start.maxwell, h);
         let weights: [f64; STAGES] = std::array::from_fn(|_| number());
         let mut sums = StepSums::new(&model);
-        let step = MassesInStep { model: &model, masses: &(0..5), start: &start, stages: &stages, h };
+        let step = MassesInStep { model: &model, masses: 0..5, start: &start, stages: &stages, h };
         sums.collect(&step, &maxwell);
         let (measure, weights) = (Measure::Integral(weights.iter().sum()), &weights);
         let powers = StepPowers { model: &model, maxwell: &maxwell, sums: &sums, exchange: &[], h, weights, measure };

@@ -154,7 +154,7 @@ pub struct StepAttempt {
 }
 
 /// Workspace for the estimated errors of one step.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct ErrorWorkspace {
     x: Vec<f64>,
     z: Vec<f64>,

@@ -356,33 +356,28 @@ impl Integrator {
     /// the stages, W: of order 2 by the pair of order 3, of order 3 by that of order 5. Only where energies are tracked.
     pub fn dissipated_power(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> f64 {
         let weights = self.interpolation.values(theta);
-        let Self { event_method, stages, energy_sums: sums, .. } = self;
-        let of = MassesInStep { model, masses: &(0..model.masses()), start, stages: &stages.rates, h };
-        event_method.dissipated_power(SummedStep { of, sums, exchange: &stages.exchange }, theta, &weights)
+        let Self { event_method, stages, energy_sums, .. } = self;
+        event_method.dissipated_power(summed(stages, energy_sums, model, start, h), theta, &weights)
     }
 
     /// The same of the last attempted two-stage step.
     pub fn two_stage_dissipated_power(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> f64 {
-        let Self { two_stages, stages, energy_sums: sums, .. } = self;
-        let of = MassesInStep { model, masses: &(0..model.masses()), start, stages: &stages.rates, h };
-        let step = SummedStep { of, sums, exchange: &stages.exchange };
-        two_stages.dissipated_power(step, theta, &piecewise_linear(theta))
+        let Self { two_stages, stages, energy_sums, .. } = self;
+        two_stages.dissipated_power(summed(stages, energy_sums, model, start, h), theta, &piecewise_linear(theta))
     }
 
     /// Energies through the channels over the last attempted event-driven step, of length `h` from `start`, up to its
     /// fraction `theta`, J.
     pub fn energies(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> ChannelEnergies {
-        let Self { event_method, stages, energy_sums: sums, .. } = self;
-        let of = MassesInStep { model, masses: &(0..model.masses()), start, stages: &stages.rates, h };
-        event_method.energies(SummedStep { of, sums, exchange: &stages.exchange }, theta)
+        let Self { event_method, stages, energy_sums, .. } = self;
+        event_method.energies(summed(stages, energy_sums, model, start, h), theta)
     }
 
     /// Energies through the channels over the last attempted two-stage step, of length `h` from `start`, up to its
     /// fraction `theta`, J.
     pub fn two_stage_energies(&mut self, model: &Model, start: &State, h: f64, theta: f64) -> ChannelEnergies {
-        let Self { two_stages, stages, energy_sums: sums, .. } = self;
-        let of = MassesInStep { model, masses: &(0..model.masses()), start, stages: &stages.rates, h };
-        two_stages.energies(SummedStep { of, sums, exchange: &stages.exchange }, theta)
+        let Self { two_stages, stages, energy_sums, .. } = self;
+        two_stages.energies(summed(stages, energy_sums, model, start, h), theta)
     }
 
     /// The energy of friction, J, that the powers at the stages of the last attempted two-stage step, of length `h` from
@@ -476,4 +471,16 @@ impl Integrator {
         let tangents: usize = self.stages.tangents.iter().map(Tangent::floats).sum();
         (by_mass * masses + stages * links + elements + tangents) * size_of::<f64>()
     }
+}
+
+/// The last attempted step of all masses, of length `h` (s) from `start`, with its `sums`.
+fn summed<'a>(
+    stages: &'a Stages,
+    sums: &'a mut StepSums,
+    model: &'a Model,
+    start: &'a State,
+    h: f64,
+) -> SummedStep<'a> {
+    let of = MassesInStep { model, masses: 0..model.masses(), start, stages: &stages.rates, h };
+    SummedStep { of, sums, exchange: &stages.exchange }
 }

@@ -111,12 +111,9 @@ impl PartOfStep {
     }
 
     fn summed<'a>(&'a mut self, step: &LayerStep<'a>) -> SummedStep<'a> {
-        let Self { masses, energy_sums: sums, exchange, .. } = self;
         let LayerStep { integrator, model, start, span, .. } = *step;
-        SummedStep {
-            of: MassesInStep { model, masses, start, stages: integrator.stages(), h: span.length },
-            sums,
-            exchange,
-        }
+        let (masses, stages) = (self.masses.clone(), integrator.stages());
+        let of = MassesInStep { model, masses, start, stages, h: span.length };
+        SummedStep { of, sums: &mut self.energy_sums, exchange: &self.exchange }
     }
 }

@@ -47,7 +47,7 @@ impl Window {
         self.run.workspace.dense.forget();
     }
 
-    /// Memory in bytes, without some hundreds.
+    /// Memory in bytes that grows with its masses.
     pub(super) fn bytes(&self) -> usize {
         self.run.bytes()
     }

@@ -120,7 +120,7 @@ impl Windows {
         self.nodes.fill(DenseWorkspace::of_weights(model));
     }
 
-    /// Memory in bytes, without some hundreds for each window.
+    /// Memory in bytes, without what each window takes whatever its masses: some thousand.
     pub(super) fn bytes(&self) -> usize {
         self.windows.iter().map(Window::bytes).sum::<usize>() + self.workspace.bytes()
     }
@@ -137,16 +137,16 @@ impl Windows {
         self.windows.iter_mut().filter(|window| window.open)
     }
 
-    /// The windows, and the step that they follow: `integrator` has tried it from `state`.
-    fn in_step<'a>(
+    /// The open windows, and the step that they follow: `integrator` has tried it from `state`.
+    fn open_in_step<'a>(
         &'a mut self,
         model: &'a Model,
         state: &'a RunState,
         integrator: &'a Integrator,
-    ) -> (&'a mut [Window], LayerStep<'a>) {
+    ) -> (impl Iterator<Item = &'a mut Window>, LayerStep<'a>) {
         let Self { windows, span, workspace, .. } = self;
-        let start = &state.layer.state;
-        (windows, LayerStep { integrator, model, carrier: &state.carrier, start, span: *span, workspace })
+        let step = layer_step((model, state, integrator), *span, workspace);
+        (windows.iter_mut().filter(|window| window.open), step)
     }
 
     /// Closes all windows.
@@ -195,9 +195,7 @@ impl Windows {
         }
         let absorbs = self.open().any(is_absorbed);
         let Self { windows, span, workspace, nodes, gained, .. } = self;
-        let Run { model, state, workspace: Workspace { integrator, .. }, .. } = run;
-        let start = &state.layer.state;
-        let mut step = LayerStep { integrator, model, carrier: &state.carrier, start, span: *span, workspace };
+        let mut step = layer_step((&run.model, &run.state, &run.workspace.integrator), *span, workspace);
         let (others, rest) = windows.split_at_mut(index);
         let Some((window, more)) = rest.split_first_mut() else { return Ok(Some(Cut::Crowded(s))) };
         window.open_at(run, (&mut step, s), range.start, nodes);
@@ -230,6 +228,15 @@ impl Windows {
             range = union;
         }
     }
+}
+
+/// The step over `span` that the `integrator` of a layer has tried from `state`.
+fn layer_step<'a>(
+    (model, state, integrator): (&'a Model, &'a RunState, &'a Integrator),
+    span: StepSpan,
+    workspace: &'a mut DenseWorkspace,
+) -> LayerStep<'a> {
+    LayerStep { integrator, model, carrier: &state.carrier, start: &state.layer.state, span, workspace }
 }
 
 /// The widths of windows, from the `least` one on, and the number of windows of each: all of one width have at most
@@ -374,11 +381,12 @@ impl Run {
         let k = self.model.masses();
         let allowed = MISMATCH * self.state.layer.largest.allowed_of_mass(&self.model, &self.settings.tolerance);
         let near = windows.reach / 2;
-        let (all, mut step) = windows.in_step(&self.model, &self.state, &self.workspace.integrator);
-        let changed = all[index].accept();
-        let is_near = changed && all[index].has_changed_near_end(near, k);
-        let is_wide_enough = !is_near && all[index].mismatch(&mut step) <= allowed;
-        let window = &mut windows.windows[index];
+        let Windows { windows: all, span, workspace, .. } = &mut *windows;
+        let mut step = layer_step((&self.model, &self.state, &self.workspace.integrator), *span, workspace);
+        let window = &mut all[index];
+        let changed = window.accept();
+        let is_near = changed && window.has_changed_near_end(near, k);
+        let is_wide_enough = !is_near && window.mismatch(&mut step) <= allowed;
         self.state.step_after_event = window.run.state.step_after_event;
         if is_wide_enough {
             window.try_next(end, work)?;
@@ -417,8 +425,8 @@ impl Run {
         let Self { model, state, workspace: Workspace { integrator, windows, .. }, .. } = self;
         let Some(windows) = windows else { return Energies::default() };
         let mut sum = windows.gained;
-        let (windows, step) = windows.in_step(model, state, integrator);
-        windows.iter_mut().filter(|window| window.open).for_each(|window| sum.gain(&window.energies(&step, s)));
+        let (open, step) = windows.open_in_step(model, state, integrator);
+        open.for_each(|window| sum.gain(&window.energies(&step, s)));
         sum
     }
 
@@ -426,8 +434,8 @@ impl Run {
     pub(super) fn forces_of_windows(&mut self, s: f64) -> (f64, f64) {
         let Self { model, state, workspace: Workspace { integrator, windows, .. }, .. } = self;
         let Some(windows) = windows else { return (0.0, 0.0) };
-        let (windows, mut step) = windows.in_step(model, state, integrator);
-        let forces = windows.iter_mut().filter(|window| window.open).map(|window| window.forces(&mut step, s));
+        let (open, mut step) = windows.open_in_step(model, state, integrator);
+        let forces = open.map(|window| window.forces(&mut step, s));
         forces.fold((0.0, 0.0), |sum, force| (sum.0 + force.0, sum.1 + force.1))
     }
 
@@ -435,8 +443,8 @@ impl Run {
     pub(super) fn dissipated_power_of_windows(&mut self, s: f64) -> f64 {
         let Self { model, state, workspace: Workspace { integrator, windows, .. }, .. } = self;
         let Some(windows) = windows else { return 0.0 };
-        let (windows, step) = windows.in_step(model, state, integrator);
-        windows.iter_mut().filter(|window| window.open).map(|window| window.dissipated_power(&step, s)).sum()
+        let (open, step) = windows.open_in_step(model, state, integrator);
+        open.map(|window| window.dissipated_power(&step, s)).sum()
     }
 
     /// Puts the masses of the windows at the time `s` into the run's state.

@@ -35,7 +35,7 @@ pub(super) use newton::SlippingMass;
 pub struct NoConvergence;
 
 /// Contributions of the earlier stages to a stage: the starred values and the known forces of the Maxwell elements.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct StageHistory {
     /// e*_x, m: as if the carrier stood where it was at the start of the step.
     pub elongation_x: Vec<f64>,
@@ -135,10 +135,9 @@ impl StageLaw {
 
 /// Which slipping stages the factors of the Jacobian serve. It changes little through a step, so that those of one stage
 /// nearly always do for the others.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Factors {
     /// None: they are of another step.
-    #[default]
     Outdated,
     /// The further stages of the step, too.
     Held,
@@ -147,10 +146,9 @@ enum Factors {
 }
 
 /// How the friction of the contacts is treated within a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Friction {
     /// Slips go on in their direction, sticks hold, whatever the forces.
-    #[default]
     Held,
     /// A slip that would reverse stops, a stick that would need more than T(0) breaks loose.
     SetValued,
@@ -166,7 +164,7 @@ impl Friction {
 }
 
 /// Solver of the stages of one model.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct StageSolver {
     /// To be set before a stage is solved.
     pub history: StageHistory,
