@@ -1,14 +1,15 @@
 //! F_x and F_z within a step, from sums over the layer that are taken once a step.
 //!
-//! All that the forces on the carrier consist of is linear in the values at the stages and at both ends of the step, but
-//! for the masses in contact, which are put on the profile. So a force needs these one by one, and of the others sums.
+//! All that the forces on the carrier consist of is linear in the values at the stages and at both ends of the step. So is
+//! the height of a mass in contact, as far as the step's dense output goes; where a tolerance asks for more these masses are
+//! put on the profile one by one, see [`ContactHeights`].
 
 use std::ops::Range;
 
 use super::rates::Rates;
 use super::tableau::STAGES;
 use crate::math::{BLOCK, dot, sum};
-use crate::model::{Carrier, CarrierPoint, LinkKind, MaxwellRow, Model, State, SurfacePoint};
+use crate::model::{Carrier, CarrierPoint, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint};
 
 /// Elongations of links to the carrier (m) and velocities of masses (m/s), along x and z: of one mass, or summed.
 #[derive(Clone, Copy, Debug, Default)]
@@ -75,14 +76,28 @@ pub(super) struct ElementWeights {
     pub rates: [f64; STAGES],
 }
 
+/// Where the heights of the masses in contact come from within a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ContactHeights {
+    /// From those at both ends and from ż at the stages, as the heights of free masses do. At tolerances of 1e-3 and coarser F_z
+    /// differs from that with the masses on the profile by less than half the tolerance.
+    Interpolated,
+    /// From the profile.
+    OfProfile,
+}
+
 /// Sums over the masses, or some of them, and their links to the carrier of the last attempted step.
 #[derive(Clone, Debug)]
 pub(super) struct CarrierSums {
     /// Whether they are those of the last attempted step.
     known: bool,
-    /// 1 for a free mass, 0 for one in contact.
-    is_free: Vec<f64>,
-    /// Number of free masses.
+    /// 1 for a mass that is summed up, 0 for one that is not but put on the profile.
+    is_summed: Vec<f64>,
+    /// Number of these masses.
+    pub summed: f64,
+    /// Number of those of them that do not stick.
+    pub moving: f64,
+    /// Number of those of them that are free.
     pub free: f64,
     pub x: AxisSums,
     pub z: AxisSums,
@@ -92,9 +107,9 @@ pub(super) struct CarrierSums {
 #[derive(Clone, Debug)]
 pub(super) struct AxisSums {
     kind: LinkKind,
-    /// Σ e of the free masses at the start and at the end, m.
+    /// Σ e of the masses that are summed up at the start and at the end, m.
     pub elongation: [f64; 2],
-    /// Σ v of the free masses at the stages, m/s.
+    /// Σ v of these masses at the stages, m/s.
     pub velocity: [f64; STAGES],
     /// Σ ė of all links at the stages, m/s; 0 without Maxwell elements.
     rate: [f64; STAGES],
@@ -106,12 +121,17 @@ impl CarrierSums {
     /// Workspace for all masses of `model`.
     pub(super) fn new(model: &Model) -> Self {
         let (x, z) = (AxisSums::new(model, LinkKind::Horizontal), AxisSums::new(model, LinkKind::Vertical));
-        Self { known: false, is_free: vec![0.0; model.masses()], free: 0.0, x, z }
+        Self { known: false, is_summed: vec![0.0; model.masses()], summed: 0.0, moving: 0.0, free: 0.0, x, z }
     }
 
     /// A new step is attempted.
     pub(super) fn forget(&mut self) {
         self.known = false;
+    }
+
+    /// Whether all masses are summed up, those in contact too.
+    pub(super) fn has_all(&self) -> bool {
+        self.summed == self.is_summed.len() as f64
     }
 
     /// Takes the sums over `masses` of a layer of `model`, of its step from `start` to `end` with these `stages`, unless they
@@ -122,20 +142,25 @@ impl CarrierSums {
         masses: &Range<usize>,
         (start, end): (&State, &State),
         stages: &[Rates],
+        heights: ContactHeights,
     ) {
         if self.known {
             return;
         }
         self.known = true;
-        for (is_free, mode) in self.is_free.iter_mut().zip(&start.mode[masses.clone()]) {
-            *is_free = f64::from(u8::from(!mode.in_contact()));
+        (self.summed, self.moving, self.free) = (0.0, 0.0, 0.0);
+        for (is_summed, mode) in self.is_summed.iter_mut().zip(&start.mode[masses.clone()]) {
+            let is_free = !mode.in_contact();
+            *is_summed = one_if(is_free || heights == ContactHeights::Interpolated);
+            self.summed += *is_summed;
+            self.moving += one_if(*mode != Mode::Stick) * *is_summed;
+            self.free += one_if(is_free);
         }
-        self.free = sum(&self.is_free);
-        let of_free = |values: &[f64]| dot(&self.is_free, &values[masses.start..]);
-        self.x.elongation = [of_free(&start.elongation_x), of_free(&end.elongation_x)];
-        self.z.elongation = [of_free(&start.elongation_z), of_free(&end.elongation_z)];
+        let of_summed = |values: &[f64]| dot(&self.is_summed, &values[masses.start..]);
+        self.x.elongation = [of_summed(&start.elongation_x), of_summed(&end.elongation_x)];
+        self.z.elongation = [of_summed(&start.elongation_z), of_summed(&end.elongation_z)];
         for (j, stage) in stages.iter().enumerate() {
-            (self.x.velocity[j], self.z.velocity[j]) = (of_free(&stage.velocity_x), of_free(&stage.velocity_z));
+            (self.x.velocity[j], self.z.velocity[j]) = (of_summed(&stage.velocity_x), of_summed(&stage.velocity_z));
         }
         self.x.collect_links(model, masses, [start, end], stages);
         self.z.collect_links(model, masses, [start, end], stages);
@@ -157,6 +182,10 @@ impl CarrierSums {
             self.z.force(model, (motion.elongation.1, rate.1), &weights),
         )
     }
+}
+
+fn one_if(condition: bool) -> f64 {
+    f64::from(u8::from(condition))
 }
 
 impl AxisSums {

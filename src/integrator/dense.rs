@@ -170,7 +170,7 @@ impl DenseOutput<'_> {
         let both = |weights| (sum(weights, |at| at.u_rate), sum(weights, |at| at.w_rate));
         let rate = both(&workspace.values);
         CarrierWithin {
-            moved_x: self.carrier.moved(self.span.start, theta * self.span.length).0,
+            moved: self.carrier.moved(self.span.start, theta * self.span.length),
             integrated: both(&workspace.integral),
             missing_rate: (now.u_rate - rate.0, now.w_rate - rate.1),
             now,
@@ -200,13 +200,26 @@ impl DenseOutput<'_> {
     /// The sums of the elongations and of the velocities of all masses at the fraction `theta`, from the `sums` of the step.
     pub(super) fn summed_motion(&self, theta: f64, sums: &CarrierSums, workspace: &mut DenseWorkspace) -> Motion {
         workspace.set_weights(self, theta);
-        let (carrier, n) = (self.carrier_at(theta, workspace), sums.free);
-        let moved = |axis: &AxisSums| axis.elongation[0] + dot(&workspace.integral, &axis.velocity);
-        let velocity = |axis: &AxisSums| dot(&workspace.values, &axis.velocity);
-        let mut all = Motion {
-            elongation: (moved(&sums.x) - n * carrier.integrated.0, moved(&sums.z) - n * carrier.integrated.1),
-            velocity: (velocity(&sums.x) + n * carrier.missing_rate.0, velocity(&sums.z) + n * carrier.missing_rate.1),
+        let carrier = self.carrier_at(theta, workspace);
+        let elongation = |axis: &AxisSums, moving: f64, (integrated, moved): (f64, f64)| {
+            let of_masses = axis.elongation[0] + dot(&workspace.integral, &axis.velocity);
+            of_masses - moving * integrated - (sums.summed - moving) * moved
         };
+        let velocity =
+            |axis: &AxisSums, moving: f64, missing: f64| dot(&workspace.values, &axis.velocity) + moving * missing;
+        let mut all = Motion {
+            elongation: (
+                elongation(&sums.x, sums.moving, (carrier.integrated.0, carrier.moved.0)),
+                elongation(&sums.z, sums.free, (carrier.integrated.1, carrier.moved.1)),
+            ),
+            velocity: (
+                velocity(&sums.x, sums.moving, carrier.missing_rate.0),
+                velocity(&sums.z, sums.free, carrier.missing_rate.1),
+            ),
+        };
+        if sums.has_all() {
+            return all;
+        }
         let DenseWorkspace { values, integral, of_masses: [x, v_x], .. } = workspace;
         let (x, v_x, start) = (&mut x[..self.masses.len()], &mut v_x[..self.masses.len()], self.start.state);
         if start.mode[self.masses.clone()].iter().any(|mode| mode.slips()) {
@@ -251,7 +264,7 @@ impl DenseOutput<'_> {
             let at = placement.position(self.model.rest_x[i], along_x.0);
             (along_x.0, along_x.1, self.model.surface_at(at))
         } else {
-            (start.elongation_x[i] - carrier.moved_x, 0.0, start.surface[i])
+            (start.elongation_x[i] - carrier.moved.0, 0.0, start.surface[i])
         };
         let elongation_z = surface.height - self.model.rest_z[i] - (self.carrier.w + carrier.now.dw);
         MassPoint { elongation: (elongation_x, elongation_z), velocity: (v_x, surface.slope * v_x), surface }
@@ -341,9 +354,9 @@ impl DenseOutput<'_> {
 /// The carrier at one instant within a step.
 struct CarrierWithin {
     now: CarrierPoint,
-    /// Its displacement along x since the start of the step, m.
-    moved_x: f64,
-    /// Its displacement along x and z since then as the stages' rates give it, m.
+    /// Its displacement along x and z since the start of the step, m.
+    moved: (f64, f64),
+    /// The same as the stages' rates give it, m.
     integrated: (f64, f64),
     /// What the stages' rates miss of u̇ and ẇ, m/s.
     missing_rate: (f64, f64),

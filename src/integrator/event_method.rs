@@ -2,6 +2,7 @@
 
 use std::sync::LazyLock;
 
+use super::carrier_sums::ContactHeights;
 use super::energy::SummedStep;
 use super::error::{ErrorWorkspace, StepAttempt, Tolerance};
 use super::interpolation::StageInterpolation;
@@ -36,6 +37,14 @@ impl Pair {
     /// The same in a layer with windows, and in these.
     pub fn in_wide_layer(relative: f64) -> Self {
         if relative >= THIRD_FROM_IN_WIDE_LAYERS { Self::Third } else { Self::Fifth }
+    }
+
+    /// Where the heights of the masses in contact come from within a step.
+    pub(super) fn contact_heights(self) -> ContactHeights {
+        match self {
+            Self::Third => ContactHeights::Interpolated,
+            Self::Fifth => ContactHeights::OfProfile,
+        }
     }
 
     /// Number of stages, the explicit one included.

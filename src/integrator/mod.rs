@@ -38,7 +38,7 @@ pub use within::{LayerWithin, Overlay};
 
 use crate::model::{Axis, Tangents};
 use crate::model::{BodyStep, Carrier, CarrierPoint, ChannelEnergies, Exchange, Forces, MaxwellRow, Model, State};
-use carrier_sums::CarrierSums;
+use carrier_sums::{CarrierSums, ContactHeights};
 use energy::{MassesInStep, StepSums, SummedStep};
 use error::ErrorWorkspace;
 use event_method::EventMethod;
@@ -329,7 +329,8 @@ impl Integrator {
         workspace: &mut DenseWorkspace,
     ) -> (f64, f64) {
         let (stages, end) = (&self.stages.rates[..self.pair.stages()], &self.stages.solver.state);
-        self.carrier_sums.collect(model, &(0..model.masses()), (start, end), stages);
+        let heights = self.pair.contact_heights();
+        self.carrier_sums.collect(model, &(0..model.masses()), (start, end), stages, heights);
         let motion = self.dense(model, carrier, start, span).summed_motion(theta, &self.carrier_sums, workspace);
         let point = carrier.at(span.at(theta));
         self.carrier_sums.forces(model, &motion, &point, |row| workspace.of_elements(row))
@@ -345,7 +346,7 @@ impl Integrator {
         theta: f64,
     ) -> (f64, f64) {
         let (stages, end) = (&self.stages.rates[..TWO_STAGES], &self.stages.solver.state);
-        self.carrier_sums.collect(model, &(0..model.masses()), (start, end), stages);
+        self.carrier_sums.collect(model, &(0..model.masses()), (start, end), stages, ContactHeights::Interpolated);
         let motion = self.two_stage_dense(model, carrier, start, span).summed_motion(theta, &self.carrier_sums);
         let (point, weights) = (carrier.at(span.at(theta)), piecewise_linear(theta));
         let of_elements = |row: &MaxwellRow| self.two_stages.maxwell.weights_between(row, 1, weights);

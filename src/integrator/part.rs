@@ -92,7 +92,8 @@ impl PartOfStep {
     pub fn on_carrier(&mut self, step: &mut LayerStep<'_>, part: &Model, theta: f64) -> (f64, f64) {
         let (integrator, ends) = (step.integrator, (step.start, step.integrator.end()));
         let stages = &integrator.stages()[..integrator.pair.stages()];
-        self.carrier_sums.collect(step.model, &self.masses, ends, stages);
+        let heights = integrator.pair.contact_heights();
+        self.carrier_sums.collect(step.model, &self.masses, ends, stages, heights);
         let point = step.carrier.at(step.span.at(theta));
         let (dense, workspace) = step.dense(&self.masses);
         let motion = dense.summed_motion(theta, &self.carrier_sums, workspace);

@@ -132,30 +132,19 @@ impl<'a> TwoStageDense<'a> {
 
     /// The sums of the elongations and of the velocities of all masses at the fraction `theta`, from the `sums` of the step.
     pub(super) fn summed_motion(&self, theta: f64, sums: &CarrierSums) -> Motion {
-        let (n, weights) = (sums.free, piecewise_linear(theta));
+        let (n, weights) = (sums.summed, piecewise_linear(theta));
         let moved = self.carrier.moved(self.span.start, theta * self.span.length);
         let elongation = |axis: &AxisSums, moved: f64, in_step: f64| {
             let ([start, end], middle) = (axis.elongation, GAMMA * self.span.length * axis.velocity[1]);
             start + (parabola(theta, middle, n * in_step + (end - start)) - n * moved)
         };
-        let mut all = Motion {
+        Motion {
             elongation: (
                 elongation(&sums.x, moved.0, self.carrier_moved.0),
                 elongation(&sums.z, moved.1, self.carrier_moved.1),
             ),
             velocity: (dot(&weights, &sums.x.velocity), dot(&weights, &sums.z.velocity)),
-        };
-        let here = self.carrier.at(self.span.at(theta));
-        for i in (0..self.model.masses()).filter(|&i| self.start.mode[i].in_contact()) {
-            let (start, end) = (self.start.elongation_x[i], self.end.elongation_x[i]);
-            let middle = GAMMA * self.span.length * self.first.velocity_x[i];
-            let x = start + (parabola(theta, middle, self.carrier_moved.0 + (end - start)) - moved.0);
-            let v_x = weights[0] * self.start.velocity_x[i]
-                + weights[1] * self.first.velocity_x[i]
-                + weights[2] * self.end.velocity_x[i];
-            all.add(&self.on_profile(i, (x, v_x), &here).motion());
         }
-        all
     }
 }
 
