@@ -185,9 +185,15 @@ impl Contacts<'_> {
             least
         };
         let (normal, margin) = (range(Limit::Normal), range(Limit::Margin));
-        let falls = |i: usize| normal[i] < -self.tolerance.force || margin[i] < -self.tolerance.margin(modes[i]);
-        let in_contact = (0..modes.len().min(BLOCK)).filter(|&i| modes[i].in_contact());
-        in_contact.filter(|&i| falls(i)).fold(0, |suspects, i| suspects | 1 << i)
+        let mut falls = [false; BLOCK];
+        for ((falls, mode), (normal, margin)) in falls.iter_mut().zip(modes).zip(normal.iter().zip(&margin)) {
+            let beyond = (*normal < -self.tolerance.force) | (*margin < -self.tolerance.margin(*mode));
+            *falls = mode.in_contact() & beyond;
+        }
+        if !falls.contains(&true) {
+            return 0;
+        }
+        falls.iter().rev().fold(0, |suspects, &falls| suspects << 1 | u64::from(falls))
     }
 
     /// The masses in contact that may change their modes within the step, from `first` on in a block.

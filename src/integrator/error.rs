@@ -307,18 +307,18 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
 
     /// The sums of squares of the error of the carrier's displacement, over the masses in contact and over the free ones.
     fn carrier_squares(&self, error: &CarrierError, tolerance: &Tolerance) -> (f64, f64) {
-        let (mut in_contact, mut free) = (0.0, 0.0);
-        let position = error.position;
+        let (position, end) = (error.position, self.end);
         if position.0 == 0.0 && position.1 == 0.0 {
-            return (in_contact, free);
+            return (0.0, 0.0);
         }
-        let end = self.end;
-        for (mode, (x, z)) in end.mode.iter().zip(end.elongation_x.iter().zip(&end.elongation_z)) {
-            let square = position.0 * position.0 / tolerance.of_position(*x)
-                + position.1 * position.1 / tolerance.of_position(*z);
-            if mode.in_contact() { in_contact += square } else { free += square }
+        let of_mass =
+            |x, z| square(position.0) / tolerance.of_position(x) + square(position.1) / tolerance.of_position(z);
+        let all = sum_of_pairs(&end.elongation_x, &end.elongation_z, of_mass);
+        if self.contacts.len() == end.mode.len() {
+            return (all, 0.0);
         }
-        (in_contact, free)
+        let in_contact = self.contacts.iter().map(|&i| of_mass(end.elongation_x[i], end.elongation_z[i])).sum::<f64>();
+        (in_contact, (all - in_contact).max(0.0))
     }
 
     /// Collects the errors of positions and velocities relative to the carrier. A mass that sticks through the step has none

@@ -179,6 +179,8 @@ pub(super) struct StageSolver {
     friction: Friction,
     /// By kind of link.
     pub laws: [StageLaw; 4],
+    /// The modes of which the following are lists.
+    listed: Vec<Mode>,
     /// The masses in contact, in their order.
     contacts: Vec<usize>,
     /// Those of them that slip, in their order; without any the equations are linear.
@@ -219,6 +221,7 @@ impl StageSolver {
             slip_speed: vec![0.0; k],
             friction: Friction::Held,
             laws: [StageLaw::default(); 4],
+            listed: vec![Mode::Free; k],
             contacts: Vec::with_capacity(k),
             slips: Vec::with_capacity(k),
             slip_runs: Vec::with_capacity(k.div_ceil(2)),
@@ -237,29 +240,37 @@ impl StageSolver {
     pub(super) fn begin(&mut self, model: &Model, state: &State, beta: f64, friction: Friction) {
         self.friction = friction;
         self.state.mode.copy_from_slice(&state.mode);
-        self.contacts.clear();
-        self.contacts.extend((0..state.mode.len()).filter(|&i| state.mode[i].in_contact()));
         self.state.surface.copy_from_slice(&state.surface);
         self.set_laws(model, beta);
-        self.collect_slips(model, beta);
+        self.hold_modes(model, beta);
     }
 
-    /// Lists the slipping masses and assembles what is constant while these modes are held.
-    fn collect_slips(&mut self, model: &Model, beta: f64) {
-        let state = &self.state;
-        self.slips.clear();
-        self.slips.extend(self.contacts.iter().filter(|&&i| state.mode[i].slips()));
-        self.slip_runs.clear();
-        let runs = self.slips.chunk_by(|&i, &next| i + 1 == next);
-        self.slip_runs.extend(runs.map(|run| run[0]..run[0] + run.len()));
-        if model.friction_depends_on_speed() {
-            self.rate.resize(self.slips.len(), RateFriction::default());
+    /// Assembles what is constant while these modes are held.
+    fn hold_modes(&mut self, model: &Model, beta: f64) {
+        if self.listed != self.state.mode {
+            self.list_contacts(model);
         }
         self.assemble_constant_rows(model, beta);
         self.factors = Factors::Outdated;
         if self.slips.is_empty() {
             self.system.factor_uncoupled();
             self.factor_border(model, beta);
+        }
+    }
+
+    /// Lists the masses in contact, and those of them that slip.
+    fn list_contacts(&mut self, model: &Model) {
+        let modes = &self.state.mode;
+        self.listed.copy_from_slice(modes);
+        self.contacts.clear();
+        self.contacts.extend((0..modes.len()).filter(|&i| modes[i].in_contact()));
+        self.slips.clear();
+        self.slips.extend(self.contacts.iter().filter(|&&i| modes[i].slips()));
+        self.slip_runs.clear();
+        let runs = self.slips.chunk_by(|&i, &next| i + 1 == next);
+        self.slip_runs.extend(runs.map(|run| run[0]..run[0] + run.len()));
+        if model.friction_depends_on_speed() {
+            self.rate.resize(self.slips.len(), RateFriction::default());
         }
     }
 

@@ -24,7 +24,7 @@ impl StageSolver {
             }
         }
         if changed {
-            self.collect_slips(model, point.beta);
+            self.hold_modes(model, point.beta);
             self.evaluate(model, point);
         }
         changed

@@ -48,7 +48,7 @@ const MOST_OF_EXPONENT: usize = 4;
 fn exponent(bytes: &[u8], from: usize) -> Option<(i32, usize)> {
     let signs = usize::from(matches!(bytes.get(from), Some(b'+' | b'-')));
     let (digits, end) = Digits::read(bytes, from + signs);
-    let is_exponent = digits.count > 0 && digits.points == 0 && end - from <= MOST_OF_EXPONENT;
+    let is_exponent = digits.count > 0 && !digits.has_point && end - from <= MOST_OF_EXPONENT;
     let sign = if bytes.get(from) == Some(&b'-') { -1 } else { 1 };
     is_exponent.then_some((sign * i32::try_from(digits.whole).ok()?, end))
 }
@@ -56,31 +56,40 @@ fn exponent(bytes: &[u8], from: usize) -> Option<(i32, usize)> {
 /// A run of digits with or without a point.
 #[derive(Clone, Copy, Debug, Default)]
 struct Digits {
-    /// The digits without the point as a number; the largest where it does not fit.
+    /// The digits without the point as a number, where there are at most [`MOST_DIGITS`](Self::MOST_DIGITS).
     whole: u64,
     /// Number of digits.
-    count: i32,
-    /// Number of digits behind a point.
+    count: usize,
+    /// Number of digits behind the point.
     behind: i32,
-    /// Number of points: in a number at most one.
-    points: i32,
+    has_point: bool,
 }
 
 impl Digits {
+    /// As many digits always fit.
+    const MOST_DIGITS: usize = 19;
+
     /// The digits in `bytes` from `from` on, and where they end.
     fn read(bytes: &[u8], from: usize) -> (Self, usize) {
-        let (mut digits, mut end) = (Self::default(), from);
-        while let Some(byte @ (b'0'..=b'9' | b'.')) = bytes.get(end) {
-            if *byte == b'.' {
-                digits.points += 1;
-            } else {
-                digits.whole = digits.whole.saturating_mul(10).saturating_add(u64::from(byte - b'0'));
-                digits.count += 1;
-                digits.behind += i32::from(digits.points > 0);
-            }
+        let mut digits = Self::default();
+        let point = digits.add(bytes, from);
+        if bytes.get(point) != Some(&b'.') {
+            return (digits, point);
+        }
+        let before = digits.count;
+        let end = digits.add(bytes, point + 1);
+        (Self { has_point: true, behind: (digits.count - before) as i32, ..digits }, end)
+    }
+
+    /// Adds the digits in `bytes` from `from` on, and returns where they end.
+    fn add(&mut self, bytes: &[u8], from: usize) -> usize {
+        let mut end = from;
+        while let Some(byte @ b'0'..=b'9') = bytes.get(end) {
+            self.whole = self.whole.wrapping_mul(10).wrapping_add(u64::from(byte - b'0'));
             end += 1;
         }
-        (digits, end)
+        self.count += end - from;
+        end
     }
 
     /// The number times ten to the `exponent`, where one division or product of exact numbers gives it, which rounds as the
@@ -89,9 +98,9 @@ impl Digits {
         const MOST: u64 = 1 << f64::MANTISSA_DIGITS;
         let exponent = exponent - self.behind;
         let power = POWERS.get(exponent.unsigned_abs() as usize)?;
-        let is_number = self.count > 0 && self.points <= 1 && self.whole <= MOST;
+        let is_exact = (1..=Self::MOST_DIGITS).contains(&self.count) && self.whole <= MOST;
         let whole = self.whole as f64;
-        is_number.then_some(if exponent < 0 { whole / power } else { whole * power })
+        is_exact.then_some(if exponent < 0 { whole / power } else { whole * power })
     }
 }
 
