@@ -17,7 +17,8 @@ pub fn longest_unstable(model: &Model, start: &State, state: &State, forces: &Fo
         return longest(weakening);
     }
     let slipping = state.mode.iter().enumerate().filter(|(_, mode)| mode.slips());
-    let fastest = slipping.map(|(i, _)| growth(model, state, forces, i)).fold(0.0, f64::max);
+    let growths = slipping.map(|(i, _)| growth(model, state, forces, i));
+    let fastest = growths.filter(|&growth| growth > 0.0).fold(0.0, f64::max);
     longest(weakening + fastest)
 }
 
@@ -136,13 +137,13 @@ impl<S: Fn(usize) -> f64> Chain<'_, S> {
 /// other links and the Maxwell elements only reduce the rate. Where D < 0, D counts as 0: [`weakening`] accounts for it.
 fn growth(model: &Model, state: &State, forces: &Forces, i: usize) -> f64 {
     let surface = &state.surface[i];
-    let driving = surface.curvature * forces.on_mass_z[i];
-    if driving <= 0.0 {
+    let [x, z] = [LinkKind::Horizontal, LinkKind::Vertical].map(|kind| &model.links[kind as usize]);
+    let beyond_x = surface.curvature * forces.on_mass_z[i] - x.stiffness;
+    if beyond_x <= 0.0 {
         return 0.0;
     }
     let square = surface.slope * surface.slope;
-    let [x, z] = [LinkKind::Horizontal, LinkKind::Vertical].map(|kind| &model.links[kind as usize]);
-    let excess = driving - x.stiffness - square * z.stiffness;
+    let excess = beyond_x - square * z.stiffness;
     if excess <= 0.0 {
         return 0.0;
     }

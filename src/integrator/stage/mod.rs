@@ -25,7 +25,7 @@ use crate::math::{BLOCK, BlockTridiagonal, Spline, weighted_sum, with_widest_vec
 use crate::model::{
     CarrierPoint, ContactForces, Forces, FrictionPower, LinkKind, LinkMotion, Mode, Model, State, SurfacePoint,
 };
-use newton::{Climb, NeighbourWeights, RateFriction, RowShares, largest};
+use newton::{Climb, NeighbourWeights, RateFriction, RowShares, largest_of};
 
 pub(super) use border::{BodyHistory, Border};
 pub(super) use newton::SlippingMass;
@@ -185,7 +185,9 @@ pub(super) struct StageSolver {
     contacts: Vec<usize>,
     /// Those of them that slip, in their order; without any the equations are linear.
     slips: Vec<usize>,
-    /// The same as runs of masses that follow one another.
+    /// Those of them that stick.
+    sticks: Vec<usize>,
+    /// The slipping ones as runs of masses that follow one another.
     slip_runs: Vec<Range<usize>>,
     /// The rate-dependent part of their friction; empty where the scene has none.
     rate: Vec<RateFriction>,
@@ -224,6 +226,7 @@ impl StageSolver {
             listed: vec![Mode::Free; k],
             contacts: Vec::with_capacity(k),
             slips: Vec::with_capacity(k),
+            sticks: Vec::with_capacity(k),
             slip_runs: Vec::with_capacity(k.div_ceil(2)),
             rate: Vec::with_capacity(if model.friction_depends_on_speed() { k } else { 0 }),
             rows: vec![RowShares::default(); k],
@@ -266,6 +269,8 @@ impl StageSolver {
         self.contacts.extend((0..modes.len()).filter(|&i| modes[i].in_contact()));
         self.slips.clear();
         self.slips.extend(self.contacts.iter().filter(|&&i| modes[i].slips()));
+        self.sticks.clear();
+        self.sticks.extend(self.contacts.iter().filter(|&&i| modes[i] == Mode::Stick));
         self.slip_runs.clear();
         let runs = self.slips.chunk_by(|&i, &next| i + 1 == next);
         self.slip_runs.extend(runs.map(|run| run[0]..run[0] + run.len()));
@@ -428,11 +433,9 @@ impl StageSolver {
         let (state, history) = (&mut self.state, &self.history);
         set_elongations(&mut state.elongation_x, &history.elongation_x, beta, &state.velocity_x, point.integrated.0);
         set_elongations(&mut state.elongation_z, &history.elongation_z, beta, &state.velocity_z, point.integrated.1);
-        if self.slips.len() < self.contacts.len() {
-            for &i in self.contacts.iter().filter(|&&i| state.mode[i] == Mode::Stick) {
-                state.elongation_x[i] = history.elongation_x[i] - point.moved;
-                state.elongation_z[i] = state.surface[i].height - model.rest_z[i] - w;
-            }
+        for &i in &self.sticks {
+            state.elongation_x[i] = history.elongation_x[i] - point.moved;
+            state.elongation_z[i] = state.surface[i].height - model.rest_z[i] - w;
         }
         for slips in &self.slip_runs {
             let (surface, e_z) = (&mut state.surface[slips.clone()], &mut state.elongation_z[slips.clone()]);
@@ -454,12 +457,14 @@ impl StageSolver {
     /// Adds the corrections to the velocities, which ends an iteration, and returns the largest, m/s.
     fn correct(&mut self) -> f64 {
         self.iterations += 1;
-        let velocities = self.state.velocity_x.iter_mut().zip(&mut self.state.velocity_z);
-        for ((v_x, v_z), correction) in velocities.zip(&self.system.right) {
-            *v_x += correction.x;
-            *v_z += correction.y;
-        }
-        largest(&self.system.right)
+        let (State { velocity_x, velocity_z, .. }, corrections) = (&mut self.state, &self.system.right[..]);
+        with_widest_vectors(
+            #[inline(always)]
+            || {
+                add_corrections(velocity_x, velocity_z, corrections);
+                largest_of(corrections)
+            },
+        )
     }
 
     /// Writes the rates of the solved stage.
@@ -499,7 +504,7 @@ impl StageSolver {
 
     /// Sets what differs of sticking masses from slipping ones.
     fn set_stick_rates(&self, model: &Model, rates: &mut Rates) {
-        for &i in self.contacts.iter().filter(|&&i| self.state.mode[i] == Mode::Stick) {
+        for &i in &self.sticks {
             let surface = &self.state.surface[i];
             let contact = self.forces.contact(model, i, 0.0, surface);
             (rates.acceleration_x[i], rates.acceleration_z[i]) = (0.0, 0.0);
@@ -527,6 +532,15 @@ impl StageSolver {
             }
         }
         self.friction_power = friction_power;
+    }
+}
+
+/// Adds to each velocity its correction.
+#[inline(always)]
+fn add_corrections(v_x: &mut [f64], v_z: &mut [f64], corrections: &[Vector2<f64>]) {
+    for ((v_x, v_z), correction) in v_x.iter_mut().zip(v_z).zip(corrections) {
+        *v_x += correction.x;
+        *v_z += correction.y;
     }
 }
 

@@ -51,10 +51,8 @@ impl StageSolver {
 
     /// A mass that stuck at the stage before goes on from rest: friction has taken up its momentum.
     pub(super) fn start_sticks_from_rest(&mut self) {
-        for &i in &self.contacts {
-            if self.state.mode[i] == Mode::Stick {
-                self.history.velocity_x[i] = 0.0;
-            }
+        for &i in &self.sticks {
+            self.history.velocity_x[i] = 0.0;
         }
     }
 }

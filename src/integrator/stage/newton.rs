@@ -24,7 +24,12 @@ impl StageSolver {
     /// inertia alone.
     pub(super) fn residuals(&mut self, model: &Model, beta: f64) -> f64 {
         self.set_residuals(model, beta);
-        let of_masses = largest(&self.system.right) * beta / model.mass;
+        let right = &self.system.right;
+        let largest = with_widest_vectors(
+            #[inline(always)]
+            || largest_of(right),
+        );
+        let of_masses = largest * beta / model.mass;
         self.border.as_ref().map_or(of_masses, |border| of_masses.max(border.largest_residual(beta)))
     }
 
@@ -85,11 +90,8 @@ impl StageSolver {
             self.assemble_free_rows(model, beta, from..to);
             from = next;
         }
-        for n in 0..self.contacts.len() {
-            let i = self.contacts[n];
-            if !self.state.mode[i].slips() {
-                self.hold(i);
-            }
+        for n in 0..self.sticks.len() {
+            self.hold(self.sticks[n]);
         }
     }
 
@@ -288,16 +290,9 @@ fn set_linear_residuals(
     }
 }
 
-/// The largest of all numbers; NaN where one is not finite.
-pub(super) fn largest(values: &[Vector2<f64>]) -> f64 {
-    with_widest_vectors(
-        #[inline(always)]
-        || largest_of(values),
-    )
-}
-
+/// The largest of all numbers; NaN where one is not finite. For use with vector instructions.
 #[inline(always)]
-fn largest_of(values: &[Vector2<f64>]) -> f64 {
+pub(super) fn largest_of(values: &[Vector2<f64>]) -> f64 {
     // A comparison ignores NaN, the sum does not.
     let greater = |a: f64, b: f64| if a > b { a } else { b };
     let (mut largest, mut sum) = ([Vector2::zeros(); LANES], [Vector2::zeros(); LANES]);
