@@ -349,17 +349,17 @@ const PASSED: f64 = 0.05;
 
 /// Whether an event is due at the end of a step: `state`, `rates` and the carrier's position `at` are those there.
 pub fn is_due(model: &Model, state: &State, rates: &Rates, at: CarrierPosition, tolerance: &EventTolerance) -> bool {
-    (0..model.masses()).any(|i| match state.mode[i] {
-        Mode::Free => {
-            let surface = model.surface_at(model.rest_x[i] + (at.profile_position + state.elongation_x[i]));
-            let gap = model.rest_z[i] + (at.w + state.elongation_z[i]) - surface.height;
-            gap < -PASSED * tolerance.gap && state.velocity_z[i] < surface.slope * state.velocity_x[i]
-        }
-        mode => {
-            rates.normal[i] < -PASSED * tolerance.force
-                || (model.has_friction && rates.margin[i] < -PASSED * tolerance.margin(mode))
-        }
-    })
+    let limits = rates.normal.iter().zip(&rates.margin);
+    // Without a branch, so that the loop becomes vector instructions. Those of free masses are beyond no limit.
+    let of_contacts = state.mode.iter().zip(limits).fold(false, |due, (mode, (normal, margin))| {
+        due | (*normal < -PASSED * tolerance.force) | (*margin < -PASSED * tolerance.margin(*mode))
+    });
+    let touches = |i: usize| {
+        let surface = model.surface_at(model.rest_x[i] + (at.profile_position + state.elongation_x[i]));
+        let gap = model.rest_z[i] + (at.w + state.elongation_z[i]) - surface.height;
+        gap < -PASSED * tolerance.gap && state.velocity_z[i] < surface.slope * state.velocity_x[i]
+    };
+    of_contacts || (0..model.masses()).any(|i| state.mode[i] == Mode::Free && touches(i))
 }
 
 #[cfg(test)]

@@ -76,11 +76,10 @@ pub(super) struct ElementWeights {
     pub rates: [f64; STAGES],
 }
 
-/// Where the heights of the masses in contact come from within a step.
+/// Where the heights of the masses in contact come from within a step (docs/theory.md, section 5).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ContactHeights {
-    /// From those at both ends and from ż at the stages, as the heights of free masses do. At tolerances of 1e-3 and coarser F_z
-    /// differs from that with the masses on the profile by less than half the tolerance.
+    /// From those at the ends of the step and from ż at its stages, as the heights of free masses do.
     Interpolated,
     /// From the profile.
     OfProfile,

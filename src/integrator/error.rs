@@ -166,8 +166,8 @@ pub(super) struct ErrorWorkspace {
 
 impl ErrorWorkspace {
     pub(super) fn new(model: &Model) -> Self {
-        let zero = vec![0.0; model.masses()];
-        Self { x: zero.clone(), z: zero.clone(), v_x: zero.clone(), v_z: zero.clone(), force: zero }
+        let zeros = || vec![0.0; model.masses()];
+        Self { x: zeros(), z: zeros(), v_x: zeros(), v_z: zeros(), force: zeros() }
     }
 }
 

@@ -45,7 +45,7 @@ struct KindSums<const STAGES: usize> {
     /// h Q_ij, N s/m.
     rate: [[f64; STAGES]; STAGES],
     error_rate: [f64; STAGES],
-    /// P_i by stage and link, N; empty where the links have no elements.
+    /// P_i by implicit stage and link, N; empty where the links have no elements.
     start: [Vec<f64>; STAGES],
     /// The part of the embedded error estimate that a_0 makes, by link, N.
     error_start: Vec<f64>,
@@ -198,7 +198,7 @@ impl<const STAGES: usize> KindSums<STAGES> {
         Self {
             rate: [[0.0; STAGES]; STAGES],
             error_rate: [0.0; STAGES],
-            start: std::array::from_fn(|_| vec![0.0; links]),
+            start: std::array::from_fn(|stage| vec![0.0; if stage == 0 { 0 } else { links }]),
             error_start: vec![0.0; links],
         }
     }

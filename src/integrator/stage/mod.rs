@@ -310,6 +310,9 @@ impl StageSolver {
         let of_star = std::iter::once((1.0, &star[..]));
         let of_stages = earlier.map(|(weight, stage)| (weight, &stage.acceleration_x[..]));
         weighted_sum(&mut guess.velocity_x, of_star.chain(of_stages));
+        if self.slips.len() == guess.mode.len() {
+            return;
+        }
         for ((velocity, start), mode) in guess.velocity_x.iter_mut().zip(&start.velocity_x).zip(&guess.mode) {
             *velocity = if mode.slips() { *velocity } else { *start };
         }
