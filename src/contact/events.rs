@@ -175,16 +175,11 @@ impl Contacts<'_> {
     fn suspects(&self, first: usize) -> u64 {
         let modes = &self.step.start.state.mode[first..];
         let overshoot = if self.carrier_swings() { self.step.interpolation.overshoot() } else { 0.0 };
-        let range = |limit: Limit| {
+        let least = |limit: Limit| {
             let stages = self.step.stages.iter().map(|stage| &limit.of(stage)[first..]);
-            let (mut least, mut most) = ([f64::MAX; BLOCK], [f64::MIN; BLOCK]);
-            widen(&mut least, &mut most, stages);
-            if overshoot > 0.0 {
-                least.iter_mut().zip(&most).for_each(|(least, most)| *least -= overshoot * (most - *least));
-            }
-            least
+            least_within(stages, overshoot)
         };
-        let (normal, margin) = (range(Limit::Normal), range(Limit::Margin));
+        let (normal, margin) = (least(Limit::Normal), least(Limit::Margin));
         let mut falls = [false; BLOCK];
         for ((falls, mode), (normal, margin)) in falls.iter_mut().zip(modes).zip(normal.iter().zip(&margin)) {
             let beyond = (*normal < -self.tolerance.force) | (*margin < -self.tolerance.margin(*mode));
@@ -329,19 +324,22 @@ fn vertex(before: (f64, f64), here: (f64, f64), after: (f64, f64)) -> Option<(f6
     (bend > 0.0 && place > before.0 && place < after.0 && value.is_finite()).then_some((place, value))
 }
 
-/// Widens the ranges from `least` to `most` by these `values`.
-fn widen<'a>(least: &mut [f64; BLOCK], most: &mut [f64; BLOCK], values: impl Iterator<Item = &'a [f64]>) {
+/// The least value of each mass at the `stages`, less the share `overshoot` of the range of its values there.
+fn least_within<'a>(stages: impl Iterator<Item = &'a [f64]>, overshoot: f64) -> [f64; BLOCK] {
     with_widest_vectors(
         #[inline(always)]
         || {
-            for values in values {
-                for ((least, most), &value) in least.iter_mut().zip(&mut *most).zip(values) {
+            let (mut least, mut most) = ([f64::MAX; BLOCK], [f64::MIN; BLOCK]);
+            for values in stages {
+                for ((least, most), &value) in least.iter_mut().zip(&mut most).zip(values) {
                     *least = if value < *least { value } else { *least };
                     *most = if value > *most { value } else { *most };
                 }
             }
+            least.iter_mut().zip(&most).for_each(|(least, most)| *least -= overshoot * (most - *least));
+            least
         },
-    );
+    )
 }
 
 /// Share of an event tolerance by which a limit must be passed at the end of a step for an event to be due.

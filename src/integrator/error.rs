@@ -1,12 +1,14 @@
 //! The error test of a step: its tolerances and its embedded error estimate (docs/theory.md, section 9).
 
+use std::hint::select_unpredictable;
+
 use super::largest::Largest;
 use super::maxwell::Maxwell;
 use super::rates::Rates;
 use super::tableau::Tableau;
-use crate::math::{dot, sum_of, sum_of_pairs, sum_of_triples, weighted_sum};
+use crate::math::{dot, sum_of, sum_of_pairs, sum_of_triples, weighted_sum, with_widest_vectors};
 use crate::model::Axis;
-use crate::model::{CarrierPoint, Exchange, LinkKind, Mode, Model, State};
+use crate::model::{CarrierPoint, Exchange, LinkKind, Model, State};
 
 /// The tolerances of the local error of a step. The error of each quantity is divided by absolute + relative · size.
 #[derive(Clone, Debug, PartialEq)]
@@ -183,6 +185,8 @@ pub(super) struct ErrorTest<'a, const STAGES: usize> {
     pub end: &'a State,
     /// The masses in contact.
     pub contacts: &'a [usize],
+    /// Those of them that stick at the end.
+    pub sticks: &'a [usize],
     /// The powers through the surface and the carrier at the stages, where energies are computed.
     pub exchange: Option<&'a [Exchange]>,
     /// What the errors of forces and energies are measured by.
@@ -335,13 +339,17 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
         sum(&mut workspace.z, |stage| &stage.velocity_z, position.1);
         sum(&mut workspace.v_x, |stage| &stage.acceleration_x, velocity.0);
         sum(&mut workspace.v_z, |stage| &stage.acceleration_z, velocity.1);
-        for &i in self.contacts {
-            if self.end.mode[i] == Mode::Stick && self.stages[1].velocity_x[i] == 0.0 {
-                (workspace.x[i], workspace.v_x[i]) = (0.0, 0.0);
-            }
-            let slope = self.end.surface[i].slope;
-            (workspace.z[i], workspace.v_z[i]) = (slope * workspace.x[i], slope * workspace.v_x[i]);
+        for &i in self.sticks.iter().filter(|&&i| self.stages[1].velocity_x[i] == 0.0) {
+            (workspace.x[i], workspace.v_x[i]) = (0.0, 0.0);
         }
+        let ErrorWorkspace { x, z, v_x, v_z, .. } = workspace;
+        with_widest_vectors(
+            #[inline(always)]
+            || {
+                follow_slopes(z, x, self.end);
+                follow_slopes(v_z, v_x, self.end);
+            },
+        );
     }
 
     /// The sum of squares of the errors `force` (N) of the Maxwell elements' forces of the links of `kind`.
@@ -395,6 +403,17 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
             let allowed = tolerance.position + relative * (per_force * force(e, v, carrier_rate, i)).abs();
             error * error / (allowed * allowed)
         })
+    }
+}
+
+/// Makes the errors along z of masses in contact those along x times the slope under them.
+#[inline(always)]
+fn follow_slopes(z: &mut [f64], x: &[f64], end: &State) {
+    // Slices of one length, so that an index into one of them is one into all.
+    let k = z.len();
+    let (x, mode, surface) = (&x[..k], &end.mode[..k], &end.surface[..k]);
+    for i in 0..k {
+        z[i] = select_unpredictable(mode[i].in_contact(), surface[i].slope * x[i], z[i]);
     }
 }
 

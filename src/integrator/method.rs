@@ -125,6 +125,7 @@ impl<const N: usize> RungeKutta<N> {
             carrier: &stages.carrier[..N],
             end: &stages.solver.state,
             contacts: stages.solver.contacts(),
+            sticks: stages.solver.sticks(),
             exchange: stages.tracks_energy.then_some(&stages.exchange[..]),
             largest: step.start.largest.with(&stages.solver.forces),
         };

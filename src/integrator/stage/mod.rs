@@ -298,6 +298,11 @@ impl StageSolver {
         &self.contacts
     }
 
+    /// Those of them that stick.
+    pub(super) fn sticks(&self) -> &[usize] {
+        &self.sticks
+    }
+
     /// Guesses the velocities: of the slipping masses the starred ones and the sum of the accelerations at `earlier` stages, with
     /// their weights, s; of the others those of `start`.
     pub(super) fn guess<'a>(&mut self, start: &State, earlier: impl Iterator<Item = (f64, &'a Rates)>) {
