@@ -25,8 +25,8 @@ fn main() -> ExitCode {
 }
 
 /// The GNU C library gives blocks from 128 KiB on back to the system when they are freed, and the pages of the next one are new
-/// again: a third of those that a short run with a measured profile touches. Freeing a larger block raises that bound to its
-/// size (`man 3 mallopt`, `M_MMAP_THRESHOLD`). Nothing is written to the block, so it takes no memory.
+/// again, which costs more than to fill them. Freeing a larger block raises that bound to its size (`man 3 mallopt`,
+/// `M_MMAP_THRESHOLD`). Nothing is written to the block, so it takes no memory.
 fn keep_freed_memory() {
     drop(black_box(Vec::<u8>::with_capacity(KEPT_BLOCKS)));
 }

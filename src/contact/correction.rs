@@ -140,15 +140,15 @@ impl EndCorrection {
 
     /// The lateness of the touch of free mass `i`, if there is one.
     fn detect_touch(&mut self, step: &TwoStageDense<'_>, i: usize) -> Option<Lateness> {
-        let (height, before) = (step.height(i, 1.0), step.height(i, TwoStageDense::FIRST_STAGE));
-        if height.min(before) > self.profile.z_max {
+        let (height, highest) = (step.end_height(i), self.profile.z_max);
+        if height > highest && step.height(i, TwoStageDense::FIRST_STAGE) > highest {
             return None;
         }
-        let x = step.position(i, 1.0);
+        let x = step.end_position(i);
         let surface = step.model.surface_at(x);
         let gap = height - surface.height;
         if gap >= 0.0 {
-            return self.detect_dip(step, i, gap, (x, height - before));
+            return self.detect_dip(step, i, gap, (x, height));
         }
         self.touches.push(i);
         let closing = surface.slope * step.end.velocity_x[i] - step.end.velocity_z[i];
@@ -158,9 +158,10 @@ impl EndCorrection {
         Some(Lateness { length: -gap, time })
     }
 
-    /// A mass that is above the profile at the end, at `x` and by `gap`, and below it at the first stage has passed through
-    /// an asperity: the whole penetration is an error. It has risen by `rise` since.
-    fn detect_dip(&self, step: &TwoStageDense<'_>, i: usize, gap: f64, (x, rise): (f64, f64)) -> Option<Lateness> {
+    /// A mass that is above the profile at the end, at `x` and `height` and by `gap`, and below it at the first stage has passed
+    /// through an asperity: the whole penetration is an error.
+    fn detect_dip(&self, step: &TwoStageDense<'_>, i: usize, gap: f64, (x, height): (f64, f64)) -> Option<Lateness> {
+        let rise = height - step.height(i, TwoStageDense::FIRST_STAGE);
         let distance = (x - step.position(i, TwoStageDense::FIRST_STAGE)).abs();
         if gap > rise + distance * self.profile.slope_max_abs {
             return None;
@@ -286,7 +287,7 @@ impl<'a> Correction<'a> {
         let (model, dense) = (self.step.model, self.dense());
         let theta = instant_of_touch(&dense, i);
         let (x, velocity, free) = (dense.position(i, theta), dense.velocity(i, theta), dense.velocity(i, 1.0));
-        let from = (dense.position(i, 1.0), dense.height(i, 1.0));
+        let from = (dense.end_position(i), dense.end_height(i));
         let slope = model.surface_at(x).slope;
         if velocity.1 >= slope * velocity.0 {
             return self.lift_onto_profile(i, from);

@@ -32,6 +32,8 @@ pub struct TwoStageDense<'a> {
     carrier_start: (f64, f64),
     /// Displacement of the carrier through the step, m.
     carrier_moved: (f64, f64),
+    /// u as a position on the profile and w at the end, m.
+    carrier_end: (f64, f64),
 }
 
 impl<'a> TwoStageDense<'a> {
@@ -49,7 +51,8 @@ impl<'a> TwoStageDense<'a> {
         let at = carrier.at(span.start);
         let carrier_start = (carrier.profile_position + at.du, carrier.w + at.dw);
         let carrier_moved = carrier.moved(span.start, span.length);
-        Self { model, carrier, span, start, first, end, last, carrier_start, carrier_moved }
+        let carrier_end = (carrier_start.0 + carrier_moved.0, carrier_start.1 + carrier_moved.1);
+        Self { model, carrier, span, start, first, end, last, carrier_start, carrier_moved, carrier_end }
     }
 
     /// The fraction of the step at which its first stage lies.
@@ -71,6 +74,18 @@ impl<'a> TwoStageDense<'a> {
         let middle = GAMMA * self.span.length * self.first.velocity_z[i];
         self.model.rest_z[i]
             + (self.carrier_start.1 + (start + parabola(theta, middle, self.carrier_moved.1 + (end - start))))
+    }
+
+    /// The position of mass `i` on the profile at the end of the step, m.
+    #[inline(always)]
+    pub fn end_position(&self, i: usize) -> f64 {
+        self.model.rest_x[i] + (self.carrier_end.0 + self.end.elongation_x[i])
+    }
+
+    /// The height of mass `i` above the profile's datum at the end of the step, m.
+    #[inline(always)]
+    pub fn end_height(&self, i: usize) -> f64 {
+        self.model.rest_z[i] + (self.carrier_end.1 + self.end.elongation_z[i])
     }
 
     /// The velocity of mass `i` at the fraction `theta` of the step, m/s.
