@@ -90,9 +90,9 @@ pub struct EndCorrection {
 }
 
 impl EndCorrection {
-    /// Workspace for the steps of `model`.
-    pub fn new(model: &Model) -> Self {
-        let k = model.masses();
+    /// Workspace for the time steps of `model`, if there `may_be` any.
+    pub fn new(model: &Model, may_be: bool) -> Self {
+        let k = if may_be { model.masses() } else { 0 };
         Self {
             touches: Vec::with_capacity(k),
             changed: Vec::with_capacity(k),

@@ -45,8 +45,8 @@ struct KindSums<const STAGES: usize> {
     /// h Q_ij, N s/m.
     rate: [[f64; STAGES]; STAGES],
     error_rate: [f64; STAGES],
-    /// P_i by implicit stage and link, N; empty where the links have no elements.
-    start: [Vec<f64>; STAGES],
+    /// P_i of the implicit stages one after another, by link, N; empty where the links have no elements.
+    start: Vec<f64>,
     /// The part of the embedded error estimate that a_0 makes, by link, N.
     error_start: Vec<f64>,
 }
@@ -91,7 +91,7 @@ impl<const STAGES: usize> Maxwell<STAGES> {
     pub(super) fn known_forces(&self, i: usize, stages: &[Rates], forces: &mut [Vec<f64>; 4]) {
         for kind in LinkKind::ALL.into_iter().filter(|&kind| self.has_elements(kind)) {
             let sums = &self.kinds[kind as usize];
-            let start = std::iter::once((1.0, &sums.start[i][..]));
+            let start = std::iter::once((1.0, sums.start_of(i)));
             weighted_sum(&mut forces[kind as usize], start.chain(by_rate(kind, &sums.rate[i][..i], stages)));
         }
     }
@@ -198,9 +198,15 @@ impl<const STAGES: usize> KindSums<STAGES> {
         Self {
             rate: [[0.0; STAGES]; STAGES],
             error_rate: [0.0; STAGES],
-            start: std::array::from_fn(|stage| vec![0.0; if stage == 0 { 0 } else { links }]),
+            start: vec![0.0; (STAGES - 1) * links],
             error_start: vec![0.0; links],
         }
+    }
+
+    /// P_i of stage `i`, an implicit one, by link, N.
+    fn start_of(&self, i: usize) -> &[f64] {
+        let links = self.error_start.len();
+        &self.start[(i - 1) * links..i * links]
     }
 
     fn collect<'a, Rows>(&mut self, a: &[f64], rows: impl Fn() -> Rows)
@@ -210,8 +216,9 @@ impl<const STAGES: usize> KindSums<STAGES> {
         let start = |i: usize| {
             rows().map(move |(row, coefficients)| (row.stiffness * coefficients.start[i], &a[row.range.clone()]))
         };
-        for i in 1..STAGES {
-            weighted_sum(&mut self.start[i], start(i));
+        let links = self.error_start.len();
+        for (i, sums) in (1..STAGES).zip(self.start.chunks_exact_mut(links)) {
+            weighted_sum(sums, start(i));
         }
         let error = rows().map(|(row, coefficients)| (row.stiffness * coefficients.error_start, &a[row.range.clone()]));
         weighted_sum(&mut self.error_start, error);

@@ -109,7 +109,7 @@ impl<const STAGES: usize> ContinuousWeights<STAGES> {
     }
 }
 
-/// ESDIRK5(4)7L[2]SA2 of C. A. Kennedy and M. H. Carpenter, *Diagonally implicit Runge-Kutta methods for stiff ordinary
+/// ESDIRK5(4)7L\[2\]SA2 of C. A. Kennedy and M. H. Carpenter, *Diagonally implicit Runge-Kutta methods for stiff ordinary
 /// differential equations* (Appl. Numer. Math. 146, 2019).
 pub const ESDIRK5: Tableau<7> = {
     const GAMMA: f64 = 23.0 / 125.0;
@@ -172,7 +172,7 @@ pub const ESDIRK5: Tableau<7> = {
     )
 };
 
-/// ESDIRK3(2)4L[2]SA of C. A. Kennedy and M. H. Carpenter, *Diagonally implicit Runge-Kutta methods for ordinary
+/// ESDIRK3(2)4L\[2\]SA of C. A. Kennedy and M. H. Carpenter, *Diagonally implicit Runge-Kutta methods for ordinary
 /// differential equations: a review* (NASA/TM-2016-219173).
 pub const ESDIRK3: Tableau<FOUR_STAGES> = {
     const GAMMA: f64 = 1767732205903.0 / 4055673282236.0;

@@ -177,7 +177,7 @@ impl Scene {
         }
     }
 
-    /// The mass of one point mass, kg: given, or ρ A H, or ρ A ℓ of a fitted [`Foundation`].
+    /// The mass of one point mass, kg: given, or ρ A H, or ρ A ℓ of a fitted [`Foundation`](super::Foundation).
     pub fn mass(&self) -> f64 {
         let depth = || self.foundation.as_ref().map(|foundation| foundation.depth).or(self.layer.thickness);
         let of_material = || {

@@ -1,6 +1,6 @@
 //! A simulation: joins the integrator and the contact laws into a run that follows the carrier's motion.
 //!
-//! - [`Simulation`] is the public face: a [run](run) and, where the group `solver` asks for its error, an
+//! - [`Simulation`] is the public face: a `run` and, where the group `solver` asks for its error, an
 //!   error-estimation run beside it.
 //! - `run` holds all that changes in a run (`RunState`), apart from its workspace; `state` saves and restores it.
 //! - `driver` is the skeleton of both methods: step, mode changes, step; `event` and `time_stepping` are where they

@@ -75,7 +75,7 @@ pub enum SimulationError {
     /// The carrier's motion is out of range.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
-    /// Parameters that do not go together, as [`Scene::check`] finds.
+    /// Parameters that do not go together, as [`Scene::check`](crate::scene::Scene::check) finds.
     #[error(transparent)]
     Scene(#[from] ParameterError),
 }

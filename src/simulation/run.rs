@@ -245,7 +245,7 @@ impl Run {
             interpolated: State::new(model.masses(), model.maxwell_variables()),
             interpolated_at: None,
             dense: DenseWorkspace::new(&model),
-            end_correction: EndCorrection::new(&model),
+            end_correction: EndCorrection::new(&model, settings.method != Method::Event),
             stall: Stall::new(&model),
             windows,
             may_open_windows: true,
