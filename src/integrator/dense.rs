@@ -201,6 +201,8 @@ impl DenseOutput<'_> {
     pub(super) fn summed_motion(&self, theta: f64, sums: &CarrierSums, workspace: &mut DenseWorkspace) -> Motion {
         workspace.set_weights(self, theta);
         let carrier = self.carrier_at(theta, workspace);
+        // Elongations are integrated as differences from the carrier's motion at the stages. But sticks along x and contacts along
+        // z are where the surface has them, and the carrier moves away from there on its own path.
         let elongation = |axis: &AxisSums, moving: f64, (integrated, moved): (f64, f64)| {
             let of_masses = axis.elongation[0] + dot(&workspace.integral, &axis.velocity);
             of_masses - moving * integrated - (sums.summed - moving) * moved
