@@ -53,7 +53,8 @@ impl ContactForces {
     /// Those of a slipping mass with a normal force (N) and velocities ẋ ≠ 0 and ż (m/s), but for f·t.
     pub fn of_slip(model: &Model, normal: f64, (velocity_x, velocity_z): (f64, f64)) -> Self {
         let limit = model.friction_coefficient * normal + model.shear_at_rest(normal);
-        Self { normal, tangential: 0.0, limit, q: (velocity_z / velocity_x).hypot(1.0) }
+        let slope = velocity_z / velocity_x;
+        Self { normal, tangential: 0.0, limit, q: (1.0 + slope * slope).sqrt() }
     }
 
     /// ∂T/∂F_N, 1, at the `speed` of slip, m/s.
