@@ -492,7 +492,8 @@ impl DenseWorkspace {
             if is_other_step {
                 relaxation.whole = Relaxation::new(h / tau, 1.0);
             }
-            let (here, whole) = (Relaxation::new(h / tau, theta), relaxation.whole);
+            let whole = relaxation.whole;
+            let here = if theta == 1.0 { whole } else { Relaxation::new(h / tau, theta) };
             let driven = std::array::from_fn(|power| h * (here.driven[power] - theta * whole.driven[power]));
             relaxation.start = here.decay - theta * whole.decay;
             relaxation.rate = step.interpolation.combined(&driven);

@@ -40,7 +40,12 @@ fn phi_functions(x: f64) -> [f64; 5] {
     } else {
         let mut term = INVERSE_FACTORIAL[5];
         for divisor in INVERSE_DIVISORS {
-            phi[4] += term;
+            let sum = phi[4] + term;
+            // Those after a term too small to count are smaller still.
+            if sum == phi[4] {
+                break;
+            }
+            phi[4] = sum;
             term *= -x * divisor;
         }
         for k in (1..5).rev() {

@@ -7,9 +7,6 @@ const MOST_TERMS: usize = 8;
 
 /// Numbers taken together, so that the compiler uses vector instructions.
 const LANES: usize = 8;
-
-/// The same where several sums share a pass.
-const DOT_LANES: usize = 4;
 /// Pairs of arrays whose products are summed together: as many as there are registers for. [`dots`] has a case for each
 /// smaller number.
 const PAIRS_IN_A_PASS: usize = 4;
@@ -131,15 +128,15 @@ pub fn dots<const N: usize>(pairs: [(&[f64], &[f64]); N]) -> [f64; N] {
 /// The same for at most [`PAIRS_IN_A_PASS`].
 fn dots_in_a_pass<const N: usize>(pairs: [(&[f64], &[f64]); N]) -> [f64; N] {
     let n = pairs.iter().map(|(a, b)| a.len().min(b.len())).min().unwrap_or(0);
-    let whole = n - n % DOT_LANES;
+    let whole = n - n % LANES;
     let sums = with_widest_vectors(
         #[inline(always)]
         || {
             let chunks = pairs.map(|(a, b)| (chunks_of(&a[..whole]), chunks_of(&b[..whole])));
-            let mut sums = [[0.0; DOT_LANES]; N];
-            for i in 0..whole / DOT_LANES {
+            let mut sums = [[0.0; LANES]; N];
+            for i in 0..whole / LANES {
                 for (sums, (a, b)) in sums.iter_mut().zip(chunks) {
-                    for lane in 0..DOT_LANES {
+                    for lane in 0..LANES {
                         sums[lane] += a[i][lane] * b[i][lane];
                     }
                 }
@@ -159,19 +156,19 @@ fn dots_in_a_pass<const N: usize>(pairs: [(&[f64], &[f64]); N]) -> [f64; N] {
 /// # Panics
 /// Where one is shorter than `a`.
 pub fn square_and_dots<const N: usize>(a: &[f64], others: [&[f64]; N]) -> (f64, [f64; N]) {
-    let others = others.map(|b| b[..a.len()].as_chunks::<DOT_LANES>());
-    let (a, a_rest) = a.as_chunks::<DOT_LANES>();
+    let others = others.map(|b| b[..a.len()].as_chunks::<LANES>());
+    let (a, a_rest) = a.as_chunks::<LANES>();
     let (square, sums) = with_widest_vectors(
         #[inline(always)]
         || {
-            let (mut square, mut sums) = ([0.0; DOT_LANES], [[0.0; DOT_LANES]; N]);
+            let (mut square, mut sums) = ([0.0; LANES], [[0.0; LANES]; N]);
             let others = others.map(|(b, _)| &b[..a.len()]);
             for i in 0..a.len() {
-                for lane in 0..DOT_LANES {
+                for lane in 0..LANES {
                     square[lane] += a[i][lane] * a[i][lane];
                 }
                 for (sums, b) in sums.iter_mut().zip(others) {
-                    for lane in 0..DOT_LANES {
+                    for lane in 0..LANES {
                         sums[lane] += a[i][lane] * b[i][lane];
                     }
                 }
@@ -179,14 +176,14 @@ pub fn square_and_dots<const N: usize>(a: &[f64], others: [&[f64]; N]) -> (f64, 
             (square, sums)
         },
     );
-    let with_rest = |sums: [f64; DOT_LANES], b_rest: &[f64]| {
+    let with_rest = |sums: [f64; LANES], b_rest: &[f64]| {
         sums.iter().sum::<f64>() + a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum::<f64>()
     };
     (with_rest(square, a_rest), std::array::from_fn(|other| with_rest(sums[other], others[other].1)))
 }
 
 #[inline(always)]
-fn chunks_of(values: &[f64]) -> &[[f64; DOT_LANES]] {
+fn chunks_of(values: &[f64]) -> &[[f64; LANES]] {
     values.as_chunks().0
 }
 
