@@ -24,21 +24,27 @@ use super::laws::{collision, decide_mode};
 use crate::integrator::{Rates, StepEnd, StepSpan, Tolerance, TwoStageDense};
 use crate::math::{Bounds, bracketed_root};
 use crate::model::{
-    Carrier, CarrierPoint, ChannelEnergies, FrictionCurve, LinkKind, Mode, Model, SlipCurve, State, SurfacePoint,
+    Carrier, CarrierPoint, ChannelEnergies, FrictionCurve, LinkKind, MaxwellRow, Mode, Model, SlipCurve, State,
+    SurfacePoint,
 };
 
 use crate::scene::Axis;
 
-/// Weight of the lateness of mode changes in the error of a step.
+/// Weight of the lateness of mode changes in the error of a step of a layer of one mass. It falls with the root of the number of
+/// masses k: forces of a layer are sums, of which one mass makes a share of 1/k, and its share in a mean of squares is 1/√k.
 ///
-/// Recommended 5 to 10. With less, single late changes are the largest errors of a layer's forces; with more, steps become
+/// Recommended 20 to 60. With less, single late changes are the largest errors of a layer's forces; with more, steps become
 /// shorter where many masses touch and lift.
-const LATENESS: f64 = 8.0;
+const LATENESS: f64 = 30.0;
+/// The largest weight.
+///
+/// Recommended 5 to 20: in a layer of few masses each impact is looked for in steps as much shorter.
+const MOST_LATENESS: f64 = 10.0;
 /// The relative tolerance below which that weight grows, with the root of its ratio to the tolerance.
 ///
-/// Recommended 1e-4 to 1e-3. The finer the steps, the fewer changes one has, and the less a mean over all masses says of each:
-/// with a constant weight of 5, forces just after a change were 10 to 200 tolerances off at 1e-6.
-const GROWS_BELOW: f64 = 3e-4;
+/// Recommended 3e-4 to 3e-3. The finer the steps, the fewer changes one has, and the less a mean over all masses says of each:
+/// with a constant weight, forces just after a change were 10 to 200 tolerances off at 1e-6.
+const GROWS_BELOW: f64 = 1e-3;
 
 /// Number of masses to each side that a correction concerns: the neighbours receive impulses, and their neighbours the
 /// forces that these change.
@@ -111,7 +117,8 @@ impl EndCorrection {
         (self.force, self.pressed) = (0.0, 1.0);
         let frequency = step.model.frequency_without_rods();
         let stiffness = step.model.mass * frequency * frequency;
-        let weight = LATENESS * (GROWS_BELOW / tolerance.relative).sqrt().max(1.0);
+        let weight = (LATENESS / (step.model.masses() as f64).sqrt()).min(MOST_LATENESS);
+        let weight = weight * (GROWS_BELOW / tolerance.relative).sqrt().max(1.0);
         let mut sum = 0.0;
         for i in 0..step.model.masses() {
             let late = match step.end.mode[i] {
@@ -199,6 +206,13 @@ impl EndCorrection {
         let stopping = step.model.mass * speed / step.first.margin[i];
         let time = if stopping >= 0.0 { stopping.min(step.span.length) } else { step.span.length };
         Some(Lateness { length: 0.5 * speed * time, time: f64::INFINITY })
+    }
+
+    /// What the touches that [`detect`](Self::detect) found before the fraction `theta` of `step` add to F_x and F_z there, N:
+    /// the forces of the links to the carrier of masses that have had their impacts and lie on the profile.
+    pub fn forces_of_touches(&self, step: &TwoStageDense<'_>, theta: f64) -> (f64, f64) {
+        let forces = self.touches.iter().map(|&i| forces_of_touch(step, i, theta));
+        forces.fold((0.0, 0.0), |sum, force| (sum.0 + force.0, sum.1 + force.1))
     }
 
     /// Corrects the masses that [`detect`](Self::detect) found; `None` where there are none.
@@ -499,6 +513,33 @@ fn neighbours(i: usize) -> [usize; 2] {
 /// The component of (x, z) along the links of a kind.
 fn component(kind: LinkKind, (x, z): (f64, f64)) -> f64 {
     if kind.is_along_x() { x } else { z }
+}
+
+/// What the links of free mass `i` would exert on the carrier along x and z beyond what they do, N, if the mass did not pass
+/// below the profile but had its impact and went on along it: at the fraction `theta` of the step.
+fn forces_of_touch(step: &TwoStageDense<'_>, i: usize, theta: f64) -> (f64, f64) {
+    let surface = step.model.surface_at(step.position(i, theta));
+    let depth = surface.height - step.height(i, theta);
+    if depth <= 0.0 {
+        return (0.0, 0.0);
+    }
+    let (slope, (v_x, v_z)) = (surface.slope, step.velocity(i, theta));
+    let (closing, since_start) = (slope * v_x - v_z, theta * step.span.length);
+    let (time, gain) = if closing > 0.0 {
+        let v_t = collision(step.model, (v_x, v_z), slope).0;
+        let along = v_t / (1.0 + slope * slope).sqrt();
+        ((depth / closing).min(since_start), (along - v_x, slope * along - v_z))
+    } else {
+        (since_start, (0.0, 0.0))
+    };
+    let moved = time * gain.0;
+    let force = |kind: LinkKind, displacement: f64, gain: f64| {
+        let link = &step.model.links[kind as usize];
+        let left = |row: &MaxwellRow| row.stiffness * row.relaxation_time / (row.relaxation_time + time);
+        let stiffness = link.stiffness + step.model.rows_of(kind).map(left).sum::<f64>();
+        stiffness * displacement + link.damping * gain
+    };
+    (force(LinkKind::Horizontal, moved, gain.0), force(LinkKind::Vertical, depth + slope * moved, gain.1))
 }
 
 /// The fraction of the step at which free mass `i`, below the profile at the end, touched it.

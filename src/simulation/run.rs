@@ -241,7 +241,7 @@ impl Run {
         let windows = Windows::new(&model, &settings);
         let workspace = Workspace {
             forces: Forces::new(&model),
-            integrator: Self::integrator(&model, &settings, windows.is_some()),
+            integrator: Self::integrator(&model, &settings),
             interpolated: State::new(model.masses(), model.maxwell_variables()),
             interpolated_at: None,
             dense: DenseWorkspace::new(&model),
@@ -347,7 +347,7 @@ impl Run {
     pub(super) fn heat(&mut self, temperature: f64, settings: Settings) {
         self.settings = settings;
         (self.state.temperature, self.state.rates_valid) = (temperature, false);
-        self.workspace.integrator = Self::integrator(&self.model, &self.settings, self.workspace.windows.is_some());
+        self.workspace.integrator = Self::integrator(&self.model, &self.settings);
         self.workspace.dense = DenseWorkspace::new(&self.model);
         self.keep_link_forces();
         if let Some(windows) = &mut self.workspace.windows {
@@ -362,10 +362,8 @@ impl Run {
         }
     }
 
-    fn integrator(model: &Model, settings: &Settings, has_windows: bool) -> Integrator {
-        let relative = settings.tolerance.relative;
-        let in_wide_layer = has_windows || settings.is_of_window;
-        let pair = if in_wide_layer { Pair::in_wide_layer(relative) } else { Pair::at_tolerance(relative) };
+    fn integrator(model: &Model, settings: &Settings) -> Integrator {
+        let pair = Pair::at_tolerance(model, settings.tolerance.relative);
         let steps = match settings.method {
             Method::Event => Steps::EventDriven(pair),
             Method::Step => Steps::TwoStages,

@@ -122,7 +122,10 @@ impl Run {
         let Self { model, state, workspace, .. } = self;
         let (carrier, start, span) = (&state.carrier, &state.layer.state, state.span(h));
         if state.time_stepping {
-            workspace.integrator.two_stage_on_carrier(model, carrier, start, span, theta)
+            let (x, z) = workspace.integrator.two_stage_on_carrier(model, carrier, start, span, theta);
+            let step = workspace.integrator.two_stage_dense(model, carrier, start, span);
+            let of_touches = workspace.end_correction.forces_of_touches(&step, theta);
+            (x + of_touches.0, z + of_touches.1)
         } else {
             let (x, z) = workspace.integrator.on_carrier(model, carrier, start, span, theta, &mut workspace.dense);
             (x + windows_x, z + windows_z)

@@ -109,7 +109,10 @@ impl Windows {
             gained: Energies::default(),
             span: StepSpan { start: 0.0, length: 0.0 },
             workspace: DenseWorkspace::new(model),
-            nodes: vec![DenseWorkspace::of_weights(model); Pair::in_wide_layer(settings.tolerance.relative).stages()],
+            nodes: vec![
+                DenseWorkspace::of_weights(model);
+                Pair::at_tolerance(model, settings.tolerance.relative).stages()
+            ],
         }))
     }
 

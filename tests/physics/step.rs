@@ -353,7 +353,7 @@ fn auto_hands_over_where_mode_changes_crowd_and_back() {
 #[test]
 fn tangents_are_those_of_a_difference_quotient() {
     let mut scene = rough(6, "step", "absolute_tolerance = 1e-12");
-    scene.solver.relative_tolerance = 1e-4;
+    scene.solver.relative_tolerance = 3e-5;
     let start = Simulation::new(&scene, &Start { w: -8e-6, u_rate: 0.5, ..Start::default() }).unwrap();
     let after = |u: f64, w: f64| {
         let mut simulation = start.clone();
@@ -369,8 +369,8 @@ fn tangents_are_those_of_a_difference_quotient() {
         assert_eq!(up[2], down[2], "a mode has changed");
         for force in 0..2 {
             let (found, quotient) = (tangents[3 + 2 * axis + force], (up[force] - down[force]) / (2.0 * moved));
-            // Steps are chosen anew for every run, and with them the error, which the quotient magnifies: by 1e-3 N/m at most
-            // at this tolerance, by 0.1 at ten times it.
+            // Steps are chosen anew for every run, and with them the error, which the quotient magnifies: by less than
+            // 1e-2 N/m at this tolerance, by 3e-2 at three times it.
             assert!((found - quotient).abs() < 1e-2, "{axis} {force}: {found} {quotient}");
         }
     }
