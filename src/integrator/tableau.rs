@@ -168,7 +168,7 @@ pub const ESDIRK5: Tableau<7> = {
         ],
         EMBEDDED,
         4,
-        2.0,
+        3.0,
     )
 };
 
@@ -189,7 +189,7 @@ pub const ESDIRK3: Tableau<FOUR_STAGES> = {
         [0.0, 2.0 * GAMMA, 0.6, 1.0],
         EMBEDDED,
         2,
-        20.0,
+        10.0,
     )
 };
 

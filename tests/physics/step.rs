@@ -96,6 +96,59 @@ fn errors_on_the_reference_cases_follow_the_tolerance() {
     }
 }
 
+/// Masses on a plateau that is pressed, and two that come down beside it: F_z = n (c e + d v) with n masses in contact, pressed
+/// in by e. Rows between a touch and the end of its step show it, which the step as tried does not.
+#[test]
+fn rows_show_touches_before_the_end_of_their_step() {
+    let (low, v, c, d) = (1e-6, 1e-2, 2e3, 1e-2);
+    let x: Vec<f64> = (-10..=190).map(|i| 1e-4 * f64::from(i)).collect();
+    // Ten points from the edge to the nearest mass the spline's ripples are 2e-6 of the edge.
+    let z: Vec<f64> = x.iter().map(|&x| if x < 1.5e-2 { 0.0 } else { -low }).collect();
+    let text = format!(
+        "name = 'edge'
+        layer = {{ masses = 10, spacing = 2e-3, mass = 1e-7, vertical = {{ stiffness = {c}, damping = {d} }} }}
+        surface = {{ kind = 'points', x = {x:?}, z = {z:?} }}
+        solver = {{ method = 'step', relative_tolerance = 0.1, absolute_tolerance = 1e-6 }}
+        fmu = {{ outputs = ['forces', 'solver'] }}"
+    );
+    let scene = Scene::parse(&text, FilePath::new("edge.toml")).unwrap();
+    let mut simulation = Simulation::new(&scene, &Start { w_rate: -v, ..Start::default() }).unwrap();
+    let (touch, times) = (low / v, (1..300).map(|i| 1e-6 * (f64::from(i) + 0.5)).collect::<Vec<f64>>());
+    let mut rows = Vec::new();
+    let row = |time: f64, now: &Snapshot<'_>| {
+        rows.push((time, value(&scene, now, "F_z"), value(&scene, now, "solver.steps")));
+    };
+    simulation.advance_observed(&straight(3e-4, 0.0, -v), None, &times, row).unwrap();
+    let steps_at = |time: f64| rows.iter().find(|row| row.0 > time).unwrap().2;
+    assert_eq!(steps_at(touch - 1e-6), steps_at(touch + 2e-6), "rows in the step in which masses touch");
+    for (time, f_z, _) in rows {
+        let force = |depth: f64| if depth < 0.0 { 0.0 } else { c * depth + d * v };
+        let exact = 8.0 * force(v * time) + 2.0 * force(v * (time - touch));
+        // The ripples' force, 2e-6 · 1e-6 m · 2e3 N/m, by two.
+        assert!((f_z - exact).abs() < 1e-8, "{time}: {f_z} {exact}");
+    }
+}
+
+/// F_z of a rough slide in many rows: near the ends of steps, where masses have passed the profile that are lifted onto it
+/// there, no worse than elsewhere.
+#[test]
+fn rows_of_a_rough_slide_are_as_good_as_the_ends_of_steps() {
+    let rows = |method: &str, tolerance: f64| {
+        let mut scene = rough(100, method, "");
+        scene.solver.relative_tolerance = tolerance;
+        let mut simulation = pressed(&scene);
+        let times: Vec<f64> = (1..1000).map(|i| 1e-6 * f64::from(i)).collect();
+        let mut rows = Vec::new();
+        let row = |_: f64, now: &Snapshot<'_>| rows.push(value(&scene, now, "F_z"));
+        simulation.advance_observed(&straight(1e-3, 1.0, 0.0), None, &times, row).unwrap();
+        rows
+    };
+    let (found, exact) = (rows("step", 1e-2), rows("event", 1e-7));
+    let error = difference(&found, &exact) / largest(&exact);
+    // 1.5e-3; 4.4e-3 without these forces.
+    assert!(error < 3e-3, "{error:e}");
+}
+
 /// Few steps do at a percent: less than two hundred and fifty for the rough cases, whatever changes its mode.
 #[test]
 fn a_percent_takes_few_steps() {
