@@ -29,7 +29,7 @@ const THIRD_FROM: f64 = 4e-3;
 /// The same where friction depends on the speed and no carrier is a body. In the longer steps of the pair of order 5 masses that
 /// creep and slip by turns make F_x err by ten tolerances and more, or keep the steps as short as the slips are. A body swings
 /// for long and smoothly: at the lower order its phase is off by tens of tolerances.
-const THIRD_FROM_WITH_CREEP: f64 = 1e-4;
+const THIRD_FROM_WITH_CREEP: f64 = 1e-5;
 
 impl Pair {
     /// The cheaper pair for `model` at a relative tolerance.
