@@ -38,7 +38,7 @@ use crate::scene::Axis;
 const LATENESS: f64 = 30.0;
 /// The largest weight.
 ///
-/// Recommended 5 to 20: in a layer of few masses each impact is looked for in steps as much shorter.
+/// Recommended 5 to 20. With more, a layer of few masses takes short steps at every touch.
 const MOST_LATENESS: f64 = 10.0;
 /// The relative tolerance below which that weight grows, with the root of its ratio to the tolerance.
 ///

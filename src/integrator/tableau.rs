@@ -16,7 +16,7 @@ pub struct Tableau<const STAGES: usize> {
     pub error: [f64; STAGES],
     /// Order of the embedded method. That of the method itself is one higher.
     pub embedded_order: i32,
-    /// Weight of the errors of F_z in the error test, to which that of F_x is a multiple: what makes the errors of whole runs about the
+    /// Weight of the error of F_z in the error test; that of F_x is a multiple of it. It makes the errors of whole runs about the
     /// relative tolerance and, among such weights, a given error cheap.
     pub force_weight: f64,
     /// The same of the energies.

@@ -13,8 +13,8 @@ use crate::outputs::{Energies, LayerView, Snapshot};
 /// the errors of whole runs are those of 1, and fewer steps are repeated.
 pub(super) const LARGEST_DEFECT: f64 = 5.0;
 /// The most that mode changes not yet corrected may change F_z where a row is shown within a time step, as a multiple of
-/// the relative tolerance. That bounds all of them together at the step's end; the error of a row is a third of it, and
-/// less.
+/// the relative tolerance. That bounds all of them together at the step's end; a row shows what touches change, so its error
+/// is a small part of that.
 const MOST_UNCORRECTED: f64 = 3.0;
 /// The relative tolerance from which on P_diss within an event-driven step comes from the powers at its stages, of order 3 at
 /// most, and not from the layer's state there.
