@@ -24,8 +24,7 @@ use super::laws::{collision, decide_mode};
 use crate::integrator::{Rates, StepEnd, StepSpan, Tolerance, TwoStageDense};
 use crate::math::{Bounds, bracketed_root};
 use crate::model::{
-    Carrier, CarrierPoint, ChannelEnergies, FrictionCurve, LinkKind, MaxwellRow, Mode, Model, SlipCurve, State,
-    SurfacePoint,
+    Carrier, CarrierPoint, ChannelEnergies, FrictionCurve, LinkKind, Mode, Model, SlipCurve, State, SurfacePoint,
 };
 
 use crate::scene::Axis;
@@ -117,8 +116,8 @@ impl EndCorrection {
         (self.force, self.pressed) = (0.0, 1.0);
         let frequency = step.model.frequency_without_rods();
         let stiffness = step.model.mass * frequency * frequency;
-        let weight = (LATENESS / (step.model.masses() as f64).sqrt()).min(MOST_LATENESS);
-        let weight = weight * (GROWS_BELOW / tolerance.relative).sqrt().max(1.0);
+        let of_layer = (LATENESS / (step.model.masses() as f64).sqrt()).min(MOST_LATENESS);
+        let weight = of_layer * (GROWS_BELOW / tolerance.relative).sqrt().max(1.0);
         let mut sum = 0.0;
         for i in 0..step.model.masses() {
             let late = match step.end.mode[i] {
@@ -516,7 +515,7 @@ fn component(kind: LinkKind, (x, z): (f64, f64)) -> f64 {
 }
 
 /// What the links of free mass `i` would exert on the carrier along x and z beyond what they do, N, if the mass did not pass
-/// below the profile but had its impact and went on along it: at the fraction `theta` of the step.
+/// below the profile but had its impact and went on along it: at the fraction `theta` of the step (docs/theory.md, \[12a\]).
 fn forces_of_touch(step: &TwoStageDense<'_>, i: usize, theta: f64) -> (f64, f64) {
     let surface = step.model.surface_at(step.position(i, theta));
     let depth = surface.height - step.height(i, theta);
@@ -535,9 +534,8 @@ fn forces_of_touch(step: &TwoStageDense<'_>, i: usize, theta: f64) -> (f64, f64)
     let moved = time * gain.0;
     let force = |kind: LinkKind, displacement: f64, gain: f64| {
         let link = &step.model.links[kind as usize];
-        let left = |row: &MaxwellRow| row.stiffness * row.relaxation_time / (row.relaxation_time + time);
-        let stiffness = link.stiffness + step.model.rows_of(kind).map(left).sum::<f64>();
-        stiffness * displacement + link.damping * gain
+        let of_elements = step.model.rows_of(kind).map(|row| row.stiffness * row.left_of(displacement, time));
+        link.stiffness * displacement + of_elements.sum::<f64>() + link.damping * gain
     };
     (force(LinkKind::Horizontal, moved, gain.0), force(LinkKind::Vertical, depth + slope * moved, gain.1))
 }

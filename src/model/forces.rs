@@ -62,6 +62,13 @@ pub struct MaxwellRow {
     pub range: Range<usize>,
 }
 
+impl MaxwellRow {
+    /// What is left in the spring of an element of a `way` (m) that its dashpot has `time` (s) to follow: τ/(τ + `time`) of it, m.
+    pub fn left_of(&self, way: f64, time: f64) -> f64 {
+        way * self.relaxation_time / (self.relaxation_time + time)
+    }
+}
+
 /// The rows of the elements that are not replaced, and their relaxation times, each once.
 pub(super) fn maxwell_rows(scene: &Scene, reduction: Option<&Reduction>) -> (Vec<MaxwellRow>, Vec<f64>) {
     let kept = |kind: LinkKind, index: usize| reduction.is_none_or(|all| all.replacement(kind, index).is_none());

@@ -80,14 +80,14 @@ pub struct State {
 }
 
 impl State {
-    /// Moves mass `i` by `moved` along x and z, m. Its dashpots have `time` (s) to follow: of an element with the relaxation
-    /// time τ, τ/(τ + `time`) of the way is left in its spring.
+    /// Moves mass `i` by `moved` along x and z, m. Its dashpots have `time` (s) to follow, see
+    /// [`MaxwellRow::left_of`](super::MaxwellRow::left_of).
     pub fn displace(&mut self, model: &Model, i: usize, moved: (f64, f64), time: f64) {
         self.elongation_x[i] += moved.0;
         self.elongation_z[i] += moved.1;
         for row in &model.rows {
             let along = if row.kind.is_along_x() { moved.0 } else { moved.1 };
-            let by = along * row.relaxation_time / (row.relaxation_time + time);
+            let by = row.left_of(along, time);
             let a = &mut self.maxwell[row.range.clone()];
             if !row.kind.is_lateral() {
                 a[i] += by;

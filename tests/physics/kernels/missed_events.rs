@@ -98,7 +98,7 @@ fn no_dip_is_so_shallow_that_roundings_make_it() {
 /// below a flat surface.
 fn thrown(clearance: f64) -> Layer {
     let links = [Link::new(1.0, 0.0, &[]), None, None, None];
-    let solver = "relative_tolerance = 1e-6\nabsolute_tolerance = 1e-10".into();
+    let solver = "relative_tolerance = 2e-6\nabsolute_tolerance = 1e-10".into();
     Layer { clearance, links, surface: FLAT.into(), solver, ..Layer::default() }
 }
 
@@ -127,7 +127,7 @@ fn the_lowest_point_of_a_throw_is_found() {
     // What the run makes of the depth, 0.1 m.
     let (_, lowest, steps, _) = throw(&thrown(1.0).scene());
     let depth = 1.0 - lowest;
-    assert!((depth - 0.1).abs() < 1e-5 && steps < 18.0, "{depth} m, {steps} steps");
+    assert!((depth - 0.1).abs() < 1e-5 && steps < 15.0, "{depth} m, {steps} steps");
     let (lost, ..) = throw(&thrown(depth - NANOMETRE).scene());
     // ½ c ((0.1 m)² - (0.1 m - 1e-9 m)²) = 1e-10 J; the absolute tolerance is a tenth of the depth.
     assert!((lost - 0.1 * NANOMETRE).abs() < 0.4 * lost, "{lost:e}");
