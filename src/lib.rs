@@ -31,11 +31,11 @@
 //! | what the links stand for | `scene/foundation` (kernels, weights, fit, warnings); `program/foundation.rs` prints it |
 //! | a friction law | `model/friction.rs` (limit at rest, force in slip) and its constants in `model/mod.rs`; its derivative in `integrator/stage/newton.rs`, power in `model/energy.rs`, directional derivative in `outputs/snapshot.rs`; the impact in `contact/laws.rs`; its keys as below |
 //! | a kind of link | `LinkKind` in `scene/mod.rs`; `model/forces.rs`, `model/energy.rs`, `model/scales.rs`; its blocks in `integrator/stage/newton.rs`, its force in `integrator/dense.rs`, `integrator/carrier_sums.rs` and `contact/correction.rs`; its keys and its size in `scene/material.rs` |
-//! | a key of the scene, a parameter | a line in `scene/keys.rs`, a field in `scene/mod.rs`, a line in `scene/reader`; a parameter also in `scene/parameters.rs` |
+//! | a key of the scene, a parameter | a line in `scene/keys/mod.rs`, a field in `scene/mod.rs`, a line in `scene/reader`; a parameter also in `scene/parameters/mod.rs` |
 //! | an output | a variant of [`outputs::Output`] and a row in `outputs/table.rs` |
 //! | a column of a sweep's table | `element/table_format.rs`; its value in `program/sweep/point.rs` and `slide.rs` |
 //! | the rules of mode changes, the impact | `contact/laws.rs`, for both methods; stops and breaks within a time step also in `integrator/stage/modes.rs` |
-//! | an element's law in a patch, its step | `element/resampled.rs`; `element/spring.rs` (closed form), `patch/cut.rs` (touch and lift), `patch/block.rs` |
+//! | an element's law in a patch, its step | `element/resampled.rs`; `element/spring.rs` (closed form), `patch/contact_times.rs` (touch and lift), `patch/block.rs` |
 //! | an output of a patch | `patch/variables.rs`, `patch/survey.rs`, `patch/derivatives.rs` |
 //! | a picture of a patch | `program/figure/patch.rs`; its maps `moment.rs` (what is drawn) and `maps.rs` (how), from `patch/plan.rs` |
 //! | what an FMU state holds | `FmuState` in `fmi/state.rs`, `RunState` in `simulation/run.rs` |

@@ -51,8 +51,6 @@ fn run(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<(),
     if let Some(divergence) = runner.simulation().divergence() {
         warn(&divergence.to_string());
     }
-    // The process ends with the command, and its memory with it: to free it piece by piece would take time for nothing.
-    std::mem::forget(runner);
     match result {
         Ok(_) => Ok(()),
         Err(source) => Err(SimulateError::Run { source, time: recorder.time, output: command.output.clone() }),
