@@ -5,7 +5,7 @@ use super::definition::Patch;
 use super::face::Face;
 use super::motion::{Parts, Path, Run};
 use super::state::{
-    MAX_PARTS, MotionError, PatchMotion, PatchStart, PatchState, Pose, RestoreError, Springs, Totals, check_duration,
+    MotionError, PatchMotion, PatchStart, PatchState, Pose, RestoreError, Springs, Totals, check_duration, max_parts,
 };
 use super::worker_pool::WorkerPool;
 use crate::element::ResampledLaw;
@@ -148,9 +148,10 @@ impl PatchRun {
         let run = self.run(place, tread_speed * duration);
         let path = Path { start, change, duration };
         let parts = Parts::new(run, path.turn(), self.patch.refine);
-        let count = parts.count(MAX_PARTS);
-        if count > MAX_PARTS || count.is_nan() {
-            return Err(MotionError::TooManyParts { time, parts: count });
+        let most = max_parts(self.patch.count());
+        let count = parts.count(most);
+        if count > most || count.is_nan() {
+            return Err(MotionError::TooManyParts { time, parts: count, most });
         }
         self.set_temperature(temperature);
         let Self { patch, law, springs, next, workspace, .. } = self;

@@ -7,8 +7,17 @@ use super::motion::Path;
 use crate::math::Number;
 use crate::scene::{SMALLEST, is_possible};
 
-/// Most parts of a step.
-pub(super) const MAX_PARTS: f64 = 1e5;
+/// Most parts of a step, whatever the number of elements.
+const MAX_PARTS: f64 = 1e5;
+/// Most parts of a step times elements: some seconds of work. A master that diverges would wait for minutes otherwise.
+const MAX_ELEMENT_PARTS: f64 = 2e6;
+/// Parts that a step may always have, however many elements a patch has.
+const MIN_PARTS_ALLOWED: f64 = 1e3;
+
+/// The most parts that a step of a patch of `elements` may have.
+pub(super) fn max_parts(elements: usize) -> f64 {
+    (MAX_ELEMENT_PARTS / elements as f64).clamp(MIN_PARTS_ALLOWED, MAX_PARTS)
+}
 
 /// Where a body is and how it moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -80,12 +89,14 @@ pub enum MotionError {
         time: f64,
     },
     /// The step would take too many parts.
-    #[error("the step from t = {time} s takes {parts:.0} parts or more: more than {MAX_PARTS:.0}")]
+    #[error("the step from t = {time} s takes {parts:.0} parts or more: more than {most:.0}; take shorter steps")]
     TooManyParts {
         /// s.
         time: f64,
         /// How many, at least.
         parts: f64,
+        /// How many a patch of so many elements may take.
+        most: f64,
     },
     /// An element is beyond the table.
     #[error("{element} is beyond the table at t = {time} s: {pressure} Pa at {speed} m/s")]
