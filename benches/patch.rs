@@ -62,7 +62,7 @@ fn patch_times(side: usize, tread: bool, lift: f64) -> [f64; 2] {
         let [x, y, z, roll, pitch, yaw] = pose(k);
         [x, y, z + lift, roll, pitch, yaw]
     };
-    let start = PatchStart { pose: Pose::of(pose(0.0)), ..PatchStart::default() };
+    let start = PatchStart { pose: Pose::from_coordinates(pose(0.0)), ..PatchStart::default() };
     let mut run = PatchRun::new(&patch, &start).unwrap();
     let motions = |k: u32| {
         let (from, to) = (pose(f64::from(k)), pose(f64::from(k + 1)));

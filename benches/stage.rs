@@ -11,7 +11,7 @@ mod floor;
 
 use std::time::Duration;
 
-use asperity::integrator::{Integrator, Pair, STAGES, StepSpan, StepStart, Steps, Tolerance, Tracked};
+use asperity::integrator::{Integrator, LayerState, Pair, STAGES, StepSpan, Steps, Tolerance, Tracked};
 use asperity::model::{Carrier, Forces, Mode, Model, State};
 use asperity::scene::Path;
 use common::{layer, parse, prints_tables, side_by_side};
@@ -36,7 +36,7 @@ fn main() {
 /// A layer and an integrator that attempts steps of it.
 struct Stages {
     model: Model,
-    start: StepStart,
+    start: LayerState,
     carrier: Carrier,
     integrator: Integrator,
     tolerance: Tolerance,
@@ -63,7 +63,7 @@ impl Stages {
         let mut forces = Forces::new(&model);
         forces.evaluate(&model, &state, &carrier.at(0.0));
         let integrator = Integrator::new(&model, Tracked::default(), Steps::EventDriven(Pair::Fifth));
-        let mut start = StepStart { state, ..StepStart::new(&model) };
+        let mut start = LayerState { state, ..LayerState::new(&model) };
         integrator.evaluate_start(&model, &mut start, (&carrier, 0.0), &forces, 1e-6);
         let tolerance = Tolerance::new(&model, 1e-6, 1e-11);
         Self { model, start, carrier, integrator, tolerance }

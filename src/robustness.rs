@@ -75,7 +75,7 @@ impl ScaledQuantity {
     }
 
     /// Those that `scene` has.
-    pub fn of(scene: &Scene) -> Vec<Self> {
+    pub fn all_of(scene: &Scene) -> Vec<Self> {
         let parameters = scene.parameters();
         let moves = |path: &Path| path.rate != 0.0 || path.amplitude * path.frequency != 0.0;
         let is_there = |quantity: &Self| match quantity {
@@ -371,7 +371,7 @@ impl Accuracy {
     /// The verdict on a run at this relative tolerance.
     pub fn verdict(&self, tolerance: f64) -> Verdict {
         match self {
-            Self::Error(error) => Verdict::of_error(error.share, tolerance),
+            Self::Error(error) => Verdict::from_error(error.share, tolerance),
             Self::Sensitive { .. } => Verdict::Sensitive,
             Self::Unknown(_) => Verdict::Unknown,
         }
@@ -415,7 +415,7 @@ impl Verdict {
         Self::NotTried,
     ];
 
-    fn of_error(error: f64, tolerance: f64) -> Self {
+    fn from_error(error: f64, tolerance: f64) -> Self {
         match error {
             error if error <= KEPT * tolerance => Self::Kept,
             error if error > WRONG * tolerance || error > WRONG_SHARE || error.is_nan() => Self::Wrong,
@@ -524,13 +524,13 @@ kind = 'flat'";
     fn what_a_scene_does_not_have_is_not_scaled() {
         use ScaledQuantity::{CommunicationStep, Mass, RelaxationTimes, Speed, Stiffness};
         let prescribed = [Stiffness, Mass, RelaxationTimes, Speed, CommunicationStep];
-        assert_eq!(ScaledQuantity::of(&scene(TEXT)), prescribed);
+        assert_eq!(ScaledQuantity::all_of(&scene(TEXT)), prescribed);
         let body = format!("{TEXT}\n[carrier.z]\nmass = 1.0\ndamping = 1.0");
-        assert_eq!(ScaledQuantity::of(&scene(&body)), ScaledQuantity::ALL);
+        assert_eq!(ScaledQuantity::all_of(&scene(&body)), ScaledQuantity::ALL);
         let springs = TEXT.replace("maxwell = [{ stiffness = 5e2, relaxation_time = 1e-4 }]", "");
-        assert_eq!(ScaledQuantity::of(&scene(&springs)), [Stiffness, Mass, Speed, CommunicationStep]);
+        assert_eq!(ScaledQuantity::all_of(&scene(&springs)), [Stiffness, Mass, Speed, CommunicationStep]);
         let at_rest = TEXT.replace("w_rate = -0.01", "").replace("u_sine", "# u_sine");
-        assert_eq!(ScaledQuantity::of(&scene(&at_rest)), [Stiffness, Mass, RelaxationTimes, CommunicationStep]);
+        assert_eq!(ScaledQuantity::all_of(&scene(&at_rest)), [Stiffness, Mass, RelaxationTimes, CommunicationStep]);
     }
 
     #[test]
@@ -560,11 +560,11 @@ kind = 'flat'";
     #[test]
     fn verdicts_follow_the_tolerance() {
         use Verdict::{Above, FarAbove, Kept, Wrong};
-        let verdicts = [9e-6, 9e-5, 9e-4, 1e-2, f64::INFINITY, f64::NAN].map(|error| Verdict::of_error(error, 1e-6));
+        let verdicts = [9e-6, 9e-5, 9e-4, 1e-2, f64::INFINITY, f64::NAN].map(|error| Verdict::from_error(error, 1e-6));
         assert_eq!(verdicts, [Kept, Above, FarAbove, Wrong, Wrong, Wrong]);
         // A loose tolerance asks for little, but not for nothing.
-        assert_eq!([0.05, 0.2].map(|error| Verdict::of_error(error, 1e-2)), [Kept, Wrong]);
-        assert_eq!([0.05, 0.2].map(|error| Verdict::of_error(error, 3e-3)), [Above, Wrong]);
+        assert_eq!([0.05, 0.2].map(|error| Verdict::from_error(error, 1e-2)), [Kept, Wrong]);
+        assert_eq!([0.05, 0.2].map(|error| Verdict::from_error(error, 3e-3)), [Above, Wrong]);
     }
 
     #[test]

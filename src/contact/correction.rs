@@ -38,7 +38,7 @@ const LATENESS: f64 = 30.0;
 /// The largest weight.
 ///
 /// Recommended 5 to 20. With more, a layer of few masses takes short steps at every touch.
-const MOST_LATENESS: f64 = 10.0;
+const MAX_LATENESS: f64 = 10.0;
 /// The relative tolerance below which that weight grows, with the root of its ratio to the tolerance.
 ///
 /// Recommended 3e-4 to 3e-3. The finer the steps, the fewer changes one has, and the less a mean over all masses says of each:
@@ -116,7 +116,7 @@ impl EndCorrection {
         (self.force, self.pressed) = (0.0, 1.0);
         let frequency = step.model.frequency_without_rods();
         let stiffness = step.model.mass * frequency * frequency;
-        let of_layer = (LATENESS / (step.model.masses() as f64).sqrt()).min(MOST_LATENESS);
+        let of_layer = (LATENESS / (step.model.masses() as f64).sqrt()).min(MAX_LATENESS);
         let weight = of_layer * (GROWS_BELOW / tolerance.relative).sqrt().max(1.0);
         let mut sum = 0.0;
         for i in 0..step.model.masses() {
@@ -126,7 +126,7 @@ impl EndCorrection {
             };
             if let Some(late) = late {
                 let error = weight * late.error(frequency);
-                sum += error * error / tolerance.of_position(step.end.elongation_x[i]);
+                sum += error * error / tolerance.position_tolerance_sq(step.end.elongation_x[i]);
             }
         }
         (sum / step.model.masses() as f64).sqrt()
@@ -145,7 +145,7 @@ impl EndCorrection {
     }
 
     /// The lateness of the touch of free mass `i`, if there is one.
-    fn detect_touch(&mut self, step: &TwoStageDense<'_>, i: usize) -> Option<Lateness> {
+    fn detect_touch(&mut self, step: &TwoStageDense<'_>, i: usize) -> Option<EventTimeError> {
         let (height, highest) = (step.end_height(i), self.profile.z_max);
         if height > highest && step.height(i, TwoStageDense::FIRST_STAGE) > highest {
             return None;
@@ -161,23 +161,29 @@ impl EndCorrection {
         let link = &step.model.links[LinkKind::Vertical as usize];
         self.force += link.stiffness * -gap + link.damping * closing.max(0.0);
         let time = if closing > 0.0 { (-gap / closing).min(step.span.length) } else { step.span.length };
-        Some(Lateness { length: -gap, time })
+        Some(EventTimeError { length: -gap, time })
     }
 
     /// A mass that is above the profile at the end, at `x` and `height` and by `gap`, and below it at the first stage has passed
     /// through an asperity: the whole penetration is an error.
-    fn detect_dip(&self, step: &TwoStageDense<'_>, i: usize, gap: f64, (x, height): (f64, f64)) -> Option<Lateness> {
+    fn detect_dip(
+        &self,
+        step: &TwoStageDense<'_>,
+        i: usize,
+        gap: f64,
+        (x, height): (f64, f64),
+    ) -> Option<EventTimeError> {
         let rise = height - step.height(i, TwoStageDense::FIRST_STAGE);
         let distance = (x - step.position(i, TwoStageDense::FIRST_STAGE)).abs();
         if gap > rise + distance * self.profile.slope_max_abs {
             return None;
         }
         let gap_at_first = step.gap(i, TwoStageDense::FIRST_STAGE);
-        (gap_at_first < 0.0).then_some(Lateness { length: -gap_at_first, time: f64::INFINITY })
+        (gap_at_first < 0.0).then_some(EventTimeError { length: -gap_at_first, time: f64::INFINITY })
     }
 
     /// The lateness of the lift of contact `i`, if F_N < 0, by the elongation that makes such a force.
-    fn detect_lift(&mut self, step: &TwoStageDense<'_>, i: usize, stiffness: f64) -> Option<Lateness> {
+    fn detect_lift(&mut self, step: &TwoStageDense<'_>, i: usize, stiffness: f64) -> Option<EventTimeError> {
         let (first, last) = (step.first.normal[i], step.last.normal[i]);
         if last >= 0.0 {
             return None;
@@ -186,12 +192,12 @@ impl EndCorrection {
         self.force -= last;
         let time = step.time_below(first, last);
         self.pressed = self.pressed.min(1.0 - time / step.span.length);
-        Some(Lateness { length: -last / stiffness, time })
+        Some(EventTimeError { length: -last / stiffness, time })
     }
 
     /// The lateness of a contact that slipped at the start and sticks at the first stage already: none of the way of its
     /// stop is seen. One that the forces alone would no longer hold breaks loose at the end.
-    fn detect_stop(&mut self, step: &TwoStageDense<'_>, i: usize) -> Option<Lateness> {
+    fn detect_stop(&mut self, step: &TwoStageDense<'_>, i: usize) -> Option<EventTimeError> {
         if step.end.mode[i] != Mode::Stick {
             return None;
         }
@@ -204,7 +210,7 @@ impl EndCorrection {
         }
         let stopping = step.model.mass * speed / step.first.margin[i];
         let time = if stopping >= 0.0 { stopping.min(step.span.length) } else { step.span.length };
-        Some(Lateness { length: 0.5 * speed * time, time: f64::INFINITY })
+        Some(EventTimeError { length: 0.5 * speed * time, time: f64::INFINITY })
     }
 
     /// What the touches that [`detect`](Self::detect) found before the fraction `theta` of `step` add to F_x and F_z there, N:
@@ -237,14 +243,14 @@ impl EndCorrection {
 
 /// How late a mode change is.
 #[derive(Clone, Copy, Debug)]
-struct Lateness {
+struct EventTimeError {
     /// How far the mass goes past the limit, m.
     length: f64,
     /// For how long, s.
     time: f64,
 }
 
-impl Lateness {
+impl EventTimeError {
     /// The error that remains after the correction, m: in a time that is short against 1/ω of the highest frequency ω
     /// the forces past the limit move the mass little.
     fn error(self, frequency: f64) -> f64 {

@@ -37,11 +37,11 @@ const SHARE_OF_DIPS: f64 = 1e3;
 /// The least such share.
 ///
 /// Recommended 1e-5 to 0.1. The less, the more grazing touches are found, and the more steps are cut at them.
-const LEAST_SHARE_OF_DIPS: f64 = 1e-4;
+const MIN_SHARE_OF_DIPS: f64 = 1e-4;
 /// The least gap tolerance as a share of the scene's height, up to the position tolerance.
 ///
 /// Recommended 1e-13 to 1e-12. Less comes near to roundings, by which masses touch and lift without end.
-const LEAST_DIP: f64 = 1e-12;
+const MIN_DIP: f64 = 1e-12;
 
 /// The rounding error of a force or of a gap, as a number of roundings of a position.
 const ROUNDINGS: f64 = 4.0;
@@ -56,8 +56,8 @@ impl EventTolerance {
         let rounding = ROUNDINGS * f64::EPSILON * height * model.rounding_stiffness();
         let link = LinkKind::Horizontal;
         let impedance = model.links[link as usize].damping + (model.glassy[link as usize] * model.mass).sqrt();
-        let share_of_dips = (SHARE_OF_DIPS * tolerance.relative).clamp(LEAST_SHARE_OF_DIPS, 1.0);
-        let least_gap = (LEAST_DIP * height).max(rounding_of_gap(model, height));
+        let share_of_dips = (SHARE_OF_DIPS * tolerance.relative).clamp(MIN_SHARE_OF_DIPS, 1.0);
+        let least_gap = (MIN_DIP * height).max(rounding_of_gap(model, height));
         Self {
             gap: (share_of_dips * tolerance.position).max(least_gap.min(tolerance.position)),
             velocity: OF_STOPS * tolerance.velocity,
@@ -147,16 +147,16 @@ struct Contacts<'a> {
 
 /// A quantity of a contact with a limit.
 #[derive(Clone, Copy, PartialEq)]
-enum Limit {
+enum EventFunction {
     /// F_N ≥ 0.
     Normal,
     /// [`Rates::margin`] ≥ 0.
     Margin,
 }
 
-impl Limit {
+impl EventFunction {
     /// The quantity of all masses at one stage.
-    fn of(self, stage: &Rates) -> &[f64] {
+    fn values(self, stage: &Rates) -> &[f64] {
         if self == Self::Normal { &stage.normal } else { &stage.margin }
     }
 }
@@ -175,11 +175,11 @@ impl Contacts<'_> {
     fn suspects(&self, first: usize) -> u64 {
         let modes = &self.step.start.state.mode[first..];
         let overshoot = if self.carrier_swings() { self.step.interpolation.overshoot() } else { 0.0 };
-        let least = |limit: Limit| {
-            let stages = self.step.stages.iter().map(|stage| &limit.of(stage)[first..]);
+        let least = |function: EventFunction| {
+            let stages = self.step.stages.iter().map(|stage| &function.values(stage)[first..]);
             least_within(stages, overshoot)
         };
-        let (normal, margin) = (least(Limit::Normal), least(Limit::Margin));
+        let (normal, margin) = (least(EventFunction::Normal), least(EventFunction::Margin));
         let mut falls = [false; BLOCK];
         for ((falls, mode), (normal, margin)) in falls.iter_mut().zip(modes).zip(normal.iter().zip(&margin)) {
             let beyond = (*normal < -self.tolerance.force) | (*margin < -self.tolerance.margin(*mode));
@@ -226,49 +226,50 @@ impl Contacts<'_> {
     /// The fraction at which mass `i`, in contact, first changes its mode; `first` if it does not before that.
     fn change_of(&mut self, i: usize, first: Option<f64>) -> Option<f64> {
         let (force, of_margin) = (self.tolerance.force, self.tolerance.margin(self.step.start.state.mode[i]));
-        let first = self.fall(i, Limit::Normal, force, first);
-        let first = self.fall(i, Limit::Margin, of_margin, first);
+        let first = self.fall(i, EventFunction::Normal, force, first);
+        let first = self.fall(i, EventFunction::Margin, of_margin, first);
         if !self.carrier_swings() {
             return first;
         }
-        let first = self.dip(i, Limit::Normal, force, first);
-        self.dip(i, Limit::Margin, of_margin, first)
+        let first = self.dip(i, EventFunction::Normal, force, first);
+        self.dip(i, EventFunction::Margin, of_margin, first)
     }
 
     /// The same as [`fall`](Self::fall) where a quantity falls below its tolerance between the stages alone: at the vertex
     /// of the parabola through its least value at a stage and those before and after.
-    fn dip(&mut self, i: usize, limit: Limit, tolerance: f64, first: Option<f64>) -> Option<f64> {
+    fn dip(&mut self, i: usize, function: EventFunction, tolerance: f64, first: Option<f64>) -> Option<f64> {
         let inner = 1..self.step.stages.len() - 1;
-        let least = inner.min_by(|&a, &b| f64::total_cmp(&self.at_stage(a, i, limit), &self.at_stage(b, i, limit)));
+        let least =
+            inner.min_by(|&a, &b| f64::total_cmp(&self.at_stage(a, i, function), &self.at_stage(b, i, function)));
         let Some(rank) = least else { return first };
         let [before, here, after] =
-            [rank - 1, rank, rank + 1].map(|rank| (self.node(rank), self.at_stage(rank, i, limit)));
+            [rank - 1, rank, rank + 1].map(|rank| (self.node(rank), self.at_stage(rank, i, function)));
         let Some((theta, value)) = vertex(before, here, after) else { return first };
         if value >= -tolerance || theta >= first.unwrap_or(1.0) {
             return first;
         }
-        let value = self.value(i, limit, theta);
-        if value < -tolerance { Some(self.locate(i, limit, tolerance, before.0, (theta, value))) } else { first }
+        let value = self.value(i, function, theta);
+        if value < -tolerance { Some(self.locate(i, function, tolerance, before.0, (theta, value))) } else { first }
     }
 
     /// The fraction at which a quantity of mass `i` first falls below -`tolerance`, located where it is -`tolerance`/2;
     /// `first` if it does not before that.
-    fn fall(&mut self, i: usize, limit: Limit, tolerance: f64, first: Option<f64>) -> Option<f64> {
-        if !self.step.stages[1..].iter().any(|stage| limit.of(stage)[i] < -tolerance) {
+    fn fall(&mut self, i: usize, function: EventFunction, tolerance: f64, first: Option<f64>) -> Option<f64> {
+        if !self.step.stages[1..].iter().any(|stage| function.values(stage)[i] < -tolerance) {
             return first;
         }
         let latest = first.unwrap_or(1.0);
         let ranks = self.step.stages.len();
-        let rank = (1..ranks).find(|&rank| self.at_stage(rank, i, limit) < -tolerance);
+        let rank = (1..ranks).find(|&rank| self.at_stage(rank, i, function) < -tolerance);
         let Some(rank) = rank.filter(|&rank| self.node(rank - 1) < latest) else { return first };
         for rank in rank..ranks {
-            if self.at_stage(rank, i, limit) >= -tolerance {
+            if self.at_stage(rank, i, function) >= -tolerance {
                 continue;
             }
             let (before, below) = (self.node(rank - 1).min(latest), self.node(rank).min(latest));
-            let value = self.value(i, limit, below);
+            let value = self.value(i, function, below);
             if value < -tolerance {
-                return Some(self.locate(i, limit, tolerance, before, (below, value)));
+                return Some(self.locate(i, function, tolerance, before, (below, value)));
             }
         }
         first
@@ -276,15 +277,15 @@ impl Contacts<'_> {
 
     /// Where a quantity of mass `i` is -`tolerance`/2, between a fraction `before` and one `below` which it has passed:
     /// that one and the value there, less than -`tolerance`. `before` itself if the quantity is that far below there.
-    fn locate(&mut self, i: usize, limit: Limit, tolerance: f64, before: f64, below: (f64, f64)) -> f64 {
+    fn locate(&mut self, i: usize, function: EventFunction, tolerance: f64, before: f64, below: (f64, f64)) -> f64 {
         let aim = 0.5 * tolerance;
-        let value = self.value(i, limit, before);
+        let value = self.value(i, function, before);
         if value <= -aim {
             return before;
         }
         let beyond = |value: f64| if (value + aim).abs() < NEAR * tolerance { 0.0 } else { value + aim };
         let ends = [(before, beyond(value)), (below.0, beyond(below.1))];
-        root_between(|theta| beyond(self.value(i, limit, theta)), ends, LOCATED)
+        root_between(|theta| beyond(self.value(i, function, theta)), ends, LOCATED)
     }
 
     /// The fraction of the step at which the stage lies that is `rank`-th in time.
@@ -293,18 +294,18 @@ impl Contacts<'_> {
     }
 
     /// The quantity at the stage that is `rank`-th in time.
-    fn at_stage(&self, rank: usize, i: usize, limit: Limit) -> f64 {
-        limit.of(&self.step.stages[self.step.interpolation.in_time()[rank]])[i]
+    fn at_stage(&self, rank: usize, i: usize, function: EventFunction) -> f64 {
+        function.values(&self.step.stages[self.step.interpolation.in_time()[rank]])[i]
     }
 
     /// The quantity at the fraction `theta` of the step.
-    fn value(&mut self, i: usize, limit: Limit, theta: f64) -> f64 {
+    fn value(&mut self, i: usize, function: EventFunction, theta: f64) -> f64 {
         let mode = self.step.start.state.mode[i];
-        if limit == Limit::Margin && mode.slips() {
+        if function == EventFunction::Margin && mode.slips() {
             return mode.direction() * self.step.velocity_x(i, theta);
         }
         let contact = self.step.contact(i, theta, self.workspace);
-        if limit == Limit::Normal { contact.normal } else { contact.limit - contact.tangential.abs() }
+        if function == EventFunction::Normal { contact.normal } else { contact.limit - contact.tangential.abs() }
     }
 }
 

@@ -11,11 +11,11 @@ const FEW_PARTS: u32 = 200;
 /// Rounding errors of a position that a bound on its second derivative may contain: 20 times a second difference.
 const ROUNDINGS: f64 = 64.0;
 /// Halvings of a step after which a part is decided by its ends: a step over 2⁴⁰ is below the resolution of time.
-const MOST_HALVINGS: u32 = 40;
+const MAX_HALVINGS: u32 = 40;
 
 /// Largest number of parts of a step that are examined. A few are usual; where numbers are so large that no bounds hold,
 /// the search would not end.
-const MOST_PARTS: u32 = 10_000;
+const MAX_PARTS: u32 = 10_000;
 
 /// The first fraction of a step at which the gap between a mass and the profile falls below -`tolerance` (m), located
 /// where it is -`tolerance`/2; `None` if it does not. `position` (along x) and `height`
@@ -65,7 +65,7 @@ impl Search<'_> {
         }
         self.parts += 1;
         let (x_low, x_high) = part.position.range();
-        if self.parts > MOST_PARTS || !(x_low.is_finite() && x_high.is_finite()) {
+        if self.parts > MAX_PARTS || !(x_low.is_finite() && x_high.is_finite()) {
             return Some(part.start);
         }
         let profile = self.profile.local_bounds(x_low, x_high);
@@ -78,7 +78,7 @@ impl Search<'_> {
         }
         let monotone = self.gap_rate(part, 0.5).abs() > 0.5 * bend;
         let negligible = (NEGLIGIBLE_BEND * self.tolerance).max(self.rounding(part, &profile));
-        if monotone || bend <= negligible || halvings == MOST_HALVINGS {
+        if monotone || bend <= negligible || halvings == MAX_HALVINGS {
             let crosses = start >= -self.tolerance && end < -self.tolerance;
             return (crosses && !self.is_late(part)).then(|| self.locate(part));
         }

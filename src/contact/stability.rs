@@ -7,7 +7,7 @@ use crate::model::{Forces, FrictionCurve, LinkKind, Model, State};
 /// The methods damp motions that are faster than their steps, also unstable ones: a mass would stay on a crest where it
 /// cannot. Up to 2 they let it grow nearly as it does (R(2) is 7.4 and 10.7, e² is 7.4); beyond their poles 1/γ, 5 and
 /// 3.4, they no longer do.
-const LARGEST_GROWTH: f64 = 2.0;
+const MAX_GROWTH: f64 = 2.0;
 
 /// The longest step that resolves the growth of unstable contacts, s; the largest number if there are none. The step
 /// went from `start` to `state`.
@@ -72,7 +72,7 @@ fn fall_passed_over(model: &Model, start: &State, state: &State, forces: &Forces
 }
 
 fn longest(fastest: f64) -> f64 {
-    if fastest > 0.0 { LARGEST_GROWTH / fastest } else { f64::MAX }
+    if fastest > 0.0 { MAX_GROWTH / fastest } else { f64::MAX }
 }
 
 /// q² ∂T/∂v_t of slipping mass `i`, N s/m: its friction as a damper along x; 0 where friction does not depend on the speed.

@@ -43,7 +43,7 @@ impl Load {
     }
 
     /// The load of a force F_z, N.
-    pub fn of_force(self, force: f64) -> f64 {
+    pub fn at_force(self, force: f64) -> f64 {
         force / self.area()
     }
 }

@@ -11,24 +11,24 @@
 //!
 //! So a growing and a falling stiffness both dissipate energy: the spring stores V = G²/(2K), and ∫ G du = V + E_diss
 //! with E_diss never falling. Straight motions of the carrier are followed exactly: changes between stick and slip are
-//! roots, integrals are by Gauss's formula of six points over pieces in which the integrand is a polynomial of degree 11
+//! roots, integrals are by Gauss's formula of six points over segments in which the integrand is a polynomial of degree 11
 //! at most (stick) or close to one (slip).
 
 use super::law::{Contact, Curve};
-use super::spring::{Hold, Passed, Piece, leap, pass};
+use super::spring::{Advanced, Segment, SpringLaw, advance, apply_jump};
 use crate::math::bracketed_root;
 use crate::model::Mode;
 
-/// Most changes between stick and slip in one piece: more are rounding, where both are the same.
-const MOST_TURNS: usize = 6;
+/// Most changes between stick and slip in one segment: more are rounding, where both are the same.
+const MAX_TURNS: usize = 6;
 /// Share of the limit that counts as the limit.
 const AT_LIMIT: f64 = 1.0 - 1e-12;
-/// Share of a piece to which a change is located.
+/// Share of a segment to which a change is located.
 const ROOT: f64 = 1e-14;
 
 /// The rates of a straight motion, m/s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Rates {
+pub(super) struct MotionRates {
     pub(super) u: f64,
     /// ȧ = -ẇ
     pub(super) approach: f64,
@@ -55,7 +55,7 @@ pub(super) struct Jenkins {
 /// A phase of stick or slip while the approach changes.
 struct Phase<'a> {
     curve: &'a Curve,
-    rates: Rates,
+    rates: MotionRates,
     from: f64,
     here: Contact,
     start: Jenkins,
@@ -64,8 +64,8 @@ struct Phase<'a> {
 }
 
 impl Contact {
-    fn hold(&self) -> Hold<f64> {
-        Hold { stiffness: self.stiffness.value, limit: self.limit.value }
+    fn law(&self) -> SpringLaw<f64> {
+        SpringLaw { stiffness: self.stiffness.value, limit: self.limit.value }
     }
 }
 
@@ -82,7 +82,7 @@ impl Jenkins {
 
     /// The speed has changed, and with it the law, at the same position.
     pub(super) fn take_over(&mut self, contact: &Contact, approach: f64, listener: &mut impl Listener) {
-        let ([force, _], lost) = leap([self.force, 0.0], self.stiffness, &contact.hold());
+        let ([force, _], lost) = apply_jump([self.force, 0.0], self.stiffness, &contact.law());
         (self.force, self.stiffness) = (force, contact.stiffness.value);
         listener.lost(approach, lost);
     }
@@ -99,9 +99,9 @@ impl Jenkins {
         if self.stiffness <= 0.0 {
             return;
         }
-        let (hold, start) = (contact.hold(), self.force);
-        let piece = Piece { begin: hold, end: hold, displacement: [u_rate * time, 0.0], half_turn: 0.0 };
-        let Passed { force: [force, _], slips, slip, .. } = pass([start, 0.0], &piece);
+        let (law, start) = (contact.law(), self.force);
+        let segment = Segment { begin: law, end: law, displacement: [u_rate * time, 0.0], half_turn: 0.0 };
+        let Advanced { force: [force, _], slips, slip, .. } = advance([start, 0.0], &segment);
         self.force = force;
         listener.lost(approach, slip);
         if slips && u_rate != 0.0 {
@@ -118,14 +118,14 @@ impl Jenkins {
         }
     }
 
-    /// The carrier moves straight through a piece of the approach, `from` to `to` (m), in which the stiffness only grows
-    /// or only falls; the piece begins `elapsed` s after the start of the motion.
+    /// The carrier moves straight through a segment of the approach, `from` to `to` (m), in which the stiffness only grows
+    /// or only falls; the segment begins `elapsed` s after the start of the motion.
     pub(super) fn cross(
         &mut self,
         curve: &Curve,
         from: f64,
         to: f64,
-        rates: Rates,
+        rates: MotionRates,
         elapsed: f64,
         listener: &mut impl Listener,
     ) {
@@ -134,12 +134,12 @@ impl Jenkins {
             return self.turn(Mode::Free, elapsed, listener);
         }
         let (mut at, mut slip) = (from, None);
-        for turn in 1..=MOST_TURNS {
+        for turn in 1..=MAX_TURNS {
             let here = curve.at(at);
             let rising = end.stiffness.value >= here.stiffness.value;
             let phase = Phase { curve, rates, from: at, here, start: *self, rising };
             let slips = slip.unwrap_or_else(|| phase.is_slip());
-            let last = turn == MOST_TURNS;
+            let last = turn == MAX_TURNS;
             let stop = if last {
                 to
             } else if slips {

@@ -116,7 +116,7 @@ impl Law {
         // Between two speeds a difference of separations is no larger than at one of them.
         let touch = |j: usize| {
             let larger = |row: &Series| row.values[j].max(row.values[(j + 1).min(self.speeds.len() - 1)]);
-            let widest = 2.0 * larger(&rows[0]) / (LEAST_END_SLOPE * step);
+            let widest = 2.0 * larger(&rows[0]) / (MIN_END_SLOPE * step);
             -rows.iter().map(larger).sum::<f64>() - widest
         };
         (0..self.speeds.len()).map(touch).fold(f64::INFINITY, f64::min)
@@ -211,7 +211,7 @@ impl Curve {
     }
 
     /// The law has changed: the speed set next is computed even if it is the present one.
-    pub(super) fn forget_speed(&mut self) {
+    pub(super) fn invalidate_speed(&mut self) {
         self.speed = f64::NAN;
     }
 
@@ -227,8 +227,8 @@ impl Curve {
         let last = self.slopes.len() - 1;
         let secant =
             |i: usize| (self.pressures[i + 1] - self.pressures[i]) / (self.approaches[i + 1] - self.approaches[i]);
-        self.slopes[0] = self.slopes[0].max(LEAST_END_SLOPE * secant(0));
-        self.slopes[last] = self.slopes[last].max(LEAST_END_SLOPE * secant(last - 1));
+        self.slopes[0] = self.slopes[0].max(MIN_END_SLOPE * secant(0));
+        self.slopes[last] = self.slopes[last].max(MIN_END_SLOPE * secant(last - 1));
         self.touch = self.approaches[0] - 2.0 / self.slopes[0];
     }
 
@@ -299,13 +299,13 @@ impl Curve {
     fn inside(&self, approach: f64) -> Contact {
         let i = interval_of(&self.approaches, approach);
         let y = cubic(&self.approaches, &self.pressures, &self.slopes, i, approach);
-        let friction = self.along_pressure(Quantity::Friction, i, y.value).of(y);
+        let friction = self.along_pressure(Quantity::Friction, i, y.value).compose(y);
         let normal = y.exp().times(Expansion::constant(self.nominal_area));
         Contact {
             y,
             normal,
             limit: friction.times(normal),
-            stiffness: self.along_pressure(Quantity::Stiffness, i, y.value).of(y),
+            stiffness: self.along_pressure(Quantity::Stiffness, i, y.value).compose(y),
         }
     }
 
@@ -368,12 +368,12 @@ impl Curve {
     /// A quantity at `contact`, along the approach; 0 where the table does not have it.
     pub(super) fn other(&self, quantity: Quantity, contact: &Contact) -> Expansion {
         let i = interval_of(&self.pressures, contact.y.value);
-        self.along_pressure(quantity, i, contact.y.value).of(contact.y)
+        self.along_pressure(quantity, i, contact.y.value).compose(contact.y)
     }
 }
 
 /// Least slope of y at the ends, as a share of the secant beside them.
-const LEAST_END_SLOPE: f64 = 0.5;
+const MIN_END_SLOPE: f64 = 0.5;
 
 /// Number of pieces between two pressures, given by their logarithms.
 fn pieces(from: f64, to: f64) -> usize {

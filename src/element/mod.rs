@@ -25,6 +25,6 @@ pub use low_end::LowEnd;
 pub use point_contact::{PointContact, dependencies, variables};
 pub use resampled::{LawPoint, ResampledLaw, SpeedRange, Spot};
 pub use run::{Element, ElementError, ElementState, RestoreError};
-pub(crate) use spring::{Hold, Passed, Piece, leap, pass};
+pub(crate) use spring::{Advanced, Segment, SpringLaw, advance, apply_jump};
 pub use table::{Node, Table};
 pub use table_format::{Basis, CONVERGED, FORMAT, Quantity, STEADY, TableError, TableHeader, TableRow, TableText};

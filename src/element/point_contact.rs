@@ -105,7 +105,7 @@ impl PointContact {
                     None => return refuse("one of \"refuse\", \"hold\"".into()),
                 }
             }
-            (Parameter::Extrapolation, Value::Text(word)) => match Extrapolation::of_word(word) {
+            (Parameter::Extrapolation, Value::Text(word)) => match Extrapolation::from_word(word) {
                 Some(extrapolation) => self.extrapolation = extrapolation,
                 None => return refuse("one of \"linear\", \"hold\"".into()),
             },

@@ -18,7 +18,7 @@ const WIDEST: f64 = 0.006;
 const FEWEST: f64 = 8.0;
 
 /// Most bins in which the place of a speed among those of the table is looked up.
-const MOST_BINS: f64 = 1e5;
+const MAX_BINS: f64 = 1e5;
 
 /// Speeds of an interval at which the law is taken.
 const SAMPLES: usize = 3;
@@ -98,7 +98,7 @@ struct Stretch {
 
 impl Stretch {
     /// Those of a table; a table of one speed has one without width.
-    fn of(speeds: &[f64]) -> Vec<Self> {
+    fn new(speeds: &[f64]) -> Vec<Self> {
         let mut first = 0;
         let mut stretch = |start: f64, end: f64| {
             let count = ((end - start) / WIDEST).ceil().max(FEWEST);
@@ -170,7 +170,7 @@ impl ResampledLaw {
         let shift = (table.load.area() / area).ln();
         let speeds = law.speeds().to_vec();
         let (bins, bin_density) = bins(&speeds);
-        let (stretches, pressures) = (Stretch::of(&speeds), table.grid.loads.len());
+        let (stretches, pressures) = (Stretch::new(&speeds), table.grid.loads.len());
         let intervals = stretches.iter().map(|stretch| stretch.count).sum();
         Self {
             temperature,
@@ -203,7 +203,7 @@ impl ResampledLaw {
         }
         self.temperature = kelvin;
         self.law.set_temperature(kelvin);
-        self.curve.forget_speed();
+        self.curve.invalidate_speed();
         self.temperatures += 1;
         self.earliest_touch = self.law.earliest_touch();
     }
@@ -257,7 +257,7 @@ impl ResampledLaw {
         for (sample, weights) in LAGRANGE.iter().enumerate() {
             self.curve.set_speed(&self.law, (spot.start + width * sample as f64 / (SAMPLES - 1) as f64).exp());
             (0..pressures).for_each(|i| self.add_sample(spot.interval * pressures + i, i, weights));
-            self.note_beginnings(spot.interval, sample);
+            self.record_beginnings(spot.interval, sample);
         }
         self.computed[spot.interval] = self.temperatures;
     }
@@ -282,7 +282,7 @@ impl ResampledLaw {
     }
 
     /// Takes the beginnings of an interval's pieces from its first and its last sample.
-    fn note_beginnings(&mut self, interval: usize, sample: usize) {
+    fn record_beginnings(&mut self, interval: usize, sample: usize) {
         let [_, approaches, _] = self.curve.points();
         let count = beginnings_of(approaches.len());
         let kept = &mut self.beginnings[interval * count..(interval + 1) * count];
@@ -381,7 +381,7 @@ fn bins(speeds: &[f64]) -> (Vec<u32>, f64) {
         return (vec![0], 0.0);
     }
     let narrowest = speeds.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
-    let count = (range / narrowest).ceil().min(MOST_BINS);
+    let count = (range / narrowest).ceil().min(MAX_BINS);
     let start = |bin: usize| speeds[0] + range * bin as f64 / count;
     let below = |bin: usize| speeds.partition_point(|&speed| speed <= start(bin)).clamp(1, speeds.len() - 1) - 1;
     ((0..count as usize).map(|bin| below(bin) as u32).collect(), count / range)

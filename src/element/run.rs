@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::grid::Load;
-use super::jenkins::{Jenkins, Listener, Rates};
+use super::jenkins::{Jenkins, Listener, MotionRates};
 use super::law::{Contact, Curve, Law};
 use super::point_contact::{PointContact, Terms, element_output};
 use super::table_format::Quantity;
@@ -198,7 +198,7 @@ impl Element {
         if from == to {
             return spring.slide(&here, from, u_rate, duration, &mut ledger);
         }
-        let rates = Rates { u: u_rate, approach: -w_rate };
+        let rates = MotionRates { u: u_rate, approach: -w_rate };
         let closer = to > from;
         let mut at = from;
         while at != to {
@@ -221,8 +221,8 @@ impl Element {
     }
 
     /// The rates of the last motion.
-    pub(super) fn rates(&self) -> Rates {
-        Rates { u: self.state.u_rate, approach: -self.state.w_rate }
+    pub(super) fn rates(&self) -> MotionRates {
+        MotionRates { u: self.state.u_rate, approach: -self.state.w_rate }
     }
 
     fn check_speed(&self, speed: f64) -> Result<(), ElementError> {
@@ -287,7 +287,7 @@ impl Element {
 
     /// Ḟ_x and Ḟ_z, N/s, at the rates of the last motion.
     pub fn force_rates(&self) -> (f64, f64) {
-        let Rates { u, approach } = self.rates();
+        let MotionRates { u, approach } = self.rates();
         let change = self.change(&self.contact(), u, -approach);
         (-change.force, change.normal)
     }
@@ -377,7 +377,7 @@ impl Element {
         let mut element = Self::at(contact, *saved)?;
         let here = element.contact();
         let invalid = |what, value| Err(RestoreError::Invalid { what, value });
-        let mode = match Mode::of_number(saved.mode) {
+        let mode = match Mode::from_number(saved.mode) {
             Some(mode) if mode.in_contact() == (here.stiffness.value > 0.0) => mode,
             _ => return invalid("the mode", f64::from(saved.mode)),
         };

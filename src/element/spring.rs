@@ -1,4 +1,4 @@
-//! The spring and slider of an element, in the plane or along a line of it: its passage through a piece of a motion, in
+//! The spring and slider of an element, in the plane or along a line of it: its passage through a segment of a motion, in
 //! closed form.
 //!
 //! G is the force of the spring on the ground, K its stiffness, L the limit, Δ the displacement of the face along the
@@ -21,25 +21,25 @@ const LONG: f64 = 300.0;
 
 /// What an element's spring is held by: its stiffness (N/m) and its limit (N); both 0 without contact.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Hold<T> {
+pub(crate) struct SpringLaw<T> {
     pub(crate) stiffness: T,
     pub(crate) limit: T,
 }
 
-/// A piece of a motion as an element sees it.
+/// A segment of a motion as an element sees it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Piece<T> {
-    pub(crate) begin: Hold<T>,
-    pub(crate) end: Hold<T>,
+pub(crate) struct Segment<T> {
+    pub(crate) begin: SpringLaw<T>,
+    pub(crate) end: SpringLaw<T>,
     /// Δ, m.
     pub(crate) displacement: [T; 2],
     /// The tangent of half the angle that the velocity turns by.
     pub(crate) half_turn: T,
 }
 
-/// What a piece makes of a spring.
+/// What a segment makes of a spring.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Passed<T> {
+pub(crate) struct Advanced<T> {
     /// G at its end, N.
     pub(crate) force: [T; 2],
     /// Whether it slips there.
@@ -62,11 +62,11 @@ fn falls<T: Number>(before: T, after: T) -> bool {
     after.value() < before.value() * (1.0 - ROUNDING)
 }
 
-/// The law has leapt: G falls with K where K falls, then is cut to L. Returns G and the energy that it took, J.
+/// The law has jumped: G falls with K where K falls, then is cut to L. Returns G and the energy that it took, J.
 #[inline(always)]
-pub(crate) fn leap<T: Number>(force: [T; 2], stiffness: T, hold: &Hold<T>) -> ([T; 2], f64) {
+pub(crate) fn apply_jump<T: Number>(force: [T; 2], stiffness: T, law: &SpringLaw<T>) -> ([T; 2], f64) {
     let square = |g: [T; 2]| g[0] * g[0] + g[1] * g[1];
-    let (k, limit) = (hold.stiffness, hold.limit);
+    let (k, limit) = (law.stiffness, law.limit);
     let before = square(force).value() / (stiffness.value() + TINY);
     let one = T::constant(1.0);
     let share = k / (stiffness + T::constant(TINY));
@@ -81,18 +81,18 @@ pub(crate) fn leap<T: Number>(force: [T; 2], stiffness: T, hold: &Hold<T>) -> ([
     (force, if lost > 0.0 { lost } else { 0.0 })
 }
 
-/// Takes a spring with |G| ≤ L through a piece.
+/// Takes a spring with |G| ≤ L through a segment.
 #[inline(always)]
-pub(crate) fn pass<T: Number>(force: [T; 2], piece: &Piece<T>) -> Passed<T> {
+pub(crate) fn advance<T: Number>(force: [T; 2], segment: &Segment<T>) -> Advanced<T> {
     let (tiny, one) = (T::constant(TINY), T::constant(1.0));
-    let (begin, end) = (piece.begin, piece.end);
+    let (begin, end) = (segment.begin, segment.end);
     let (falls, level) = (falls(begin.stiffness, end.stiffness), is_level(begin.stiffness, end.stiffness));
     let middle = (begin.stiffness + end.stiffness).times(0.5);
     let growing = |k: T| (k + middle).times(0.5).or(level, middle);
     let (k_a, k_b) =
         (begin.stiffness.or(falls, growing(begin.stiffness)), end.stiffness.or(falls, growing(end.stiffness)));
     let per = one / (k_a + tiny);
-    let [dx, dy] = piece.displacement;
+    let [dx, dy] = segment.displacement;
     let (ex, ey) = (force[0] * per, force[1] * per);
     let l0 = begin.limit * per;
     let l1 = (end.limit / (k_b + tiny)).or(k_b.value() > 0.0, l0);
@@ -118,7 +118,7 @@ pub(crate) fn pass<T: Number>(force: [T; 2], piece: &Piece<T>) -> Passed<T> {
     let least = STANDING * l1.value();
     let moves = square.value() > least * least;
     let per_distance = (one / distance).or(moves, T::constant(0.0));
-    let [ux, uy] = turned([dx * per_distance, dy * per_distance], piece.half_turn * share);
+    let [ux, uy] = turned([dx * per_distance, dy * per_distance], segment.half_turn * share);
     let (nx, ny) = (ex + dx * t, ey + dy * t);
     let size = one / (nx * nx + ny * ny + tiny).sqrt();
     let (nx, ny) = (nx * size, ny * size);
@@ -141,7 +141,7 @@ pub(crate) fn pass<T: Number>(force: [T; 2], piece: &Piece<T>) -> Passed<T> {
     let (share_0, share_1) = (share(k_0), share(k_1));
     let release = 0.25 * (k_1 - k_0).abs() * (before * share_0 + after * share_1);
     let force = [(k_b * x).or(slips, stuck[0]), (k_b * y).or(slips, stuck[1])];
-    Passed { force, slips, slip: if slips && by_slip > 0.0 { by_slip } else { 0.0 }, release }
+    Advanced { force, slips, slip: if slips && by_slip > 0.0 { by_slip } else { 0.0 }, release }
 }
 
 /// The share of a displacement after which |e| reaches the radius, which grows straight from `radius` by `growth`.
@@ -182,12 +182,12 @@ fn turned<T: Number>(direction: [T; 2], tangent: T) -> [T; 2] {
 mod tests {
     use super::*;
 
-    fn hold(stiffness: f64, limit: f64) -> Hold<f64> {
-        Hold { stiffness, limit }
+    fn law(stiffness: f64, limit: f64) -> SpringLaw<f64> {
+        SpringLaw { stiffness, limit }
     }
 
-    fn passed(force: [f64; 2], begin: Hold<f64>, end: Hold<f64>, displacement: [f64; 2]) -> Passed<f64> {
-        pass(force, &Piece { begin, end, displacement, half_turn: 0.0 })
+    fn advanced(force: [f64; 2], begin: SpringLaw<f64>, end: SpringLaw<f64>, displacement: [f64; 2]) -> Advanced<f64> {
+        advance(force, &Segment { begin, end, displacement, half_turn: 0.0 })
     }
 
     /// At its limit, displaced by nothing or by next to nothing, a spring stays; where the limit falls it is cut.
@@ -195,20 +195,20 @@ mod tests {
     fn a_spring_at_its_limit_that_stands_keeps_its_direction() {
         for tiny in [0.0, 1e-320, 1e-200, 1e-30] {
             for over in [1.0 - 1e-15, 1.0, 1.0 + 1e-15] {
-                let [x, y] = passed([3.0 * over, 4.0 * over], hold(1e6, 5.0), hold(1e6, 5.0), [tiny, -tiny]).force;
+                let [x, y] = advanced([3.0 * over, 4.0 * over], law(1e6, 5.0), law(1e6, 5.0), [tiny, -tiny]).force;
                 assert!((x - 3.0).abs() < 1e-12 && (y - 4.0).abs() < 1e-12, "{tiny:e} {over}: {x} {y}");
             }
-            let cut = passed([3.0, 4.0], hold(1e6, 5.0), hold(1e6, 2.5), [tiny, 0.0]);
+            let cut = advanced([3.0, 4.0], law(1e6, 5.0), law(1e6, 2.5), [tiny, 0.0]);
             assert!((cut.force[0] - 1.5).abs() < 1e-12 && cut.slips && (cut.slip - 3.75 * 2.5e-6).abs() < 1e-12);
         }
     }
 
-    /// In many pieces, by steps of the differential equations.
+    /// In many segments, by steps of the differential equations.
     #[test]
     fn slip_turns_as_the_equations_say() {
         let (k, limit, n) = (1e6, 5.0, 200_000);
         let (mut g, d) = ([3.0_f64, 4.0_f64], [2e-5_f64, -1e-5_f64]);
-        let found = passed(g, hold(k, limit), hold(k, limit), d).force;
+        let found = advanced(g, law(k, limit), law(k, limit), d).force;
         for _ in 0..n {
             g = [0, 1].map(|i| g[i] + k * d[i] / f64::from(n));
             let size = g[0].hypot(g[1]);
@@ -221,12 +221,12 @@ mod tests {
     /// Without contact nothing is left, and nothing is no number.
     #[test]
     fn what_lifts_loses_all() {
-        let lifted = passed([3.0, 4.0], hold(1e6, 5.0), hold(0.0, 0.0), [1e-6, 0.0]);
+        let lifted = advanced([3.0, 4.0], law(1e6, 5.0), law(0.0, 0.0), [1e-6, 0.0]);
         assert!(lifted.force == [0.0; 2] && lifted.release > 0.0 && lifted.slip.is_finite());
         // However stiff what touches is.
-        let touches = passed([0.0; 2], hold(0.0, 0.0), hold(1e20, 1e15), [1e-6, 0.0]);
+        let touches = advanced([0.0; 2], law(0.0, 0.0), law(1e20, 1e15), [1e-6, 0.0]);
         assert!(touches.force[0] > 0.0 && touches.release.is_finite());
-        let free = passed([0.0; 2], hold(0.0, 0.0), hold(0.0, 0.0), [1e30, 0.0]);
+        let free = advanced([0.0; 2], law(0.0, 0.0), law(0.0, 0.0), [1e30, 0.0]);
         assert!(free.force == [0.0; 2] && free.release == 0.0 && free.slip == 0.0);
     }
 }

@@ -47,7 +47,7 @@ impl TableAxis {
     pub(super) const ALL: [Self; 3] = [Self::Speed, Self::Load, Self::Temperature];
 
     /// The index of a node on this axis.
-    pub(super) fn of(self, node: Node) -> usize {
+    pub(super) fn index(self, node: Node) -> usize {
         [node.speed, node.load, node.temperature][self as usize]
     }
 
@@ -129,7 +129,7 @@ impl Table {
     /// The table without the points at `index` of an axis.
     pub(super) fn without(&self, axis: TableAxis, index: usize) -> Self {
         let rest = |values: &Vec<f64>| {
-            let kept = self.nodes().zip(values).filter(|(node, _)| axis.of(*node) != index);
+            let kept = self.nodes().zip(values).filter(|(node, _)| axis.index(*node) != index);
             kept.map(|(_, &value)| value).collect()
         };
         let mut table = Self { values: std::array::from_fn(|i| self.values[i].as_ref().map(rest)), ..self.clone() };

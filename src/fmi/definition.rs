@@ -262,7 +262,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    fn of(kind: outputs::Kind) -> Self {
+    fn new(kind: outputs::Kind) -> Self {
         match kind {
             outputs::Kind::Real => Self::Real,
             outputs::Kind::Integer => Self::Integer,
@@ -316,8 +316,8 @@ impl Entry<'_> {
     pub fn kind(&self) -> Kind {
         match self {
             Self::Input(_) | Self::PatchInput(_) => Kind::Real,
-            Self::Output(_, variable) => Kind::of(variable.kind),
-            Self::PatchOutput(_, variable) => Kind::of(variable.kind),
+            Self::Output(_, variable) => Kind::new(variable.kind),
+            Self::PatchOutput(_, variable) => Kind::new(variable.kind),
             Self::Parameter(_, kind) => *kind,
         }
     }

@@ -150,7 +150,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
         }
         Err(error) => {
             let text = format!("fmi2Instantiate: {error}");
-            callbacks.deliver(vec![Message::of_status(error.status(), text)]);
+            callbacks.deliver(vec![Message::from_status(error.status(), text)]);
             ptr::null_mut()
         }
     }

@@ -86,7 +86,7 @@ struct BorrowedState<'a> {
 }
 
 impl<'a> BorrowedState<'a> {
-    fn of(state: &'a FmuState) -> Self {
+    fn new(state: &'a FmuState) -> Self {
         let FmuState { lifecycle, parameters, inputs, clock, last_step, model, .. } = state;
         let parameters = parameters.values_set();
         Self { lifecycle: *lifecycle, parameters, inputs: *inputs, clock: *clock, last_step: *last_step, model }
@@ -95,7 +95,7 @@ impl<'a> BorrowedState<'a> {
 
 /// The number of bytes of `state` of the FMU with this GUID.
 pub(super) fn size(state: &FmuState, guid: &str) -> Result<usize, RestoreError> {
-    let own = postcard::experimental::serialized_size(&BorrowedState::of(state))?;
+    let own = postcard::experimental::serialized_size(&BorrowedState::new(state))?;
     let inputs = state.patch_inputs.as_ref().map_or(Ok(0), postcard::experimental::serialized_size)?;
     Ok(head(guid).len() + own + inputs + CHECKSUM)
 }
@@ -104,7 +104,7 @@ pub(super) fn size(state: &FmuState, guid: &str) -> Result<usize, RestoreError> 
 pub(super) fn write(state: &FmuState, guid: &str) -> Result<Vec<u8>, RestoreError> {
     let mut bytes = Vec::with_capacity(size(state, guid)?);
     bytes.extend(head(guid));
-    bytes = postcard::to_extend(&BorrowedState::of(state), bytes)?;
+    bytes = postcard::to_extend(&BorrowedState::new(state), bytes)?;
     if let Some(inputs) = &state.patch_inputs {
         bytes = postcard::to_extend(inputs, bytes)?;
     }

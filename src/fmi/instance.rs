@@ -46,7 +46,7 @@ impl Instance {
     fn of(definition: Definition, catalogue: Catalogue, guid: String, logging: bool) -> Self {
         let mut log = Log::new(logging);
         for warning in definition.warnings() {
-            log.add(Message::of_status(Status::Warning, warning.clone()));
+            log.add(Message::from_status(Status::Warning, warning.clone()));
         }
         let original = Arc::new(Parameters::new(definition));
         Self {
@@ -76,7 +76,7 @@ impl Instance {
             Err(Error::Panic(panic))
         });
         let Err(error) = result else { return Status::Ok };
-        self.log.add(Message::of_status(error.status(), format!("{function}: {error}")));
+        self.log.add(Message::from_status(error.status(), format!("{function}: {error}")));
         error.status()
     }
 
@@ -132,7 +132,7 @@ impl Instance {
         let (events, switches) = self.take_records();
         // Events of a discarded step are dropped.
         result?;
-        self.outputs.outdate();
+        self.outputs.invalidate();
         self.log_events(&events);
         self.log_work(&switches);
         self.log_warnings();
@@ -144,7 +144,7 @@ impl Instance {
     pub(super) fn terminate(&mut self) -> Result<(), Error> {
         self.state.lifecycle = LifecycleState::Terminated;
         if let Some(divergence) = self.state.model.as_ref().and_then(InstanceModel::divergence) {
-            self.log.add(Message::of_status(Status::Warning, divergence.to_string()));
+            self.log.add(Message::from_status(Status::Warning, divergence.to_string()));
         }
         Ok(())
     }
@@ -152,7 +152,7 @@ impl Instance {
     /// fmi2Reset: back to the state after fmi2Instantiate. The FMU states handed out remain until the master frees them.
     pub(super) fn reset(&mut self) -> Result<(), Error> {
         self.state = InstanceState::new(Arc::clone(&self.original));
-        self.outputs.outdate();
+        self.outputs.invalidate();
         self.texts.clear();
         self.log = Log::new(self.logging);
         self.warnings = RunWarnings::default();
@@ -171,7 +171,7 @@ impl Instance {
     /// fmi2SetFMUstate
     pub(super) fn set_state(&mut self, handle: usize) -> Result<(), Error> {
         self.state.restore(self.fmu_states.recall(handle)?)?;
-        self.outputs.outdate();
+        self.outputs.invalidate();
         self.record_events();
         Ok(())
     }
@@ -230,14 +230,14 @@ impl Instance {
     fn log_warnings(&mut self) {
         let Some(model) = &self.state.model else { return };
         for text in self.warnings.new_ones(self.state.parameters.definition(), model, self.state.clock.time) {
-            self.log.add(Message::of_status(Status::Warning, text));
+            self.log.add(Message::from_status(Status::Warning, text));
         }
     }
 
     /// An element beyond the table is told of once a run.
     fn log_patch_warning(&mut self) {
         let warning = self.state.model.as_mut().and_then(InstanceModel::patch).and_then(|run| run.take_warning());
-        self.log.extend(warning.map(|text| Message::of_status(Status::Warning, text)));
+        self.log.extend(warning.map(|text| Message::from_status(Status::Warning, text)));
     }
 
     fn log_work(&mut self, switches: &[MethodSwitch]) {

@@ -48,7 +48,7 @@ impl Category {
         }
     }
 
-    fn of(status: Status) -> Self {
+    fn new(status: Status) -> Self {
         match status {
             Status::Ok => Self::Events,
             Status::Warning => Self::Warning,
@@ -67,8 +67,8 @@ pub(super) struct Message {
 
 impl Message {
     /// A message of a call that returns `status`, or a warning.
-    pub(super) fn of_status(status: Status, text: String) -> Self {
-        Self { status, category: Category::of(status), text }
+    pub(super) fn from_status(status: Status, text: String) -> Self {
+        Self { status, category: Category::new(status), text }
     }
 }
 

@@ -114,7 +114,7 @@ impl PatchInputs {
     pub(super) fn start(&self, time: f64) -> PatchStart {
         PatchStart {
             time,
-            pose: Pose::of(self.pose()),
+            pose: Pose::from_coordinates(self.pose()),
             rates: std::array::from_fn(|i| self.signals[i].rate().unwrap_or_default()),
             transport_speed: self.get(PatchInput::TransportSpeed),
             temperature: self.get(PatchInput::Temperature),

@@ -170,7 +170,7 @@ pub(super) struct OutputCache {
 
 impl OutputCache {
     /// Marks them as outdated: something that they depend on has changed.
-    pub(super) fn outdate(&mut self) {
+    pub(super) fn invalidate(&mut self) {
         if let Some(values) = self.values.take() {
             self.spare = values;
         }

@@ -131,7 +131,7 @@ impl Instance {
     fn update_start(&mut self) {
         if self.state.lifecycle.before_run() {
             self.state.discard_start();
-            self.outputs.outdate();
+            self.outputs.invalidate();
         }
     }
 

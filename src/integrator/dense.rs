@@ -67,7 +67,7 @@ pub struct DenseOutput<'a> {
 impl DenseOutput<'_> {
     /// Of these masses alone.
     #[must_use]
-    pub fn of(self, masses: Range<usize>) -> Self {
+    pub fn restricted_to(self, masses: Range<usize>) -> Self {
         Self { masses, ..self }
     }
 
@@ -134,11 +134,12 @@ impl DenseOutput<'_> {
     ) -> f64 {
         let (carrier, h) = (self.carrier.at(self.span.at(theta)), self.span.length);
         workspace.set_accelerations(self, theta, &carrier);
-        let settled = Settled::new(self.model, theta * h);
+        let settled = InertialFraction::new(self.model, theta * h);
         let missed = |of_forces: f64, of_interpolant: f64, velocity: f64, settled: f64| {
             let gained = settled * theta * h * (of_forces - of_interpolant);
             let moved = theta * h * gained;
-            (gained * gained / tolerance.of_velocity(velocity)).max(moved * moved / tolerance.of_position(0.0))
+            (gained * gained / tolerance.velocity_tolerance_sq(velocity))
+                .max(moved * moved / tolerance.position_tolerance_sq(0.0))
         };
         let mut largest = 0.0_f64;
         for i in 0..self.masses.len() {
@@ -396,12 +397,12 @@ impl LinkPoint {
 
 /// How much of a force on a mass becomes velocity in a time β, along x and z: (m/β)/(m/β + βc + d + Σ_j c_j βτ_j/(τ_j + β))
 /// of the links to the carrier and to neighbours at rest. The rest goes into them: motion that is faster settles.
-struct Settled {
+struct InertialFraction {
     x: f64,
     z: f64,
 }
 
-impl Settled {
+impl InertialFraction {
     fn new(model: &Model, beta: f64) -> Self {
         let weight = |kind: LinkKind| {
             let link = &model.links[kind as usize];
@@ -457,12 +458,12 @@ impl DenseWorkspace {
     }
 
     /// Workspace for single masses alone, not for [`DenseOutput::defect`] nor for sums over the layer.
-    pub fn of_weights(model: &Model) -> Self {
+    pub fn for_single_masses(model: &Model) -> Self {
         Self { of_masses: [Vec::new(), Vec::new()], ..Self::new(model) }
     }
 
     /// Forgets the weights: the model has changed.
-    pub fn forget(&mut self) {
+    pub fn invalidate(&mut self) {
         self.at = (f64::NAN, f64::NAN);
     }
 

@@ -11,7 +11,7 @@ use super::maxwell::{Maxwell, StageCoefficients};
 use super::rates::Rates;
 use super::tableau::STAGES;
 use crate::math::{dot, dots, square_and_dots, sum_of_pairs};
-use crate::model::{ChannelEnergies, Exchange, LinkKind, MaxwellRow, Model, State};
+use crate::model::{BoundaryPowers, ChannelEnergies, LinkKind, MaxwellRow, Model, State};
 
 /// Σ ė_i ė_j over the links of one kind, m²/s², where they are needed; 0 elsewhere.
 type RateProducts<const N: usize> = [[f64; N]; N];
@@ -78,7 +78,7 @@ pub(super) struct SummedStep<'a> {
     pub of: MassesInStep<'a>,
     pub sums: &'a mut StepSums,
     /// The powers of these masses through the surface and the carrier at the stages.
-    pub exchange: &'a [Exchange],
+    pub exchange: &'a [BoundaryPowers],
 }
 
 impl StepSums {
@@ -178,7 +178,7 @@ pub(super) struct StepPowers<'a, const N: usize> {
     pub maxwell: &'a Maxwell<N>,
     pub sums: &'a StepSums,
     /// The powers through the surface and the carrier at the stages.
-    pub exchange: &'a [Exchange],
+    pub exchange: &'a [BoundaryPowers],
     /// The length of the step, s.
     pub h: f64,
     /// The weights of the stages.
@@ -312,7 +312,7 @@ mod tests {
     /// Against the sums over every element at every stage.
     #[test]
     fn products_give_the_sum_over_every_element_at_every_stage() {
-        let model = Model::of_text(SCENE);
+        let model = Model::from_text(SCENE);
         let mut seed = 1_u32;
         let mut number = || {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

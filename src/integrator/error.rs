@@ -8,7 +8,7 @@ use super::rates::Rates;
 use super::tableau::Tableau;
 use crate::math::{dot, sum_of, sum_of_pairs, sum_of_triples, weighted_sum, with_widest_vectors};
 use crate::model::Axis;
-use crate::model::{CarrierPoint, Exchange, LinkKind, Model, State};
+use crate::model::{BoundaryPowers, CarrierPoint, LinkKind, Model, State};
 
 /// The tolerances of the local error of a step. The error of each quantity is divided by absolute + relative · size.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,13 +88,13 @@ impl Tolerance {
 
     /// The square of the allowed error of a position of this size, m².
     #[inline]
-    pub fn of_position(&self, size: f64) -> f64 {
+    pub fn position_tolerance_sq(&self, size: f64) -> f64 {
         square(self.position + self.relative * size.abs())
     }
 
     /// The square of the allowed error of a velocity of this size, m²/s².
     #[inline]
-    pub fn of_velocity(&self, size: f64) -> f64 {
+    pub fn velocity_tolerance_sq(&self, size: f64) -> f64 {
         square(self.velocity + self.relative * size.abs())
     }
 
@@ -200,7 +200,7 @@ pub(super) struct ErrorTest<'a, const STAGES: usize> {
     /// Those of them that stick at the end.
     pub sticks: &'a [usize],
     /// The powers through the surface and the carrier at the stages, where energies are computed.
-    pub exchange: Option<&'a [Exchange]>,
+    pub exchange: Option<&'a [BoundaryPowers]>,
     /// What the errors of forces and energies are measured by.
     pub largest: Largest,
 }
@@ -222,10 +222,10 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
         self.collect(h, &carrier_error, workspace);
         let (end, rates) = (self.end, &self.carrier[STAGES - 1]);
         let of_positions = |error: &[f64], elongation: &[f64]| {
-            sum_of_pairs(error, elongation, |error, e| error * error / tolerance.of_position(e))
+            sum_of_pairs(error, elongation, |error, e| error * error / tolerance.position_tolerance_sq(e))
         };
         let of_velocities = |error: &[f64], velocity: &[f64], carrier_rate: f64| {
-            sum_of_pairs(error, velocity, |error, v| error * error / tolerance.of_velocity(v - carrier_rate))
+            sum_of_pairs(error, velocity, |error, v| error * error / tolerance.velocity_tolerance_sq(v - carrier_rate))
         };
         let (in_contact, free) = self.carrier_squares(&carrier_error, tolerance);
         let mut sum = of_positions(&workspace.x, &end.elongation_x)
@@ -272,7 +272,7 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
                 Axis::Z => (error.position.1, error.velocity.1),
             };
             let allowed = tolerance.body_velocity[axis as usize] + tolerance.relative * rate.abs();
-            position * position / tolerance.of_position(way) + square(velocity / allowed)
+            position * position / tolerance.position_tolerance_sq(way) + square(velocity / allowed)
         };
         Axis::ALL.into_iter().filter(|&axis| model.bodies[axis as usize].is_some()).map(of).sum()
     }
@@ -282,7 +282,7 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
     ///
     /// Just after a kink the dampers' power falls within times far shorter than the step, which the motion forgets: the
     /// energies alone show that.
-    fn energy_square(&self, model: &Model, exchange: &[Exchange], h: f64, tolerance: &Tolerance) -> f64 {
+    fn energy_square(&self, model: &Model, exchange: &[BoundaryPowers], h: f64, tolerance: &Tolerance) -> f64 {
         let damper = |stage: &Rates| -> f64 {
             let links = LinkKind::ALL.into_iter().zip(&model.links).filter(|(_, law)| law.damping > 0.0);
             let of = |kind: LinkKind| &stage.elongation_rate[kind as usize][..];
@@ -328,8 +328,10 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
         if position.0 == 0.0 && position.1 == 0.0 {
             return (0.0, 0.0);
         }
-        let of_mass =
-            |x, z| square(position.0) / tolerance.of_position(x) + square(position.1) / tolerance.of_position(z);
+        let of_mass = |x, z| {
+            square(position.0) / tolerance.position_tolerance_sq(x)
+                + square(position.1) / tolerance.position_tolerance_sq(z)
+        };
         let all = sum_of_pairs(&end.elongation_x, &end.elongation_z, of_mass);
         if self.contacts.len() == end.mode.len() {
             return (all, 0.0);
@@ -372,7 +374,7 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
             return self.contact_force_squares(model, per_force, tolerance, force);
         }
         let per_force = tolerance.per_force(kind);
-        let square = |force: f64, e: f64| square(per_force * force) / tolerance.of_position(e);
+        let square = |force: f64, e: f64| square(per_force * force) / tolerance.position_tolerance_sq(e);
         if kind.is_lateral() {
             sum_of_triples(force, e, &e[1..], |force, e, e_next| square(force, e_next - e))
         } else {
@@ -390,7 +392,7 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
             let force = || model.rows_of(kind).map(|row| row.stiffness * a[row.range.start + i]).sum::<f64>();
             let (per_force, size) =
                 if self.end.mode[i].in_contact() { (per_force, per_force * force()) } else { (per_elongation, e[i]) };
-            (per_force * error[i]).powi(2) / tolerance.of_position(size)
+            (per_force * error[i]).powi(2) / tolerance.position_tolerance_sq(size)
         })
     }
 

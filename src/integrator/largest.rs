@@ -7,16 +7,16 @@ use crate::model::{Forces, LinkKind, Model};
 
 /// The least scale of the errors of one force, as a share of the other, and as one of the force that the scene's height makes
 /// on a mass.
-const LEAST_FORCE: f64 = 1e-3;
+const MIN_FORCE: f64 = 1e-3;
 /// The same as a share of the force that it makes on all masses in the long term: the first touches are not resolved down to
 /// forces that do not matter later.
-const LEAST_OF_LAYER: f64 = 1e-3;
+const MIN_OF_LAYER: f64 = 1e-3;
 /// The share of the scene's height by which the layer is compressed in the least scale of the errors of energies; the least scale
 /// is lower where the masses have less energy at the carrier's speed. A light layer moves with energies far below those of its
 /// springs.
-const LEAST_COMPRESSION: f64 = 0.01;
+const MIN_COMPRESSION: f64 = 0.01;
 /// The elongation of one mass's links whose energy is the least scale in any case, as a share of the scene's height.
-const LEAST_ELONGATION: f64 = 1e-9;
+const MIN_ELONGATION: f64 = 1e-9;
 /// The least scale of the errors of F_x as a share of the friction that a slide under F_z would have.
 const EXPECTED_FRICTION: f64 = 0.5;
 
@@ -52,18 +52,18 @@ impl Largest {
     /// What the errors of F_x and F_z are measured by in a layer of `model`, N. Forces that are still to come, or that
     /// symmetry makes nothing, are not resolved down to their rounding.
     pub(super) fn force_scales(self, model: &Model, tolerance: &Tolerance) -> (f64, f64) {
-        let expected = LEAST_FORCE.max(EXPECTED_FRICTION * model.friction_coefficient);
-        let of_mass = LEAST_FORCE * height(tolerance) * model.effective_stiffness();
-        let of_layer = LEAST_OF_LAYER * height(tolerance) * layer_stiffness(model, tolerance);
+        let expected = MIN_FORCE.max(EXPECTED_FRICTION * model.friction_coefficient);
+        let of_mass = MIN_FORCE * height(tolerance) * model.effective_stiffness();
+        let of_layer = MIN_OF_LAYER * height(tolerance) * layer_stiffness(model, tolerance);
         let least = of_mass.max(of_layer);
-        (self.force_x.max(expected * self.force_z).max(least), self.force_z.max(LEAST_FORCE * self.force_x).max(least))
+        (self.force_x.max(expected * self.force_z).max(least), self.force_z.max(MIN_FORCE * self.force_x).max(least))
     }
 
     /// What the errors of energies are measured by, J, under a carrier that moves at `speed` (m/s).
     pub(super) fn energy_scale(self, model: &Model, tolerance: &Tolerance, speed: f64) -> f64 {
-        let of_layer = layer_stiffness(model, tolerance) * (LEAST_COMPRESSION * height(tolerance)).powi(2);
+        let of_layer = layer_stiffness(model, tolerance) * (MIN_COMPRESSION * height(tolerance)).powi(2);
         let of_motion = tolerance.masses as f64 * model.mass * speed * speed;
-        let of_mass = (LEAST_ELONGATION * height(tolerance)).powi(2) * model.effective_stiffness();
+        let of_mass = (MIN_ELONGATION * height(tolerance)).powi(2) * model.effective_stiffness();
         self.energy.max(of_layer.min(of_motion)).max(of_mass)
     }
 }
@@ -89,7 +89,7 @@ mod tests {
     /// Of a layer that is 1e-5 m high: 40 · 2000 N/m · (1e-7 m)², 40 · 1e-7 kg · v², and 2000 N/m · (1e-14 m)².
     #[test]
     fn nothing_yet_is_measured_by_the_layer_or_by_its_motion() {
-        let model = Model::of_text(SCENE);
+        let model = Model::from_text(SCENE);
         let (tolerance, nothing) = (Tolerance::new(&model, 1e-3, 1e-8), Largest::default());
         for (speed, expected) in [(1.0, 8e-10), (1e-3, 4e-12), (0.0, 2e-25)] {
             let found = nothing.energy_scale(&model, &tolerance, speed);

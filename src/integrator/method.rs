@@ -4,13 +4,13 @@ use super::dense::StepSpan;
 use super::energy::{Measure, StepPowers, SummedStep};
 use super::error::{ErrorTest, ErrorWorkspace, StepAttempt, Tolerance};
 use super::maxwell::Maxwell;
-use super::rates::{Rates, StepStart};
+use super::rates::{LayerState, Rates};
 use super::sensitivity::{SolvedStage, Tangent};
 use super::stage::{BodyHistory, ConvergenceTest, Friction, NoConvergence, StagePoint, StageSolver};
 use super::tableau::{ContinuousWeights, STAGES, Tableau};
 use crate::math::{weighted_sum, with_widest_vectors};
 use crate::model::Axis;
-use crate::model::{Carrier, CarrierPoint, ChannelEnergies, Exchange, Mode, Model, State};
+use crate::model::{BoundaryPowers, Carrier, CarrierPoint, ChannelEnergies, Mode, Model, State};
 
 /// One Runge-Kutta method with its workspace.
 #[derive(Clone, Debug)]
@@ -29,7 +29,7 @@ pub(super) struct Stages {
     pub rates: Vec<Rates>,
     pub carrier: [CarrierPoint; STAGES],
     /// The powers through the surface and the carrier; computed if `tracks_energy`.
-    pub exchange: [Exchange; STAGES],
+    pub exchange: [BoundaryPowers; STAGES],
     /// The forces of the horizontal and vertical links at the stages between the first and the last; kept where energies of
     /// parts of the layer may be asked for.
     pub link_forces: Vec<[Vec<f64>; 2]>,
@@ -54,7 +54,7 @@ pub(super) enum InitialGuess<const N: usize> {
 #[derive(Clone, Copy)]
 pub(super) struct StepInput<'a> {
     pub model: &'a Model,
-    pub start: &'a StepStart,
+    pub start: &'a LayerState,
     pub carrier: &'a Carrier,
     pub span: StepSpan,
     /// β = γh, s.
@@ -63,7 +63,7 @@ pub(super) struct StepInput<'a> {
 
 /// The most by which the speed of a slip may be guessed to grow where friction depends on it. Where friction falls with the
 /// speed there may be several solutions: the one that the motion reaches first is found from its present speed.
-const MOST_GUESSED: f64 = 2.0;
+const MAX_GUESSED: f64 = 2.0;
 
 impl<const N: usize> InitialGuess<N> {
     /// With the weights of Lagrange's polynomials through the latest three stages, which lie at `c`.
@@ -249,7 +249,7 @@ impl Stages {
         let earlier = self.rates.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
         solver.guess(state, earlier.map(|(stage, weight)| (step.beta * weight, stage)));
         if step.model.friction_depends_on_speed() {
-            solver.limit_guess(&state.velocity_x, MOST_GUESSED);
+            solver.limit_guess(&state.velocity_x, MAX_GUESSED);
         }
     }
 
@@ -294,7 +294,8 @@ impl Stages {
         self.carrier[i] = point.carrier;
         if self.tracks_energy {
             let solver = &self.solver;
-            self.exchange[i] = Exchange::with_friction(model, &solver.friction_power, &point.carrier, &solver.forces);
+            self.exchange[i] =
+                BoundaryPowers::with_friction(model, &solver.friction_power, &point.carrier, &solver.forces);
             self.exchange[i].add_bodies(model, carrier, s, &point.carrier);
         }
         Ok(())
@@ -324,7 +325,7 @@ impl Stages {
     }
 
     /// Accepts the last attempted step, which ended with stage `last`: its end becomes the `start` of the next one.
-    pub(super) fn accept(&mut self, start: &mut StepStart, last: usize) {
+    pub(super) fn accept(&mut self, start: &mut LayerState, last: usize) {
         std::mem::swap(&mut start.state, &mut self.solver.state);
         std::mem::swap(&mut start.rates, &mut self.rates[last]);
         start.exchange = self.exchange[last];

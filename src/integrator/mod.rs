@@ -30,14 +30,16 @@ pub use interpolation::StageInterpolation;
 pub use largest::Largest;
 pub use motions::Motions;
 pub use part::{LayerStep, PartOfStep};
-pub use rates::{NO_LIMIT, Rates, StepStart};
+pub use rates::{LayerState, NO_LIMIT, Rates};
 pub use stage::NoConvergence;
 pub use tableau::{ContinuousWeights, ESDIRK3, ESDIRK5, SDIRK2, STAGES, TWO_STAGES, Tableau};
 pub use two_stage_dense::TwoStageDense;
 pub use within::{LayerWithin, Overlay};
 
 use crate::model::{Axis, Tangents};
-use crate::model::{BodyStep, Carrier, CarrierPoint, ChannelEnergies, Exchange, Forces, MaxwellRow, Model, State};
+use crate::model::{
+    BodyStep, BoundaryPowers, Carrier, CarrierPoint, ChannelEnergies, Forces, MaxwellRow, Model, State,
+};
 use carrier_sums::{CarrierSums, ContactHeights};
 use energy::{MassesInStep, StepSums, SummedStep};
 use error::ErrorWorkspace;
@@ -132,7 +134,7 @@ impl Integrator {
             stages: Stages {
                 rates: (0..steps.stages()).map(|_| Rates::new(model)).collect(),
                 carrier: [CarrierPoint::default(); STAGES],
-                exchange: [Exchange::default(); STAGES],
+                exchange: [BoundaryPowers::default(); STAGES],
                 link_forces: Vec::new(),
                 solver: StageSolver::new(model),
                 tracks_energy: tracked.energy,
@@ -156,7 +158,7 @@ impl Integrator {
     pub fn evaluate_start(
         &self,
         model: &Model,
-        start: &mut StepStart,
+        start: &mut LayerState,
         (carrier, s): (&Carrier, f64),
         forces: &Forces,
         h: f64,
@@ -165,7 +167,7 @@ impl Integrator {
         start.largest = start.largest.with(forces);
         if self.stages.tracks_energy {
             let point = carrier.at(s);
-            start.exchange = Exchange::evaluate(model, &start.state, &point, forces);
+            start.exchange = BoundaryPowers::evaluate(model, &start.state, &point, forces);
             start.exchange.add_bodies(model, carrier, s, &point);
         }
     }
@@ -177,14 +179,14 @@ impl Integrator {
     pub fn attempt(
         &mut self,
         model: &Model,
-        start: &StepStart,
+        start: &LayerState,
         carrier: &Carrier,
         span: StepSpan,
         tolerance: &Tolerance,
     ) -> Result<StepAttempt, NoConvergence> {
         let step = StepInput { model, start, carrier, span, beta: self.event_method.gamma() * span.length };
         let convergence = ConvergenceTest::new(tolerance, step.beta, 1.0);
-        self.forget_sums();
+        self.invalidate_sums();
         self.event_method.attempt(&mut self.stages, &step, convergence)?;
         Ok(self.event_method.test(&self.stages, &step, tolerance, &mut self.error_workspace))
     }
@@ -196,7 +198,7 @@ impl Integrator {
     pub fn attempt_two_stages(
         &mut self,
         model: &Model,
-        start: &StepStart,
+        start: &LayerState,
         carrier: &Carrier,
         span: StepSpan,
         tolerance: &Tolerance,
@@ -204,14 +206,14 @@ impl Integrator {
         let step = StepInput { model, start, carrier, span, beta: self.two_stages.tableau.gamma() * span.length };
         let slack = if model.friction_depends_on_speed() { STEEP_SLACK } else { NEWTON_SLACK };
         let convergence = ConvergenceTest::new(tolerance, step.beta, slack);
-        self.forget_sums();
+        self.invalidate_sums();
         self.two_stages.attempt(&mut self.stages, &step, convergence)?;
         let attempt = self.two_stages.test(&self.stages, &step, tolerance, &mut self.error_workspace);
         // Touches are looked for at the end of the step alone, so the carrier's motion must be resolved over all masses.
         Ok(StepAttempt { error: attempt.error.hypot(attempt.carrier_error), ..attempt })
     }
 
-    fn forget_sums(&mut self) {
+    fn invalidate_sums(&mut self) {
         self.carrier_sums.forget();
         self.energy_sums.forget();
     }
@@ -224,10 +226,12 @@ impl Integrator {
         let mut sum = 0.0;
         for i in 0..end.mode.len() {
             let change = |of: fn(&Rates) -> &[f64]| (SDIRK2_ESTIMATE * h * (of(last)[i] - of(first)[i])).powi(2);
-            sum += change(|rates| &rates.velocity_x) / tolerance.of_position(end.elongation_x[i])
-                + change(|rates| &rates.velocity_z) / tolerance.of_position(end.elongation_z[i])
-                + change(|rates| &rates.acceleration_x) / tolerance.of_velocity(end.velocity_x[i] - carrier.u_rate)
-                + change(|rates| &rates.acceleration_z) / tolerance.of_velocity(end.velocity_z[i] - carrier.w_rate);
+            sum += change(|rates| &rates.velocity_x) / tolerance.position_tolerance_sq(end.elongation_x[i])
+                + change(|rates| &rates.velocity_z) / tolerance.position_tolerance_sq(end.elongation_z[i])
+                + change(|rates| &rates.acceleration_x)
+                    / tolerance.velocity_tolerance_sq(end.velocity_x[i] - carrier.u_rate)
+                + change(|rates| &rates.acceleration_z)
+                    / tolerance.velocity_tolerance_sq(end.velocity_z[i] - carrier.w_rate);
         }
         let error = (sum / end.mode.len() as f64).sqrt();
         // The two stages lie 1 - γ of a step apart, and the error grows with the square of the step length.
@@ -401,12 +405,12 @@ impl Integrator {
     }
 
     /// Accepts the last attempted event-driven step: its end becomes the `start` of the next one.
-    pub fn accept(&mut self, start: &mut StepStart) {
+    pub fn accept(&mut self, start: &mut LayerState) {
         self.stages.accept(start, self.pair.stages() - 1);
     }
 
     /// Accepts the last attempted two-stage step: its end becomes the `start` of the next one.
-    pub fn accept_two_stages(&mut self, start: &mut StepStart) {
+    pub fn accept_two_stages(&mut self, start: &mut LayerState) {
         self.stages.accept(start, TWO_STAGES - 1);
     }
 
@@ -424,14 +428,14 @@ impl Integrator {
 
     /// Recomputes the tangents' rates at the start of a step, with the forces there, `s` seconds after the start of the
     /// carrier's motion.
-    pub fn refresh_tangents(&mut self, model: &Model, start: &StepStart, forces: &Forces, s: f64) {
+    pub fn refresh_tangents(&mut self, model: &Model, start: &LayerState, forces: &Forces, s: f64) {
         for tangent in &mut self.stages.tangents {
             tangent.evaluate_rates(model, &start.state, forces, &start.rates.acceleration_x, s);
         }
     }
 
     /// The same after a contact correction at the end of a step just accepted.
-    pub fn refresh_tangents_after(&mut self, model: &Model, start: &StepStart, s: f64) {
+    pub fn refresh_tangents_after(&mut self, model: &Model, start: &LayerState, s: f64) {
         let Stages { tangents, solver, .. } = &mut self.stages;
         for tangent in tangents {
             tangent.evaluate_rates(model, &start.state, &solver.forces, &start.rates.acceleration_x, s);
@@ -451,7 +455,7 @@ impl Integrator {
     pub fn keep_link_forces(&mut self, model: &Model) {
         if self.stages.tracks_energy {
             let links = || {
-                let [vertical, horizontal, ..] = Forces::of_links(model);
+                let [vertical, horizontal, ..] = Forces::zeros_by_link(model);
                 [horizontal, vertical]
             };
             self.stages.link_forces = std::iter::repeat_with(links).take(self.pair.stages() - 2).collect();

@@ -7,7 +7,7 @@ use super::carrier_sums::CarrierSums;
 use super::dense::{DenseOutput, DenseWorkspace, StepSpan};
 use super::energy::{MassesInStep, StepSums, SummedStep};
 use super::tableau::STAGES;
-use crate::model::{Carrier, ChannelEnergies, Exchange, Model, State};
+use crate::model::{BoundaryPowers, Carrier, ChannelEnergies, Model, State};
 
 /// The event-driven step of the whole layer that its integrator has attempted last.
 #[derive(Debug)]
@@ -30,7 +30,7 @@ impl<'a> LayerStep<'a> {
     /// The dense output of these masses, and the workspace for it.
     pub fn dense(&mut self, masses: &Range<usize>) -> (DenseOutput<'a>, &mut DenseWorkspace) {
         let step = self.integrator.dense(self.model, self.carrier, self.start, self.span);
-        (step.of(masses.clone()), self.workspace)
+        (step.restricted_to(masses.clone()), self.workspace)
     }
 
     /// The fraction of the step at the time `s` after the start of the carrier's piece.
@@ -47,7 +47,7 @@ pub struct PartOfStep {
     carrier_sums: CarrierSums,
     energy_sums: StepSums,
     /// Their powers through the surface and the carrier at the stages, where energies are tracked.
-    exchange: [Exchange; STAGES],
+    exchange: [BoundaryPowers; STAGES],
 }
 
 impl PartOfStep {
@@ -57,7 +57,7 @@ impl PartOfStep {
             masses: first..first + part.masses(),
             carrier_sums: CarrierSums::new(part),
             energy_sums: StepSums::new(part),
-            exchange: [Exchange::default(); STAGES],
+            exchange: [BoundaryPowers::default(); STAGES],
         }
     }
 
@@ -83,8 +83,13 @@ impl PartOfStep {
         for ((exchange, on_carrier), (rates, carrier)) in self.exchange.iter_mut().zip(on_carrier).zip(stages) {
             let [v_x, v_z, normal] =
                 [&rates.velocity_x, &rates.velocity_z, &rates.normal].map(|of| &of[masses.clone()]);
-            *exchange =
-                Exchange::of_forces(part, &step.start.mode[masses.clone()], (v_x, v_z, normal), carrier, on_carrier);
+            *exchange = BoundaryPowers::from_forces(
+                part,
+                &step.start.mode[masses.clone()],
+                (v_x, v_z, normal),
+                carrier,
+                on_carrier,
+            );
         }
     }
 

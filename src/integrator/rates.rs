@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::largest::Largest;
 use crate::model::{
-    CarrierPoint, ContactForces, Exchange, Forces, FrictionCurve, LinkKind, MaxwellRow, Mode, Model, SlipCurve, State,
-    SurfacePoint,
+    BoundaryPowers, CarrierPoint, ContactForces, Forces, FrictionCurve, LinkKind, MaxwellRow, Mode, Model, SlipCurve,
+    State, SurfacePoint,
 };
 
 /// The share of an explicit acceleration that friction may take away within the step without the implicit one in its
@@ -46,7 +46,7 @@ impl Rates {
             velocity_z: zeros(),
             acceleration_x: zeros(),
             acceleration_z: zeros(),
-            elongation_rate: Forces::of_links(model),
+            elongation_rate: Forces::zeros_by_link(model),
             normal: zeros(),
             margin: zeros(),
         }
@@ -191,22 +191,22 @@ impl Rates {
 
 /// The layer at the start of a step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct StepStart {
+pub struct LayerState {
     /// The state.
     pub state: State,
     /// The rates there.
     pub rates: Rates,
     /// The powers through the surface and the carrier there, W; 0 where energies are not computed.
-    pub exchange: Exchange,
+    pub exchange: BoundaryPowers,
     /// The largest forces and energies so far.
     pub largest: Largest,
 }
 
-impl StepStart {
+impl LayerState {
     /// A layer of `model` at rest and free.
     pub fn new(model: &Model) -> Self {
         let state = State::new(model.masses(), model.maxwell_variables());
-        Self { state, rates: Rates::new(model), exchange: Exchange::default(), largest: Largest::default() }
+        Self { state, rates: Rates::new(model), exchange: BoundaryPowers::default(), largest: Largest::default() }
     }
 
     /// Copies `other`, of the same model, without allocating.

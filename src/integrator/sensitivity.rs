@@ -214,7 +214,7 @@ impl Tangent {
     ) {
         let carrier = self.carrier(model, s, &self.start.bodies);
         for i in 0..model.masses() {
-            if let Some(mass) = Constrained::of(state, i, self.start.x[i], self.start.v_x[i]) {
+            if let Some(mass) = Constrained::new(state, i, self.start.x[i], self.start.v_x[i]) {
                 (self.start.z[i], self.start.v_x[i], self.start.v_z[i]) = (mass.z, mass.v_x, mass.v_z);
             }
         }
@@ -228,7 +228,7 @@ impl Tangent {
                 Mode::Free => on_mass.0 / model.mass,
                 Mode::Stick => 0.0,
                 Mode::Forward | Mode::Backward => {
-                    let slip = SlippingMass::of(model, state, forces, i, accelerations[i]);
+                    let slip = SlippingMass::from_state(model, state, forces, i, accelerations[i]);
                     let forces = (forces.on_mass_x[i], forces.on_mass_z[i]);
                     slip.variation(model, x, v_x, on_mass, forces) / (model.mass * slip.q2())
                 }
@@ -328,7 +328,7 @@ impl Tangent {
     fn known_forces(&mut self, model: &Model, solver: &StageSolver, beta: f64, carrier: &CarrierVariation) {
         let known = &mut self.known;
         for i in 0..model.masses() {
-            let (z, v_z) = match Constrained::of(&solver.state, i, self.end.x[i], 0.0) {
+            let (z, v_z) = match Constrained::new(&solver.state, i, self.end.x[i], 0.0) {
                 Some(mass) => (mass.z, mass.v_z),
                 None => (self.end.z[i], 0.0),
             };
@@ -357,7 +357,7 @@ impl Tangent {
             Mode::Free => Vector2::new(on_mass.0 + inertia * v_x, on_mass.1 + inertia * v_z),
             Mode::Stick => Vector2::zeros(),
             Mode::Forward | Mode::Backward => {
-                let slip = SlippingMass::of(model, &solver.state, &solver.forces, i, acceleration);
+                let slip = SlippingMass::from_state(model, &solver.state, &solver.forces, i, acceleration);
                 let forces = (solver.forces.on_mass_x[i], solver.forces.on_mass_z[i]);
                 let varied = slip.variation(model, self.end.x[i], 0.0, on_mass, forces);
                 Vector2::new(varied + inertia * slip.q2() * v_x, 0.0)
@@ -373,7 +373,7 @@ impl Tangent {
             let history = (end.v_x[i], end.v_z[i]);
             end.x[i] += beta * found.x;
             (end.v_x[i], end.v_z[i]) = (found.x, found.y);
-            match Constrained::of(&solver.state, i, end.x[i], found.x) {
+            match Constrained::new(&solver.state, i, end.x[i], found.x) {
                 Some(mass) => (end.z[i], end.v_x[i], end.v_z[i]) = (mass.z, mass.v_x, mass.v_z),
                 None => end.z[i] += beta * found.y,
             }
@@ -442,7 +442,7 @@ struct Constrained {
 
 impl Constrained {
     /// Of mass `i` of `state`, for the variations of ξ and ẋ; `None` for a free mass.
-    fn of(state: &State, i: usize, x: f64, v_x: f64) -> Option<Self> {
+    fn new(state: &State, i: usize, x: f64, v_x: f64) -> Option<Self> {
         let (surface, v) = (&state.surface[i], state.velocity_x[i]);
         match state.mode[i] {
             Mode::Free => None,

@@ -73,7 +73,7 @@ impl Expansion {
     }
 
     /// f(g), where this one is f at the value of g.
-    pub fn of(self, g: Self) -> Self {
+    pub fn compose(self, g: Self) -> Self {
         Self {
             value: self.value,
             slope: self.slope * g.slope,
@@ -84,7 +84,7 @@ impl Expansion {
     /// exp f
     pub fn exp(self) -> Self {
         let value = self.value.exp();
-        Self { value, slope: value, curvature: value }.of(self)
+        Self { value, slope: value, curvature: value }.compose(self)
     }
 }
 

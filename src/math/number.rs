@@ -98,7 +98,7 @@ impl<const N: usize> Dual<N> {
     }
 
     /// f of the number, where f' there is `slope`.
-    fn of(self, value: f64, slope: f64) -> Self {
+    fn chain(self, value: f64, slope: f64) -> Self {
         Self { value, slopes: self.slopes.map(|d| d * slope) }
     }
 
@@ -151,7 +151,7 @@ impl<const N: usize> Neg for Dual<N> {
     type Output = Self;
 
     fn neg(self) -> Self {
-        self.of(-self.value, -1.0)
+        self.chain(-self.value, -1.0)
     }
 }
 
@@ -167,21 +167,21 @@ impl<const N: usize> Number for Dual<N> {
     /// Of 0 too, where formulas take the size of a vector that vanishes: without derivatives there.
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
-        self.of(root, if root > 0.0 { 0.5 / root } else { 0.0 })
+        self.chain(root, if root > 0.0 { 0.5 / root } else { 0.0 })
     }
 
     fn exp(self) -> Self {
         let value = exp(self.value);
-        self.of(value, value)
+        self.chain(value, value)
     }
 
     fn ln(self) -> Self {
-        self.of(ln(self.value), 1.0 / self.value)
+        self.chain(ln(self.value), 1.0 / self.value)
     }
 
     fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = self.value.sin_cos();
-        (self.of(sin, cos), self.of(cos, -sin))
+        (self.chain(sin, cos), self.chain(cos, -sin))
     }
 }
 
@@ -190,7 +190,7 @@ const ROUNDER: f64 = 6_755_399_441_055_744.0;
 /// ln 2 in two parts, the first of few digits.
 const LN_2: [f64; 2] = [0.693_147_180_369_123_8, 1.908_214_929_270_587_7e-10];
 /// Exponents beyond have no normal number.
-const LARGEST_EXPONENT: f64 = 708.0;
+const MAX_EXPONENT: f64 = 708.0;
 /// The exponent of a double that stands for 2⁰.
 const BIAS: u64 = 1023;
 const MANTISSA_BITS: u32 = 52;
@@ -217,7 +217,7 @@ fn exp(x: f64) -> f64 {
         1.0,
         1.0,
     ];
-    let x = x.clamp(-LARGEST_EXPONENT, LARGEST_EXPONENT);
+    let x = x.clamp(-MAX_EXPONENT, MAX_EXPONENT);
     let shifted = x * std::f64::consts::LOG2_E + ROUNDER;
     let whole = shifted - ROUNDER;
     let rest = (x - whole * LN_2[0]) - whole * LN_2[1];

@@ -15,7 +15,7 @@ pub fn root_between(mut f: impl FnMut(f64) -> f64, ends: [(f64, f64); 2], tolera
     let [mut newest, mut other] = ends;
     let chord = newest.1 / (newest.1 - other.1);
     let mut fraction = if (0.0..=1.0).contains(&chord) { chord } else { 0.5 };
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         let x = newest.0 + fraction * (other.0 - newest.0);
         let point = (x, f(x));
         let dropped = if (point.1 > 0.0) == (newest.1 > 0.0) { newest } else { std::mem::replace(&mut other, newest) };
@@ -31,7 +31,7 @@ pub fn root_between(mut f: impl FnMut(f64) -> f64, ends: [(f64, f64); 2], tolera
 }
 
 /// Bisection alone would need some 60 steps from 1 to the last digit; interpolation never more than three times that.
-const MOST_STEPS: usize = 180;
+const MAX_STEPS: usize = 180;
 
 /// Where inverse quadratic interpolation through three points puts the root, as a fraction of the interval from a to b;
 /// one half where the interpolation cannot be trusted.

@@ -3,7 +3,7 @@
 use super::with_widest_vectors;
 
 /// Terms that one pass over the memory takes.
-const MOST_TERMS: usize = 8;
+const MAX_TERMS: usize = 8;
 
 /// Numbers taken together, so that the compiler uses vector instructions.
 const LANES: usize = 8;
@@ -27,14 +27,14 @@ pub fn add_weighted_sum<'a>(out: &mut [f64], terms: impl IntoIterator<Item = (f6
     sum_in_batches(out, true, terms);
 }
 
-/// Sums up [`MOST_TERMS`] terms at a time; `add`s the first of them to what is there.
+/// Sums up [`MAX_TERMS`] terms at a time; `add`s the first of them to what is there.
 #[inline]
 fn sum_in_batches<'a>(out: &mut [f64], add: bool, terms: impl IntoIterator<Item = (f64, &'a [f64])>) {
-    let mut batch = [(0.0, &[][..]); MOST_TERMS];
+    let mut batch = [(0.0, &[][..]); MAX_TERMS];
     let (mut filled, mut add) = (0, add);
     // Chained iterators are faster where they drive the loop.
     terms.into_iter().for_each(|term| {
-        if filled == MOST_TERMS {
+        if filled == MAX_TERMS {
             sum_up(out, add, &batch);
             (filled, add) = (0, true);
         }

@@ -92,7 +92,7 @@ pub struct Body {
 
 impl Body {
     /// The bodies of `scene` along x and z.
-    pub(super) fn of(scene: &Scene) -> [Option<Self>; 2] {
+    pub(super) fn along_axes(scene: &Scene) -> [Option<Self>; 2] {
         Axis::ALL.map(|axis| {
             let body = scene.carrier.along(axis)?;
             let force = match axis {

@@ -90,7 +90,7 @@ impl ChannelEnergies {
 
 /// Power through the surface and through the carrier: the part of [`Powers`] that is not the links' own.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Exchange {
+pub struct BoundaryPowers {
     /// P_friction = Σ F_T v_t, W.
     pub friction: f64,
     /// P_shear = Σ (F_T - μ F_N) v_t, W: the part of the shear force.
@@ -101,7 +101,7 @@ pub struct Exchange {
     pub carrier: f64,
 }
 
-impl Exchange {
+impl BoundaryPowers {
     /// The powers in `state` with the forces there.
     pub fn evaluate(model: &Model, state: &State, carrier: &CarrierPoint, forces: &Forces) -> Self {
         Self::with_friction(model, &FrictionPower::evaluate(model, state, forces), carrier, forces)
@@ -114,7 +114,7 @@ impl Exchange {
 
     /// The powers of a layer, or of a part of one, whose slipping masses have these modes, velocities along x and z (m/s) and
     /// normal forces (N), and whose links exert the forces `on_carrier` along x and z (N) on a prescribed carrier.
-    pub fn of_forces(
+    pub fn from_forces(
         model: &Model,
         modes: &[Mode],
         (velocity_x, velocity_z, normal): (&[f64], &[f64], &[f64]),
@@ -123,7 +123,7 @@ impl Exchange {
     ) -> Self {
         let mut power = FrictionPower::default();
         for i in (0..modes.len()).filter(|&i| model.has_friction && modes[i].slips() && velocity_x[i] != 0.0) {
-            let contact = ContactForces::of_slip(model, normal[i], (velocity_x[i], velocity_z[i]));
+            let contact = ContactForces::in_slip(model, normal[i], (velocity_x[i], velocity_z[i]));
             power.add(model, modes[i], velocity_x[i], &contact);
         }
         Self::with_powers(model, &power, -(on_carrier.0 * carrier.u_rate + on_carrier.1 * carrier.w_rate))
@@ -184,7 +184,7 @@ impl FrictionPower {
     }
 
     /// Under a linear law of friction: of masses with these σ v_t (m/s; 0 of those that do not slip) and normal forces (N).
-    pub fn of_linear_law(model: &Model, slip_speeds: &[f64], normal: &[f64]) -> Self {
+    pub fn from_linear_law(model: &Model, slip_speeds: &[f64], normal: &[f64]) -> Self {
         let coulomb = model.friction_coefficient * dot(slip_speeds, normal);
         let shear = if model.shear_force > 0.0 { model.shear_force * sum(slip_speeds) } else { 0.0 };
         Self { at_rest: coulomb + shear, coulomb: if model.has_both_frictions { coulomb } else { 0.0 }, excess: 0.0 }

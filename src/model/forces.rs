@@ -113,12 +113,12 @@ impl Forces {
     /// Workspace for the forces of `model`.
     pub fn new(model: &Model) -> Self {
         let of_masses = || vec![0.0; model.masses()];
-        let (link, rate) = (Self::of_links(model), Self::of_links(model));
+        let (link, rate) = (Self::zeros_by_link(model), Self::zeros_by_link(model));
         Self { link, rate, on_mass_x: of_masses(), on_mass_z: of_masses() }
     }
 
     /// A zero for each link of `model` by kind; none of a kind that it has not.
-    pub fn of_links(model: &Model) -> [Vec<f64>; 4] {
+    pub fn zeros_by_link(model: &Model) -> [Vec<f64>; 4] {
         LinkKind::ALL.map(|kind| {
             let present = model.links[kind as usize].present;
             vec![0.0; if present { kind.count(model.masses()) } else { 0 }]
@@ -127,7 +127,7 @@ impl Forces {
 
     /// Evaluates the forces in `state` with the carrier's rates.
     pub fn evaluate(&mut self, model: &Model, state: &State, carrier: &CarrierPoint) {
-        let motion = LinkMotion::of(state, carrier);
+        let motion = LinkMotion::new(state, carrier);
         for kind in LinkKind::ALL {
             let law = &model.links[kind as usize];
             self.spring_and_damper(kind, law.stiffness, law.damping, &motion, &[]);
@@ -190,7 +190,7 @@ impl Forces {
     /// Evaluates the forces of the links of mass `i`, and the sums on it and on its neighbours, anew.
     pub fn refresh(&mut self, model: &Model, state: &State, carrier: &CarrierPoint, i: usize) {
         let k = model.masses();
-        let motion = LinkMotion::of(state, carrier);
+        let motion = LinkMotion::new(state, carrier);
         for kind in LinkKind::ALL {
             let links = if kind.is_lateral() { i.saturating_sub(1)..(i + 1).min(k - 1) } else { i..i + 1 };
             for link in links.filter(|_| model.links[kind as usize].present) {
@@ -279,7 +279,7 @@ pub struct LinkMotion<'a> {
 
 impl<'a> LinkMotion<'a> {
     /// The motion in `state` under a carrier with these rates.
-    pub fn of(state: &'a State, carrier: &CarrierPoint) -> Self {
+    pub fn new(state: &'a State, carrier: &CarrierPoint) -> Self {
         Self {
             elongation_x: &state.elongation_x,
             elongation_z: &state.elongation_z,
@@ -453,7 +453,7 @@ mod tests {
     /// With dashpots that are frozen where the profile has lifted the masses to.
     #[test]
     fn refreshed_forces_are_those_evaluated_anew() {
-        let mut model = Model::of_text(SCENE);
+        let mut model = Model::from_text(SCENE);
         model.freeze_dashpots(0.0, -0.3);
         assert!(model.links[0].frozen == 5.0 && model.links[3].frozen == 1.5 && model.frozen[1] > 0.1);
         let mut state = State::new(model.masses(), model.maxwell_variables());
@@ -483,7 +483,7 @@ mod tests {
             .into_iter()
             .flat_map(|k| [SCENE, &horizontal].map(|scene| scene.replace("masses = 4", &format!("masses = {k}"))))
         {
-            let mut model = Model::of_text(&text);
+            let mut model = Model::from_text(&text);
             model.freeze_dashpots(0.0, -0.3);
             let mut state = State::new(model.masses(), model.maxwell_variables());
             let number = |i: usize| (i as f64).sin();
@@ -502,7 +502,7 @@ mod tests {
                 add_weighted_sum(&mut known[kind as usize], elements);
                 model.subtract_frozen(kind, &mut known[kind as usize]);
             }
-            let motion = LinkMotion::of(&state, &carrier);
+            let motion = LinkMotion::new(&state, &carrier);
             found.evaluate_with(
                 [0, 1, 2, 3].map(|i| (model.links[i].stiffness, model.links[i].damping)),
                 &motion,

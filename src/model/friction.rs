@@ -51,7 +51,7 @@ impl ContactForces {
     }
 
     /// Those of a slipping mass with a normal force (N) and velocities ẋ ≠ 0 and ż (m/s), but for f·t.
-    pub fn of_slip(model: &Model, normal: f64, (velocity_x, velocity_z): (f64, f64)) -> Self {
+    pub fn in_slip(model: &Model, normal: f64, (velocity_x, velocity_z): (f64, f64)) -> Self {
         let limit = model.friction_coefficient * normal + model.shear_at_rest(normal);
         let slope = velocity_z / velocity_x;
         Self { normal, tangential: 0.0, limit, q: (1.0 + slope * slope).sqrt() }

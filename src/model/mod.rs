@@ -17,7 +17,7 @@ mod tangents;
 pub use carrier::{Body, BodyEnergy, BodyStart, BodyStep, Carrier, CarrierPoint, CarrierPosition, Outside, Piece};
 pub use ends::EndForces;
 pub use energy::{
-    ChannelEnergies, Exchange, FrictionPower, Powers, elastic_energy, kinetic_energy, vertical_spring_energy_at,
+    BoundaryPowers, ChannelEnergies, FrictionPower, Powers, elastic_energy, kinetic_energy, vertical_spring_energy_at,
 };
 pub use forces::{Forces, LinkLaw, LinkMotion, MaxwellRow};
 pub use friction::{ContactForces, FrictionCurve, RateShear, SlipCurve};
@@ -137,7 +137,7 @@ impl Model {
             relaxation_times,
             glassy: LinkKind::ALL.map(|kind| scene.link(kind).as_ref().map_or(0.0, scales::glassy)),
             profile: Arc::clone(scene.surface.spline()),
-            bodies: Body::of(scene),
+            bodies: Body::along_axes(scene),
             friction_coefficient: coulomb,
             shear_force: shear_force + rate_shear.map_or(0.0, |rate_shear| rate_shear.plateau()),
             rate_shear,
@@ -159,7 +159,7 @@ impl Model {
 
     /// The model of the scene with this text.
     #[cfg(test)]
-    pub(crate) fn of_text(text: &str) -> Self {
+    pub(crate) fn from_text(text: &str) -> Self {
         Self::new(&Scene::parse(text, "test.toml".as_ref()).unwrap_or_else(|error| panic!("{error}")))
     }
 

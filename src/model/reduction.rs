@@ -198,11 +198,11 @@ fn largest_balance(mass: f64, stiffness: impl Fn(f64) -> f64) -> f64 {
     while balanced(omega) > omega {
         omega *= 2.0;
     }
-    for _ in 0..MOST_ITERATIONS {
+    for _ in 0..MAX_ITERATIONS {
         omega = balanced(omega);
     }
     omega
 }
 
 /// Each iteration at least halves the distance on a logarithmic scale: to 1e-12 from any start.
-const MOST_ITERATIONS: usize = 60;
+const MAX_ITERATIONS: usize = 60;

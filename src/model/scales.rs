@@ -92,7 +92,7 @@ impl Model {
         // From above, where all dashpots are at rest, the frequency falls to the largest solution.
         let mut square = self.instantaneous_stiffness(kind) / self.mass;
         let mut damping = link.damping;
-        for _ in 0..MOST_ITERATIONS {
+        for _ in 0..MAX_ITERATIONS {
             let (before, mut stiffness) = (square, link.stiffness);
             damping = link.damping;
             for row in self.rows_of(kind) {
@@ -144,4 +144,4 @@ fn on_mass([vertical, horizontal, lateral_x, lateral_z]: [f64; 4]) -> f64 {
 const ROD_FREQUENCY: f64 = 100.0;
 
 /// Iterations for the frequency of the horizontal oscillation: each excludes the elements that have relaxed at the frequency so far.
-const MOST_ITERATIONS: usize = 30;
+const MAX_ITERATIONS: usize = 30;

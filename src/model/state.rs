@@ -52,7 +52,7 @@ impl Mode {
     }
 
     /// The mode with this number, if there is one.
-    pub fn of_number(number: i8) -> Option<Self> {
+    pub fn from_number(number: i8) -> Option<Self> {
         [Self::Free, Self::Forward, Self::Backward, Self::Stick].into_iter().find(|mode| mode.number() == number)
     }
 }

@@ -133,7 +133,7 @@ impl Counters {
     }
 
     /// Compares a run with its error-estimation run at the same time. The difference is the `share` of the error.
-    pub fn note_error(&mut self, found: &Monitored, reference: &Monitored, share: f64) {
+    pub fn record_error(&mut self, found: &Monitored, reference: &Monitored, share: f64) {
         let largest = self.forces.iter().map(|force| force.value).chain(reference.forces.map(f64::abs));
         let rounding = ROUNDING * largest.fold(0.0, f64::max);
         for ((force, found), reference) in self.forces.iter_mut().zip(found.forces).zip(reference.forces) {
@@ -149,7 +149,7 @@ impl Counters {
     }
 
     /// Notes that the errors of a run are unknown: they count as large as the quantities `found`.
-    pub fn note_unknown(&mut self, found: &Monitored) {
+    pub fn record_unknown(&mut self, found: &Monitored) {
         for (force, found) in self.forces.iter_mut().zip(found.forces) {
             force.include(found.abs(), found);
         }
@@ -185,26 +185,26 @@ mod tests {
     fn the_error_is_that_of_the_worse_force_over_its_own_largest_value() {
         let mut counters = Counters::default();
         assert_eq!((counters.force_error(), counters.dissipation_error()), (0.0, 0.0));
-        counters.note_error(&monitored(0.5, 101.0, 3.0), &monitored(1.0, 100.0, 4.0), 0.5);
+        counters.record_error(&monitored(0.5, 101.0, 3.0), &monitored(1.0, 100.0, 4.0), 0.5);
         assert_eq!((counters.force_error(), counters.dissipation_error()), (1.0, 0.5));
         // The largest error stays, over a value that has become larger.
-        counters.note_error(&monitored(-8.0, 50.0, 8.0), &monitored(-8.0, 50.0, 8.0), 0.5);
+        counters.record_error(&monitored(-8.0, 50.0, 8.0), &monitored(-8.0, 50.0, 8.0), 0.5);
         assert_eq!((counters.force_error(), counters.dissipation_error()), (0.125, 0.25));
     }
 
     #[test]
     fn a_force_of_roundings_has_no_error() {
         let mut counters = Counters::default();
-        counters.note_error(&monitored(1e-15, 1.0, 0.0), &monitored(-2e-15, 1.0, 0.0), 1.0);
+        counters.record_error(&monitored(1e-15, 1.0, 0.0), &monitored(-2e-15, 1.0, 0.0), 1.0);
         assert_eq!(counters.force_error(), 0.0);
-        counters.note_error(&monitored(0.0, 1.0, 0.0), &monitored(2e-12, 1.0, 0.0), 1.0);
+        counters.record_error(&monitored(0.0, 1.0, 0.0), &monitored(2e-12, 1.0, 0.0), 1.0);
         assert_eq!(counters.force_error(), 1.0);
     }
 
     #[test]
     fn unknown_errors_are_as_large_as_the_quantities() {
         let mut counters = Counters::default();
-        counters.note_unknown(&monitored(-2.0, 5.0, 0.1));
+        counters.record_unknown(&monitored(-2.0, 5.0, 0.1));
         assert_eq!((counters.force_error(), counters.dissipation_error()), (1.0, 1.0));
     }
 }

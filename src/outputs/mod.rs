@@ -163,12 +163,12 @@ impl Variable {
     }
 
     /// The variable of a quantity of the whole layer.
-    fn of_layer(row: &'static OutputRow, output: Output) -> Self {
+    fn for_layer(row: &'static OutputRow, output: Output) -> Self {
         Self::named(row, output, 0, row.name.into(), row.description.into())
     }
 
     /// The variable of mass `i` (from 0).
-    fn of_mass(row: &'static OutputRow, output: Output, i: usize) -> Self {
+    fn for_mass(row: &'static OutputRow, output: Output, i: usize) -> Self {
         let name = format!("element[{}].{}", i + 1, row.name);
         Self::named(row, output, i, name, format!("{} {}", row.description, i + 1))
     }
@@ -185,9 +185,9 @@ pub fn variables(scene: &Scene) -> Vec<Variable> {
 
 fn group_variables(scene: &Scene, group: OutputGroup) -> Vec<Variable> {
     let rows = TABLE.iter().filter(|row| row.group == group && (row.exists)(scene));
-    let (of_layer, of_masses): (Vec<_>, Vec<_>) = rows.partition(|row| row.of_layer().is_some());
-    let of_layer = of_layer.iter().filter_map(|row| row.of_layer().map(|output| Variable::of_layer(row, output)));
-    let named = |row: &'static OutputRow, i| row.of_mass(i).map(|output| Variable::of_mass(row, output, i));
+    let (of_layer, of_masses): (Vec<_>, Vec<_>) = rows.partition(|row| row.layer_output().is_some());
+    let of_layer = of_layer.iter().filter_map(|row| row.layer_output().map(|output| Variable::for_layer(row, output)));
+    let named = |row: &'static OutputRow, i| row.mass_output(i).map(|output| Variable::for_mass(row, output, i));
     let of_mass = |i| of_masses.iter().filter_map(move |row| named(row, i));
     of_layer.chain((0..scene.layer.masses).flat_map(of_mass)).collect()
 }
@@ -195,13 +195,13 @@ fn group_variables(scene: &Scene, group: OutputGroup) -> Vec<Variable> {
 /// The variable of an output, whatever the scene; `None` for those of single masses.
 pub fn variable(output: Output) -> Option<Variable> {
     let row = TABLE.iter().find(|row| row.is(output))?;
-    row.of_layer().map(|output| Variable::of_layer(row, output))
+    row.layer_output().map(|output| Variable::for_layer(row, output))
 }
 
 /// The unit of the output variable called `name`, whatever the scene; `None` for a name that no scene can have.
 pub fn unit_of(name: &str) -> Option<Unit> {
     let (name, of_mass) = name.split_once("].").map_or((name, false), |(_, field)| (field, true));
-    let named = |row: &&OutputRow| row.name == name && row.of_layer().is_none() == of_mass;
+    let named = |row: &&OutputRow| row.name == name && row.layer_output().is_none() == of_mass;
     TABLE.iter().find(named).map(|row| row.unit)
 }
 

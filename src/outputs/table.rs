@@ -69,7 +69,7 @@ impl PartialEq for OutputRow {
 
 impl OutputRow {
     /// The output, if it is one of the whole layer.
-    pub(super) fn of_layer(&self) -> Option<Output> {
+    pub(super) fn layer_output(&self) -> Option<Output> {
         match self.scope {
             Scope::Layer { output, .. } => Some(output),
             Scope::Mass { .. } => None,
@@ -77,7 +77,7 @@ impl OutputRow {
     }
 
     /// The output of mass `i` (from 0), if it is one of single masses.
-    pub(super) fn of_mass(&self, i: usize) -> Option<Output> {
+    pub(super) fn mass_output(&self, i: usize) -> Option<Output> {
         match self.scope {
             Scope::Layer { .. } => None,
             Scope::Mass { output, .. } => Some(output(i)),

@@ -1,16 +1,16 @@
 //! A block of elements that a step is done for together: in structure of arrays and, where possible, loops without branches.
 
-use super::cut::{End, half_turn, pass_in_pieces, size};
+use super::contact_times::{End, advance_in_segments, half_turn, size};
 use super::face::{Column, Face};
 use super::motion::{Instant, Parts, Path, Run};
-use crate::element::{Hold, Piece, ResampledLaw, Spot, leap, pass};
+use crate::element::{ResampledLaw, Segment, Spot, SpringLaw, advance, apply_jump};
 use crate::math::Number;
 
 /// Elements of a block.
 pub(super) const BLOCK: usize = 64;
 
 /// e^½: an element whose pressure changes by a larger factor in a part is cut for itself.
-const LARGEST_RATIO: f64 = 1.648_721_270_700_128_2;
+const MAX_RATIO: f64 = 1.648_721_270_700_128_2;
 
 type Lanes<T> = [T; BLOCK];
 
@@ -239,17 +239,17 @@ impl<T: Number> Side<T> {
         for i in 0..BLOCK {
             self.log_speed[i] = range.logarithm(size([self.velocity[0][i], self.velocity[1][i]]));
         }
-        let (mut spots, mut pieces) = ([Spot::default(); BLOCK], [0; BLOCK]);
+        let (mut spots, mut segments) = ([Spot::default(); BLOCK], [0; BLOCK]);
         for i in 0..BLOCK {
             spots[i] = law.spot(self.log_speed[i].value());
         }
         for i in 0..BLOCK {
-            pieces[i] = law.piece(&spots[i], self.log_speed[i].value(), self.approach[i].value());
+            segments[i] = law.piece(&spots[i], self.log_speed[i].value(), self.approach[i].value());
         }
         let mut factor = [T::constant(0.0); BLOCK];
         let mut friction = factor;
         for i in 0..BLOCK {
-            let point = law.at_piece(&spots[i], pieces[i], self.log_speed[i], self.approach[i]);
+            let point = law.at_piece(&spots[i], segments[i], self.log_speed[i], self.approach[i]);
             (self.pressure[i], factor[i]) = (point.log_pressure, point.factor);
             (friction[i], self.stiffness[i]) = (point.friction, point.stiffness);
         }
@@ -261,14 +261,14 @@ impl<T: Number> Side<T> {
         }
     }
 
-    fn let_go(&mut self) {
+    fn clear(&mut self) {
         let zero = [T::constant(0.0); BLOCK];
         (self.pressure, self.limit, self.stiffness) = (zero, zero, zero);
     }
 
     #[inline(always)]
-    fn hold(&self, i: usize) -> Hold<T> {
-        Hold { stiffness: self.stiffness[i], limit: self.limit[i] }
+    fn law(&self, i: usize) -> SpringLaw<T> {
+        SpringLaw { stiffness: self.stiffness[i], limit: self.limit[i] }
     }
 
     fn end(&self, i: usize) -> End<T> {
@@ -304,7 +304,7 @@ impl<T: Number> Block<T> {
             side.place.iter_mut().for_each(|lanes| lanes[count..].fill(0.0));
         }
         self.end.is_free = true;
-        self.end.let_go();
+        self.end.clear();
     }
 
     /// Does the step for the block's elements and adds to the sums.
@@ -319,13 +319,13 @@ impl<T: Number> Block<T> {
             }
             if !stands {
                 now = step.path.at(from);
-                self.stand(step, law, &now, from);
+                self.evaluate_at(step, law, &now, from);
                 self.check(step, law, from, sums);
                 stands = true;
             }
             let next = step.path.at(to);
             std::mem::swap(&mut self.begin, &mut self.end);
-            self.stand(step, law, &next, to);
+            self.evaluate_at(step, law, &next, to);
             self.pass_part(step, law, (&now, &next), to - from);
             self.check(step, law, to, sums);
             now = next;
@@ -335,7 +335,7 @@ impl<T: Number> Block<T> {
 
     /// Lets the springs, relaxed, take the stiffness of their contacts at the start of a step.
     pub(super) fn settle(&mut self, step: &Step<'_, T>, law: &mut ResampledLaw, sums: &mut Sums<T>) {
-        self.stand(step, law, &step.path.at(0.0), 0.0);
+        self.evaluate_at(step, law, &step.path.at(0.0), 0.0);
         self.check(step, law, 0.0, sums);
         self.stiffness = self.end.stiffness;
         self.add_up(step, sums);
@@ -343,12 +343,12 @@ impl<T: Number> Block<T> {
 
     /// Puts the elements where they are after a share of the step: the side `end`.
     #[inline(always)]
-    fn stand(&mut self, step: &Step<'_, T>, law: &mut ResampledLaw, now: &Instant<T>, share: f64) {
+    fn evaluate_at(&mut self, step: &Step<'_, T>, law: &mut ResampledLaw, now: &Instant<T>, share: f64) {
         let is_tread = matches!(step.face, Face::Tread(_));
         self.end.place(step, self.start, self.count, step.run.at(share));
         self.end.move_to(now, is_tread.then_some(step.tread_speed));
         self.end.is_free = self.end.is_clear(law);
-        if self.end.is_free { self.end.let_go() } else { self.end.look_up(law) }
+        if self.end.is_free { self.end.clear() } else { self.end.look_up(law) }
     }
 
     /// Takes the springs through a part.
@@ -372,11 +372,11 @@ impl<T: Number> Block<T> {
             if is_cut(begin.pressure[i].value(), end.pressure[i].value()) {
                 let displacement = [displacement[0][i], displacement[1][i]];
                 let ends = (&begin.end(i), &end.end(i));
-                let passed = pass_in_pieces(law, [before[0][i], before[1][i]], ends, displacement);
-                (force[0][i], force[1][i]) = (passed.force[0], passed.force[1]);
-                slips[i] = if passed.slips { 1.0 } else { 0.0 };
-                slip[i] += passed.slip;
-                release[i] += passed.release;
+                let advanced = advance_in_segments(law, [before[0][i], before[1][i]], ends, displacement);
+                (force[0][i], force[1][i]) = (advanced.force[0], advanced.force[1]);
+                slips[i] = if advanced.slips { 1.0 } else { 0.0 };
+                slip[i] += advanced.slip;
+                release[i] += advanced.release;
             }
         }
         *stiffness = end.stiffness;
@@ -485,12 +485,12 @@ fn total<T: Number>(lanes: &Lanes<T>) -> T {
     sums[0]
 }
 
-/// Lets all springs of a block follow a leap of the law to that of a side.
+/// Lets all springs of a block follow a jump of the law to that of a side.
 #[inline(always)]
 fn leap_all<T: Number>(force: &mut [Lanes<T>; 2], stiffness: &Lanes<T>, release: &mut Lanes<f64>, side: &Side<T>) {
     for i in 0..BLOCK {
-        let (leapt, lost) = leap([force[0][i], force[1][i]], stiffness[i], &side.hold(i));
-        (force[0][i], force[1][i]) = (leapt[0], leapt[1]);
+        let (jumped, lost) = apply_jump([force[0][i], force[1][i]], stiffness[i], &side.law(i));
+        (force[0][i], force[1][i]) = (jumped[0], jumped[1]);
         release[i] += lost;
     }
 }
@@ -507,18 +507,18 @@ fn pass_all<T: Number>(
     for i in 0..BLOCK {
         let before = [begin.velocity[0][i], begin.velocity[1][i]];
         let after = [end.velocity[0][i], end.velocity[1][i]];
-        let piece = Piece {
-            begin: begin.hold(i),
-            end: end.hold(i),
+        let segment = Segment {
+            begin: begin.law(i),
+            end: end.law(i),
             displacement: [displacement[0][i], displacement[1][i]],
             half_turn: half_turn(before, after),
         };
-        let passed = pass([force[0][i], force[1][i]], &piece);
+        let advanced = advance([force[0][i], force[1][i]], &segment);
         let kept = if is_cut(begin.pressure[i].value(), end.pressure[i].value()) { 0.0 } else { 1.0 };
-        (force[0][i], force[1][i]) = (passed.force[0], passed.force[1]);
-        slips[i] = if passed.slips { 1.0 } else { 0.0 };
-        slip[i] += kept * passed.slip;
-        release[i] += kept * passed.release;
+        (force[0][i], force[1][i]) = (advanced.force[0], advanced.force[1]);
+        slips[i] = if advanced.slips { 1.0 } else { 0.0 };
+        slip[i] += kept * advanced.slip;
+        release[i] += kept * advanced.release;
     }
 }
 
@@ -528,5 +528,5 @@ const ROUNDING: f64 = 1e-9;
 /// Whether an element is cut for itself in a part with these pressures at its ends.
 #[inline(always)]
 fn is_cut(before: f64, after: f64) -> bool {
-    (before > LARGEST_RATIO * after) | (after > LARGEST_RATIO * before)
+    (before > MAX_RATIO * after) | (after > MAX_RATIO * before)
 }

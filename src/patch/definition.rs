@@ -144,7 +144,7 @@ impl Patch {
     }
 
     /// The patch of these elements alone, which stand on its face, with the same law.
-    pub fn of_elements(&self, elements: impl IntoIterator<Item = PatchElement>) -> Self {
+    pub fn with_elements(&self, elements: impl IntoIterator<Item = PatchElement>) -> Self {
         let point = |PatchElement { place: [x, y, z], area, .. }| [x, y, z, area];
         let points = elements.into_iter().map(point).collect();
         let mut file = PatchFile::clone(&self.file);
@@ -265,10 +265,10 @@ impl Patch {
         };
         match (parameter, &value) {
             (Parameter::TableExtrapolation, Value::Text(word)) => {
-                self.table_extrapolation = TableExtrapolation::of_word(word).ok_or_else(refused)?;
+                self.table_extrapolation = TableExtrapolation::from_word(word).ok_or_else(refused)?;
             }
             (Parameter::Extrapolation, Value::Text(word)) => {
-                self.extrapolation = Extrapolation::of_word(word).ok_or_else(refused)?;
+                self.extrapolation = Extrapolation::from_word(word).ok_or_else(refused)?;
             }
             (Parameter::Refine, &Value::Integer(refine)) => {
                 let allowed = u32::try_from(refine).ok().filter(|refine| (1..=1000).contains(refine));

@@ -3,7 +3,7 @@
 //! The spring of an element that sticks follows the face, and where its stiffness falls, loses its share; one that slips
 //! stays at its limit. The pressure follows the approach, arms turn with the body.
 
-use super::cut::size;
+use super::contact_times::size;
 use super::face::Face;
 use super::motion::{Instant, Path};
 use super::run::PatchRun;
@@ -54,7 +54,7 @@ impl PatchRun {
     pub fn directional_derivative(&mut self, variables: &[PatchVariable], direction: [f64; 6], values: &mut [f64]) {
         let changes = self.changes(&Shift { pose: direction, entered: 0.0 });
         for (variable, value) in variables.iter().zip(values) {
-            *value = changes.of(variable.output).slopes[0];
+            *value = changes.rate_of(variable.output).slopes[0];
         }
     }
 
@@ -67,7 +67,7 @@ impl PatchRun {
             Face::Tread(tread) => self.totals.tread_speed / tread.cell,
             Face::Points(_) => 0.0,
         };
-        Some(self.changes(&Shift { pose: self.totals.rates, entered }).of(output).slopes[0])
+        Some(self.changes(&Shift { pose: self.totals.rates, entered }).rate_of(output).slopes[0])
     }
 
     fn changes(&mut self, shift: &Shift) -> Changes {
@@ -181,7 +181,7 @@ impl Changes {
         self.transport = self.transport - (a_x * f_x + a_y * f_y + a_z * f_z);
     }
 
-    fn of(&self, output: PatchOutput) -> Rate {
+    fn rate_of(&self, output: PatchOutput) -> Rate {
         let share = |part: Rate, whole: Rate| if whole.value > 0.0 { part / whole } else { Rate::constant(0.0) };
         let [x, y, z, ..] = self.wrench;
         match output {

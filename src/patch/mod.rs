@@ -10,7 +10,7 @@
 //! | `face` | where elements sit |
 //! | `cut` | an element that touches or lifts |
 //! | `block` | a step of a block of elements |
-//! | `crew` | a step of all blocks, by several threads |
+//! | `pool` | a step of all blocks, by several threads |
 //! | `definition` | a patch: face, table, parameters |
 //! | `state` | motions, errors, what a run holds |
 //! | `run` | a run |
@@ -20,8 +20,7 @@
 //! | `variables` | output variables |
 
 mod block;
-mod crew;
-mod cut;
+mod contact_times;
 mod definition;
 mod derivatives;
 mod face;
@@ -31,6 +30,7 @@ mod run;
 mod state;
 mod survey;
 mod variables;
+mod worker_pool;
 
 pub use definition::{Patch, PatchElement, PatchError};
 pub use plan::{FaceElement, FacePlan};

@@ -3,7 +3,7 @@
 use crate::math::Number;
 
 /// Largest turn of a part of a step, rad.
-const LARGEST_TURN: f64 = 0.1;
+const MAX_TURN: f64 = 0.1;
 
 /// The coordinates of a pose, x, y, z (m), roll, pitch, yaw (rad), as they run straight over a step.
 #[derive(Clone, Copy, Debug)]
@@ -145,12 +145,12 @@ impl Parts {
     }
 
     fn in_stretch(&self, from: f64, to: f64) -> f64 {
-        self.refine * (self.turn * (to - from) / LARGEST_TURN).ceil().max(1.0)
+        self.refine * (self.turn * (to - from) / MAX_TURN).ceil().max(1.0)
     }
 
     /// The number of parts; where that is more than `most`, a lower bound above `most`.
     pub(super) fn count(&self, most: f64) -> f64 {
-        let least = self.refine * (self.cuts.0 + 1.0).max(self.turn / LARGEST_TURN);
+        let least = self.refine * (self.cuts.0 + 1.0).max(self.turn / MAX_TURN);
         if least.is_nan() || least > most {
             return least;
         }

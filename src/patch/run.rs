@@ -1,13 +1,13 @@
 //! A run of a patch: steps over all its elements.
 
 use super::block::{Beyond, Block, Step, Sums};
-use super::crew::Crew;
 use super::definition::Patch;
 use super::face::Face;
 use super::motion::{Parts, Path, Run};
 use super::state::{
-    MOST_PARTS, MotionError, PatchMotion, PatchStart, PatchState, Pose, RestoreError, Springs, Totals, check_duration,
+    MAX_PARTS, MotionError, PatchMotion, PatchStart, PatchState, Pose, RestoreError, Springs, Totals, check_duration,
 };
+use super::worker_pool::WorkerPool;
 use crate::element::ResampledLaw;
 use crate::math::Dual;
 use crate::scene::{PatchGroup, TableExtrapolation};
@@ -36,8 +36,8 @@ pub struct PatchRun {
 /// Who does the steps, with derivatives where tangents are asked for.
 #[derive(Clone, Debug)]
 enum Workspace {
-    Plain(Crew<f64>),
-    Tangent(Crew<Dual<6>>),
+    Plain(WorkerPool<f64>),
+    Tangent(WorkerPool<Dual<6>>),
 }
 
 impl PatchRun {
@@ -69,8 +69,11 @@ impl PatchRun {
             law.set_temperature(held);
         }
         let work = patch.count() as f64 * f64::from(patch.refine);
-        let workspace =
-            if tangents { Workspace::Tangent(Crew::new(work, &law)) } else { Workspace::Plain(Crew::new(work, &law)) };
+        let workspace = if tangents {
+            Workspace::Tangent(WorkerPool::new(work, &law))
+        } else {
+            Workspace::Plain(WorkerPool::new(work, &law))
+        };
         let springs = Springs::new(patch.count());
         Self {
             law,
@@ -94,7 +97,7 @@ impl PatchRun {
         let face = &self.patch.face;
         let step = Step { face, path, run, parts: Parts::new(run, 0.0, 1), tread_speed };
         let springs = (&self.springs, &mut self.next);
-        let sums = Crew::of(1, &self.law).work(&step, &mut self.law, springs, |block, law, sums| {
+        let sums = WorkerPool::with_threads(1, &self.law).work(&step, &mut self.law, springs, |block, law, sums| {
             block.settle(&step, law, sums);
         });
         let mut reached = self.totals;
@@ -135,7 +138,7 @@ impl PatchRun {
         let Totals { time, pose, place, temperature: temperature_before, .. } = self.totals;
         let start = pose.coordinates();
         let change = rates.map(|rate| rate * duration);
-        let end = Pose::of(std::array::from_fn(|i| start[i] + change[i]));
+        let end = Pose::from_coordinates(std::array::from_fn(|i| start[i] + change[i]));
         PatchStart { time: time + duration, pose: end, rates, transport_speed, temperature }.check()?;
         if duration == 0.0 {
             return Ok(());
@@ -145,27 +148,27 @@ impl PatchRun {
         let run = self.run(place, tread_speed * duration);
         let path = Path { start, change, duration };
         let parts = Parts::new(run, path.turn(), self.patch.refine);
-        let count = parts.count(MOST_PARTS);
-        if count > MOST_PARTS || count.is_nan() {
+        let count = parts.count(MAX_PARTS);
+        if count > MAX_PARTS || count.is_nan() {
             return Err(MotionError::TooManyParts { time, parts: count });
         }
         self.set_temperature(temperature);
         let Self { patch, law, springs, next, workspace, .. } = self;
         let face = &*patch.face;
         let (sums, tangents) = match workspace {
-            Workspace::Plain(crew) => {
+            Workspace::Plain(pool) => {
                 let step = Step { face, path, run, parts, tread_speed };
                 let widest = pulp::Arch::new();
-                let sums = crew.work(&step, law, (springs, next), |block, law, sums| {
+                let sums = pool.work(&step, law, (springs, next), |block, law, sums| {
                     widest.dispatch(Advance { block, step: &step, law, sums });
                 });
                 (sums, None)
             }
-            Workspace::Tangent(crew) => {
+            Workspace::Tangent(pool) => {
                 let path = Path { start, change: std::array::from_fn(|i| Dual::variable(change[i], i)), duration };
                 let step = Step { face, path, run, parts, tread_speed };
                 let advance = |block: &mut Block<_>, law: &mut _, sums: &mut _| block.advance(&step, law, sums);
-                let sums = crew.work(&step, law, (springs, next), advance);
+                let sums = pool.work(&step, law, (springs, next), advance);
                 (sums.plain(), Some(sums.wrench.map(|load| load.slopes)))
             }
         };
@@ -317,8 +320,8 @@ mod tests {
                 let start = PatchStart { pose, transport_speed: 1.0, ..PatchStart::default() };
                 let mut run = PatchRun::new(&patch, &start).unwrap();
                 match &mut run.workspace {
-                    Workspace::Plain(crew) => *crew = Crew::of(threads, &run.law),
-                    Workspace::Tangent(crew) => *crew = Crew::of(threads, &run.law),
+                    Workspace::Plain(pool) => *pool = WorkerPool::with_threads(threads, &run.law),
+                    Workspace::Tangent(pool) => *pool = WorkerPool::with_threads(threads, &run.law),
                 }
                 let rates = [0.9, 0.1, -0.01, 0.2, 0.0, 0.3];
                 let motion = PatchMotion { duration: 1e-3, rates, transport_speed: 1.1, temperature: 0.0 };

@@ -8,7 +8,7 @@ use crate::math::Number;
 use crate::scene::{SMALLEST, is_possible};
 
 /// Most parts of a step.
-pub(super) const MOST_PARTS: f64 = 1e5;
+pub(super) const MAX_PARTS: f64 = 1e5;
 
 /// Where a body is and how it moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -33,7 +33,7 @@ impl Pose {
     }
 
     /// The pose with these coordinates.
-    pub fn of([x, y, z, roll, pitch, yaw]: [f64; 6]) -> Self {
+    pub fn from_coordinates([x, y, z, roll, pitch, yaw]: [f64; 6]) -> Self {
         Self { place: [x, y, z], angles: [roll, pitch, yaw] }
     }
 }
@@ -80,7 +80,7 @@ pub enum MotionError {
         time: f64,
     },
     /// The step would take too many parts.
-    #[error("the step from t = {time} s takes {parts:.0} parts or more: more than {MOST_PARTS:.0}")]
+    #[error("the step from t = {time} s takes {parts:.0} parts or more: more than {MAX_PARTS:.0}")]
     TooManyParts {
         /// s.
         time: f64,

@@ -1,6 +1,6 @@
 //! The elements of a run at its present instant, one by one.
 
-use super::cut::size;
+use super::contact_times::size;
 use super::face::Face;
 use super::motion::{Instant, Path};
 use super::run::PatchRun;

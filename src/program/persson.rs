@@ -33,11 +33,11 @@ const ANGLES: u32 = 32;
 impl Theory {
     /// Of the waves that the layer of `scene` resolves, sliding at `speed` (m/s) under `pressure` (Pa); `None` in the
     /// direct form.
-    pub(super) fn of(scene: &Scene, pressure: f64, speed: f64, dimension: Dimension) -> Option<Self> {
+    pub(super) fn new(scene: &Scene, pressure: f64, speed: f64, dimension: Dimension) -> Option<Self> {
         let material = scene.material.as_ref()?;
         let body = scene.layer.body(material)?;
         let waves = resolved(scene);
-        Some(Self::of_waves(&waves, material, body, (pressure, speed), dimension))
+        Some(Self::from_waves(&waves, material, body, (pressure, speed), dimension))
     }
 
     /// The friction that the roughness below the profile's adds by hysteresis, on an isotropic surface; `None` where the
@@ -49,7 +49,7 @@ impl Theory {
         let fine = roughness.bands().map(|(q, gradient_square)| (q, 0.5 * gradient_square / (q * q)));
         let coarse = resolved(scene);
         let all: Vec<(f64, f64)> = coarse.iter().copied().chain(fine).collect();
-        let friction = |waves| Self::of_waves(waves, material, body, (pressure, speed), Dimension::Two).friction;
+        let friction = |waves| Self::from_waves(waves, material, body, (pressure, speed), Dimension::Two).friction;
         (all.len() > coarse.len()).then(|| friction(&all) - friction(&coarse))
     }
 
@@ -59,7 +59,7 @@ impl Theory {
     }
 
     /// Of waves (q in rad/m, mean square height in m²) in the order of q.
-    fn of_waves(
+    fn from_waves(
         waves: &[(f64, f64)],
         material: &Material,
         body: Body,
@@ -109,7 +109,7 @@ impl Dimension {
 
 /// The waves of the profile that the layer resolves.
 fn resolved(scene: &Scene) -> Vec<(f64, f64)> {
-    Spectrum::of(&scene.surface).modes().filter(|(wave_number, _)| scene.layer.resolves(*wave_number)).collect()
+    Spectrum::new(&scene.surface).modes().filter(|(wave_number, _)| scene.layer.resolves(*wave_number)).collect()
 }
 
 #[cfg(test)]
@@ -140,7 +140,7 @@ mod tests {
     }
 
     fn on_half_plane(waves: &[(f64, f64)], material: &Material, pressure: f64, dimension: Dimension) -> Theory {
-        Theory::of_waves(waves, material, Body::HalfPlane, (pressure, 0.3), dimension)
+        Theory::from_waves(waves, material, Body::HalfPlane, (pressure, 0.3), dimension)
     }
 
     /// One wave a cos qx in full contact, as Westergaard's: μ = (qa)² Im M(qv)/(4p).

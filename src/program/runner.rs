@@ -61,7 +61,7 @@ pub(crate) enum Rows {
 
 impl Rows {
     /// Number of intervals of a phase of `duration` (s); 0 for a phase without duration.
-    pub(crate) fn of(self, duration: f64) -> u32 {
+    pub(crate) fn intervals(self, duration: f64) -> u32 {
         /// Relative rounding error of a duration that is a multiple of the interval.
         const ROUNDING: f64 = 1e-9;
         match self {
@@ -74,7 +74,7 @@ impl Rows {
     /// Ends of the intervals of a phase of `duration` (s), in s from its start. The last is the duration itself: a row
     /// later by a rounding error would never be reached.
     pub(crate) fn times(self, duration: f64) -> impl Iterator<Item = f64> {
-        let count = self.of(duration);
+        let count = self.intervals(duration);
         (1..=count).map(move |i| if i == count { duration } else { duration * f64::from(i) / f64::from(count) })
     }
 }
@@ -210,7 +210,7 @@ mod tests {
     #[test]
     fn intervals_are_no_longer_than_asked_for_and_divide_evenly() {
         let rows = |parts| Rows::Within { longest: 1e-5, parts };
-        assert_eq!([0.0, 1e-5, 3.0 * 1e-5, 3.1e-5, 1e-9].map(|duration| rows(1).of(duration)), [0, 1, 3, 4, 1]);
+        assert_eq!([0.0, 1e-5, 3.0 * 1e-5, 3.1e-5, 1e-9].map(|duration| rows(1).intervals(duration)), [0, 1, 3, 4, 1]);
         let (coarse, fine): (Vec<_>, Vec<_>) = (rows(1).times(7.7e-5).collect(), rows(4).times(7.7e-5).collect());
         assert_eq!(coarse, fine.chunks(4).map(|part| part[3]).collect::<Vec<_>>());
     }

@@ -319,7 +319,7 @@ impl PronyTerm {
             let given = format!("`{header}`");
             return Err(ContentError::value(Some(line), "columns", &given, "relaxation_time before modulus"));
         }
-        let terms: Vec<Self> = lines(&text).map(|(line, row)| Self::of_row(line, &row)).collect::<Result<_, _>>()?;
+        let terms: Vec<Self> = lines(&text).map(|(line, row)| Self::from_row(line, &row)).collect::<Result<_, _>>()?;
         if terms.is_empty() {
             let last = text.lines().count().max(1);
             return Err(ContentError::value(Some(last), "terms", "0", "at least one term"));
@@ -327,7 +327,7 @@ impl PronyTerm {
         Ok(terms)
     }
 
-    fn of_row(line: usize, row: &Columns<'_>) -> Result<Self, ContentError> {
+    fn from_row(line: usize, row: &Columns<'_>) -> Result<Self, ContentError> {
         if row.count != COLUMNS.len() {
             return Err(ContentError::value(Some(line), "columns", &row.count.to_string(), EXPECTED_COLUMNS));
         }

@@ -355,8 +355,8 @@ impl Extrapolation {
     }
 
     /// What a word stands for.
-    pub fn of_word(word: &str) -> Option<Self> {
-        Self::of(word)
+    pub fn from_word(word: &str) -> Option<Self> {
+        Self::parse(word)
     }
 }
 

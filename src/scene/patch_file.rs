@@ -7,7 +7,7 @@ use super::error::{Location, Problem, SceneError};
 use super::values::Word;
 
 /// The most elements of a patch.
-pub(super) const MOST_ELEMENTS: i64 = 1_000_000;
+pub(super) const MAX_ELEMENTS: i64 = 1_000_000;
 
 /// The content of a patch file, and of the file of points that it names.
 #[derive(Clone, Debug, PartialEq)]
@@ -93,8 +93,8 @@ impl TableExtrapolation {
     }
 
     /// What a word stands for.
-    pub fn of_word(word: &str) -> Option<Self> {
-        Self::of(word)
+    pub fn from_word(word: &str) -> Option<Self> {
+        Self::parse(word)
     }
 }
 
@@ -143,7 +143,7 @@ pub enum NotDoubled {
     #[error("the face is a list of points, whose number cannot be doubled here")]
     Points,
     /// There would be too many.
-    #[error("{nx} by {ny} would be more than {MOST_ELEMENTS} elements")]
+    #[error("{nx} by {ny} would be more than {MAX_ELEMENTS} elements")]
     TooMany {
         /// Elements along x that it would have.
         nx: usize,
@@ -160,7 +160,7 @@ impl PatchFile {
     pub fn doubled(&self) -> Result<Self, NotDoubled> {
         let double = |grid: &Grid| {
             let (nx, ny) = (2 * grid.nx, 2 * grid.ny);
-            let allowed = i64::try_from(nx * ny).is_ok_and(|count| count <= MOST_ELEMENTS);
+            let allowed = i64::try_from(nx * ny).is_ok_and(|count| count <= MAX_ELEMENTS);
             if allowed { Ok(Grid { nx, ny, ..*grid }) } else { Err(NotDoubled::TooMany { nx, ny }) }
         };
         let shape = match &self.shape {

@@ -32,35 +32,35 @@ pub struct Band {
 }
 
 /// Maximum number of even points: finer detail is neither drawn nor fitted.
-const MOST_POINTS: usize = 1 << 20;
+const MAX_POINTS: usize = 1 << 20;
 const BANDS: f64 = 12.0;
 
 impl Spectrum {
     /// The spectrum of a profile at as many even points as it has intervals. A periodic profile needs no preparation. From
     /// any other the tilt is removed, and a Hann window is applied and its loss of power (3/8) corrected; the longest
     /// wavelength is then unreliable.
-    pub fn of(surface: &Surface) -> Self {
+    pub fn new(surface: &Surface) -> Self {
         let x = surface.x();
         let (start, length) = (x[0], x[x.len() - 1] - x[0]);
-        let n = (x.len() - 1).clamp(4, MOST_POINTS);
+        let n = (x.len() - 1).clamp(4, MAX_POINTS);
         let (spline, line) = (surface.spline(), surface.line());
         let position = |i: usize| start + length * (i as f64 / n as f64);
         let tilt = |x: f64| if surface.is_periodic() { line.z } else { line.at(x) };
         let heights = (0..n).map(|i| spline.evaluate(position(i)).0 - tilt(position(i))).collect();
-        Self::of_heights(heights, length, surface.is_periodic())
+        Self::from_heights(heights, length, surface.is_periodic())
     }
 
     /// The spectrum of the roughness of a layer of this length (m): heights at its masses, m, as of a profile that is not
     /// periodic.
-    pub(super) fn of_roughness(heights: &[f64], length: f64) -> Self {
+    pub(super) fn from_roughness(heights: &[f64], length: f64) -> Self {
         let x: Vec<f64> = (0..heights.len()).map(|i| i as f64 * length / heights.len() as f64).collect();
         let line = MeanLine::through(&x, heights);
         let level = |(x, z): (&f64, &f64)| if heights.len() > 1 { z - line.at(*x) } else { 0.0 };
-        Self::of_heights(x.iter().zip(heights).map(level).collect(), length, false)
+        Self::from_heights(x.iter().zip(heights).map(level).collect(), length, false)
     }
 
     /// The spectrum of heights without mean and tilt, m, at even points of a length, m.
-    fn of_heights(heights: Vec<f64>, length: f64, periodic: bool) -> Self {
+    fn from_heights(heights: Vec<f64>, length: f64, periodic: bool) -> Self {
         let n = heights.len();
         let window = |i: usize| if periodic { 1.0 } else { (PI * i as f64 / n as f64).sin().powi(2) };
         let windowed: Vec<_> = (0..n).map(|i| Complex::from(window(i) * heights[i])).collect();
@@ -121,7 +121,7 @@ pub struct PowerLaw {
 }
 
 /// Minimum number of bands of a power law, and its minimum length in ln q: half a decade.
-const FEWEST_BANDS: usize = 4;
+const MIN_BANDS: usize = 4;
 const SHORTEST_SPAN: f64 = 1.15;
 /// The exponent must exceed this many of its standard errors.
 const SIGNIFICANT: f64 = 3.0;
@@ -158,15 +158,15 @@ struct LawFit {
 impl PowerLaw {
     /// The law that fits the bands best, over as many of them as possible; where `wavelengths` (m) are given, over exactly
     /// these and without a roll-off. `None` where no part follows a power law.
-    pub fn of(bands: &[Band], wavelengths: Option<&RangeInclusive<f64>>) -> Option<Self> {
+    pub fn fit(bands: &[Band], wavelengths: Option<&RangeInclusive<f64>>) -> Option<Self> {
         let inside = |band: &&Band| wavelengths.is_none_or(|range| range.contains(&(TAU / band.wave_number)));
         let seen = bands.iter().filter(inside).filter(|band| band.density > 0.0);
-        let bands: Vec<Point> = seen.map(Point::of).collect();
+        let bands: Vec<Point> = seen.map(Point::new).collect();
         let mut best: Option<(f64, Self)> = None;
-        let ends = if wavelengths.is_some() { bands.len().max(FEWEST_BANDS) } else { FEWEST_BANDS }..=bands.len();
+        let ends = if wavelengths.is_some() { bands.len().max(MIN_BANDS) } else { MIN_BANDS }..=bands.len();
         for end in ends {
             for knee in 0..if wavelengths.is_some() { 1 } else { FINE * end } {
-                let Some(fit) = LawFit::of(&bands[..end], knee) else { continue };
+                let Some(fit) = LawFit::new(&bands[..end], knee) else { continue };
                 let penalty = EXCLUDED_BAND * (bands.len() - end) as f64 + if knee > 0 { ROLL_OFF } else { 0.0 };
                 if best.as_ref().is_none_or(|(cost, _)| fit.cost + penalty < *cost) {
                     best = Some((fit.cost + penalty, fit.law(&bands, end, knee)));
@@ -185,7 +185,7 @@ impl PowerLaw {
 }
 
 impl Point {
-    fn of(band: &Band) -> Self {
+    fn new(band: &Band) -> Self {
         let weight = 1.0 / (1.0 / band.modes as f64 + VARIANCE);
         Self { x: band.wave_number.ln(), y: band.density.ln(), weight }
     }
@@ -193,11 +193,11 @@ impl Point {
 
 impl LawFit {
     /// ln C = level - exponent · max(0, ln q - ln q_r) by weighted least squares, with the roll-off at position `knee`.
-    fn of(bands: &[Point], knee: usize) -> Option<Self> {
+    fn new(bands: &[Point], knee: usize) -> Option<Self> {
         let start = knee_at(bands, knee)?;
         let fallen = |band: &Point| (band.x - start).max(0.0);
         let falling = bands.iter().filter(|band| fallen(band) > 0.0).count();
-        if falling + usize::from(knee == 0) < FEWEST_BANDS || fallen(bands.last()?) < SHORTEST_SPAN {
+        if falling + usize::from(knee == 0) < MIN_BANDS || fallen(bands.last()?) < SHORTEST_SPAN {
             return None;
         }
         let sum = |value: &dyn Fn(&Point) -> f64| bands.iter().map(|band| band.weight * value(band)).sum::<f64>();
@@ -246,7 +246,7 @@ mod tests {
     #[test]
     fn the_power_is_the_mean_square_height() {
         for (periodic, tolerance) in [(true, 1e-12), (false, 2e-3)] {
-            let spectrum = Spectrum::of(&cosine(periodic, 2e-6));
+            let spectrum = Spectrum::new(&cosine(periodic, 2e-6));
             let power: f64 = spectrum.density.iter().sum::<f64>() * spectrum.step;
             assert!((power / 2e-12 - 1.0).abs() < tolerance, "{periodic} {power:e}");
             let peak = (0..500).max_by(|&a, &b| spectrum.density[a].total_cmp(&spectrum.density[b]));
@@ -280,29 +280,29 @@ mod tests {
     #[test]
     fn the_exponent_and_its_range_are_found() {
         for hurst in [0.3, 0.8, 1.0] {
-            let law = PowerLaw::of(&bands(hurst, 200.0, 3e4, 0.0), None).unwrap();
+            let law = PowerLaw::fit(&bands(hurst, 200.0, 3e4, 0.0), None).unwrap();
             assert!((law.hurst - hurst).abs() < 0.005, "{law:?}");
             assert!((law.roll_off_wavelength.unwrap() / (TAU / 200.0) - 1.0).abs() < 0.05, "{law:?}");
             assert!(law.ends && (law.wavelengths[0] / (TAU / 3e4) - 1.0).abs() < 0.25, "{law:?}");
             assert!((law.density(100.0) / 1e-12 - 1.0).abs() < 0.02, "{law:?}");
         }
-        let law = PowerLaw::of(&bands(0.6, 1.0, 1e9, 0.0), None).unwrap();
+        let law = PowerLaw::fit(&bands(0.6, 1.0, 1e9, 0.0), None).unwrap();
         assert!(law.roll_off_wavelength.is_none() && !law.ends, "{law:?}");
         assert!((law.hurst - 0.6).abs() < 0.001, "{law:?}");
     }
 
     #[test]
     fn scatter_moves_it_by_its_error() {
-        let law = PowerLaw::of(&bands(0.8, 200.0, 1e9, 1.0), None).unwrap();
+        let law = PowerLaw::fit(&bands(0.8, 200.0, 1e9, 1.0), None).unwrap();
         assert!((law.hurst - 0.8).abs() < 3.0 * law.hurst_error && law.hurst_error < 0.03, "{law:?}");
     }
 
     #[test]
     fn a_range_can_be_given_and_a_constant_is_no_law() {
         let asked = 5e-4..=5e-3;
-        let law = PowerLaw::of(&bands(0.8, 200.0, 3e4, 0.0), Some(&asked)).unwrap();
+        let law = PowerLaw::fit(&bands(0.8, 200.0, 3e4, 0.0), Some(&asked)).unwrap();
         assert!((law.hurst - 0.8).abs() < 0.005 && law.wavelengths.iter().all(|length| asked.contains(length)));
-        assert!(PowerLaw::of(&bands(0.8, 1e9, 1e9, 0.0), None).is_none());
-        assert!(PowerLaw::of(&[], None).is_none());
+        assert!(PowerLaw::fit(&bands(0.8, 1e9, 1e9, 0.0), None).is_none());
+        assert!(PowerLaw::fit(&[], None).is_none());
     }
 }

@@ -64,7 +64,7 @@ pub(super) trait Word: Copy + PartialEq + 'static {
     /// The words, and what each stands for.
     const WORDS: &'static [(&'static str, Self)];
 
-    fn of(word: &str) -> Option<Self> {
+    fn parse(word: &str) -> Option<Self> {
         Self::WORDS.iter().find(|(name, _)| *name == word).map(|(_, choice)| *choice)
     }
 

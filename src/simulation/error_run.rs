@@ -25,7 +25,7 @@ const TIGHTER: f64 = 0.2;
 const VISIBLE_SHARE: f64 = 1.0 - TIGHTER;
 /// Its steps are at most this share of the run's. Where steps only grow, both would take the same, with the same error.
 const SHORTER: f64 = 0.7;
-/// Limit of its work in one motion, as a multiple of the run's, in addition to [`LEAST_WORK`]. Beyond it the error is not
+/// Limit of its work in one motion, as a multiple of the run's, in addition to [`MIN_WORK`]. Beyond it the error is not
 /// estimated: the two runs differ in kind then, as where one mass slips along what it flies over in the other.
 const MORE_WORK: u64 = 4;
 /// The estimated error, in relative tolerances, above which two runs whose modes changed differently often do not converge.
@@ -34,7 +34,7 @@ const MORE_WORK: u64 = 4;
 /// within ten. With 10, runs are found too whose error still falls with the tolerance.
 const DIVERGED: f64 = 30.0;
 /// Number of steps that it may try in any motion, however few the run itself takes.
-const LEAST_WORK: u64 = 10_000;
+const MIN_WORK: u64 = 10_000;
 
 /// A more accurate run that follows another one: never behind it when it is compared.
 #[derive(Clone, Debug)]
@@ -81,7 +81,7 @@ impl ErrorRun {
 
     /// The run beside takes a step of length `h` (s), and has tried `steps` in this motion: the next step here is no
     /// longer than a share of it.
-    pub(super) fn note_step(&mut self, h: f64, steps: u64) {
+    pub(super) fn record_step(&mut self, h: f64, steps: u64) {
         self.steps_beside = steps;
         self.run.state.step_size = self.run.state.step_size.min(SHORTER * h);
     }
@@ -91,8 +91,8 @@ impl ErrorRun {
     pub(super) fn compare(&mut self, s: f64, snapshot: &mut Snapshot<'_>) {
         let found = snapshot.monitored(self.run.settings.accounts.energy);
         match self.monitored_at(s) {
-            Some(reference) => snapshot.counters.note_error(&found, &reference, VISIBLE_SHARE),
-            None => snapshot.counters.note_unknown(&found),
+            Some(reference) => snapshot.counters.record_error(&found, &reference, VISIBLE_SHARE),
+            None => snapshot.counters.record_unknown(&found),
         }
     }
 
@@ -113,7 +113,7 @@ impl ErrorRun {
         let tracked = self.run.settings.accounts.energy;
         while self.run.state.s < s {
             let steps = self.work.tried();
-            if steps > LEAST_WORK + MORE_WORK.saturating_mul(self.steps_beside) {
+            if steps > MIN_WORK + MORE_WORK.saturating_mul(self.steps_beside) {
                 return Err(SimulationError::TooManySteps { time: self.run.state.time(), steps });
             }
             let (mut step, mut end) = match self.pending.take() {
@@ -276,7 +276,7 @@ mod tests {
         error_run.run.state.counters.events += 1;
         assert_eq!(simulation.divergence(), None);
         let force = |x| Monitored { forces: [x, 1e9], ways: [0.0; 2], dissipated: None };
-        simulation.run.state.counters.note_error(&force(0.0), &force(1e9), 1.0);
+        simulation.run.state.counters.record_error(&force(0.0), &force(1e9), 1.0);
         let Divergence { error, tolerance, mode_changes: [run, finer] } = simulation.divergence().unwrap();
         assert_eq!((error, tolerance, finer), (1.0, 1e-4, run + 1));
         simulation.error_run.as_mut().unwrap().run.state.counters.events -= 1;

@@ -15,13 +15,13 @@ const GROWTH: (f64, f64) = (0.2, 5.0);
 /// tolerance: where mode changes make some of them err more, that costs less than to try these again.
 ///
 /// Recommended 1 to 2. With 3, errors of whole runs grow.
-const MOST_ERROR_IN_WIDE_LAYERS: f64 = 2.0;
+const MAX_ERROR_IN_WIDE_LAYERS: f64 = 2.0;
 /// The least share of a step at which it is cut at an event; where there is less, the step is tried again, shorter.
 ///
 /// A mass that a large friction stops in so small a share is thrown back that many times as fast by the rest of the
 /// step, and the energies up to the event would be the difference of powers as many times squared: with 1e-6 they keep
 /// some digits.
-const LEAST_SHARE: f64 = 1e-6;
+const MIN_SHARE: f64 = 1e-6;
 /// The longest step, as a multiple of the mean time between events: a longer one would be cut, after a search through
 /// all of it.
 ///
@@ -38,7 +38,7 @@ const AFTER_CUT: f64 = 1.5;
 const UNSEEN: f64 = 2e-2;
 /// Cuts of one step at events after which each further cut leaves at most half of it. By rounding, an event can be found
 /// at the very end of the shortened step again and again.
-pub(super) const MOST_CUTS: u32 = 50;
+pub(super) const MAX_CUTS: u32 = 50;
 
 /// An event-driven step that was tried and not rejected.
 #[derive(Clone, Copy, Debug)]
@@ -78,15 +78,15 @@ impl Run {
             };
             let limit = bounds.remaining.min(limit);
             let proposed = *proposal.get_or_insert_with(|| self.propose(h, limit, &tried, starts_anew));
-            let in_windows = h > shortest_cut && self.plan_windows(h, LEAST_SHARE.max(shortest_cut / h));
+            let in_windows = h > shortest_cut && self.plan_windows(h, MIN_SHARE.max(shortest_cut / h));
             let share = if in_windows { 1.0 } else { self.share_before_event(h, shortest_cut) };
-            if share >= 1.0 || (share >= LEAST_SHARE && self.can_resume_within(h, share)) {
+            if share >= 1.0 || (share >= MIN_SHARE && self.can_resume_within(h, share)) {
                 self.state.step_size = proposed;
-                self.workspace.stall.note_step(share * h, cuts > 0, self.state.counters.events);
+                self.workspace.stall.record_step(share * h, cuts > 0, self.state.counters.events);
                 return Ok(TrialStep { h, share });
             }
             cuts += 1;
-            h *= if cuts > MOST_CUTS { share.min(0.5) } else { share };
+            h *= if cuts > MAX_CUTS { share.min(0.5) } else { share };
         }
     }
 
@@ -127,7 +127,7 @@ impl Run {
     fn allowed_error(&self) -> f64 {
         let may_open_windows = self.workspace.may_open_windows && self.workspace.windows.is_some();
         let in_wide_layer = may_open_windows || self.settings.is_of_window;
-        if in_wide_layer { MOST_ERROR_IN_WIDE_LAYERS } else { 1.0 }
+        if in_wide_layer { MAX_ERROR_IN_WIDE_LAYERS } else { 1.0 }
     }
 
     /// The length of the next step after a good one of length `h`. One that was cut short to `limit` by the end of a
@@ -210,7 +210,7 @@ impl Run {
     /// Accepts a step up to its first event, or to where its windows could not go on.
     fn accept_part(&mut self, step: &TrialStep, end: f64) {
         let TrialStep { h, share } = *step;
-        self.state.note_event();
+        self.state.record_event();
         // The windows have moved on since a row was shown there.
         self.workspace.interpolated_at = None;
         self.interpolate(h, share);

@@ -218,7 +218,7 @@ impl Simulation {
         let result = self.follow(motion, until_force, times, observe);
         if result.is_err() {
             self.run_time = run_time;
-            self.cool_back();
+            self.restore_temperature();
             self.run.roll_back();
             if let Some(error_run) = &mut self.error_run {
                 error_run.roll_back();
@@ -228,7 +228,7 @@ impl Simulation {
     }
 
     /// The model at the temperature of the checkpoint, which a motion that fails may have changed.
-    fn cool_back(&mut self) {
+    fn restore_temperature(&mut self) {
         let before = self.run.temperature_before();
         if before != self.run.state.temperature {
             // It was that of the run before: it is valid.
@@ -292,7 +292,7 @@ impl Simulation {
             at_force = step.h == h;
         }
         if let Some(error_run) = &mut self.error_run {
-            error_run.note_step(step.h, work.tried());
+            error_run.record_step(step.h, work.tried());
         }
         Ok((step, at_force))
     }

@@ -9,7 +9,7 @@ use super::windows::Windows;
 use crate::contact::{
     EndCorrection, EventTolerance, decide_modes, free_unloaded, impacts_due, place_layer, stop_reversed,
 };
-use crate::integrator::{DenseWorkspace, Integrator, Pair, StepSpan, StepStart, Steps, Tolerance, Tracked};
+use crate::integrator::{DenseWorkspace, Integrator, LayerState, Pair, StepSpan, Steps, Tolerance, Tracked};
 use crate::model::{
     BodyStart, Carrier, CarrierPoint, CarrierPosition, Forces, LinkKind, Mode, Model, Piece, State, Tangents,
     elastic_energy, kinetic_energy,
@@ -23,12 +23,12 @@ const FIRST_STEP: f64 = 0.1;
 const SPACING_GAIN: f64 = 0.3;
 /// The least that this mean falls to, as a share of the step that the error allows: many events at one instant say
 /// nothing of later ones.
-const LEAST_SPACING: f64 = 0.01;
+const MIN_SPACING: f64 = 0.01;
 /// Length of a step below which a cut is suspected of a [`Stall`], divided by the stiffest period over 2π.
 const STALLED: f64 = 1e-9;
 /// Number of such steps after which the shortest cut doubles. Simultaneous events of many masses also take many of them,
 /// but modes change at those.
-const MOST_STALLED: u32 = 100;
+const MAX_STALLED: u32 = 100;
 
 /// All that changes in a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -38,7 +38,7 @@ pub(super) struct RunState {
     /// Time since the start of that piece, s.
     pub s: f64,
     /// The layer, with the rates at the start of the next step.
-    pub layer: StepStart,
+    pub layer: LayerState,
     /// Whether these rates are valid: not before the first motion, nor where the forces were changed from outside.
     pub rates_valid: bool,
     /// Energies since the start.
@@ -78,7 +78,7 @@ impl RunState {
             temperature: start.temperature.unwrap_or(0.0),
             carrier,
             s: 0.0,
-            layer: StepStart::new(model),
+            layer: LayerState::new(model),
             rates_valid: false,
             energies: Energies::default(),
             counters: Counters::default(),
@@ -148,11 +148,11 @@ impl RunState {
     }
 
     /// Includes the event that has just come in the mean time between events.
-    pub(super) fn note_event(&mut self) {
+    pub(super) fn record_event(&mut self) {
         // A mean from long ago counts no more than the latest.
         let mean = self.event_spacing.min(self.since_event / SPACING_GAIN);
         let latest = mean + SPACING_GAIN * (self.since_event - mean);
-        self.event_spacing = latest.max(LEAST_SPACING * self.step_size);
+        self.event_spacing = latest.max(MIN_SPACING * self.step_size);
         self.since_event = 0.0;
     }
 }
@@ -546,12 +546,12 @@ impl Stall {
         } else {
             self.steps = self.steps.saturating_sub(1);
         }
-        shortest * f64::from(self.steps.saturating_sub(MOST_STALLED)).exp2()
+        shortest * f64::from(self.steps.saturating_sub(MAX_STALLED)).exp2()
     }
 
     /// Records a step of length `h` (s) that is about to be accepted, and whether an event has cut it; `events` is the
     /// number of mode changes before it.
-    pub(super) fn note_step(&mut self, h: f64, cut: bool, events: u64) {
+    pub(super) fn record_step(&mut self, h: f64, cut: bool, events: u64) {
         self.events_before = (cut && h <= self.length).then_some(events);
     }
 }

@@ -11,11 +11,11 @@ use crate::outputs::{Energies, LayerView, Snapshot};
 ///
 /// Recommended 1 to 5: the residual oscillates about 0 through the step, so less of it is left in the velocity; with 5
 /// the errors of whole runs are those of 1, and fewer steps are repeated.
-pub(super) const LARGEST_DEFECT: f64 = 5.0;
+pub(super) const MAX_DEFECT: f64 = 5.0;
 /// The most that mode changes not yet corrected may change F_z where a row is shown within a time step, as a multiple of
 /// the relative tolerance. That bounds all of them together at the step's end; a row shows what touches change, so its error
 /// is a small part of that.
-const MOST_UNCORRECTED: f64 = 3.0;
+const MAX_UNCORRECTED: f64 = 3.0;
 /// The relative tolerance from which on P_diss within an event-driven step comes from the powers at its stages, of order 3 at
 /// most, and not from the layer's state there.
 ///
@@ -161,14 +161,14 @@ impl Run {
             return true;
         }
         let (integrator, correction) = (&workspace.integrator, &workspace.end_correction);
-        let allowed = MOST_UNCORRECTED * settings.tolerance.relative * integrator.end_forces().on_carrier_z().abs();
+        let allowed = MAX_UNCORRECTED * settings.tolerance.relative * integrator.end_forces().on_carrier_z().abs();
         let dense = || integrator.two_stage_dense(model, &state.carrier, &state.layer.state, state.span(step.h));
         correction.uncorrected_force() < allowed || correction.comes_after(&dense(), (s - state.s) / step.h)
     }
 
     /// Whether the run can go on from the fraction `share` of the step of length `h` tried last.
     pub(super) fn can_resume_within(&mut self, h: f64, share: f64) -> bool {
-        !self.workspace.integrator.has_tangents() && self.defect_within(h, share) <= LARGEST_DEFECT
+        !self.workspace.integrator.has_tangents() && self.defect_within(h, share) <= MAX_DEFECT
     }
 
     /// The residual of the equations of motion in the dense output of the step of length `h` tried last at its fraction

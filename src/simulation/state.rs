@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::run::{Run, RunState};
-use crate::integrator::{Rates, StepStart};
+use crate::integrator::{LayerState, Rates};
 use crate::model::{Carrier, LinkKind, Mode, State};
 use crate::scene::{Axis, Method, ParameterError};
 
@@ -119,7 +119,7 @@ pub(super) fn check_length(what: &'static str, found: usize, expected: usize) ->
     if found == expected { Ok(()) } else { Err(RestoreError::Length { what, found, expected }) }
 }
 
-fn check_lengths(found: &StepStart, expected: &StepStart) -> Result<(), RestoreError> {
+fn check_lengths(found: &LayerState, expected: &LayerState) -> Result<(), RestoreError> {
     let (state, rates) = (lengths_of_state(&found.state), lengths_of_rates(&found.rates));
     let (expected_state, expected_rates) = (lengths_of_state(&expected.state), lengths_of_rates(&expected.rates));
     for ((what, found), (_, expected)) in state.into_iter().zip(expected_state) {
@@ -166,7 +166,7 @@ fn check_numbers(run: &RunState) -> Result<(), RestoreError> {
     let RunState {
         carrier,
         s,
-        layer: StepStart { state, rates, exchange, largest },
+        layer: LayerState { state, rates, exchange, largest },
         rates_valid: _,
         energies,
         counters,

@@ -44,7 +44,7 @@ impl Window {
         }
         Arc::make_mut(&mut self.run.model).set_temperature_of(model);
         self.run.settings = settings.of_window();
-        self.run.workspace.dense.forget();
+        self.run.workspace.dense.invalidate();
     }
 
     /// Memory in bytes that grows with its masses.

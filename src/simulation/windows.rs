@@ -12,10 +12,10 @@
 use std::ops::Range;
 
 use super::driver::{TrialStep, WorkLimit};
-use super::event::MOST_CUTS;
+use super::event::MAX_CUTS;
 use super::motion::{ModeChange, SimulationError};
 use super::run::{Run, RunState, Settings, Workspace};
-use super::snapshot::LARGEST_DEFECT;
+use super::snapshot::MAX_DEFECT;
 use super::window::Window;
 use crate::contact::mode_changes;
 use crate::integrator::{DenseWorkspace, Integrator, LayerStep, Overlay, Pair, StepSpan};
@@ -28,12 +28,12 @@ use crate::scene::Method;
 /// Recommended 0.03 to 1. More makes windows wider than need be, less has them widened more often.
 const DISTURBANCE: f64 = 0.3;
 /// A layer has windows only where it is at least this many narrowest windows wide.
-const LEAST_WINDOWS: usize = 4;
+const MIN_WINDOWS: usize = 4;
 /// Windows may hold at most the layer's masses divided by this: beyond that it is better to cut the step.
 const OF_MASSES: usize = 2;
 /// The most windows of the least width, of twice this width half as many, and so on: more are seldom open at once, and each
 /// takes memory.
-const MOST_WINDOWS: usize = 16;
+const MAX_WINDOWS: usize = 16;
 /// There are windows of the two least widths where so many of them would have room.
 const ROOM: [usize; 2] = [2, 2];
 /// The same of wider ones: the steps of the few widest cost about as much as to cut that of the layer, and they take memory.
@@ -89,7 +89,7 @@ impl Windows {
         }
         let (reach, most_masses) = (reach(model, settings.tolerance.relative)?, model.masses() / OF_MASSES);
         let width = 2 * reach + 1;
-        if LEAST_WINDOWS * width > model.masses() {
+        if MIN_WINDOWS * width > model.masses() {
             return None;
         }
         let levels: Vec<_> = levels(width, most_masses).collect();
@@ -110,7 +110,7 @@ impl Windows {
             span: StepSpan { start: 0.0, length: 0.0 },
             workspace: DenseWorkspace::new(model),
             nodes: vec![
-                DenseWorkspace::of_weights(model);
+                DenseWorkspace::for_single_masses(model);
                 Pair::at_tolerance(model, settings.tolerance.relative).stages()
             ],
         }))
@@ -120,7 +120,7 @@ impl Windows {
     pub(super) fn heat(&mut self, model: &Model, settings: &Settings) {
         self.windows.iter_mut().for_each(|window| window.heat(model, settings));
         self.workspace = DenseWorkspace::new(model);
-        self.nodes.fill(DenseWorkspace::of_weights(model));
+        self.nodes.fill(DenseWorkspace::for_single_masses(model));
     }
 
     /// Memory in bytes, without what each window takes whatever its masses: some thousand.
@@ -203,7 +203,7 @@ impl Windows {
         let Some((window, more)) = rest.split_first_mut() else { return Ok(Some(Cut::Crowded(s))) };
         window.open_at(run, (&mut step, s), range.start, nodes);
         // One that absorbs others does not go on from the whole layer's step alone.
-        if !absorbs && !window.is_resolved(&mut step, LARGEST_DEFECT) {
+        if !absorbs && !window.is_resolved(&mut step, MAX_DEFECT) {
             return Ok(Some(Cut::Unresolved(s)));
         }
         for other in others.iter_mut().chain(more).filter(|other| other.open && is_absorbed(other)) {
@@ -246,7 +246,7 @@ fn layer_step<'a>(
 /// `most_masses`, and there is [`ROOM`] for some.
 fn levels(least: usize, most_masses: usize) -> impl Iterator<Item = (usize, usize)> {
     let wider = |&(width, most): &(usize, usize)| Some((2 * width, (most / 2).max(1)));
-    std::iter::successors(Some((least, MOST_WINDOWS)), wider)
+    std::iter::successors(Some((least, MAX_WINDOWS)), wider)
         .zip(ROOM.into_iter().chain(std::iter::repeat(ROOM_FOR_WIDE)))
         .take_while(move |((width, _), room)| room * width <= most_masses)
         .map(move |((width, most), _)| (width, most.min(most_masses / width)))
@@ -340,7 +340,7 @@ impl Run {
             };
             self.count_work(work)?;
             cuts += 1;
-            let h = if cuts > MOST_CUTS { 0.5 * (time - self.state.s) } else { time - self.state.s };
+            let h = if cuts > MAX_CUTS { 0.5 * (time - self.state.s) } else { time - self.state.s };
             (*step, end) = self.cut_step_at(self.state.s + h, f64::INFINITY, work)?;
         }
         Ok(end)

@@ -5,7 +5,7 @@ use asperity::outputs::{Output, Variable};
 use asperity::scene::{RateShear, Scene};
 use asperity::simulation::SimulationState;
 
-use crate::run::{MOST_STEPS, Outcome};
+use crate::run::{MAX_STEPS, Outcome};
 
 /// Something that does not hold.
 #[derive(Clone, Debug, PartialEq)]
@@ -179,7 +179,7 @@ pub fn energy_scale(outcome: &Outcome) -> f64 {
 /// One bound for every scene.
 fn work(outcome: &Outcome) -> Option<String> {
     let tried = outcome.work();
-    (tried > MOST_STEPS as f64).then(|| format!("{tried} steps tried"))
+    (tried > MAX_STEPS as f64).then(|| format!("{tried} steps tried"))
 }
 
 /// What is lost stays lost: no channel ever gives energy back.

@@ -13,7 +13,7 @@ use crate::catalogue::{self, Case};
 use crate::rules::{Finding, Limits};
 
 /// Steps tried that a run may take, whatever its scene: 10⁴ periods take tens of steps each with any method.
-pub const MOST_STEPS: u64 = 1_000_000;
+pub const MAX_STEPS: u64 = 1_000_000;
 /// A tight run may take so many times more.
 const OF_TIGHT: u64 = 10;
 
@@ -104,7 +104,7 @@ pub fn scene_text(case: &Case, method: &str, tight: f64) -> String {
         solver.insert("absolute_tolerance".into(), Value::Float(absolute * tight));
     }
     solver.insert("method".into(), Value::String(method.into()));
-    let most = if tight < 1.0 { OF_TIGHT * MOST_STEPS } else { MOST_STEPS };
+    let most = if tight < 1.0 { OF_TIGHT * MAX_STEPS } else { MAX_STEPS };
     solver.entry("max_steps").or_insert(Value::Integer(most as i64));
     catalogue::text(&table)
 }

@@ -141,7 +141,8 @@ fn wheel_along(patch: &Patch, inputs: &[[f64; 7]]) -> Table {
     };
     let pose = |inputs: [f64; 7]| -> [f64; 6] { std::array::from_fn(|k| inputs[k]) };
     let mut wheel =
-        PatchRun::new(patch, &PatchStart { pose: Pose::of(pose(inputs[0])), ..PatchStart::default() }).unwrap();
+        PatchRun::new(patch, &PatchStart { pose: Pose::from_coordinates(pose(inputs[0])), ..PatchStart::default() })
+            .unwrap();
     let variables = patch.variables();
     let row = |i: usize| {
         let (from, to) = (wheel.pose().coordinates(), target(i));

@@ -135,7 +135,11 @@ struct Judge {
 
 impl Judge {
     fn new(patch: &Patch, pose: [f64; 6]) -> Self {
-        let start = PatchStart { pose: Pose::of(pose), temperature: patch.temperature(), ..PatchStart::default() };
+        let start = PatchStart {
+            pose: Pose::from_coordinates(pose),
+            temperature: patch.temperature(),
+            ..PatchStart::default()
+        };
         let run = PatchRun::new(patch, &start).unwrap();
         Self { patch: patch.clone(), run, lost: [0.0; 2] }
     }

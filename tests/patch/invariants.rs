@@ -130,7 +130,7 @@ struct Probe {
 
 impl Probe {
     fn new(patch: Patch, pose: [f64; 6], rates: [f64; 6]) -> Self {
-        let (pose, temperature) = (Pose::of(pose), patch.temperature());
+        let (pose, temperature) = (Pose::from_coordinates(pose), patch.temperature());
         let start = PatchStart { time: 0.0, pose, rates, transport_speed: 0.0, temperature };
         let (run, variables) = (PatchRun::new(&patch, &start).unwrap(), patch.variables());
         let mut probe = Self { run, patch, values: vec![f64::NAN; variables.len()], variables };

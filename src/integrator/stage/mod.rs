@@ -25,7 +25,7 @@ use crate::math::{BLOCK, BlockTridiagonal, Spline, weighted_sum, with_widest_vec
 use crate::model::{
     CarrierPoint, ContactForces, Forces, FrictionPower, LinkKind, LinkMotion, Mode, Model, State, SurfacePoint,
 };
-use newton::{Climb, NeighbourWeights, RateFriction, RowShares, largest_of};
+use newton::{ContactJacobian, NeighbourWeights, RateFriction, RowShares, largest_of};
 
 pub(super) use border::{BodyHistory, Border};
 pub(super) use newton::SlippingMass;
@@ -57,7 +57,7 @@ impl StageHistory {
             elongation_z: zero.clone(),
             velocity_x: zero.clone(),
             velocity_z: zero,
-            force: Forces::of_links(model),
+            force: Forces::zeros_by_link(model),
         }
     }
 
@@ -128,7 +128,7 @@ pub(super) struct StageLaw {
 impl StageLaw {
     /// ∂F/∂ẋ of a vertical link to a slipping mass.
     #[inline(always)]
-    fn along(&self, climb: Climb) -> f64 {
+    fn along(&self, climb: ContactJacobian) -> f64 {
         self.stiffness * climb.height + self.damping * climb.rate
     }
 }
@@ -457,7 +457,7 @@ impl StageSolver {
     /// Computes the forces of the links and on the masses by the stage's law.
     #[inline(always)]
     fn set_forces(&mut self, point: &StagePoint) {
-        let motion = LinkMotion::of(&self.state, &point.carrier);
+        let motion = LinkMotion::new(&self.state, &point.carrier);
         let laws = self.laws.map(|law| (law.stiffness, law.damping));
         self.forces.evaluate_with(laws, &motion, &self.history.force);
     }
@@ -490,7 +490,7 @@ impl StageSolver {
         );
         if model.friction_is_linear() {
             self.set_stick_rates(model, rates);
-            self.friction_power = FrictionPower::of_linear_law(model, &self.slip_speed, &rates.normal);
+            self.friction_power = FrictionPower::from_linear_law(model, &self.slip_speed, &rates.normal);
         } else {
             self.set_contact_rates(model, rates);
         }
@@ -504,7 +504,7 @@ impl StageSolver {
         rates.velocity_z.copy_from_slice(&state.velocity_z);
         rate_of_change(&mut rates.acceleration_x, &state.velocity_x, &history.velocity_x, per_beta);
         rate_of_change(&mut rates.acceleration_z, &state.velocity_z, &history.velocity_z, per_beta);
-        let motion = LinkMotion::of(state, &point.carrier);
+        let motion = LinkMotion::new(state, &point.carrier);
         for (kind, rate) in LinkKind::ALL.into_iter().zip(&mut rates.elongation_rate) {
             motion.elongation_rates(kind, rate);
         }

@@ -51,10 +51,10 @@ impl StageSolver {
 
     /// Of mass `i`, which slips: the factor with which a force on it along `axis` enters its equation, and how its elongation
     /// along that axis follows its ẋ.
-    pub(super) fn slip_border(&self, model: &Model, i: usize, beta: f64, axis: Axis) -> (f64, Climb) {
+    pub(super) fn slip_border(&self, model: &Model, i: usize, beta: f64, axis: Axis) -> (f64, ContactJacobian) {
         let slip = self.slipping_mass(model, i, beta);
         match axis {
-            Axis::X => (slip.share_x, Climb { height: beta, rate: 1.0 }),
+            Axis::X => (slip.share_x, ContactJacobian { height: beta, rate: 1.0 }),
             Axis::Z => (slip.share_z, slip.climb(beta)),
         }
     }
@@ -209,7 +209,7 @@ impl EvaluatedStage<'_> {
 
     /// The equation of mass `i`, which slips.
     fn slipping_mass(&self, i: usize) -> SlippingMass {
-        SlippingMass::of(self.model, self.state, self.forces, i, self.acceleration(i))
+        SlippingMass::from_state(self.model, self.state, self.forces, i, self.acceleration(i))
     }
 
     /// The same under this law of friction.
@@ -314,7 +314,7 @@ const LANES: usize = 4;
 
 /// How the height of a slipping mass on the profile follows its ẋ.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Climb {
+pub(super) struct ContactJacobian {
     /// ∂e_z/∂ẋ = βs.
     pub(super) height: f64,
     /// ∂ż/∂ẋ = s + βκẋ.
@@ -387,7 +387,7 @@ impl SlippingMass {
 
     /// Mass `i` of `state`, which slips, with ẍ = `acceleration` under the `forces` of the links.
     #[inline(always)]
-    pub(in crate::integrator) fn of(
+    pub(in crate::integrator) fn from_state(
         model: &Model,
         state: &State,
         forces: &Forces,
@@ -469,8 +469,8 @@ impl SlippingMass {
     }
 
     #[inline(always)]
-    fn climb(&self, beta: f64) -> Climb {
-        Climb { height: beta * self.s, rate: self.s + beta * self.kappa * self.velocity }
+    fn climb(&self, beta: f64) -> ContactJacobian {
+        ContactJacobian { height: beta * self.s, rate: self.s + beta * self.kappa * self.velocity }
     }
 }
 

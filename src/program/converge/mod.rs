@@ -164,7 +164,7 @@ impl Work<'_> {
         let run_time = clock.elapsed().as_secs_f64();
         let Converge { pressure, speed, .. } = *self.command;
         let theories = [Dimension::One, Dimension::Two]
-            .map(|dimension| Theory::of(&scene, pressure, speed, dimension).unwrap_or_default());
+            .map(|dimension| Theory::new(&scene, pressure, speed, dimension).unwrap_or_default());
         let fit_rms = scene.quality(LinkKind::Vertical).map_or(0.0, |quality| quality.rms);
         let dimensions = self.template.dimensions(variant);
         let run = Run { variant, dimensions, fit_rms, outcome, theories, run_time };

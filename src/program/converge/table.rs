@@ -103,7 +103,7 @@ impl Run {
     }
 
     /// The run of a row; `None` where a field is not what it should be.
-    fn of_fields(fields: &[impl AsRef<str>]) -> Option<Self> {
+    fn from_fields(fields: &[impl AsRef<str>]) -> Option<Self> {
         let text = |i: usize| fields.get(i).map(AsRef::as_ref).unwrap_or_default();
         let number = |i: usize| text(i).parse::<f64>().ok().filter(|number| number.is_finite());
         let theory =
@@ -208,7 +208,7 @@ fn runs_done(path: &Path, header: &Header) -> Result<Vec<Run>, ConvergeError> {
     if !whole.lines().any(|line| line == key) {
         return Err(ConvergeError::OtherStudy { path: path.to_owned() });
     }
-    rows.map(|row| Run::of_fields(&row.fields).ok_or_else(|| not_a_table(format!("line {} is no row", row.line))))
+    rows.map(|row| Run::from_fields(&row.fields).ok_or_else(|| not_a_table(format!("line {} is no row", row.line))))
         .collect()
 }
 
@@ -233,9 +233,9 @@ mod tests {
             for change in [None, Some(pair(-0.5, 0.25))] {
                 let line = run.line(change);
                 let row = text_table::rows(&line, Some(',')).next().unwrap();
-                assert_eq!((row.fields.len(), Run::of_fields(&row.fields)), (COLUMNS.len(), Some(run.clone())));
+                assert_eq!((row.fields.len(), Run::from_fields(&row.fields)), (COLUMNS.len(), Some(run.clone())));
             }
         }
-        assert_eq!(Run::of_fields(&["64"; COLUMNS.len() - 1]), None);
+        assert_eq!(Run::from_fields(&["64"; COLUMNS.len() - 1]), None);
     }
 }

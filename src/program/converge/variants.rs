@@ -110,12 +110,12 @@ impl Template {
         let bytes = files::read(path)?;
         let text = String::from_utf8_lossy(&bytes);
         let text = text.strip_prefix('\u{feff}').unwrap_or(&text).to_owned();
-        let template = Self::of(path, text, set)?;
+        let template = Self::new(path, text, set)?;
         let scene = template.scene(Variant::default())?;
         Ok((template, scene))
     }
 
-    fn of(path: &Path, text: String, set: &[(String, String)]) -> Result<Self, ConvergeError> {
+    fn new(path: &Path, text: String, set: &[(String, String)]) -> Result<Self, ConvergeError> {
         let unclear = || ConvergeError::Unclear { path: path.to_owned() };
         let document = DeTable::parse(&text).map_err(|_| unclear())?;
         let document = document.get_ref();
@@ -124,7 +124,7 @@ impl Template {
         if surfaces[1].is_some_and(|roughness| roughness.contains_key("z") && !roughness.contains_key("x")) {
             return Err(ConvergeError::HeightsAtMasses { path: path.to_owned() });
         }
-        let self_affine: Vec<SelfAffine> = surfaces.into_iter().flatten().filter_map(SelfAffine::of).collect();
+        let self_affine: Vec<SelfAffine> = surfaces.into_iter().flatten().filter_map(SelfAffine::new).collect();
         let (masses, spacing) = (number(layer, "masses"), number(layer, "spacing"));
         let (masses, spacing) = masses.zip(spacing).ok_or_else(unclear)?;
         let seed = self_affine.first().map(|surface| surface.seed.value.whole());
@@ -184,7 +184,7 @@ fn shifted(seed: u64, shift: u32) -> u64 {
 
 impl SelfAffine {
     /// That of a table of a surface; `None` for every other kind.
-    fn of(surface: &DeTable<'_>) -> Option<Self> {
+    fn new(surface: &DeTable<'_>) -> Option<Self> {
         if surface.get("kind")?.get_ref().as_str() != Some("self_affine") {
             return None;
         }
@@ -248,7 +248,7 @@ mod tests {
         roll_off_wavelength = 1e-3\ncut_off_wavelength = 2e-4\nseed = 5\n[solver]\nabsolute_tolerance = 1e-4\n";
 
     fn template(text: &str) -> Result<Template, ConvergeError> {
-        Template::of("scene.toml".as_ref(), text.into(), &[])
+        Template::new("scene.toml".as_ref(), text.into(), &[])
     }
 
     #[test]

@@ -64,7 +64,7 @@ pub(super) type Context<'a, B> = ChartContext<'a, B, Cartesian2d<Axis, Axis>>;
 impl Chart {
     /// Draws the legend and, below it, the chart.
     pub(super) fn draw_with_legend<B: Backend>(&self, canvas: &Canvas<B>) -> DrawResult {
-        let names = self.curves.iter().map(|curve| (curve.name.as_str(), Symbol::of(curve)));
+        let names = self.curves.iter().map(|curve| (curve.name.as_str(), Symbol::for_curve(curve)));
         let legend = Legend::new(names, canvas.dim_in_pixel().0);
         let (above, below) = canvas.split_vertically(legend.height());
         legend.draw(&above)?;
@@ -237,12 +237,12 @@ impl Item {
 }
 
 impl Symbol {
-    pub(super) fn of(curve: &Curve) -> Self {
+    pub(super) fn for_curve(curve: &Curve) -> Self {
         Self::Line(curve.stroke, colour(curve.look))
     }
 
     /// That of a stroke in any colour.
-    pub(super) fn of_stroke(stroke: Stroke) -> Self {
+    pub(super) fn for_stroke(stroke: Stroke) -> Self {
         Self::Line(stroke, INK)
     }
 

@@ -24,11 +24,11 @@ const SLENDER: f64 = 5.0;
 
 /// The distance of arrows and the length of the longest, pixels; shorter ones than this share of it are left out.
 const ARROW: u32 = 30;
-const LEAST_ARROW: f64 = 0.08;
+const MIN_ARROW: f64 = 0.08;
 /// Least pixels of a cell that is drawn with an edge.
 const EDGED: i32 = 11 * FINE as i32;
 /// Least radius of a point.
-const LEAST_RADIUS: f64 = 2.5 * FINE as f64;
+const MIN_RADIUS: f64 = 2.5 * FINE as f64;
 /// The least height of the colour scale, and its width.
 const SCALE: (u32, u32) = (220 * FINE, 16 * FINE);
 /// Colours in the scale.
@@ -82,7 +82,7 @@ impl Maps {
 
     /// Draws the moment `largest` with a scale of the colours and, below it, a `strip` of others.
     pub(super) fn draw<B: Backend>(&self, canvas: &Canvas<B>, largest: &Moment, strip: &[Moment]) -> DrawResult {
-        let scales = Scales::of(strip.iter().chain([largest]));
+        let scales = Scales::new(strip.iter().chain([largest]));
         let (above, below) = canvas.split_vertically(self.above() + STRIP_GAP);
         let (title, map) = above.split_vertically(2 * LEGEND_LINE);
         draw_title(&title, largest)?;
@@ -141,7 +141,7 @@ struct Scales {
 }
 
 impl Scales {
-    fn of<'a>(moments: impl Iterator<Item = &'a Moment>) -> Self {
+    fn new<'a>(moments: impl Iterator<Item = &'a Moment>) -> Self {
         let mut scales = Self { pressure: 0.0, traction: 0.0 };
         for moment in moments {
             scales.pressure = moment.tiles.iter().map(|tile| tile.pressure).fold(scales.pressure, f64::max);
@@ -157,7 +157,7 @@ impl Scales {
     /// The length of an arrow, subpixels; none where it could not be seen.
     fn length(&self, traction: f64) -> Option<f64> {
         let share = traction / self.traction;
-        (share > LEAST_ARROW).then(|| share * f64::from(ARROW * FINE))
+        (share > MIN_ARROW).then(|| share * f64::from(ARROW * FINE))
     }
 
     /// What arrows and grey stand for, in the second line of the title.
@@ -266,7 +266,7 @@ impl Frame<'_> {
     /// The radius of a disc of an area, m².
     fn radius(&self, area: f64) -> i32 {
         let [x, y] = self.scale();
-        (area * x * y / std::f64::consts::PI).sqrt().max(LEAST_RADIUS).round() as i32
+        (area * x * y / std::f64::consts::PI).sqrt().max(MIN_RADIUS).round() as i32
     }
 }
 

@@ -50,11 +50,11 @@ pub(super) struct Moment {
 }
 
 impl Moment {
-    pub(super) fn of(run: &mut PatchRun, plan: &FacePlan, detail: Detail, force: f64) -> Self {
+    pub(super) fn new(run: &mut PatchRun, plan: &FacePlan, detail: Detail, force: f64) -> Self {
         let are_points = plan.rows().is_none() && plan.count <= detail.tiles * detail.tiles;
-        let tiles = if are_points { Bins::cells(plan, 1, [1, 1]) } else { Bins::of_tiles(plan, detail.tiles) };
+        let tiles = if are_points { Bins::cells(plan, 1, [1, 1]) } else { Bins::for_tiles(plan, detail.tiles) };
         let apart = if are_points { BETWEEN_POINTS } else { 1.0 };
-        let arrows = Bins::of_arrows(plan, detail.arrows.map(|distance| distance * apart));
+        let arrows = Bins::for_arrows(plan, detail.arrows.map(|distance| distance * apart));
         let mut gathered = [&tiles, &arrows].map(|bins| vec![Gathered::default(); bins.count]);
         let (time, mut pressure) = (run.time(), 0.0_f64);
         for (i, element) in run.over_face(plan).enumerate() {
@@ -84,14 +84,14 @@ enum Kind {
 }
 
 impl Bins {
-    fn of_tiles(plan: &FacePlan, most: usize) -> Self {
+    fn for_tiles(plan: &FacePlan, most: usize) -> Self {
         match plan.rows() {
             Some(rows) => Self::cells(plan, rows, [plan.count / rows, rows].map(|count| count.div_ceil(most))),
             None => Self::rectangles(plan, [longest(plan) / most as f64; 2]),
         }
     }
 
-    fn of_arrows(plan: &FacePlan, distance: [f64; 2]) -> Self {
+    fn for_arrows(plan: &FacePlan, distance: [f64; 2]) -> Self {
         let Some(rows) = plan.rows() else { return Self::rectangles(plan, distance) };
         let [along, across] = [plan.count / rows, rows];
         let together = [(0, along), (1, across)].map(|(axis, count)| {
@@ -209,11 +209,11 @@ mod tests {
                     width = 1e-4\nnx = 1000\nny = 2\n";
         let grid = Patch::parse(text, &folder.join("p.toml")).unwrap();
         let in_line = |i: u32| PatchElement { index: 0, place: [f64::from(i) * 1e-3, 0.0, 0.0], area: 1e-12 };
-        for (patch, expected) in [(&grid, 21 * 2), (&grid.of_elements((0..1000).map(in_line)), 21 * 5)] {
+        for (patch, expected) in [(&grid, 21 * 2), (&grid.with_elements((0..1000).map(in_line)), 21 * 5)] {
             let plan = patch.plan();
             // 620 by 124 pixels, 30 from arrow to arrow: 20.7 along, 4.1 across; of the grid 48 columns go together.
             let [large, _] = Maps::new(plan.clone()).details();
-            assert_eq!(Bins::of_arrows(&plan, large.arrows).count, expected);
+            assert_eq!(Bins::for_arrows(&plan, large.arrows).count, expected);
         }
     }
 }

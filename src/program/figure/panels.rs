@@ -92,8 +92,8 @@ impl SideBySide {
             let all = self.panels.iter().flat_map(|panel| &panel.curves);
             all.filter(move |curve| (curve.stroke == Stroke::Line) == solid)
         };
-        let solid = curves(true).map(|curve| (curve.name.as_str(), Symbol::of(curve)));
-        let others = curves(false).map(|curve| (curve.name.as_str(), Symbol::of_stroke(curve.stroke)));
+        let solid = curves(true).map(|curve| (curve.name.as_str(), Symbol::for_curve(curve)));
+        let others = curves(false).map(|curve| (curve.name.as_str(), Symbol::for_stroke(curve.stroke)));
         Legend::new(solid.chain(others), self.width() * FINE)
     }
 }

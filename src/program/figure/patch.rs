@@ -65,10 +65,10 @@ impl PatchHistory {
     fn add_moments(&mut self, run: &mut PatchRun, force: f64) {
         let (plan, [large, small]) = (self.maps.plan(), self.maps.details());
         if self.largest.as_ref().is_none_or(|largest| force > largest.force) {
-            self.largest = Some(Moment::of(run, plan, large, force));
+            self.largest = Some(Moment::new(run, plan, large, force));
         }
         if self.in_strip.contains(&self.rows.len()) {
-            self.strip.push(Moment::of(run, plan, small, force));
+            self.strip.push(Moment::new(run, plan, small, force));
         }
     }
 

@@ -77,7 +77,7 @@ fn share_below_table(patch: &Patch) -> Result<f64, LowEndError> {
 /// The height (m) at which the lowest element of a level face bears the largest pressure of the table.
 fn height_of_largest_pressure(patch: &Patch) -> Result<f64, MotionError> {
     let inside = patch.elements().filter(|element| element.area > 0.0);
-    let lowest = patch.of_elements(inside.min_by(|a, b| a.place[2].total_cmp(&b.place[2])));
+    let lowest = patch.with_elements(inside.min_by(|a, b| a.place[2].total_cmp(&b.place[2])));
     let (mut high, mut step) = (patch.clear_height(), 1e-7);
     let mut low = high - step;
     while !at_rest(&lowest, low)?.pressure_is_beyond() && step < 1.0 {

@@ -83,7 +83,7 @@ impl MotionFile {
         let rates = self.rows.get(1).map_or([0.0; 6], |next| first.rates_to(next));
         PatchStart {
             time: first.time,
-            pose: Pose::of(first.pose),
+            pose: Pose::from_coordinates(first.pose),
             rates,
             transport_speed: first.transport_speed,
             temperature: first.temperature,

@@ -19,7 +19,7 @@ pub(super) const PATIENCE: u64 = 3;
 /// Runs are timed again and again until that may have taken about this time, s, ...
 const ENOUGH: f64 = 2.0;
 /// ... and at least so often.
-const LEAST_TIMINGS: u32 = 3;
+const MIN_TIMINGS: u32 = 3;
 /// A run that estimates its error takes up to so many times what it takes alone.
 const ESTIMATED: f64 = 3.0;
 
@@ -61,12 +61,12 @@ impl ToleranceRow {
         }
     }
 
-    pub(super) fn of_reference(reference: &Reference) -> Self {
+    pub(super) fn from_reference(reference: &Reference) -> Self {
         let result = Ok(reference.figures());
-        Self::of_run(REFERENCE, reference.tolerance, result)
+        Self::from_run(REFERENCE, reference.tolerance, result)
     }
 
-    fn of_run(method: &str, tolerance: f64, result: Result<Figures, String>) -> Self {
+    fn from_run(method: &str, tolerance: f64, result: Result<Figures, String>) -> Self {
         Self { program: PROGRAM.into(), method: method.into(), tolerance, timed: Timed::RunAlone, result }
     }
 }
@@ -118,7 +118,7 @@ impl ToleranceLadder<'_> {
                 self.rung(&at_tolerance(&scene, tolerance), name, reference, progress).map_err(|why| why.to_string())
             };
             last = result.as_ref().ok().and_then(|figures| figures.iterations).unwrap_or(last);
-            ToleranceRow::of_run(name, tolerance, result)
+            ToleranceRow::from_run(name, tolerance, result)
         };
         self.tolerances.iter().map(&mut row).collect()
     }
@@ -193,7 +193,7 @@ impl<'a> TimedRun<'a> {
 
 /// How often a run is timed that takes up to `time` (s): short ones more often, but none more than `most` times.
 fn timings(time: f64, most: u32) -> u32 {
-    ((ENOUGH / time).ceil() as u32).max(LEAST_TIMINGS).min(most)
+    ((ENOUGH / time).ceil() as u32).max(MIN_TIMINGS).min(most)
 }
 
 /// A row of the table of errors and communication steps.

@@ -9,7 +9,7 @@ use super::run::Estimate;
 use super::trace::Errors;
 
 /// The reference's own error may be so many tolerances: errors of [`KEPT`] are far enough above it.
-const MOST_FLOOR: f64 = 0.3 * KEPT;
+const MAX_FLOOR: f64 = 0.3 * KEPT;
 
 /// A run with its error, the larger of those of F_x and F_z, each over its largest value.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,7 +48,7 @@ impl Standing {
 
 impl Judgement {
     fn new(error: f64, estimate: Estimate, floor: f64, tolerance: f64, sensitive: bool) -> Self {
-        let standing = match (sensitive, floor <= MOST_FLOOR * tolerance) {
+        let standing = match (sensitive, floor <= MAX_FLOOR * tolerance) {
             (true, _) => Standing::Sensitive,
             (false, true) => Standing::Counts,
             (false, false) => Standing::BelowReference,
@@ -57,7 +57,7 @@ impl Judgement {
     }
 
     /// Of this program's runs of `rows`; none of a run that failed, or without forces.
-    pub(super) fn of_tolerances<'a>(
+    pub(super) fn from_tolerances<'a>(
         reference: &Reference,
         rows: &'a [ToleranceRow],
     ) -> impl Iterator<Item = Self> + use<'a> {
@@ -72,7 +72,7 @@ impl Judgement {
 
     /// Of the perturbed runs that came to their ends, by a method of this name. Their tight runs are taken to be as
     /// accurate as their tolerances.
-    pub(super) fn of_perturbations(robustness: &Robustness, method: &str) -> impl Iterator<Item = Self> {
+    pub(super) fn from_perturbations(robustness: &Robustness, method: &str) -> impl Iterator<Item = Self> {
         let tolerance = robustness.tolerance;
         let perturbed = robustness.trials().filter(|(perturbation, _)| **perturbation != Perturbation::default());
         perturbed.filter_map(move |(&perturbation, trial)| {
@@ -122,12 +122,12 @@ pub(super) struct Ratios<'a> {
 
 impl<'a> Ratios<'a> {
     /// Errors over tolerances, asked to be at most ten; `None` where no run counts.
-    pub(super) fn of_errors(runs: &[&'a Judgement]) -> Option<Self> {
+    pub(super) fn from_errors(runs: &[&'a Judgement]) -> Option<Self> {
         Self::new(runs, Judgement::error_over_tolerance, |ratio| ratio)
     }
 
     /// Estimates over errors, asked to be a tenth to ten; `None` where no run counts.
-    pub(super) fn of_estimates(runs: &[&'a Judgement]) -> Option<Self> {
+    pub(super) fn from_estimates(runs: &[&'a Judgement]) -> Option<Self> {
         Self::new(runs, Judgement::estimate_over_error, |ratio| ratio.max(1.0 / ratio))
     }
 
@@ -173,12 +173,12 @@ mod tests {
             ["sensitive", "reference not accurate enough"]
         );
         let runs: Vec<&Judgement> = runs.iter().collect();
-        let errors = Ratios::of_errors(&runs).unwrap();
+        let errors = Ratios::from_errors(&runs).unwrap();
         assert_eq!((errors.median, errors.worst, errors.of), (10.0, 20.0, runs[1]));
         assert!((errors.within - 2.0 / 3.0).abs() < 1e-15, "{errors:?}");
         // Of the third, whose error the reference does not know, it is known to be no more than that reference's.
-        let estimates = Ratios::of_estimates(&runs).unwrap();
+        let estimates = Ratios::from_estimates(&runs).unwrap();
         assert!((estimates.median - 10.0).abs() < 1e-12 && (estimates.worst - 2000.0).abs() < 1e-9, "{estimates:?}");
-        assert_eq!(Ratios::of_errors(&runs[3..]), None);
+        assert_eq!(Ratios::from_errors(&runs[3..]), None);
     }
 }

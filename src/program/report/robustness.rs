@@ -24,13 +24,13 @@ const CHEAP: u64 = 1000;
 /// The tight runs of what is scaled by itself may take so many times what those of the pairs may.
 const PATIENCE: u64 = 3;
 /// The powers of ten of the pairs are so many that this share of the runs is likely to be done.
-const MOST_OF_THEM: f64 = 0.8;
+const MAX_OF_THEM: f64 = 0.8;
 /// What a run over budget would have taken is not known; likely so many times its budget.
 const BEYOND: f64 = 2.0;
 /// Communication steps of the whole run at the factor 1.
 pub(super) const COMMUNICATION_STEPS: f64 = 1000.0;
 /// A run that would take more of them is shortened: ...
-pub(super) const MOST_COMMUNICATION_STEPS: f64 = 20_000.0;
+pub(super) const MAX_COMMUNICATION_STEPS: f64 = 20_000.0;
 /// ... in steps of the factor 1 up to its middle, then so many short ones.
 pub(super) const SHORT_STEPS: u32 = 2000;
 
@@ -117,7 +117,7 @@ impl Robustness {
         let work = unperturbed.counts().unwrap_or(&reference.measured.counts).work();
         let budget = BUDGET * work.max(CHEAP / BUDGET);
         let mut all = Self {
-            quantities: ScaledQuantity::of(scene),
+            quantities: ScaledQuantity::all_of(scene),
             powers: powers as i32,
             stride: 0,
             tolerance: scene.solver.relative_tolerance,
@@ -237,7 +237,7 @@ impl Robustness {
                 *spent += self.expected_cost(pair);
                 Some(*spent)
             });
-            spent.filter(|&spent| spent <= time).count() as f64 >= MOST_OF_THEM * pairs.len() as f64
+            spent.filter(|&spent| spent <= time).count() as f64 >= MAX_OF_THEM * pairs.len() as f64
         };
         self.stride = strides.iter().copied().find(|&stride| fits(stride)).unwrap_or(self.powers);
         self.run_all(runner, self.cheap_first(self.stride), time, "robustness, in pairs");
@@ -363,7 +363,7 @@ fn accuracy(
 /// communication step. The end of a phase is one of them, unless the run ends before it.
 fn communication_points(scene: &Scene, factor: f64) -> Vec<Vec<f64>> {
     let base = scene.duration() / COMMUNICATION_STEPS;
-    if COMMUNICATION_STEPS / factor <= MOST_COMMUNICATION_STEPS {
+    if COMMUNICATION_STEPS / factor <= MAX_COMMUNICATION_STEPS {
         return scene.excitation.iter().map(|phase| even_points(base * factor, phase.duration)).collect();
     }
     let phases = scene.excitation.iter().enumerate();

@@ -104,9 +104,9 @@ impl Parts {
         ladder.time(&reference, &mut rows);
         let robustness = (command.stress > 0)
             .then(|| Robustness::run(&reference, command.stress, command.points, command.stress_time));
-        let mut judgements: Vec<Judgement> = Judgement::of_tolerances(&reference, &rows).collect();
+        let mut judgements: Vec<Judgement> = Judgement::from_tolerances(&reference, &rows).collect();
         let method = page::method(&scene);
-        judgements.extend(robustness.iter().flat_map(|all| Judgement::of_perturbations(all, &method)));
+        judgements.extend(robustness.iter().flat_map(|all| Judgement::from_perturbations(all, &method)));
         rows.extend(peers.rows.iter().cloned());
         Ok(Self { reference, rows, communication, robustness, judgements })
     }

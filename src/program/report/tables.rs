@@ -55,7 +55,7 @@ pub(super) fn write_errors(
     reference: &Reference,
     rows: &[ToleranceRow],
 ) -> Result<(), FileError> {
-    let own = ToleranceRow::of_reference(reference);
+    let own = ToleranceRow::from_reference(reference);
     let machine = Machine::here();
     let records = std::iter::once(&own).chain(rows).map(|row| {
         let figures = row.result.as_ref().copied().unwrap_or_default();

@@ -157,8 +157,8 @@ struct Analysis {
 impl Analysis {
     fn of(surface: &scene::Surface, command: &Surface) -> Self {
         let statistics = Statistics::of(surface);
-        let bands = Spectrum::of(surface).bands();
-        let law = PowerLaw::of(&bands, command.wavelengths.as_ref());
+        let bands = Spectrum::new(surface).bands();
+        let law = PowerLaw::fit(&bands, command.wavelengths.as_ref());
         let points = if statistics.is_even() { "" } else { "at even points of the spline, " };
         let window =
             if surface.is_periodic() { "over one period, as it is" } else { "without tilt, under a Hann window" };

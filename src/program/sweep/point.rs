@@ -139,7 +139,7 @@ impl PointResult {
             (Quantity::FrictionStandardError, sliding.friction_error),
             (Quantity::Hysteresis, sliding.friction.hysteresis),
             (Quantity::Adhesion, sliding.friction.adhesion),
-            (Quantity::MeanLoad, header.load.of_force(sliding.force_z)),
+            (Quantity::MeanLoad, header.load.at_force(sliding.force_z)),
             (Quantity::ContactRatio, sliding.contact_ratio),
             (Quantity::Separation, header.rest_separation + sliding.w),
             (Quantity::Displacement, sliding.w),

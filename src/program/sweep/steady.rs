@@ -5,7 +5,7 @@
 //!
 //! - the standard error of its mean is at most the tolerance. Successive blocks may be correlated, which would make a
 //!   mean seem better known than it is. So s/√n is multiplied by √((1+r)/(1-r)), r being the correlation of a block
-//!   with the next; and neighbours are joined in pairs, and pairs again, as long as [`FEWEST_JOINED`] are left: the
+//!   with the next; and neighbours are joined in pairs, and pairs again, as long as [`MIN_JOINED`] are left: the
 //!   largest standard error of all these is taken (Flyvbjerg and Petersen, J. Chem. Phys. 91, 1989);
 //! - it has no trend: the change along the straight line of least squares from the first block to the last is at most
 //!   the tolerance, or no more than twice what scatter alone would make of it.
@@ -16,7 +16,7 @@
 /// The fewest blocks of a window.
 pub(super) const FEWEST: usize = 3;
 /// The fewest blocks, joined ones, whose scatter or correlation is used.
-const FEWEST_JOINED: usize = 8;
+const MIN_JOINED: usize = 8;
 /// The largest correlation of a block with the next that is used.
 const CORRELATED: f64 = 0.95;
 
@@ -65,7 +65,7 @@ fn standard_error(blocks: &[f64]) -> f64 {
     let mut joined = blocks.to_vec();
     let r = correlation(blocks);
     let mut error = error_of_mean(&joined) * ((1.0 + r) / (1.0 - r)).sqrt();
-    while joined.len() / 2 >= FEWEST_JOINED {
+    while joined.len() / 2 >= MIN_JOINED {
         joined = joined.chunks_exact(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
         error = error.max(error_of_mean(&joined));
     }
@@ -86,7 +86,7 @@ fn correlation(blocks: &[f64]) -> f64 {
     let n = blocks.len() as f64;
     let mean = mean(blocks);
     let squares: f64 = blocks.iter().map(|block| (block - mean).powi(2)).sum();
-    if blocks.len() < FEWEST_JOINED || squares <= 0.0 {
+    if blocks.len() < MIN_JOINED || squares <= 0.0 {
         return 0.0;
     }
     let products: f64 = blocks.windows(2).map(|pair| (pair[0] - mean) * (pair[1] - mean)).sum();

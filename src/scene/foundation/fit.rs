@@ -58,7 +58,7 @@ mod tests {
             "name = 'w'\nlayer = {{ masses = {masses}, spacing = {spacing:?}, mass = 1.0 }}\nsurface = {{ {surface} }}"
         );
         let scene = Scene::parse(&text, "waves.toml".as_ref()).unwrap_or_else(|error| unreachable!("{error}"));
-        Waves::of(&scene.layer, &scene.surface)
+        Waves::new(&scene.layer, &scene.surface)
     }
 
     const ROUGH: &str = "kind = 'self_affine', length = 1e-2, points = 2000, hurst = 0.8, rms = 1e-5, \

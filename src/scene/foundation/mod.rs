@@ -61,7 +61,7 @@ impl Foundation {
         if layer.foundation == Some(FoundationKind::Springs) {
             return None;
         }
-        Some(Self::fitted(Waves::of(layer, surface), layer.body(material)?, material.poisson_ratio))
+        Some(Self::fitted(Waves::new(layer, surface), layer.body(material)?, material.poisson_ratio))
     }
 
     /// The same waves, fitted anew.

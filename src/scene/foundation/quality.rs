@@ -51,7 +51,7 @@ impl Scene {
         match &self.foundation {
             Some(fit) => Quality::new(&fit.waves, fit.stiffness(kind), body, kind),
             None => {
-                let waves = Waves::of(layer, &self.surface);
+                let waves = Waves::new(layer, &self.surface);
                 Quality::new(&waves, layer.springs(material, kind)?, body, kind)
             }
         }

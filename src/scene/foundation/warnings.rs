@@ -119,6 +119,6 @@ impl Surface {
     /// The wavelength above which the spectrum is constant, m: as given, or of the law that the spectrum follows.
     fn roll_off_wavelength(&self) -> Option<f64> {
         let given = self.self_affine().map(|law| law.roll_off);
-        given.or_else(|| PowerLaw::of(&Spectrum::of(self).bands(), None)?.roll_off_wavelength)
+        given.or_else(|| PowerLaw::fit(&Spectrum::new(self).bands(), None)?.roll_off_wavelength)
     }
 }

@@ -46,11 +46,11 @@ const STEPS: usize = 32;
 impl Waves {
     /// The waves of `surface` and of the roughness of `layer`; where the layer resolves none, even ones of the same
     /// weight.
-    pub(crate) fn of(layer: &Layer, surface: &Surface) -> Self {
+    pub(crate) fn new(layer: &Layer, surface: &Surface) -> Self {
         let (spacing, length) = (layer.spacing, layer.spacing * layer.masses as f64);
-        let mut waves = waves(&Spectrum::of(surface));
+        let mut waves = waves(&Spectrum::new(surface));
         if !layer.roughness.is_empty() {
-            waves.extend(self::waves(&Spectrum::of_roughness(&layer.roughness, length)));
+            waves.extend(self::waves(&Spectrum::from_roughness(&layer.roughness, length)));
         }
         let largest = waves.iter().map(|wave| wave.weight).fold(0.0, f64::max);
         waves.retain(|wave| wave.weight > ROUNDING * largest);

@@ -2,7 +2,7 @@
 
 use super::{Allowed, POSITIVE, Word, words};
 use super::{INPUT, Key, PATH, key, number, table, whole, word};
-use crate::scene::patch_file::{MOST_ELEMENTS, PatchGroup, TableExtrapolation};
+use crate::scene::patch_file::{MAX_ELEMENTS, PatchGroup, TableExtrapolation};
 use crate::scene::{Unit, values::ANY};
 
 pub(in crate::scene) const PATCH_ROOT: &[Key] = &[
@@ -51,8 +51,8 @@ impl ShapeKind {
 const SHAPE: Key = word::<ShapeKind>("shape", "Shape of the face");
 const LENGTH: Key = number("length", POSITIVE, Unit::Meter, "Length along x");
 const WIDTH: Key = number("width", POSITIVE, Unit::Meter, "Width along y");
-const NX: Key = whole("nx", 1, MOST_ELEMENTS, "Elements along x");
-const NY: Key = whole("ny", 1, MOST_ELEMENTS, "Elements along y");
+const NX: Key = whole("nx", 1, MAX_ELEMENTS, "Elements along x");
+const NY: Key = whole("ny", 1, MAX_ELEMENTS, "Elements along y");
 const TRANSPORT: Key = key("transport", Allowed::Flag, "Whether a tread runs through");
 const OFFSET: Key = key("offset", Allowed::Numbers(ANY), "The face's origin in the body's axes, m");
 

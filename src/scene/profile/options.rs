@@ -86,7 +86,7 @@ macro_rules! option_words {
             type Err = UnknownWord;
 
             fn from_str(word: &str) -> Result<Self, UnknownWord> {
-                Self::of(word).ok_or_else(|| UnknownWord { expected: words::<Self>() })
+                Self::parse(word).ok_or_else(|| UnknownWord { expected: words::<Self>() })
             }
         }
     };

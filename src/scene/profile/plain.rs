@@ -42,13 +42,13 @@ fn decimal(text: &str) -> Option<(f64, usize)> {
 }
 
 /// The longest exponent, its sign included.
-const MOST_OF_EXPONENT: usize = 4;
+const MAX_OF_EXPONENT: usize = 4;
 
 /// The exponent in `bytes` from `from` on, and where it ends.
 fn exponent(bytes: &[u8], from: usize) -> Option<(i32, usize)> {
     let signs = usize::from(matches!(bytes.get(from), Some(b'+' | b'-')));
     let (digits, end) = Digits::read(bytes, from + signs);
-    let is_exponent = digits.count > 0 && !digits.has_point && end - from <= MOST_OF_EXPONENT;
+    let is_exponent = digits.count > 0 && !digits.has_point && end - from <= MAX_OF_EXPONENT;
     let sign = if bytes.get(from) == Some(&b'-') { -1 } else { 1 };
     is_exponent.then_some((sign * i32::try_from(digits.whole).ok()?, end))
 }
@@ -56,7 +56,7 @@ fn exponent(bytes: &[u8], from: usize) -> Option<(i32, usize)> {
 /// A run of digits with or without a point.
 #[derive(Clone, Copy, Debug, Default)]
 struct Digits {
-    /// The digits without the point as a number, where there are at most [`MOST_DIGITS`](Self::MOST_DIGITS).
+    /// The digits without the point as a number, where there are at most [`MAX_DIGITS`](Self::MAX_DIGITS).
     whole: u64,
     /// Number of digits.
     count: usize,
@@ -67,7 +67,7 @@ struct Digits {
 
 impl Digits {
     /// As many digits always fit.
-    const MOST_DIGITS: usize = 19;
+    const MAX_DIGITS: usize = 19;
 
     /// The digits in `bytes` from `from` on, and where they end.
     fn read(bytes: &[u8], from: usize) -> (Self, usize) {
@@ -98,7 +98,7 @@ impl Digits {
         const MOST: u64 = 1 << f64::MANTISSA_DIGITS;
         let exponent = exponent - self.behind;
         let power = POWERS.get(exponent.unsigned_abs() as usize)?;
-        let is_exact = (1..=Self::MOST_DIGITS).contains(&self.count) && self.whole <= MOST;
+        let is_exact = (1..=Self::MAX_DIGITS).contains(&self.count) && self.whole <= MOST;
         let whole = self.whole as f64;
         is_exact.then_some(if exponent < 0 { whole / power } else { whole * power })
     }

@@ -9,7 +9,7 @@ use super::{read_input, read_name, surface};
 use crate::scene::SceneError;
 use crate::scene::error::ContentError;
 use crate::scene::keys::{AREA, COORDINATE, Form, Key, PATCH_ROOT, ShapeKind};
-use crate::scene::patch_file::{FaceShape, Grid, MOST_ELEMENTS, PatchFile, PatchGroup, TableExtrapolation};
+use crate::scene::patch_file::{FaceShape, Grid, MAX_ELEMENTS, PatchFile, PatchGroup, TableExtrapolation};
 use crate::scene::text_table::{self, Row, decode};
 
 /// The columns of a file of points.
@@ -88,8 +88,8 @@ fn read_grid(table: &mut TableReader<'_>) -> Result<Grid> {
     let (length, width) = (table.number("length")?, table.number("width")?);
     let (nx, ny) = (table.whole("nx")?, table.required("ny")?);
     let rows = ny.whole()?;
-    if nx * rows > MOST_ELEMENTS {
-        return Err(ny.refuse(format_args!("nx ny up to {MOST_ELEMENTS}; nx = {nx}")));
+    if nx * rows > MAX_ELEMENTS {
+        return Err(ny.refuse(format_args!("nx ny up to {MAX_ELEMENTS}; nx = {nx}")));
     }
     let count = |number: i64| usize::try_from(number).unwrap_or(1);
     Ok(Grid { length, width, nx: count(nx), ny: count(rows) })
@@ -130,8 +130,8 @@ fn parse_points(bytes: &[u8]) -> std::result::Result<Vec<[f64; 4]>, ContentError
         return Err(ContentError::value(line, "columns", &given, "x,y,z,area"));
     }
     let points: Vec<[f64; 4]> = rows.map(|row| point(&row)).collect::<std::result::Result<_, _>>()?;
-    if points.is_empty() || points.len() as i64 > MOST_ELEMENTS {
-        let expected = format!("1 to {MOST_ELEMENTS}, one an element");
+    if points.is_empty() || points.len() as i64 > MAX_ELEMENTS {
+        let expected = format!("1 to {MAX_ELEMENTS}, one an element");
         return Err(ContentError::value(line, "rows", &points.len().to_string(), &expected));
     }
     Ok(points)

@@ -133,7 +133,7 @@ impl<'a> Entry<'a> {
     }
 
     pub(super) fn choice<T: Word>(&self) -> Result<T> {
-        self.value.as_str().and_then(T::of).ok_or_else(|| self.refuse(words::<T>()))
+        self.value.as_str().and_then(T::parse).ok_or_else(|| self.refuse(words::<T>()))
     }
 
     pub(super) fn numbers(&self) -> Result<Vec<f64>> {

@@ -121,7 +121,8 @@ fn its_results_are_those_of_the_library() {
     let folder = root().join("tests/reference/patch");
     let patch = Patch::parse(WHEEL, &folder.join("wheel-of-a-test.toml")).unwrap();
     let temperature = patch.temperature();
-    let start = PatchStart { time: 0.0, pose: Pose::of(POSE), rates: RATES, transport_speed: SPEED, temperature };
+    let start =
+        PatchStart { time: 0.0, pose: Pose::from_coordinates(POSE), rates: RATES, transport_speed: SPEED, temperature };
     let mut run = PatchRun::new(&patch, &start).unwrap();
     let motion = PatchMotion { duration: H, rates: RATES, transport_speed: SPEED, temperature };
     (0..20).for_each(|_| run.advance(&motion).unwrap());

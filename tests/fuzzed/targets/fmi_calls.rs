@@ -15,8 +15,8 @@ use super::number::Number;
 use functions::{call_function, on_nothing, step};
 
 /// Maximum number of calls in a case and of elements in an array of arguments.
-const MOST_CALLS: usize = 24;
-const MOST_ELEMENTS: usize = 6;
+const MAX_CALLS: usize = 24;
+const MAX_ELEMENTS: usize = 6;
 
 /// Number of instances at a time.
 const SLOTS: usize = 3;
@@ -113,7 +113,7 @@ fn run_on(sites: &'static [Site], bytes: &[u8]) {
     if let (Some(inputs), Some(fmu)) = (case.started, &master.slots[0]) {
         fmu.start(inputs.map(Number::value));
     }
-    for (slot, call) in case.calls.iter().take(MOST_CALLS) {
+    for (slot, call) in case.calls.iter().take(MAX_CALLS) {
         master.call(usize::from(*slot) % SLOTS, call);
     }
 }
@@ -153,7 +153,7 @@ impl Reference {
 
 impl<T> Array<T> {
     fn taken(&self) -> impl Iterator<Item = &T> {
-        self.elements.iter().take(MOST_ELEMENTS)
+        self.elements.iter().take(MAX_ELEMENTS)
     }
 
     /// The pointer to pass for `values`.

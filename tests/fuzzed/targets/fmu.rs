@@ -16,7 +16,7 @@ pub const OK: fmi2Status = fmi2Status_fmi2OK;
 pub const DISCARD: fmi2Status = fmi2Status_fmi2Discard;
 
 /// The largest `solver.max_steps`.
-pub const MOST_STEPS: i32 = 40;
+pub const MAX_STEPS: i32 = 40;
 
 /// A folder with a scene or a table, and the variables of its FMU.
 pub struct Site {
@@ -59,7 +59,7 @@ pub fn patch_sites() -> &'static [Site] {
 }
 
 /// Number of cases after which an instance is freed.
-const MOST_USES: usize = 200;
+const MAX_USES: usize = 200;
 
 const SCENES: [&str; 7] = [
     "name = 'bare'\nlayer = { masses = 1, spacing = 1e-4, mass = 1e-7, vertical = { stiffness = 2e3 } }\n\
@@ -208,7 +208,7 @@ impl Site {
     pub fn give_back(&self, fmu: Fmu, uses: usize) {
         // SAFETY: an instance that lives, and is freed once.
         unsafe {
-            if uses < MOST_USES
+            if uses < MAX_USES
                 && fmi::fmi2Reset(fmu.c) == OK
                 && fmi::fmi2SetDebugLogging(fmu.c, 0, 0, ptr::null()) == OK
             {

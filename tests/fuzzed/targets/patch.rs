@@ -10,9 +10,9 @@ use asperity::scene::{FaceShape, PatchFile};
 use super::patches::{self, Judged, POINTS};
 
 /// Elements that there is time for.
-const MOST_ELEMENTS: usize = 70;
+const MAX_ELEMENTS: usize = 70;
 /// Length of a text, bytes; longer ones test nothing new.
-const MOST_BYTES: usize = 4096;
+const MAX_BYTES: usize = 4096;
 /// The line between the patch file and the points.
 const BREAK: &str = "\n%\n";
 
@@ -23,7 +23,7 @@ fn folder() -> &'static PathBuf {
 
 /// Reads a patch and, after a line with a percent sign, its points, and moves it about where it touches.
 pub fn run(bytes: &[u8]) {
-    let Some(text) = std::str::from_utf8(bytes).ok().filter(|text| text.len() <= MOST_BYTES) else { return };
+    let Some(text) = std::str::from_utf8(bytes).ok().filter(|text| text.len() <= MAX_BYTES) else { return };
     let (text, points) = text.split_once(BREAK).unwrap_or((text, POINTS));
     let path = folder().join("patch.toml");
     fs::write(folder().join("points.csv"), points).unwrap();
@@ -38,7 +38,7 @@ pub fn run(bytes: &[u8]) {
         }
         FaceShape::Points { points, .. } => (points.len(), 1.0),
     };
-    if count > MOST_ELEMENTS || file.refine > 4 {
+    if count > MAX_ELEMENTS || file.refine > 4 {
         return;
     }
     match Patch::parse(text, &path) {

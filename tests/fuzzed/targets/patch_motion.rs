@@ -10,7 +10,7 @@ use super::number::Number;
 use super::patches::{Judged, PATCHES, folder, text};
 
 /// Steps of a case.
-const MOST_STEPS: usize = 12;
+const MAX_STEPS: usize = 12;
 /// Cells of the patches with a tread, m; their durations and speeds go over simple parts of one. And their `refine`.
 const CELLS: [f64; 4] = [1.0, 1e-4, 1e-4, 1e-3];
 const REFINES: [f64; 4] = [1.0, 2.0, 1.0, 1.0];
@@ -82,14 +82,16 @@ pub fn run(bytes: &[u8]) {
     let rates = case.rates.map_or([0.0; 6], |rates| rates.map(|rate| rate.around(0.0, 1e-3)));
     let start = PatchStart {
         time: 0.0,
-        pose: Pose::of(std::array::from_fn(|i| case.start[i].around(0.0, if i < 3 { 1e-7 } else { 1e-5 }))),
+        pose: Pose::from_coordinates(std::array::from_fn(|i| {
+            case.start[i].around(0.0, if i < 3 { 1e-7 } else { 1e-5 })
+        })),
         rates,
         transport_speed: speed(case.speed),
         temperature: kelvin(case.kelvin),
     };
     let Ok(run) = PatchRun::new(patch, &start) else { return };
     let mut judged = Judged::new(patch, run);
-    for step in case.steps.iter().take(MOST_STEPS) {
+    for step in case.steps.iter().take(MAX_STEPS) {
         let turn = step.turn.map_or([0.0; 3], |turn| turn.map(|rate| rate.around(0.0, 0.02)));
         let [x, y, z] = step.along;
         let [x, y, z] = [x.around(0.0, 1e-3), y.around(0.0, 1e-2), z.around(0.0, 1e-4)];

@@ -8,7 +8,7 @@ use asperity::patch::{MotionError, Patch, PatchMotion, PatchOutput, PatchRun, Pa
 use super::fmu::table;
 
 /// Parts of a step that there is time for; with more than [`DISCARDED`] a step is refused at once.
-const MOST_PARTS: f64 = 40.0;
+const MAX_PARTS: f64 = 40.0;
 const DISCARDED: f64 = 1e5;
 
 const ALL: &str =
@@ -76,7 +76,7 @@ impl Judged {
         let turned: f64 = motion.rates[3..].iter().map(|rate| (rate * motion.duration).abs()).sum();
         let speed = self.run.transport_speed().abs().max(motion.transport_speed.abs());
         let parts = refine * (turned / 0.1 + speed * motion.duration.abs() / cell);
-        parts.is_nan() || !(MOST_PARTS..8.0 * DISCARDED).contains(&parts)
+        parts.is_nan() || !(MAX_PARTS..8.0 * DISCARDED).contains(&parts)
     }
 
     /// Follows a motion: what was done has numbers and only loses energy, what was refused changed nothing, and a restored

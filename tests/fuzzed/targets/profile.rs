@@ -13,12 +13,12 @@ use zip::write::SimpleFileOptions;
 use super::scene::run_scene;
 
 /// Maximum length of a file, bytes; longer ones test nothing new.
-const MOST_BYTES: usize = 4096;
+const MAX_BYTES: usize = 4096;
 
 /// Writes all bytes but the first two into a file and reads a scene that names it, as a profile with the keys that the
 /// bits of those two select, or as a Prony series where the highest bit is set.
 pub fn run(bytes: &[u8]) {
-    let Some(([first, second], text)) = bytes.split_first_chunk().filter(|(_, text)| text.len() <= MOST_BYTES) else {
+    let Some(([first, second], text)) = bytes.split_first_chunk().filter(|(_, text)| text.len() <= MAX_BYTES) else {
         return;
     };
     let bit = |byte: u8, i: u32| byte >> i & 1 == 1;

@@ -8,14 +8,14 @@ use asperity::simulation::{Motion, Simulation, Start};
 
 /// Maximum size of a scene here: a fuzzer finds the large numbers that are allowed, but use of memory and time is not an
 /// error.
-const MOST_MASSES: usize = 4;
-const MOST_STEPS: u64 = 30;
-const MOST_DIGITS: usize = 4;
+const MAX_MASSES: usize = 4;
+const MAX_STEPS: u64 = 30;
+const MAX_DIGITS: usize = 4;
 
 /// Reads a scene and runs it for a few steps.
 pub fn run(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
-    if longest_integer(bytes) > MOST_DIGITS {
+    if longest_integer(bytes) > MAX_DIGITS {
         return;
     }
     // No file lies beside it.
@@ -53,10 +53,10 @@ fn longest_integer(bytes: &[u8]) -> usize {
 /// Checks that a motion that succeeds has finite outputs and that one that fails changes nothing.
 pub fn run_scene(mut scene: Scene) {
     assert!(!scene.model_identifier().is_empty());
-    if scene.layer.masses > MOST_MASSES {
+    if scene.layer.masses > MAX_MASSES {
         return;
     }
-    scene.solver.max_steps = scene.solver.max_steps.min(MOST_STEPS);
+    scene.solver.max_steps = scene.solver.max_steps.min(MAX_STEPS);
     scene.outputs = OutputGroup::ALL.to_vec();
     let variables = variables(&scene);
     let start = Start { load: scene.first_load(), pull: scene.first_pull(), ..Start::default() };

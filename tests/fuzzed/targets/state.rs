@@ -8,7 +8,7 @@ use arbitrary::{Arbitrary, Unstructured};
 use asperity::fmi;
 use uuid::Uuid;
 
-use super::fmu::{CHECKSUM, Fmu, MOST_STEPS, OK, Site, checked, patch_sites, show, sites};
+use super::fmu::{CHECKSUM, Fmu, MAX_STEPS, OK, Site, checked, patch_sites, show, sites};
 use super::number::Number;
 
 /// A byte string and the steps that follow.
@@ -114,7 +114,7 @@ fn go_on(fmu: &Fmu, steps: &[(Number, Number, Number)]) {
     fmu.outputs();
     fmu.check_derivatives([1.0, -1.0]);
     // A made-up state may allow for more work than there is time here.
-    if fmu.max_steps() > MOST_STEPS {
+    if fmu.max_steps() > MAX_STEPS {
         return;
     }
     for (u, w, h) in steps.iter().take(2) {

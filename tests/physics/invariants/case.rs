@@ -17,7 +17,7 @@ pub(crate) struct Case {
 
 impl Case {
     /// The case whose scene is `text`; the motions are its excitation.
-    pub(crate) fn of_text(text: &str, start: Start) -> Self {
+    pub(crate) fn from_text(text: &str, start: Start) -> Self {
         let scene = Scene::parse(text, FilePath::new("case.toml")).unwrap_or_else(|error| panic!("{error}\n{text}"));
         let motion = |phase: &asperity::scene::Phase| Motion {
             duration: phase.duration,

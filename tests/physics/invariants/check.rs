@@ -10,7 +10,7 @@ use proptest::test_runner::{Config, RngSeed, TestCaseError, TestCaseResult, Test
 const SEED: u64 = 1;
 
 /// The most that proptest tries to make a failing scene simpler: runs of scenes take milliseconds each.
-const MOST_SHRINKING: u32 = 2000;
+const MAX_SHRINKING: u32 = 2000;
 
 /// Puts `property` to the test with `cases` values of `strategy`, or as many as PROPTEST_CASES says. Nothing is kept in
 /// files: a scene that failed belongs into an ordinary test.
@@ -22,7 +22,7 @@ pub(crate) fn check<S: Strategy>(name: &str, cases: u32, strategy: S, property: 
         cases,
         rng_seed: RngSeed::Fixed(seed),
         failure_persistence: None,
-        max_shrink_iters: MOST_SHRINKING,
+        max_shrink_iters: MAX_SHRINKING,
         ..Config::default()
     });
     let (ran, failed) = (Cell::new(0_u32), Cell::new(false));

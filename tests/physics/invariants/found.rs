@@ -35,7 +35,7 @@ fn a_mass_flung_into_a_fine_profile() {
         "#;
     for i in 0..20 {
         let start = Start { u: 6e-5 + 1e-6 * f64::from(i), w: 2e-5, u_rate: -4.5, w_rate: -2.0, ..Start::default() };
-        let case = Case::of_text(text, start);
+        let case = Case::from_text(text, start);
         let record = case.run(6).unwrap();
         let unit = Units::of(&case).energy(largest_energy(&case, &record));
         let missed = record.largest(Output::EnergyResidual) / unit;
@@ -76,7 +76,7 @@ fn a_restored_run_is_saved_as_the_one_that_went_on() {
         w_rate = 8.9e-4
         "#;
     let start = Start { u: 1.37e-2, w: -2.9e-5, u_rate: -1.7e-3, ..Start::default() };
-    let case = Case::of_text(text, start);
+    let case = Case::from_text(text, start);
     let mut run = case.started();
     for motion in &case.motions {
         let mut restored = Simulation::restore(&case.scene, &run.state()).unwrap();

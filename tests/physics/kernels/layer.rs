@@ -3,7 +3,7 @@
 use std::path::Path as FilePath;
 
 use asperity::integrator::{
-    DenseOutput, DenseWorkspace, Integrator, Pair, StepAttempt, StepSpan, StepStart, Steps, Tolerance, Tracked,
+    DenseOutput, DenseWorkspace, Integrator, LayerState, Pair, StepAttempt, StepSpan, Steps, Tolerance, Tracked,
 };
 use asperity::model::{Carrier, Forces, LinkKind, Model, State};
 use asperity::outputs::Snapshot;
@@ -111,7 +111,7 @@ pub fn points(x: &[f64], z: &[f64], periodic: bool) -> String {
 pub struct Stepper {
     pub model: Model,
     pub carrier: Carrier,
-    pub start: StepStart,
+    pub start: LayerState,
     pub integrator: Integrator,
     pub tolerance: Tolerance,
     pub s: f64,
@@ -134,7 +134,7 @@ impl Stepper {
         let mut forces = Forces::new(&model);
         let integrator = Integrator::new(&model, Tracked::default(), Steps::Both(Pair::Fifth));
         forces.evaluate(&model, &state, &carrier.at(0.0));
-        let mut start = StepStart { state, ..StepStart::new(&model) };
+        let mut start = LayerState { state, ..LayerState::new(&model) };
         integrator.evaluate_start(&model, &mut start, (&carrier, 0.0), &forces, 1e-9);
         Self { model, carrier, start, integrator, tolerance, s: 0.0, two_stages: false }
     }

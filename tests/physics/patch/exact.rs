@@ -45,8 +45,13 @@ fn points(name: &str, table: &str, points: &[[f64; 4]]) -> Patch {
 }
 
 fn run_at(patch: &Patch, pose: [f64; 6], rates: [f64; 6], transport_speed: f64) -> PatchRun {
-    let start =
-        PatchStart { time: 0.0, pose: Pose::of(pose), rates, transport_speed, temperature: patch.temperature() };
+    let start = PatchStart {
+        time: 0.0,
+        pose: Pose::from_coordinates(pose),
+        rates,
+        transport_speed,
+        temperature: patch.temperature(),
+    };
     PatchRun::new(patch, &start).unwrap()
 }
 

@@ -40,7 +40,7 @@ impl Motion {
     fn follow(&self, patch: &Patch, variables: &[PatchVariable]) -> Vec<Vec<f64>> {
         let start = PatchStart {
             time: self.times[0],
-            pose: Pose::of(self.poses[0]),
+            pose: Pose::from_coordinates(self.poses[0]),
             rates: self.rates(0),
             transport_speed: self.speeds[0],
             temperature: if patch.has_temperatures() { self.temperature(patch, 0) } else { 0.0 },

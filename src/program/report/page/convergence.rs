@@ -155,7 +155,7 @@ const TOLERANCE_FIGURES: [&str; 8] = [
 
 fn runs(reference: &Reference, rows: &[ToleranceRow]) -> io::Result<String> {
     let figures = [&error_names("error of F_x", reference)[..], &TOLERANCE_FIGURES].concat();
-    let own = ToleranceRow::of_reference(reference);
+    let own = ToleranceRow::from_reference(reference);
     let rows: Vec<&ToleranceRow> = rows.iter().chain([&own]).collect();
     let cells = rows.iter().enumerate().map(|(i, row)| {
         let mut cells = vec![row.name().into(), number(format!("{:e}", row.tolerance))];

@@ -98,8 +98,8 @@ fn group_cells(group: &Group<'_>) -> Vec<Cell> {
     let left_out = group.runs.len() - counted;
     let mut cells = vec![group.scene.into(), group.name.as_str().into()];
     cells.extend([counted, left_out].map(|count| number(count.to_string())));
-    cells.extend(ratio_cells(Ratios::of_errors(&group.runs)));
-    cells.extend(ratio_cells(Ratios::of_estimates(&group.runs)));
+    cells.extend(ratio_cells(Ratios::from_errors(&group.runs)));
+    cells.extend(ratio_cells(Ratios::from_estimates(&group.runs)));
     cells
 }
 

@@ -9,7 +9,7 @@ use quick_xml::escape::escape;
 use super::{NOTHING, head, method, short};
 use crate::program::html::{Cell, fill, table};
 use crate::program::report::robustness::{
-    BUDGET, COMMUNICATION_STEPS, MOST_COMMUNICATION_STEPS, Robustness, SHORT_STEPS, Trial,
+    BUDGET, COMMUNICATION_STEPS, MAX_COMMUNICATION_STEPS, Robustness, SHORT_STEPS, Trial,
 };
 use crate::program::report::run::Counts;
 
@@ -159,7 +159,7 @@ pub(super) fn factors(perturbation: Perturbation) -> String {
 }
 
 fn shortened(robustness: &Robustness) -> String {
-    let many = |power: i32| COMMUNICATION_STEPS * 10_f64.powi(-power) > MOST_COMMUNICATION_STEPS;
+    let many = |power: i32| COMMUNICATION_STEPS * 10_f64.powi(-power) > MAX_COMMUNICATION_STEPS;
     robustness.powers(1).filter(|&power| many(power)).last().map_or_else(String::new, |power| {
         format!(
             " From {} down the run is shortened: steps of the factor 1 to the middle of the longest phase, then {SHORT_STEPS} short ones.",

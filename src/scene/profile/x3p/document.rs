@@ -196,9 +196,9 @@ impl Walk {
 }
 
 /// The most points of a measurement: more than 16 000 by 16 000.
-const MOST_POINTS: usize = 1 << 28;
+const MAX_POINTS: usize = 1 << 28;
 /// The most points of a line.
-const MOST_COLUMNS: usize = 1 << 24;
+const MAX_COLUMNS: usize = 1 << 24;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct MatrixSize {
@@ -209,7 +209,7 @@ pub(super) struct MatrixSize {
 }
 
 impl MatrixSize {
-    pub(super) fn of(document: &Document) -> Result<Self, ContentError> {
+    pub(super) fn new(document: &Document) -> Result<Self, ContentError> {
         let feature = document.text("Record1.FeatureType").unwrap_or("SUR");
         if !["PRF", "SUR"].contains(&feature) {
             return Err(ContentError::value(
@@ -236,11 +236,11 @@ impl MatrixSize {
             }
         };
         let count = size.columns.checked_mul(size.rows);
-        if size.columns <= MOST_COLUMNS && count.is_some_and(|count| (1..=MOST_POINTS).contains(&count)) {
+        if size.columns <= MAX_COLUMNS && count.is_some_and(|count| (1..=MAX_POINTS).contains(&count)) {
             return Ok(size);
         }
         let given = format!("{} by {} points", size.columns, size.rows);
-        let expected = format!("1 to {MOST_POINTS} points, at most {MOST_COLUMNS} of them in a line");
+        let expected = format!("1 to {MAX_POINTS} points, at most {MAX_COLUMNS} of them in a line");
         Err(ContentError::value(None, "MatrixDimension", &given, &expected))
     }
 

@@ -26,7 +26,7 @@ const CHUNK: usize = 1 << 16;
 pub(super) fn read(bytes: &[u8], options: &ProfileOptions) -> Result<MeasuredPoints, ContentError> {
     let mut archive = Archive::open(bytes)?;
     let document = Document::parse(&archive.main()?)?;
-    let size = MatrixSize::of(&document)?;
+    let size = MatrixSize::new(&document)?;
     let line = size.choose(options.line)?;
     let [x, z] = if document.is_inline() {
         inline(&document, &size, line)?

@@ -5,9 +5,9 @@ use std::ptr;
 use asperity::fmi::bindings::*;
 use asperity::fmi::*;
 
-use super::super::fmu::{Fmu, MOST_STEPS, OK, checked};
+use super::super::fmu::{Fmu, MAX_STEPS, OK, checked};
 use super::super::number::Number;
-use super::{Array, Call, MOST_ELEMENTS, Reference, Text, or_null, pointer};
+use super::{Array, Call, MAX_ELEMENTS, Reference, Text, or_null, pointer};
 
 pub(super) fn step(fmu: Fmu, call: &Call) {
     let own = || fmu.time().unwrap_or_default();
@@ -83,19 +83,19 @@ fn get(fmu: Fmu, call: &Call) {
     let status = unsafe {
         match call {
             Call::GetReal(array, null) => {
-                let (vr, mut values) = (references(array), [0.0; MOST_ELEMENTS]);
+                let (vr, mut values) = (references(array), [0.0; MAX_ELEMENTS]);
                 fmi2GetReal(c, array.pointer(&vr), vr.len(), or_null(*null, &mut values))
             }
             Call::GetInteger(array, null) => {
-                let (vr, mut values) = (references(array), [0; MOST_ELEMENTS]);
+                let (vr, mut values) = (references(array), [0; MAX_ELEMENTS]);
                 fmi2GetInteger(c, array.pointer(&vr), vr.len(), or_null(*null, &mut values))
             }
             Call::GetBoolean(array, null) => {
-                let (vr, mut values) = (references(array), [0; MOST_ELEMENTS]);
+                let (vr, mut values) = (references(array), [0; MAX_ELEMENTS]);
                 fmi2GetBoolean(c, array.pointer(&vr), vr.len(), or_null(*null, &mut values))
             }
             Call::GetString(array, null) => {
-                let (vr, mut values) = (references(array), [ptr::null(); MOST_ELEMENTS]);
+                let (vr, mut values) = (references(array), [ptr::null(); MAX_ELEMENTS]);
                 fmi2GetString(c, array.pointer(&vr), vr.len(), or_null(*null, &mut values))
             }
             _ => return set(fmu, call),
@@ -120,7 +120,7 @@ fn set(fmu: Fmu, call: &Call) {
             }
             Call::SetInteger(array, null) => {
                 let capped = |reference: u32, value: i32| {
-                    if Some(reference) == fmu.site.max_steps { value.min(MOST_STEPS) } else { value }
+                    if Some(reference) == fmu.site.max_steps { value.min(MAX_STEPS) } else { value }
                 };
                 let (vr, mut values): (Vec<_>, Vec<_>) = array
                     .taken()
@@ -160,7 +160,7 @@ fn derive(fmu: Fmu, call: &Call) {
                 let (known, direction): (Vec<_>, Vec<_>) =
                     knowns.taken().map(|(reference, value)| (reference.number(), value.value())).unzip();
                 let (known, count, steps) = (knowns.pointer(&known), known.len(), direction.as_ptr());
-                let mut values = [0.0; MOST_ELEMENTS];
+                let mut values = [0.0; MAX_ELEMENTS];
                 let place = or_null(*null, &mut values);
                 let (unknowns, unknown_count) = (unknowns.pointer(&unknown), unknown.len());
                 let status = fmi2GetDirectionalDerivative(c, unknowns, unknown_count, known, count, steps, place);
@@ -181,7 +181,7 @@ fn derive(fmu: Fmu, call: &Call) {
             Call::GetOutputDerivatives(array, null) => {
                 let vr: Vec<_> = array.taken().map(|one| one.0.number()).collect();
                 let orders: Vec<_> = array.taken().map(|one| one.1).collect();
-                let mut values = [0.0; MOST_ELEMENTS];
+                let mut values = [0.0; MAX_ELEMENTS];
                 let place = or_null(*null, &mut values);
                 fmi2GetRealOutputDerivatives(c, array.pointer(&vr), vr.len(), orders.as_ptr(), place)
             }

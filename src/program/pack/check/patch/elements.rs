@@ -61,7 +61,7 @@ pub(super) struct Elements<'a> {
 
 impl<'a> Elements<'a> {
     pub(super) fn new(patch: &Patch, face: &'a Tilted, speed: f64) -> Result<Self, MotionError> {
-        let patch = patch.of_elements(face.spots.iter().map(|spot| spot.element));
+        let patch = patch.with_elements(face.spots.iter().map(|spot| spot.element));
         let patch = patch.with_groups(vec![PatchGroup::Elements]);
         let (variables, drag) = (patch.variables(), Drag::new(&patch, face, speed)?);
         Ok(Self { spots: &face.spots, values: vec![0.0; variables.len()], variables, drag })

@@ -179,7 +179,7 @@ impl<'a> AtSpeed<'a> {
 fn layer_force(setting: &Setting<'_>, speed: f64, spot: &Spot, force_z: f64) -> Result<[f64; 3], String> {
     let Setting { patch, scene, .. } = setting;
     let (load, share) = (patch.table().load, spot.element.area / patch.nominal_area());
-    let at = OperatingPoint { load: load.of_force(force_z / share), ..point(patch, speed) };
+    let at = OperatingPoint { load: load.at_force(force_z / share), ..point(patch, speed) };
     let w = spot.separation - patch.table().rest_separation;
     let found = steady_sliding_at(scene, &at, w, load, Bounds { error: ERROR, distance: None })?;
     Ok([-share * found.drag(), 0.0, share * found.force_z])

@@ -14,23 +14,23 @@ use crate::element::ResampledLaw;
 use crate::math::Number;
 
 /// Most batches of a step.
-const MOST_BATCHES: usize = 128;
+const MAX_BATCHES: usize = 128;
 /// Blocks of a batch, at least.
-const FEWEST_BLOCKS: usize = 16;
+const MIN_BLOCKS: usize = 16;
 /// Elements times parts that are worth a thread: starting one is next to nothing beside them.
 const WORTH_A_THREAD: f64 = 16384.0;
 
 /// The workers of a patch, and the sums of their batches.
 #[derive(Clone, Debug)]
-pub(super) struct Crew<T> {
+pub(super) struct WorkerPool<T> {
     block: Box<Block<T>>,
-    helpers: Vec<Helper<T>>,
+    workers: Vec<Worker<T>>,
     sums: Vec<Sums<T>>,
 }
 
-/// A helper. It has a law of its own, since intervals of a law are computed when they are first needed.
+/// A worker. It has a law of its own, since intervals of a law are computed when they are first needed.
 #[derive(Clone, Debug)]
-struct Helper<T> {
+struct Worker<T> {
     block: Box<Block<T>>,
     law: ResampledLaw,
 }
@@ -43,20 +43,20 @@ struct Batch<'a, T> {
     sums: &'a mut Sums<T>,
 }
 
-impl<T: Number + Send + Sync> Crew<T> {
+impl<T: Number + Send + Sync> WorkerPool<T> {
     /// For steps of so many elements times parts or more: as many as the processor serves at once and the steps are worth.
     pub(super) fn new(elements_and_parts: f64, law: &ResampledLaw) -> Self {
         let threads = thread::available_parallelism().map_or(1, NonZero::get);
-        Self::of(threads.min((elements_and_parts / WORTH_A_THREAD) as usize), law)
+        Self::with_threads(threads.min((elements_and_parts / WORTH_A_THREAD) as usize), law)
     }
 
     /// One, or `threads` of them.
-    pub(super) fn of(threads: usize, law: &ResampledLaw) -> Self {
-        let helper = || Helper { block: Box::new(Block::new()), law: law.clone() };
+    pub(super) fn with_threads(threads: usize, law: &ResampledLaw) -> Self {
+        let worker = || Worker { block: Box::new(Block::new()), law: law.clone() };
         Self {
             block: Box::new(Block::new()),
-            helpers: (1..threads).map(|_| helper()).collect(),
-            sums: vec![Sums::zero(); MOST_BATCHES],
+            workers: (1..threads).map(|_| worker()).collect(),
+            sums: vec![Sums::zero(); MAX_BATCHES],
         }
     }
 
@@ -68,9 +68,9 @@ impl<T: Number + Send + Sync> Crew<T> {
         (springs, next): (&Springs, &mut Springs),
         work: impl Fn(&mut Block<T>, &mut ResampledLaw, &mut Sums<T>) + Sync,
     ) -> Sums<T> {
-        let Self { block, helpers, sums } = self;
+        let Self { block, workers, sums } = self;
         let (first, count, entered) = step.elements();
-        let size = count.div_ceil(MOST_BATCHES).next_multiple_of(BLOCK).max(FEWEST_BLOCKS * BLOCK);
+        let size = count.div_ceil(MAX_BATCHES).next_multiple_of(BLOCK).max(MIN_BLOCKS * BLOCK);
         let batches = count.div_ceil(size);
         let sums = &mut sums[..batches];
         let queue = Mutex::new(batches_of(sums, (next.all(), first + entered), (count, size)));
@@ -80,13 +80,13 @@ impl<T: Number + Send + Sync> Crew<T> {
                 batch.serve((first, entered), springs, block, |block, sums| work(block, law, sums));
             }
         };
-        let wanted = helpers.len().min(batches.saturating_sub(1));
+        let wanted = workers.len().min(batches.saturating_sub(1));
         if wanted == 0 {
             serve(block, law);
         } else {
             let serve = &serve;
             thread::scope(|scope| {
-                for Helper { block, law: own } in &mut helpers[..wanted] {
+                for Worker { block, law: own } in &mut workers[..wanted] {
                     own.set_temperature(law.temperature());
                     // Those whom the system gives no thread are done without.
                     if thread::Builder::new().spawn_scoped(scope, move || serve(block, own)).is_err() {

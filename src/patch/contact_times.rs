@@ -1,13 +1,13 @@
 //! An element whose pressure changes much in a part of a step: its passage, cut where it touches or lifts, at the least
-//! pressure of the table, and each stretch between into pieces.
+//! pressure of the table, and each stretch between into segments.
 
-use crate::element::{Hold, Passed, Piece, ResampledLaw, leap, pass};
+use crate::element::{Advanced, ResampledLaw, Segment, SpringLaw, advance, apply_jump};
 use crate::math::Number;
 
 /// Pieces of a stretch, at least.
-const FEWEST_PIECES: f64 = 4.0;
-/// Change of ln p over a piece, at most.
-const LARGEST_CHANGE: f64 = 0.125;
+const MIN_PIECES: f64 = 4.0;
+/// Change of ln p over a segment, at most.
+const MAX_CHANGE: f64 = 0.125;
 /// Keeps quotients of numbers that vanish together finite.
 const TINY: f64 = 1e-300;
 
@@ -27,46 +27,46 @@ struct Between<T> {
     share: T,
     velocity: [T; 2],
     pressure: f64,
-    hold: Hold<T>,
+    law: SpringLaw<T>,
 }
 
 /// Takes the spring of an element through a part with the displacement `displacement` (m).
-pub(super) fn pass_in_pieces<T: Number>(
+pub(super) fn advance_in_segments<T: Number>(
     law: &mut ResampledLaw,
     force: [T; 2],
     (begin, end): (&End<T>, &End<T>),
     displacement: [T; 2],
-) -> Passed<T> {
+) -> Advanced<T> {
     let stops = stops(law, begin, end);
     let mut here = between(law, begin, end, T::constant(0.0));
-    let mut passed = Passed { force, slips: false, slip: 0.0, release: 0.0 };
+    let mut advanced = Advanced { force, slips: false, slip: 0.0, release: 0.0 };
     for stop in stops {
         if stop.value() <= here.share.value() {
             continue;
         }
         let (start, there) = (here.share, between(law, begin, end, stop));
-        let pieces = pieces(here.pressure, there.pressure);
-        for piece in 1..=pieces as u32 {
-            let share = start + (stop - start).times(f64::from(piece) / pieces);
+        let segments = segments(here.pressure, there.pressure);
+        for segment in 1..=segments as u32 {
+            let share = start + (stop - start).times(f64::from(segment) / segments);
             let next = between(law, begin, end, share);
             let part = share - here.share;
-            let (force, lost) = leap(passed.force, here.hold.stiffness, &here.hold);
-            let this = Piece {
-                begin: here.hold,
-                end: next.hold,
+            let (force, lost) = apply_jump(advanced.force, here.law.stiffness, &here.law);
+            let this = Segment {
+                begin: here.law,
+                end: next.law,
                 displacement: displacement.map(|d| d * part),
                 half_turn: half_turn(here.velocity, next.velocity),
             };
-            let further = pass(force, &this);
-            passed = Passed {
-                slip: passed.slip + further.slip,
-                release: passed.release + further.release + lost,
+            let further = advance(force, &this);
+            advanced = Advanced {
+                slip: advanced.slip + further.slip,
+                release: advanced.release + further.release + lost,
                 ..further
             };
             here = next;
         }
     }
-    passed
+    advanced
 }
 
 /// The shares of the part at which the element touches or lifts and at which it is at the least pressure of the table,
@@ -87,9 +87,9 @@ fn stops<T: Number>(law: &mut ResampledLaw, begin: &End<T>, end: &End<T>) -> [T;
     [touch.smaller(least), touch.larger(least), T::constant(1.0)]
 }
 
-fn pieces(before: f64, after: f64) -> f64 {
+fn segments(before: f64, after: f64) -> f64 {
     let change = if before > 0.0 && after > 0.0 { (after / before).ln().abs() } else { 0.0 };
-    (change / LARGEST_CHANGE).ceil().clamp(FEWEST_PIECES, 1e3)
+    (change / MAX_CHANGE).ceil().clamp(MIN_PIECES, 1e3)
 }
 
 fn between<T: Number>(law: &mut ResampledLaw, begin: &End<T>, end: &End<T>, share: T) -> Between<T> {
@@ -100,8 +100,8 @@ fn between<T: Number>(law: &mut ResampledLaw, begin: &End<T>, end: &End<T>, shar
     let spot = law.spot(speed.value());
     let point = law.at(&spot, speed, straight(begin.approach, end.approach));
     let pressure = point.pressure();
-    let hold = Hold { stiffness: area * point.stiffness, limit: area * pressure * point.friction };
-    Between { share, velocity, pressure: pressure.value(), hold }
+    let law = SpringLaw { stiffness: area * point.stiffness, limit: area * pressure * point.friction };
+    Between { share, velocity, pressure: pressure.value(), law }
 }
 
 /// The size of a vector.

@@ -213,7 +213,7 @@ impl Parameter {
 
     fn choice<T: Word>(self, word: &str) -> Result<T, ParameterError> {
         let error = || ParameterError::new(self.name(), Problem::value(format_args!("{word:?}"), words::<T>()));
-        T::of(word).ok_or_else(error)
+        T::parse(word).ok_or_else(error)
     }
 }
 
