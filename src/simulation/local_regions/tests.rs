@@ -91,7 +91,7 @@ fn a_run_with_windows_is_one_that_is_cut_at_every_change() {
 fn every_mode_change_in_a_window_is_recorded_once() {
     let scene = scene("'forces', 'solver'");
     let of = |simulation: &Simulation| -> Vec<i8> {
-        simulation.run.state.layer.state.mode.iter().map(|mode| mode.number()).collect()
+        simulation.run.context.state.layer.state.mode.iter().map(|mode| mode.number()).collect()
     };
     let mut modes = of(&Simulation::new(&scene, &Start::default()).unwrap());
     let run = Rows::of(&scene, 100, None);
