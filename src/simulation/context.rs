@@ -13,6 +13,10 @@ use crate::model::{
 };
 use crate::scene::Axis;
 
+/// The longest step, as a fraction of the period of the carrier's sine: a longer one could alias the excitation, all
+/// stages seeing the same and the error estimate nothing.
+const OF_PERIOD: f64 = 0.25;
+
 /// What the steps of a run work on, of the whole layer or of a local region: the model, the settings, the state, and the
 /// workspace that both methods share. Everything but `state` can be made anew from the model and the settings.
 #[derive(Clone, Debug)]
@@ -219,8 +223,13 @@ impl Context {
 
     /// The bounds of the next step of a motion of `duration`, s.
     pub(super) fn length_bounds(&self, duration: f64) -> Result<LengthBounds, SimulationError> {
-        let bounds = LengthBounds::new(self.state.s, duration, self.state.carrier.shortest_period());
-        if bounds.longest <= bounds.shortest { Err(self.step_too_small(bounds.longest)) } else { Ok(bounds) }
+        let RunState { s, carrier, .. } = &self.state;
+        let (shortest, remaining) = (4.0 * f64::EPSILON * (s + 1e-3 * duration), duration - s);
+        let longest = OF_PERIOD * carrier.shortest_period();
+        if longest <= shortest {
+            return Err(self.step_too_small(longest));
+        }
+        Ok(LengthBounds { shortest, longest, remaining })
     }
 
     pub(super) fn step_too_small(&self, step: f64) -> SimulationError {

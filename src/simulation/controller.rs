@@ -5,9 +5,6 @@ use serde::{Deserialize, Serialize};
 use super::motion::SimulationError;
 use crate::model::Model;
 
-/// The longest step, as a fraction of the period of the carrier's sine: a longer one could alias the excitation, all
-/// stages seeing the same and the error estimate nothing.
-const OF_PERIOD: f64 = 0.25;
 /// The longest event-driven step, as a multiple of the mean time between events: a longer one would be cut, after a search
 /// through all of it.
 ///
@@ -46,17 +43,13 @@ impl TrialStep {
 /// The steps that one motion may try.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WorkLimit {
-    tried: u64,
+    pub tried: u64,
     limit: u64,
 }
 
 impl WorkLimit {
     pub(super) fn new(limit: u64) -> Self {
         Self { tried: 0, limit }
-    }
-
-    pub(super) fn tried(&self) -> u64 {
-        self.tried
     }
 
     /// Counts a step that is tried at `time`, s.
@@ -81,12 +74,6 @@ pub(super) struct LengthBounds {
 }
 
 impl LengthBounds {
-    /// The bounds at the time `s` of a motion of `duration`, the carrier's `period` being the shortest of its sines, s.
-    pub(super) fn new(s: f64, duration: f64, period: f64) -> Self {
-        let shortest = 4.0 * f64::EPSILON * (s + 1e-3 * duration);
-        Self { shortest, longest: OF_PERIOD * period, remaining: duration - s }
-    }
-
     /// `step_size`, but so that no tiny step is left before the end of the motion.
     pub(super) fn fit(&self, step_size: f64) -> f64 {
         if step_size >= self.remaining {

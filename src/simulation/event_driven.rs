@@ -151,33 +151,10 @@ impl EventDriven {
         self.planned
     }
 
-    /// The energies of an accepted step.
-    pub(super) fn add_energies(&mut self, context: &mut Context, step: &TrialStep) {
-        if context.settings.accounts.energy {
-            let gain = self.channel_energies(context, step.h, step.fraction);
-            context.state.energies.channels.add(&gain);
-        }
-    }
-
-    /// Accepts the motion of a step, which ends at the time `end` of the carrier's piece, with that of its open local
-    /// `regions` in place of its own, and changes the modes if that is due.
-    pub(super) fn accept_motion(
-        &mut self,
-        context: &mut Context,
-        step: &TrialStep,
-        end: f64,
-        regions: Option<&mut dyn Overlay>,
-    ) {
-        context.state.counters.steps += 1;
-        let (state, kept) = (&mut context.state, step.fraction * step.h);
-        if step.fraction < 1.0 {
-            state.controller.record_event(kept);
-            accept_part(context, step, end, regions);
-        } else {
-            state.controller.record_step(kept);
-            accept_whole(context, end, regions);
-        }
-        context.record_largest_energy();
+    /// Accepts a step without local regions, which ends at the time `end` of the motion.
+    pub(super) fn accept(&mut self, context: &mut Context, step: &TrialStep, end: f64) {
+        context.state.energies = self.energies(context, step.h, step.fraction);
+        accept_motion(context, step, end, None);
     }
 }
 
@@ -244,11 +221,6 @@ impl Stepper for EventDriven {
         is_good
     }
 
-    fn accept(&mut self, context: &mut Context, step: &TrialStep, end: f64) {
-        self.add_energies(context, step);
-        self.accept_motion(context, step, end, None);
-    }
-
     fn channel_energies(&mut self, context: &mut Context, h: f64, theta: f64) -> ChannelEnergies {
         let Context { model, state, integrator, .. } = context;
         integrator.energies(model, &state.layer.state, h, theta)
@@ -297,6 +269,21 @@ pub(super) fn can_resume(context: &mut Context, h: f64, theta: f64) -> bool {
     let Context { model, settings, state, integrator, dense, interpolated, forces, .. } = context;
     let step = integrator.dense(model, &state.carrier, &state.layer.state, state.span(h));
     step.defect(theta, interpolated, forces, dense, &settings.tolerance) <= MAX_DEFECT
+}
+
+/// Accepts the motion of a step, which ends at the time `end` of the carrier's piece, with that of its open local
+/// `regions` in place of its own, and changes the modes if that is due.
+pub(super) fn accept_motion(context: &mut Context, step: &TrialStep, end: f64, regions: Option<&mut dyn Overlay>) {
+    context.state.counters.steps += 1;
+    let (state, kept) = (&mut context.state, step.fraction * step.h);
+    if step.fraction < 1.0 {
+        state.controller.record_event(kept);
+        accept_part(context, step, end, regions);
+    } else {
+        state.controller.record_step(kept);
+        accept_whole(context, end, regions);
+    }
+    context.record_largest_energy();
 }
 
 /// Accepts a step up to its first event, or to where its local `regions` could not go on.

@@ -261,8 +261,9 @@ impl Simulation {
         if self.run.has_reached(until_force) {
             return Ok(Some(0.0));
         }
-        let temperature = motion.temperature.filter(|&kelvin| kelvin != self.run.context.state.temperature);
-        temperature.map_or(Ok(()), |kelvin| self.set_temperature(kelvin))?;
+        if let Some(kelvin) = motion.temperature.filter(|&kelvin| kelvin != self.run.context.state.temperature) {
+            self.set_temperature(kelvin)?;
+        }
         self.run.begin(motion);
         self.run.allow_local_regions(until_force.is_none());
         self.reference_run.iter_mut().for_each(|reference| reference.begin(motion));
@@ -274,7 +275,7 @@ impl Simulation {
             let at_force = self.run.cut_at_force(&step, until_force, &mut work)?;
             let (mut step, ends_at_force) = at_force.unwrap_or((step, false));
             if let Some(reference) = &mut self.reference_run {
-                reference.record_step(step.h, work.tried());
+                reference.record_step(step.h, work.tried);
             }
             // The rows within it, and its local regions.
             let (run, reference) = (&mut self.run, &mut self.reference_run);

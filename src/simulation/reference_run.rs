@@ -106,7 +106,7 @@ impl ReferenceRun {
     fn follow_to(&mut self, s: f64, ends: bool) -> Result<Monitored, SimulationError> {
         let tracked = self.run.context.settings.accounts.energy;
         while self.run.context.state.s < s {
-            let steps = self.work.tried();
+            let steps = self.work.tried;
             if steps > MIN_WORK + MORE_WORK.saturating_mul(self.steps_of_run) {
                 return Err(SimulationError::TooManySteps { time: self.run.context.state.time(), steps });
             }
@@ -315,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn no_error_run_unless_it_is_asked_for() {
+    fn no_reference_run_unless_it_is_asked_for() {
         let mut scene = coarse();
         scene.outputs.retain(|group| *group != crate::scene::OutputGroup::Solver);
         assert!(started(&scene).reference_run.is_none());

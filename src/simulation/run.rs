@@ -11,7 +11,6 @@ use super::settings::Settings;
 use super::state::RunState;
 use super::stepper::Stepper;
 use super::time_stepping::TimeStepping;
-use crate::integrator::Overlay;
 use crate::math::bracketed_root;
 use crate::model::{BodyStart, Model, Piece};
 use crate::outputs::{Energies, LayerView, Snapshot};
@@ -55,8 +54,8 @@ pub(super) struct Run {
     pub(super) context: Context,
     event_driven: EventDriven,
     time_stepping: TimeStepping,
-    /// Of event-driven steps; `None` where they would not be much smaller than the layer.
-    local_regions: Option<Box<LocalRegions>>,
+    /// Of event-driven steps.
+    local_regions: LocalRegions,
     /// The state before the motion under way.
     checkpoint: Box<RunState>,
     /// How long the records of mode changes and method switches were then.
@@ -69,7 +68,7 @@ impl Run {
     /// A run with the layer placed under the carrier at `start`.
     pub(super) fn new(model: Arc<Model>, settings: Settings, start: &Start, bodies: &[Option<BodyStart>; 2]) -> Self {
         let local_regions = LocalRegions::new(&model, &settings);
-        let event_driven = EventDriven::new(&model, local_regions.is_some());
+        let event_driven = EventDriven::new(&model, !local_regions.is_empty());
         let time_stepping = TimeStepping::new(&model, settings.method != Method::Event);
         let context = Context::new(model, settings, start, bodies);
         let checkpoint = Box::new(context.state.clone());
@@ -82,12 +81,11 @@ impl Run {
 
     /// Memory in bytes, without some hundreds that do not grow with the layer.
     pub(super) fn bytes(&self) -> usize {
-        self.context.bytes(1) + self.local_regions.as_ref().map_or(0, |regions| regions.bytes())
+        self.context.bytes(1) + self.local_regions.bytes()
     }
 
     pub(super) fn newton_iterations(&self) -> u64 {
-        let in_regions = self.local_regions.as_ref().map_or(0, |regions| regions.newton_iterations());
-        self.context.integrator.iterations() + in_regions
+        self.context.integrator.iterations() + self.local_regions.newton_iterations()
     }
 
     /// Keeps the run as it stands, to roll back to.
@@ -117,27 +115,25 @@ impl Run {
     pub(super) fn set_temperature(&mut self, temperature: f64, settings: Settings) {
         self.context.set_temperature(temperature, settings);
         self.keep_link_forces();
-        if let Some(regions) = &mut self.local_regions {
-            regions.set_temperature(&self.context.model, &self.context.settings);
-        }
+        self.local_regions.set_temperature(&self.context.model, &self.context.settings);
     }
 
     /// Lets the integrator keep what the energies of local regions need.
     fn keep_link_forces(&mut self) {
-        if self.local_regions.is_some() {
+        if !self.local_regions.is_empty() {
             self.context.integrator.keep_link_forces(&self.context.model);
         }
     }
 
     /// Whether local regions, if there are any, may take mode changes in the motions to come.
     pub(super) fn allow_local_regions(&mut self, allowed: bool) {
-        self.event_driven.may_plan = allowed && self.local_regions.is_some();
+        self.event_driven.may_plan = allowed && !self.local_regions.is_empty();
     }
 
     /// Begins a smooth piece of the carrier's motion.
     pub(super) fn begin(&mut self, motion: &Motion) {
         self.event_driven.begin();
-        self.local_regions.iter_mut().for_each(|regions| regions.close());
+        self.local_regions.close();
         let piece = Piece { paths: (motion.u, motion.w), forces: (motion.pull, motion.load) };
         self.context.begin(&piece, motion.duration);
     }
@@ -162,7 +158,7 @@ impl Run {
         duration: f64,
         work: &mut WorkLimit,
     ) -> Result<(TrialStep, f64), SimulationError> {
-        self.local_regions.iter_mut().for_each(|regions| regions.discard(&mut self.context));
+        self.local_regions.discard(&mut self.context);
         let (stepper, context) = self.stepper();
         stepper.cut_step_at(context, (s, duration), work)
     }
@@ -193,28 +189,22 @@ impl Run {
         times: (f64, f64),
         work: &mut WorkLimit,
     ) -> Result<f64, SimulationError> {
-        let Self { context, event_driven, local_regions, .. } = self;
-        match local_regions {
-            Some(regions) => regions.advance((context, event_driven), step, times, work),
-            None => Ok(times.1),
-        }
+        self.local_regions.advance((&mut self.context, &mut self.event_driven), step, times, work)
     }
 
     /// Accepts a step, which ends at the time `end` of the piece, and makes the mode changes due there.
     pub(super) fn take_step(&mut self, step: &TrialStep, end: f64) {
-        let Self { context, event_driven, local_regions, .. } = self;
+        let Self { context, event_driven, time_stepping, local_regions, .. } = self;
         let auto = context.settings.method == Method::Auto;
-        let events = context.state.counters.events - local_regions.as_ref().map_or(0, |regions| regions.mode_changes());
+        let events = context.state.counters.events - local_regions.mode_changes();
         let mut time_step = step.h;
-        if auto && !context.state.time_stepping {
-            time_step *= context.integrator.two_stage_length_ratio(step.h, &context.settings.tolerance);
-        }
-        match local_regions {
-            Some(regions) if !context.state.time_stepping => regions.accept((context, event_driven), step, end),
-            _ => {
-                let (stepper, context) = self.stepper();
-                stepper.accept(context, step, end);
+        if context.state.time_stepping {
+            time_stepping.accept(context, step, end);
+        } else {
+            if auto {
+                time_step *= context.integrator.two_stage_length_ratio(step.h, &context.settings.tolerance);
             }
+            local_regions.accept((context, event_driven), step, end);
         }
         if auto {
             let state = &mut self.context.state;
@@ -265,8 +255,7 @@ impl Run {
         let (energies, dissipated_power) = (self.energies_within(h, theta), self.dissipated_power_within(h, theta));
         let on_carrier = self.on_carrier_within(h, theta);
         let Self { context, local_regions, .. } = self;
-        let regions = local_regions.as_deref_mut().map(|regions| regions as &mut dyn Overlay);
-        let (within, state) = context.within((h, theta), regions);
+        let (within, state) = context.within((h, theta), Some(local_regions));
         let model = within.model;
         let now = snapshot_of((model, state), state.s + theta * h, LayerView::within(within), on_carrier);
         Snapshot { energies, dissipated_power, ..now }
@@ -276,9 +265,7 @@ impl Run {
     fn energies_within(&mut self, h: f64, theta: f64) -> Energies {
         let (stepper, context) = self.stepper();
         let mut energies = stepper.energies(context, h, theta);
-        if let Some(regions) = &mut self.local_regions {
-            energies.gain(&regions.energies(&self.context, self.context.state.s + theta * h));
-        }
+        energies.gain(&self.local_regions.energies(&self.context, self.context.state.s + theta * h));
         energies
     }
 
@@ -286,10 +273,8 @@ impl Run {
     fn on_carrier_within(&mut self, h: f64, theta: f64) -> (f64, f64) {
         let (stepper, context) = self.stepper();
         let (x, z) = stepper.on_carrier(context, h, theta);
-        let regions = self.local_regions.as_mut();
-        let s = self.context.state.s + theta * h;
-        let (of_regions_x, of_regions_z) = regions.map_or((0.0, 0.0), |regions| regions.forces(&self.context, s));
-        (x + of_regions_x, z + of_regions_z)
+        let of_regions = self.local_regions.forces(&self.context, self.context.state.s + theta * h);
+        (x + of_regions.0, z + of_regions.1)
     }
 
     /// P_diss at the fraction `theta` of the step of length `h` tried last, W, where the powers at its stages say it.
@@ -299,8 +284,7 @@ impl Run {
         if self.context.state.time_stepping {
             return Some(power);
         }
-        let s = self.context.state.s + theta * h;
-        let of_regions = self.local_regions.as_mut().map_or(0.0, |regions| regions.dissipated_power(&self.context, s));
+        let of_regions = self.local_regions.dissipated_power(&self.context, self.context.state.s + theta * h);
         Some((power + of_regions).max(0.0))
     }
 

@@ -37,9 +37,6 @@ pub(super) trait Stepper {
     /// controller's step size is a better length.
     fn try_shorter(&mut self, context: &mut Context, h: f64, test: ErrorTest) -> bool;
 
-    /// Accepts a step, which ends at the time `end` of the motion, and makes the mode changes due there.
-    fn accept(&mut self, context: &mut Context, step: &TrialStep, end: f64);
-
     /// Energies through the channels up to the fraction `theta` of the step, J.
     fn channel_energies(&mut self, context: &mut Context, h: f64, theta: f64) -> ChannelEnergies;
 

@@ -29,6 +29,47 @@ impl TimeStepping {
         Self { end_correction: EndCorrection::new(model, is_used) }
     }
 
+    /// Accepts a step, which ends at the time `end` of the motion, with its mode changes corrected.
+    pub(super) fn accept(&mut self, context: &mut Context, step: &TrialStep, end: f64) {
+        // The energies of the step without its mode changes.
+        let h = step.h;
+        let Context { model, settings, state, integrator, .. } = context;
+        let start = &state.layer.state;
+        let gain = settings.accounts.energy.then(|| {
+            let missed = integrator.friction_between_stages(model, start, h);
+            let shown = integrator.two_stage_energies(model, start, h, 1.0);
+            ChannelEnergies { friction: shown.friction + missed, ..shown }
+        });
+        // The mode changes, corrected in the state at its end.
+        context.interpolated_at = None;
+        context.modes_before.copy_from_slice(&start.mode);
+        let span = state.span(h);
+        let (step_end, first) = integrator.end_mut();
+        let fixed = FixedModeStep { model, carrier: &state.carrier, span, start, first };
+        let corrected = self.end_correction.apply(fixed, step_end);
+        // What they change of the energies and of the carrier.
+        if let Some(gain) = gain {
+            let energies = &mut state.energies;
+            energies.channels.add(&gain);
+            energies.channels.add(&corrected.map_or_else(ChannelEnergies::default, |corrected| corrected.channels));
+            energies.impact += corrected.map_or(0.0, |corrected| corrected.impact);
+        }
+        let mut point = integrator.end_carrier(true);
+        if let Some(corrected) = &corrected {
+            state.carrier.push(&mut point, model, corrected.impulse);
+        }
+        // The end of the step becomes the start of the next.
+        state.carrier.take_step(end, &point);
+        integrator.accept_two_stages(&mut state.layer);
+        state.counters.steps += 1;
+        state.s = end;
+        if context.modes_before != state.layer.state.mode {
+            integrator.refresh_tangents_after(model, &state.layer, end);
+            context.record_mode_changes();
+        }
+        context.record_largest_energy();
+    }
+
     /// Tries a step of length `h`; `None` where it is rejected: the controller's step size is then a better length.
     fn try_step(&mut self, context: &mut Context, h: f64, test: ErrorTest) -> Option<StepAttempt> {
         context.interpolated_at = None;
@@ -84,46 +125,6 @@ impl Stepper for TimeStepping {
 
     fn try_shorter(&mut self, context: &mut Context, h: f64, test: ErrorTest) -> bool {
         self.try_step(context, h, test).is_some()
-    }
-
-    fn accept(&mut self, context: &mut Context, step: &TrialStep, end: f64) {
-        // The energies of the step without its mode changes.
-        let h = step.h;
-        let Context { model, settings, state, integrator, .. } = context;
-        let start = &state.layer.state;
-        let gain = settings.accounts.energy.then(|| {
-            let missed = integrator.friction_between_stages(model, start, h);
-            let shown = integrator.two_stage_energies(model, start, h, 1.0);
-            ChannelEnergies { friction: shown.friction + missed, ..shown }
-        });
-        // The mode changes, corrected in the state at its end.
-        context.interpolated_at = None;
-        context.modes_before.copy_from_slice(&start.mode);
-        let span = state.span(h);
-        let (step_end, first) = integrator.end_mut();
-        let fixed = FixedModeStep { model, carrier: &state.carrier, span, start, first };
-        let corrected = self.end_correction.apply(fixed, step_end);
-        // What they change of the energies and of the carrier.
-        if let Some(gain) = gain {
-            let energies = &mut state.energies;
-            energies.channels.add(&gain);
-            energies.channels.add(&corrected.map_or_else(ChannelEnergies::default, |corrected| corrected.channels));
-            energies.impact += corrected.map_or(0.0, |corrected| corrected.impact);
-        }
-        let mut point = integrator.end_carrier(true);
-        if let Some(corrected) = &corrected {
-            state.carrier.push(&mut point, model, corrected.impulse);
-        }
-        // The end of the step becomes the start of the next.
-        state.carrier.take_step(end, &point);
-        integrator.accept_two_stages(&mut state.layer);
-        state.counters.steps += 1;
-        state.s = end;
-        if context.modes_before != state.layer.state.mode {
-            integrator.refresh_tangents_after(model, &state.layer, end);
-            context.record_mode_changes();
-        }
-        context.record_largest_energy();
     }
 
     fn channel_energies(&mut self, context: &mut Context, h: f64, theta: f64) -> ChannelEnergies {

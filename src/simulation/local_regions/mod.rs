@@ -18,11 +18,11 @@ use std::ops::Range;
 
 use super::context::Context;
 use super::controller::{TrialStep, WorkLimit};
-use super::event_driven::{EventDriven, MAX_CUTS, MAX_DEFECT, can_resume};
+use super::event_driven::{EventDriven, MAX_CUTS, MAX_DEFECT, accept_motion, can_resume};
 use super::motion::{ModeChange, SimulationError};
 use super::settings::Settings;
 use super::stepper::Stepper;
-use crate::integrator::{DenseWorkspace, LayerStep, Overlay, Pair, StepSpan};
+use crate::integrator::{DenseWorkspace, Overlay, Pair, StepSpan, WholeLayer};
 use crate::model::{LinkKind, Model, State};
 use crate::outputs::Energies;
 use crate::scene::Method;
@@ -79,40 +79,40 @@ enum Cut {
 }
 
 impl LocalRegions {
-    /// The regions for a layer of `model`; `None` where they would not be much smaller than the layer, under a carrier that is a
-    /// body, through which every mass feels every other, and where tangents are asked for, which regions do not have.
-    pub(super) fn new(model: &Model, settings: &Settings) -> Option<Box<Self>> {
-        if settings.method == Method::Step || settings.accounts.tangents || model.has_bodies() {
-            return None;
-        }
-        let (reach, most_masses) = (reach(model, settings.tolerance.relative)?, model.masses() / OF_MASSES);
-        let width = 2 * reach + 1;
-        if MIN_REGIONS * width > model.masses() {
-            return None;
-        }
-        let regions = levels(width, most_masses).flat_map(|(width, count)| {
-            let region = LocalRegion::new(model, width, settings);
-            std::iter::repeat_n(region, count)
-        });
-        Some(Box::new(Self {
-            regions: regions.collect(),
-            reach,
+    /// The regions for a layer of `model`. There are none where they would not be much smaller than the layer, under a carrier
+    /// that is a body, through which every mass feels every other, and where tangents are asked for, which regions do not
+    /// have.
+    pub(super) fn new(model: &Model, settings: &Settings) -> Self {
+        let Settings { method, tolerance, accounts, .. } = settings;
+        let have_none = *method == Method::Step || accounts.tangents || model.has_bodies();
+        let reach = if have_none { None } else { reach(model, tolerance.relative) };
+        let least = reach.map(|reach| 2 * reach + 1).filter(|width| MIN_REGIONS * width <= model.masses());
+        let most_masses = model.masses() / OF_MASSES;
+        let levels = least.into_iter().flat_map(|least| levels(least, most_masses));
+        let regions: Vec<_> = levels
+            .flat_map(|(width, count)| std::iter::repeat_n(LocalRegion::new(model, width, settings), count))
+            .collect();
+        let stages = if regions.is_empty() { 0 } else { Pair::at_tolerance(model, tolerance.relative).stages() };
+        Self {
+            workspace: workspace(model, regions.is_empty()),
+            regions,
+            reach: reach.unwrap_or(0),
             most_masses,
             counted: 0,
             gained: Energies::default(),
             span: StepSpan { start: 0.0, length: 0.0 },
-            workspace: DenseWorkspace::new(model),
-            nodes: vec![
-                DenseWorkspace::for_single_masses(model);
-                Pair::at_tolerance(model, settings.tolerance.relative).stages()
-            ],
-        }))
+            nodes: vec![DenseWorkspace::for_single_masses(model); stages],
+        }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.regions.is_empty()
     }
 
     /// Changes to another temperature: `model` and `settings` are those of the layer there.
     pub(super) fn set_temperature(&mut self, model: &Model, settings: &Settings) {
         self.regions.iter_mut().for_each(|region| region.set_temperature(model, settings));
-        self.workspace = DenseWorkspace::new(model);
+        self.workspace = workspace(model, self.is_empty());
         self.nodes.fill(DenseWorkspace::for_single_masses(model));
     }
 
@@ -142,9 +142,9 @@ impl LocalRegions {
     fn open_in_step<'a>(
         &'a mut self,
         context: &'a Context,
-    ) -> (impl Iterator<Item = &'a mut LocalRegion>, LayerStep<'a>) {
+    ) -> (impl Iterator<Item = &'a mut LocalRegion>, WholeLayer<'a>) {
         let Self { regions, span, workspace, .. } = self;
-        (regions.iter_mut().filter(|region| region.open), layer_step(context, *span, workspace))
+        (regions.iter_mut().filter(|region| region.open), whole_layer(context, *span, workspace))
     }
 
     /// Closes the regions of a step that was accepted, or of a motion that has ended.
@@ -231,7 +231,7 @@ impl LocalRegions {
     /// The open region whose step ends first, and when, s.
     fn first_to_end(&self) -> Option<(usize, f64)> {
         let open = self.regions.iter().enumerate().filter(|(_, region)| region.open);
-        open.map(|(index, region)| (index, region.trial_end())).min_by(|a, b| a.1.total_cmp(&b.1))
+        open.map(|(index, region)| (index, region.trial_end)).min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// The masses that feel a mode change of those in `changed`, in a layer of `masses`.
@@ -261,7 +261,7 @@ impl LocalRegions {
         // It starts from the layer's step. One that absorbs others does not go on from that alone.
         let absorbs = self.open().any(is_absorbed);
         let Self { regions, span, workspace, nodes, gained, .. } = self;
-        let mut step = layer_step(context, *span, workspace);
+        let mut step = whole_layer(context, *span, workspace);
         let (others, rest) = regions.split_at_mut(index);
         let Some((region, more)) = rest.split_first_mut() else { return Ok(Some(Cut::Crowded(s))) };
         region.open_at(context, (&mut step, s), range.start, nodes);
@@ -306,7 +306,7 @@ impl LocalRegions {
         let k = context.model.masses();
         let allowed =
             MISMATCH * context.state.layer.largest.allowed_of_mass(&context.model, &context.settings.tolerance);
-        let (region, mut step) = (&mut self.regions[index], layer_step(context, self.span, &mut self.workspace));
+        let (region, mut step) = (&mut self.regions[index], whole_layer(context, self.span, &mut self.workspace));
         let is_near = region.accept() && region.has_changed_near_end(self.reach / 2, k);
         let is_wide_enough = !is_near && region.mismatch(&mut step) <= allowed;
         context.state.controller.step_after_event = region.context.state.controller.step_after_event;
@@ -334,11 +334,11 @@ impl LocalRegions {
 
     /// Accepts `step`, which ends at the time `end`, with the masses of the regions in place of those in it.
     pub(super) fn accept(&mut self, (context, stepper): (&mut Context, &mut EventDriven), step: &TrialStep, end: f64) {
-        stepper.add_energies(context, step);
-        let gained = self.energies(context, end);
-        context.state.energies.gain(&gained);
+        let mut energies = stepper.energies(context, step.h, step.fraction);
+        energies.gain(&self.energies(context, end));
+        context.state.energies = energies;
         let is_open = self.open().next().is_some();
-        stepper.accept_motion(context, step, end, if is_open { Some(&mut *self) } else { None });
+        accept_motion(context, step, end, if is_open { Some(&mut *self) } else { None });
         stepper.clear_changes();
         self.close();
     }
@@ -361,7 +361,7 @@ impl LocalRegions {
     /// P_diss of the regions at the time `s` beyond that in the whole layer's step, W, where the powers at the stages say it.
     pub(super) fn dissipated_power(&mut self, context: &Context, s: f64) -> f64 {
         let (open, step) = self.open_in_step(context);
-        open.map(|region| region.dissipated_power(&step, s)).sum()
+        open.fold(0.0, |sum, region| sum + region.dissipated_power(&step, s))
     }
 }
 
@@ -371,10 +371,15 @@ impl Overlay for LocalRegions {
     }
 }
 
+/// Workspace for the steps of the layer, if there are regions in it.
+fn workspace(model: &Model, is_empty: bool) -> DenseWorkspace {
+    if is_empty { DenseWorkspace::for_single_masses(model) } else { DenseWorkspace::new(model) }
+}
+
 /// The step of `context` over `span` that was tried last.
-fn layer_step<'a>(context: &'a Context, span: StepSpan, workspace: &'a mut DenseWorkspace) -> LayerStep<'a> {
+fn whole_layer<'a>(context: &'a Context, span: StepSpan, workspace: &'a mut DenseWorkspace) -> WholeLayer<'a> {
     let Context { model, state, integrator, .. } = context;
-    LayerStep { integrator, model, carrier: &state.carrier, start: &state.layer.state, span, workspace }
+    WholeLayer { integrator, model, carrier: &state.carrier, start: &state.layer.state, span, workspace }
 }
 
 /// The widths of regions, from the `least` one on, and the number of regions of each: all of one width have at most

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::integrator::{DenseWorkspace, LayerStep, PartOfStep, STAGES};
+use crate::integrator::{DenseWorkspace, PartSums, STAGES, WholeLayer};
 use crate::model::{ChannelEnergies, EndForces, LinkKind, Model, State};
 use crate::outputs::{Counters, Energies};
 use crate::simulation::context::Context;
@@ -22,11 +22,12 @@ pub(super) struct LocalRegion {
     stepper: EventDriven,
     /// Whether it takes steps within the step under way.
     pub(super) open: bool,
-    /// The step that it has tried, and its end, s after the start of the carrier's piece.
+    /// The step that it has tried.
     trial: TrialStep,
-    trial_end: f64,
+    /// The end of that, s after the start of the carrier's piece; infinite where it has tried none from where it stands.
+    pub(super) trial_end: f64,
     /// Its masses in the whole layer's step.
-    whole: PartOfStep,
+    whole: PartSums,
     /// The energies of that through the channels up to where the region was opened, J.
     opened: ChannelEnergies,
 }
@@ -36,7 +37,7 @@ impl LocalRegion {
     pub(super) fn new(model: &Model, masses: usize, settings: &Settings) -> Self {
         let part = model.part(masses);
         Self {
-            whole: PartOfStep::new(&part, 0),
+            whole: PartSums::new(&part, 0),
             stepper: EventDriven::new(&part, false),
             context: Context::new(Arc::new(part), settings.of_local_region(), &Start::default(), &[None, None]),
             open: false,
@@ -77,18 +78,12 @@ impl LocalRegion {
         self.context.state.s
     }
 
-    /// The end of the step that it has tried, s after the start of the carrier's piece; infinite where it has tried none
-    /// from here.
-    pub(super) fn trial_end(&self) -> f64 {
-        self.trial_end
-    }
-
     /// Opens it over the masses from `first` on at the time `s` of the `step` that the layer of `context` has tried, as they
     /// are there. `nodes` has a workspace for each stage of the step.
     pub(super) fn open_at(
         &mut self,
         context: &Context,
-        (step, s): (&mut LayerStep<'_>, f64),
+        (step, s): (&mut WholeLayer<'_>, f64),
         first: usize,
         nodes: &mut [DenseWorkspace],
     ) {
@@ -119,7 +114,7 @@ impl LocalRegion {
     }
 
     /// What the links to the other masses exert on both ends through `step`.
-    fn end_forces(&self, step: &mut LayerStep<'_>, nodes: &mut [DenseWorkspace]) -> EndForces {
+    fn end_forces(&self, step: &mut WholeLayer<'_>, nodes: &mut [DenseWorkspace]) -> EndForces {
         let (masses, span) = (self.masses(), step.span);
         let (dense, _) = step.dense(&masses);
         let mut coefficients = [[[0.0; 5]; 2]; 2];
@@ -137,7 +132,7 @@ impl LocalRegion {
 
     /// Whether the whole layer's `step` resolves the motion of its masses where it was opened: whether the defect of the dense
     /// output there is at most `largest` in the tolerance's norm.
-    pub(super) fn is_resolved(&mut self, step: &mut LayerStep<'_>, largest: f64) -> bool {
+    pub(super) fn is_resolved(&mut self, step: &mut WholeLayer<'_>, largest: f64) -> bool {
         self.context.evaluate_forces();
         let Context { state, forces, settings, .. } = &self.context;
         let theta = step.theta(state.s);
@@ -147,7 +142,7 @@ impl LocalRegion {
 
     /// Takes over the masses of `other`, all of which it has, at the time `s` of the whole layer's `step`, and closes it.
     /// Returns the energies in it beyond those of that step, J.
-    pub(super) fn absorb(&mut self, other: &mut Self, (step, s): (&LayerStep<'_>, f64)) -> Energies {
+    pub(super) fn absorb(&mut self, other: &mut Self, (step, s): (&WholeLayer<'_>, f64)) -> Energies {
         let Context { model, state, .. } = &mut self.context;
         other.write_state((model, self.whole.masses.start), &mut state.layer.state, s);
         other.open = false;
@@ -204,7 +199,7 @@ impl LocalRegion {
 
     /// The largest force, N, by which its masses, as its own steps have them, load a link to others beyond that of the whole layer's
     /// `step`.
-    pub(super) fn mismatch(&self, step: &mut LayerStep<'_>) -> f64 {
+    pub(super) fn mismatch(&self, step: &mut WholeLayer<'_>) -> f64 {
         let (theta, ends) = (step.theta(self.reached()), self.ends(step.model.masses()));
         let Context { model, state, .. } = &self.context;
         let masses = self.masses();
@@ -222,7 +217,7 @@ impl LocalRegion {
     }
 
     /// Energies of its masses up to the time `s`, less those in the whole layer's `step` since it was opened, J.
-    pub(super) fn energies(&mut self, step: &LayerStep<'_>, s: f64) -> Energies {
+    pub(super) fn energies(&mut self, step: &WholeLayer<'_>, s: f64) -> Energies {
         let mut energies = match self.theta(s) {
             Some(theta) => self.stepper.energies(&mut self.context, self.trial.h, theta),
             None => self.context.state.energies,
@@ -236,14 +231,14 @@ impl LocalRegion {
 
     /// P_diss of its masses at the time `s`, less that in the whole layer's `step`, W, where the powers at the stages say it;
     /// 0 elsewhere.
-    pub(super) fn dissipated_power(&mut self, step: &LayerStep<'_>, s: f64) -> f64 {
+    pub(super) fn dissipated_power(&mut self, step: &WholeLayer<'_>, s: f64) -> f64 {
         let h = self.trial.h;
         let mine = self.theta(s).and_then(|theta| self.stepper.dissipated_power(&mut self.context, h, theta));
         mine.map_or(0.0, |mine| mine.max(0.0) - self.whole.dissipated_power(step, step.theta(s)))
     }
 
     /// F_x and F_z of its masses at the time `s`, less those in the whole layer's `step`, N.
-    pub(super) fn forces(&mut self, step: &mut LayerStep<'_>, s: f64) -> (f64, f64) {
+    pub(super) fn forces(&mut self, step: &mut WholeLayer<'_>, s: f64) -> (f64, f64) {
         let theta = self.theta(s).unwrap_or(0.0);
         let mine = self.stepper.on_carrier(&mut self.context, self.trial.h, theta);
         let theirs = self.whole.on_carrier(step, &self.context.model, step.theta(s));
