@@ -17,7 +17,7 @@
 //! | [`integrator`] | implicit Runge-Kutta steps, with modes held or set-valued friction: stages, dense output, error, sensitivities |
 //! | [`contact`] | the rules of mode changes and the impact, event location, the end-of-step correction |
 //! | [`outputs`] | the table of the outputs: names, units, values, derivatives, dependencies |
-//! | [`simulation`] | a run: its state, the event-driven and the time-stepping driver, error-estimation run |
+//! | [`simulation`] | a run: its state, the steps of both methods and their lengths, local regions, the reference run |
 //! | [`element`] | a point-contact element: the forces of a layer, looked up in a table of a sweep |
 //! | [`patch`] | a contact patch: many point-contact elements on a rigid face, in three dimensions |
 //! | [`fmi`] | the FMI 2.0 co-simulation interface |
@@ -38,7 +38,8 @@
 //! | an element's law in a patch, its step | `element/resampled.rs`; `element/spring.rs` (closed form), `patch/contact_times.rs` (touch and lift), `patch/block.rs` |
 //! | an output of a patch | `patch/variables.rs`, `patch/survey.rs`, `patch/derivatives.rs` |
 //! | a picture of a patch | `program/figure/patch.rs`; its maps `moment.rs` (what is drawn) and `maps.rs` (how), from `patch/plan.rs` |
-//! | what an FMU state holds | `FmuState` in `fmi/state.rs`, `RunState` in `simulation/run.rs` |
+//! | how long steps are, when they are cut | `simulation/controller.rs`; `simulation/event_driven.rs` or `time_stepping.rs` |
+//! | what an FMU state holds | `FmuState` in `fmi/state.rs`, `RunState` in `simulation/state.rs` |
 //! | what acts on a carrier that is a body | `scene/carrier.rs` (keys in `scene/reader/carrier.rs`), `Body` and `Outside` in `model/carrier.rs`; its equation in `integrator/stage/border.rs`, its sensitivity in `integrator/sensitivity.rs` |
 //! | an input of the FMU | [`scene::Input`], `Inputs` in `fmi/inputs.rs`, `Motion` in `simulation/motion.rs`, `CarrierSample` in `program/runner.rs` |
 //!

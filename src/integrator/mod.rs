@@ -29,7 +29,7 @@ pub use event_method::Pair;
 pub use interpolation::StageInterpolation;
 pub use largest::Largest;
 pub use motions::Motions;
-pub use part::{LayerStep, PartOfStep};
+pub use part::{PartSums, WholeLayer};
 pub use rates::{LayerState, NO_LIMIT, Rates};
 pub use stage::NoConvergence;
 pub use tableau::{ContinuousWeights, ESDIRK3, ESDIRK5, SDIRK2, STAGES, TWO_STAGES, Tableau};

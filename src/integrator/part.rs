@@ -11,7 +11,7 @@ use crate::model::{BoundaryPowers, Carrier, ChannelEnergies, Model, State};
 
 /// The event-driven step of the whole layer that its integrator has attempted last.
 #[derive(Debug)]
-pub struct LayerStep<'a> {
+pub struct WholeLayer<'a> {
     /// The integrator.
     pub integrator: &'a Integrator,
     /// The layer's model.
@@ -26,7 +26,7 @@ pub struct LayerStep<'a> {
     pub workspace: &'a mut DenseWorkspace,
 }
 
-impl<'a> LayerStep<'a> {
+impl<'a> WholeLayer<'a> {
     /// The dense output of these masses, and the workspace for it.
     pub fn dense(&mut self, masses: &Range<usize>) -> (DenseOutput<'a>, &mut DenseWorkspace) {
         let step = self.integrator.dense(self.model, self.carrier, self.start, self.span);
@@ -41,7 +41,7 @@ impl<'a> LayerStep<'a> {
 
 /// What is summed over some masses of a layer, one after another, in the step attempted last.
 #[derive(Clone, Debug)]
-pub struct PartOfStep {
+pub struct PartSums {
     /// The masses.
     pub masses: Range<usize>,
     carrier_sums: CarrierSums,
@@ -50,7 +50,7 @@ pub struct PartOfStep {
     exchange: [BoundaryPowers; STAGES],
 }
 
-impl PartOfStep {
+impl PartSums {
     /// Workspace for the masses of `part`, those from `first` on in a layer.
     pub fn new(part: &Model, first: usize) -> Self {
         Self {
@@ -62,7 +62,7 @@ impl PartOfStep {
     }
 
     /// The masses are now those of `part` from `first` on, in another `step`.
-    pub fn begin(&mut self, step: &mut LayerStep<'_>, part: &Model, first: usize) {
+    pub fn begin(&mut self, step: &mut WholeLayer<'_>, part: &Model, first: usize) {
         self.masses = first..first + part.masses();
         self.carrier_sums.forget();
         self.energy_sums.forget();
@@ -71,7 +71,7 @@ impl PartOfStep {
         }
     }
 
-    fn set_exchange(&mut self, step: &mut LayerStep<'_>, part: &Model) {
+    fn set_exchange(&mut self, step: &mut WholeLayer<'_>, part: &Model) {
         let at_start = self.on_carrier(step, part, 0.0);
         let (integrator, masses) = (step.integrator, self.masses.clone());
         let [vertical, horizontal, ..] = &integrator.end_forces().link;
@@ -94,7 +94,7 @@ impl PartOfStep {
     }
 
     /// F_x and F_z of the masses, of `part`, at the fraction `theta` of `step`, N.
-    pub fn on_carrier(&mut self, step: &mut LayerStep<'_>, part: &Model, theta: f64) -> (f64, f64) {
+    pub fn on_carrier(&mut self, step: &mut WholeLayer<'_>, part: &Model, theta: f64) -> (f64, f64) {
         let (integrator, ends) = (step.integrator, (step.start, step.integrator.end()));
         let stages = &integrator.stages()[..integrator.pair.stages()];
         let heights = integrator.pair.contact_heights();
@@ -106,18 +106,18 @@ impl PartOfStep {
     }
 
     /// Energies of the masses through the channels up to the fraction `theta` of `step`, J.
-    pub fn energies(&mut self, step: &LayerStep<'_>, theta: f64) -> ChannelEnergies {
+    pub fn energies(&mut self, step: &WholeLayer<'_>, theta: f64) -> ChannelEnergies {
         step.integrator.event_method.energies(self.summed(step), theta)
     }
 
     /// P_diss of the masses at the fraction `theta` of `step`, by the powers at its stages, W.
-    pub fn dissipated_power(&mut self, step: &LayerStep<'_>, theta: f64) -> f64 {
+    pub fn dissipated_power(&mut self, step: &WholeLayer<'_>, theta: f64) -> f64 {
         let weights = step.integrator.interpolation.values(theta);
         step.integrator.event_method.dissipated_power(self.summed(step), theta, &weights)
     }
 
-    fn summed<'a>(&'a mut self, step: &LayerStep<'a>) -> SummedStep<'a> {
-        let LayerStep { integrator, model, start, span, .. } = *step;
+    fn summed<'a>(&'a mut self, step: &WholeLayer<'a>) -> SummedStep<'a> {
+        let WholeLayer { integrator, model, start, span, .. } = *step;
         let (masses, stages) = (self.masses.clone(), integrator.stages());
         let of = MassesInStep { model, masses, start, stages, h: span.length };
         SummedStep { of, sums: &mut self.energy_sums, exchange: &self.exchange }

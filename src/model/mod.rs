@@ -7,7 +7,6 @@ mod ends;
 mod energy;
 mod forces;
 mod friction;
-mod part;
 mod real_area;
 mod reduction;
 mod scales;

@@ -1,40 +1,44 @@
 //! A simulation: joins the integrator and the contact laws into a run that follows the carrier's motion.
 //!
-//! - [`Simulation`] is the public face: a `run` and, where the group `solver` asks for its error, an
-//!   error-estimation run beside it.
-//! - `run` holds all that changes in a run (`RunState`), apart from its workspace; `state` saves and restores it.
-//! - `driver` is the skeleton of both methods: step, mode changes, step; `event` and `time_stepping` are where they
-//!   differ.
-//! - `windows` takes the mode changes of an event-driven step in steps of the masses near them alone, each `window` a run of its
-//!   own.
-//! - `snapshot` shows the run at an instant, at the end of a step or within it.
-//! - `error_run` estimates the run's error.
+//! - [`Simulation`] is the public face: a `run` and, where the group `solver` asks for its error, a reference run. It shows
+//!   the rows of a motion by a `sampler`.
+//! - `run` joins what a run is made of; the comment on its type has the course of a step.
+//! - `context` is what the steps work on: all that changes in a run (`state`), and the workspace that the methods share.
+//! - `stepper` is what the steps of both methods have in common; `event_driven` and `time_stepping` are the two. A `controller`
+//!   chooses their lengths.
+//! - `local_regions` take the mode changes of an event-driven step in steps of the masses near them alone.
+//! - `reference_run` estimates the run's error.
 
-mod driver;
-mod error_run;
-mod event;
+mod context;
+mod controller;
+#[cfg(test)]
+mod derivative_tests;
+mod event_driven;
+mod local_regions;
 mod motion;
+mod reference_run;
 mod run;
-mod snapshot;
+mod sampler;
+mod settings;
 mod start;
 mod state;
+mod stepper;
 #[cfg(test)]
 pub(crate) mod tests;
 mod time_stepping;
-mod window;
-mod windows;
 
 use std::sync::Arc;
 
-use cpu_time::ThreadTime;
-
 use crate::model::Model;
-use crate::outputs::{Counters, Output, Snapshot, Variable};
+use crate::outputs::{Output, Snapshot, Variable};
 use crate::scene::{Axis, ParameterError, Scene};
-use driver::{TrialStep, WorkLimit};
-use error_run::ErrorRun;
+use context::Context;
+use controller::WorkLimit;
 pub use motion::{Divergence, MethodSwitch, ModeChange, Motion, OutOfRange, SimulationError, Start};
-use run::{Run, Settings};
+use reference_run::ReferenceRun;
+use run::Run;
+use sampler::Sampler;
+use settings::Settings;
 use start::body_starts;
 use state::check_length;
 pub use state::{RestoreError, SimulationState};
@@ -45,8 +49,8 @@ pub use state::{RestoreError, SimulationState};
 #[derive(Clone, Debug)]
 pub struct Simulation {
     run: Run,
-    /// A more accurate run beside it, where its error is asked for.
-    error_run: Option<ErrorRun>,
+    /// A more accurate one, where its error is asked for.
+    reference_run: Option<ReferenceRun>,
     /// The scene where its temperature is an input.
     scene: Option<Arc<Scene>>,
     /// Processor time since the start, s. It is not part of the run's state: a run restored from another's state keeps
@@ -82,10 +86,10 @@ impl Simulation {
         model.freeze_dashpots(u, w);
         let model = Arc::new(model);
         let settings = Settings::new(scene, &model);
-        let error_run = settings.accounts.solver.then(|| ErrorRun::new(&model, &settings, start, &bodies));
+        let reference_run = settings.accounts.solver.then(|| ReferenceRun::new(&model, &settings, start, &bodies));
         Self {
             run: Run::new(model, settings, start, &bodies),
-            error_run,
+            reference_run,
             scene: scene.temperature_input.then(|| Arc::new(scene.clone())),
             run_time: 0.0,
         }
@@ -93,8 +97,8 @@ impl Simulation {
 
     /// The state of the simulation.
     pub fn state(&self) -> SimulationState {
-        let error_run = self.error_run.as_ref().map(|error_run| error_run.run.state.clone());
-        SimulationState { run: self.run.state.clone(), error_run }
+        let reference_run = self.reference_run.as_ref().map(|reference| reference.run.context.state.clone());
+        SimulationState { run: self.run.context.state.clone(), reference_run }
     }
 
     /// A simulation of `scene` in `state`: it goes on bit for bit as the one whose state this is.
@@ -113,67 +117,80 @@ impl Simulation {
     /// # Errors
     /// [`RestoreError`] where `state` is not that of a run of this scene; the simulation is then as it was.
     pub fn set_state(&mut self, state: &SimulationState) -> Result<(), RestoreError> {
-        let expected = usize::from(self.error_run.is_some());
-        check_length("error-estimation runs", usize::from(state.error_run.is_some()), expected)?;
-        self.run.check_state(&state.run)?;
-        if let (Some(error_run), Some(state)) = (&self.error_run, &state.error_run) {
-            error_run.run.check_state(state)?;
+        let expected = usize::from(self.reference_run.is_some());
+        check_length("reference runs", usize::from(state.reference_run.is_some()), expected)?;
+        for (run, state) in self.runs().zip(state.states()) {
+            state.check(&run.context.state, &run.context.model, &run.context.settings)?;
         }
-        if state.run.start != self.run.state.start {
+        if state.run.start != self.run.context.state.start {
             self.freeze_dashpots(state.run.start);
         }
-        if state.run.temperature != self.run.state.temperature {
-            self.heat(state.run.temperature)?;
+        if state.run.temperature != self.run.context.state.temperature {
+            self.set_temperature(state.run.temperature)?;
         }
-        self.run.set_state(&state.run);
-        if let (Some(error_run), Some(state)) = (&mut self.error_run, &state.error_run) {
-            error_run.run.set_state(state);
+        for (run, state) in self.runs_mut().zip(state.states()) {
+            let Context { model, settings, state: present, .. } = &mut run.context;
+            present.restore(state, model, settings.method);
         }
         Ok(())
+    }
+
+    /// The run, and the reference run where there is one.
+    fn runs(&self) -> impl Iterator<Item = &Run> {
+        std::iter::once(&self.run).chain(self.reference_run.as_ref().map(|reference| &reference.run))
+    }
+
+    fn runs_mut(&mut self) -> impl Iterator<Item = &mut Run> {
+        std::iter::once(&mut self.run).chain(self.reference_run.as_mut().map(|reference| &mut reference.run))
     }
 
     /// Makes the model that of a run that started at these u and w, m.
     fn freeze_dashpots(&mut self, [u, w]: [f64; 2]) {
-        Arc::make_mut(&mut self.run.model).freeze_dashpots(u, w);
-        if let Some(error_run) = &mut self.error_run {
-            error_run.run.model = Arc::clone(&self.run.model);
-        }
+        Arc::make_mut(&mut self.run.context.model).freeze_dashpots(u, w);
+        self.share_model();
     }
 
     /// Makes the model that of the layer at another temperature, K.
-    fn heat(&mut self, temperature: f64) -> Result<(), ParameterError> {
+    fn set_temperature(&mut self, temperature: f64) -> Result<(), ParameterError> {
         let Some(scene) = &self.scene else { return Ok(()) };
         let scene = scene.at_temperature(temperature)?;
-        Arc::make_mut(&mut self.run.model).set_temperature(&scene);
-        self.run.heat(temperature, Settings::new(&scene, &self.run.model));
-        if let Some(error_run) = &mut self.error_run {
-            error_run.run.model = Arc::clone(&self.run.model);
-            let settings = self.run.settings.tighter(&self.run.model);
-            error_run.run.heat(temperature, settings);
+        Arc::make_mut(&mut self.run.context.model).set_temperature(&scene);
+        self.share_model();
+        let settings = Settings::new(&scene, &self.run.context.model);
+        if let Some(reference) = &mut self.reference_run {
+            reference.run.set_temperature(temperature, settings.tighter(&self.run.context.model));
         }
+        self.run.set_temperature(temperature, settings);
         Ok(())
+    }
+
+    /// Gives the reference run the model of the run, which has changed.
+    fn share_model(&mut self) {
+        if let Some(reference) = &mut self.reference_run {
+            reference.run.context.model = Arc::clone(&self.run.context.model);
+        }
     }
 
     /// The time reached, s.
     pub fn time(&self) -> f64 {
-        self.run.state.time()
+        self.run.context.state.time()
     }
 
     /// Displacement of the carrier: u and w, m.
     pub fn carrier(&self) -> (f64, f64) {
-        self.run.state.displacement()
+        self.run.context.state.displacement()
     }
 
     /// Displacements of the carrier where they are prescribed, of the drive where the carrier is a body: û and ŵ, m.
     pub fn driven(&self) -> (f64, f64) {
-        let (carrier, s) = (&self.run.state.carrier, self.run.state.s);
+        let (carrier, s) = (&self.run.context.state.carrier, self.run.context.state.s);
         let (u, w) = self.carrier();
         (carrier.drive(Axis::X, s).unwrap_or(u), carrier.drive(Axis::Z, s).unwrap_or(w))
     }
 
     /// Memory of the simulation in bytes, without some hundreds that do not grow with the layer.
     pub fn bytes(&self) -> usize {
-        self.run.bytes() + self.error_run.as_ref().map_or(0, ErrorRun::bytes)
+        self.runs().map(Run::bytes).sum()
     }
 
     /// Follows `motion` to its end.
@@ -210,19 +227,15 @@ impl Simulation {
         observe: impl FnMut(f64, &Snapshot<'_>),
     ) -> Result<Option<f64>, SimulationError> {
         motion.check()?;
-        self.run.keep_checkpoint();
-        if let Some(error_run) = &mut self.error_run {
-            error_run.keep_checkpoint();
-        }
-        let run_time = self.run_time;
-        let result = self.follow(motion, until_force, times, observe);
-        if result.is_err() {
-            self.run_time = run_time;
+        self.runs_mut().for_each(Run::keep_checkpoint);
+        let mut sampler = Sampler::new(times, (self.run_time, self.reference_run.is_some()), observe);
+        let result = self.follow(motion, until_force, &mut sampler);
+        if result.is_ok() {
+            self.run_time = sampler.run_time();
+        } else {
             self.restore_temperature();
-            self.run.roll_back();
-            if let Some(error_run) = &mut self.error_run {
-                error_run.roll_back();
-            }
+            self.runs_mut().for_each(Run::roll_back);
+            self.reference_run.iter_mut().for_each(ReferenceRun::discard_pending);
         }
         result
     }
@@ -230,135 +243,70 @@ impl Simulation {
     /// The model at the temperature of the checkpoint, which a motion that fails may have changed.
     fn restore_temperature(&mut self) {
         let before = self.run.temperature_before();
-        if before != self.run.state.temperature {
+        if before != self.run.context.state.temperature {
             // It was that of the run before: it is valid.
-            let _ = self.heat(before);
+            let _ = self.set_temperature(before);
         }
     }
 
     /// [`advance_observed`](Self::advance_observed) without rollback: after an error the run stands anywhere within the
-    /// motion.
+    /// motion. The course of a step is at [`Run`].
     fn follow(
         &mut self,
         motion: &Motion,
         until_force: Option<f64>,
-        times: &[f64],
-        observe: impl FnMut(f64, &Snapshot<'_>),
+        sampler: &mut Sampler<'_, impl FnMut(f64, &Snapshot<'_>)>,
     ) -> Result<Option<f64>, SimulationError> {
-        let clock = self.run.settings.accounts.solver.then(ThreadTime::now);
-        let mut observer = Observer { times, clock, run_time: self.run_time, observe };
-        self.show_rows(0.0, &mut observer);
+        sampler.show(&mut self.run, &mut self.reference_run, 0.0);
         if self.run.has_reached(until_force) {
             return Ok(Some(0.0));
         }
-        if let Some(temperature) = motion.temperature.filter(|&temperature| temperature != self.run.state.temperature) {
-            self.heat(temperature)?;
+        if let Some(kelvin) = motion.temperature.filter(|&kelvin| kelvin != self.run.context.state.temperature) {
+            self.set_temperature(kelvin)?;
         }
-        self.run.enter(motion);
-        self.run.workspace.may_open_windows = until_force.is_none();
-        if let Some(error_run) = &mut self.error_run {
-            error_run.enter(motion);
-        }
-        let mut work = WorkLimit::new(self.run.settings.max_steps);
+        self.run.begin(motion);
+        self.run.allow_local_regions(until_force.is_none());
+        self.reference_run.iter_mut().for_each(|reference| reference.begin(motion));
+        let mut work = WorkLimit::new(self.run.context.settings.max_steps);
         let mut reached = self.run.has_reached(until_force);
-        while self.run.state.s < motion.duration && !reached {
-            let (mut step, at_force) = self.next_step(motion.duration, until_force, &mut work)?;
-            let (end, shortened) = self.show_rows_within(&mut step, motion.duration, &mut work, &mut observer)?;
-            self.run.take_step(&step, end);
-            self.run.check_bodies()?;
-            reached = (at_force && !shortened) || self.run.has_reached(until_force);
+        while self.run.context.state.s < motion.duration && !reached {
+            // A good step, which may end where F_z reaches the force.
+            let step = self.run.next_step(motion.duration, &mut work)?;
+            let at_force = self.run.cut_at_force(&step, until_force, &mut work)?;
+            let (mut step, ends_at_force) = at_force.unwrap_or((step, false));
+            if let Some(reference) = &mut self.reference_run {
+                reference.record_step(step.h, work.tried);
+            }
+            // The rows within it, and its local regions.
+            let (run, reference) = (&mut self.run, &mut self.reference_run);
+            let (end, shortened) = sampler.show_within(run, reference, &mut step, motion.duration, &mut work)?;
+            // It is accepted.
+            run.take_step(&step, end);
+            run.context.state.check_bodies()?;
+            reached = (ends_at_force && !shortened) || run.has_reached(until_force);
             if reached || end >= motion.duration {
-                self.run.find_tangents();
+                run.context.find_tangents();
             }
-            self.show_rows(end, &mut observer);
+            sampler.show(run, reference, end);
         }
-        self.end_error_run();
-        self.run_time = observer.run_time_now();
-        Ok(reached.then_some(self.run.state.s))
+        self.end_reference_run();
+        Ok(reached.then_some(self.run.context.state.s))
     }
 
-    /// The next good step, and whether it was shortened to end where F_z reaches the force.
-    fn next_step(
-        &mut self,
-        duration: f64,
-        until_force: Option<f64>,
-        work: &mut WorkLimit,
-    ) -> Result<(TrialStep, bool), SimulationError> {
-        let mut step = self.run.next_step(duration, work)?;
-        let mut at_force = false;
-        if let Some(share) = self.run.reaches_within(&step, until_force) {
-            let h = share * step.h;
-            step = self.run.cut_step(h, work)?;
-            at_force = step.h == h;
-        }
-        if let Some(error_run) = &mut self.error_run {
-            error_run.record_step(step.h, work.tried());
-        }
-        Ok((step, at_force))
-    }
-
-    /// Shows the rows that lie within `step`. Where its dense output is not good enough, the step is shortened to end at
-    /// the row; where its windows cannot go on, it is cut there. Returns the end of the step, s after the start of the motion, and whether it was shortened.
-    fn show_rows_within(
-        &mut self,
-        step: &mut TrialStep,
-        duration: f64,
-        work: &mut WorkLimit,
-        observer: &mut Observer<'_, impl FnMut(f64, &Snapshot<'_>)>,
-    ) -> Result<(f64, bool), SimulationError> {
-        let (mut end, mut shortened) = (self.run.end_of(step, duration), false);
-        while let Some(time) = observer.next_before(end) {
-            if self.run.can_show_within(step, time) {
-                end = self.run.advance_windows(step, (time, end), work)?;
-                if time < end {
-                    let theta = (time - self.run.state.s) / step.h;
-                    self.show_within(step, theta, observer);
-                }
-            } else {
-                (*step, end) = self.run.cut_step_at(time, duration, work)?;
-                shortened = true;
-            }
-        }
-        end = self.run.advance_windows(step, (end, end), work)?;
-        Ok((end, shortened))
-    }
-
-    /// Shows the rows up to the time `end` of the motion, where the run stands.
-    fn show_rows(&mut self, end: f64, observer: &mut Observer<'_, impl FnMut(f64, &Snapshot<'_>)>) {
-        while let Some(time) = observer.next_up_to(end) {
-            let s = self.run.state.s;
-            let shown = observer.show(time, self.run.snapshot(0.0), s, self.error_run.as_mut());
-            (self.run.state.counters, self.run_time) = shown;
-        }
-    }
-
-    /// Shows the next row, which lies at the fraction `theta` of `step`.
-    fn show_within(
-        &mut self,
-        step: &TrialStep,
-        theta: f64,
-        observer: &mut Observer<'_, impl FnMut(f64, &Snapshot<'_>)>,
-    ) {
-        let Some(time) = observer.next() else { return };
-        let s = self.run.state.s + theta * step.h;
-        let shown = observer.show(time, self.run.snapshot_within(step.h, theta, 0.0), s, self.error_run.as_mut());
-        (self.run.state.counters, self.run_time) = shown;
-    }
-
-    /// Ends the motion of the error-estimation run where the run stands.
-    fn end_error_run(&mut self) {
-        if let Some(error_run) = &mut self.error_run {
-            let s = self.run.state.s;
-            let mut snapshot = self.run.snapshot(0.0);
-            error_run.compare(s, &mut snapshot);
-            self.run.state.counters = snapshot.counters;
-            error_run.end_motion(&self.run.state);
+    /// Ends the motion of the reference run where the run stands.
+    fn end_reference_run(&mut self) {
+        if let Some(reference) = &mut self.reference_run {
+            let s = self.run.context.state.s;
+            let mut snapshot = self.run.snapshot();
+            reference.compare(s, &mut snapshot);
+            self.run.context.state.counters = snapshot.counters;
+            reference.end_motion(&self.run.context.state);
         }
     }
 
     /// The run as it stands.
     pub fn snapshot(&mut self) -> Snapshot<'_> {
-        self.run.snapshot(self.run_time)
+        Snapshot { run_time: self.run_time, ..self.run.snapshot() }
     }
 
     /// Writes the values of `variables`, in their order, into `values`; Integers as whole numbers.
@@ -374,14 +322,14 @@ impl Simulation {
 
     /// Ḟ_x and Ḟ_z, N/s, from the left; at the start, from the right.
     pub fn force_rates(&mut self) -> (f64, f64) {
-        self.run.force_rates()
+        self.run.context.force_rates()
     }
 
     /// The first derivative of F_x, F_z or a variable of the carrier's motion, in its unit over s, from the left; at the
     /// start, from the right. 0 for other outputs.
     pub fn output_rate(&mut self, output: Output) -> f64 {
-        let (force_x, force_z) = self.run.force_rates();
-        let (carrier, s) = (&self.run.state.carrier, self.run.state.s);
+        let (force_x, force_z) = self.run.context.force_rates();
+        let (carrier, s) = (&self.run.context.state.carrier, self.run.context.state.s);
         let point = carrier.at(s);
         match output {
             Output::ForceX => force_x,
@@ -390,15 +338,15 @@ impl Simulation {
             Output::CarrierW => point.w_rate,
             Output::CarrierURate => point.u_acceleration,
             Output::CarrierWRate => point.w_acceleration,
-            Output::DriveX => carrier.drive_force_rate(&self.run.model, Axis::X, s),
-            Output::DriveZ => carrier.drive_force_rate(&self.run.model, Axis::Z, s),
+            Output::DriveX => carrier.drive_force_rate(&self.run.context.model, Axis::X, s),
+            Output::DriveZ => carrier.drive_force_rate(&self.run.context.model, Axis::Z, s),
             _ => 0.0,
         }
     }
 
     /// a_j = e - y_j of every Maxwell element, m, in the order of [`State::maxwell`](crate::model::State::maxwell).
     pub fn maxwell_elongations(&self) -> &[f64] {
-        &self.run.state.layer.state.maxwell
+        &self.run.context.state.layer.state.maxwell
     }
 
     /// Takes off the elements of the links along z what they miss of steady motion: `means` are those of
@@ -414,7 +362,7 @@ impl Simulation {
     ///
     /// The energies since the start no longer balance.
     pub fn relax_dashpots(&mut self, means: &[f64], time: f64) -> f64 {
-        self.run.relax_dashpots(means, time)
+        self.run.context.relax_dashpots(means, time)
     }
 
     /// Moves a carrier that is a body along z down by `way`, m, its speed kept and the masses where they are: the vertical
@@ -422,7 +370,7 @@ impl Simulation {
     ///
     /// The energies since the start no longer balance.
     pub fn lower_carrier(&mut self, way: f64) {
-        self.run.lower_carrier(way);
+        self.run.context.lower_carrier(way);
     }
 
     /// Processor time since the start, s; measured where the group `solver` is asked for.
@@ -438,7 +386,7 @@ impl Simulation {
     /// Why the run so far does not converge; `None` where nothing shows that, or without the group `solver`. Judged best at
     /// the end of a run: early in it the largest forces, which errors are measured by, are still to come.
     pub fn divergence(&self) -> Option<Divergence> {
-        self.error_run.as_ref().and_then(|error_run| error_run.divergence(&self.run))
+        self.reference_run.as_ref().and_then(|reference| reference.divergence(&self.run))
     }
 
     /// Newton's iterations since the start, those of rejected steps and of motions rolled back included.
@@ -448,17 +396,17 @@ impl Simulation {
 
     /// Whether the time-stepping method has the run now, or the event-driven one.
     pub fn is_time_stepping(&self) -> bool {
-        self.run.state.time_stepping
+        self.run.context.state.time_stepping
     }
 
     /// Keeps a record of mode changes from now on, or stops keeping it.
     pub fn record_mode_changes(&mut self, on: bool) {
-        self.run.mode_changes = on.then(Vec::new);
+        self.run.context.mode_changes = on.then(Vec::new);
     }
 
     /// The mode changes recorded since the last call.
     pub fn take_mode_changes(&mut self) -> Vec<ModeChange> {
-        self.run.mode_changes.as_mut().map(std::mem::take).unwrap_or_default()
+        self.run.context.mode_changes.as_mut().map(std::mem::take).unwrap_or_default()
     }
 
     /// Keeps a record of switches between the methods from now on, or stops keeping it.
@@ -469,55 +417,5 @@ impl Simulation {
     /// The switches recorded since the last call.
     pub fn take_method_switches(&mut self) -> Vec<MethodSwitch> {
         self.run.method_switches.as_mut().map(std::mem::take).unwrap_or_default()
-    }
-}
-
-/// The rows still to be shown of a motion, and the processor time.
-struct Observer<'a, F> {
-    times: &'a [f64],
-    /// Runs where the processor time is asked for.
-    clock: Option<ThreadTime>,
-    /// Processor time before the motion, s.
-    run_time: f64,
-    observe: F,
-}
-
-impl<F: FnMut(f64, &Snapshot<'_>)> Observer<'_, F> {
-    /// Shows `snapshot`, of the time `s` of the motion, as the row at `time`, compared with the `error_run`. Returns the
-    /// counters then, and the processor time since the start, s.
-    fn show(
-        &mut self,
-        time: f64,
-        mut snapshot: Snapshot<'_>,
-        s: f64,
-        error_run: Option<&mut ErrorRun>,
-    ) -> (Counters, f64) {
-        if let Some(error_run) = error_run {
-            error_run.compare(s, &mut snapshot);
-        }
-        snapshot.run_time = self.run_time_now();
-        (self.observe)(time, &snapshot);
-        (snapshot.counters, snapshot.run_time)
-    }
-}
-
-impl<F> Observer<'_, F> {
-    fn next(&mut self) -> Option<f64> {
-        let (&time, rest) = self.times.split_first()?;
-        self.times = rest;
-        Some(time)
-    }
-
-    fn next_up_to(&mut self, end: f64) -> Option<f64> {
-        if self.times.first().is_some_and(|&time| time <= end) { self.next() } else { None }
-    }
-
-    /// The time of the next row if it lies before `end`, s; it stays the next one.
-    fn next_before(&self, end: f64) -> Option<f64> {
-        self.times.first().copied().filter(|&time| time < end)
-    }
-
-    fn run_time_now(&self) -> f64 {
-        self.run_time + self.clock.as_ref().map_or(0.0, |clock| clock.elapsed().as_secs_f64())
     }
 }

@@ -1,311 +1,104 @@
-//! A run of a layer: its state, which is all that changes in it, and the workspace of its steps.
+//! A run of a layer: it joins the steppers of both methods and the local regions.
 
 use std::sync::Arc;
 
-use serde::{Deserialize, Serialize};
+use super::context::Context;
+use super::controller::{TrialStep, WorkLimit};
+use super::event_driven::EventDriven;
+use super::local_regions::LocalRegions;
+use super::motion::{MethodSwitch, Motion, SimulationError, Start};
+use super::settings::Settings;
+use super::state::RunState;
+use super::stepper::Stepper;
+use super::time_stepping::TimeStepping;
+use crate::math::bracketed_root;
+use crate::model::{BodyStart, Model, Piece};
+use crate::outputs::{Energies, LayerView, Snapshot};
+use crate::scene::Method;
 
-use super::motion::{MethodSwitch, ModeChange, Motion, OutOfRange, Start};
-use super::windows::Windows;
-use crate::contact::{
-    EndCorrection, EventTolerance, decide_modes, free_unloaded, impacts_due, place_layer, stop_reversed,
-};
-use crate::integrator::{DenseWorkspace, Integrator, LayerState, Pair, StepSpan, Steps, Tolerance, Tracked};
-use crate::model::{
-    BodyStart, Carrier, CarrierPoint, CarrierPosition, Forces, LinkKind, Mode, Model, Piece, State, Tangents,
-    elastic_energy, kinetic_energy,
-};
-use crate::outputs::{Accounts, Counters, Energies};
-use crate::scene::{Axis, Method, Path, Scene, is_possible};
+/// Mean number of mode changes per time step above which the run switches to time-stepping: 1.5 times the break-even of
+/// 1/3, so that a few changes are still located.
+const TO_TIME_STEPPING: f64 = 0.5;
+/// The number below which it switches back to events: well below the break-even, so that it does not alternate.
+const TO_EVENTS: f64 = 0.1;
+/// Time steps over which the mean is taken.
+const MEMORY: f64 = 8.0;
 
-/// The first step to try, as a share of the stiffest period over 2π; the error test corrects it at once.
-const FIRST_STEP: f64 = 0.1;
-/// The weight of the latest in the mean time between events.
-const SPACING_GAIN: f64 = 0.3;
-/// The least that this mean falls to, as a share of the step that the error allows: many events at one instant say
-/// nothing of later ones.
-const MIN_SPACING: f64 = 0.01;
-/// Length of a step below which a cut is suspected of a [`Stall`], divided by the stiffest period over 2π.
-const STALLED: f64 = 1e-9;
-/// Number of such steps after which the shortest cut doubles. Simultaneous events of many masses also take many of them,
-/// but modes change at those.
-const MAX_STALLED: u32 = 100;
-
-/// All that changes in a run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct RunState {
-    /// The smooth piece of motion that the carrier is on.
-    pub carrier: Carrier,
-    /// Time since the start of that piece, s.
-    pub s: f64,
-    /// The layer, with the rates at the start of the next step.
-    pub layer: LayerState,
-    /// Whether these rates are valid: not before the first motion, nor where the forces were changed from outside.
-    pub rates_valid: bool,
-    /// Energies since the start.
-    pub energies: Energies,
-    /// What the solver counts.
-    pub counters: Counters,
-    /// The length of the next step to try, s.
-    pub step_size: f64,
-    /// The running mean of the time between events, s; the largest number where there was none.
-    pub event_spacing: f64,
-    /// Time since the last event, s.
-    pub since_event: f64,
-    /// The step that the error allowed right after the last event or kink, s; the largest number before the first.
-    pub step_after_event: f64,
-    /// The derivatives with respect to the targets of the last motion; 0 before the first.
-    pub tangents: Tangents,
-    /// u and w at the start of the run, m.
-    pub start: [f64; 2],
-    /// The layer's temperature, K; 0 where it is no input.
-    pub temperature: f64,
-    /// Whether time-stepping is active, or the event-driven method.
-    pub time_stepping: bool,
-    /// The running mean of the mode changes per time step; of the method *auto* alone.
-    pub mode_changes_per_step: f64,
-}
-
-impl RunState {
-    fn new(model: &Model, start: &Start, bodies: &[Option<BodyStart>; 2], time_stepping: bool) -> Self {
-        let path = |rate| Path { rate, ..Path::default() };
-        let paths = (path(start.u_rate), path(start.w_rate));
-        let mut carrier = Carrier::new(start.time, (start.u, start.w), paths, &model.profile);
-        for (axis, body) in Axis::ALL.into_iter().zip(bodies) {
-            body.iter().for_each(|body| carrier.start_body(axis, body, &model.profile));
-        }
-        Self {
-            start: [carrier.u, carrier.w],
-            temperature: start.temperature.unwrap_or(0.0),
-            carrier,
-            s: 0.0,
-            layer: LayerState::new(model),
-            rates_valid: false,
-            energies: Energies::default(),
-            counters: Counters::default(),
-            step_size: FIRST_STEP / model.stiffest_frequency(),
-            event_spacing: f64::MAX,
-            since_event: 0.0,
-            step_after_event: f64::MAX,
-            tangents: Tangents::default(),
-            time_stepping,
-            mode_changes_per_step: 0.0,
-        }
-    }
-
-    /// Copies `other`, of the same scene, without allocating.
-    pub(super) fn copy_from(&mut self, other: &Self) {
-        let Self {
-            carrier,
-            s,
-            layer,
-            rates_valid,
-            energies,
-            counters,
-            step_size,
-            event_spacing,
-            since_event,
-            step_after_event,
-            tangents,
-            start,
-            temperature,
-            time_stepping,
-            mode_changes_per_step,
-        } = self;
-        *temperature = other.temperature;
-        (*carrier, *s, *energies, *counters) = (other.carrier, other.s, other.energies, other.counters);
-        (*event_spacing, *since_event) = (other.event_spacing, other.since_event);
-        (*step_size, *tangents, *rates_valid) = (other.step_size, other.tangents, other.rates_valid);
-        (*start, *time_stepping) = (other.start, other.time_stepping);
-        *step_after_event = other.step_after_event;
-        *mode_changes_per_step = other.mode_changes_per_step;
-        layer.copy_from(&other.layer);
-    }
-
-    /// The time reached, s.
-    pub(super) fn time(&self) -> f64 {
-        self.carrier.time + self.s
-    }
-
-    /// u and w, m.
-    pub(super) fn displacement(&self) -> (f64, f64) {
-        self.displacement_at(self.s)
-    }
-
-    /// u and w `s` seconds after the start of the carrier's piece, m.
-    pub(super) fn displacement_at(&self, s: f64) -> (f64, f64) {
-        let point = self.carrier.at(s);
-        (self.carrier.u + point.du, self.carrier.w + point.dw)
-    }
-
-    /// A step of length `h` (s) from here.
-    pub(super) fn span(&self, h: f64) -> StepSpan {
-        StepSpan { start: self.s, length: h }
-    }
-
-    /// The carrier's position over the profile.
-    pub(super) fn carrier_position(&self) -> CarrierPosition {
-        self.carrier.position(self.s)
-    }
-
-    /// Includes the event that has just come in the mean time between events.
-    pub(super) fn record_event(&mut self) {
-        // A mean from long ago counts no more than the latest.
-        let mean = self.event_spacing.min(self.since_event / SPACING_GAIN);
-        let latest = mean + SPACING_GAIN * (self.since_event - mean);
-        self.event_spacing = latest.max(MIN_SPACING * self.step_size);
-        self.since_event = 0.0;
-    }
-}
-
-/// What of a scene a run needs beside the model.
-#[derive(Clone, Debug)]
-pub(super) struct Settings {
-    pub tolerance: Tolerance,
-    pub events: EventTolerance,
-    pub max_steps: u64,
-    pub accounts: Accounts,
-    pub method: Method,
-    /// Whether these are the settings of a window's run.
-    pub is_of_window: bool,
-}
-
-impl Settings {
-    /// The settings of a window of a layer with these.
-    pub(super) fn of_window(&self) -> Self {
-        let accounts = Accounts { energy: self.accounts.energy, ..Accounts::default() };
-        Self { accounts, method: Method::Event, is_of_window: true, ..self.clone() }
-    }
-
-    /// What the steps compute in addition to the state.
-    pub(super) fn tracked(&self) -> Tracked {
-        Tracked { energy: self.accounts.energy, tangents: self.accounts.tangents }
-    }
-
-    pub(super) fn new(scene: &Scene, model: &Model) -> Self {
-        let tolerance = Tolerance::new(model, scene.solver.relative_tolerance, scene.absolute_tolerance());
-        let events = EventTolerance::new(model, &tolerance);
-        Self {
-            tolerance,
-            events,
-            max_steps: scene.solver.max_steps,
-            accounts: Accounts::new(scene),
-            method: scene.solver.method,
-            is_of_window: false,
-        }
-    }
-}
-
-/// A run of a layer. Everything but `state` can be made anew from the model and the settings.
+/// A run of a layer.
+///
+/// A motion of the carrier ([`Simulation::advance`](super::Simulation::advance)) is a sequence of steps, of either method:
+///
+/// ```text
+/// begin(motion)                     decide the modes anew where the carrier's velocity jumps
+/// show the rows due at its start
+/// while s < duration:
+///     step = next_step()            the stepper tries lengths until the error, the unstable contacts and,
+///                                   event-driven, the first mode change allow the step; or local regions
+///                                   are to take its mode changes
+///     where F_z reaches the force:  cut_step() to end there
+///     for each row within step:     advance_regions() up to it; show it on the dense output,
+///                                   or cut_step_at() it
+///     advance_regions() to the end  they may cut the step, too
+///     take_step()                   add the energies; the step's end, or where it is cut, becomes the state;
+///                                   write the regions' masses over it; make the mode changes due;
+///                                   change the method (auto)
+///     show the rows due at its end
+/// ```
+///
+/// Method *auto* goes from events to time-stepping where mode changes come fast, and back where they are few again. What
+/// decides is the number of mode changes per time step, in the mean over the last [`MEMORY`] of them. An event costs the
+/// event-driven method a step of three or six stages, which is cut there, or of a local region; a time step costs two and
+/// takes any number of changes. So time-stepping is cheaper from a third of a change per step on.
 #[derive(Clone, Debug)]
 pub(super) struct Run {
-    pub(super) model: Arc<Model>,
-    pub(super) settings: Settings,
-    pub(super) state: RunState,
-    pub(super) workspace: Workspace,
-    /// The record of mode changes, where one is kept.
-    pub(super) mode_changes: Option<Vec<ModeChange>>,
+    pub(super) context: Context,
+    event_driven: EventDriven,
+    time_stepping: TimeStepping,
+    /// Of event-driven steps.
+    local_regions: LocalRegions,
+    /// The state before the motion under way.
+    checkpoint: Box<RunState>,
+    /// How long the records of mode changes and method switches were then.
+    recorded: [usize; 2],
     /// The record of switches between the methods, where one is kept.
     pub(super) method_switches: Option<Vec<MethodSwitch>>,
-}
-
-/// Workspace of the steps of one run: nothing in it outlives a motion.
-#[derive(Clone, Debug)]
-pub(super) struct Workspace {
-    /// Forces in the state evaluated last.
-    pub forces: Forces,
-    pub integrator: Integrator,
-    /// The state within the step tried last.
-    pub interpolated: State,
-    /// At which step length and fraction that is; `None` where it is not of the step tried last.
-    pub interpolated_at: Option<(f64, f64)>,
-    pub dense: DenseWorkspace,
-    pub end_correction: EndCorrection,
-    /// The steps of the motion under way that make no progress.
-    pub stall: Stall,
-    /// The windows of event-driven steps; `None` where they would not be much smaller than the layer.
-    pub windows: Option<Box<Windows>>,
-    /// Whether the motion under way may open them.
-    pub may_open_windows: bool,
-    /// The modes before the mode changes under way.
-    pub modes_before: Vec<Mode>,
-    /// The run before the motion under way; `None` in a window, which is never rolled back.
-    checkpoint: Option<Box<RunState>>,
-    /// How long its records were then.
-    recorded: [usize; 2],
 }
 
 impl Run {
     /// A run with the layer placed under the carrier at `start`.
     pub(super) fn new(model: Arc<Model>, settings: Settings, start: &Start, bodies: &[Option<BodyStart>; 2]) -> Self {
-        let state = RunState::new(&model, start, bodies, settings.method == Method::Step);
-        let windows = Windows::new(&model, &settings);
-        let workspace = Workspace {
-            forces: Forces::new(&model),
-            integrator: Self::integrator(&model, &settings),
-            interpolated: State::new(model.masses(), model.maxwell_variables()),
-            interpolated_at: None,
-            dense: DenseWorkspace::new(&model),
-            end_correction: EndCorrection::new(&model, settings.method != Method::Event),
-            stall: Stall::new(&model),
-            windows,
-            may_open_windows: true,
-            modes_before: state.layer.state.mode.clone(),
-            checkpoint: (!settings.is_of_window).then(|| Box::new(state.clone())),
-            recorded: [0; 2],
-        };
-        let mut run = Self { model, settings, state, workspace, mode_changes: None, method_switches: None };
+        let local_regions = LocalRegions::new(&model, &settings);
+        let event_driven = EventDriven::new(&model, !local_regions.is_empty());
+        let time_stepping = TimeStepping::new(&model, settings.method != Method::Event);
+        let context = Context::new(model, settings, start, bodies);
+        let checkpoint = Box::new(context.state.clone());
+        let (recorded, method_switches) = ([0; 2], None);
+        let mut run =
+            Self { context, event_driven, time_stepping, local_regions, checkpoint, recorded, method_switches };
         run.keep_link_forces();
-        run.place_layer();
         run
-    }
-
-    /// Puts the masses at their rest positions, or on the profile, and decides the first modes.
-    fn place_layer(&mut self) {
-        let at = self.state.carrier_position();
-        let carrier = self.state.carrier.at(0.0);
-        let (model, layer, forces) = (&*self.model, &mut self.state.layer.state, &mut self.workspace.forces);
-        place_layer(model, layer, at, &carrier);
-        forces.evaluate(model, layer, &carrier);
-        free_unloaded(model, layer, at, forces);
-        decide_modes(model, layer, forces);
-        let of_layer = kinetic_energy(model, layer) + elastic_energy(model, layer);
-        self.state.energies.initial = of_layer + self.state.carrier.energy(model, 0.0).total();
     }
 
     /// Memory in bytes, without some hundreds that do not grow with the layer.
     pub(super) fn bytes(&self) -> usize {
-        let layer = &self.state.layer.state;
-        let (masses, maxwell) = (layer.mode.len(), layer.maxwell.len());
-        // The state, the one within a step, the stage's and the checkpoint.
-        let states = 3 + usize::from(self.workspace.checkpoint.is_some());
-        let by_mass = 4 * size_of::<f64>() + size_of_val(&layer.surface[0]) + 1;
-        states * (masses * by_mass + maxwell * size_of::<f64>())
-            + self.workspace.integrator.bytes()
-            + 2 * self.workspace.forces.bytes()
-            + self.workspace.dense.bytes()
-            + self.workspace.windows.as_ref().map_or(0, |windows| windows.bytes())
+        self.context.bytes(1) + self.local_regions.bytes()
     }
 
     pub(super) fn newton_iterations(&self) -> u64 {
-        let in_windows = self.workspace.windows.as_ref().map_or(0, |windows| windows.newton_iterations());
-        self.workspace.integrator.iterations() + in_windows
+        self.context.integrator.iterations() + self.local_regions.newton_iterations()
     }
 
     /// Keeps the run as it stands, to roll back to.
     pub(super) fn keep_checkpoint(&mut self) {
-        if let Some(checkpoint) = &mut self.workspace.checkpoint {
-            checkpoint.copy_from(&self.state);
-        }
-        let lengths = (self.mode_changes.as_ref().map(Vec::len), self.method_switches.as_ref().map(Vec::len));
-        self.workspace.recorded = [lengths.0.unwrap_or(0), lengths.1.unwrap_or(0)];
+        self.checkpoint.copy_from(&self.context.state);
+        let mode_changes = self.context.mode_changes.as_ref().map_or(0, Vec::len);
+        self.recorded = [mode_changes, self.method_switches.as_ref().map_or(0, Vec::len)];
     }
 
     pub(super) fn roll_back(&mut self) {
-        let [mode_changes, method_switches] = self.workspace.recorded;
-        if let Some(checkpoint) = &self.workspace.checkpoint {
-            self.state.copy_from(checkpoint);
-        }
-        if let Some(record) = &mut self.mode_changes {
+        let [mode_changes, method_switches] = self.recorded;
+        self.context.state.copy_from(&self.checkpoint);
+        if let Some(record) = &mut self.context.mode_changes {
             record.truncate(mode_changes);
         }
         if let Some(record) = &mut self.method_switches {
@@ -313,245 +106,217 @@ impl Run {
         }
     }
 
-    /// Begins a smooth piece of the carrier's motion. At a kink the damper forces jump, so all modes are decided anew.
-    pub(super) fn enter(&mut self, motion: &Motion) {
-        let state = &mut self.state;
-        let rates = |carrier: &Carrier, s: f64| (carrier.at(s).u_rate, carrier.at(s).w_rate);
-        let before = rates(&state.carrier, state.s);
-        let piece = Piece { paths: (motion.u, motion.w), forces: (motion.pull, motion.load) };
-        let jumps = state.carrier.begin(state.s, &piece, &self.model);
-        state.s = 0.0;
-        self.workspace.stall.reset();
-        self.forget_windows();
-        self.workspace.integrator.begin_tangents(motion.duration);
-        if !self.state.rates_valid || rates(&self.state.carrier, 0.0) != before {
-            self.change_modes(0.0);
-            return;
-        }
-        if jumps {
-            self.accelerate_bodies();
-        }
-        if self.workspace.integrator.has_tangents() {
-            self.evaluate_forces();
-            self.refresh_tangents();
-        }
-    }
-
     /// The layer's temperature before the motion under way, K; 0 where it is no input.
     pub(super) fn temperature_before(&self) -> f64 {
-        self.workspace.checkpoint.as_ref().map_or(self.state.temperature, |before| before.temperature)
+        self.checkpoint.temperature
     }
 
-    /// Takes over another temperature (K) and the settings for the model there, which is set. The dampers' forces jump, so the
-    /// next motion decides all modes anew.
-    pub(super) fn heat(&mut self, temperature: f64, settings: Settings) {
-        self.settings = settings;
-        (self.state.temperature, self.state.rates_valid) = (temperature, false);
-        self.workspace.integrator = Self::integrator(&self.model, &self.settings);
-        self.workspace.dense = DenseWorkspace::new(&self.model);
+    /// Takes over another temperature (K) and the settings for the model there, which is set.
+    pub(super) fn set_temperature(&mut self, temperature: f64, settings: Settings) {
+        self.context.set_temperature(temperature, settings);
         self.keep_link_forces();
-        if let Some(windows) = &mut self.workspace.windows {
-            windows.heat(&self.model, &self.settings);
-        }
+        self.local_regions.set_temperature(&self.context.model, &self.context.settings);
     }
 
-    /// Lets the integrator keep what the energies of windows need.
+    /// Lets the integrator keep what the energies of local regions need.
     fn keep_link_forces(&mut self) {
-        if self.workspace.windows.is_some() {
-            self.workspace.integrator.keep_link_forces(&self.model);
+        if !self.local_regions.is_empty() {
+            self.context.integrator.keep_link_forces(&self.context.model);
         }
     }
 
-    fn integrator(model: &Model, settings: &Settings) -> Integrator {
-        let pair = Pair::at_tolerance(model, settings.tolerance.relative);
-        let steps = match settings.method {
-            Method::Event => Steps::EventDriven(pair),
-            Method::Step => Steps::TwoStages,
-            Method::Auto => Steps::Both(pair),
+    /// Whether local regions, if there are any, may take mode changes in the motions to come.
+    pub(super) fn allow_local_regions(&mut self, allowed: bool) {
+        self.event_driven.may_plan = allowed && !self.local_regions.is_empty();
+    }
+
+    /// Begins a smooth piece of the carrier's motion.
+    pub(super) fn begin(&mut self, motion: &Motion) {
+        self.event_driven.begin();
+        self.local_regions.close();
+        let piece = Piece { paths: (motion.u, motion.w), forces: (motion.pull, motion.load) };
+        self.context.begin(&piece, motion.duration);
+    }
+
+    /// The steps of the method that has the run now.
+    fn stepper(&mut self) -> (&mut dyn Stepper, &mut Context) {
+        let Self { context, event_driven, time_stepping, .. } = self;
+        let stepper: &mut dyn Stepper = if context.state.time_stepping { time_stepping } else { event_driven };
+        (stepper, context)
+    }
+
+    /// See [`Stepper::next_step`].
+    pub(super) fn next_step(&mut self, duration: f64, work: &mut WorkLimit) -> Result<TrialStep, SimulationError> {
+        let (stepper, context) = self.stepper();
+        stepper.next_step(context, duration, work)
+    }
+
+    /// See [`Stepper::cut_step_at`].
+    pub(super) fn cut_step_at(
+        &mut self,
+        s: f64,
+        duration: f64,
+        work: &mut WorkLimit,
+    ) -> Result<(TrialStep, f64), SimulationError> {
+        self.local_regions.discard(&mut self.context);
+        let (stepper, context) = self.stepper();
+        stepper.cut_step_at(context, (s, duration), work)
+    }
+
+    /// Where F_z reaches the force `until` (N) in `step`, a step that ends there in its place, and whether it does; `None`
+    /// where it ends below.
+    pub(super) fn cut_at_force(
+        &mut self,
+        step: &TrialStep,
+        until: Option<f64>,
+        work: &mut WorkLimit,
+    ) -> Result<Option<(TrialStep, bool)>, SimulationError> {
+        let TrialStep { h, fraction } = *step;
+        let Some(force) = until.filter(|&force| self.on_carrier_within(h, fraction).1 >= force) else {
+            return Ok(None);
         };
-        Integrator::new(model, settings.tracked(), steps)
+        let theta = bracketed_root(|theta| self.on_carrier_within(h, theta).1 - force, (0.0, fraction), 1e-14);
+        let (stepper, context) = self.stepper();
+        let cut = stepper.cut_step(context, theta * h, work)?;
+        Ok(Some((cut, cut.h == theta * h)))
     }
 
-    /// Computes the bodies' accelerations anew from the forces, of which one from outside has jumped. No force on a mass has.
-    fn accelerate_bodies(&mut self) {
-        self.evaluate_forces();
-        let Self { model, state, workspace, .. } = self;
-        state.carrier.accelerate(model, state.s, &workspace.forces);
+    /// Lets local regions follow `step`, which ends at the second of two times, up to the first, s. Returns its end: where they
+    /// cannot, it is cut short.
+    pub(super) fn advance_regions(
+        &mut self,
+        step: &mut TrialStep,
+        times: (f64, f64),
+        work: &mut WorkLimit,
+    ) -> Result<f64, SimulationError> {
+        self.local_regions.advance((&mut self.context, &mut self.event_driven), step, times, work)
     }
 
-    /// Refuses bodies that have left the range of possible numbers.
-    pub(super) fn check_bodies(&self) -> Result<(), OutOfRange> {
-        if !self.state.carrier.has_bodies() {
-            return Ok(());
-        }
-        let (u, w) = self.state.displacement();
-        let point = self.state.carrier.at(self.state.s);
-        let numbers = [("u", u), ("w", w), ("rate of u", point.u_rate), ("rate of w", point.w_rate)];
-        match numbers.into_iter().find(|(_, value)| !is_possible(*value)) {
-            Some((what, value)) => Err(OutOfRange { what, value }),
-            None => Ok(()),
-        }
-    }
-
-    /// Lets the bodies follow the step of length `h` (s) tried last.
-    pub(super) fn trace_bodies(&mut self, h: f64) {
-        let Self { state, workspace, .. } = self;
-        for axis in Axis::ALL {
-            if state.carrier.is_body(axis) {
-                state.carrier.set_step(axis, workspace.integrator.body_step(axis, h, state.time_stepping));
+    /// Accepts a step, which ends at the time `end` of the piece, and makes the mode changes due there.
+    pub(super) fn take_step(&mut self, step: &TrialStep, end: f64) {
+        let Self { context, event_driven, time_stepping, local_regions, .. } = self;
+        let auto = context.settings.method == Method::Auto;
+        let events = context.state.counters.events - local_regions.mode_changes();
+        let mut time_step = step.h;
+        if context.state.time_stepping {
+            time_stepping.accept(context, step, end);
+        } else {
+            if auto {
+                time_step *= context.integrator.two_stage_length_ratio(step.h, &context.settings.tolerance);
             }
+            local_regions.accept((context, event_driven), step, end);
+        }
+        if auto {
+            let state = &mut self.context.state;
+            state.mode_changes_per_step *= (-step.fraction * step.h / (MEMORY * time_step)).exp();
+            state.mode_changes_per_step += (state.counters.events - events) as f64 / MEMORY;
+            self.switch_if_due(time_step);
         }
     }
 
-    /// The impacts due, stops, then every contact decided anew from the forces, which have jumped; and the rates after
-    /// that. Masses within `reach` (m) of the profile count as touching.
-    pub(super) fn change_modes(&mut self, reach: f64) {
-        let carrier = self.state.carrier.at(self.state.s);
-        let at = self.state.carrier_position();
-        let Self { model, state: run, workspace, .. } = self;
-        let (layer, forces) = (&mut run.layer.state, &mut workspace.forces);
-        workspace.modes_before.copy_from_slice(&layer.mode);
-        run.energies.impact += impacts_due(model, layer, at, reach, &mut run.energies.channels);
-        stop_reversed(model, layer, forces, &mut run.energies.channels);
-        forces.evaluate(model, layer, &carrier);
-        decide_modes(model, layer, forces);
-        run.carrier.accelerate(model, run.s, forces);
-        workspace.integrator.evaluate_start(model, &mut run.layer, (&run.carrier, run.s), forces, run.step_size);
-        run.rates_valid = true;
-        self.refresh_tangents();
-        self.count_mode_changes();
-    }
-
-    /// Counts and records what has changed since the modes before.
-    pub(super) fn count_mode_changes(&mut self) {
-        let time = self.state.time();
-        let modes = self.workspace.modes_before.iter().zip(&self.state.layer.state.mode).enumerate();
-        for (mass, (from, to)) in modes.filter(|(_, (from, to))| from != to) {
-            self.state.counters.events += 1;
-            if let Some(record) = &mut self.mode_changes {
-                record.push(ModeChange { time, mass, from: from.number(), to: to.number() });
-            }
+    /// Changes the method if that is due. A time step with an error of the tolerance has the length `time_step`, s.
+    fn switch_if_due(&mut self, time_step: f64) {
+        let state = &mut self.context.state;
+        let RunState { time_stepping, mode_changes_per_step, .. } = *state;
+        let due =
+            if time_stepping { mode_changes_per_step < TO_EVENTS } else { mode_changes_per_step > TO_TIME_STEPPING };
+        if !due {
+            return;
         }
-    }
-
-    /// Computes the rates at the start of the next step from the state alone.
-    pub(super) fn evaluate_start(&mut self) {
-        self.evaluate_forces();
-        let Self { model, state, workspace, .. } = self;
-        let (carrier, forces) = ((&state.carrier, state.s), &workspace.forces);
-        workspace.integrator.evaluate_start(model, &mut state.layer, carrier, forces, state.step_size);
-    }
-
-    /// Evaluates the link forces in the current state and returns the carrier there.
-    pub(super) fn evaluate_forces(&mut self) -> CarrierPoint {
-        let carrier = self.state.carrier.at(self.state.s);
-        self.workspace.forces.evaluate(&self.model, &self.state.layer.state, &carrier);
-        carrier
-    }
-
-    /// F_z now, N.
-    pub(super) fn force_z(&mut self) -> f64 {
-        self.evaluate_forces();
-        self.workspace.forces.on_carrier_z()
+        let to_time_stepping = !time_stepping;
+        state.time_stepping = to_time_stepping;
+        let time = state.time();
+        if to_time_stepping {
+            state.controller.limit(time_step);
+        } else {
+            // The event-driven steps begin with an explicit stage: its rates, and the modes that go with them.
+            self.context.change_modes(self.context.settings.events.gap);
+        }
+        if let Some(record) = &mut self.method_switches {
+            record.push(MethodSwitch { time, to_time_stepping, mode_changes_per_step });
+        }
     }
 
     /// Whether F_z has reached the force `until`, N.
     pub(super) fn has_reached(&mut self, until: Option<f64>) -> bool {
-        until.is_some_and(|force| self.force_z() >= force)
+        until.is_some_and(|force| self.snapshot().on_carrier.1 >= force)
     }
 
-    /// Ḟ_x and Ḟ_z, N/s, from the left; at the start, from the right.
-    pub(super) fn force_rates(&mut self) -> (f64, f64) {
-        if !self.state.rates_valid {
-            self.accelerate_bodies();
-            let Self { model, state, workspace, .. } = self;
-            let (carrier, forces) = ((&state.carrier, state.s), &workspace.forces);
-            workspace.integrator.evaluate_start(model, &mut state.layer, carrier, forces, state.step_size);
+    /// The run as it stands.
+    pub(super) fn snapshot(&mut self) -> Snapshot<'_> {
+        self.context.evaluate_forces();
+        let Context { model, state, forces, .. } = &self.context;
+        let on_carrier = (forces.on_carrier_x(), forces.on_carrier_z());
+        snapshot_of((model, state), state.s, LayerView::at(&state.layer.state, forces), on_carrier)
+    }
+
+    /// The run at the fraction `theta` of the step of length `h` (s) tried last.
+    pub(super) fn snapshot_within(&mut self, h: f64, theta: f64) -> Snapshot<'_> {
+        let (energies, dissipated_power) = (self.energies_within(h, theta), self.dissipated_power_within(h, theta));
+        let on_carrier = self.on_carrier_within(h, theta);
+        let Self { context, local_regions, .. } = self;
+        let (within, state) = context.within((h, theta), Some(local_regions));
+        let model = within.model;
+        let now = snapshot_of((model, state), state.s + theta * h, LayerView::within(within), on_carrier);
+        Snapshot { energies, dissipated_power, ..now }
+    }
+
+    /// Energies since the start at the fraction `theta` of the step of length `h` tried last.
+    fn energies_within(&mut self, h: f64, theta: f64) -> Energies {
+        let (stepper, context) = self.stepper();
+        let mut energies = stepper.energies(context, h, theta);
+        energies.gain(&self.local_regions.energies(&self.context, self.context.state.s + theta * h));
+        energies
+    }
+
+    /// F_x and F_z at the fraction `theta` of the step of length `h` tried last, N.
+    fn on_carrier_within(&mut self, h: f64, theta: f64) -> (f64, f64) {
+        let (stepper, context) = self.stepper();
+        let (x, z) = stepper.on_carrier(context, h, theta);
+        let of_regions = self.local_regions.forces(&self.context, self.context.state.s + theta * h);
+        (x + of_regions.0, z + of_regions.1)
+    }
+
+    /// P_diss at the fraction `theta` of the step of length `h` tried last, W, where the powers at its stages say it.
+    fn dissipated_power_within(&mut self, h: f64, theta: f64) -> Option<f64> {
+        let (stepper, context) = self.stepper();
+        let power = stepper.dissipated_power(context, h, theta)?;
+        if self.context.state.time_stepping {
+            return Some(power);
         }
-        let (layer, carrier) = (&self.state.layer, self.state.carrier.at(self.state.s));
-        layer.rates.on_carrier(&self.model, &layer.state.maxwell, &carrier)
+        let of_regions = self.local_regions.dissipated_power(&self.context, self.context.state.s + theta * h);
+        Some((power + of_regions).max(0.0))
     }
 
-    /// Finds the tangents of the motion that ends here.
-    pub(super) fn find_tangents(&mut self) {
-        if self.workspace.integrator.has_tangents() {
-            self.state.tangents = self.workspace.integrator.tangents(&self.model, self.state.s);
-        }
-    }
-
-    /// The tangents' rates from the forces evaluated last.
-    fn refresh_tangents(&mut self) {
-        let Self { model, state, workspace, .. } = self;
-        workspace.integrator.refresh_tangents(model, &state.layer, &workspace.forces, state.s);
-    }
-
-    /// See [`Simulation::relax_dashpots`](super::Simulation::relax_dashpots).
-    pub(super) fn relax_dashpots(&mut self, means: &[f64], time: f64) -> f64 {
-        let mut borne = 0.0;
-        for row in self.model.rows.iter().filter(|row| !row.kind.is_along_x()) {
-            let x = time / row.relaxation_time;
-            let left = if x > 0.0 { x / x.exp_m1() } else { 1.0 };
-            let elements = &mut self.state.layer.state.maxwell[row.range.clone()];
-            for (a, mean) in elements.iter_mut().zip(&means[row.range.clone()]) {
-                *a -= left * mean;
-            }
-            if row.kind == LinkKind::Vertical {
-                borne += row.stiffness * means[row.range.clone()].iter().sum::<f64>();
-            }
-        }
-        // The forces have jumped: the next motion decides all contacts anew.
-        self.state.rates_valid = false;
-        borne
-    }
-
-    /// See [`Simulation::lower_carrier`](super::Simulation::lower_carrier).
-    pub(super) fn lower_carrier(&mut self, way: f64) {
-        self.state.carrier.w -= way;
-        let elongations = &mut self.state.layer.state.elongation_z;
-        elongations.iter_mut().for_each(|elongation| *elongation += way);
-        self.state.rates_valid = false;
+    /// Whether the dense output of `step`, tried last, is good enough to be shown at the time `s` after the start of the
+    /// carrier's piece.
+    pub(super) fn can_show_within(&mut self, step: &TrialStep, s: f64) -> bool {
+        let (stepper, context) = self.stepper();
+        stepper.can_show(context, step.h, context.state.fraction_at(s, step.h))
     }
 }
 
-/// Steps that make no progress because rounding makes events.
-///
-/// Where a mass is so fast that the rounding of its velocity, divided by the length of a short step, is an inertia force
-/// larger than the tolerance of events, an event is found at the start of each such step but is not due at its end. The
-/// run would cut every step to the resolution of time. After some of these steps in a row, the shortest length that a
-/// step is cut to therefore doubles with each, until a mode changes or no event is found.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Stall {
-    /// Steps cut to this length, s, or less are suspected.
-    length: f64,
-    /// Number of steps cut so short after which no mode changed, less the number of other steps since.
-    steps: u32,
-    /// Number of mode changes before the last step, if it was cut so short.
-    events_before: Option<u64>,
-}
-
-impl Stall {
-    pub(super) fn new(model: &Model) -> Self {
-        Self { length: STALLED / model.stiffest_frequency(), ..Self::default() }
-    }
-
-    pub(super) fn reset(&mut self) {
-        (self.steps, self.events_before) = (0, None);
-    }
-
-    /// The shortest length, s, that the next step may be cut to; `shortest` (s) is the resolution of time, `events` the
-    /// number of mode changes so far.
-    pub(super) fn shortest_cut(&mut self, shortest: f64, events: u64) -> f64 {
-        if self.events_before.take() == Some(events) {
-            self.steps += 1;
-        } else {
-            self.steps = self.steps.saturating_sub(1);
-        }
-        shortest * f64::from(self.steps.saturating_sub(MAX_STALLED)).exp2()
-    }
-
-    /// Records a step of length `h` (s) that is about to be accepted, and whether an event has cut it; `events` is the
-    /// number of mode changes before it.
-    pub(super) fn record_step(&mut self, h: f64, cut: bool, events: u64) {
-        self.events_before = (cut && h <= self.length).then_some(events);
+/// A run of a model in a state of its own, at the time `s` after the start of the carrier's piece: with the `layer` then, and
+/// the forces F_x and F_z, N.
+fn snapshot_of<'a>(
+    (model, state): (&'a Model, &'a RunState),
+    s: f64,
+    layer: LayerView<'a>,
+    on_carrier: (f64, f64),
+) -> Snapshot<'a> {
+    Snapshot {
+        model,
+        time: state.carrier.time + s,
+        on_carrier,
+        dissipated_power: None,
+        layer,
+        carrier: state.carrier.at(s),
+        motion: (&state.carrier, s),
+        displacement: state.displacement_at(s),
+        start: state.start,
+        energies: state.energies,
+        tangents: state.tangents,
+        counters: state.counters,
+        run_time: 0.0,
     }
 }

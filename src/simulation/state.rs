@@ -1,11 +1,20 @@
-//! The state of a simulation: saved, serialised, restored bit for bit.
+//! The state of a run, which is all that changes in it: saved, serialised, restored bit for bit.
 
 use serde::{Deserialize, Serialize};
 
-use super::run::{Run, RunState};
-use crate::integrator::{LayerState, Rates};
-use crate::model::{Carrier, LinkKind, Mode, State};
-use crate::scene::{Axis, Method, ParameterError};
+use super::controller::Controller;
+use super::motion::{OutOfRange, Start};
+use super::settings::Settings;
+use crate::integrator::{LayerState, Rates, StepSpan};
+use crate::model::{BodyStart, Carrier, CarrierPosition, Mode, Model, State, Tangents};
+use crate::outputs::{Counters, Energies};
+use crate::scene::{Axis, Method, ParameterError, Path, is_possible};
+
+/// The first step to try, as a fraction of the stiffest period over 2π; the error test corrects it at once.
+const FIRST_STEP: f64 = 0.1;
+/// The fraction of the distances that a position is summed from by which it may be off: more than rounding adds up to in
+/// any run.
+const POSITION_ROUNDING: f64 = 1e-6;
 
 /// All that changes in a simulation, but for the processor time and the records of mode changes and method switches.
 ///
@@ -14,8 +23,136 @@ use crate::scene::{Axis, Method, ParameterError};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SimulationState {
     pub(super) run: RunState,
-    /// The error-estimation run.
-    pub(super) error_run: Option<RunState>,
+    /// Of the reference run.
+    pub(super) reference_run: Option<RunState>,
+}
+
+impl SimulationState {
+    /// Of the run, and of the reference run where there is one.
+    pub(super) fn states(&self) -> impl Iterator<Item = &RunState> {
+        std::iter::once(&self.run).chain(&self.reference_run)
+    }
+}
+
+/// All that changes in a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct RunState {
+    /// The smooth piece of motion that the carrier is on.
+    pub carrier: Carrier,
+    /// Time since the start of that piece, s.
+    pub s: f64,
+    /// The layer, with the rates at the start of the next step.
+    pub layer: LayerState,
+    /// Whether these rates are valid: not before the first motion, nor where the forces were changed from outside.
+    pub rates_valid: bool,
+    /// Energies since the start.
+    pub energies: Energies,
+    /// What the solver counts.
+    pub counters: Counters,
+    /// The lengths of the steps.
+    pub controller: Controller,
+    /// The derivatives with respect to the targets of the last motion; 0 before the first.
+    pub tangents: Tangents,
+    /// u and w at the start of the run, m.
+    pub start: [f64; 2],
+    /// The layer's temperature, K; 0 where it is no input.
+    pub temperature: f64,
+    /// Whether time-stepping is active, or the event-driven method.
+    pub time_stepping: bool,
+    /// The running mean of the mode changes per time step; of the method *auto* alone.
+    pub mode_changes_per_step: f64,
+}
+
+impl RunState {
+    /// A run of `model` that starts at `start`, before the masses are placed.
+    pub(super) fn new(model: &Model, settings: &Settings, start: &Start, bodies: &[Option<BodyStart>; 2]) -> Self {
+        let path = |rate| Path { rate, ..Path::default() };
+        let paths = (path(start.u_rate), path(start.w_rate));
+        let mut carrier = Carrier::new(start.time, (start.u, start.w), paths, &model.profile);
+        for (axis, body) in Axis::ALL.into_iter().zip(bodies) {
+            body.iter().for_each(|body| carrier.start_body(axis, body, &model.profile));
+        }
+        Self {
+            start: [carrier.u, carrier.w],
+            temperature: start.temperature.unwrap_or(0.0),
+            carrier,
+            s: 0.0,
+            layer: LayerState::new(model),
+            rates_valid: false,
+            energies: Energies::default(),
+            counters: Counters::default(),
+            controller: Controller::new(FIRST_STEP / model.stiffest_frequency()),
+            tangents: Tangents::default(),
+            time_stepping: settings.method == Method::Step,
+            mode_changes_per_step: 0.0,
+        }
+    }
+
+    /// Copies `other`, of the same scene, without allocating.
+    pub(super) fn copy_from(&mut self, other: &Self) {
+        let Self { carrier, s, layer, rates_valid, energies, counters, controller, .. } = other;
+        let Self { tangents, start, temperature, time_stepping, mode_changes_per_step, .. } = other;
+        self.layer.copy_from(layer);
+        (self.carrier, self.s, self.rates_valid) = (*carrier, *s, *rates_valid);
+        (self.energies, self.counters, self.controller) = (*energies, *counters, *controller);
+        (self.tangents, self.start, self.temperature) = (*tangents, *start, *temperature);
+        (self.time_stepping, self.mode_changes_per_step) = (*time_stepping, *mode_changes_per_step);
+    }
+
+    /// Copies `saved`, which was checked, into the state of a run of `model` by `method`.
+    pub(super) fn restore(&mut self, saved: &Self, model: &Model, method: Method) {
+        let time_stepping = self.time_stepping;
+        self.copy_from(saved);
+        self.carrier.find_profile_position(&model.profile);
+        if method != Method::Auto {
+            self.time_stepping = time_stepping;
+        }
+    }
+
+    /// The time reached, s.
+    pub(super) fn time(&self) -> f64 {
+        self.carrier.time + self.s
+    }
+
+    /// u and w, m.
+    pub(super) fn displacement(&self) -> (f64, f64) {
+        self.displacement_at(self.s)
+    }
+
+    /// u and w `s` seconds after the start of the carrier's piece, m.
+    pub(super) fn displacement_at(&self, s: f64) -> (f64, f64) {
+        let point = self.carrier.at(s);
+        (self.carrier.u + point.du, self.carrier.w + point.dw)
+    }
+
+    /// A step of length `h` (s) from here.
+    pub(super) fn span(&self, h: f64) -> StepSpan {
+        StepSpan { start: self.s, length: h }
+    }
+
+    /// The fraction of a step of length `h` (s) from here at the time `s` after the start of the carrier's piece.
+    pub(super) fn fraction_at(&self, s: f64, h: f64) -> f64 {
+        (s - self.s) / h
+    }
+
+    /// The carrier's position over the profile.
+    pub(super) fn carrier_position(&self) -> CarrierPosition {
+        self.carrier.position(self.s)
+    }
+
+    /// Refuses bodies that have left the range of possible numbers.
+    pub(super) fn check_bodies(&self) -> Result<(), OutOfRange> {
+        if !self.carrier.has_bodies() {
+            return Ok(());
+        }
+        let (u, w) = self.displacement();
+        let point = self.carrier.at(self.s);
+        let numbers = [("u", u), ("w", w), ("rate of u", point.u_rate), ("rate of w", point.w_rate)];
+        match numbers.into_iter().find(|(_, value)| !is_possible(*value)) {
+            Some((what, value)) => Err(OutOfRange { what, value }),
+            None => Ok(()),
+        }
+    }
 }
 
 /// Why a state cannot be restored.
@@ -58,41 +195,31 @@ pub enum RestoreError {
     },
 }
 
-impl Run {
-    /// Copies `state`, which was checked.
-    pub(super) fn set_state(&mut self, state: &RunState) {
-        let time_stepping = self.state.time_stepping;
-        self.state.copy_from(state);
-        self.state.carrier.find_profile_position(&self.model.profile);
-        if self.settings.method != Method::Auto {
-            self.state.time_stepping = time_stepping;
-        }
-    }
-
-    /// Checks that `state` can be that of this run.
-    pub(super) fn check_state(&self, state: &RunState) -> Result<(), RestoreError> {
+impl RunState {
+    /// Checks that this can be the state of a run of `model` that is in `present` now.
+    pub(super) fn check(&self, present: &Self, model: &Model, settings: &Settings) -> Result<(), RestoreError> {
         for axis in Axis::ALL {
-            let bodies = |carrier: &Carrier| usize::from(carrier.is_body(axis));
-            check_length("bodies", bodies(&state.carrier), bodies(&self.state.carrier))?;
+            let bodies = |state: &Self| usize::from(state.carrier.is_body(axis));
+            check_length("bodies", bodies(self), bodies(present))?;
         }
-        check_lengths(&state.layer, &self.state.layer)?;
-        check_numbers(state)?;
-        check_modes(&state.layer.state.mode, self.model.has_friction)?;
-        self.check_surface(state)
+        check_layer(&self.layer, &present.layer)?;
+        check_numbers(self)?;
+        check_modes(&self.layer.state.mode, model.has_friction)?;
+        self.check_surface(model, settings.tolerance.position)
     }
 
-    /// Checks that the profile under each mass in contact is the scene's, within the tolerance of positions and
+    /// Checks that the profile under each mass in contact is the one of `model`, within the `tolerance` of positions (m) and
     /// roundings.
     ///
     /// It cannot be computed afresh to the last bit: its position was summed in another order.
-    fn check_surface(&self, run: &RunState) -> Result<(), RestoreError> {
-        let (state, model, mut carrier) = (&run.layer.state, &*self.model, run.carrier);
+    fn check_surface(&self, model: &Model, tolerance: f64) -> Result<(), RestoreError> {
+        let (state, mut carrier) = (&self.layer.state, self.carrier);
         carrier.find_profile_position(&model.profile);
-        let position = carrier.profile_position + carrier.at(run.s).du;
+        let position = carrier.profile_position + carrier.at(self.s).du;
         let fits = |i: usize| {
             let x = model.rest_x[i] + (position + state.elongation_x[i]);
             let summed = x.abs() + state.elongation_x[i].abs() + carrier.u.abs();
-            let reach = self.settings.tolerance.position + POSITION_ROUNDING * summed;
+            let reach = tolerance + POSITION_ROUNDING * summed;
             let (found, here) = (&state.surface[i], model.surface_at(x));
             let bounds = model.profile.local_bounds(x - reach, x + reach);
             near(found.height, here.height, bounds.slope_max_abs * reach)
@@ -107,10 +234,6 @@ impl Run {
     }
 }
 
-/// Share of the distances that a position is summed from by which it may be off: more than rounding adds up to in any
-/// run.
-const POSITION_ROUNDING: f64 = 1e-6;
-
 fn near(a: f64, b: f64, distance: f64) -> bool {
     (a - b).abs() <= distance + POSITION_ROUNDING * b.abs()
 }
@@ -119,111 +242,70 @@ pub(super) fn check_length(what: &'static str, found: usize, expected: usize) ->
     if found == expected { Ok(()) } else { Err(RestoreError::Length { what, found, expected }) }
 }
 
-fn check_lengths(found: &LayerState, expected: &LayerState) -> Result<(), RestoreError> {
-    let (state, rates) = (lengths_of_state(&found.state), lengths_of_rates(&found.rates));
-    let (expected_state, expected_rates) = (lengths_of_state(&expected.state), lengths_of_rates(&expected.rates));
-    for ((what, found), (_, expected)) in state.into_iter().zip(expected_state) {
-        check_length(what, found, expected)?;
+/// Checks that the arrays of `found` are as long as those `expected`, and finite.
+fn check_layer(found: &LayerState, expected: &LayerState) -> Result<(), RestoreError> {
+    check_length("modes", found.state.mode.len(), expected.state.mode.len())?;
+    check_length("surface points", found.state.surface.len(), expected.state.surface.len())?;
+    for ((what, found), (_, expected)) in arrays(found).into_iter().zip(arrays(expected)) {
+        check_length(what, found.len(), expected.len())?;
+        check_finite(what, found)?;
     }
-    for ((what, found), (_, expected)) in rates.into_iter().zip(expected_rates) {
-        check_length(what, found, expected)?;
-    }
-    Ok(())
+    let mut points = found.state.surface.iter();
+    points.try_for_each(|point| check_finite("surface points", &<[f64; 4]>::from(*point)))
 }
 
-fn lengths_of_state(state: &State) -> [(&'static str, usize); 7] {
-    let State { elongation_x, elongation_z, velocity_x, velocity_z, maxwell, mode, surface } = state;
+/// The arrays of numbers of a layer and its rates.
+fn arrays(layer: &LayerState) -> [(&'static str, &[f64]); 15] {
+    let State { elongation_x, elongation_z, velocity_x, velocity_z, maxwell, mode: _, surface: _ } = &layer.state;
+    let rates = &layer.rates;
+    let Rates { velocity_x: rate_x, velocity_z: rate_z, acceleration_x, acceleration_z, .. } = rates;
+    let Rates { elongation_rate: [vertical, horizontal, lateral_x, lateral_z], normal, margin, .. } = rates;
     [
-        ("modes", mode.len()),
-        ("elongations along x", elongation_x.len()),
-        ("elongations along z", elongation_z.len()),
-        ("velocities along x", velocity_x.len()),
-        ("velocities along z", velocity_z.len()),
-        ("Maxwell elongations", maxwell.len()),
-        ("surface points", surface.len()),
+        ("elongations along x", elongation_x),
+        ("elongations along z", elongation_z),
+        ("velocities along x", velocity_x),
+        ("velocities along z", velocity_z),
+        ("Maxwell elongations", maxwell),
+        ("rates of positions along x", rate_x),
+        ("rates of positions along z", rate_z),
+        ("accelerations along x", acceleration_x),
+        ("accelerations along z", acceleration_z),
+        ("elongation rates of vertical links", vertical),
+        ("elongation rates of horizontal links", horizontal),
+        ("elongation rates of lateral links along x", lateral_x),
+        ("elongation rates of lateral links along z", lateral_z),
+        ("normal forces", normal),
+        ("margins", margin),
     ]
 }
 
-fn lengths_of_rates(rates: &Rates) -> [(&'static str, usize); 10] {
-    let Rates { velocity_x, velocity_z, acceleration_x, acceleration_z, elongation_rate, normal, margin } = rates;
-    let [vertical, horizontal, lateral_x, lateral_z] = elongation_rate;
-    [
-        ("velocities along x", velocity_x.len()),
-        ("velocities along z", velocity_z.len()),
-        ("accelerations along x", acceleration_x.len()),
-        ("accelerations along z", acceleration_z.len()),
-        ("elongation rates of vertical links", vertical.len()),
-        ("elongation rates of horizontal links", horizontal.len()),
-        ("elongation rates of lateral links along x", lateral_x.len()),
-        ("elongation rates of lateral links along z", lateral_z.len()),
-        ("normal forces", normal.len()),
-        ("margins", margin.len()),
-    ]
-}
-
-/// Checks that all numbers are finite and that those are positive that have to be.
+/// Checks that all other numbers are finite and that those are positive that have to be.
 fn check_numbers(run: &RunState) -> Result<(), RestoreError> {
-    let RunState {
-        carrier,
-        s,
-        layer: LayerState { state, rates, exchange, largest },
-        rates_valid: _,
-        energies,
-        counters,
-        step_size,
-        event_spacing,
-        since_event,
-        step_after_event,
-        tangents,
-        start,
-        temperature,
-        time_stepping: _,
-        mode_changes_per_step,
-    } = run;
-    check_finite("the carrier's motion", &carrier.numbers().collect::<Vec<_>>())?;
-    check_finite("the energies", &energies.numbers())?;
-    check_finite("the largest error or force", &counters.numbers())?;
-    if !tangents.are_finite() {
-        return Err(RestoreError::Number { what: "the tangents", value: f64::NAN });
-    }
-    check_finite("the carrier's displacement at the start", start)?;
-    check_finite("the temperature", &[*temperature])?;
-    check_finite("the powers", &[exchange.friction, exchange.shear, exchange.input, exchange.carrier])?;
-    check_finite("the largest forces and energies", &[largest.force_x, largest.force_z, largest.energy])?;
-    let scalars = [
-        ("the time since the carrier's last kink", *s),
-        ("the step size", *step_size),
-        ("the time between events", *event_spacing),
-        ("the time since the last event", *since_event),
-        ("the step after the last event", *step_after_event),
-        ("the mode changes per time step", *mode_changes_per_step),
+    let LayerState { exchange, largest, .. } = &run.layer;
+    let Controller { step_size, event_spacing, since_event, step_after_event } = run.controller;
+    let numbers: [(&'static str, &[f64]); 13] = [
+        ("the carrier's motion", &run.carrier.numbers().collect::<Vec<_>>()),
+        ("the time since the carrier's last kink", &[run.s]),
+        ("the powers", &[exchange.friction, exchange.shear, exchange.input, exchange.carrier]),
+        ("the largest forces and energies", &[largest.force_x, largest.force_z, largest.energy]),
+        ("the energies", &run.energies.numbers()),
+        ("the largest error or force", &run.counters.numbers()),
+        ("the step size", &[step_size]),
+        ("the time between events", &[event_spacing]),
+        ("the time since the last event", &[since_event]),
+        ("the step after the last event", &[step_after_event]),
+        ("the carrier's displacement at the start", &run.start),
+        ("the temperature", &[run.temperature]),
+        ("the mode changes per time step", &[run.mode_changes_per_step]),
     ];
-    for (what, value) in scalars {
-        check_finite(what, &[value])?;
-    }
-    check_layer(state, rates)?;
-    match (*s, *step_size) {
-        (s, _) if s < 0.0 => Err(RestoreError::Number { what: "the time since the carrier's last kink", value: s }),
-        (_, step) if step <= 0.0 => Err(RestoreError::Number { what: "the step size", value: step }),
+    numbers.into_iter().try_for_each(|(what, values)| check_finite(what, values))?;
+    let refuse = |what, value| Err(RestoreError::Number { what, value });
+    match (run.s, step_size) {
+        _ if !run.tangents.are_finite() => refuse("the tangents", f64::NAN),
+        (s, _) if s < 0.0 => refuse("the time since the carrier's last kink", s),
+        (_, step) if step <= 0.0 => refuse("the step size", step),
         _ => Ok(()),
     }
-}
-
-fn check_layer(state: &State, rates: &Rates) -> Result<(), RestoreError> {
-    let State { elongation_x, elongation_z, velocity_x, velocity_z, maxwell, mode: _, surface } = state;
-    check_finite("an elongation", elongation_x)?;
-    check_finite("an elongation", elongation_z)?;
-    check_finite("a velocity", velocity_x)?;
-    check_finite("a velocity", velocity_z)?;
-    check_finite("a Maxwell elongation", maxwell)?;
-    for point in surface {
-        check_finite("a surface point", &[point.height, point.slope, point.curvature, point.third])?;
-    }
-    let Rates { velocity_x, velocity_z, acceleration_x, acceleration_z, elongation_rate, normal, margin } = rates;
-    for values in [velocity_x, velocity_z, acceleration_x, acceleration_z, normal, margin] {
-        check_finite("a rate", values)?;
-    }
-    LinkKind::ALL.into_iter().try_for_each(|kind| check_finite("a rate", &elongation_rate[kind as usize]))
 }
 
 fn check_finite(what: &'static str, values: &[f64]) -> Result<(), RestoreError> {
@@ -302,7 +384,7 @@ mod tests {
             assert_eq!((first.advance(&lift), second.advance(&lift)), (Ok(()), Ok(())));
             assert_eq!(first.state(), second.state());
         }
-        assert!(first.run.state.layer.state.mode.iter().all(|&mode| mode == Mode::Free));
+        assert!(first.run.context.state.layer.state.mode.iter().all(|&mode| mode == Mode::Free));
     }
 
     #[test]
@@ -317,14 +399,19 @@ mod tests {
         assert_eq!(refused(&|run| run.layer.state.mode.push(Mode::Free)), "7 modes, expected 6");
         assert_eq!(refused(&|run| run.layer.rates.normal.truncate(2)), "2 normal forces, expected 6");
         for bad in [f64::NAN, f64::INFINITY] {
-            assert!(refused(&|run| run.layer.state.velocity_x[3] = bad).starts_with("invalid state: a velocity = "));
-            assert!(refused(&|run| run.layer.rates.margin[0] = bad).starts_with("invalid state: a rate = "));
+            assert!(
+                refused(&|run| run.layer.state.velocity_x[3] = bad).starts_with("invalid state: velocities along x = ")
+            );
+            assert!(refused(&|run| run.layer.rates.margin[0] = bad).starts_with("invalid state: margins = "));
             assert!(refused(&|run| run.energies.impact = bad).starts_with("invalid state: the energies = "));
             assert!(refused(&|run| run.carrier.time = bad).starts_with("invalid state: the carrier's motion = "));
-            assert!(refused(&|run| run.event_spacing = bad).starts_with("invalid state: the time between events = "));
+            assert!(
+                refused(&|run| run.controller.event_spacing = bad)
+                    .starts_with("invalid state: the time between events = ")
+            );
         }
         assert!(refused(&|run| run.s = -1.0).contains("the carrier's last kink = -1"));
-        assert!(refused(&|run| run.step_size = 0.0).contains("the step size = 0"));
+        assert!(refused(&|run| run.controller.step_size = 0.0).contains("the step size = 0"));
         let mut frictionless = scene.clone();
         frictionless.friction = None;
         let error = Simulation::restore(&frictionless, &stuck(&state)).unwrap_err();
@@ -334,7 +421,7 @@ mod tests {
     /// The same with mass 3 sticking, and no other.
     fn stuck(state: &SimulationState) -> SimulationState {
         let mut state = state.clone();
-        for run in [Some(&mut state.run), state.error_run.as_mut()].into_iter().flatten() {
+        for run in [Some(&mut state.run), state.reference_run.as_mut()].into_iter().flatten() {
             let modes = &mut run.layer.state.mode;
             modes.iter_mut().filter(|mode| **mode == Mode::Stick).for_each(|mode| *mode = Mode::Forward);
             modes[2] = Mode::Stick;
@@ -349,7 +436,7 @@ mod tests {
         let mut simulation = run(&scene);
         let before = simulation.state();
         let mut state = before.clone();
-        state.error_run.as_mut().unwrap().s = -1.0;
+        state.reference_run.as_mut().unwrap().s = -1.0;
         state.run.start = [1.0, 1.0];
         assert!(simulation.set_state(&state).is_err());
         assert_eq!(simulation.state(), before);
@@ -359,11 +446,11 @@ mod tests {
     fn a_mass_in_contact_stands_on_the_scenes_profile() {
         let scene = scene();
         let simulation = run(&scene);
-        let mass = (0..6).find(|&i| simulation.run.state.layer.state.mode[i].in_contact()).unwrap();
+        let mass = (0..6).find(|&i| simulation.run.context.state.layer.state.mode[i].in_contact()).unwrap();
         let part: [fn(&mut Simulation, usize) -> &mut f64; 3] = [
-            |simulation, i| &mut simulation.run.state.layer.state.surface[i].height,
-            |simulation, i| &mut simulation.run.state.layer.state.surface[i].slope,
-            |simulation, i| &mut simulation.run.state.layer.state.elongation_x[i],
+            |simulation, i| &mut simulation.run.context.state.layer.state.surface[i].height,
+            |simulation, i| &mut simulation.run.context.state.layer.state.surface[i].slope,
+            |simulation, i| &mut simulation.run.context.state.layer.state.elongation_x[i],
         ];
         for part in part {
             let mut changed = simulation.clone();

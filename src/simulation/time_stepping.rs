@@ -1,92 +1,53 @@
 //! The time-stepping method: steps of two stages, in which contacts stop and break loose; any number of touches and lifts
 //! is corrected at the end of each.
 
-use super::driver::{AFTER_FAILURE, StepBounds, TrialStep, WorkLimit};
+use super::context::Context;
+use super::controller::{GROWTH, TrialStep, WorkLimit};
 use super::motion::SimulationError;
-use super::run::Run;
-use crate::contact::{FixedModeStep, longest_weakening};
-use crate::integrator::StepAttempt;
-use crate::model::ChannelEnergies;
+use super::stepper::{ErrorTest, Stepper};
+use crate::contact::{EndCorrection, FixedModeStep, longest_weakening};
+use crate::integrator::{StepAttempt, TwoStageDense};
+use crate::model::{ChannelEnergies, Model};
 
-/// A new step is this share of what the error allows. Mode changes come unforeseen, so it is less than in smooth
+/// A new step is this fraction of what the error allows. Mode changes come unforeseen, so it is less than in smooth
 /// motion.
 const SAFETY: f64 = 0.8;
-/// The least and the most by which one step differs from the one before.
-const GROWTH: (f64, f64) = (0.2, 5.0);
+/// The most that mode changes not yet corrected may change F_z where a row is shown within a step, as a multiple of
+/// the relative tolerance. That bounds all of them together at the step's end; a row shows what touches change, so its error
+/// is a small part of that.
+const MAX_UNCORRECTED: f64 = 3.0;
 
-impl Run {
-    /// Tries steps until one is good. The shortest is accepted whatever its error: its mode changes are corrected as
-    /// those of any other.
-    pub(super) fn next_time_step(
-        &mut self,
-        bounds: &StepBounds,
-        work: &mut WorkLimit,
-    ) -> Result<TrialStep, SimulationError> {
-        let mut h = bounds.fit(self.state.step_size.min(bounds.longest));
-        loop {
-            self.count_work(work)?;
-            if let Some(attempt) = self.try_time_step(h, h <= bounds.shortest) {
-                let grown = h * growth(attempt.error);
-                let next = if h < bounds.remaining { grown } else { grown.max(self.state.step_size) };
-                self.state.step_size = next.min(self.longest_weakening());
-                return Ok(TrialStep { h, share: 1.0 });
-            }
-            if h <= bounds.shortest {
-                return Err(self.step_too_small(h));
-            }
-            h = self.state.step_size.max(bounds.shortest);
-        }
+/// The time steps of a layer.
+#[derive(Clone, Debug)]
+pub(super) struct TimeStepping {
+    end_correction: EndCorrection,
+}
+
+impl TimeStepping {
+    /// The steps of a layer of `model`, if they are used.
+    pub(super) fn new(model: &Model, is_used: bool) -> Self {
+        Self { end_correction: EndCorrection::new(model, is_used) }
     }
 
-    /// The longest step, s, that resolves the instability of contacts whose friction falls with the speed that they
-    /// have at the end of the step tried last.
-    fn longest_weakening(&self) -> f64 {
-        let integrator = &self.workspace.integrator;
-        longest_weakening(&self.model, integrator.end(), integrator.end_forces())
-    }
-
-    /// Tries a step of length `h`; `None` where it is rejected: the run's step size is then a better length.
-    pub(super) fn try_time_step(&mut self, h: f64, any_error: bool) -> Option<StepAttempt> {
-        let Self { model, settings, state, workspace, .. } = self;
-        workspace.interpolated_at = None;
-        let (layer, carrier, span) = (&state.layer, &state.carrier, state.span(h));
-        let attempt = workspace.integrator.attempt_two_stages(model, layer, carrier, span, &settings.tolerance);
-        self.trace_bodies(h);
-        let attempt = attempt.ok().map(|attempt| self.with_lateness(h, attempt));
-        let error = attempt.map_or(f64::NAN, |attempt| attempt.error);
-        if error <= 1.0 || (any_error && error.is_finite()) {
-            return attempt;
-        }
-        self.state.counters.rejected += 1;
-        self.state.step_size = h * if error.is_finite() { growth(error).min(SAFETY) } else { AFTER_FAILURE };
-        None
-    }
-
-    /// The attempt of length `h` with the error that the lateness of its mode changes adds.
-    fn with_lateness(&mut self, h: f64, attempt: StepAttempt) -> StepAttempt {
-        let Self { model, settings, state, workspace, .. } = self;
-        let step = workspace.integrator.two_stage_dense(model, &state.carrier, &state.layer.state, state.span(h));
-        let late = workspace.end_correction.detect(&step, &settings.tolerance);
-        StepAttempt { error: attempt.error.hypot(late), ..attempt }
-    }
-
-    /// Accepts the step of length `h` tried last, which ends at the time `end` of the piece, with its mode changes
-    /// corrected.
-    pub(super) fn accept_time_step(&mut self, h: f64, end: f64) {
-        let Self { model, settings, state, workspace, .. } = self;
-        let integrator = &mut workspace.integrator;
+    /// Accepts a step, which ends at the time `end` of the motion, with its mode changes corrected.
+    pub(super) fn accept(&mut self, context: &mut Context, step: &TrialStep, end: f64) {
+        // The energies of the step without its mode changes.
+        let h = step.h;
+        let Context { model, settings, state, integrator, .. } = context;
         let start = &state.layer.state;
         let gain = settings.accounts.energy.then(|| {
             let missed = integrator.friction_between_stages(model, start, h);
             let shown = integrator.two_stage_energies(model, start, h, 1.0);
             ChannelEnergies { friction: shown.friction + missed, ..shown }
         });
-        workspace.interpolated_at = None;
-        workspace.modes_before.copy_from_slice(&start.mode);
+        // The mode changes, corrected in the state at its end.
+        context.interpolated_at = None;
+        context.modes_before.copy_from_slice(&start.mode);
         let span = state.span(h);
         let (step_end, first) = integrator.end_mut();
-        let step = FixedModeStep { model, carrier: &state.carrier, span, start, first };
-        let corrected = workspace.end_correction.apply(step, step_end);
+        let fixed = FixedModeStep { model, carrier: &state.carrier, span, start, first };
+        let corrected = self.end_correction.apply(fixed, step_end);
+        // What they change of the energies and of the carrier.
         if let Some(gain) = gain {
             let energies = &mut state.energies;
             energies.channels.add(&gain);
@@ -97,15 +58,107 @@ impl Run {
         if let Some(corrected) = &corrected {
             state.carrier.push(&mut point, model, corrected.impulse);
         }
+        // The end of the step becomes the start of the next.
         state.carrier.take_step(end, &point);
         integrator.accept_two_stages(&mut state.layer);
         state.counters.steps += 1;
         state.s = end;
-        if workspace.modes_before != state.layer.state.mode {
+        if context.modes_before != state.layer.state.mode {
             integrator.refresh_tangents_after(model, &state.layer, end);
-            self.count_mode_changes();
+            context.record_mode_changes();
+        }
+        context.record_largest_energy();
+    }
+
+    /// Tries a step of length `h`; `None` where it is rejected: the controller's step size is then a better length.
+    fn try_step(&mut self, context: &mut Context, h: f64, test: ErrorTest) -> Option<StepAttempt> {
+        context.interpolated_at = None;
+        let Context { model, settings, state, integrator, .. } = context;
+        let (layer, carrier, span) = (&state.layer, &state.carrier, state.span(h));
+        let attempt = integrator.attempt_two_stages(model, layer, carrier, span, &settings.tolerance).ok();
+        context.trace_bodies(h);
+        let attempt = attempt.map(|attempt| self.with_lateness(context, h, attempt));
+        let error = attempt.map_or(f64::NAN, |attempt| attempt.error);
+        if error <= 1.0 || (test == ErrorTest::Solved && error.is_finite()) {
+            return attempt;
+        }
+        context.state.counters.rejected += 1;
+        let ratio = error.is_finite().then(|| growth(error).min(SAFETY));
+        context.state.controller.reject(h, ratio, f64::MAX);
+        None
+    }
+
+    /// The attempt of length `h` with the error that the lateness of its mode changes adds.
+    fn with_lateness(&mut self, context: &Context, h: f64, attempt: StepAttempt) -> StepAttempt {
+        let late = self.end_correction.detect(&dense_output(context, h), &context.settings.tolerance);
+        StepAttempt { error: attempt.error.hypot(late), ..attempt }
+    }
+}
+
+impl Stepper for TimeStepping {
+    /// The shortest step is accepted whatever its error: its mode changes are corrected as those of any other.
+    fn next_step(
+        &mut self,
+        context: &mut Context,
+        duration: f64,
+        work: &mut WorkLimit,
+    ) -> Result<TrialStep, SimulationError> {
+        let bounds = context.length_bounds(duration)?;
+        let mut h = bounds.fit(context.state.controller.step_size.min(bounds.longest));
+        loop {
+            work.count(context.state.time())?;
+            let test = if h <= bounds.shortest { ErrorTest::Solved } else { ErrorTest::Full };
+            if let Some(attempt) = self.try_step(context, h, test) {
+                let Context { model, state: run, integrator, .. } = context;
+                // The next one resolves the instability of contacts whose friction falls with the speed that they have now.
+                let longest = longest_weakening(model, integrator.end(), integrator.end_forces());
+                let grown = h * growth(attempt.error);
+                run.controller.step_size = run.controller.propose((h, grown), bounds.remaining, longest);
+                return Ok(TrialStep { h, fraction: 1.0 });
+            }
+            if h <= bounds.shortest {
+                return Err(context.step_too_small(h));
+            }
+            h = context.state.controller.step_size.max(bounds.shortest);
         }
     }
+
+    fn try_shorter(&mut self, context: &mut Context, h: f64, test: ErrorTest) -> bool {
+        self.try_step(context, h, test).is_some()
+    }
+
+    fn channel_energies(&mut self, context: &mut Context, h: f64, theta: f64) -> ChannelEnergies {
+        let Context { model, state, integrator, .. } = context;
+        integrator.two_stage_energies(model, &state.layer.state, h, theta)
+    }
+
+    fn on_carrier(&mut self, context: &mut Context, h: f64, theta: f64) -> (f64, f64) {
+        let Context { model, state, integrator, .. } = context;
+        let start = &state.layer.state;
+        let (x, z) = integrator.two_stage_on_carrier(model, &state.carrier, start, state.span(h), theta);
+        let of_touches = self.end_correction.forces_of_touches(&dense_output(context, h), theta);
+        (x + of_touches.0, z + of_touches.1)
+    }
+
+    fn dissipated_power(&mut self, context: &mut Context, h: f64, theta: f64) -> Option<f64> {
+        let Context { model, settings, state, integrator, .. } = context;
+        let power = || integrator.two_stage_dissipated_power(model, &state.layer.state, h, theta);
+        settings.accounts.energy.then(power)
+    }
+
+    /// Touches and lifts are corrected at the end of a step, and its dense output is not: it is shown before them, and
+    /// where they change F_z little.
+    fn can_show(&self, context: &Context, h: f64, theta: f64) -> bool {
+        let (correction, relative) = (&self.end_correction, context.settings.tolerance.relative);
+        let allowed = MAX_UNCORRECTED * relative * context.integrator.end_forces().on_carrier_z().abs();
+        correction.uncorrected_force() < allowed || correction.comes_after(&dense_output(context, h), theta)
+    }
+}
+
+/// The dense output of the step of length `h` (s) tried last.
+fn dense_output(context: &Context, h: f64) -> TwoStageDense<'_> {
+    let Context { model, state, integrator, .. } = context;
+    integrator.two_stage_dense(model, &state.carrier, &state.layer.state, state.span(h))
 }
 
 /// The ratio of the next step to one with this error over the tolerance.

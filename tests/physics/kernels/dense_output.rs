@@ -1,6 +1,6 @@
 //! The dense output of the method of seven stages, against exact solutions.
 
-use asperity::integrator::{DenseWorkspace, LayerStep, Motions, PartOfStep, StepSpan};
+use asperity::integrator::{DenseWorkspace, Motions, PartSums, StepSpan, WholeLayer};
 use asperity::model::{Forces, State};
 use nalgebra::Vector2;
 
@@ -203,14 +203,14 @@ fn parts_of_a_step_make_the_whole() {
         let mut workspace = DenseWorkspace::new(model);
         let span = StepSpan { start: 0.0, length: h };
         let start = &start.state;
-        let mut step = LayerStep { integrator, model, carrier, start, span, workspace: &mut workspace };
+        let mut step = WholeLayer { integrator, model, carrier, start, span, workspace: &mut workspace };
         let mut joined = State::new(model.masses(), model.maxwell_variables());
         let (mut sums, mut powers) = ([0.0; 7], Vec::new());
         let middle = 1 + case % (model.masses() - 1);
         for masses in [0..middle, middle..model.masses()] {
             let mut part = model.part(masses.len());
             part.move_part(model, masses.start);
-            let mut of_part = PartOfStep::new(&part, 0);
+            let mut of_part = PartSums::new(&part, 0);
             of_part.begin(&mut step, &part, masses.start);
             let mut state = State::new(part.masses(), part.maxwell_variables());
             let (dense, workspace) = step.dense(&masses);

@@ -1,6 +1,6 @@
 //! A part of a layer, some masses in a row, as a layer of its own.
 
-use super::{Model, State};
+use crate::model::{Model, State};
 
 impl Model {
     /// A layer of the first `masses` of this one.

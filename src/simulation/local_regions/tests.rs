@@ -1,4 +1,4 @@
-//! Runs with windows beside those of the same scene without.
+//! Runs with local regions, and those of the same scene without.
 
 use std::path::Path as FilePath;
 
@@ -9,7 +9,7 @@ use crate::simulation::{ModeChange, Motion, Simulation, Start};
 
 const TOLERANCE: f64 = 1e-5;
 const MASSES: usize = 160;
-/// A force that no scene reaches, N: a run that is to end there opens no windows.
+/// A force that no scene reaches, N: a run that is to end there opens no regions.
 const NEVER: f64 = 1e30;
 
 /// A block of 160 masses over waves: every mass touches and lifts, slips, stops and sticks.
@@ -65,7 +65,7 @@ impl Rows {
 }
 
 #[test]
-fn a_run_with_windows_is_one_that_is_cut_at_every_change() {
+fn a_run_with_regions_is_one_that_is_cut_at_every_change() {
     let scene = scene("'forces', 'dissipation', 'energy', 'solver'");
     let (with, without) = (Rows::of(&scene, 300, None), Rows::of(&scene, 300, Some(NEVER)));
     for axis in [0, 1] {
@@ -88,10 +88,10 @@ fn a_run_with_windows_is_one_that_is_cut_at_every_change() {
 
 /// The mode after a change is that before the next one of the same mass.
 #[test]
-fn every_mode_change_in_a_window_is_recorded_once() {
+fn every_mode_change_in_a_region_is_recorded_once() {
     let scene = scene("'forces', 'solver'");
     let of = |simulation: &Simulation| -> Vec<i8> {
-        simulation.run.state.layer.state.mode.iter().map(|mode| mode.number()).collect()
+        simulation.run.context.state.layer.state.mode.iter().map(|mode| mode.number()).collect()
     };
     let mut modes = of(&Simulation::new(&scene, &Start::default()).unwrap());
     let run = Rows::of(&scene, 100, None);
@@ -105,7 +105,7 @@ fn every_mode_change_in_a_window_is_recorded_once() {
 }
 
 #[test]
-fn rows_do_not_change_a_run_with_windows() {
+fn rows_do_not_change_a_run_with_regions() {
     let scene = scene("'forces', 'energy', 'elements'");
     let (rare, many) = (Rows::of(&scene, 1, None), Rows::of(&scene, 777, None));
     assert_eq!(rare.end, many.end);
@@ -113,7 +113,7 @@ fn rows_do_not_change_a_run_with_windows() {
 }
 
 #[test]
-fn a_restored_run_with_windows_goes_on_bit_for_bit() {
+fn a_restored_run_with_regions_goes_on_bit_for_bit() {
     let scene = scene("'forces', 'energy', 'solver', 'elements'");
     let mut run = Rows::of(&scene, 10, None).simulation;
     let mut restored = Simulation::restore(&scene, &run.state()).unwrap();
@@ -124,9 +124,9 @@ fn a_restored_run_with_windows_goes_on_bit_for_bit() {
     assert!(variables(&scene).len() > MASSES);
 }
 
-/// A motion that fails leaves neither windows nor their mode changes behind.
+/// A motion that fails leaves neither regions nor their mode changes behind.
 #[test]
-fn a_motion_rolled_back_leaves_no_windows() {
+fn a_motion_rolled_back_leaves_no_regions() {
     let mut scene = scene("'forces', 'solver'");
     scene.solver.max_steps = 60;
     let mut simulation = Simulation::new(&scene, &Start::default()).unwrap();

@@ -1,29 +1,31 @@
-//! The error of a run, estimated by a second run of the same layer at a tighter tolerance.
+//! The error of a run, estimated by a reference run: a second one of the same layer at a tighter tolerance.
 //!
 //! Errors of single steps say little about the error of a run: damped motion forgets them, impacts and stick-slip
-//! multiply them, and where a touch was missed there is none to add up. A more accurate run beside it sees all of that.
+//! multiply them, and where a touch was missed there is none to add up. A more accurate run sees all of that.
 //! Where errors fall with the tolerance, the two differ by 1 - [`TIGHTER`] of the less accurate one's error. Where stick and
 //! slip get out of step they do not fall: the two then differ by far more than the tolerance, and in the number of their
 //! mode changes ([`Divergence`]).
 
 use std::sync::Arc;
 
-use super::driver::{TrialStep, WorkLimit};
+use super::controller::{TrialStep, WorkLimit};
 use super::motion::{Divergence, Motion, SimulationError, Start};
-use super::run::{Run, RunState, Settings};
+use super::run::Run;
+use super::settings::Settings;
+use super::state::RunState;
 use crate::contact::EventTolerance;
 use crate::integrator::Tolerance;
 use crate::model::{BodyStart, Model};
 use crate::outputs::{Accounts, Monitored, Snapshot};
 
-/// The error-estimation run's tolerance, as a share of the run's.
+/// The reference run's tolerance, as a fraction of the run's.
 ///
 /// Recommended 0.1 to 0.5. Smaller sees more where errors do not fall evenly, but costs more: with 0.2 this run takes
 /// 1.4 times the run's steps where events are located, 2.2 times with time-stepping.
 const TIGHTER: f64 = 0.2;
-/// The share of the error that shows in the difference of the two runs, where errors fall with the tolerance.
-const VISIBLE_SHARE: f64 = 1.0 - TIGHTER;
-/// Its steps are at most this share of the run's. Where steps only grow, both would take the same, with the same error.
+/// The fraction of the error that shows in the difference of the two runs, where errors fall with the tolerance.
+const VISIBLE: f64 = 1.0 - TIGHTER;
+/// Its steps are at most this fraction of the run's. Where steps only grow, both would take the same, with the same error.
 const SHORTER: f64 = 0.7;
 /// Limit of its work in one motion, as a multiple of the run's, in addition to [`MIN_WORK`]. Beyond it the error is not
 /// estimated: the two runs differ in kind then, as where one mass slips along what it flies over in the other.
@@ -36,62 +38,54 @@ const DIVERGED: f64 = 30.0;
 /// Number of steps that it may try in any motion, however few the run itself takes.
 const MIN_WORK: u64 = 10_000;
 
-/// A more accurate run that follows another one: never behind it when it is compared.
+/// A more accurate run that follows the one whose error is estimated: never behind it when it is compared.
 #[derive(Clone, Debug)]
-pub(super) struct ErrorRun {
+pub(super) struct ReferenceRun {
     pub(super) run: Run,
     /// The duration of the motion under way, s.
     duration: f64,
     work: WorkLimit,
-    /// Steps that the run beside it has tried in this motion.
-    steps_beside: u64,
+    /// Steps that the run has tried in this motion.
+    steps_of_run: u64,
     /// The step tried last, of which only a part may have been asked for, and its end, s after the start of the motion.
     pending: Option<(TrialStep, f64)>,
     /// Whether it could not go on in this motion.
     failed: bool,
 }
 
-impl ErrorRun {
-    /// The error-estimation run of one with these `settings`.
+impl ReferenceRun {
+    /// The reference run of one with these `settings`.
     pub(super) fn new(model: &Arc<Model>, settings: &Settings, start: &Start, bodies: &[Option<BodyStart>; 2]) -> Self {
         let run = Run::new(Arc::clone(model), settings.tighter(model), start, bodies);
-        let work = WorkLimit::new(run.settings.max_steps);
-        Self { run, duration: 0.0, work, steps_beside: 0, pending: None, failed: false }
+        let work = WorkLimit::new(run.context.settings.max_steps);
+        Self { run, duration: 0.0, work, steps_of_run: 0, pending: None, failed: false }
     }
 
-    pub(super) fn bytes(&self) -> usize {
-        self.run.bytes()
-    }
-
-    pub(super) fn keep_checkpoint(&mut self) {
-        self.run.keep_checkpoint();
-    }
-
-    pub(super) fn roll_back(&mut self) {
+    /// Forgets the step tried last, of a motion that is rolled back.
+    pub(super) fn discard_pending(&mut self) {
         self.pending = None;
-        self.run.roll_back();
     }
 
     /// Begins `motion`.
-    pub(super) fn enter(&mut self, motion: &Motion) {
-        (self.duration, self.steps_beside, self.failed) = (motion.duration, 0, false);
-        self.work = WorkLimit::new(self.run.settings.max_steps);
-        self.run.enter(motion);
+    pub(super) fn begin(&mut self, motion: &Motion) {
+        (self.duration, self.steps_of_run, self.failed) = (motion.duration, 0, false);
+        self.work = WorkLimit::new(self.run.context.settings.max_steps);
+        self.run.begin(motion);
     }
 
-    /// The run beside takes a step of length `h` (s), and has tried `steps` in this motion: the next step here is no
-    /// longer than a share of it.
+    /// The run takes a step of length `h` (s), and has tried `steps` in this motion: the next step here is no longer than a
+    /// fraction of it.
     pub(super) fn record_step(&mut self, h: f64, steps: u64) {
-        self.steps_beside = steps;
-        self.run.state.step_size = self.run.state.step_size.min(SHORTER * h);
+        self.steps_of_run = steps;
+        self.run.context.state.controller.limit(SHORTER * h);
     }
 
-    /// Includes in the counters of `snapshot`, the run beside at the time `s` of the motion, by how much it is off. Where
-    /// this run could not go on, the errors are unknown and count as large as the quantities themselves.
+    /// Includes in the counters of `snapshot`, of the run at the time `s` of the motion, by how much it is off. Where the
+    /// reference could not go on, the errors are unknown and count as large as the quantities themselves.
     pub(super) fn compare(&mut self, s: f64, snapshot: &mut Snapshot<'_>) {
-        let found = snapshot.monitored(self.run.settings.accounts.energy);
+        let found = snapshot.monitored(self.run.context.settings.accounts.energy);
         match self.monitored_at(s) {
-            Some(reference) => snapshot.counters.record_error(&found, &reference, VISIBLE_SHARE),
+            Some(reference) => snapshot.counters.record_error(&found, &reference, VISIBLE),
             None => snapshot.counters.record_unknown(&found),
         }
     }
@@ -110,53 +104,53 @@ impl ErrorRun {
     /// The quantities compared at the time `s`; the run stands there if it `ends` there, or before a step that goes
     /// beyond it.
     fn follow_to(&mut self, s: f64, ends: bool) -> Result<Monitored, SimulationError> {
-        let tracked = self.run.settings.accounts.energy;
-        while self.run.state.s < s {
-            let steps = self.work.tried();
-            if steps > MIN_WORK + MORE_WORK.saturating_mul(self.steps_beside) {
-                return Err(SimulationError::TooManySteps { time: self.run.state.time(), steps });
+        let tracked = self.run.context.settings.accounts.energy;
+        while self.run.context.state.s < s {
+            let steps = self.work.tried;
+            if steps > MIN_WORK + MORE_WORK.saturating_mul(self.steps_of_run) {
+                return Err(SimulationError::TooManySteps { time: self.run.context.state.time(), steps });
             }
             let (mut step, mut end) = match self.pending.take() {
                 Some(pending) => pending,
                 None => {
                     let step = self.run.next_step(self.duration, &mut self.work)?;
-                    (step, self.run.end_of(&step, self.duration))
+                    (step, step.end(self.run.context.state.s, self.duration))
                 }
             };
             if s < end && (ends || !self.run.can_show_within(&step, s)) {
                 (step, end) = self.run.cut_step_at(s, self.duration, &mut self.work)?;
             }
-            end = self.run.advance_windows(&mut step, (s.min(end), end), &mut self.work)?;
+            end = self.run.advance_regions(&mut step, (s.min(end), end), &mut self.work)?;
             if s < end {
-                let theta = (s - self.run.state.s) / step.h;
+                let theta = self.run.context.state.fraction_at(s, step.h);
                 self.pending = Some((step, end));
-                return Ok(self.run.snapshot_within(step.h, theta, 0.0).monitored(tracked));
+                return Ok(self.run.snapshot_within(step.h, theta).monitored(tracked));
             }
             self.run.take_step(&step, end);
         }
-        Ok(self.run.snapshot(0.0).monitored(tracked))
+        Ok(self.run.snapshot().monitored(tracked))
     }
 
-    /// Why the run beside this one, which stands at the same time, does not converge; `None` where nothing shows that.
-    pub(super) fn divergence(&self, beside: &Run) -> Option<Divergence> {
-        let (counters, tolerance) = (&beside.state.counters, beside.settings.tolerance.relative);
-        let (error, mode_changes) = (counters.force_error(), [counters.events, self.run.state.counters.events]);
+    /// Why `run`, which stands at the same time, does not converge; `None` where nothing shows that.
+    pub(super) fn divergence(&self, run: &Run) -> Option<Divergence> {
+        let (counters, tolerance) = (&run.context.state.counters, run.context.settings.tolerance.relative);
+        let (error, mode_changes) = (counters.force_error(), [counters.events, self.run.context.state.counters.events]);
         let diverged = error > DIVERGED * tolerance && mode_changes[0] != mode_changes[1];
         diverged.then_some(Divergence { error, tolerance, mode_changes })
     }
 
-    /// Ends the motion where the run beside it stands, in `state`. If this run could not go on, it continues from there.
+    /// Ends the motion where the run stands, in `state`. If the reference could not go on, it continues from there.
     pub(super) fn end_motion(&mut self, state: &RunState) {
         self.failed = self.failed || self.follow_to(state.s, true).is_err();
         if self.failed {
             self.pending = None;
-            self.run.state.copy_from(state);
+            self.run.context.state.copy_from(state);
         }
     }
 }
 
 impl Settings {
-    /// The settings of the error-estimation run of one with these.
+    /// The settings of the reference run of one with these.
     pub(super) fn tighter(&self, model: &Model) -> Self {
         let tolerance = Tolerance::new(model, TIGHTER * self.tolerance.relative, TIGHTER * self.tolerance.position);
         Self {
@@ -165,7 +159,7 @@ impl Settings {
             max_steps: self.max_steps.saturating_mul(MORE_WORK),
             accounts: Accounts { energy: self.accounts.dissipation_error, ..Accounts::default() },
             method: self.method,
-            is_of_window: false,
+            is_local: false,
         }
     }
 }
@@ -195,9 +189,10 @@ mod tests {
         values[0]
     }
 
-    fn stands_beside(simulation: &Simulation) -> bool {
-        let (run, beside) = (&simulation.run.state, &simulation.error_run.as_ref().unwrap().run.state);
-        beside.s == run.s && beside.displacement() == run.displacement()
+    fn ends_together(simulation: &Simulation) -> bool {
+        let reference = &simulation.reference_run.as_ref().unwrap().run.context.state;
+        let run = &simulation.run.context.state;
+        reference.s == run.s && reference.displacement() == run.displacement()
     }
 
     /// The differences to a run at a far tighter tolerance, by rows as the estimates go by them.
@@ -232,7 +227,7 @@ mod tests {
         for (outputs, tracked) in [(vec![Forces, Energy, Solver], false), (vec![Dissipation, Solver], true)] {
             let mut scene = coarse();
             scene.outputs = outputs;
-            assert_eq!(started(&scene).error_run.unwrap().run.settings.accounts.energy, tracked);
+            assert_eq!(started(&scene).reference_run.unwrap().run.context.settings.accounts.energy, tracked);
             assert_eq!(variables(&scene).iter().any(|variable| variable.name == "solver.error_E_diss"), tracked);
         }
     }
@@ -250,21 +245,21 @@ mod tests {
         let force = 2.0 * simulation.snapshot().on_carrier.1;
         let risen = simulation.advance_observed(&press, Some(force), &[1e-5, 2e-5], |_, _| ()).unwrap();
         assert!(risen.is_some_and(|s| s > 0.0 && s < press.duration), "{risen:?}");
-        assert!(stands_beside(&simulation));
+        assert!(ends_together(&simulation));
         simulation.advance(&WAVE).unwrap();
-        assert!(stands_beside(&simulation));
+        assert!(ends_together(&simulation));
     }
 
     #[test]
     fn what_is_not_known_counts_as_the_whole_force() {
         let scene = coarse();
         let mut simulation = started(&scene);
-        simulation.error_run.as_mut().unwrap().run.settings.max_steps = 3;
+        simulation.reference_run.as_mut().unwrap().run.context.settings.max_steps = 3;
         simulation.advance(&WAVE).unwrap();
         assert_eq!(value(&scene, &mut simulation, Output::ForceError), 1.0);
-        assert!(stands_beside(&simulation));
-        let reference = simulation.error_run.as_mut().unwrap().run.snapshot(0.0).monitored(false);
-        assert_eq!(reference, simulation.run.snapshot(0.0).monitored(false));
+        assert!(ends_together(&simulation));
+        let reference = simulation.reference_run.as_mut().unwrap().run.snapshot().monitored(false);
+        assert_eq!(reference, simulation.run.snapshot().monitored(false));
     }
 
     #[test]
@@ -272,14 +267,14 @@ mod tests {
         let mut simulation = started(&coarse());
         simulation.advance(&WAVE).unwrap();
         assert_eq!(simulation.divergence(), None);
-        let error_run = simulation.error_run.as_mut().unwrap();
-        error_run.run.state.counters.events += 1;
+        let reference_run = simulation.reference_run.as_mut().unwrap();
+        reference_run.run.context.state.counters.events += 1;
         assert_eq!(simulation.divergence(), None);
         let force = |x| Monitored { forces: [x, 1e9], ways: [0.0; 2], dissipated: None };
-        simulation.run.state.counters.record_error(&force(0.0), &force(1e9), 1.0);
+        simulation.run.context.state.counters.record_error(&force(0.0), &force(1e9), 1.0);
         let Divergence { error, tolerance, mode_changes: [run, finer] } = simulation.divergence().unwrap();
         assert_eq!((error, tolerance, finer), (1.0, 1e-4, run + 1));
-        simulation.error_run.as_mut().unwrap().run.state.counters.events -= 1;
+        simulation.reference_run.as_mut().unwrap().run.context.state.counters.events -= 1;
         assert_eq!(simulation.divergence(), None);
     }
 
@@ -311,18 +306,18 @@ mod tests {
     fn both_go_back() {
         let scene = coarse();
         let mut simulation = started(&scene);
-        let allowed = std::mem::replace(&mut simulation.run.settings.max_steps, 3);
+        let allowed = std::mem::replace(&mut simulation.run.context.settings.max_steps, 3);
         let before = simulation.state();
         assert!(simulation.advance(&WAVE).is_err());
         assert_eq!(simulation.state(), before);
-        simulation.run.settings.max_steps = allowed;
+        simulation.run.context.settings.max_steps = allowed;
         simulation.advance(&WAVE).unwrap();
     }
 
     #[test]
-    fn no_error_run_unless_it_is_asked_for() {
+    fn no_reference_run_unless_it_is_asked_for() {
         let mut scene = coarse();
         scene.outputs.retain(|group| *group != crate::scene::OutputGroup::Solver);
-        assert!(started(&scene).error_run.is_none());
+        assert!(started(&scene).reference_run.is_none());
     }
 }

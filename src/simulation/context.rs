@@ -1,0 +1,295 @@
+//! What the steps of a run work on.
+
+use std::sync::Arc;
+
+use super::controller::LengthBounds;
+use super::motion::{ModeChange, SimulationError, Start};
+use super::settings::Settings;
+use super::state::RunState;
+use crate::contact::{EventTolerance, decide_modes, free_unloaded, impacts_due, place_layer, stop_reversed};
+use crate::integrator::{DenseOutput, DenseWorkspace, Integrator, LayerWithin, Overlay};
+use crate::model::{
+    BodyStart, Carrier, CarrierPoint, Forces, LinkKind, Mode, Model, Piece, State, elastic_energy, kinetic_energy,
+};
+use crate::scene::Axis;
+
+/// The longest step, as a fraction of the period of the carrier's sine: a longer one could alias the excitation, all
+/// stages seeing the same and the error estimate nothing.
+const OF_PERIOD: f64 = 0.25;
+
+/// What the steps of a run work on, of the whole layer or of a local region: the model, the settings, the state, and the
+/// workspace that both methods share. Everything but `state` can be made anew from the model and the settings.
+#[derive(Clone, Debug)]
+pub(super) struct Context {
+    pub model: Arc<Model>,
+    pub settings: Settings,
+    pub state: RunState,
+    pub integrator: Integrator,
+    /// Forces in the state evaluated last.
+    pub forces: Forces,
+    /// The state within the step tried last.
+    pub interpolated: State,
+    /// At which step length and fraction that is; `None` where it is not of the step tried last.
+    pub interpolated_at: Option<(f64, f64)>,
+    pub dense: DenseWorkspace,
+    /// The modes before the mode changes under way.
+    pub modes_before: Vec<Mode>,
+    /// The record of mode changes, where one is kept.
+    pub mode_changes: Option<Vec<ModeChange>>,
+}
+
+impl Context {
+    /// The context of a run with the layer placed under the carrier at `start`.
+    pub(super) fn new(model: Arc<Model>, settings: Settings, start: &Start, bodies: &[Option<BodyStart>; 2]) -> Self {
+        let state = RunState::new(&model, &settings, start, bodies);
+        let mut context = Self {
+            integrator: settings.integrator(&model),
+            forces: Forces::new(&model),
+            interpolated: State::new(model.masses(), model.maxwell_variables()),
+            interpolated_at: None,
+            dense: DenseWorkspace::new(&model),
+            modes_before: state.layer.state.mode.clone(),
+            mode_changes: None,
+            model,
+            settings,
+            state,
+        };
+        context.place_layer();
+        context
+    }
+
+    /// Puts the masses at their rest positions, or on the profile, and decides the first modes.
+    fn place_layer(&mut self) {
+        let at = self.state.carrier_position();
+        let carrier = self.state.carrier.at(0.0);
+        let (model, layer, forces) = (&*self.model, &mut self.state.layer.state, &mut self.forces);
+        place_layer(model, layer, at, &carrier);
+        forces.evaluate(model, layer, &carrier);
+        free_unloaded(model, layer, at, forces);
+        decide_modes(model, layer, forces);
+        let of_layer = kinetic_energy(model, layer) + elastic_energy(model, layer);
+        self.state.energies.initial = of_layer + self.state.carrier.energy(model, 0.0).total();
+    }
+
+    /// Memory in bytes, without some hundreds that do not grow with the layer: with `copies` of the state beside it.
+    pub(super) fn bytes(&self, copies: usize) -> usize {
+        let layer = &self.state.layer.state;
+        let (masses, maxwell) = (layer.mode.len(), layer.maxwell.len());
+        // The state, the one within a step and the stage's.
+        let states = 3 + copies;
+        let by_mass = 4 * size_of::<f64>() + size_of_val(&layer.surface[0]) + 1;
+        states * (masses * by_mass + maxwell * size_of::<f64>())
+            + self.integrator.bytes()
+            + 2 * self.forces.bytes()
+            + self.dense.bytes()
+    }
+
+    /// Takes over another temperature (K) and the settings for the model there, which is set. The dampers' forces jump, so the
+    /// next motion decides all modes anew.
+    pub(super) fn set_temperature(&mut self, temperature: f64, settings: Settings) {
+        self.settings = settings;
+        (self.state.temperature, self.state.rates_valid) = (temperature, false);
+        self.integrator = self.settings.integrator(&self.model);
+        self.dense = DenseWorkspace::new(&self.model);
+    }
+
+    /// Begins a motion of `duration` (s) on a smooth `piece`. At a kink the damper forces jump, so all modes are decided
+    /// anew.
+    pub(super) fn begin(&mut self, piece: &Piece, duration: f64) {
+        let state = &mut self.state;
+        let rates = |carrier: &Carrier, s: f64| (carrier.at(s).u_rate, carrier.at(s).w_rate);
+        let before = rates(&state.carrier, state.s);
+        let jumps = state.carrier.begin(state.s, piece, &self.model);
+        state.s = 0.0;
+        self.integrator.begin_tangents(duration);
+        if !state.rates_valid || rates(&state.carrier, 0.0) != before {
+            self.change_modes(0.0);
+            return;
+        }
+        if jumps {
+            self.accelerate_bodies();
+        }
+        if self.integrator.has_tangents() {
+            self.evaluate_forces();
+            self.refresh_tangents();
+        }
+    }
+
+    /// Computes the bodies' accelerations anew from the forces, of which one from outside has jumped. No force on a mass has.
+    fn accelerate_bodies(&mut self) {
+        self.evaluate_forces();
+        self.state.carrier.accelerate(&self.model, self.state.s, &self.forces);
+    }
+
+    /// Lets the bodies follow the step of length `h` (s) tried last.
+    pub(super) fn trace_bodies(&mut self, h: f64) {
+        let Self { state, integrator, .. } = self;
+        for axis in Axis::ALL {
+            if state.carrier.is_body(axis) {
+                state.carrier.set_step(axis, integrator.body_step(axis, h, state.time_stepping));
+            }
+        }
+    }
+
+    /// The impacts due, stops, then every contact decided anew from the forces, which have jumped; and the rates after
+    /// that. Masses within `reach` (m) of the profile count as touching.
+    pub(super) fn change_modes(&mut self, reach: f64) {
+        let carrier = self.state.carrier.at(self.state.s);
+        let at = self.state.carrier_position();
+        let Self { model, state: run, forces, modes_before, .. } = self;
+        let layer = &mut run.layer.state;
+        modes_before.copy_from_slice(&layer.mode);
+        run.energies.impact += impacts_due(model, layer, at, reach, &mut run.energies.channels);
+        stop_reversed(model, layer, forces, &mut run.energies.channels);
+        forces.evaluate(model, layer, &carrier);
+        decide_modes(model, layer, forces);
+        run.carrier.accelerate(model, run.s, forces);
+        self.start_from_forces();
+        self.state.rates_valid = true;
+        self.refresh_tangents();
+        self.record_mode_changes();
+    }
+
+    /// Counts and records what has changed since the modes before.
+    pub(super) fn record_mode_changes(&mut self) {
+        let time = self.state.time();
+        let modes = self.modes_before.iter().zip(&self.state.layer.state.mode).enumerate();
+        for (mass, (from, to)) in modes.filter(|(_, (from, to))| from != to) {
+            self.state.counters.events += 1;
+            if let Some(record) = &mut self.mode_changes {
+                record.push(ModeChange { time, mass, from: from.number(), to: to.number() });
+            }
+        }
+    }
+
+    /// Computes the rates at the start of the next step from the state alone.
+    pub(super) fn evaluate_start(&mut self) {
+        self.evaluate_forces();
+        self.start_from_forces();
+    }
+
+    /// Computes the rates at the start of the next step from the forces evaluated last.
+    fn start_from_forces(&mut self) {
+        let Self { model, state, integrator, forces, .. } = self;
+        let carrier = (&state.carrier, state.s);
+        integrator.evaluate_start(model, &mut state.layer, carrier, forces, state.controller.step_size);
+    }
+
+    /// Evaluates the link forces in the current state and returns the carrier there.
+    pub(super) fn evaluate_forces(&mut self) -> CarrierPoint {
+        let carrier = self.state.carrier.at(self.state.s);
+        self.forces.evaluate(&self.model, &self.state.layer.state, &carrier);
+        carrier
+    }
+
+    /// Ḟ_x and Ḟ_z, N/s, from the left; at the start, from the right.
+    pub(super) fn force_rates(&mut self) -> (f64, f64) {
+        if !self.state.rates_valid {
+            self.accelerate_bodies();
+            self.start_from_forces();
+        }
+        let (layer, carrier) = (&self.state.layer, self.state.carrier.at(self.state.s));
+        layer.rates.on_carrier(&self.model, &layer.state.maxwell, &carrier)
+    }
+
+    /// Finds the tangents of the motion that ends here.
+    pub(super) fn find_tangents(&mut self) {
+        if self.integrator.has_tangents() {
+            self.state.tangents = self.integrator.tangents(&self.model, self.state.s);
+        }
+    }
+
+    /// The tangents' rates from the forces evaluated last.
+    fn refresh_tangents(&mut self) {
+        self.integrator.refresh_tangents(&self.model, &self.state.layer, &self.forces, self.state.s);
+    }
+
+    /// Includes the energies in the largest so far, by which errors are measured.
+    pub(super) fn record_largest_energy(&mut self) {
+        let largest = &mut self.state.layer.largest;
+        largest.energy = largest.energy.max(self.state.energies.largest());
+    }
+
+    pub(super) fn event_tolerance(&self) -> EventTolerance {
+        let Settings { tolerance, events, .. } = &self.settings;
+        events.within(self.state.layer.largest.allowed_of_mass(&self.model, tolerance))
+    }
+
+    /// Whether a step shorter than a good one needs no error test. Where friction falls with the speed the stages may
+    /// have several solutions, and the two need not find the same.
+    pub(super) fn shorter_is_no_worse(&self) -> bool {
+        !self.model.friction_depends_on_speed()
+    }
+
+    /// The bounds of the next step of a motion of `duration`, s.
+    pub(super) fn length_bounds(&self, duration: f64) -> Result<LengthBounds, SimulationError> {
+        let RunState { s, carrier, .. } = &self.state;
+        let (shortest, remaining) = (4.0 * f64::EPSILON * (s + 1e-3 * duration), duration - s);
+        let longest = OF_PERIOD * carrier.shortest_period();
+        if longest <= shortest {
+            return Err(self.step_too_small(longest));
+        }
+        Ok(LengthBounds { shortest, longest, remaining })
+    }
+
+    pub(super) fn step_too_small(&self, step: f64) -> SimulationError {
+        SimulationError::StepTooSmall { time: self.state.time(), step }
+    }
+
+    /// The dense output of the event-driven step of length `h` (s) tried last.
+    pub(super) fn dense_output(&self, h: f64) -> DenseOutput<'_> {
+        let state = &self.state;
+        self.integrator.dense(&self.model, &state.carrier, &state.layer.state, state.span(h))
+    }
+
+    /// The layer at the fraction `theta` of the step of length `h` (s) tried last, with some masses replaced, and the run at
+    /// the step's start.
+    pub(super) fn within<'a>(
+        &'a mut self,
+        (h, theta): (f64, f64),
+        overlay: Option<&'a mut dyn Overlay>,
+    ) -> (LayerWithin<'a>, &'a RunState) {
+        let within = LayerWithin {
+            model: &self.model,
+            carrier: &self.state.carrier,
+            start: &self.state.layer.state,
+            span: self.state.span(h),
+            time_step: self.state.time_stepping,
+            theta,
+            integrator: &self.integrator,
+            workspace: &mut self.dense,
+            state: &mut self.interpolated,
+            state_at: &mut self.interpolated_at,
+            forces: &mut self.forces,
+            overlay,
+        };
+        (within, &self.state)
+    }
+
+    /// See [`Simulation::relax_dashpots`](super::Simulation::relax_dashpots).
+    pub(super) fn relax_dashpots(&mut self, means: &[f64], time: f64) -> f64 {
+        let mut borne = 0.0;
+        for row in self.model.rows.iter().filter(|row| !row.kind.is_along_x()) {
+            let x = time / row.relaxation_time;
+            let left = if x > 0.0 { x / x.exp_m1() } else { 1.0 };
+            let elements = &mut self.state.layer.state.maxwell[row.range.clone()];
+            for (a, mean) in elements.iter_mut().zip(&means[row.range.clone()]) {
+                *a -= left * mean;
+            }
+            if row.kind == LinkKind::Vertical {
+                borne += row.stiffness * means[row.range.clone()].iter().sum::<f64>();
+            }
+        }
+        // The forces have jumped: the next motion decides all contacts anew.
+        self.state.rates_valid = false;
+        borne
+    }
+
+    /// See [`Simulation::lower_carrier`](super::Simulation::lower_carrier).
+    pub(super) fn lower_carrier(&mut self, way: f64) {
+        self.state.carrier.w -= way;
+        let elongations = &mut self.state.layer.state.elongation_z;
+        elongations.iter_mut().for_each(|elongation| *elongation += way);
+        self.state.rates_valid = false;
+    }
+}
