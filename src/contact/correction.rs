@@ -27,7 +27,7 @@ use crate::model::{
     Carrier, CarrierPoint, ChannelEnergies, FrictionCurve, LinkKind, Mode, Model, SlipCurve, State, SurfacePoint,
 };
 
-use crate::scene::Axis;
+use crate::scene::{Axis, ByAxis};
 
 /// Weight of the lateness of mode changes in the error of a step of a layer of one mass. It falls with the root of the number of
 /// masses k: forces of a layer are sums, of which one mass makes a share of 1/k, and its share in a mean of squares is 1/√k.
@@ -75,7 +75,7 @@ pub struct CorrectionEnergies {
     /// Through the channels from the instants of the impacts on: the difference that contact makes against free motion.
     pub channels: ChannelEnergies,
     /// Impulses on the carrier along x and z, N s, that the step as tried does not know: they change the speeds of bodies.
-    pub impulse: [f64; 2],
+    pub impulse: ByAxis<f64>,
 }
 
 /// The end-of-step correction: the masses whose modes were violated in a step, and workspace.
@@ -158,7 +158,7 @@ impl EndCorrection {
         }
         self.touches.push(i);
         let closing = surface.slope * step.end.velocity_x[i] - step.end.velocity_z[i];
-        let link = &step.model.links[LinkKind::Vertical as usize];
+        let link = &step.model.links[LinkKind::Vertical];
         self.force += link.stiffness * -gap + link.damping * closing.max(0.0);
         let time = if closing > 0.0 { (-gap / closing).min(step.span.length) } else { step.span.length };
         Some(EventTimeError { length: -gap, time })
@@ -358,10 +358,10 @@ impl<'a> Correction<'a> {
     /// bounds the velocity that it makes where the dampers are faster than that.
     fn pass_impulse_to_body(&mut self, axis: Axis, displacement: f64, time: f64) {
         let model = self.step.model;
-        let Some(body) = &model.bodies[axis as usize] else { return };
+        let Some(body) = &model.bodies[axis] else { return };
         let damping = self.damping(axis.link());
         let passing = damping * body.mass / (body.mass + time * model.masses() as f64 * damping);
-        self.energies.impulse[axis as usize] += passing * displacement;
+        self.energies.impulse[axis] += passing * displacement;
     }
 
     /// The impulse d Δ of the lateral dampers on neighbour `j` of a mass that was displaced by Δ (m); `time` (s) bounds
@@ -420,7 +420,7 @@ impl<'a> Correction<'a> {
 
     /// d of the links of a kind, N s/m.
     fn damping(&self, kind: LinkKind) -> f64 {
-        self.step.model.links[kind as usize].damping
+        self.step.model.links[kind].damping
     }
 
     /// The part of a damper d between two masses, N s/m, by which a correction of one of them within the `time` (s) acts
@@ -458,7 +458,7 @@ impl<'a> Correction<'a> {
             if !kind.is_lateral() {
                 let more = (at_end - carrier) * (mean - carrier) - (free - carrier).powi(2);
                 self.energies.channels.damper += damping * more;
-                if self.step.model.bodies[usize::from(!kind.is_along_x())].is_none() {
+                if self.step.model.bodies[kind.axis()].is_none() {
                     self.energies.channels.input -= damping * (at_end - free) * carrier;
                 }
                 continue;
@@ -539,7 +539,7 @@ fn forces_of_touch(step: &TwoStageDense<'_>, i: usize, theta: f64) -> (f64, f64)
     };
     let moved = time * gain.0;
     let force = |kind: LinkKind, displacement: f64, gain: f64| {
-        let link = &step.model.links[kind as usize];
+        let link = &step.model.links[kind];
         let of_elements = step.model.rows_of(kind).map(|row| row.stiffness * row.left_of(displacement, time));
         link.stiffness * displacement + of_elements.sum::<f64>() + link.damping * gain
     };

@@ -117,13 +117,13 @@ impl<S: Fn(usize) -> f64> Chain<'_, S> {
 
     /// The coefficient of ẋ_i ẋ_j by the lateral dampers between two masses, N s/m.
     fn coupling(&self, i: usize, j: usize) -> f64 {
-        let [x, z] = [LinkKind::LateralX, LinkKind::LateralZ].map(|kind| self.model.links[kind as usize].damping);
+        let [x, z] = [LinkKind::LateralX, LinkKind::LateralZ].map(|kind| self.model.links[kind].damping);
         x + self.slopes(i, j) * z
     }
 
     /// The coefficient of ẋ_i², N s/m. A free neighbour may move along: the dampers to it do not count.
     fn own(&self, i: usize) -> f64 {
-        let vertical = self.model.links[LinkKind::Vertical as usize].damping;
+        let vertical = self.model.links[LinkKind::Vertical].damping;
         let neighbours = [i.wrapping_sub(1), i + 1].into_iter().filter_map(|j| self.state.mode.get(j));
         let count = neighbours.filter(|mode| mode.in_contact()).count() as f64;
         self.damping + self.slopes(i, i) * vertical + count * self.coupling(i, i) + (self.slope)(i)
@@ -137,7 +137,7 @@ impl<S: Fn(usize) -> f64> Chain<'_, S> {
 /// other links and the Maxwell elements only reduce the rate. Where D < 0, D counts as 0: [`weakening`] accounts for it.
 fn growth(model: &Model, state: &State, forces: &Forces, i: usize) -> f64 {
     let surface = &state.surface[i];
-    let [x, z] = [LinkKind::Horizontal, LinkKind::Vertical].map(|kind| &model.links[kind as usize]);
+    let [x, z] = [LinkKind::Horizontal, LinkKind::Vertical].map(|kind| &model.links[kind]);
     let beyond_x = surface.curvature * forces.on_mass_z[i] - x.stiffness;
     if beyond_x <= 0.0 {
         return 0.0;

@@ -200,7 +200,7 @@ impl AxisSums {
         }
         if !self.elements.is_empty() {
             for (rate, stage) in self.rate.iter_mut().zip(stages) {
-                *rate = sum(&stage.elongation_rate[self.kind as usize][masses.clone()]);
+                *rate = sum(&stage.elongation_rate[self.kind][masses.clone()]);
             }
         }
     }
@@ -212,7 +212,7 @@ impl AxisSums {
         (elongation, rate): (f64, f64),
         weights: impl Fn(&MaxwellRow) -> ElementWeights,
     ) -> f64 {
-        let law = &model.links[self.kind as usize];
+        let law = &model.links[self.kind];
         let mut force = law.stiffness * elongation + law.damping * rate;
         if law.frozen > 0.0 {
             force -= law.frozen * model.frozen_dashpots(self.kind).sum::<f64>();

@@ -13,7 +13,7 @@ use super::rates::Rates;
 use super::tableau::STAGES;
 use crate::math::{BLOCK, Relaxation, dot, weighted_sum, with_widest_vectors};
 use crate::model::{
-    Carrier, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint,
+    ByLink, Carrier, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint,
 };
 
 /// Where a step lies in time.
@@ -98,7 +98,7 @@ impl DenseOutput<'_> {
             let ends = [(weights.start, start), (theta, self.end.state)];
             let ends =
                 ends.into_iter().map(|(weight, state)| (weight, &state.maxwell[row.range.start + masses.start..]));
-            let rates = self.stages.iter().map(|stage| &stage.elongation_rate[row.kind as usize][masses.start..]);
+            let rates = self.stages.iter().map(|stage| &stage.elongation_rate[row.kind][masses.start..]);
             weighted_sum(of_row, ends.chain(weights.rate.into_iter().zip(rates)));
         }
     }
@@ -311,7 +311,7 @@ impl DenseOutput<'_> {
         let (here, there) = (self.mass_at(i, &carrier, workspace), self.mass_at(i + 1, &carrier, workspace));
         let between = LinkPoint::between(&here, &there, 1.0);
         [LinkKind::LateralX, LinkKind::LateralZ].map(|kind| {
-            let present = self.model.links[kind as usize].present;
+            let present = self.model.links[kind].present;
             if present { self.link_force(kind, i, theta, &between, workspace) } else { 0.0 }
         })
     }
@@ -334,7 +334,7 @@ impl DenseOutput<'_> {
         point: &LinkPoint,
         workspace: &DenseWorkspace,
     ) -> f64 {
-        let law = &self.model.links[kind as usize];
+        let law = &self.model.links[kind];
         let of = |(x, z): (f64, f64)| if kind.is_along_x() { x } else { z };
         let mut force = law.stiffness * of(point.elongation) + law.damping * of(point.rate);
         if law.frozen > 0.0 {
@@ -349,8 +349,8 @@ impl DenseOutput<'_> {
                 (self.start.state.maxwell[row.range.start + link], self.end.state.maxwell[row.range.start + link]);
             force += row.stiffness * (workspace.relaxation[row.time_index].start * start + theta * end);
         }
-        let rates = self.stages.iter().map(|stage| stage.elongation_rate[kind as usize][link]);
-        force + workspace.of_rate[kind as usize].iter().zip(rates).map(|(weight, rate)| weight * rate).sum::<f64>()
+        let rates = self.stages.iter().map(|stage| stage.elongation_rate[kind][link]);
+        force + workspace.of_rate[kind].iter().zip(rates).map(|(weight, rate)| weight * rate).sum::<f64>()
     }
 }
 
@@ -405,7 +405,7 @@ struct InertialFraction {
 impl InertialFraction {
     fn new(model: &Model, beta: f64) -> Self {
         let weight = |kind: LinkKind| {
-            let link = &model.links[kind as usize];
+            let link = &model.links[kind];
             let relaxing = |row: &MaxwellRow| row.stiffness * beta * row.relaxation_time / (row.relaxation_time + beta);
             beta * link.stiffness + link.damping + model.rows_of(kind).map(relaxing).sum::<f64>()
         };
@@ -429,7 +429,7 @@ pub struct DenseWorkspace {
     /// By relaxation time.
     relaxation: Vec<RelaxationWeights>,
     /// By kind of link: of the stages' elongation rates in the force of all Maxwell elements, N s/m.
-    of_rate: [[f64; STAGES]; 4],
+    of_rate: ByLink<[f64; STAGES]>,
     /// Of the masses that are meant: their accelerations in the defect, x and v_x in sums.
     of_masses: [Vec<f64>; 2],
 }
@@ -452,7 +452,7 @@ impl DenseWorkspace {
             values: [0.0; STAGES],
             integral: [0.0; STAGES],
             relaxation: vec![RelaxationWeights::default(); model.relaxation_times.len()],
-            of_rate: [[0.0; STAGES]; 4],
+            of_rate: ByLink([[0.0; STAGES]; 4]),
             of_masses: [vec![0.0; model.masses()], vec![0.0; model.masses()]],
         }
     }
@@ -488,7 +488,7 @@ impl DenseWorkspace {
         self.at = (theta, h);
         self.values = step.interpolation.values(theta);
         self.integral = step.interpolation.integral(theta).map(|weight| h * weight);
-        self.of_rate = [[0.0; STAGES]; 4];
+        self.of_rate = ByLink([[0.0; STAGES]; 4]);
         for (relaxation, tau) in self.relaxation.iter_mut().zip(&step.model.relaxation_times) {
             if is_other_step {
                 relaxation.whole = Relaxation::new(h / tau, 1.0);
@@ -501,7 +501,7 @@ impl DenseWorkspace {
         }
         for row in &step.model.rows {
             let rates = self.relaxation[row.time_index].rate;
-            for (weight, rate) in self.of_rate[row.kind as usize].iter_mut().zip(rates) {
+            for (weight, rate) in self.of_rate[row.kind].iter_mut().zip(rates) {
                 *weight += row.stiffness * rate;
             }
         }

@@ -7,7 +7,7 @@ use super::maxwell::Maxwell;
 use super::rates::Rates;
 use super::tableau::Tableau;
 use crate::math::{dot, sum_of, sum_of_pairs, sum_of_triples, weighted_sum, with_widest_vectors};
-use crate::model::Axis;
+use crate::model::{Axis, ByAxis, ByLink};
 use crate::model::{BoundaryPowers, CarrierPoint, LinkKind, Model, State};
 
 /// The tolerances of the local error of a step. The error of each quantity is divided by absolute + relative · size.
@@ -21,16 +21,16 @@ pub struct Tolerance {
     pub velocity: f64,
     /// By kind of link, the stiffness that turns the error of a force into one of an elongation, N/m: c + Σ c_j, but
     /// for a rod the stiffness with which the other links hold a mass.
-    force_scale: [f64; 4],
+    force_scale: ByLink<f64>,
     /// The kinds of link that are rods: their errors count as errors of their forces.
-    rods: [Option<Rod>; 4],
+    rods: ByLink<Option<Rod>>,
     /// [`Model::long_term_stiffness`], N/m.
     long_term_stiffness: Option<f64>,
     /// Number of masses of the layer, over which their errors are averaged.
     pub(super) masses: usize,
     /// Absolute tolerance of the speed of a body along x and z, m/s: that of positions times its natural frequency on the
     /// layer and the drive.
-    body_velocity: [f64; 2],
+    body_velocity: ByAxis<f64>,
 }
 
 /// A kind of link that is stiff enough to act as a rod.
@@ -46,7 +46,7 @@ pub(super) struct Rod {
 
 impl Rod {
     fn new(model: &Model, kind: LinkKind) -> Self {
-        let (stiffness, damping) = (model.links[kind as usize].stiffness, model.links[kind as usize].damping);
+        let (stiffness, damping) = (model.links[kind].stiffness, model.links[kind].damping);
         Self { stiffness, damping, rate: (stiffness / model.mass).sqrt().max(damping / model.mass) }
     }
 
@@ -73,16 +73,16 @@ impl Tolerance {
     pub fn new(model: &Model, relative: f64, absolute: f64) -> Self {
         let stiffness = model.mass_stiffness_without_rods();
         let rod = |kind: LinkKind| (model.is_rod(kind) && stiffness > 0.0).then(|| Rod::new(model, kind));
-        let force_scale = |kind: LinkKind| if rod(kind).is_some() { stiffness } else { model.glassy[kind as usize] };
+        let force_scale = |kind: LinkKind| if rod(kind).is_some() { stiffness } else { model.glassy[kind] };
         Self {
             relative,
             position: absolute,
             velocity: absolute * model.frequency_without_rods(),
-            force_scale: LinkKind::ALL.map(force_scale),
-            rods: LinkKind::ALL.map(rod),
+            force_scale: ByLink::from_fn(force_scale),
+            rods: ByLink::from_fn(rod),
             long_term_stiffness: model.long_term_stiffness(),
             masses: model.masses(),
-            body_velocity: Axis::ALL.map(|axis| absolute * model.body_frequency(axis)),
+            body_velocity: ByAxis::from_fn(|axis| absolute * model.body_frequency(axis)),
         }
     }
 
@@ -101,7 +101,7 @@ impl Tolerance {
     /// The factor that turns the error of the force of a link, or of all its Maxwell elements, into one of an elongation,
     /// m/N.
     pub(super) fn per_force(&self, kind: LinkKind) -> f64 {
-        let stiffness = self.force_scale[kind as usize];
+        let stiffness = self.force_scale[kind];
         if stiffness > 0.0 { 1.0 / stiffness } else { 0.0 }
     }
 
@@ -112,7 +112,7 @@ impl Tolerance {
     }
 
     pub(super) fn rod(&self, kind: LinkKind) -> Option<Rod> {
-        self.rods[kind as usize]
+        self.rods[kind]
     }
 
     /// The correction of the velocities, m/s, below which Newton's iterations of a stage with β = `beta` (s) end.
@@ -271,10 +271,10 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
                 Axis::X => (error.position.0, error.velocity.0),
                 Axis::Z => (error.position.1, error.velocity.1),
             };
-            let allowed = tolerance.body_velocity[axis as usize] + tolerance.relative * rate.abs();
+            let allowed = tolerance.body_velocity[axis] + tolerance.relative * rate.abs();
             position * position / tolerance.position_tolerance_sq(way) + square(velocity / allowed)
         };
-        Axis::ALL.into_iter().filter(|&axis| model.bodies[axis as usize].is_some()).map(of).sum()
+        Axis::ALL.into_iter().filter(|&axis| model.bodies[axis].is_some()).map(of).sum()
     }
 
     /// The square of the error of the energies through the dampers, those to drives included, the surface and the carrier over
@@ -285,7 +285,7 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
     fn energy_square(&self, model: &Model, exchange: &[BoundaryPowers], h: f64, tolerance: &Tolerance) -> f64 {
         let damper = |stage: &Rates| -> f64 {
             let links = LinkKind::ALL.into_iter().zip(&model.links).filter(|(_, law)| law.damping > 0.0);
-            let of = |kind: LinkKind| &stage.elongation_rate[kind as usize][..];
+            let of = |kind: LinkKind| &stage.elongation_rate[kind][..];
             links.map(|(kind, law)| law.damping * dot(of(kind), of(kind))).sum()
         };
         let (mut errors, mut input) = ([0.0; 3], 0.0);
@@ -311,7 +311,7 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
         tolerance: &Tolerance,
         workspace: &ErrorWorkspace,
     ) -> f64 {
-        let law = &model.links[kind as usize];
+        let law = &model.links[kind];
         let (scale_x, scale_z) = self.largest.force_scales(model, tolerance);
         let ErrorWorkspace { x, z, v_x, v_z, force } = workspace;
         let (position, velocity, scale) = if kind.is_along_x() { (x, v_x, scale_x) } else { (z, v_z, scale_z) };

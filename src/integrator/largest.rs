@@ -70,7 +70,7 @@ impl Largest {
 
 /// The long-term stiffness of the vertical links of the whole layer, N/m.
 fn layer_stiffness(model: &Model, tolerance: &Tolerance) -> f64 {
-    tolerance.masses as f64 * model.links[LinkKind::Vertical as usize].stiffness
+    tolerance.masses as f64 * model.links[LinkKind::Vertical].stiffness
 }
 
 /// The scene's height, m.

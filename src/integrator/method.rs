@@ -305,7 +305,7 @@ impl Stages {
     /// exchange.
     fn keep_link_forces(&mut self, i: usize) {
         if let Some([x, z]) = self.link_forces.get_mut(i - 1) {
-            let [vertical, horizontal, ..] = &mut self.solver.forces.link;
+            let [vertical, horizontal, ..] = &mut self.solver.forces.link.0;
             std::mem::swap(x, horizontal);
             std::mem::swap(z, vertical);
         }

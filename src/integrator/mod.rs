@@ -455,7 +455,7 @@ impl Integrator {
     pub fn keep_link_forces(&mut self, model: &Model) {
         if self.stages.tracks_energy {
             let links = || {
-                let [vertical, horizontal, ..] = Forces::zeros_by_link(model);
+                let [vertical, horizontal, ..] = Forces::zeros_by_link(model).0;
                 [horizontal, vertical]
             };
             self.stages.link_forces = std::iter::repeat_with(links).take(self.pair.stages() - 2).collect();

@@ -74,7 +74,7 @@ impl PartOfStep {
     fn set_exchange(&mut self, step: &mut LayerStep<'_>, part: &Model) {
         let at_start = self.on_carrier(step, part, 0.0);
         let (integrator, masses) = (step.integrator, self.masses.clone());
-        let [vertical, horizontal, ..] = &integrator.end_forces().link;
+        let [vertical, horizontal, ..] = &integrator.end_forces().link.0;
         let sum = |links: &[f64]| links.get(masses.clone()).map_or(0.0, |part| part.iter().sum());
         let between = integrator.stages.link_forces.iter().map(|[x, z]| (sum(x), sum(z)));
         let on_carrier =

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{EndForces, Forces, Model};
 use crate::math::Spline;
-use crate::scene::{Axis, Force, Path, Scene};
+use crate::scene::{Axis, ByAxis, Force, Path, Scene};
 
 /// The carrier on a smooth piece of its motion. Displacements are counted from the start of the piece, so that a carrier
 /// far away loses no digits but those of u itself.
@@ -23,7 +23,7 @@ pub struct Carrier {
     /// The path of w, or that of the drive of a body.
     w_path: Path,
     /// The bodies along x and z; `None` where the displacement is prescribed.
-    bodies: [Option<BodyMotion>; 2],
+    bodies: ByAxis<Option<BodyMotion>>,
     /// What acts on the ends of a part of a layer; `None` for a whole layer.
     #[serde(skip)]
     pub ends: Option<EndForces>,
@@ -92,9 +92,9 @@ pub struct Body {
 
 impl Body {
     /// The bodies of `scene` along x and z.
-    pub(super) fn along_axes(scene: &Scene) -> [Option<Self>; 2] {
-        Axis::ALL.map(|axis| {
-            let body = scene.carrier.along(axis)?;
+    pub(super) fn along_axes(scene: &Scene) -> ByAxis<Option<Self>> {
+        ByAxis::from_fn(|axis| {
+            let body = scene.carrier[axis].as_ref()?;
             let force = match axis {
                 Axis::X => body.pull,
                 Axis::Z => body.load,
@@ -264,7 +264,7 @@ impl Carrier {
     /// A piece that starts at `time` (s) from `u`, `w` (m) over `profile`, with the displacement prescribed along both
     /// axes.
     pub fn new(time: f64, (u, w): (f64, f64), (u_path, w_path): (Path, Path), profile: &Spline) -> Self {
-        Self { time, u, w, profile_position: profile.reduce(u), u_path, w_path, bodies: [None; 2], ends: None }
+        Self { time, u, w, profile_position: profile.reduce(u), u_path, w_path, bodies: ByAxis::default(), ends: None }
     }
 
     /// The same with a body along an axis, whose drive follows the path there.
@@ -275,8 +275,7 @@ impl Carrier {
             Axis::Z => self.w = displacement,
         }
         let (start, step) = ([0.0, rate, 0.0], BodyStep::None);
-        self.bodies[axis as usize] =
-            Some(BodyMotion { s: 0.0, start, step, drive, force, force_path: Path::default() });
+        self.bodies[axis] = Some(BodyMotion { s: 0.0, start, step, drive, force, force_path: Path::default() });
         self.find_profile_position(profile);
     }
 
@@ -287,10 +286,10 @@ impl Carrier {
         let paths = piece.paths;
         *self = Self::new(before.time + s, (before.u + here.du, before.w + here.dw), paths, &model.profile);
         for (axis, force) in Axis::ALL.into_iter().zip([piece.forces.0, piece.forces.1]) {
-            let Some(body) = &before.bodies[axis as usize] else { continue };
+            let Some(body) = &before.bodies[axis] else { continue };
             let [_, rate, acceleration] = here.along(axis);
             let reached = body.force + body.force_path.at(s);
-            self.bodies[axis as usize] = Some(BodyMotion {
+            self.bodies[axis] = Some(BodyMotion {
                 s: 0.0,
                 start: [0.0, rate, acceleration],
                 step: BodyStep::None,
@@ -319,12 +318,12 @@ impl Carrier {
 
     /// Whether it is a body along an axis.
     pub fn has_bodies(&self) -> bool {
-        self.bodies.iter().any(Option::is_some)
+        self.bodies.any()
     }
 
     /// Whether it is a body along `axis`.
     pub fn is_body(&self, axis: Axis) -> bool {
-        self.bodies[axis as usize].is_some()
+        self.bodies[axis].is_some()
     }
 
     /// The carrier at the time `s` after the start of the piece, s.
@@ -337,7 +336,7 @@ impl Carrier {
 
     #[inline]
     fn motion(&self, axis: Axis, s: f64) -> [f64; 3] {
-        match &self.bodies[axis as usize] {
+        match &self.bodies[axis] {
             None => self.path(axis).motion(s),
             Some(body) => body.motion(s),
         }
@@ -356,7 +355,7 @@ impl Carrier {
 
     /// The changes of u and w from the time `s` on over `span`, m; both in s.
     pub fn moved(&self, s: f64, span: f64) -> (f64, f64) {
-        let change = |axis: Axis| match &self.bodies[axis as usize] {
+        let change = |axis: Axis| match &self.bodies[axis] {
             None => self.path(axis).change(s, span),
             Some(body) => body.motion(s + span)[0] - body.motion(s)[0],
         };
@@ -388,7 +387,7 @@ impl Carrier {
         s: f64,
         [displacement, rate]: [f64; 2],
     ) -> Option<(&'a Body, Outside)> {
-        let (body, motion) = (model.bodies[axis as usize].as_ref()?, self.bodies[axis as usize].as_ref()?);
+        let (body, motion) = (model.bodies[axis].as_ref()?, self.bodies[axis].as_ref()?);
         let [drive, drive_rate, _] = self.path(axis).motion(s);
         let (sign, start) = match axis {
             Axis::X => (1.0, self.u),
@@ -402,7 +401,7 @@ impl Carrier {
 
     /// Ṙ of the drive along `axis` at the time `s` after the start of the piece, s, N/s; 0 where there is none.
     pub fn drive_force_rate(&self, model: &Model, axis: Axis, s: f64) -> f64 {
-        let Some(body) = &model.bodies[axis as usize] else { return 0.0 };
+        let Some(body) = &model.bodies[axis] else { return 0.0 };
         let ([_, rate, acceleration], drive) = (self.motion(axis, s), self.path(axis).motion(s));
         -(body.stiffness * (rate - drive[1]) + body.damping * (acceleration - drive[2]))
     }
@@ -410,13 +409,13 @@ impl Carrier {
     /// Displacement of the drive of a body along `axis` at the time `s` after the start of the piece, s, m; `None` where it
     /// is no body.
     pub fn drive(&self, axis: Axis, s: f64) -> Option<f64> {
-        Some(self.bodies[axis as usize].as_ref()?.drive + self.path(axis).at(s))
+        Some(self.bodies[axis].as_ref()?.drive + self.path(axis).at(s))
     }
 
     /// The changing part of the load or of the tangential force at the time `s` after the start of the piece, s, N; 0 where
     /// the axis is no body.
     pub fn force(&self, axis: Axis, s: f64) -> f64 {
-        self.bodies[axis as usize].as_ref().map_or(0.0, |body| body.force + body.force_path.at(s))
+        self.bodies[axis].as_ref().map_or(0.0, |body| body.force + body.force_path.at(s))
     }
 
     /// Sets the accelerations of the bodies at the time `s` of the piece, where a step starts, from the `forces` there.
@@ -424,7 +423,7 @@ impl Carrier {
         for (axis, of_layer) in Axis::ALL.into_iter().zip([Forces::on_carrier_x, Forces::on_carrier_z]) {
             let Some((body, outside)) = self.outside(model, axis, s) else { continue };
             let acceleration = (of_layer(forces) + outside.force + outside.drive_force(body)) / body.mass;
-            if let Some(motion) = &mut self.bodies[axis as usize] {
+            if let Some(motion) = &mut self.bodies[axis] {
                 motion.start[2] = acceleration;
             }
         }
@@ -432,26 +431,26 @@ impl Carrier {
 
     /// Sets how a body along `axis` moves through the step tried last.
     pub fn set_step(&mut self, axis: Axis, step: BodyStep) {
-        if let Some(body) = &mut self.bodies[axis as usize] {
+        if let Some(body) = &mut self.bodies[axis] {
             body.step = step;
         }
     }
 
     /// Ends a step at the time `s` of the piece with the carrier at `point`: the next one starts there.
     pub fn take_step(&mut self, s: f64, point: &CarrierPoint) {
-        for (axis, body) in Axis::ALL.into_iter().zip(&mut self.bodies) {
-            if let Some(body) = body {
+        for axis in Axis::ALL {
+            if let Some(body) = &mut self.bodies[axis] {
                 (body.s, body.start, body.step) = (s, point.along(axis), BodyStep::None);
             }
         }
     }
 
     /// Changes the bodies' speeds at `point` by impulses along x and z, N s.
-    pub fn push(&self, point: &mut CarrierPoint, model: &Model, impulse: [f64; 2]) {
-        for (axis, impulse) in Axis::ALL.into_iter().zip(impulse) {
-            if let Some(body) = &model.bodies[axis as usize] {
+    pub fn push(&self, point: &mut CarrierPoint, model: &Model, impulse: ByAxis<f64>) {
+        for axis in Axis::ALL {
+            if let Some(body) = &model.bodies[axis] {
                 let [displacement, rate, acceleration] = point.along(axis);
-                point.set_along(axis, [displacement, rate + impulse / body.mass, acceleration]);
+                point.set_along(axis, [displacement, rate + impulse[axis] / body.mass, acceleration]);
             }
         }
     }
@@ -470,12 +469,12 @@ impl Carrier {
 
     /// All numbers of the piece, to be checked.
     pub fn numbers(&self) -> impl Iterator<Item = f64> {
-        let Self { time, u, w, profile_position, u_path, w_path, bodies, ends: _ } = *self;
+        let Self { time, u, w, profile_position, u_path, w_path, ref bodies, ends: _ } = *self;
         let of_path = |Path { rate, amplitude, frequency }: Path| [rate, amplitude, frequency];
         let paths = [u_path, w_path].into_iter().flat_map(of_path);
         [time, u, w, profile_position]
             .into_iter()
             .chain(paths)
-            .chain(bodies.into_iter().flatten().flat_map(|body| body.numbers().collect::<Vec<_>>()))
+            .chain(bodies.iter().flatten().flat_map(|body| body.numbers().collect::<Vec<_>>()))
     }
 }

@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::math::{dot, sum};
-use crate::scene::Axis;
+use crate::scene::{Axis, ByAxis};
 
 use super::{Carrier, CarrierPoint, ContactForces, Forces, FrictionCurve, LinkKind, Mode, Model, State};
 
@@ -146,8 +146,8 @@ impl BoundaryPowers {
 }
 
 fn damper(model: &Model, forces: &Forces, kind: LinkKind) -> f64 {
-    let damping = model.links[kind as usize].damping;
-    if damping == 0.0 { 0.0 } else { damping * dot(&forces.rate[kind as usize], &forces.rate[kind as usize]) }
+    let damping = model.links[kind].damping;
+    if damping == 0.0 { 0.0 } else { damping * dot(&forces.rate[kind], &forces.rate[kind]) }
 }
 
 fn square_sum(values: impl Iterator<Item = f64>) -> f64 {
@@ -217,7 +217,7 @@ impl FrictionPower {
 
 /// The power of a prescribed carrier into the layer, W. One at rest does no work, whatever the forces.
 fn input(model: &Model, forces: &Forces, carrier: &CarrierPoint) -> f64 {
-    let [body_x, body_z] = &model.bodies;
+    let ByAxis { x: body_x, z: body_z } = &model.bodies;
     let along_x = if carrier.u_rate == 0.0 || body_x.is_some() { 0.0 } else { forces.on_carrier_x() * carrier.u_rate };
     let along_z = if carrier.w_rate == 0.0 || body_z.is_some() { 0.0 } else { forces.on_carrier_z() * carrier.w_rate };
     -(along_x + along_z)
@@ -241,7 +241,7 @@ pub fn elastic_energy(model: &Model, state: &State) -> f64 {
 pub fn vertical_spring_energy_at(model: &Model, state: &State, i: usize) -> f64 {
     let e = &state.elongation_z;
     let of_link = |kind: LinkKind, link: usize, e: f64| {
-        let law = &model.links[kind as usize];
+        let law = &model.links[kind];
         let frozen = if law.frozen == 0.0 { 0.0 } else { e - model.frozen_dashpot(kind, link) };
         let of_row = |row: &super::MaxwellRow| row.stiffness * state.maxwell[row.range.start + link].powi(2);
         let elements: f64 = model.rows_of(kind).map(of_row).sum();
@@ -253,7 +253,7 @@ pub fn vertical_spring_energy_at(model: &Model, state: &State, i: usize) -> f64 
 }
 
 fn spring_energy(model: &Model, state: &State, kind: LinkKind) -> f64 {
-    let law = &model.links[kind as usize];
+    let law = &model.links[kind];
     match kind {
         LinkKind::Vertical => springs_energy(model, kind, state.elongation_z.iter().copied()),
         LinkKind::Horizontal => 0.5 * law.stiffness * square_sum(state.elongation_x.iter().copied()),
@@ -265,7 +265,7 @@ fn spring_energy(model: &Model, state: &State, kind: LinkKind) -> f64 {
 
 /// Σ ½ c e², and ½ c_j (e - y_j)² of the part with frozen dashpots.
 fn springs_energy(model: &Model, kind: LinkKind, elongations: impl Iterator<Item = f64> + Clone) -> f64 {
-    let law = &model.links[kind as usize];
+    let law = &model.links[kind];
     let whole = 0.5 * (law.stiffness - law.frozen) * square_sum(elongations.clone());
     if law.frozen == 0.0 {
         return whole;

@@ -31,7 +31,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::math::Spline;
-pub use crate::scene::{Axis, Input, LinkKind};
+pub use crate::scene::{Axis, ByAxis, ByLink, Input, LinkKind};
 use crate::scene::{Initial, Scene};
 
 /// The profile at one position.
@@ -81,19 +81,19 @@ pub struct Model {
     pub rest_x: Vec<f64>,
     /// Heights Z_i of the masses at rest, m.
     pub rest_z: Vec<f64>,
-    /// Springs and dampers of the four kinds of link, in the order of [`LinkKind::ALL`].
-    pub links: [LinkLaw; 4],
+    /// Springs and dampers of the four kinds of link.
+    pub links: ByLink<LinkLaw>,
     /// The Maxwell elements: one row for each element of each kind of link.
     pub rows: Vec<MaxwellRow>,
     /// The relaxation times of the Maxwell elements, each once, s.
     pub relaxation_times: Vec<f64>,
     /// Glassy stiffness c + Σ c_j of each kind of link, N/m, as the scene has it: tolerances are derived from it,
     /// whatever `solver.reduce` replaces.
-    pub glassy: [f64; 4],
+    pub glassy: ByLink<f64>,
     /// The rigid profile z_r(x).
     pub profile: Arc<Spline>,
     /// The carrier as a body along x and z; `None` where its displacement is prescribed.
-    pub bodies: [Option<Body>; 2],
+    pub bodies: ByAxis<Option<Body>>,
     /// Coulomb's coefficient μ.
     pub friction_coefficient: f64,
     /// Shear force A τ_0 + A τ_f(v_c) of a mass in contact, at rest or slower than the creep speed, N.
@@ -124,7 +124,7 @@ impl Model {
         let shear_force = scene.shear_force().unwrap_or(0.0);
         let coulomb = friction.and_then(|f| f.coulomb).unwrap_or(0.0);
         let reduction = Reduction::new(scene);
-        let links = LinkKind::ALL.map(|kind| LinkLaw::new(scene, kind, reduction.as_ref()));
+        let links = ByLink::from_fn(|kind| LinkLaw::new(scene, kind, reduction.as_ref()));
         let (rows, relaxation_times) = forces::maxwell_rows(scene, reduction.as_ref());
         Self {
             mass: scene.mass(),
@@ -135,7 +135,7 @@ impl Model {
             links,
             rows,
             relaxation_times,
-            glassy: LinkKind::ALL.map(|kind| scene.link(kind).as_ref().map_or(0.0, scales::glassy)),
+            glassy: ByLink::from_fn(|kind| scene.link(kind).as_ref().map_or(0.0, scales::glassy)),
             profile: Arc::clone(scene.surface.spline()),
             bodies: Body::along_axes(scene),
             friction_coefficient: coulomb,
@@ -176,7 +176,7 @@ impl Model {
 
     /// Subtracts c_j y_j of the frozen dashpots from the `forces` of the links of `kind`, N.
     pub fn subtract_frozen(&self, kind: LinkKind, forces: &mut [f64]) {
-        let stiffness = self.links[kind as usize].frozen;
+        let stiffness = self.links[kind].frozen;
         if stiffness > 0.0 {
             forces.iter_mut().zip(self.frozen_dashpots(kind)).for_each(|(force, y)| *force -= stiffness * y);
         }
@@ -194,7 +194,7 @@ impl Model {
 
     /// The inputs that move the carrier.
     pub fn inputs(&self) -> Vec<Input> {
-        let body = |input: &Input| input.axis().map(|axis| &self.bodies[axis as usize]);
+        let body = |input: &Input| input.axis().map(|axis| &self.bodies[axis]);
         let acts = |input: &Input| match (body(input).unwrap_or(&None), input.is_displacement()) {
             (None, is_displacement) => is_displacement,
             (Some(body), true) => body.stiffness > 0.0 || body.damping > 0.0,
@@ -205,7 +205,7 @@ impl Model {
 
     /// Whether the carrier is a body along an axis.
     pub fn has_bodies(&self) -> bool {
-        self.bodies.iter().any(Option::is_some)
+        self.bodies.any()
     }
 
     /// Number of masses k.

@@ -13,7 +13,7 @@ use crate::model::{
     AreaShare, BodyEnergy, Carrier, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, Powers,
     State, Tangents, elastic_energy, kinetic_energy,
 };
-use crate::scene::Axis;
+use crate::scene::{Axis, ByAxis};
 
 /// The layer's state and the forces in it. Within a step they are computed when they are first asked for: F_x, F_z and
 /// the energies do without.
@@ -164,7 +164,7 @@ impl<'a> Snapshot<'a> {
 
     /// How far bodies are from their start along x and z, m; 0 where the displacement is prescribed.
     pub fn ways(&self) -> [f64; 2] {
-        let [x, z] = &self.model.bodies;
+        let ByAxis { x, z } = &self.model.bodies;
         let way = |is_body: bool, now: f64, start: f64| if is_body { now - start } else { 0.0 };
         [way(x.is_some(), self.displacement.0, self.start[0]), way(z.is_some(), self.displacement.1, self.start[1])]
     }
@@ -280,20 +280,19 @@ pub(super) struct CarrierShift {
     /// Of the forces of the links on each mass, N.
     on_mass: (f64, f64),
     /// Of the drives' displacements along x and z, m.
-    drive: [f64; 2],
+    drive: ByAxis<f64>,
 }
 
 impl CarrierShift {
     /// A shift of u and w by (δu, δw), m; along the axis of a body it shifts the drive, and the layer not at all.
     pub(super) fn new(model: &Model, direction: (f64, f64)) -> Self {
-        let of =
-            |axis: Axis, change: f64| if model.bodies[axis as usize].is_some() { (0.0, change) } else { (change, 0.0) };
+        let of = |axis: Axis, change: f64| if model.bodies[axis].is_some() { (0.0, change) } else { (change, 0.0) };
         let ((du, drive_x), (dw, drive_z)) = (of(Axis::X, direction.0), of(Axis::Z, direction.1));
         let stiffness = |kind| model.instantaneous_stiffness(kind);
         Self {
             elongation: (-du, -dw),
             on_mass: (stiffness(LinkKind::Horizontal) * du, stiffness(LinkKind::Vertical) * dw),
-            drive: [drive_x, drive_z],
+            drive: ByAxis { x: drive_x, z: drive_z },
         }
     }
 }
@@ -351,8 +350,8 @@ impl Snapshot<'_> {
 
     /// δR = K δu_d of the drive along `axis`.
     pub(super) fn drive_force_change(&self, axis: Axis, shift: &CarrierShift) -> f64 {
-        let body = &self.model.bodies[axis as usize];
-        body.as_ref().map_or(0.0, |body| body.stiffness * shift.drive[axis as usize])
+        let body = &self.model.bodies[axis];
+        body.as_ref().map_or(0.0, |body| body.stiffness * shift.drive[axis])
     }
 
     /// Of V_c = ½ K (u - u_d)² of both axes.
@@ -422,7 +421,7 @@ impl Snapshot<'_> {
     /// Of V = Σ ½ c e² + Σ_j ½ c_j a_j², where a_j = e - y_j of frozen dashpots.
     pub(super) fn elastic_energy_change(&self, shift: &CarrierShift) -> f64 {
         let spring = |kind: LinkKind, elongations: &[f64], moved: f64| {
-            let law = &self.model.links[kind as usize];
+            let law = &self.model.links[kind];
             let frozen =
                 if law.frozen > 0.0 { law.frozen * self.model.frozen_dashpots(kind).sum::<f64>() } else { 0.0 };
             moved * (law.stiffness * elongations.iter().sum::<f64>() - frozen)

@@ -146,7 +146,7 @@ fn lengths_of_state(state: &State) -> [(&'static str, usize); 7] {
 
 fn lengths_of_rates(rates: &Rates) -> [(&'static str, usize); 10] {
     let Rates { velocity_x, velocity_z, acceleration_x, acceleration_z, elongation_rate, normal, margin } = rates;
-    let [vertical, horizontal, lateral_x, lateral_z] = elongation_rate;
+    let [vertical, horizontal, lateral_x, lateral_z] = &elongation_rate.0;
     [
         ("velocities along x", velocity_x.len()),
         ("velocities along z", velocity_z.len()),
@@ -223,7 +223,7 @@ fn check_layer(state: &State, rates: &Rates) -> Result<(), RestoreError> {
     for values in [velocity_x, velocity_z, acceleration_x, acceleration_z, normal, margin] {
         check_finite("a rate", values)?;
     }
-    LinkKind::ALL.into_iter().try_for_each(|kind| check_finite("a rate", &elongation_rate[kind as usize]))
+    LinkKind::ALL.into_iter().try_for_each(|kind| check_finite("a rate", &elongation_rate[kind]))
 }
 
 fn check_finite(what: &'static str, values: &[f64]) -> Result<(), RestoreError> {

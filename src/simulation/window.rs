@@ -202,7 +202,7 @@ impl Window {
         ends.fold(0.0, |largest: f64, end| {
             let [(x, z), (v_x, v_z)] = dense.motion(masses.start + end, theta, weights);
             let force = |kind: LinkKind, off: f64, rate_off: f64| {
-                model.glassy[kind as usize] * off.abs() + model.links[kind as usize].damping * rate_off.abs()
+                model.glassy[kind] * off.abs() + model.links[kind].damping * rate_off.abs()
             };
             let along_x = force(LinkKind::LateralX, x - layer.elongation_x[end], v_x - layer.velocity_x[end]);
             let along_z = force(LinkKind::LateralZ, z - layer.elongation_z[end], v_z - layer.velocity_z[end]);

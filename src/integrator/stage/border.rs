@@ -8,12 +8,12 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::{StagePoint, StageSolver};
-use crate::model::{Axis, Body, Forces, LinkKind, Mode, Model, Outside};
+use crate::model::{Axis, Body, ByAxis, Forces, LinkKind, Mode, Model, Outside};
 
 /// The rows and columns of the bodies.
 #[derive(Clone, Debug)]
 pub(in crate::integrator) struct Border {
-    sides: [Option<Side>; 2],
+    sides: ByAxis<Option<Side>>,
     /// The Schur complement, inverted.
     inverse: Matrix2<f64>,
 }
@@ -54,7 +54,7 @@ pub(in crate::integrator) struct BodyHistory {
 impl Border {
     pub(super) fn new(model: &Model) -> Option<Box<Self>> {
         let side = |axis: Axis| {
-            let body = model.bodies[axis as usize]?;
+            let body = model.bodies[axis]?;
             let zero = vec![Vector2::zeros(); model.masses()];
             Some(Side {
                 axis,
@@ -68,13 +68,13 @@ impl Border {
                 inertia: 0.0,
             })
         };
-        let sides = Axis::ALL.map(side);
-        sides.iter().any(Option::is_some).then(|| Box::new(Self { sides, inverse: Matrix2::zeros() }))
+        let sides = ByAxis::from_fn(side);
+        sides.any().then(|| Box::new(Self { sides, inverse: Matrix2::zeros() }))
     }
 
     /// Sets what a stage knows of the body along `axis`.
     pub(in crate::integrator) fn prepare(&mut self, axis: Axis, star: BodyHistory, outside: Outside) {
-        if let Some(side) = &mut self.sides[axis as usize] {
+        if let Some(side) = &mut self.sides[axis] {
             (side.star, side.outside) = (star, outside);
         }
     }
@@ -94,7 +94,8 @@ impl Border {
         let product = |row: &Side, column: &Side| -> f64 {
             row.row.iter().zip(&column.column).map(|(row, column)| row.dot(column)).sum()
         };
-        let element = |i: usize, j: usize| match (&self.sides[i], &self.sides[j]) {
+        let sides = [&self.sides.x, &self.sides.z];
+        let element = |i: usize, j: usize| match (sides[i], sides[j]) {
             (Some(row), Some(column)) => (if i == j { row.diagonal } else { 0.0 }) - product(row, column),
             _ => f64::from(u8::from(i == j)),
         };
@@ -112,7 +113,7 @@ impl Border {
                 side.right - side.row.iter().zip(&*masses).map(|(row, mass)| row.dot(mass)).sum::<f64>()
             })
         };
-        let found = self.inverse * Vector2::new(left(&self.sides[0]), left(&self.sides[1]));
+        let found = self.inverse * Vector2::new(left(&self.sides.x), left(&self.sides.z));
         for (side, found) in self.sides.iter().zip(found.iter()) {
             let Some(side) = side else { continue };
             masses.iter_mut().zip(&side.column).for_each(|(mass, column)| *mass -= column * *found);
@@ -146,7 +147,7 @@ impl StageSolver {
             Axis::X => (LinkKind::Horizontal, LinkKind::LateralX, 0),
             Axis::Z => (LinkKind::Vertical, LinkKind::LateralZ, 1),
         };
-        let (own_law, lateral_law) = (&self.laws[own as usize], &self.laws[lateral as usize]);
+        let (own_law, lateral_law) = (&self.laws[own], &self.laws[lateral]);
         let inertia = model.mass / beta;
         let modes = &self.state.mode;
         side.column.fill(Vector2::zeros());
@@ -223,7 +224,7 @@ impl StageSolver {
     /// the right sides of the masses are set.
     pub(in crate::integrator) fn set_border_right(&mut self, axis: Axis, forces: &Forces, outside: f64) {
         let Some(border) = &mut self.border else { return };
-        if let Some(side) = &mut border.sides[axis as usize] {
+        if let Some(side) = &mut border.sides[axis] {
             side.right = outside + with_free_masses(axis, forces, &self.system.right, &self.state.mode);
         }
     }
@@ -232,7 +233,7 @@ impl StageSolver {
 /// The force of the links on the body along `axis` and the right sides of the free masses, N: what the links between the two
 /// exert cancels.
 fn with_free_masses(axis: Axis, forces: &Forces, right: &[Vector2<f64>], modes: &[Mode]) -> f64 {
-    let links = &forces.link[axis.link() as usize];
+    let links = &forces.link[axis.link()];
     let of_mass = |(i, (right, mode)): (usize, (&Vector2<f64>, &Mode))| {
         let link = links.get(i).copied().unwrap_or(0.0);
         if mode.in_contact() { link } else { link + right[axis as usize] }

@@ -23,7 +23,7 @@ use super::error::{NEWTON_SHARE, Tolerance};
 use super::rates::{NO_LIMIT, Rates};
 use crate::math::{BLOCK, BlockTridiagonal, Spline, weighted_sum, with_widest_vectors};
 use crate::model::{
-    CarrierPoint, ContactForces, Forces, FrictionPower, LinkKind, LinkMotion, Mode, Model, State, SurfacePoint,
+    ByLink, CarrierPoint, ContactForces, Forces, FrictionPower, LinkKind, LinkMotion, Mode, Model, State, SurfacePoint,
 };
 use newton::{ContactJacobian, NeighbourWeights, RateFriction, RowShares, largest_of};
 
@@ -46,7 +46,7 @@ pub(super) struct StageHistory {
     /// v*_z, m/s.
     pub velocity_z: Vec<f64>,
     /// H by kind of link, N; empty where the scene has no such link.
-    pub force: [Vec<f64>; 4],
+    pub force: ByLink<Vec<f64>>,
 }
 
 impl StageHistory {
@@ -63,8 +63,8 @@ impl StageHistory {
 
     /// Subtracts the forces of the frozen dashpots from H.
     fn subtract_frozen(&mut self, model: &Model) {
-        for kind in LinkKind::ALL.into_iter().filter(|&kind| model.links[kind as usize].frozen > 0.0) {
-            let force = &mut self.force[kind as usize];
+        for kind in LinkKind::ALL.into_iter().filter(|&kind| model.links[kind].frozen > 0.0) {
+            let force = &mut self.force[kind];
             if model.rows_of(kind).next().is_none() {
                 force.fill(0.0);
             }
@@ -178,7 +178,7 @@ pub(super) struct StageSolver {
     slip_speed: Vec<f64>,
     friction: Friction,
     /// By kind of link.
-    pub laws: [StageLaw; 4],
+    pub laws: ByLink<StageLaw>,
     /// The modes of which the following are lists.
     listed: Vec<Mode>,
     /// The masses in contact, in their order.
@@ -222,7 +222,7 @@ impl StageSolver {
             friction_power: FrictionPower::default(),
             slip_speed: vec![0.0; k],
             friction: Friction::Held,
-            laws: [StageLaw::default(); 4],
+            laws: ByLink::default(),
             listed: vec![Mode::Free; k],
             contacts: Vec::with_capacity(k),
             slips: Vec::with_capacity(k),
@@ -286,7 +286,7 @@ impl StageSolver {
         }
         for row in &model.rows {
             let tau = row.relaxation_time;
-            self.laws[row.kind as usize].damping += row.stiffness * beta * tau / (tau + beta);
+            self.laws[row.kind].damping += row.stiffness * beta * tau / (tau + beta);
         }
         for law in &mut self.laws {
             law.weight = beta * law.stiffness + law.damping;

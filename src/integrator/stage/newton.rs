@@ -7,7 +7,7 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::{StageHistory, StageLaw, StageSolver};
 use crate::math::with_widest_vectors;
-use crate::model::Axis;
+use crate::model::{Axis, ByLink};
 use crate::model::{ContactForces, Forces, FrictionCurve, Mode, Model, State, SurfacePoint};
 
 impl StageSolver {
@@ -102,7 +102,7 @@ impl StageSolver {
         }
         let k = self.state.mode.len();
         let inertia = model.mass / beta;
-        let [vertical, horizontal, lateral_x, lateral_z] = self.laws.map(|law| law.weight);
+        let [vertical, horizontal, lateral_x, lateral_z] = self.laws.0.map(|law| law.weight);
         let diagonal = |neighbours: f64| {
             let weights = (horizontal + neighbours * lateral_x, vertical + neighbours * lateral_z);
             Matrix2::new(inertia + weights.0, 0.0, 0.0, inertia + weights.1)
@@ -182,7 +182,7 @@ struct EvaluatedStage<'a> {
     state: &'a State,
     history: &'a StageHistory,
     forces: &'a Forces,
-    laws: &'a [StageLaw; 4],
+    laws: &'a ByLink<StageLaw>,
     /// β of the stage, s.
     beta: f64,
 }
@@ -228,7 +228,7 @@ impl EvaluatedStage<'_> {
     /// The diagonal block, row and column of mass `i`, which slips.
     #[inline(always)]
     fn assembled(&self, i: usize, slip: &SlippingMass) -> (Matrix2<f64>, RowShares, NeighbourWeights) {
-        let [vertical, horizontal, lateral_x, lateral_z] = self.laws;
+        let [vertical, horizontal, lateral_x, lateral_z] = self.laws.0;
         let (neighbours, climb) = (neighbours(i, self.state.mode.len()), slip.climb(self.beta));
         let along_z = lateral_z.along(climb);
         let weights = (horizontal.weight + neighbours * lateral_x.weight, vertical.along(climb) + neighbours * along_z);
