@@ -40,7 +40,7 @@
 //! | a picture of a patch | `program/figure/patch.rs`; its maps `moment.rs` (what is drawn) and `maps.rs` (how), from `patch/plan.rs` |
 //! | what an FMU state holds | `FmuState` in `fmi/state.rs`, `RunState` in `simulation/run.rs` |
 //! | what acts on a carrier that is a body | `scene/carrier.rs` (keys in `scene/reader/carrier.rs`), `Body` and `Outside` in `model/carrier.rs`; its equation in `integrator/stage/border.rs`, its sensitivity in `integrator/sensitivity.rs` |
-//! | an input of the FMU | [`scene::Input`], `Inputs` in `fmi/inputs.rs`, `Motion` in `simulation/motion.rs`, `CarrierSample` in `program/runner.rs` |
+//! | an input of the FMU | [`scene::Input`], `Motion` in `scene/excitation.rs`, `Inputs` in `fmi/inputs.rs`, `CarrierSample` in `program/runner.rs` |
 //!
 //! ```
 //! use asperity::outputs::variables;
@@ -79,7 +79,7 @@
 //!
 //! | symbol | name in the code | unit | meaning, equation |
 //! |---|---|---|---|
-//! | u, w | `Carrier::u`, `w` | m | displacement of the carrier along x and z; w < 0 presses |
+//! | u, w | `Carrier::displacement()` | m | displacement of the carrier along x and z; w < 0 presses |
 //! | k, Δx | `Layer::masses`, `spacing` | 1, m | number and distance of the masses |
 //! | X_i, Z_i | `Model::rest_x`, `rest_z` | m | positions of the masses at rest |
 //! | m | `Model::mass` | kg | one point mass |
@@ -101,7 +101,7 @@
 //! | M, K, D | `Body::mass`, `stiffness`, `damping` | kg, N/m, N s/m | carrier that is a body, spring and damper to its drive |
 //! | N, P | `Input::Load`, `Input::Pull` | N | normal load (N > 0 presses) and tangential force on a body |
 //! | u_d, w_d, R | `Outside::drive`, `drive_force()` | m, N | displacement of the drive, its force on the body |
-//! | F_x, F_z | `Forces::on_carrier_x`, `on_carrier_z` | N | forces of the layer on the carrier |
+//! | F_x, F_z | `Forces::on_carrier()` | N | forces of the layer on the carrier |
 //! | z_r, s, κ | `SurfacePoint::height`, `slope`, `curvature` | m, 1, 1/m | profile, z_r', z_r'' (5), (9) |
 //! | q | `ContactForces::q` | 1 | √(1 + s²) |
 //! | g | gap | m | z - z_r(x) |

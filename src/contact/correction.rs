@@ -341,7 +341,8 @@ impl<'a> Correction<'a> {
         let moved = (x - from.0, surface.height - from.1);
         let state = &mut *self.end.state;
         state.displace(self.step.model, i, moved, time);
-        state.elongation_z[i] = surface.height - self.step.model.rest_z[i] - (self.step.carrier.w + self.carrier.dw);
+        state.elongation_z[i] =
+            surface.height - self.step.model.rest_z[i] - (self.step.carrier.start.z + self.carrier.z.position);
         state.surface[i] = surface;
         self.end.forces.refresh(self.step.model, self.end.state, &self.carrier, i);
         for (axis, moved) in Axis::ALL.into_iter().zip([moved.0, moved.1]) {
@@ -450,7 +451,7 @@ impl<'a> Correction<'a> {
         let s = self.end.state.surface[i].slope;
         let q = (1.0 + s * s).sqrt();
         let [mean, at_end] = [speed.mean, speed.at_end].map(|v_t| (v_t / q, s * v_t / q));
-        let carrier = (self.carrier.u_rate, self.carrier.w_rate);
+        let carrier = (self.carrier.x.speed, self.carrier.z.speed);
         for kind in LinkKind::ALL {
             let (damping, passing) = (rest.time * self.damping(kind), rest.time * self.passing(kind, rest.time));
             let [free, mean, at_end, carrier] =
@@ -477,8 +478,8 @@ impl<'a> Correction<'a> {
     fn stop_after(&mut self, i: usize, distance: f64, time: f64) {
         self.set_slip_velocity(i, 0.0);
         let model = self.step.model;
-        let x =
-            model.rest_x[i] + (self.step.carrier.profile_position + (self.carrier.du + self.end.state.elongation_x[i]));
+        let x = model.rest_x[i]
+            + (self.step.carrier.profile_position + (self.carrier.x.position + self.end.state.elongation_x[i]));
         let from = (x, self.end.state.surface[i].height);
         self.move_to(i, from, x + distance, model.surface_at(x + distance), time);
     }

@@ -14,15 +14,15 @@ pub fn place_layer(model: &Model, state: &mut State, at: CarrierPosition, carrie
         let gap = model.rest_z[i] + at.w - surface.height;
         state.elongation_x[i] = 0.0;
         state.elongation_z[i] = 0.0;
-        (state.velocity_x[i], state.velocity_z[i]) = (carrier.u_rate, carrier.w_rate);
-        let separation = carrier.w_rate - surface.slope * carrier.u_rate;
+        (state.velocity_x[i], state.velocity_z[i]) = (carrier.x.speed, carrier.z.speed);
+        let separation = carrier.z.speed - surface.slope * carrier.x.speed;
         if gap < 0.0 {
-            let v_x = (carrier.u_rate + surface.slope * carrier.w_rate) / (1.0 + surface.slope * surface.slope);
+            let v_x = (carrier.x.speed + surface.slope * carrier.z.speed) / (1.0 + surface.slope * surface.slope);
             touch_down(model, state, i, at.w, &surface, v_x);
             state.mode[i] = Mode::along(v_x);
         } else if gap == 0.0 && separation == 0.0 {
-            touch_down(model, state, i, at.w, &surface, carrier.u_rate);
-            state.mode[i] = Mode::along(carrier.u_rate);
+            touch_down(model, state, i, at.w, &surface, carrier.x.speed);
+            state.mode[i] = Mode::along(carrier.x.speed);
         } else {
             state.release(i);
         }

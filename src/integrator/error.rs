@@ -6,7 +6,7 @@ use super::largest::Largest;
 use super::maxwell::Maxwell;
 use super::rates::Rates;
 use super::tableau::Tableau;
-use crate::math::{dot, sum_of, sum_of_pairs, sum_of_triples, weighted_sum, with_widest_vectors};
+use crate::math::{Jet, dot, sum_of, sum_of_pairs, sum_of_triples, weighted_sum, with_widest_vectors};
 use crate::model::{Axis, ByAxis, ByLink};
 use crate::model::{BoundaryPowers, CarrierPoint, LinkKind, Model, State};
 
@@ -230,8 +230,8 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
         let (in_contact, free) = self.carrier_squares(&carrier_error, tolerance);
         let mut sum = of_positions(&workspace.x, &end.elongation_x)
             + of_positions(&workspace.z, &end.elongation_z)
-            + of_velocities(&workspace.v_x, &end.velocity_x, rates.u_rate)
-            + of_velocities(&workspace.v_z, &end.velocity_z, rates.w_rate)
+            + of_velocities(&workspace.v_x, &end.velocity_x, rates.x.speed)
+            + of_velocities(&workspace.v_z, &end.velocity_z, rates.z.speed)
             + square(CARRIER_WEIGHT) * in_contact;
         let mut of_forces = 0.0;
         for kind in LinkKind::ALL {
@@ -266,7 +266,7 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
     /// since the start of the piece.
     fn body_squares(&self, model: &Model, error: &CarrierError, tolerance: &Tolerance) -> f64 {
         let of = |axis: Axis| {
-            let [way, rate, _] = self.carrier[STAGES - 1].along(axis);
+            let Jet { position: way, speed: rate, .. } = self.carrier[STAGES - 1][axis];
             let (position, velocity) = match axis {
                 Axis::X => (error.position.0, error.velocity.0),
                 Axis::Z => (error.position.1, error.velocity.1),
@@ -296,7 +296,7 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
             input += h * weight * exchange.input;
         }
         let carrier = &self.carrier[STAGES - 1];
-        let scale = self.largest.energy_scale(model, tolerance, carrier.u_rate.hypot(carrier.w_rate));
+        let scale = self.largest.energy_scale(model, tolerance, carrier.x.speed.hypot(carrier.z.speed));
         let allowed = tolerance.relative * scale.max(input.abs());
         errors.iter().map(|error| square(error / allowed)).sum()
     }
@@ -401,9 +401,9 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
     fn rod_squares(&self, kind: LinkKind, rod: &Rod, h: f64, tolerance: &Tolerance, workspace: &ErrorWorkspace) -> f64 {
         let (end, carrier) = (self.end, &self.carrier[STAGES - 1]);
         let (errors, e, v, carrier_rate) = if kind.is_along_x() {
-            ((&workspace.x, &workspace.v_x), &end.elongation_x, &end.velocity_x, carrier.u_rate)
+            ((&workspace.x, &workspace.v_x), &end.elongation_x, &end.velocity_x, carrier.x.speed)
         } else {
-            ((&workspace.z, &workspace.v_z), &end.elongation_z, &end.velocity_z, carrier.w_rate)
+            ((&workspace.z, &workspace.v_z), &end.elongation_z, &end.velocity_z, carrier.z.speed)
         };
         let force = |elongation: &[f64], velocity: &[f64], carrier_rate: f64, i: usize| {
             if kind.is_lateral() {
@@ -446,8 +446,8 @@ impl CarrierError {
         let (mut position, mut velocity) = ((0.0, 0.0), (0.0, 0.0));
         for (at, weight) in carrier.iter().zip(weights) {
             let step = h * weight;
-            position = (position.0 + step * at.u_rate, position.1 + step * at.w_rate);
-            velocity = (velocity.0 + step * at.u_acceleration, velocity.1 + step * at.w_acceleration);
+            position = (position.0 + step * at.x.speed, position.1 + step * at.z.speed);
+            velocity = (velocity.0 + step * at.x.acceleration, velocity.1 + step * at.z.acceleration);
         }
         Self { position, velocity }
     }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::error::Tolerance;
-use crate::model::{Forces, LinkKind, Model};
+use crate::model::{Axis, Forces, LinkKind, Model};
 
 /// The least scale of the errors of one force, as a share of the other, and as one of the force that the scene's height makes
 /// on a mass.
@@ -36,8 +36,8 @@ impl Largest {
     #[must_use]
     pub fn with(self, forces: &Forces) -> Self {
         Self {
-            force_x: self.force_x.max(forces.on_carrier_x().abs()),
-            force_z: self.force_z.max(forces.on_carrier_z().abs()),
+            force_x: self.force_x.max(forces.on_carrier(Axis::X).abs()),
+            force_z: self.force_z.max(forces.on_carrier(Axis::Z).abs()),
             ..self
         }
     }

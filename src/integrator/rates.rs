@@ -135,9 +135,9 @@ impl Rates {
         self.evaluate_mass(model, state, forces, i);
         for kind in LinkKind::ALL {
             let (velocity, carrier_rate) = if kind.is_along_x() {
-                (&state.velocity_x, carrier.u_rate)
+                (&state.velocity_x, carrier.x.speed)
             } else {
-                (&state.velocity_z, carrier.w_rate)
+                (&state.velocity_z, carrier.z.speed)
             };
             let rate = &mut self.elongation_rate[kind];
             for link in if kind.is_lateral() { i.saturating_sub(1)..i + 1 } else { i..i + 1 } {
@@ -183,8 +183,8 @@ impl Rates {
             law.stiffness * rate + damper + elements
         };
         (
-            of(LinkKind::Horizontal, &self.acceleration_x, carrier.u_acceleration),
-            of(LinkKind::Vertical, &self.acceleration_z, carrier.w_acceleration),
+            of(LinkKind::Horizontal, &self.acceleration_x, carrier.x.acceleration),
+            of(LinkKind::Vertical, &self.acceleration_z, carrier.z.acceleration),
         )
     }
 }

@@ -91,12 +91,10 @@ impl KnownMotion {
 
     fn links(&self, carrier: &CarrierVariation) -> LinkMotion<'_> {
         LinkMotion {
-            elongation_x: &self.elongation_x,
-            elongation_z: &self.elongation_z,
-            velocity_x: &self.velocity_x,
-            velocity_z: &self.velocity_z,
-            carrier_rates: (carrier.u_rate, carrier.w_rate),
-            ends: [[0.0; 2]; 2],
+            elongation: ByAxis { x: &self.elongation_x, z: &self.elongation_z },
+            velocity: ByAxis { x: &self.velocity_x, z: &self.velocity_z },
+            carrier_rate: ByAxis { x: carrier.u_rate, z: carrier.w_rate },
+            ends: Default::default(),
         }
     }
 }
@@ -236,10 +234,10 @@ impl Tangent {
             };
             rates.a_z[i] = on_mass.1 / model.mass;
         }
-        for (axis, of_layer) in Axis::ALL.into_iter().zip([self.forces.on_carrier_x(), self.forces.on_carrier_z()]) {
+        for axis in Axis::ALL {
             let Some(body) = &model.bodies[axis] else { continue };
             let motion = self.start.bodies[axis];
-            let acceleration = (of_layer + self.on_body(body, axis, s, motion)) / body.mass;
+            let acceleration = (self.forces.on_carrier(axis) + self.on_body(body, axis, s, motion)) / body.mass;
             self.stages[0].bodies[axis] = [motion[1], acceleration];
         }
         for row in &model.rows {
@@ -258,10 +256,7 @@ impl Tangent {
     /// The derivatives at the start of the next step, `s` seconds after the start of the motion.
     pub(super) fn tangents(&mut self, model: &Model, s: f64) -> TangentsOf {
         self.forces_at_start(model, &self.carrier(model, s, &self.start.bodies));
-        TangentsOf {
-            force: ByAxis { x: self.forces.on_carrier_x(), z: self.forces.on_carrier_z() },
-            body: self.start.bodies,
-        }
+        TangentsOf { force: ByAxis::from_fn(|axis| self.forces.on_carrier(axis)), body: self.start.bodies }
     }
 
     /// Computes the variation of the forces of the links at the start of the step.
@@ -272,12 +267,10 @@ impl Tangent {
             self.known.elongation_z[i] = start.z[i] - carrier.w;
         }
         let motion = LinkMotion {
-            elongation_x: &self.known.elongation_x,
-            elongation_z: &self.known.elongation_z,
-            velocity_x: &start.v_x,
-            velocity_z: &start.v_z,
-            carrier_rates: (carrier.u_rate, carrier.w_rate),
-            ends: [[0.0; 2]; 2],
+            elongation: ByAxis { x: &self.known.elongation_x, z: &self.known.elongation_z },
+            velocity: ByAxis { x: &start.v_x, z: &start.v_z },
+            carrier_rate: ByAxis { x: carrier.u_rate, z: carrier.w_rate },
+            ends: Default::default(),
         };
         for kind in LinkKind::ALL {
             let law = &model.links[kind];
@@ -392,12 +385,10 @@ impl Tangent {
     fn set_elements(&mut self, model: &Model, beta: f64, carrier: &CarrierVariation, stage: usize) {
         let (end, rates) = (&mut self.end, &mut self.stages[stage]);
         let motion = LinkMotion {
-            elongation_x: &end.x,
-            elongation_z: &end.z,
-            velocity_x: &end.v_x,
-            velocity_z: &end.v_z,
-            carrier_rates: (carrier.u_rate, carrier.w_rate),
-            ends: [[0.0; 2]; 2],
+            elongation: ByAxis { x: &end.x, z: &end.z },
+            velocity: ByAxis { x: &end.v_x, z: &end.v_z },
+            carrier_rate: ByAxis { x: carrier.u_rate, z: carrier.w_rate },
+            ends: Default::default(),
         };
         for kind in LinkKind::ALL {
             self.forces.spring_and_damper(kind, 0.0, 0.0, &motion, &[]);

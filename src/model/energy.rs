@@ -119,25 +119,24 @@ impl BoundaryPowers {
         modes: &[Mode],
         (velocity_x, velocity_z, normal): (&[f64], &[f64], &[f64]),
         carrier: &CarrierPoint,
-        on_carrier: (f64, f64),
+        on_carrier: ByAxis<f64>,
     ) -> Self {
         let mut power = FrictionPower::default();
         for i in (0..modes.len()).filter(|&i| model.has_friction && modes[i].slips() && velocity_x[i] != 0.0) {
             let contact = ContactForces::in_slip(model, normal[i], (velocity_x[i], velocity_z[i]));
             power.add(model, modes[i], velocity_x[i], &contact);
         }
-        Self::with_powers(model, &power, -(on_carrier.0 * carrier.u_rate + on_carrier.1 * carrier.w_rate))
+        Self::with_powers(model, &power, -(on_carrier.x * carrier.x.speed + on_carrier.z * carrier.z.speed))
     }
 
     fn with_powers(model: &Model, power: &FrictionPower, input: f64) -> Self {
         Self { friction: power.friction(), shear: power.shear(model), input, carrier: 0.0 }
     }
 
-    /// Adds the powers of what acts on the bodies from outside, at the time `s` after the start of the `carrier`'s piece (s).
+    /// Adds the powers of what acts on the bodies from outside, at the time `s` after the start of the `carrier`'s segment (s).
     pub fn add_bodies(&mut self, model: &Model, carrier: &Carrier, s: f64, point: &CarrierPoint) {
         for axis in Axis::ALL {
-            let [displacement, rate, _] = point.along(axis);
-            if let Some((body, outside)) = carrier.outside_at(model, axis, s, [displacement, rate]) {
+            if let Some((body, outside)) = carrier.outside_at(model, axis, s, point[axis]) {
                 self.input += outside.input(body);
                 self.carrier += outside.lost(body);
             }
@@ -217,10 +216,11 @@ impl FrictionPower {
 
 /// The power of a prescribed carrier into the layer, W. One at rest does no work, whatever the forces.
 fn input(model: &Model, forces: &Forces, carrier: &CarrierPoint) -> f64 {
-    let ByAxis { x: body_x, z: body_z } = &model.bodies;
-    let along_x = if carrier.u_rate == 0.0 || body_x.is_some() { 0.0 } else { forces.on_carrier_x() * carrier.u_rate };
-    let along_z = if carrier.w_rate == 0.0 || body_z.is_some() { 0.0 } else { forces.on_carrier_z() * carrier.w_rate };
-    -(along_x + along_z)
+    let along = |axis: Axis| {
+        let rate = carrier[axis].speed;
+        if rate == 0.0 || model.bodies[axis].is_some() { 0.0 } else { forces.on_carrier(axis) * rate }
+    };
+    -(along(Axis::X) + along(Axis::Z))
 }
 
 /// T = Σ ½ m (ẋ² + ż²), J.

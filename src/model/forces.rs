@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::reduction::{Reduction, Replacement};
 use super::{CarrierPoint, Model, State};
 use crate::math::{add_weighted_sum, sum};
-use crate::scene::{ByLink, Initial, LinkKind, Scene};
+use crate::scene::{Axis, ByAxis, ByLink, Initial, LinkKind, Scene};
 
 /// The spring and the damper of one kind of link.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -138,8 +138,8 @@ impl Forces {
             add_weighted_sum(&mut self.link[kind], elements);
         }
         self.sum_on_masses();
-        add_ends(&mut self.on_mass_x, carrier.ends.map(|end| end[0]));
-        add_ends(&mut self.on_mass_z, carrier.ends.map(|end| end[1]));
+        add_ends(&mut self.on_mass_x, carrier.ends.map(|end| end.x));
+        add_ends(&mut self.on_mass_z, carrier.ends.map(|end| end.z));
     }
 
     /// Evaluates ė and F = c e + d ė of every link of a kind with c = `stiffness` (N/m) and d = `damping` (N s/m), and
@@ -172,7 +172,7 @@ impl Forces {
         let [vertical, horizontal, lateral_x, lateral_z] = &mut self.link.0;
         let axis = |carrier: LinkKind, lateral: LinkKind| AxisForces {
             motion: motion.along(carrier),
-            ends: motion.ends.map(|end| if carrier.is_along_x() { end[0] } else { end[1] }),
+            ends: motion.ends.map(|end| end[carrier.axis()]),
             to_carrier: (laws[carrier], &known[carrier]),
             lateral: (laws[lateral], &known[lateral]),
         };
@@ -199,9 +199,9 @@ impl Forces {
         }
         for i in i.saturating_sub(1)..(i + 2).min(k) {
             let [vertical, horizontal, lateral_x, lateral_z] = &self.link.0;
-            let [of_end_x, of_end_z] = carrier.on_end(i, k);
-            self.on_mass_x[i] = sum_on_mass(i, horizontal, lateral_x) + of_end_x;
-            self.on_mass_z[i] = sum_on_mass(i, vertical, lateral_z) + of_end_z;
+            let of_end = carrier.on_end(i, k);
+            self.on_mass_x[i] = sum_on_mass(i, horizontal, lateral_x) + of_end.x;
+            self.on_mass_z[i] = sum_on_mass(i, vertical, lateral_z) + of_end.z;
         }
     }
 
@@ -242,15 +242,10 @@ impl Forces {
         self.link[kind][link] = law.stiffness * e + law.damping * rate + maxwell - frozen;
     }
 
-    /// F_x of the layer on the carrier, N.
-    pub fn on_carrier_x(&self) -> f64 {
-        sum(&self.link[LinkKind::Horizontal])
-    }
-
-    /// F_z of the layer on the carrier, N: positive when the layer is compressed (e > 0, the masses are nearer to the
-    /// carrier than at rest).
-    pub fn on_carrier_z(&self) -> f64 {
-        sum(&self.link[LinkKind::Vertical])
+    /// F_x or F_z of the layer on the carrier, N. F_z is positive when the layer is compressed (e > 0, the masses are nearer
+    /// to the carrier than at rest).
+    pub fn on_carrier(&self, axis: Axis) -> f64 {
+        sum(&self.link[axis.link()])
     }
 
     /// Bytes that the vectors hold.
@@ -263,29 +258,23 @@ impl Forces {
 /// Elongations of the carrier links and velocities, from which the elongations of all links and their rates follow.
 #[derive(Clone, Copy, Debug)]
 pub struct LinkMotion<'a> {
-    /// Elongations of the horizontal links, m.
-    pub elongation_x: &'a [f64],
-    /// Elongations of the vertical links, m.
-    pub elongation_z: &'a [f64],
-    /// Velocities of the masses along x, m/s.
-    pub velocity_x: &'a [f64],
-    /// Velocities of the masses along z, m/s.
-    pub velocity_z: &'a [f64],
+    /// Elongations of the links to the carrier, m.
+    pub elongation: ByAxis<&'a [f64]>,
+    /// Velocities of the masses, m/s.
+    pub velocity: ByAxis<&'a [f64]>,
     /// u̇ and ẇ, m/s.
-    pub carrier_rates: (f64, f64),
+    pub carrier_rate: ByAxis<f64>,
     /// [`CarrierPoint::ends`], N.
-    pub ends: [[f64; 2]; 2],
+    pub ends: [ByAxis<f64>; 2],
 }
 
 impl<'a> LinkMotion<'a> {
     /// The motion in `state` under a carrier with these rates.
     pub fn new(state: &'a State, carrier: &CarrierPoint) -> Self {
         Self {
-            elongation_x: &state.elongation_x,
-            elongation_z: &state.elongation_z,
-            velocity_x: &state.velocity_x,
-            velocity_z: &state.velocity_z,
-            carrier_rates: (carrier.u_rate, carrier.w_rate),
+            elongation: ByAxis { x: &state.elongation_x, z: &state.elongation_z },
+            velocity: ByAxis { x: &state.velocity_x, z: &state.velocity_z },
+            carrier_rate: carrier.rates(),
             ends: carrier.ends,
         }
     }
@@ -304,11 +293,8 @@ impl<'a> LinkMotion<'a> {
 
     #[inline(always)]
     fn along(&self, kind: LinkKind) -> (&'a [f64], &'a [f64], f64) {
-        if kind.is_along_x() {
-            (self.elongation_x, self.velocity_x, self.carrier_rates.0)
-        } else {
-            (self.elongation_z, self.velocity_z, self.carrier_rates.1)
-        }
+        let axis = kind.axis();
+        (self.elongation[axis], self.velocity[axis], self.carrier_rate[axis])
     }
 }
 
@@ -439,6 +425,7 @@ fn sum_on_mass(i: usize, to_carrier: &[f64], lateral: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::Jet;
 
     const SCENE: &str = "name = 'a'
         layer = { masses = 4, spacing = 1.0, mass = 1.0,
@@ -450,14 +437,20 @@ mod tests {
         solver = { reduce = 1e-3 }
         excitation = [{ duration = 1.0 }]";
 
+    /// A carrier that moves with these rates (m/s).
+    fn moving(x: f64, z: f64) -> CarrierPoint {
+        let at = |speed| Jet { speed, ..Jet::default() };
+        CarrierPoint { x: at(x), z: at(z), ..CarrierPoint::default() }
+    }
+
     /// With dashpots that are frozen where the profile has lifted the masses to.
     #[test]
     fn refreshed_forces_are_those_evaluated_anew() {
         let mut model = Model::from_text(SCENE);
-        model.freeze_dashpots(0.0, -0.3);
+        model.freeze_dashpots(ByAxis { x: 0.0, z: -0.3 });
         assert!(model.links.0.map(|law| law.frozen) == [5.0, 0.0, 0.0, 1.5] && model.frozen[1] > 0.1);
         let mut state = State::new(model.masses(), model.maxwell_variables());
-        let carrier = CarrierPoint { u_rate: 0.2, w_rate: -0.1, ..CarrierPoint::default() };
+        let carrier = moving(0.2, -0.1);
         let mut refreshed = Forces::new(&model);
         refreshed.evaluate(&model, &state, &carrier);
         for i in 0..model.masses() {
@@ -485,7 +478,7 @@ mod tests {
             .flat_map(|k| [SCENE, &horizontal].map(|scene| scene.replace("masses = 4", &format!("masses = {k}"))))
         {
             let mut model = Model::from_text(&text);
-            model.freeze_dashpots(0.0, -0.3);
+            model.freeze_dashpots(ByAxis { x: 0.0, z: -0.3 });
             let mut state = State::new(model.masses(), model.maxwell_variables());
             let number = |i: usize| (i as f64).sin();
             for i in 0..model.masses() {
@@ -493,7 +486,7 @@ mod tests {
                 (state.velocity_x[i], state.velocity_z[i]) = (number(i + 20), number(i + 30));
             }
             (0..state.maxwell.len()).for_each(|i| state.maxwell[i] = number(i + 40));
-            let carrier = CarrierPoint { u_rate: 0.2, w_rate: -0.1, ..CarrierPoint::default() };
+            let carrier = moving(0.2, -0.1);
             let (mut expected, mut found) = (Forces::new(&model), Forces::new(&model));
             expected.evaluate(&model, &state, &carrier);
 

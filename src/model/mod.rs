@@ -14,7 +14,7 @@ mod scales;
 mod state;
 mod tangents;
 
-pub use carrier::{Body, BodyEnergy, BodyStart, BodyStep, Carrier, CarrierPoint, CarrierPosition, Outside, Piece};
+pub use carrier::{Body, BodyEnergy, BodyStart, BodyStep, Carrier, CarrierPoint, CarrierPosition, Outside};
 pub use ends::EndForces;
 pub use energy::{
     BoundaryPowers, ChannelEnergies, FrictionPower, Powers, elastic_energy, kinetic_energy, vertical_spring_energy_at,
@@ -164,13 +164,13 @@ impl Model {
     }
 
     /// Freezes the dashpots that have [frozen springs](LinkLaw::frozen) at their links' elongations at the start, m:
-    /// `u` and `w` are the carrier's displacement there, m. A mass that would lie under the profile is lifted onto it.
-    pub fn freeze_dashpots(&mut self, u: f64, w: f64) {
-        let profile_position = self.profile.reduce(u);
+    /// `carrier` is u and w there, m. A mass that would lie under the profile is lifted onto it.
+    pub fn freeze_dashpots(&mut self, carrier: ByAxis<f64>) {
+        let profile_position = self.profile.reduce(carrier.x);
         for i in 0..self.frozen.len() {
             let surface = self.surface_at(self.rest_x[i] + profile_position);
-            let gap = self.rest_z[i] + w - surface.height;
-            self.frozen[i] = if gap < 0.0 { surface.height - self.rest_z[i] - w } else { 0.0 };
+            let gap = self.rest_z[i] + carrier.z - surface.height;
+            self.frozen[i] = if gap < 0.0 { surface.height - self.rest_z[i] - carrier.z } else { 0.0 };
         }
     }
 

@@ -62,9 +62,9 @@ pub struct Snapshot<'a> {
     /// The carrier's motion, and the time since the start of its piece, s.
     pub motion: (&'a Carrier, f64),
     /// Displacement of the carrier: u and w, m.
-    pub displacement: (f64, f64),
+    pub displacement: ByAxis<f64>,
     /// u and w at the start of the run, m.
-    pub start: [f64; 2],
+    pub start: ByAxis<f64>,
     /// Energies since the start.
     pub energies: Energies,
     /// The derivatives by the targets of the last motion.
@@ -164,9 +164,8 @@ impl<'a> Snapshot<'a> {
 
     /// How far bodies are from their start along x and z, m; 0 where the displacement is prescribed.
     pub fn ways(&self) -> [f64; 2] {
-        let ByAxis { x, z } = &self.model.bodies;
-        let way = |is_body: bool, now: f64, start: f64| if is_body { now - start } else { 0.0 };
-        [way(x.is_some(), self.displacement.0, self.start[0]), way(z.is_some(), self.displacement.1, self.start[1])]
+        let way = |axis| self.model.bodies[axis].as_ref().map_or(0.0, |_| self.displacement[axis] - self.start[axis]);
+        Axis::ALL.map(way)
     }
 
     pub(super) fn dissipated_power(&self) -> f64 {
@@ -200,8 +199,8 @@ impl<'a> Snapshot<'a> {
     /// Position of mass `i` along x and z, m.
     pub(super) fn position(&self, i: usize) -> (f64, f64) {
         (
-            self.model.rest_x[i] + (self.displacement.0 + self.state().elongation_x[i]),
-            self.model.rest_z[i] + (self.displacement.1 + self.state().elongation_z[i]),
+            self.model.rest_x[i] + (self.displacement.x + self.state().elongation_x[i]),
+            self.model.rest_z[i] + (self.displacement.z + self.state().elongation_z[i]),
         )
     }
 
@@ -358,7 +357,7 @@ impl Snapshot<'_> {
     pub(super) fn drive_energy_change(&self, shift: &CarrierShift) -> f64 {
         let (carrier, s) = self.motion;
         let of = |axis: Axis| {
-            let stretch = carrier.outside(self.model, axis, s).map_or(0.0, |(_, outside)| outside.stretch()[0]);
+            let stretch = carrier.outside(self.model, axis, s).map_or(0.0, |(_, outside)| outside.stretch().position);
             -self.drive_force_change(axis, shift) * stretch
         };
         of(Axis::X) + of(Axis::Z)

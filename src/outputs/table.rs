@@ -186,16 +186,16 @@ pub(super) static TABLE: [OutputRow; 70] = {
             |now| now.at.on_carrier.1)
             .depending(elastic_z, |now, shift| now.at.force_changes(shift).1),
         layer(Output::CarrierU, Carrier, "carrier.u", Real, Meter, "Displacement of the carrier along x",
-            |now| now.at.displacement.0)
+            |now| now.at.displacement.x)
             .only_where(|scene| scene.carrier.x.is_some()),
         layer(Output::CarrierW, Carrier, "carrier.w", Real, Meter, "Displacement of the carrier along z",
-            |now| now.at.displacement.1)
+            |now| now.at.displacement.z)
             .only_where(|scene| scene.carrier.z.is_some()),
         layer(Output::CarrierURate, Carrier, "carrier.u_rate", Real, MeterPerSecond, "Speed of the carrier along x",
-            |now| now.at.carrier.u_rate)
+            |now| now.at.carrier.x.speed)
             .only_where(|scene| scene.carrier.x.is_some()),
         layer(Output::CarrierWRate, Carrier, "carrier.w_rate", Real, MeterPerSecond, "Speed of the carrier along z",
-            |now| now.at.carrier.w_rate)
+            |now| now.at.carrier.z.speed)
             .only_where(|scene| scene.carrier.z.is_some()),
         layer(Output::DriveX, Carrier, "carrier.drive_x", Real, Newton, "Force of the drive on the carrier along x",
             |now| now.at.drive_force(Axis::X))

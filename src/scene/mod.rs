@@ -38,7 +38,7 @@ use values::Word;
 pub use axis::{Axis, ByAxis};
 pub use carrier::{CarrierBodies, CarrierBody, CarrierInitial, Input};
 pub use error::{ParameterError, Problem, SceneError};
-pub use excitation::{EXCITATION, Force, Path, Phase};
+pub use excitation::{EXCITATION, Force, Motion, Path, Phase};
 pub use fine_roughness::FineRoughness;
 pub use foundation::{Body, Foundation, FoundationKind, Quality, Stiffness, Wave, Waves};
 pub use link_kind::{ByLink, LinkKind};

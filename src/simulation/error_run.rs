@@ -13,7 +13,7 @@ use super::motion::{Divergence, Motion, SimulationError, Start};
 use super::run::{Run, RunState, Settings};
 use crate::contact::EventTolerance;
 use crate::integrator::Tolerance;
-use crate::model::{BodyStart, Model};
+use crate::model::{BodyStart, ByAxis, Model};
 use crate::outputs::{Accounts, Monitored, Snapshot};
 
 /// The error-estimation run's tolerance, as a share of the run's.
@@ -53,7 +53,12 @@ pub(super) struct ErrorRun {
 
 impl ErrorRun {
     /// The error-estimation run of one with these `settings`.
-    pub(super) fn new(model: &Arc<Model>, settings: &Settings, start: &Start, bodies: &[Option<BodyStart>; 2]) -> Self {
+    pub(super) fn new(
+        model: &Arc<Model>,
+        settings: &Settings,
+        start: &Start,
+        bodies: &ByAxis<Option<BodyStart>>,
+    ) -> Self {
         let run = Run::new(Arc::clone(model), settings.tighter(model), start, bodies);
         let work = WorkLimit::new(run.settings.max_steps);
         Self { run, duration: 0.0, work, steps_beside: 0, pending: None, failed: false }

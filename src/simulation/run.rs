@@ -11,11 +11,11 @@ use crate::contact::{
 };
 use crate::integrator::{DenseWorkspace, Integrator, LayerState, Pair, StepSpan, Steps, Tolerance, Tracked};
 use crate::model::{
-    BodyStart, Carrier, CarrierPoint, CarrierPosition, Forces, LinkKind, Mode, Model, Piece, State, Tangents,
-    elastic_energy, kinetic_energy,
+    BodyStart, Carrier, CarrierPoint, CarrierPosition, Forces, LinkKind, Mode, Model, State, Tangents, elastic_energy,
+    kinetic_energy,
 };
 use crate::outputs::{Accounts, Counters, Energies};
-use crate::scene::{Axis, Method, Path, Scene, is_possible};
+use crate::scene::{Axis, ByAxis, Method, Path, Scene, is_possible};
 
 /// The first step to try, as a share of the stiffest period over 2π; the error test corrects it at once.
 const FIRST_STEP: f64 = 0.1;
@@ -56,7 +56,7 @@ pub(super) struct RunState {
     /// The derivatives with respect to the targets of the last motion; 0 before the first.
     pub tangents: Tangents,
     /// u and w at the start of the run, m.
-    pub start: [f64; 2],
+    pub start: ByAxis<f64>,
     /// The layer's temperature, K; 0 where it is no input.
     pub temperature: f64,
     /// Whether time-stepping is active, or the event-driven method.
@@ -66,15 +66,15 @@ pub(super) struct RunState {
 }
 
 impl RunState {
-    fn new(model: &Model, start: &Start, bodies: &[Option<BodyStart>; 2], time_stepping: bool) -> Self {
+    fn new(model: &Model, start: &Start, bodies: &ByAxis<Option<BodyStart>>, time_stepping: bool) -> Self {
         let path = |rate| Path { rate, ..Path::default() };
-        let paths = (path(start.u_rate), path(start.w_rate));
-        let mut carrier = Carrier::new(start.time, (start.u, start.w), paths, &model.profile);
-        for (axis, body) in Axis::ALL.into_iter().zip(bodies) {
-            body.iter().for_each(|body| carrier.start_body(axis, body, &model.profile));
+        let paths = ByAxis { x: path(start.u_rate), z: path(start.w_rate) };
+        let mut carrier = Carrier::new(start.time, ByAxis { x: start.u, z: start.w }, paths, &model.profile);
+        for axis in Axis::ALL {
+            bodies[axis].iter().for_each(|body| carrier.start_body(axis, body, &model.profile));
         }
         Self {
-            start: [carrier.u, carrier.w],
+            start: carrier.start,
             temperature: start.temperature.unwrap_or(0.0),
             carrier,
             s: 0.0,
@@ -127,14 +127,13 @@ impl RunState {
     }
 
     /// u and w, m.
-    pub(super) fn displacement(&self) -> (f64, f64) {
+    pub(super) fn displacement(&self) -> ByAxis<f64> {
         self.displacement_at(self.s)
     }
 
     /// u and w `s` seconds after the start of the carrier's piece, m.
-    pub(super) fn displacement_at(&self, s: f64) -> (f64, f64) {
-        let point = self.carrier.at(s);
-        (self.carrier.u + point.du, self.carrier.w + point.dw)
+    pub(super) fn displacement_at(&self, s: f64) -> ByAxis<f64> {
+        self.carrier.displacement(s)
     }
 
     /// A step of length `h` (s) from here.
@@ -236,7 +235,12 @@ pub(super) struct Workspace {
 
 impl Run {
     /// A run with the layer placed under the carrier at `start`.
-    pub(super) fn new(model: Arc<Model>, settings: Settings, start: &Start, bodies: &[Option<BodyStart>; 2]) -> Self {
+    pub(super) fn new(
+        model: Arc<Model>,
+        settings: Settings,
+        start: &Start,
+        bodies: &ByAxis<Option<BodyStart>>,
+    ) -> Self {
         let state = RunState::new(&model, start, bodies, settings.method == Method::Step);
         let windows = Windows::new(&model, &settings);
         let workspace = Workspace {
@@ -316,15 +320,13 @@ impl Run {
     /// Begins a smooth piece of the carrier's motion. At a kink the damper forces jump, so all modes are decided anew.
     pub(super) fn enter(&mut self, motion: &Motion) {
         let state = &mut self.state;
-        let rates = |carrier: &Carrier, s: f64| (carrier.at(s).u_rate, carrier.at(s).w_rate);
-        let before = rates(&state.carrier, state.s);
-        let piece = Piece { paths: (motion.u, motion.w), forces: (motion.pull, motion.load) };
-        let jumps = state.carrier.begin(state.s, &piece, &self.model);
+        let before = state.carrier.at(state.s).rates();
+        let jumps = state.carrier.begin(state.s, motion, &self.model);
         state.s = 0.0;
         self.workspace.stall.reset();
         self.forget_windows();
         self.workspace.integrator.begin_tangents(motion.duration);
-        if !self.state.rates_valid || rates(&self.state.carrier, 0.0) != before {
+        if !self.state.rates_valid || self.state.carrier.at(0.0).rates() != before {
             self.change_modes(0.0);
             return;
         }
@@ -384,9 +386,9 @@ impl Run {
         if !self.state.carrier.has_bodies() {
             return Ok(());
         }
-        let (u, w) = self.state.displacement();
+        let ByAxis { x: u, z: w } = self.state.displacement();
         let point = self.state.carrier.at(self.state.s);
-        let numbers = [("u", u), ("w", w), ("rate of u", point.u_rate), ("rate of w", point.w_rate)];
+        let numbers = [("u", u), ("w", w), ("rate of u", point.x.speed), ("rate of w", point.z.speed)];
         match numbers.into_iter().find(|(_, value)| !is_possible(*value)) {
             Some((what, value)) => Err(OutOfRange { what, value }),
             None => Ok(()),
@@ -452,7 +454,7 @@ impl Run {
     /// F_z now, N.
     pub(super) fn force_z(&mut self) -> f64 {
         self.evaluate_forces();
-        self.workspace.forces.on_carrier_z()
+        self.workspace.forces.on_carrier(Axis::Z)
     }
 
     /// Whether F_z has reached the force `until`, N.
@@ -506,7 +508,7 @@ impl Run {
 
     /// See [`Simulation::lower_carrier`](super::Simulation::lower_carrier).
     pub(super) fn lower_carrier(&mut self, way: f64) {
-        self.state.carrier.w -= way;
+        self.state.carrier.start.z -= way;
         let elongations = &mut self.state.layer.state.elongation_z;
         elongations.iter_mut().for_each(|elongation| *elongation += way);
         self.state.rates_valid = false;

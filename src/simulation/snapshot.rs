@@ -5,6 +5,7 @@ use super::run::{Run, RunState};
 use crate::integrator::{LayerWithin, Overlay};
 use crate::math::bracketed_root;
 use crate::outputs::{Energies, LayerView, Snapshot};
+use crate::scene::Axis;
 
 /// The largest residual of the equations of motion that the dense output may have where a step is cut at an event, as a
 /// velocity gained over the step, against the tolerance.
@@ -30,7 +31,7 @@ impl Run {
         Snapshot {
             model: &self.model,
             time: state.time(),
-            on_carrier: (forces.on_carrier_x(), forces.on_carrier_z()),
+            on_carrier: (forces.on_carrier(Axis::X), forces.on_carrier(Axis::Z)),
             dissipated_power: None,
             layer: LayerView::at(&state.layer.state, forces),
             carrier,
@@ -161,7 +162,7 @@ impl Run {
             return true;
         }
         let (integrator, correction) = (&workspace.integrator, &workspace.end_correction);
-        let allowed = MAX_UNCORRECTED * settings.tolerance.relative * integrator.end_forces().on_carrier_z().abs();
+        let allowed = MAX_UNCORRECTED * settings.tolerance.relative * integrator.end_forces().on_carrier(Axis::Z).abs();
         let dense = || integrator.two_stage_dense(model, &state.carrier, &state.layer.state, state.span(step.h));
         correction.uncorrected_force() < allowed || correction.comes_after(&dense(), (s - state.s) / step.h)
     }
@@ -232,7 +233,8 @@ mod tests {
     fn moved(simulation: &Simulation, (du, dw): (f64, f64)) -> Simulation {
         let mut simulation = simulation.clone();
         let Run { model, state, .. } = &mut simulation.run;
-        (state.carrier.u, state.carrier.w) = (state.carrier.u + du, state.carrier.w + dw);
+        state.carrier.start.x += du;
+        state.carrier.start.z += dw;
         let layer = &mut state.layer.state;
         layer.elongation_x.iter_mut().for_each(|e| *e -= du);
         layer.elongation_z.iter_mut().for_each(|e| *e -= dw);

@@ -88,10 +88,10 @@ impl Run {
     fn check_surface(&self, run: &RunState) -> Result<(), RestoreError> {
         let (state, model, mut carrier) = (&run.layer.state, &*self.model, run.carrier);
         carrier.find_profile_position(&model.profile);
-        let position = carrier.profile_position + carrier.at(run.s).du;
+        let position = carrier.profile_position + carrier.at(run.s).x.position;
         let fits = |i: usize| {
             let x = model.rest_x[i] + (position + state.elongation_x[i]);
-            let summed = x.abs() + state.elongation_x[i].abs() + carrier.u.abs();
+            let summed = x.abs() + state.elongation_x[i].abs() + carrier.start.x.abs();
             let reach = self.settings.tolerance.position + POSITION_ROUNDING * summed;
             let (found, here) = (&state.surface[i], model.surface_at(x));
             let bounds = model.profile.local_bounds(x - reach, x + reach);
@@ -186,7 +186,7 @@ fn check_numbers(run: &RunState) -> Result<(), RestoreError> {
     if !tangents.are_finite() {
         return Err(RestoreError::Number { what: "the tangents", value: f64::NAN });
     }
-    check_finite("the carrier's displacement at the start", start)?;
+    check_finite("the carrier's displacement at the start", &[start.x, start.z])?;
     check_finite("the temperature", &[*temperature])?;
     check_finite("the powers", &[exchange.friction, exchange.shear, exchange.input, exchange.carrier])?;
     check_finite("the largest forces and energies", &[largest.force_x, largest.force_z, largest.energy])?;
@@ -244,6 +244,7 @@ fn check_modes(modes: &[Mode], has_friction: bool) -> Result<(), RestoreError> {
 mod tests {
     use super::super::tests::{WAVE, scene, scene_with_rate_shear, scene_with_real_area, variables_of};
     use super::*;
+    use crate::scene::ByAxis;
     use crate::scene::Path;
     use crate::scene::Scene;
     use crate::simulation::{Motion, Simulation, Start};
@@ -350,7 +351,7 @@ mod tests {
         let before = simulation.state();
         let mut state = before.clone();
         state.error_run.as_mut().unwrap().s = -1.0;
-        state.run.start = [1.0, 1.0];
+        state.run.start = ByAxis { x: 1.0, z: 1.0 };
         assert!(simulation.set_state(&state).is_err());
         assert_eq!(simulation.state(), before);
     }

@@ -7,7 +7,7 @@ use super::driver::{TrialStep, WorkLimit};
 use super::motion::{SimulationError, Start};
 use super::run::{Run, Settings};
 use crate::integrator::{DenseWorkspace, LayerStep, PartOfStep, STAGES};
-use crate::model::{ChannelEnergies, EndForces, LinkKind, Model, State};
+use crate::model::{ByAxis, ChannelEnergies, EndForces, LinkKind, Model, State};
 use crate::outputs::{Counters, Energies};
 
 /// Some masses in a row within a step of the whole layer, twice: in a run of their own from a mode change on, and as that
@@ -31,7 +31,7 @@ impl Window {
     /// A window of the masses of `part`, in a layer with these settings.
     pub(super) fn new(part: Model, settings: &Settings) -> Self {
         let whole = PartOfStep::new(&part, 0);
-        let run = Run::new(Arc::new(part), settings.of_window(), &Start::default(), &[None, None]);
+        let run = Run::new(Arc::new(part), settings.of_window(), &Start::default(), &ByAxis::default());
         let trial = TrialStep { h: 0.0, share: 1.0 };
         Self { run, open: false, trial, trial_end: 0.0, whole, opened: ChannelEnergies::default() }
     }
@@ -111,7 +111,7 @@ impl Window {
     fn end_forces(&self, step: &mut LayerStep<'_>, nodes: &mut [DenseWorkspace]) -> EndForces {
         let (masses, span) = (self.masses(), step.span);
         let (dense, _) = step.dense(&masses);
-        let mut coefficients = [[[0.0; 5]; 2]; 2];
+        let mut coefficients = [ByAxis::<[f64; 5]>::default(); 2];
         let (before, after) = (masses.start.checked_sub(1), masses.end - 1);
         let links = [before.map(|link| (0, link, -1.0)), (after + 1 < step.model.masses()).then_some((1, after, 1.0))];
         for (end, link, sign) in links.into_iter().flatten() {
@@ -119,7 +119,8 @@ impl Window {
             for (stage, (value, workspace)) in values.iter_mut().zip(&mut *nodes).enumerate() {
                 *value = dense.lateral_forces(link, dense.interpolation.node(stage), workspace);
             }
-            coefficients[end] = [0, 1].map(|axis| dense.interpolation.polynomial(|stage| sign * values[stage][axis]));
+            let [x, z] = [0, 1].map(|axis| dense.interpolation.polynomial(|stage| sign * values[stage][axis]));
+            coefficients[end] = ByAxis { x, z };
         }
         EndForces { span: (span.start, span.length), coefficients }
     }

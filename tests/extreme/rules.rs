@@ -162,7 +162,7 @@ impl Limits {
 /// where nothing has, N/m.
 fn softest(model: &Model) -> f64 {
     let softest = |kinds: &[f64]| kinds.iter().copied().filter(|&c| c > 0.0).reduce(f64::min);
-    let [carrier, between] = [&model.glassy[..2], &model.glassy[2..]].map(softest);
+    let [carrier, between] = [&model.glassy.0[..2], &model.glassy.0[2..]].map(softest);
     carrier.or(between).unwrap_or_else(|| model.mass * model.stiffest_frequency().powi(2))
 }
 

@@ -8,6 +8,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::{StagePoint, StageSolver};
+use crate::math::Jet;
 use crate::model::{Axis, Body, ByAxis, Forces, LinkKind, Mode, Model, Outside};
 
 /// The rows and columns of the bodies.
@@ -197,12 +198,14 @@ impl StageSolver {
     pub(super) fn move_bodies(&mut self, change: Vector2<f64>, point: &mut StagePoint) {
         let Some(border) = &mut self.border else { return };
         for side in border.sides() {
-            let rate = side.outside.body[1] + change[side.axis as usize];
+            let rate = side.outside.body.speed + change[side.axis as usize];
             let moved = side.star.moved + point.beta * rate;
             let displacement = side.star.start + moved;
-            let before = point.carrier.along(side.axis)[0];
-            side.outside.body = [side.outside.body[0] + (displacement - before), rate];
-            point.carrier.set_along(side.axis, [displacement, rate, (rate - side.star.rate) / point.beta]);
+            let before = point.carrier[side.axis].position;
+            let acceleration = (rate - side.star.rate) / point.beta;
+            let position = side.outside.body.position + (displacement - before);
+            side.outside.body = Jet { position, speed: rate, acceleration };
+            point.carrier[side.axis] = Jet { position: displacement, speed: rate, acceleration };
             match side.axis {
                 Axis::X => (point.integrated.0, point.moved) = (moved, moved),
                 Axis::Z => point.integrated.1 = moved,
@@ -214,7 +217,7 @@ impl StageSolver {
     pub(super) fn set_border_residuals(&mut self, beta: f64) {
         let Some(border) = &mut self.border else { return };
         for side in border.sides() {
-            let gained = side.body.mass * (side.outside.body[1] - side.star.rate) / beta;
+            let gained = side.body.mass * (side.outside.body.speed - side.star.rate) / beta;
             let outside = side.outside.force + side.outside.drive_force(&side.body) - gained;
             side.right = outside + with_free_masses(side.axis, &self.forces, &self.system.right, &self.state.mode);
         }

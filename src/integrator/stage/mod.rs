@@ -90,12 +90,12 @@ pub(super) struct StagePoint {
 impl StagePoint {
     /// u at the stage as a position on the profile, m.
     fn profile_position(&self) -> f64 {
-        self.piece.0 + self.carrier.du
+        self.piece.0 + self.carrier.x.position
     }
 
     /// w at the stage, m.
     fn w(&self) -> f64 {
-        self.piece.1 + self.carrier.dw
+        self.piece.1 + self.carrier.z.position
     }
 }
 
