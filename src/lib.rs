@@ -29,7 +29,7 @@
 //! | change | files |
 //! |---|---|
 //! | what the links stand for | `scene/foundation` (kernels, weights, fit, warnings); `program/foundation.rs` prints it |
-//! | a friction law | `model/friction.rs` (limit at rest, force in slip) and its constants in `model/mod.rs`; its derivative in `integrator/stage/newton.rs`, power in `model/energy.rs`, directional derivative in `outputs/snapshot.rs`; the impact in `contact/laws.rs`; its keys as below |
+//! | a friction law | `model/friction.rs` (limit at rest, force in slip, derivatives, power, impact); its keys as below |
 //! | a kind of link | `LinkKind` in `scene/mod.rs`; `model/forces.rs`, `model/energy.rs`, `model/scales.rs`; its blocks in `integrator/stage/newton.rs`, its force in `integrator/dense.rs`, `integrator/carrier_sums.rs` and `contact/correction.rs`; its keys and its size in `scene/material.rs` |
 //! | a key of the scene, a parameter | a line in `scene/keys.rs`, a field in `scene/mod.rs`, a line in `scene/reader`; a parameter also in `scene/parameters.rs` |
 //! | an output | a variant of [`outputs::Output`] and a row in `outputs/table.rs` |
@@ -107,8 +107,8 @@
 //! | g | gap | m | z - z_r(x) |
 //! | F_N, F_T | `ContactForces::normal`, `friction()` | N | contact forces along n and against v_t (6), (7) |
 //! | T(v_t) | `ContactForces::friction()` | N | friction force in slip, μ F_N + A τ_0 + A τ_f(v_t) |
-//! | T(0) | `ContactForces::limit` | N | largest friction force at rest, μ F_N + A τ_0 + A τ_f(v_c) |
-//! | μ, A τ_0 + A τ_f(v_c) | `Model::friction_coefficient`, `shear_force` | 1, N | friction law at rest |
+//! | T(0) | `FrictionLaw::limit()`, `ContactForces::limit` | N | largest friction force at rest, μ F_N + A τ_0 + A τ_f(v_c) |
+//! | μ, A τ_0 + A τ_f(v_c) | `FrictionLaw::coulomb`, `shear` | 1, N | friction law at rest |
 //! | A τ_f(v_c) | `RateShear::plateau()` | N | shear strength of rubber up to the creep speed v_c |
 //! | A τ_f(v) - A τ_f(v_c) | `RateShear::excess()` | N | excess of the shear strength in slip over its plateau |
 //! | σ | `Mode::direction()` | 1 | direction of slip along t |

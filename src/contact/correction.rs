@@ -381,7 +381,7 @@ impl<'a> Correction<'a> {
         } else if mode.slips() {
             let after = v.0 + (x + slope * z) / (1.0 + slope * slope);
             // Forces decide whether a slip reverses, not this correction.
-            if !model.has_friction || after * v.0 > 0.0 {
+            if !model.friction.present || after * v.0 > 0.0 {
                 self.set_slip_velocity(j, after);
             }
         }
@@ -401,20 +401,20 @@ impl<'a> Correction<'a> {
         let slowing = time * (damping / (q * q) + time * model.mass_stiffness()) / model.mass;
         // No term in κ: v_t contains already how the profile bends from the touch to here.
         let driving = contact.tangential + self.not_passed(i, rest);
-        let curve = model.slip_curve(contact.normal).filter(|_| contact.normal >= 0.0 && time > 0.0);
+        let curve = model.friction.slip_curve(contact.normal).filter(|_| contact.normal >= 0.0 && time > 0.0);
         let weight = model.mass * (1.0 + slowing) / time;
         let excess = curve.map_or(0.0, |curve| rate_excess(&curve, mode.direction(), v_t, driving - at_rest, weight));
         let friction = at_rest + excess;
         let acceleration = (driving - friction) / model.mass;
         let after = v_t + time * acceleration / (1.0 + slowing);
-        if model.has_friction && contact.normal >= 0.0 && mode.direction() * after < 0.0 {
+        if model.friction.present && contact.normal >= 0.0 && mode.direction() * after < 0.0 {
             let distance = -0.5 * v_t * v_t / acceleration;
-            self.energies.channels.add_friction(friction * distance, contact.shear_share(model));
+            self.energies.channels.add_friction(friction * distance, model.friction.shear_share(contact.normal));
             self.stop_after(i, (distance - v_t * time) / q, time);
             return Speed { mean: distance / time, at_end: distance / time };
         }
         let mean = 0.5 * (v_t + after);
-        self.energies.channels.add_friction(friction * time * mean, contact.shear_share(model));
+        self.energies.channels.add_friction(friction * time * mean, model.friction.shear_share(contact.normal));
         self.set_slip_velocity(i, after / q);
         Speed { mean, at_end: after }
     }

@@ -34,7 +34,7 @@ pub fn longest_weakening(model: &Model, state: &State, forces: &Forces) -> f64 {
 /// A step much longer than friction's fall can throw a mass that breaks loose backwards: the implicit equations have that
 /// solution too. It would stop at once, break loose again, and so on. There the fall that it has passed over counts.
 fn weakening(model: &Model, start: Option<&State>, state: &State, forces: &Forces) -> f64 {
-    if !model.friction_depends_on_speed() {
+    if !model.friction.depends_on_speed() {
         return 0.0;
     }
     let slope = |i| {
@@ -67,7 +67,7 @@ fn fall_passed_over(model: &Model, start: &State, state: &State, forces: &Forces
         return None;
     }
     let contact = forces.contact(model, i, state.velocity_x[i], &state.surface[i]);
-    let curve = model.slip_curve(contact.normal)?;
+    let curve = model.friction.slip_curve(contact.normal)?;
     Some(contact.q * contact.q * curve.steepest_fall(after.abs() * contact.q))
 }
 
@@ -78,7 +78,7 @@ fn longest(fastest: f64) -> f64 {
 /// q² ∂T/∂v_t of slipping mass `i`, N s/m: its friction as a damper along x; 0 where friction does not depend on the speed.
 fn slope(model: &Model, state: &State, forces: &Forces, i: usize) -> f64 {
     let normal = forces.contact(model, i, state.velocity_x[i], &state.surface[i]).normal;
-    let Some(curve) = model.slip_curve(normal) else { return 0.0 };
+    let Some(curve) = model.friction.slip_curve(normal) else { return 0.0 };
     let square = 1.0 + state.surface[i].slope * state.surface[i].slope;
     square * curve.with_slope(state.mode[i].direction() * state.velocity_x[i] * square.sqrt()).1
 }

@@ -152,7 +152,7 @@ const WEIGHT_OF_FORCE_X: f64 = 4.0;
 /// That weight for `model`. Where friction depends on the speed F_x follows the speeds of creeping masses, which are far below
 /// the tolerance of velocities: there the weight would triple the steps of a creep and make it no more accurate.
 fn weight_of_force_x(model: &Model) -> f64 {
-    if model.friction_depends_on_speed() { 1.0 } else { WEIGHT_OF_FORCE_X }
+    if model.friction.depends_on_speed() { 1.0 } else { WEIGHT_OF_FORCE_X }
 }
 
 /// The outcome of a step attempt.

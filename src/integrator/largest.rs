@@ -52,7 +52,7 @@ impl Largest {
     /// What the errors of F_x and F_z are measured by in a layer of `model`, N. Forces that are still to come, or that
     /// symmetry makes nothing, are not resolved down to their rounding.
     pub(super) fn force_scales(self, model: &Model, tolerance: &Tolerance) -> (f64, f64) {
-        let expected = MIN_FORCE.max(EXPECTED_FRICTION * model.friction_coefficient);
+        let expected = MIN_FORCE.max(EXPECTED_FRICTION * model.friction.coulomb);
         let of_mass = MIN_FORCE * height(tolerance) * model.effective_stiffness();
         let of_layer = MIN_OF_LAYER * height(tolerance) * layer_stiffness(model, tolerance);
         let least = of_mass.max(of_layer);

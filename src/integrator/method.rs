@@ -247,7 +247,7 @@ impl Stages {
         let (solver, state) = (&mut self.solver, &step.start.state);
         let earlier = self.rates.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
         solver.guess(state, earlier.map(|(stage, weight)| (step.beta * weight, stage)));
-        if step.model.friction_depends_on_speed() {
+        if step.model.friction.depends_on_speed() {
             solver.limit_guess(&state.velocity_x, MAX_GUESSED);
         }
     }

@@ -204,7 +204,7 @@ impl Integrator {
         tolerance: &Tolerance,
     ) -> Result<StepAttempt, NoConvergence> {
         let step = StepInput { model, start, carrier, span, beta: self.two_stages.tableau.gamma() * span.length };
-        let slack = if model.friction_depends_on_speed() { STEEP_SLACK } else { NEWTON_SLACK };
+        let slack = if model.friction.depends_on_speed() { STEEP_SLACK } else { NEWTON_SLACK };
         let convergence = ConvergenceTest::new(tolerance, step.beta, slack);
         self.invalidate_sums();
         self.two_stages.attempt(&mut self.stages, &step, convergence)?;

@@ -83,7 +83,7 @@ impl Rates {
         for i in 0..model.masses() {
             self.evaluate_mass(model, state, forces, i);
             if state.mode[i].slips()
-                && let Some(curve) = model.slip_curve(self.normal[i])
+                && let Some(curve) = model.friction.slip_curve(self.normal[i])
             {
                 self.soften(model, &curve, state, i, beta);
             }
@@ -164,7 +164,7 @@ impl Rates {
         self.normal[i] = contact.normal;
         self.margin[i] = match mode {
             Mode::Stick => contact.limit - contact.tangential.abs(),
-            _ if model.has_friction => mode.direction() * velocity_x,
+            _ if model.friction.present => mode.direction() * velocity_x,
             _ => NO_LIMIT,
         };
     }

@@ -3,10 +3,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::math::{dot, sum};
+use crate::math::dot;
 use crate::scene::{Axis, ByAxis};
 
-use super::{Carrier, CarrierPoint, ContactForces, Forces, FrictionCurve, LinkKind, Mode, Model, State};
+use super::{Carrier, CarrierPoint, ContactForces, Forces, FrictionPower, LinkKind, Mode, Model, State};
 
 /// Power through the channels, W.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -122,15 +122,15 @@ impl BoundaryPowers {
         on_carrier: ByAxis<f64>,
     ) -> Self {
         let mut power = FrictionPower::default();
-        for i in (0..modes.len()).filter(|&i| model.has_friction && modes[i].slips() && velocity_x[i] != 0.0) {
+        for i in (0..modes.len()).filter(|&i| model.friction.present && modes[i].slips() && velocity_x[i] != 0.0) {
             let contact = ContactForces::in_slip(model, normal[i], (velocity_x[i], velocity_z[i]));
-            power.add(model, modes[i], velocity_x[i], &contact);
+            power.add(&model.friction, modes[i], velocity_x[i], &contact);
         }
         Self::with_powers(model, &power, -(on_carrier.x * carrier.x.speed + on_carrier.z * carrier.z.speed))
     }
 
     fn with_powers(model: &Model, power: &FrictionPower, input: f64) -> Self {
-        Self { friction: power.friction(), shear: power.shear(model), input, carrier: 0.0 }
+        Self { friction: power.friction(), shear: power.shear(&model.friction), input, carrier: 0.0 }
     }
 
     /// Adds the powers of what acts on the bodies from outside, at the time `s` after the start of the `carrier`'s segment (s).
@@ -158,60 +158,6 @@ fn maxwell(model: &Model, state: &State) -> f64 {
         row.stiffness * dot(&state.maxwell[row.range.clone()], &state.maxwell[row.range.clone()]) / row.relaxation_time
     };
     model.rows.iter().map(row_power).sum()
-}
-
-/// The power of friction, summed mass by mass.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct FrictionPower {
-    /// Of T(0), W.
-    at_rest: f64,
-    /// Of its part μ F_N, W; 0 where the scene does not tell the two apart.
-    coulomb: f64,
-    /// Of A τ_f(v) - A τ_f(v_c), W.
-    excess: f64,
-}
-
-impl FrictionPower {
-    /// Of all masses in `state` with the forces there.
-    fn evaluate(model: &Model, state: &State, forces: &Forces) -> Self {
-        let mut power = Self::default();
-        for i in (0..model.masses()).filter(|&i| model.has_friction && state.mode[i].slips()) {
-            let v = state.velocity_x[i];
-            power.add(model, state.mode[i], v, &forces.contact(model, i, v, &state.surface[i]));
-        }
-        power
-    }
-
-    /// Under a linear law of friction: of masses with these σ v_t (m/s; 0 of those that do not slip) and normal forces (N).
-    pub fn from_linear_law(model: &Model, slip_speeds: &[f64], normal: &[f64]) -> Self {
-        let coulomb = model.friction_coefficient * dot(slip_speeds, normal);
-        let shear = if model.shear_force > 0.0 { model.shear_force * sum(slip_speeds) } else { 0.0 };
-        Self { at_rest: coulomb + shear, coulomb: if model.has_both_frictions { coulomb } else { 0.0 }, excess: 0.0 }
-    }
-
-    /// Adds that of a mass which slips in `mode` with the velocity ẋ (m/s) under the forces of `contact`.
-    #[inline]
-    pub fn add(&mut self, model: &Model, mode: Mode, velocity_x: f64, contact: &ContactForces) {
-        let (sigma, v) = (mode.direction(), velocity_x);
-        self.at_rest += sigma * contact.limit * v * contact.q;
-        if model.has_both_frictions {
-            self.coulomb += sigma * (model.friction_coefficient * contact.normal) * v * contact.q;
-        }
-        if let Some(curve) = model.slip_curve(contact.normal) {
-            let speed = sigma * v * contact.q;
-            self.excess += curve.excess(speed) * speed;
-        }
-    }
-
-    /// P_friction, W.
-    fn friction(&self) -> f64 {
-        self.at_rest + self.excess
-    }
-
-    /// P_shear, W; 0 where the scene does not tell the two apart.
-    fn shear(&self, model: &Model) -> f64 {
-        if model.has_both_frictions { (self.at_rest - self.coulomb) + self.excess } else { 0.0 }
-    }
 }
 
 /// The power of a prescribed carrier into the layer, W. One at rest does no work, whatever the forces.

@@ -3,6 +3,7 @@
 //! (`ContactForces`), and the energies.
 
 mod carrier;
+mod contact;
 mod ends;
 mod energy;
 mod forces;
@@ -15,12 +16,11 @@ mod state;
 mod tangents;
 
 pub use carrier::{Body, BodyEnergy, BodyStart, BodyStep, Carrier, CarrierPoint, CarrierPosition, Outside};
+pub use contact::ContactForces;
 pub use ends::EndForces;
-pub use energy::{
-    BoundaryPowers, ChannelEnergies, FrictionPower, Powers, elastic_energy, kinetic_energy, vertical_spring_energy_at,
-};
+pub use energy::{BoundaryPowers, ChannelEnergies, Powers, elastic_energy, kinetic_energy, vertical_spring_energy_at};
 pub use forces::{Forces, LinkLaw, LinkMotion, MaxwellRow};
-pub use friction::{ContactForces, FrictionCurve, RateShear, SlipCurve};
+pub use friction::{FrictionCurve, FrictionLaw, FrictionPower, LinearFriction, RateShear, SlipCurve};
 pub use real_area::{AreaShare, RealArea};
 pub use reduction::{Reduction, Replaced, Replacement};
 pub use state::{Mode, State};
@@ -94,18 +94,8 @@ pub struct Model {
     pub profile: Arc<Spline>,
     /// The carrier as a body along x and z; `None` where its displacement is prescribed.
     pub bodies: ByAxis<Option<Body>>,
-    /// Coulomb's coefficient μ.
-    pub friction_coefficient: f64,
-    /// Shear force A τ_0 + A τ_f(v_c) of a mass in contact, at rest or slower than the creep speed, N.
-    pub shear_force: f64,
-    /// The law of the excess over it in slip; `None` where the shear force does not depend on the speed.
-    pub rate_shear: Option<RateShear>,
-    /// The part of a contact's area that the shear force acts on; `None`: all of it.
-    pub real_area: Option<RealArea>,
-    /// Whether contacts can stick: whether a part of the friction law is not zero.
-    pub has_friction: bool,
-    /// Whether the scene has Coulomb's friction and a shear force, so that their parts are told apart.
-    pub has_both_frictions: bool,
+    /// Friction in the contacts.
+    pub friction: FrictionLaw,
     /// How the dashpots start.
     pub initial: Initial,
     /// Elongations of the vertical links at the start, m: those of the frozen dashpots, see [`LinkLaw::frozen`]. Empty
@@ -118,11 +108,7 @@ impl Model {
     pub fn new(scene: &Scene) -> Self {
         let layer = &scene.layer;
         let k = layer.masses;
-        let friction = scene.friction.as_ref();
         let roughness = |i| layer.roughness.get(i).copied().unwrap_or(0.0);
-        let rate_shear = scene.rate_shear().and_then(|law| RateShear::new(&law));
-        let shear_force = scene.shear_force().unwrap_or(0.0);
-        let coulomb = friction.and_then(|f| f.coulomb).unwrap_or(0.0);
         let reduction = Reduction::new(scene);
         let links = ByLink::from_fn(|kind| LinkLaw::new(scene, kind, reduction.as_ref()));
         let (rows, relaxation_times) = forces::maxwell_rows(scene, reduction.as_ref());
@@ -138,12 +124,7 @@ impl Model {
             glassy: ByLink::from_fn(|kind| scene.link(kind).as_ref().map_or(0.0, scales::glassy)),
             profile: Arc::clone(scene.surface.spline()),
             bodies: Body::along_axes(scene),
-            friction_coefficient: coulomb,
-            shear_force: shear_force + rate_shear.map_or(0.0, |rate_shear| rate_shear.plateau()),
-            rate_shear,
-            real_area: RealArea::new(scene),
-            has_friction: coulomb > 0.0 || shear_force > 0.0 || rate_shear.is_some(),
-            has_both_frictions: scene.has_both_frictions(),
+            friction: FrictionLaw::new(scene),
             initial: layer.initial,
         }
     }
@@ -151,10 +132,8 @@ impl Model {
     /// Takes over what depends on the temperature from `scene`, this model's at another one: relaxation times, viscosity, the
     /// speeds of the friction law and the modulus of the fine roughness. Stiffnesses stay.
     pub fn set_temperature(&mut self, scene: &Scene) {
-        let other = Self::new(scene);
-        let Self { links, rows, relaxation_times, shear_force, rate_shear, real_area, .. } = other;
-        (self.links, self.rows, self.relaxation_times) = (links, rows, relaxation_times);
-        (self.shear_force, self.rate_shear, self.real_area) = (shear_force, rate_shear, real_area);
+        let Self { links, rows, relaxation_times, friction, .. } = Self::new(scene);
+        (self.links, self.rows, self.relaxation_times, self.friction) = (links, rows, relaxation_times, friction);
     }
 
     /// The model of the scene with this text.

@@ -10,8 +10,8 @@ use std::cell::{Cell, OnceCell, RefCell};
 use super::{Counters, Energies, Monitored, Variable};
 use crate::integrator::LayerWithin;
 use crate::model::{
-    AreaShare, BodyEnergy, Carrier, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, Powers,
-    State, Tangents, elastic_energy, kinetic_energy,
+    BodyEnergy, Carrier, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, Powers, State,
+    Tangents, elastic_energy, kinetic_energy,
 };
 use crate::scene::{Axis, ByAxis};
 
@@ -227,7 +227,8 @@ impl<'a> Snapshot<'a> {
             sums.hysteresis -= contact.normal * s / contact.q;
             sums.adhesion -= friction / contact.q;
             sums.shear -= self.shear(mode, &contact, friction) / contact.q;
-            sums.real_area += self.area_share(v, &contact).value * self.model.element_area;
+            sums.real_area +=
+                self.model.friction.area_share(contact.normal, v * contact.q).value * self.model.element_area;
             sums.force_z += (contact.normal - friction * s) / contact.q;
         }
         sums
@@ -241,31 +242,24 @@ impl<'a> Snapshot<'a> {
 
     /// F_T (N) in a `contact` of this mode and ẋ (m/s).
     fn friction(&self, (mode, v): (Mode, f64), contact: &ContactForces) -> f64 {
-        if self.model.has_friction { contact.friction(self.model, mode, v) } else { 0.0 }
+        if self.model.friction.present { contact.friction(self.model, mode, v) } else { 0.0 }
     }
 
     /// The part of the `friction` in a `contact` (N) that is shear force, N: of a sticking mass, as the two limits share it.
     fn shear(&self, mode: Mode, contact: &ContactForces, friction: f64) -> f64 {
         match mode {
-            Mode::Stick => contact.shear_share(self.model) * friction,
-            _ if self.model.has_friction => {
-                friction - mode.direction() * self.model.friction_coefficient * contact.normal
+            Mode::Stick => self.model.friction.shear_share(contact.normal) * friction,
+            _ if self.model.friction.present => {
+                friction - mode.direction() * self.model.friction.coulomb * contact.normal
             }
             _ => 0.0,
         }
     }
 
-    /// The share of the area of a mass with ẋ (m/s), in `contact`, that touches: all of it without a law.
-    fn area_share(&self, v: f64, contact: &ContactForces) -> AreaShare {
-        let whole = AreaShare { value: 1.0, ..AreaShare::default() };
-        let speed = v * contact.q;
-        self.model.real_area.as_ref().map_or(whole, |area| area.share(contact.normal, speed))
-    }
-
     /// The mode of mass `i`; without friction a contact slips in the direction of its velocity.
     pub(super) fn mode(&self, i: usize) -> Mode {
         match self.state().mode[i] {
-            mode if mode.slips() && !self.model.has_friction => Mode::along(self.state().velocity_x[i]),
+            mode if mode.slips() && !self.model.friction.present => Mode::along(self.state().velocity_x[i]),
             mode => mode,
         }
     }
@@ -384,18 +378,17 @@ impl Snapshot<'_> {
         let (f_x, f_z) = shift.on_mass;
         let normal = (slope * f_x - f_z) / q;
         let contact = self.forces().contact(self.model, i, self.state().velocity_x[i], &self.state().surface[i]);
-        let by_normal = contact.limit_by_normal(self.model, self.state().velocity_x[i].abs() * q);
-        let mu = self.model.friction_coefficient;
+        let (law, v) = (&self.model.friction, self.state().velocity_x[i]);
+        let by_normal = law.by_normal(contact.normal, v.abs() * q);
         let (friction, shear) = match mode {
             Mode::Stick => {
                 let friction = (f_x + slope * f_z) / q;
-                let of_share = contact.tangential * contact.shear_share_by_normal(self.model, by_normal) * normal;
-                (friction, contact.shear_share(self.model) * friction + of_share)
+                let of_share = contact.tangential * law.shear_share_by_normal(contact.normal, by_normal) * normal;
+                (friction, law.shear_share(contact.normal) * friction + of_share)
             }
-            _ => (mode.direction() * by_normal * normal, mode.direction() * (by_normal - mu) * normal),
+            _ => (mode.direction() * by_normal * normal, mode.direction() * (by_normal - law.coulomb) * normal),
         };
-        let real_area =
-            self.area_share(self.state().velocity_x[i], &contact).by_normal * normal * self.model.element_area;
+        let real_area = law.area_share(contact.normal, v * contact.q).by_normal * normal * self.model.element_area;
         ContactChange { normal, friction, shear, real_area, slope, q }
     }
 

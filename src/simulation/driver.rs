@@ -138,7 +138,7 @@ impl Run {
     /// Whether a step shorter than a good one needs no error test. Where friction falls with the speed the stages may
     /// have several solutions, and the two need not find the same.
     pub(super) fn shorter_is_no_worse(&self) -> bool {
-        !self.model.friction_depends_on_speed()
+        !self.model.friction.depends_on_speed()
     }
 
     pub(super) fn count_work(&self, work: &mut WorkLimit) -> Result<(), SimulationError> {

@@ -77,7 +77,7 @@ impl Run {
         }
         check_lengths(&state.layer, &self.state.layer)?;
         check_numbers(state)?;
-        check_modes(&state.layer.state.mode, self.model.has_friction)?;
+        check_modes(&state.layer.state.mode, self.model.friction.present)?;
         self.check_surface(state)
     }
 

@@ -228,7 +228,7 @@ impl StageSolver {
             slips: Vec::with_capacity(k),
             sticks: Vec::with_capacity(k),
             slip_runs: Vec::with_capacity(k.div_ceil(2)),
-            rate: Vec::with_capacity(if model.friction_depends_on_speed() { k } else { 0 }),
+            rate: Vec::with_capacity(if model.friction.depends_on_speed() { k } else { 0 }),
             rows: vec![RowShares::default(); k],
             columns: vec![NeighbourWeights::default(); k],
             system: BlockTridiagonal::new(k),
@@ -274,7 +274,7 @@ impl StageSolver {
         self.slip_runs.clear();
         let runs = self.slips.chunk_by(|&i, &next| i + 1 == next);
         self.slip_runs.extend(runs.map(|run| run[0]..run[0] + run.len()));
-        if model.friction_depends_on_speed() {
+        if model.friction.depends_on_speed() {
             self.rate.resize(self.slips.len(), RateFriction::default());
         }
     }
@@ -382,7 +382,7 @@ impl StageSolver {
                 self.factor_slips(model, point.beta);
             }
             let of_bodies = self.solve_bordered();
-            let steep = if model.friction_depends_on_speed() {
+            let steep = if model.friction.depends_on_speed() {
                 self.correct_along_friction_curve(model, point.beta)
             } else {
                 0.0
@@ -418,7 +418,7 @@ impl StageSolver {
         self.assemble_slips(model, beta);
         self.system.factor();
         self.factor_border(model, beta);
-        if self.factors == Factors::Outdated && model.friction_is_linear() {
+        if self.factors == Factors::Outdated && model.friction.is_linear() {
             self.factors = Factors::Held;
         }
     }
@@ -481,16 +481,16 @@ impl StageSolver {
             #[inline(always)]
             || {
                 self.set_rates(point, rates);
-                if model.friction_is_linear() {
+                if model.friction.is_linear() {
                     let Rates { acceleration_x, acceleration_z, normal, margin, .. } = rates;
                     set_contact_motion(acceleration_z, normal, acceleration_x, model, &self.state, &self.forces);
                     set_slips(&mut self.slip_speed, margin, model, &self.state);
                 }
             },
         );
-        if model.friction_is_linear() {
+        if model.friction.is_linear() {
             self.set_stick_rates(model, rates);
-            self.friction_power = FrictionPower::from_linear_law(model, &self.slip_speed, &rates.normal);
+            self.friction_power = FrictionPower::from_linear_law(&model.friction, &self.slip_speed, &rates.normal);
         } else {
             self.set_contact_rates(model, rates);
         }
@@ -535,8 +535,8 @@ impl StageSolver {
             }
             let contact = ContactForces::new(model, (f_x[i], f_z[i]), v, surface);
             rates.set_contact(model, i, mode, v, surface, &contact);
-            if mode.slips() && model.has_friction {
-                friction_power.add(model, mode, v, &contact);
+            if mode.slips() && model.friction.present {
+                friction_power.add(&model.friction, mode, v, &contact);
             }
         }
         self.friction_power = friction_power;
@@ -636,7 +636,7 @@ fn set_slips(slip_speed: &mut [f64], margin: &mut [f64], model: &Model, state: &
     let k = slip_speed.len();
     let (margin, mode) = (&mut margin[..k], &state.mode[..k]);
     let (surface, v_x) = (&state.surface[..k], &state.velocity_x[..k]);
-    let has_friction = model.has_friction;
+    let has_friction = model.friction.present;
     for i in 0..k {
         let (sigma, s) = (mode[i].direction(), surface[i].slope);
         let along_x = sigma * v_x[i];

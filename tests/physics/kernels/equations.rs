@@ -44,7 +44,7 @@ pub fn random_state(random: &mut Random, model: &Model, position: &Vector2<f64>)
         state.elongation_z[i] = random.between(0.0, 0.1);
         (state.velocity_x[i], state.velocity_z[i]) = (random.between(-2.0, 2.0), random.between(-2.0, 2.0));
         let contact =
-            if model.has_friction { [Mode::Forward, Mode::Backward, Mode::Stick] } else { [Mode::Forward; 3] };
+            if model.friction.present { [Mode::Forward, Mode::Backward, Mode::Stick] } else { [Mode::Forward; 3] };
         if random.below(3) > 0 {
             put_on_profile(model, &mut state, i, contact[random.below(3)], position);
         }
@@ -55,7 +55,7 @@ pub fn random_state(random: &mut Random, model: &Model, position: &Vector2<f64>)
 fn put_on_profile(model: &Model, state: &mut State, i: usize, mode: Mode, position: &Vector2<f64>) {
     let surface = model.surface_at(model.rest_x[i] + (position.x + state.elongation_x[i]));
     let speed = state.velocity_x[i].abs();
-    let v = if model.has_friction { mode.direction() * speed } else { state.velocity_x[i] };
+    let v = if model.friction.present { mode.direction() * speed } else { state.velocity_x[i] };
     (state.mode[i], state.surface[i]) = (mode, surface);
     state.elongation_z[i] = surface.height - model.rest_z[i] - position.y;
     (state.velocity_x[i], state.velocity_z[i]) = (v, surface.slope * v);
@@ -103,7 +103,7 @@ fn difference(
     for (i, (normal, tangential)) in contacts.into_iter().enumerate().filter(|&(i, _)| state.mode[i].in_contact()) {
         let margin = match state.mode[i] {
             Mode::Stick => mu * normal + matrices.shear(0.0) - tangential.abs(),
-            mode if model.has_friction => mode.direction() * state.velocity_x[i],
+            mode if model.friction.present => mode.direction() * state.velocity_x[i],
             _ => NO_LIMIT,
         };
         let misses = [rates.normal[i] - normal, rates.margin[i] - margin];
