@@ -23,9 +23,7 @@
 use super::laws::{collision, decide_mode};
 use crate::integrator::{Rates, StepEnd, StepSpan, Tolerance, TwoStageDense};
 use crate::math::{Bounds, bracketed_root};
-use crate::model::{
-    Carrier, CarrierPoint, ChannelEnergies, FrictionCurve, LinkKind, Mode, Model, SlipCurve, State, SurfacePoint,
-};
+use crate::model::{Carrier, CarrierPoint, ChannelEnergies, LinkKind, Mode, Model, SlipCurve, State, SurfacePoint};
 
 use crate::scene::{Axis, ByAxis};
 

@@ -1,6 +1,6 @@
 //! The longest step where a contact is unstable: on a crest of the profile, and where friction weakens with the speed.
 
-use crate::model::{Forces, FrictionCurve, LinkKind, Model, State};
+use crate::model::{Forces, LinkKind, Model, State};
 
 /// Largest product of a step's length and the growth rate of an unstable contact.
 ///

@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::largest::Largest;
 use crate::model::{
-    BoundaryPowers, ByLink, CarrierPoint, ContactForces, Forces, FrictionCurve, LinkKind, MaxwellRow, Mode, Model,
-    SlipCurve, State, SurfacePoint,
+    BoundaryPowers, ByLink, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, SlipCurve, State,
+    SurfacePoint,
 };
 
 /// The share of an explicit acceleration that friction may take away within the step without the implicit one in its

@@ -1,6 +1,6 @@
 //! The forces in a contact: the normal force and the tangential one, and the acceleration that they leave.
 
-use super::{Forces, FrictionCurve, Mode, Model, SurfacePoint};
+use super::{Forces, Mode, Model, SurfacePoint};
 
 /// The forces in one contact, from (6)-(9).
 #[derive(Clone, Copy, Debug, PartialEq)]

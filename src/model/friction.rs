@@ -6,7 +6,7 @@
 //!
 //! The last is the shear strength of rubber, τ_f(v) = τ_f0 exp(-c [log10(v/v_0)]²) above a creep speed v_c and constant
 //! below it (B. Lorenz et al., J. Phys.: Condens. Matter 25, 2013). Its plateau A τ_f(v_c) acts at rest too and is
-//! counted in [`FrictionLaw::shear`]; a contact that slips has the [excess](FrictionCurve::excess) over it.
+//! counted in [`FrictionLaw::shear`]; a contact that slips has the [excess](SlipCurve::excess) over it.
 //!
 //! With roughness below the profile's the shear forces act on the part A_r/A of the area alone, which depends on F_N and on
 //! the speed ([`RealArea`](super::RealArea)): at rest on A_r(F_N, v_c).
@@ -186,25 +186,77 @@ impl RateShear {
         let y = (speed * self.per_reference).ln();
         (self.largest * (-self.sharpness * y * y).exp(), -2.0 * self.sharpness * y)
     }
+
+    /// Bounds of the excess over the plateau, N.
+    fn bounds(&self) -> (f64, f64) {
+        (-self.plateau, self.largest - self.plateau)
+    }
+
+    /// The speeds of the largest strength and of the steepest fall, m/s.
+    fn marks(&self) -> [f64; 2] {
+        [1.0, self.fastest_fall].map(|share| share / self.per_reference)
+    }
+
+    /// The excess over the plateau, N, and its derivative by the speed, N s/m.
+    fn with_slope(&self, speed: f64) -> (f64, f64) {
+        let size = speed.abs();
+        if size <= self.creep_speed {
+            return (0.0, 0.0);
+        }
+        let (force, slope) = self.whole(size);
+        ((force - self.plateau) * 1.0_f64.copysign(speed), slope * force / size)
+    }
 }
 
-/// The excess of the friction in slip over that at rest, over the speed in the direction of slip. It is odd, so that a mass
-/// that turns round is braked before its mode changes.
-pub trait FrictionCurve {
+/// The excess of the friction in slip over that at rest, over the speed in the direction of slip, of one contact under a
+/// normal force that is held. It is odd, so that a mass that turns round is braked before its mode changes.
+#[derive(Clone, Copy, Debug)]
+pub struct SlipCurve<'a> {
+    law: &'a FrictionLaw,
+    /// F_N, N.
+    normal: f64,
+}
+
+impl SlipCurve<'_> {
     /// The speed up to which there is no excess, m/s.
-    fn creep_speed(&self) -> f64;
+    pub fn creep_speed(&self) -> f64 {
+        match (&self.law.rate_shear, &self.law.real_area) {
+            (Some(law), _) => law.creep_speed,
+            (None, Some(area)) => area.creep_speed(),
+            (None, None) => 0.0,
+        }
+    }
 
     /// Bounds of the excess, N.
-    fn bounds(&self) -> (f64, f64);
+    fn bounds(&self) -> (f64, f64) {
+        let (least, most) = self.law.rate_shear.as_ref().map_or((0.0, 0.0), RateShear::bounds);
+        match &self.law.real_area {
+            None => (least, most),
+            Some(area) => {
+                let (share, at_rest) = (area.at_rest(self.normal).value, self.law.shear);
+                (-share * at_rest, share * most)
+            }
+        }
+    }
 
     /// Speeds that divide the curve into parts in which it bends one way, m/s.
-    fn marks(&self) -> [f64; 2];
+    fn marks(&self) -> [f64; 2] {
+        self.law.rate_shear.as_ref().map_or([self.creep_speed(); 2], RateShear::marks)
+    }
 
     /// The excess, N, and its derivative by the speed, N s/m, at the `speed` in the direction of slip, m/s.
-    fn with_slope(&self, speed: f64) -> (f64, f64);
+    pub fn with_slope(&self, speed: f64) -> (f64, f64) {
+        let of_rate = self.law.rate_shear.as_ref().map_or((0.0, 0.0), |law| law.with_slope(speed));
+        let Some(area) = &self.law.real_area else { return of_rate };
+        let sign = 1.0_f64.copysign(speed);
+        let (share, at_rest) = (area.share(self.normal, speed), area.at_rest(self.normal).value);
+        let force = self.law.shear + sign * of_rate.0;
+        let by_size = share.by_speed * sign * force + share.value * of_rate.1;
+        (sign * (share.value * force - at_rest * self.law.shear), by_size)
+    }
 
     /// The excess, N.
-    fn excess(&self, speed: f64) -> f64 {
+    pub fn excess(&self, speed: f64) -> f64 {
         self.with_slope(speed).0
     }
 
@@ -213,7 +265,7 @@ pub trait FrictionCurve {
     ///
     /// The curve is nearly a logarithm: at creep speeds its tangent is steep and valid over a short range only, and
     /// corrections along it would alternate between both ends of the decades.
-    fn along_curve(&self, speed: f64, by: f64, weight: f64) -> f64 {
+    pub fn along_curve(&self, speed: f64, by: f64, weight: f64) -> f64 {
         let linear = speed + by;
         let constant = linear.abs() <= self.creep_speed() && speed.abs() <= self.creep_speed();
         if constant || by.abs() <= STRAIGHT * speed.abs() || weight.is_nan() || weight <= 0.0 {
@@ -225,7 +277,7 @@ pub trait FrictionCurve {
 
     /// The speed v, m/s, at which `weight` (v - `from`) and the excess add up to `force` (N). Where friction falls faster than
     /// the weight there may be three: then it is the first one from `from`, as the motion reaches it.
-    fn balance(&self, from: f64, force: f64, weight: f64) -> f64 {
+    pub fn balance(&self, from: f64, force: f64, weight: f64) -> f64 {
         let free = from + force / weight;
         if free < 0.0 {
             return -self.balance(-from, -force, weight);
@@ -244,6 +296,13 @@ pub trait FrictionCurve {
         let speed = |y: f64| creep_speed * y.exp();
         let bracket = [low, high].map(|v| (v / creep_speed).ln());
         speed(bracketed_root(|y| residual(speed(y)), (bracket[0], bracket[1]), SPEED_ACCURACY))
+    }
+
+    /// The steepest fall of friction up to the `speed` of slip, m/s, by the real area that shrinks: ∂T/∂v, N s/m, 0 where
+    /// friction does not fall.
+    pub fn steepest_fall(&self, speed: f64) -> f64 {
+        let falls = self.law.real_area.iter().flat_map(RealArea::speeds).take_while(|&at| at <= speed);
+        falls.map(|at| self.with_slope(at).1).fold(0.0, f64::min)
     }
 }
 
@@ -268,82 +327,6 @@ fn first_bracket(
         }
     }
     (low, high)
-}
-
-impl FrictionCurve for RateShear {
-    fn creep_speed(&self) -> f64 {
-        self.creep_speed
-    }
-
-    fn bounds(&self) -> (f64, f64) {
-        (-self.plateau, self.largest - self.plateau)
-    }
-
-    /// The largest strength and the steepest fall.
-    fn marks(&self) -> [f64; 2] {
-        [1.0, self.fastest_fall].map(|share| share / self.per_reference)
-    }
-
-    fn with_slope(&self, speed: f64) -> (f64, f64) {
-        let size = speed.abs();
-        if size <= self.creep_speed {
-            return (0.0, 0.0);
-        }
-        let (force, slope) = self.whole(size);
-        ((force - self.plateau) * 1.0_f64.copysign(speed), slope * force / size)
-    }
-}
-
-/// The friction of one contact under a normal force that is held.
-#[derive(Clone, Copy, Debug)]
-pub struct SlipCurve<'a> {
-    law: &'a FrictionLaw,
-    /// F_N, N.
-    normal: f64,
-}
-
-impl SlipCurve<'_> {
-    /// The steepest fall of friction up to the `speed` of slip, m/s, by the real area that shrinks: ∂T/∂v, N s/m, 0 where
-    /// friction does not fall.
-    pub fn steepest_fall(&self, speed: f64) -> f64 {
-        let falls = self.law.real_area.iter().flat_map(RealArea::speeds).take_while(|&at| at <= speed);
-        falls.map(|at| self.with_slope(at).1).fold(0.0, f64::min)
-    }
-}
-
-impl FrictionCurve for SlipCurve<'_> {
-    fn creep_speed(&self) -> f64 {
-        match (&self.law.rate_shear, &self.law.real_area) {
-            (Some(law), _) => law.creep_speed,
-            (None, Some(area)) => area.creep_speed(),
-            (None, None) => 0.0,
-        }
-    }
-
-    fn bounds(&self) -> (f64, f64) {
-        let (least, most) = self.law.rate_shear.as_ref().map_or((0.0, 0.0), RateShear::bounds);
-        match &self.law.real_area {
-            None => (least, most),
-            Some(area) => {
-                let (share, at_rest) = (area.at_rest(self.normal).value, self.law.shear);
-                (-share * at_rest, share * most)
-            }
-        }
-    }
-
-    fn marks(&self) -> [f64; 2] {
-        self.law.rate_shear.as_ref().map_or([self.creep_speed(); 2], RateShear::marks)
-    }
-
-    fn with_slope(&self, speed: f64) -> (f64, f64) {
-        let of_rate = self.law.rate_shear.as_ref().map_or((0.0, 0.0), |law| law.with_slope(speed));
-        let Some(area) = &self.law.real_area else { return of_rate };
-        let sign = 1.0_f64.copysign(speed);
-        let (share, at_rest) = (area.share(self.normal, speed), area.at_rest(self.normal).value);
-        let force = self.law.shear + sign * of_rate.0;
-        let by_size = share.by_speed * sign * force + share.value * of_rate.1;
-        (sign * (share.value * force - at_rest * self.law.shear), by_size)
-    }
 }
 
 /// The power of friction, summed mass by mass.
@@ -418,10 +401,20 @@ mod tests {
     };
     const FORCE: f64 = 3.0e-4;
 
-    fn laws() -> impl Iterator<Item = RateShear> {
+    fn friction(law: &scene::RateShear) -> FrictionLaw {
+        let rate_shear = RateShear::new(law);
+        let shear = rate_shear.map_or(0.0, |law| law.plateau);
+        FrictionLaw { present: true, coulomb: 0.0, shear, has_both: false, rate_shear, real_area: None }
+    }
+
+    fn laws() -> [FrictionLaw; 3] {
         let sharp = scene::RateShear { sharpness: 4.0, creep_speed: Some(1.0e-5), ..LAW };
         let level = scene::RateShear { sharpness: 0.0, ..LAW };
-        [LAW, sharp, level].into_iter().filter_map(|law| RateShear::new(&law))
+        [LAW, sharp, level].map(|law| friction(&law))
+    }
+
+    fn curve(law: &FrictionLaw) -> SlipCurve<'_> {
+        law.slip_curve(0.0).unwrap_or_else(|| panic!("no law"))
     }
 
     /// Speeds over eleven decades, from the creep speed of [`LAW`] on.
@@ -432,16 +425,17 @@ mod tests {
     #[test]
     fn strength_is_what_its_formula_says() {
         for law in [LAW, scene::RateShear { sharpness: 4.0, ..LAW }] {
-            let found = RateShear::new(&law).unwrap_or_else(|| panic!("no law"));
+            let whole = friction(&law);
+            let found = curve(&whole);
             let expected = |speed: f64| {
                 let decades = (speed / law.reference_speed).log10();
                 FORCE * (-law.sharpness * decades * decades).exp()
             };
             // Roundings of an exponent of some hundreds.
-            assert!((found.plateau() - expected(6.0e-9)).abs() < 1e-12 * FORCE);
+            assert!((whole.shear - expected(6.0e-9)).abs() < 1e-12 * FORCE);
             for speed in speeds() {
-                let whole = found.plateau() + found.excess(speed);
-                assert!((whole - expected(speed)).abs() < 1e-12 * FORCE, "{speed:e}: {whole:e}");
+                let force = whole.shear + found.excess(speed);
+                assert!((force - expected(speed)).abs() < 1e-12 * FORCE, "{speed:e}: {force:e}");
             }
             for speed in [6.0e-9, 1.0e-9, 0.0, -6.0e-9] {
                 assert_eq!((found.excess(speed), found.with_slope(speed)), (0.0, (0.0, 0.0)));
@@ -455,14 +449,15 @@ mod tests {
 
     #[test]
     fn slope_is_that_of_a_difference_quotient() {
-        for law in laws() {
-            for speed in speeds().filter(|&speed| speed > 1.01 * law.creep_speed) {
+        for law in &laws() {
+            let law = curve(law);
+            for speed in speeds().filter(|&speed| speed > 1.01 * law.creep_speed()) {
                 let h = 1e-4 * speed;
                 let quotient = (law.excess(speed + h) - law.excess(speed - h)) / (2.0 * h);
                 let (force, slope) = law.with_slope(speed);
                 assert_eq!(force, law.excess(speed));
                 // The third derivative times h², and roundings over h.
-                let scale = law.largest / speed;
+                let scale = FORCE / speed;
                 assert!((slope - quotient).abs() < 1e-6 * scale, "{speed:e}: {slope:e} {quotient:e}");
             }
         }
@@ -471,7 +466,8 @@ mod tests {
     /// From any speed to any other, in the same direction and in the other.
     #[test]
     fn a_correction_ends_on_the_curve() {
-        for law in laws() {
+        for law in &laws() {
+            let law = curve(law);
             for weight in [1e-3, 1.0, 1e3] {
                 let pairs = speeds().flat_map(|from| speeds().map(move |to| (from, to)));
                 for (from, to) in pairs.flat_map(|(from, to)| [(from, to), (from, -to)]) {

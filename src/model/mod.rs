@@ -20,7 +20,7 @@ pub use contact::ContactForces;
 pub use ends::EndForces;
 pub use energy::{BoundaryPowers, ChannelEnergies, Powers, elastic_energy, kinetic_energy, vertical_spring_energy_at};
 pub use forces::{Forces, LinkLaw, LinkMotion, MaxwellRow};
-pub use friction::{FrictionCurve, FrictionLaw, FrictionPower, LinearFriction, RateShear, SlipCurve};
+pub use friction::{FrictionLaw, FrictionPower, LinearFriction, RateShear, SlipCurve};
 pub use real_area::{AreaShare, RealArea};
 pub use reduction::{Reduction, Replaced, Replacement};
 pub use state::{Mode, State};

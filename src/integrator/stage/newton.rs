@@ -8,7 +8,7 @@ use nalgebra::{Matrix2, Vector2};
 use super::{StageHistory, StageLaw, StageSolver};
 use crate::math::with_widest_vectors;
 use crate::model::{Axis, ByLink};
-use crate::model::{ContactForces, Forces, FrictionCurve, LinearFriction, Mode, Model, State, SurfacePoint};
+use crate::model::{ContactForces, Forces, LinearFriction, Mode, Model, State, SurfacePoint};
 
 impl StageSolver {
     /// Factors the Jacobian at the solution, for the tangents of the stage.
