@@ -161,7 +161,7 @@ fn place(phases: &[Phase], time: f64) -> [f64; 2] {
     phases.iter().fold([0.0; 2], |[u, w], phase| {
         let s = (time - start).clamp(0.0, phase.duration);
         start += phase.duration;
-        [u + phase.u.at(s), w + phase.w.at(s)]
+        [u + phase.u.at(s).position, w + phase.w.at(s).position]
     })
 }
 

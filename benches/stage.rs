@@ -12,8 +12,7 @@ mod floor;
 use std::time::Duration;
 
 use asperity::integrator::{Integrator, LayerState, Pair, STAGES, StepSpan, Steps, Tolerance, Tracked};
-use asperity::model::{Carrier, Forces, Mode, Model, State};
-use asperity::scene::Path;
+use asperity::model::{ByAxis, Carrier, Forces, Mode, Model, State};
 use common::{layer, parse, prints_tables, side_by_side};
 use criterion::{BenchmarkId, Criterion, Throughput};
 use floor::Floor;
@@ -58,8 +57,7 @@ impl Stages {
                 (state.mode[i], state.surface[i]) = (mode, surface);
             }
         }
-        let still = (Path::default(), Path::default());
-        let carrier = Carrier::new(0.0, (0.0, 0.0), still, &model.profile);
+        let carrier = Carrier::new(0.0, ByAxis::default(), ByAxis::default(), &model.profile);
         let mut forces = Forces::new(&model);
         forces.evaluate(&model, &state, &carrier.at(0.0));
         let integrator = Integrator::new(&model, Tracked::default(), Steps::EventDriven(Pair::Fifth));

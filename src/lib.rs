@@ -29,7 +29,7 @@
 //! | change | files |
 //! |---|---|
 //! | what the links stand for | `scene/foundation` (kernels, weights, fit, warnings); `program/foundation.rs` prints it |
-//! | a friction law | `model/friction.rs` (limit at rest, force in slip) and its constants in `model/mod.rs`; its derivative in `integrator/stage/newton.rs`, power in `model/energy.rs`, directional derivative in `outputs/snapshot.rs`; the impact in `contact/laws.rs`; its keys as below |
+//! | a friction law | `model/friction.rs` (limit at rest, force in slip, derivatives, power, impact); its keys as below |
 //! | a kind of link | `LinkKind` in `scene/mod.rs`; `model/forces.rs`, `model/energy.rs`, `model/scales.rs`; its blocks in `integrator/stage/newton.rs`, its force in `integrator/dense.rs`, `integrator/carrier_sums.rs` and `contact/correction.rs`; its keys and its size in `scene/material.rs` |
 //! | a key of the scene, a parameter | a line in `scene/keys/mod.rs`, a field in `scene/mod.rs`, a line in `scene/reader`; a parameter also in `scene/parameters/mod.rs` |
 //! | an output | a variant of [`outputs::Output`] and a row in `outputs/table.rs` |
@@ -41,7 +41,7 @@
 //! | how long steps are, when they are cut | `simulation/controller.rs`; `simulation/event_driven.rs` or `time_stepping.rs` |
 //! | what an FMU state holds | `FmuState` in `fmi/state.rs`, `RunState` in `simulation/state.rs` |
 //! | what acts on a carrier that is a body | `scene/carrier.rs` (keys in `scene/reader/carrier.rs`), `Body` and `Outside` in `model/carrier.rs`; its equation in `integrator/stage/border.rs`, its sensitivity in `integrator/sensitivity.rs` |
-//! | an input of the FMU | [`scene::Input`], `Inputs` in `fmi/inputs.rs`, `Motion` in `simulation/motion.rs`, `CarrierSample` in `program/runner.rs` |
+//! | an input of the FMU | [`scene::Input`], `Motion` in `scene/excitation.rs`, `Inputs` in `fmi/inputs.rs`, `CarrierSample` in `program/runner.rs` |
 //!
 //! ```
 //! use asperity::outputs::variables;
@@ -80,7 +80,7 @@
 //!
 //! | symbol | name in the code | unit | meaning, equation |
 //! |---|---|---|---|
-//! | u, w | `Carrier::u`, `w` | m | displacement of the carrier along x and z; w < 0 presses |
+//! | u, w | `Carrier::displacement()` | m | displacement of the carrier along x and z; w < 0 presses |
 //! | k, Δx | `Layer::masses`, `spacing` | 1, m | number and distance of the masses |
 //! | X_i, Z_i | `Model::rest_x`, `rest_z` | m | positions of the masses at rest |
 //! | m | `Model::mass` | kg | one point mass |
@@ -102,14 +102,14 @@
 //! | M, K, D | `Body::mass`, `stiffness`, `damping` | kg, N/m, N s/m | carrier that is a body, spring and damper to its drive |
 //! | N, P | `Input::Load`, `Input::Pull` | N | normal load (N > 0 presses) and tangential force on a body |
 //! | u_d, w_d, R | `Outside::drive`, `drive_force()` | m, N | displacement of the drive, its force on the body |
-//! | F_x, F_z | `Forces::on_carrier_x`, `on_carrier_z` | N | forces of the layer on the carrier |
+//! | F_x, F_z | `Forces::on_carrier()` | N | forces of the layer on the carrier |
 //! | z_r, s, κ | `SurfacePoint::height`, `slope`, `curvature` | m, 1, 1/m | profile, z_r', z_r'' (5), (9) |
 //! | q | `ContactForces::q` | 1 | √(1 + s²) |
 //! | g | gap | m | z - z_r(x) |
 //! | F_N, F_T | `ContactForces::normal`, `friction()` | N | contact forces along n and against v_t (6), (7) |
 //! | T(v_t) | `ContactForces::friction()` | N | friction force in slip, μ F_N + A τ_0 + A τ_f(v_t) |
-//! | T(0) | `ContactForces::limit` | N | largest friction force at rest, μ F_N + A τ_0 + A τ_f(v_c) |
-//! | μ, A τ_0 + A τ_f(v_c) | `Model::friction_coefficient`, `shear_force` | 1, N | friction law at rest |
+//! | T(0) | `FrictionLaw::limit()`, `ContactForces::limit` | N | largest friction force at rest, μ F_N + A τ_0 + A τ_f(v_c) |
+//! | μ, A τ_0 + A τ_f(v_c) | `FrictionLaw::coulomb`, `shear` | 1, N | friction law at rest |
 //! | A τ_f(v_c) | `RateShear::plateau()` | N | shear strength of rubber up to the creep speed v_c |
 //! | A τ_f(v) - A τ_f(v_c) | `RateShear::excess()` | N | excess of the shear strength in slip over its plateau |
 //! | σ | `Mode::direction()` | 1 | direction of slip along t |

@@ -513,7 +513,7 @@ kind = 'flat'";
         let (slow, fast) = (&scene(TEXT).excitation[0], &fast.excitation[0]);
         assert_eq!((fast.duration, fast.w.rate, fast.u.frequency), (1e-5, -1.0, 1e4));
         for share in [0.0, 0.3, 1.0] {
-            let far = |phase: &Phase| [phase.u, phase.w].map(|path| path.at(share * phase.duration));
+            let far = |phase: &Phase| [phase.u, phase.w].map(|path| path.at(share * phase.duration).position);
             for (a, b) in far(slow).iter().zip(far(fast)) {
                 assert!((a - b).abs() <= 1e-12 * a.abs(), "{a:e}, {b:e}");
             }

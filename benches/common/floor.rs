@@ -243,7 +243,7 @@ impl Floor {
 /// m/β and the links' weights βc + D; the coupling to the neighbours is full, as it is in contact.
 fn blocks(model: &Model, rows: &[Row], beta: f64) -> Vec<Blocks> {
     let weight = |kind: LinkKind| {
-        let law = &model.links[kind as usize];
+        let law = &model.links[kind];
         let maxwell: f64 = rows.iter().filter(|row| row.kind == kind as usize).map(|row| beta * row.weight).sum();
         beta * law.stiffness + law.damping + maxwell
     };

@@ -23,11 +23,9 @@
 use super::laws::{collision, decide_mode};
 use crate::integrator::{Rates, StepEnd, StepSpan, Tolerance, TwoStageDense};
 use crate::math::{Bounds, bracketed_root};
-use crate::model::{
-    Carrier, CarrierPoint, ChannelEnergies, FrictionCurve, LinkKind, Mode, Model, SlipCurve, State, SurfacePoint,
-};
+use crate::model::{Carrier, CarrierPoint, ChannelEnergies, LinkKind, Mode, Model, SlipCurve, State, SurfacePoint};
 
-use crate::scene::Axis;
+use crate::scene::{Axis, ByAxis};
 
 /// Weight of the lateness of mode changes in the error of a step of a layer of one mass. It falls with the root of the number of
 /// masses k: forces of a layer are sums, of which one mass makes a share of 1/k, and its share in a mean of squares is 1/√k.
@@ -75,7 +73,7 @@ pub struct CorrectionEnergies {
     /// Through the channels from the instants of the impacts on: the difference that contact makes against free motion.
     pub channels: ChannelEnergies,
     /// Impulses on the carrier along x and z, N s, that the step as tried does not know: they change the speeds of bodies.
-    pub impulse: [f64; 2],
+    pub impulse: ByAxis<f64>,
 }
 
 /// The end-of-step correction: the masses whose modes were violated in a step, and workspace.
@@ -158,7 +156,7 @@ impl EndCorrection {
         }
         self.touches.push(i);
         let closing = surface.slope * step.end.velocity_x[i] - step.end.velocity_z[i];
-        let link = &step.model.links[LinkKind::Vertical as usize];
+        let link = &step.model.links[LinkKind::Vertical];
         self.force += link.stiffness * -gap + link.damping * closing.max(0.0);
         let time = if closing > 0.0 { (-gap / closing).min(step.span.length) } else { step.span.length };
         Some(EventTimeError { length: -gap, time })
@@ -341,7 +339,8 @@ impl<'a> Correction<'a> {
         let moved = (x - from.0, surface.height - from.1);
         let state = &mut *self.end.state;
         state.displace(self.step.model, i, moved, time);
-        state.elongation_z[i] = surface.height - self.step.model.rest_z[i] - (self.step.carrier.w + self.carrier.dw);
+        state.elongation_z[i] =
+            surface.height - self.step.model.rest_z[i] - (self.step.carrier.start.z + self.carrier.z.position);
         state.surface[i] = surface;
         self.end.forces.refresh(self.step.model, self.end.state, &self.carrier, i);
         for (axis, moved) in Axis::ALL.into_iter().zip([moved.0, moved.1]) {
@@ -358,10 +357,10 @@ impl<'a> Correction<'a> {
     /// bounds the velocity that it makes where the dampers are faster than that.
     fn pass_impulse_to_body(&mut self, axis: Axis, displacement: f64, time: f64) {
         let model = self.step.model;
-        let Some(body) = &model.bodies[axis as usize] else { return };
+        let Some(body) = &model.bodies[axis] else { return };
         let damping = self.damping(axis.link());
         let passing = damping * body.mass / (body.mass + time * model.masses() as f64 * damping);
-        self.energies.impulse[axis as usize] += passing * displacement;
+        self.energies.impulse[axis] += passing * displacement;
     }
 
     /// The impulse d Δ of the lateral dampers on neighbour `j` of a mass that was displaced by Δ (m); `time` (s) bounds
@@ -380,7 +379,7 @@ impl<'a> Correction<'a> {
         } else if mode.slips() {
             let after = v.0 + (x + slope * z) / (1.0 + slope * slope);
             // Forces decide whether a slip reverses, not this correction.
-            if !model.has_friction || after * v.0 > 0.0 {
+            if !model.friction.present || after * v.0 > 0.0 {
                 self.set_slip_velocity(j, after);
             }
         }
@@ -400,27 +399,27 @@ impl<'a> Correction<'a> {
         let slowing = time * (damping / (q * q) + time * model.mass_stiffness()) / model.mass;
         // No term in κ: v_t contains already how the profile bends from the touch to here.
         let driving = contact.tangential + self.not_passed(i, rest);
-        let curve = model.slip_curve(contact.normal).filter(|_| contact.normal >= 0.0 && time > 0.0);
+        let curve = model.friction.slip_curve(contact.normal).filter(|_| contact.normal >= 0.0 && time > 0.0);
         let weight = model.mass * (1.0 + slowing) / time;
         let excess = curve.map_or(0.0, |curve| rate_excess(&curve, mode.direction(), v_t, driving - at_rest, weight));
         let friction = at_rest + excess;
         let acceleration = (driving - friction) / model.mass;
         let after = v_t + time * acceleration / (1.0 + slowing);
-        if model.has_friction && contact.normal >= 0.0 && mode.direction() * after < 0.0 {
+        if model.friction.present && contact.normal >= 0.0 && mode.direction() * after < 0.0 {
             let distance = -0.5 * v_t * v_t / acceleration;
-            self.energies.channels.add_friction(friction * distance, contact.shear_share(model));
+            self.energies.channels.add_friction(friction * distance, model.friction.shear_share(contact.normal));
             self.stop_after(i, (distance - v_t * time) / q, time);
             return Speed { mean: distance / time, at_end: distance / time };
         }
         let mean = 0.5 * (v_t + after);
-        self.energies.channels.add_friction(friction * time * mean, contact.shear_share(model));
+        self.energies.channels.add_friction(friction * time * mean, model.friction.shear_share(contact.normal));
         self.set_slip_velocity(i, after / q);
         Speed { mean, at_end: after }
     }
 
     /// d of the links of a kind, N s/m.
     fn damping(&self, kind: LinkKind) -> f64 {
-        self.step.model.links[kind as usize].damping
+        self.step.model.links[kind].damping
     }
 
     /// The part of a damper d between two masses, N s/m, by which a correction of one of them within the `time` (s) acts
@@ -450,7 +449,7 @@ impl<'a> Correction<'a> {
         let s = self.end.state.surface[i].slope;
         let q = (1.0 + s * s).sqrt();
         let [mean, at_end] = [speed.mean, speed.at_end].map(|v_t| (v_t / q, s * v_t / q));
-        let carrier = (self.carrier.u_rate, self.carrier.w_rate);
+        let carrier = (self.carrier.x.speed, self.carrier.z.speed);
         for kind in LinkKind::ALL {
             let (damping, passing) = (rest.time * self.damping(kind), rest.time * self.passing(kind, rest.time));
             let [free, mean, at_end, carrier] =
@@ -458,7 +457,7 @@ impl<'a> Correction<'a> {
             if !kind.is_lateral() {
                 let more = (at_end - carrier) * (mean - carrier) - (free - carrier).powi(2);
                 self.energies.channels.damper += damping * more;
-                if self.step.model.bodies[usize::from(!kind.is_along_x())].is_none() {
+                if self.step.model.bodies[kind.axis()].is_none() {
                     self.energies.channels.input -= damping * (at_end - free) * carrier;
                 }
                 continue;
@@ -477,8 +476,8 @@ impl<'a> Correction<'a> {
     fn stop_after(&mut self, i: usize, distance: f64, time: f64) {
         self.set_slip_velocity(i, 0.0);
         let model = self.step.model;
-        let x =
-            model.rest_x[i] + (self.step.carrier.profile_position + (self.carrier.du + self.end.state.elongation_x[i]));
+        let x = model.rest_x[i]
+            + (self.step.carrier.profile_position + (self.carrier.x.position + self.end.state.elongation_x[i]));
         let from = (x, self.end.state.surface[i].height);
         self.move_to(i, from, x + distance, model.surface_at(x + distance), time);
     }
@@ -539,7 +538,7 @@ fn forces_of_touch(step: &TwoStageDense<'_>, i: usize, theta: f64) -> (f64, f64)
     };
     let moved = time * gain.0;
     let force = |kind: LinkKind, displacement: f64, gain: f64| {
-        let link = &step.model.links[kind as usize];
+        let link = &step.model.links[kind];
         let of_elements = step.model.rows_of(kind).map(|row| row.stiffness * row.left_of(displacement, time));
         link.stiffness * displacement + of_elements.sum::<f64>() + link.damping * gain
     };

@@ -55,7 +55,7 @@ impl EventTolerance {
         let height = tolerance.position / tolerance.relative;
         let rounding = ROUNDINGS * f64::EPSILON * height * model.rounding_stiffness();
         let link = LinkKind::Horizontal;
-        let impedance = model.links[link as usize].damping + (model.glassy[link as usize] * model.mass).sqrt();
+        let impedance = model.links[link].damping + (model.glassy[link] * model.mass).sqrt();
         let share_of_dips = (SHARE_OF_DIPS * tolerance.relative).clamp(MIN_SHARE_OF_DIPS, 1.0);
         let least_gap = (MIN_DIP * height).max(rounding_of_gap(model, height));
         Self {

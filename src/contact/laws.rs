@@ -14,15 +14,15 @@ pub fn place_layer(model: &Model, state: &mut State, at: CarrierPosition, carrie
         let gap = model.rest_z[i] + at.w - surface.height;
         state.elongation_x[i] = 0.0;
         state.elongation_z[i] = 0.0;
-        (state.velocity_x[i], state.velocity_z[i]) = (carrier.u_rate, carrier.w_rate);
-        let separation = carrier.w_rate - surface.slope * carrier.u_rate;
+        (state.velocity_x[i], state.velocity_z[i]) = (carrier.x.speed, carrier.z.speed);
+        let separation = carrier.z.speed - surface.slope * carrier.x.speed;
         if gap < 0.0 {
-            let v_x = (carrier.u_rate + surface.slope * carrier.w_rate) / (1.0 + surface.slope * surface.slope);
+            let v_x = (carrier.x.speed + surface.slope * carrier.z.speed) / (1.0 + surface.slope * surface.slope);
             touch_down(model, state, i, at.w, &surface, v_x);
             state.mode[i] = Mode::along(v_x);
         } else if gap == 0.0 && separation == 0.0 {
-            touch_down(model, state, i, at.w, &surface, carrier.u_rate);
-            state.mode[i] = Mode::along(carrier.u_rate);
+            touch_down(model, state, i, at.w, &surface, carrier.x.speed);
+            state.mode[i] = Mode::along(carrier.x.speed);
         } else {
             state.release(i);
         }
@@ -107,18 +107,18 @@ pub(super) fn collision(model: &Model, (v_x, v_z): (f64, f64), s: f64) -> (f64, 
     let q = (1.0 + s * s).sqrt();
     let v_n = (v_z - s * v_x) / q;
     let v_t = (v_x + s * v_z) / q;
-    let after = (v_t.abs() + model.friction_coefficient * v_n).max(0.0).copysign(v_t);
+    let after = model.friction.after_impact(v_t, v_n);
     (after, 0.5 * model.mass * (v_n * v_n + v_t * v_t - after * after))
 }
 
 /// Stops slipping masses whose velocity has passed 0, so that the rule for *stop* decides on them. Adds the kinetic
 /// energy that this takes from them to the `energies`: friction did that much work on them past the stop.
 pub fn stop_reversed(model: &Model, state: &mut State, forces: &Forces, energies: &mut ChannelEnergies) {
-    for i in 0..if model.has_friction { model.masses() } else { 0 } {
+    for i in 0..if model.friction.present { model.masses() } else { 0 } {
         let velocity = (state.velocity_x[i], state.velocity_z[i]);
         if has_reversed(state.mode[i], velocity.0) {
             let contact = forces.contact(model, i, velocity.0, &state.surface[i]);
-            energies.add_friction(energy_at(model, velocity), contact.shear_share(model));
+            energies.add_friction(energy_at(model, velocity), model.friction.shear_share(contact.normal));
             (state.velocity_x[i], state.velocity_z[i]) = (0.0, 0.0);
         }
     }
@@ -161,7 +161,7 @@ fn decided(model: &Model, state: &State, forces: &Forces, i: usize) -> Mode {
     if contact.normal < 0.0 {
         return Mode::Free;
     }
-    if !model.has_friction || (mode.slips() && v != 0.0) {
+    if !model.friction.present || (mode.slips() && v != 0.0) {
         return mode;
     }
     if contact.tangential.abs() <= contact.limit { Mode::Stick } else { Mode::along(contact.tangential) }

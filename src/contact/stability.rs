@@ -1,6 +1,6 @@
 //! The longest step where a contact is unstable: on a crest of the profile, and where friction weakens with the speed.
 
-use crate::model::{Forces, FrictionCurve, LinkKind, Model, State};
+use crate::model::{Forces, LinkKind, Model, State};
 
 /// Largest product of a step's length and the growth rate of an unstable contact.
 ///
@@ -34,7 +34,7 @@ pub fn longest_weakening(model: &Model, state: &State, forces: &Forces) -> f64 {
 /// A step much longer than friction's fall can throw a mass that breaks loose backwards: the implicit equations have that
 /// solution too. It would stop at once, break loose again, and so on. There the fall that it has passed over counts.
 fn weakening(model: &Model, start: Option<&State>, state: &State, forces: &Forces) -> f64 {
-    if !model.friction_depends_on_speed() {
+    if !model.friction.depends_on_speed() {
         return 0.0;
     }
     let slope = |i| {
@@ -67,7 +67,7 @@ fn fall_passed_over(model: &Model, start: &State, state: &State, forces: &Forces
         return None;
     }
     let contact = forces.contact(model, i, state.velocity_x[i], &state.surface[i]);
-    let curve = model.slip_curve(contact.normal)?;
+    let curve = model.friction.slip_curve(contact.normal)?;
     Some(contact.q * contact.q * curve.steepest_fall(after.abs() * contact.q))
 }
 
@@ -78,7 +78,7 @@ fn longest(fastest: f64) -> f64 {
 /// q² ∂T/∂v_t of slipping mass `i`, N s/m: its friction as a damper along x; 0 where friction does not depend on the speed.
 fn slope(model: &Model, state: &State, forces: &Forces, i: usize) -> f64 {
     let normal = forces.contact(model, i, state.velocity_x[i], &state.surface[i]).normal;
-    let Some(curve) = model.slip_curve(normal) else { return 0.0 };
+    let Some(curve) = model.friction.slip_curve(normal) else { return 0.0 };
     let square = 1.0 + state.surface[i].slope * state.surface[i].slope;
     square * curve.with_slope(state.mode[i].direction() * state.velocity_x[i] * square.sqrt()).1
 }
@@ -117,13 +117,13 @@ impl<S: Fn(usize) -> f64> Chain<'_, S> {
 
     /// The coefficient of ẋ_i ẋ_j by the lateral dampers between two masses, N s/m.
     fn coupling(&self, i: usize, j: usize) -> f64 {
-        let [x, z] = [LinkKind::LateralX, LinkKind::LateralZ].map(|kind| self.model.links[kind as usize].damping);
+        let [x, z] = [LinkKind::LateralX, LinkKind::LateralZ].map(|kind| self.model.links[kind].damping);
         x + self.slopes(i, j) * z
     }
 
     /// The coefficient of ẋ_i², N s/m. A free neighbour may move along: the dampers to it do not count.
     fn own(&self, i: usize) -> f64 {
-        let vertical = self.model.links[LinkKind::Vertical as usize].damping;
+        let vertical = self.model.links[LinkKind::Vertical].damping;
         let neighbours = [i.wrapping_sub(1), i + 1].into_iter().filter_map(|j| self.state.mode.get(j));
         let count = neighbours.filter(|mode| mode.in_contact()).count() as f64;
         self.damping + self.slopes(i, i) * vertical + count * self.coupling(i, i) + (self.slope)(i)
@@ -137,7 +137,7 @@ impl<S: Fn(usize) -> f64> Chain<'_, S> {
 /// other links and the Maxwell elements only reduce the rate. Where D < 0, D counts as 0: [`weakening`] accounts for it.
 fn growth(model: &Model, state: &State, forces: &Forces, i: usize) -> f64 {
     let surface = &state.surface[i];
-    let [x, z] = [LinkKind::Horizontal, LinkKind::Vertical].map(|kind| &model.links[kind as usize]);
+    let [x, z] = [LinkKind::Horizontal, LinkKind::Vertical].map(|kind| &model.links[kind]);
     let beyond_x = surface.curvature * forces.on_mass_z[i] - x.stiffness;
     if beyond_x <= 0.0 {
         return 0.0;

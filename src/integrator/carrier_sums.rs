@@ -58,7 +58,7 @@ pub(super) struct Placement {
 impl Placement {
     /// Under the `carrier`, which is at `now`.
     pub(super) fn new(carrier: &Carrier, now: &CarrierPoint) -> Self {
-        Self { profile_position: carrier.profile_position, du: now.du, w: carrier.w + now.dw }
+        Self { profile_position: carrier.profile_position, du: now.x.position, w: carrier.start.z + now.z.position }
     }
 
     /// The position on the profile of a mass with the rest position `rest_x` and the elongation `x`, m.
@@ -175,7 +175,7 @@ impl CarrierSums {
         weights: impl Fn(&MaxwellRow) -> ElementWeights,
     ) -> (f64, f64) {
         let masses = model.masses() as f64;
-        let rate = (motion.velocity.0 - masses * carrier.u_rate, motion.velocity.1 - masses * carrier.w_rate);
+        let rate = (motion.velocity.0 - masses * carrier.x.speed, motion.velocity.1 - masses * carrier.z.speed);
         (
             self.x.force(model, (motion.elongation.0, rate.0), &weights),
             self.z.force(model, (motion.elongation.1, rate.1), &weights),
@@ -200,7 +200,7 @@ impl AxisSums {
         }
         if !self.elements.is_empty() {
             for (rate, stage) in self.rate.iter_mut().zip(stages) {
-                *rate = sum(&stage.elongation_rate[self.kind as usize][masses.clone()]);
+                *rate = sum(&stage.elongation_rate[self.kind][masses.clone()]);
             }
         }
     }
@@ -212,7 +212,7 @@ impl AxisSums {
         (elongation, rate): (f64, f64),
         weights: impl Fn(&MaxwellRow) -> ElementWeights,
     ) -> f64 {
-        let law = &model.links[self.kind as usize];
+        let law = &model.links[self.kind];
         let mut force = law.stiffness * elongation + law.damping * rate;
         if law.frozen > 0.0 {
             force -= law.frozen * model.frozen_dashpots(self.kind).sum::<f64>();

@@ -13,7 +13,8 @@ use super::rates::Rates;
 use super::tableau::STAGES;
 use crate::math::{BLOCK, Relaxation, dot, weighted_sum, with_widest_vectors};
 use crate::model::{
-    Carrier, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint,
+    ByAxis, ByLink, Carrier, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, State,
+    SurfacePoint,
 };
 
 /// Where a step lies in time.
@@ -98,7 +99,7 @@ impl DenseOutput<'_> {
             let ends = [(weights.start, start), (theta, self.end.state)];
             let ends =
                 ends.into_iter().map(|(weight, state)| (weight, &state.maxwell[row.range.start + masses.start..]));
-            let rates = self.stages.iter().map(|stage| &stage.elongation_rate[row.kind as usize][masses.start..]);
+            let rates = self.stages.iter().map(|stage| &stage.elongation_rate[row.kind][masses.start..]);
             weighted_sum(of_row, ends.chain(weights.rate.into_iter().zip(rates)));
         }
     }
@@ -144,7 +145,7 @@ impl DenseOutput<'_> {
         let mut largest = 0.0_f64;
         for i in 0..self.masses.len() {
             let (a_x, a_z) = (workspace.of_masses[0][i], workspace.of_masses[1][i]);
-            let (v_x, v_z) = (state.velocity_x[i] - carrier.u_rate, state.velocity_z[i] - carrier.w_rate);
+            let (v_x, v_z) = (state.velocity_x[i] - carrier.x.speed, state.velocity_z[i] - carrier.z.speed);
             let here = match state.mode[i] {
                 Mode::Stick => 0.0,
                 Mode::Free => {
@@ -168,12 +169,12 @@ impl DenseOutput<'_> {
         let sum = |weights: &[f64; STAGES], rate: fn(&CarrierPoint) -> f64| -> f64 {
             weights.iter().zip(self.carriers).map(|(weight, at)| weight * rate(at)).sum()
         };
-        let both = |weights| (sum(weights, |at| at.u_rate), sum(weights, |at| at.w_rate));
+        let both = |weights| (sum(weights, |at| at.x.speed), sum(weights, |at| at.z.speed));
         let rate = both(&workspace.values);
         CarrierWithin {
             moved: self.carrier.moved(self.span.start, theta * self.span.length),
             integrated: both(&workspace.integral),
-            missing_rate: (now.u_rate - rate.0, now.w_rate - rate.1),
+            missing_rate: (now.x.speed - rate.0, now.z.speed - rate.1),
             now,
         }
     }
@@ -212,8 +213,8 @@ impl DenseOutput<'_> {
             |axis: &AxisSums, moving: f64, missing: f64| dot(&workspace.values, &axis.velocity) + moving * missing;
         let mut all = Motion {
             elongation: (
-                elongation(&sums.x, sums.moving, (carrier.integrated.0, carrier.moved.0)),
-                elongation(&sums.z, sums.free, (carrier.integrated.1, carrier.moved.1)),
+                elongation(&sums.x, sums.moving, (carrier.integrated.0, carrier.moved.x)),
+                elongation(&sums.z, sums.free, (carrier.integrated.1, carrier.moved.z)),
             ),
             velocity: (
                 velocity(&sums.x, sums.moving, carrier.missing_rate.0),
@@ -267,9 +268,9 @@ impl DenseOutput<'_> {
             let at = placement.position(self.model.rest_x[i], along_x.0);
             (along_x.0, along_x.1, self.model.surface_at(at))
         } else {
-            (start.elongation_x[i] - carrier.moved.0, 0.0, start.surface[i])
+            (start.elongation_x[i] - carrier.moved.x, 0.0, start.surface[i])
         };
-        let elongation_z = surface.height - self.model.rest_z[i] - (self.carrier.w + carrier.now.dw);
+        let elongation_z = surface.height - self.model.rest_z[i] - (self.carrier.start.z + carrier.now.z.position);
         MassPoint { elongation: (elongation_x, elongation_z), velocity: (v_x, surface.slope * v_x), surface }
     }
 
@@ -277,8 +278,8 @@ impl DenseOutput<'_> {
     pub fn velocity_x(&self, i: usize, theta: f64) -> f64 {
         let values = self.interpolation.values(theta);
         let relative = values.iter().zip(self.stages).zip(self.carriers);
-        let relative = relative.map(|((weight, stage), carrier)| weight * (stage.velocity_x[i] - carrier.u_rate));
-        relative.sum::<f64>() + self.carrier.at(self.span.at(theta)).u_rate
+        let relative = relative.map(|((weight, stage), carrier)| weight * (stage.velocity_x[i] - carrier.x.speed));
+        relative.sum::<f64>() + self.carrier.at(self.span.at(theta)).x.speed
     }
 
     /// The contact forces of mass `i`, in contact, at the fraction `theta`: the same as in the state there, for this mass
@@ -287,7 +288,7 @@ impl DenseOutput<'_> {
         workspace.set_weights(self, theta);
         let carrier = self.carrier_at(theta, workspace);
         let here = self.mass_at(i, &carrier, workspace);
-        let rate = (here.velocity.0 - carrier.now.u_rate, here.velocity.1 - carrier.now.w_rate);
+        let rate = (here.velocity.0 - carrier.now.x.speed, here.velocity.1 - carrier.now.z.speed);
         let to_carrier = LinkPoint { elongation: here.elongation, rate };
         let mut force_x = -self.link_force(LinkKind::Horizontal, i, theta, &to_carrier, workspace);
         let mut force_z = -self.link_force(LinkKind::Vertical, i, theta, &to_carrier, workspace);
@@ -299,8 +300,8 @@ impl DenseOutput<'_> {
             force_x += sign * self.link_force(LinkKind::LateralX, link, theta, &between, workspace);
             force_z += sign * self.link_force(LinkKind::LateralZ, link, theta, &between, workspace);
         }
-        let [of_end_x, of_end_z] = carrier.now.on_end(i, self.model.masses());
-        (force_x, force_z) = (force_x + of_end_x, force_z + of_end_z);
+        let of_end = carrier.now.on_end(i, self.model.masses());
+        (force_x, force_z) = (force_x + of_end.x, force_z + of_end.z);
         ContactForces::new(self.model, (force_x, force_z), here.velocity.0, &here.surface)
     }
 
@@ -311,7 +312,7 @@ impl DenseOutput<'_> {
         let (here, there) = (self.mass_at(i, &carrier, workspace), self.mass_at(i + 1, &carrier, workspace));
         let between = LinkPoint::between(&here, &there, 1.0);
         [LinkKind::LateralX, LinkKind::LateralZ].map(|kind| {
-            let present = self.model.links[kind as usize].present;
+            let present = self.model.links[kind].present;
             if present { self.link_force(kind, i, theta, &between, workspace) } else { 0.0 }
         })
     }
@@ -334,7 +335,7 @@ impl DenseOutput<'_> {
         point: &LinkPoint,
         workspace: &DenseWorkspace,
     ) -> f64 {
-        let law = &self.model.links[kind as usize];
+        let law = &self.model.links[kind];
         let of = |(x, z): (f64, f64)| if kind.is_along_x() { x } else { z };
         let mut force = law.stiffness * of(point.elongation) + law.damping * of(point.rate);
         if law.frozen > 0.0 {
@@ -349,8 +350,8 @@ impl DenseOutput<'_> {
                 (self.start.state.maxwell[row.range.start + link], self.end.state.maxwell[row.range.start + link]);
             force += row.stiffness * (workspace.relaxation[row.time_index].start * start + theta * end);
         }
-        let rates = self.stages.iter().map(|stage| stage.elongation_rate[kind as usize][link]);
-        force + workspace.of_rate[kind as usize].iter().zip(rates).map(|(weight, rate)| weight * rate).sum::<f64>()
+        let rates = self.stages.iter().map(|stage| stage.elongation_rate[kind][link]);
+        force + workspace.of_rate[kind].iter().zip(rates).map(|(weight, rate)| weight * rate).sum::<f64>()
     }
 }
 
@@ -358,7 +359,7 @@ impl DenseOutput<'_> {
 struct CarrierWithin {
     now: CarrierPoint,
     /// Its displacement along x and z since the start of the step, m.
-    moved: (f64, f64),
+    moved: ByAxis<f64>,
     /// The same as the stages' rates give it, m.
     integrated: (f64, f64),
     /// What the stages' rates miss of u̇ and ẇ, m/s.
@@ -405,7 +406,7 @@ struct InertialFraction {
 impl InertialFraction {
     fn new(model: &Model, beta: f64) -> Self {
         let weight = |kind: LinkKind| {
-            let link = &model.links[kind as usize];
+            let link = &model.links[kind];
             let relaxing = |row: &MaxwellRow| row.stiffness * beta * row.relaxation_time / (row.relaxation_time + beta);
             beta * link.stiffness + link.damping + model.rows_of(kind).map(relaxing).sum::<f64>()
         };
@@ -429,7 +430,7 @@ pub struct DenseWorkspace {
     /// By relaxation time.
     relaxation: Vec<RelaxationWeights>,
     /// By kind of link: of the stages' elongation rates in the force of all Maxwell elements, N s/m.
-    of_rate: [[f64; STAGES]; 4],
+    of_rate: ByLink<[f64; STAGES]>,
     /// Of the masses that are meant: their accelerations in the defect, x and v_x in sums.
     of_masses: [Vec<f64>; 2],
 }
@@ -452,7 +453,7 @@ impl DenseWorkspace {
             values: [0.0; STAGES],
             integral: [0.0; STAGES],
             relaxation: vec![RelaxationWeights::default(); model.relaxation_times.len()],
-            of_rate: [[0.0; STAGES]; 4],
+            of_rate: ByLink([[0.0; STAGES]; 4]),
             of_masses: [vec![0.0; model.masses()], vec![0.0; model.masses()]],
         }
     }
@@ -488,7 +489,7 @@ impl DenseWorkspace {
         self.at = (theta, h);
         self.values = step.interpolation.values(theta);
         self.integral = step.interpolation.integral(theta).map(|weight| h * weight);
-        self.of_rate = [[0.0; STAGES]; 4];
+        self.of_rate = ByLink([[0.0; STAGES]; 4]);
         for (relaxation, tau) in self.relaxation.iter_mut().zip(&step.model.relaxation_times) {
             if is_other_step {
                 relaxation.whole = Relaxation::new(h / tau, 1.0);
@@ -501,7 +502,7 @@ impl DenseWorkspace {
         }
         for row in &step.model.rows {
             let rates = self.relaxation[row.time_index].rate;
-            for (weight, rate) in self.of_rate[row.kind as usize].iter_mut().zip(rates) {
+            for (weight, rate) in self.of_rate[row.kind].iter_mut().zip(rates) {
                 *weight += row.stiffness * rate;
             }
         }
@@ -515,8 +516,8 @@ impl DenseWorkspace {
             of_carrier - slope.iter().zip(step.carriers).map(|(weight, at)| weight * rate(at)).sum::<f64>()
         };
         let [x, z] = self.of_masses.each_mut().map(|values| &mut values[..step.masses.len()]);
-        let missing_x = missing(carrier.u_acceleration, |at| at.u_rate);
+        let missing_x = missing(carrier.x.acceleration, |at| at.x.speed);
         step.combine(x, &slope, None, |stage| &stage.velocity_x, missing_x);
-        step.combine(z, &slope, None, |stage| &stage.velocity_z, missing(carrier.w_acceleration, |at| at.w_rate));
+        step.combine(z, &slope, None, |stage| &stage.velocity_z, missing(carrier.z.acceleration, |at| at.z.speed));
     }
 }

@@ -11,7 +11,7 @@ use super::maxwell::{Maxwell, StageCoefficients};
 use super::rates::Rates;
 use super::tableau::STAGES;
 use crate::math::{dot, dots, square_and_dots, sum_of_pairs};
-use crate::model::{BoundaryPowers, ChannelEnergies, LinkKind, MaxwellRow, Model, State};
+use crate::model::{BoundaryPowers, ByLink, ChannelEnergies, LinkKind, MaxwellRow, Model, State};
 
 /// Σ ė_i ė_j over the links of one kind, m²/s², where they are needed; 0 elsewhere.
 type RateProducts<const N: usize> = [[f64; N]; N];
@@ -63,7 +63,7 @@ impl<'a> MassesInStep<'a> {
     /// ė of the links of one kind at the first `N` stages, m/s; none where there is no such link.
     fn rates<const N: usize>(&self, kind: LinkKind) -> [&'a [f64]; N] {
         let links = self.masses.start..self.masses.start + kind.count(self.masses.len());
-        std::array::from_fn(|i| self.stages[i].elongation_rate[kind as usize].get(links.clone()).unwrap_or_default())
+        std::array::from_fn(|i| self.stages[i].elongation_rate[kind].get(links.clone()).unwrap_or_default())
     }
 
     /// The elongations of the elements of `row` at the start, m.
@@ -101,21 +101,21 @@ impl StepSums {
         }
         self.known = true;
         let MassesInStep { model, h, .. } = *step;
-        let rates: [[&[f64]; N]; 4] = LinkKind::ALL.map(|kind| step.rates(kind));
-        let products = LinkKind::ALL.map(|kind| rate_products(model, &rates[kind as usize], kind));
+        let rates: ByLink<[&[f64]; N]> = ByLink::from_fn(|kind| step.rates(kind));
+        let products = ByLink::from_fn(|kind| rate_products(model, &rates[kind], kind));
         (self.dampers, self.elements) = ([0.0; STAGES], [0.0; STAGES]);
         for (i, power) in self.dampers[..N].iter_mut().enumerate() {
             *power = model.links.iter().zip(&products).map(|(link, products)| link.damping * products[i][i]).sum();
         }
-        let changes = LinkKind::ALL.map(|kind| {
+        let changes = ByLink::from_fn(|kind| {
             let unresolved = model.rows_of(kind).any(|row| h / row.relaxation_time > RESOLVED);
-            if unresolved { largest_change(&rates[kind as usize]) } else { 0.0 }
+            if unresolved { largest_change(&rates[kind]) } else { 0.0 }
         });
         for (index, (coefficients, relaxing)) in maxwell.coefficients().iter().zip(&mut self.relaxing).enumerate() {
             let mut sums = ElementSums::zero();
             *relaxing = RelaxingPower::default();
             for row in model.rows.iter().filter(|row| row.time_index == index) {
-                let (a, kind) = (step.elements(row), row.kind as usize);
+                let (a, kind) = (step.elements(row), row.kind);
                 sums.add(row, a, &rates[kind], &products[kind]);
                 if h / row.relaxation_time > RESOLVED {
                     relaxing.add(row, a, rates[kind][0], changes[kind]);
@@ -239,7 +239,7 @@ impl<const N: usize> StepPowers<'_, N> {
 /// are elements; 0 elsewhere.
 fn rate_products<const N: usize>(model: &Model, rates: &[&[f64]; N], kind: LinkKind) -> RateProducts<N> {
     let all = model.rows_of(kind).next().is_some();
-    if !all && model.links[kind as usize].damping == 0.0 {
+    if !all && model.links[kind].damping == 0.0 {
         return [[0.0; N]; N];
     }
     let mut products = [[0.0; N]; N];
@@ -339,12 +339,12 @@ mod tests {
         let mut expected = ChannelEnergies::default();
         for (i, weight) in weights.iter().enumerate() {
             for kind in LinkKind::ALL {
-                let squares: f64 = stages[i].elongation_rate[kind as usize].iter().map(|rate| rate * rate).sum();
-                expected.damper += h * weight * model.links[kind as usize].damping * squares;
+                let squares: f64 = stages[i].elongation_rate[kind].iter().map(|rate| rate * rate).sum();
+                expected.damper += h * weight * model.links[kind].damping * squares;
                 for row in model.rows_of(kind) {
                     let coefficients = &maxwell.coefficients()[row.time_index];
                     for (link, a) in start.maxwell[row.range.clone()].iter().enumerate() {
-                        let rate = |j: usize| coefficients.rate[i][j] * stages[j].elongation_rate[kind as usize][link];
+                        let rate = |j: usize| coefficients.rate[i][j] * stages[j].elongation_rate[kind][link];
                         let a = coefficients.start[i] * a + (0..=i).map(rate).sum::<f64>();
                         expected.maxwell += h * weight * row.stiffness * a * a / row.relaxation_time;
                     }

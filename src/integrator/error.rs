@@ -6,8 +6,8 @@ use super::largest::Largest;
 use super::maxwell::Maxwell;
 use super::rates::Rates;
 use super::tableau::Tableau;
-use crate::math::{dot, sum_of, sum_of_pairs, sum_of_triples, weighted_sum, with_widest_vectors};
-use crate::model::Axis;
+use crate::math::{Jet, dot, sum_of, sum_of_pairs, sum_of_triples, weighted_sum, with_widest_vectors};
+use crate::model::{Axis, ByAxis, ByLink};
 use crate::model::{BoundaryPowers, CarrierPoint, LinkKind, Model, State};
 
 /// The tolerances of the local error of a step. The error of each quantity is divided by absolute + relative · size.
@@ -21,16 +21,16 @@ pub struct Tolerance {
     pub velocity: f64,
     /// By kind of link, the stiffness that turns the error of a force into one of an elongation, N/m: c + Σ c_j, but
     /// for a rod the stiffness with which the other links hold a mass.
-    force_scale: [f64; 4],
+    force_scale: ByLink<f64>,
     /// The kinds of link that are rods: their errors count as errors of their forces.
-    rods: [Option<Rod>; 4],
+    rods: ByLink<Option<Rod>>,
     /// [`Model::long_term_stiffness`], N/m.
     long_term_stiffness: Option<f64>,
     /// Number of masses of the layer, over which their errors are averaged.
     pub(super) masses: usize,
     /// Absolute tolerance of the speed of a body along x and z, m/s: that of positions times its natural frequency on the
     /// layer and the drive.
-    body_velocity: [f64; 2],
+    body_velocity: ByAxis<f64>,
 }
 
 /// A kind of link that is stiff enough to act as a rod.
@@ -46,7 +46,7 @@ pub(super) struct Rod {
 
 impl Rod {
     fn new(model: &Model, kind: LinkKind) -> Self {
-        let (stiffness, damping) = (model.links[kind as usize].stiffness, model.links[kind as usize].damping);
+        let (stiffness, damping) = (model.links[kind].stiffness, model.links[kind].damping);
         Self { stiffness, damping, rate: (stiffness / model.mass).sqrt().max(damping / model.mass) }
     }
 
@@ -73,16 +73,16 @@ impl Tolerance {
     pub fn new(model: &Model, relative: f64, absolute: f64) -> Self {
         let stiffness = model.mass_stiffness_without_rods();
         let rod = |kind: LinkKind| (model.is_rod(kind) && stiffness > 0.0).then(|| Rod::new(model, kind));
-        let force_scale = |kind: LinkKind| if rod(kind).is_some() { stiffness } else { model.glassy[kind as usize] };
+        let force_scale = |kind: LinkKind| if rod(kind).is_some() { stiffness } else { model.glassy[kind] };
         Self {
             relative,
             position: absolute,
             velocity: absolute * model.frequency_without_rods(),
-            force_scale: LinkKind::ALL.map(force_scale),
-            rods: LinkKind::ALL.map(rod),
+            force_scale: ByLink::from_fn(force_scale),
+            rods: ByLink::from_fn(rod),
             long_term_stiffness: model.long_term_stiffness(),
             masses: model.masses(),
-            body_velocity: Axis::ALL.map(|axis| absolute * model.body_frequency(axis)),
+            body_velocity: ByAxis::from_fn(|axis| absolute * model.body_frequency(axis)),
         }
     }
 
@@ -101,7 +101,7 @@ impl Tolerance {
     /// The factor that turns the error of the force of a link, or of all its Maxwell elements, into one of an elongation,
     /// m/N.
     pub(super) fn per_force(&self, kind: LinkKind) -> f64 {
-        let stiffness = self.force_scale[kind as usize];
+        let stiffness = self.force_scale[kind];
         if stiffness > 0.0 { 1.0 / stiffness } else { 0.0 }
     }
 
@@ -112,7 +112,7 @@ impl Tolerance {
     }
 
     pub(super) fn rod(&self, kind: LinkKind) -> Option<Rod> {
-        self.rods[kind as usize]
+        self.rods[kind]
     }
 
     /// The correction of the velocities, m/s, below which Newton's iterations of a stage with β = `beta` (s) end.
@@ -152,7 +152,7 @@ const WEIGHT_OF_FORCE_X: f64 = 4.0;
 /// That weight for `model`. Where friction depends on the speed F_x follows the speeds of creeping masses, which are far below
 /// the tolerance of velocities: there the weight would triple the steps of a creep and make it no more accurate.
 fn weight_of_force_x(model: &Model) -> f64 {
-    if model.friction_depends_on_speed() { 1.0 } else { WEIGHT_OF_FORCE_X }
+    if model.friction.depends_on_speed() { 1.0 } else { WEIGHT_OF_FORCE_X }
 }
 
 /// The outcome of a step attempt.
@@ -230,8 +230,8 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
         let (in_contact, free) = self.carrier_squares(&carrier_error, tolerance);
         let mut sum = of_positions(&workspace.x, &end.elongation_x)
             + of_positions(&workspace.z, &end.elongation_z)
-            + of_velocities(&workspace.v_x, &end.velocity_x, rates.u_rate)
-            + of_velocities(&workspace.v_z, &end.velocity_z, rates.w_rate)
+            + of_velocities(&workspace.v_x, &end.velocity_x, rates.x.speed)
+            + of_velocities(&workspace.v_z, &end.velocity_z, rates.z.speed)
             + square(CARRIER_WEIGHT) * in_contact;
         let mut of_forces = 0.0;
         for kind in LinkKind::ALL {
@@ -266,15 +266,15 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
     /// since the start of the piece.
     fn body_squares(&self, model: &Model, error: &CarrierError, tolerance: &Tolerance) -> f64 {
         let of = |axis: Axis| {
-            let [way, rate, _] = self.carrier[STAGES - 1].along(axis);
+            let Jet { position: way, speed: rate, .. } = self.carrier[STAGES - 1][axis];
             let (position, velocity) = match axis {
                 Axis::X => (error.position.0, error.velocity.0),
                 Axis::Z => (error.position.1, error.velocity.1),
             };
-            let allowed = tolerance.body_velocity[axis as usize] + tolerance.relative * rate.abs();
+            let allowed = tolerance.body_velocity[axis] + tolerance.relative * rate.abs();
             position * position / tolerance.position_tolerance_sq(way) + square(velocity / allowed)
         };
-        Axis::ALL.into_iter().filter(|&axis| model.bodies[axis as usize].is_some()).map(of).sum()
+        Axis::ALL.into_iter().filter(|&axis| model.bodies[axis].is_some()).map(of).sum()
     }
 
     /// The square of the error of the energies through the dampers, those to drives included, the surface and the carrier over
@@ -285,7 +285,7 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
     fn energy_square(&self, model: &Model, exchange: &[BoundaryPowers], h: f64, tolerance: &Tolerance) -> f64 {
         let damper = |stage: &Rates| -> f64 {
             let links = LinkKind::ALL.into_iter().zip(&model.links).filter(|(_, law)| law.damping > 0.0);
-            let of = |kind: LinkKind| &stage.elongation_rate[kind as usize][..];
+            let of = |kind: LinkKind| &stage.elongation_rate[kind][..];
             links.map(|(kind, law)| law.damping * dot(of(kind), of(kind))).sum()
         };
         let (mut errors, mut input) = ([0.0; 3], 0.0);
@@ -296,7 +296,7 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
             input += h * weight * exchange.input;
         }
         let carrier = &self.carrier[STAGES - 1];
-        let scale = self.largest.energy_scale(model, tolerance, carrier.u_rate.hypot(carrier.w_rate));
+        let scale = self.largest.energy_scale(model, tolerance, carrier.x.speed.hypot(carrier.z.speed));
         let allowed = tolerance.relative * scale.max(input.abs());
         errors.iter().map(|error| square(error / allowed)).sum()
     }
@@ -311,7 +311,7 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
         tolerance: &Tolerance,
         workspace: &ErrorWorkspace,
     ) -> f64 {
-        let law = &model.links[kind as usize];
+        let law = &model.links[kind];
         let (scale_x, scale_z) = self.largest.force_scales(model, tolerance);
         let ErrorWorkspace { x, z, v_x, v_z, force } = workspace;
         let (position, velocity, scale) = if kind.is_along_x() { (x, v_x, scale_x) } else { (z, v_z, scale_z) };
@@ -401,9 +401,9 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
     fn rod_squares(&self, kind: LinkKind, rod: &Rod, h: f64, tolerance: &Tolerance, workspace: &ErrorWorkspace) -> f64 {
         let (end, carrier) = (self.end, &self.carrier[STAGES - 1]);
         let (errors, e, v, carrier_rate) = if kind.is_along_x() {
-            ((&workspace.x, &workspace.v_x), &end.elongation_x, &end.velocity_x, carrier.u_rate)
+            ((&workspace.x, &workspace.v_x), &end.elongation_x, &end.velocity_x, carrier.x.speed)
         } else {
-            ((&workspace.z, &workspace.v_z), &end.elongation_z, &end.velocity_z, carrier.w_rate)
+            ((&workspace.z, &workspace.v_z), &end.elongation_z, &end.velocity_z, carrier.z.speed)
         };
         let force = |elongation: &[f64], velocity: &[f64], carrier_rate: f64, i: usize| {
             if kind.is_lateral() {
@@ -446,8 +446,8 @@ impl CarrierError {
         let (mut position, mut velocity) = ((0.0, 0.0), (0.0, 0.0));
         for (at, weight) in carrier.iter().zip(weights) {
             let step = h * weight;
-            position = (position.0 + step * at.u_rate, position.1 + step * at.w_rate);
-            velocity = (velocity.0 + step * at.u_acceleration, velocity.1 + step * at.w_acceleration);
+            position = (position.0 + step * at.x.speed, position.1 + step * at.z.speed);
+            velocity = (velocity.0 + step * at.x.acceleration, velocity.1 + step * at.z.acceleration);
         }
         Self { position, velocity }
     }

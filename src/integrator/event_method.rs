@@ -34,7 +34,7 @@ const THIRD_FROM_WITH_CREEP: f64 = 1e-5;
 impl Pair {
     /// The cheaper pair for `model` at a relative tolerance.
     pub fn at_tolerance(model: &Model, relative: f64) -> Self {
-        let creeps = model.friction_depends_on_speed() && !model.has_bodies();
+        let creeps = model.friction.depends_on_speed() && !model.has_bodies();
         let third_from = if creeps { THIRD_FROM_WITH_CREEP } else { THIRD_FROM };
         if relative >= third_from { Self::Third } else { Self::Fifth }
     }

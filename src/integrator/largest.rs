@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::error::Tolerance;
-use crate::model::{Forces, LinkKind, Model};
+use crate::model::{Axis, Forces, LinkKind, Model};
 
 /// The least scale of the errors of one force, as a share of the other, and as one of the force that the scene's height makes
 /// on a mass.
@@ -36,8 +36,8 @@ impl Largest {
     #[must_use]
     pub fn with(self, forces: &Forces) -> Self {
         Self {
-            force_x: self.force_x.max(forces.on_carrier_x().abs()),
-            force_z: self.force_z.max(forces.on_carrier_z().abs()),
+            force_x: self.force_x.max(forces.on_carrier(Axis::X).abs()),
+            force_z: self.force_z.max(forces.on_carrier(Axis::Z).abs()),
             ..self
         }
     }
@@ -52,7 +52,7 @@ impl Largest {
     /// What the errors of F_x and F_z are measured by in a layer of `model`, N. Forces that are still to come, or that
     /// symmetry makes nothing, are not resolved down to their rounding.
     pub(super) fn force_scales(self, model: &Model, tolerance: &Tolerance) -> (f64, f64) {
-        let expected = MIN_FORCE.max(EXPECTED_FRICTION * model.friction_coefficient);
+        let expected = MIN_FORCE.max(EXPECTED_FRICTION * model.friction.coulomb);
         let of_mass = MIN_FORCE * height(tolerance) * model.effective_stiffness();
         let of_layer = MIN_OF_LAYER * height(tolerance) * layer_stiffness(model, tolerance);
         let least = of_mass.max(of_layer);
@@ -70,7 +70,7 @@ impl Largest {
 
 /// The long-term stiffness of the vertical links of the whole layer, N/m.
 fn layer_stiffness(model: &Model, tolerance: &Tolerance) -> f64 {
-    tolerance.masses as f64 * model.links[LinkKind::Vertical as usize].stiffness
+    tolerance.masses as f64 * model.links[LinkKind::Vertical].stiffness
 }
 
 /// The scene's height, m.

@@ -17,14 +17,14 @@ use super::carrier_sums::ElementWeights;
 use super::rates::Rates;
 use super::tableau::STAGES as ALL_STAGES;
 use crate::math::weighted_sum;
-use crate::model::{LinkKind, MaxwellRow, Model};
+use crate::model::{ByLink, LinkKind, MaxwellRow, Model};
 
 /// Workspace for the Maxwell elements of a layer over one step.
 #[derive(Clone, Debug)]
 pub(super) struct Maxwell<const STAGES: usize> {
     /// By relaxation time of the model.
     coefficients: Vec<StageCoefficients<STAGES>>,
-    kinds: [KindSums<STAGES>; 4],
+    kinds: ByLink<KindSums<STAGES>>,
 }
 
 /// What the elongation of an element at the stages of a step consists of, for one relaxation time.
@@ -55,7 +55,7 @@ impl<const STAGES: usize> Maxwell<STAGES> {
     /// Workspace for the elements of `model`, if the method `is_used`.
     pub(super) fn new(model: &Model, is_used: bool) -> Self {
         let times = if is_used { model.relaxation_times.len() } else { 0 };
-        let kinds = LinkKind::ALL.map(|kind| {
+        let kinds = ByLink::from_fn(|kind| {
             let present = is_used && model.rows.iter().any(|row| row.kind == kind);
             KindSums::new(if present { kind.count(model.masses()) } else { 0 })
         });
@@ -78,7 +78,7 @@ impl<const STAGES: usize> Maxwell<STAGES> {
 
     /// Whether the links of `kind` have Maxwell elements.
     pub(super) fn has_elements(&self, kind: LinkKind) -> bool {
-        !self.kinds[kind as usize].error_start.is_empty()
+        !self.kinds[kind].error_start.is_empty()
     }
 
     /// The coefficients by relaxation time of the model.
@@ -88,17 +88,17 @@ impl<const STAGES: usize> Maxwell<STAGES> {
 
     /// Writes P_i + h Σ_{j<i} Q_ij ė_j by kind of link: the part of the elements' forces that is known before stage
     /// `i`, N.
-    pub(super) fn known_forces(&self, i: usize, stages: &[Rates], forces: &mut [Vec<f64>; 4]) {
+    pub(super) fn known_forces(&self, i: usize, stages: &[Rates], forces: &mut ByLink<Vec<f64>>) {
         for kind in LinkKind::ALL.into_iter().filter(|&kind| self.has_elements(kind)) {
-            let sums = &self.kinds[kind as usize];
+            let sums = &self.kinds[kind];
             let start = std::iter::once((1.0, sums.start_of(i)));
-            weighted_sum(&mut forces[kind as usize], start.chain(by_rate(kind, &sums.rate[i][..i], stages)));
+            weighted_sum(&mut forces[kind], start.chain(by_rate(kind, &sums.rate[i][..i], stages)));
         }
     }
 
     /// Writes the embedded error estimate of the elements' forces of the links of `kind`, N.
     pub(super) fn force_error(&self, kind: LinkKind, stages: &[Rates], force: &mut [f64]) {
-        let sums = &self.kinds[kind as usize];
+        let sums = &self.kinds[kind];
         let start = std::iter::once((1.0, &sums.error_start[..]));
         weighted_sum(force, start.chain(by_rate(kind, &sums.error_rate, stages)));
     }
@@ -155,7 +155,7 @@ impl<const STAGES: usize> Maxwell<STAGES> {
 /// The elongation rates of the links of `kind` at the stages, with their weights; stages of weight 0 are left out.
 fn by_rate<'a>(kind: LinkKind, weights: &'a [f64], stages: &'a [Rates]) -> impl Iterator<Item = (f64, &'a [f64])> {
     let stages = weights.iter().zip(stages).filter(|(weight, _)| **weight != 0.0);
-    stages.map(move |(&weight, stage)| (weight, &stage.elongation_rate[kind as usize][..]))
+    stages.map(move |(&weight, stage)| (weight, &stage.elongation_rate[kind][..]))
 }
 
 impl<const STAGES: usize> StageCoefficients<STAGES> {

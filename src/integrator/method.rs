@@ -8,7 +8,7 @@ use super::rates::{LayerState, Rates};
 use super::sensitivity::{SolvedStage, Tangent};
 use super::stage::{BodyHistory, ConvergenceTest, Friction, NoConvergence, StagePoint, StageSolver};
 use super::tableau::{ContinuousWeights, STAGES, Tableau};
-use crate::math::{weighted_sum, with_widest_vectors};
+use crate::math::{Jet, weighted_sum, with_widest_vectors};
 use crate::model::Axis;
 use crate::model::{BoundaryPowers, Carrier, CarrierPoint, ChannelEnergies, Mode, Model, State};
 
@@ -96,7 +96,7 @@ impl<const N: usize> RungeKutta<N> {
         self.maxwell.begin(model, self.tableau, &state.maxwell, span.length);
         for i in 1..N {
             let (weights, s) = (&self.tableau.a[i][..], span.at(self.tableau.c[i]));
-            let moved = carrier.moved(span.start, self.tableau.c[i] * span.length).0;
+            let moved = carrier.moved(span.start, self.tableau.c[i] * span.length).x;
             let mut point = stages.prepare(step, i, s, moved, weights);
             self.maxwell.known_forces(i, &stages.rates[..i], &mut stages.solver.history.force);
             stages.guess(step, i, &self.initial_guess);
@@ -169,7 +169,7 @@ impl Stages {
             carrier: at,
             integrated: self.integrate_carrier(carrier, h, weights, i),
             moved,
-            piece: (carrier.profile_position, carrier.w),
+            piece: (carrier.profile_position, carrier.start.z),
         }
     }
 
@@ -177,17 +177,16 @@ impl Stages {
     fn prepare_bodies(&mut self, step: &StepInput<'_>, i: usize, s: f64, weights: &[f64], at: &mut CarrierPoint) {
         let (carrier, h) = (step.carrier, step.span.length);
         for axis in Axis::ALL.into_iter().filter(|&axis| carrier.is_body(axis)) {
-            let [start, start_rate, _] = self.carrier[0].along(axis);
+            let Jet { position: start, speed: start_rate, .. } = self.carrier[0][axis];
             let mut star = BodyHistory { rate: start_rate, moved: 0.0, start };
             for (earlier, weight) in self.carrier[..i].iter().zip(weights) {
-                let [_, rate, acceleration] = earlier.along(axis);
-                star.rate += h * weight * acceleration;
-                star.moved += h * weight * rate;
+                star.rate += h * weight * earlier[axis].acceleration;
+                star.moved += h * weight * earlier[axis].speed;
             }
-            let rate = self.carrier[i - 1].along(axis)[1];
-            let displacement = start + (star.moved + step.beta * rate);
-            at.set_along(axis, [displacement, rate, (rate - star.rate) / step.beta]);
-            let outside = carrier.outside_at(step.model, axis, s, [displacement, rate]);
+            let speed = self.carrier[i - 1][axis].speed;
+            let position = start + (star.moved + step.beta * speed);
+            at[axis] = Jet { position, speed, acceleration: (speed - star.rate) / step.beta };
+            let outside = carrier.outside_at(step.model, axis, s, at[axis]);
             if let (Some((_, outside)), Some(border)) = (outside, &mut self.solver.border) {
                 border.prepare(axis, star, outside);
             }
@@ -219,13 +218,13 @@ impl Stages {
         let (mut moved, mut gained) = ((0.0, 0.0), (0.0, 0.0));
         for (at, weight) in self.carrier[..=i].iter().zip(weights) {
             let step = h * weight;
-            moved = (moved.0 + step * at.u_rate, moved.1 + step * at.w_rate);
-            gained = (gained.0 + step * at.u_acceleration, gained.1 + step * at.w_acceleration);
+            moved = (moved.0 + step * at.x.speed, moved.1 + step * at.z.speed);
+            gained = (gained.0 + step * at.x.acceleration, gained.1 + step * at.z.acceleration);
         }
         let (start, here) = (&self.carrier[0], &self.carrier[i]);
         let history = &mut self.solver.history;
-        let error_x = here.u_rate - start.u_rate - gained.0;
-        let error_z = here.w_rate - start.w_rate - gained.1;
+        let error_x = here.x.speed - start.x.speed - gained.0;
+        let error_z = here.z.speed - start.z.speed - gained.1;
         // On straight paths the quadrature is exact, and so it is of a body, which is integrated.
         let errors = [(Axis::X, &mut history.velocity_x, error_x), (Axis::Z, &mut history.velocity_z, error_z)];
         for (axis, star, error) in errors {
@@ -248,7 +247,7 @@ impl Stages {
         let (solver, state) = (&mut self.solver, &step.start.state);
         let earlier = self.rates.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
         solver.guess(state, earlier.map(|(stage, weight)| (step.beta * weight, stage)));
-        if step.model.friction_depends_on_speed() {
+        if step.model.friction.depends_on_speed() {
             solver.limit_guess(&state.velocity_x, MAX_GUESSED);
         }
     }
@@ -263,7 +262,7 @@ impl Stages {
     #[inline(always)]
     fn set_limited_guess(&mut self, step: &StepInput<'_>, i: usize) {
         let (known, guess, history) = (&self.rates[i - 1], &mut self.solver.state, &self.solver.history);
-        let carrier = self.carrier[i].u_rate.abs() + self.carrier[i].w_rate.abs();
+        let carrier = self.carrier[i].x.speed.abs() + self.carrier[i].z.speed.abs();
         // Slices of one length, so that an index into one of them is one into all.
         let mode = &guess.mode[..];
         let k = mode.len();
@@ -305,7 +304,7 @@ impl Stages {
     /// exchange.
     fn keep_link_forces(&mut self, i: usize) {
         if let Some([x, z]) = self.link_forces.get_mut(i - 1) {
-            let [vertical, horizontal, ..] = &mut self.solver.forces.link;
+            let [vertical, horizontal, ..] = &mut self.solver.forces.link.0;
             std::mem::swap(x, horizontal);
             std::mem::swap(z, vertical);
         }

@@ -204,7 +204,7 @@ impl Integrator {
         tolerance: &Tolerance,
     ) -> Result<StepAttempt, NoConvergence> {
         let step = StepInput { model, start, carrier, span, beta: self.two_stages.tableau.gamma() * span.length };
-        let slack = if model.friction_depends_on_speed() { STEEP_SLACK } else { NEWTON_SLACK };
+        let slack = if model.friction.depends_on_speed() { STEEP_SLACK } else { NEWTON_SLACK };
         let convergence = ConvergenceTest::new(tolerance, step.beta, slack);
         self.invalidate_sums();
         self.two_stages.attempt(&mut self.stages, &step, convergence)?;
@@ -229,9 +229,9 @@ impl Integrator {
             sum += change(|rates| &rates.velocity_x) / tolerance.position_tolerance_sq(end.elongation_x[i])
                 + change(|rates| &rates.velocity_z) / tolerance.position_tolerance_sq(end.elongation_z[i])
                 + change(|rates| &rates.acceleration_x)
-                    / tolerance.velocity_tolerance_sq(end.velocity_x[i] - carrier.u_rate)
+                    / tolerance.velocity_tolerance_sq(end.velocity_x[i] - carrier.x.speed)
                 + change(|rates| &rates.acceleration_z)
-                    / tolerance.velocity_tolerance_sq(end.velocity_z[i] - carrier.w_rate);
+                    / tolerance.velocity_tolerance_sq(end.velocity_z[i] - carrier.z.speed);
         }
         let error = (sum / end.mode.len() as f64).sqrt();
         // The two stages lie 1 - γ of a step apart, and the error grows with the square of the step length.
@@ -241,11 +241,11 @@ impl Integrator {
     /// The motion of a body along `axis` through the last attempted step, of length `h` (s): event-driven, or of two stages
     /// where it is a `time_step`.
     pub fn body_step(&self, axis: Axis, h: f64, time_step: bool) -> BodyStep {
-        let at = |stage: usize| self.stages.carrier[stage].along(axis);
+        let at = |stage: usize| self.stages.carrier[stage][axis];
         if time_step {
             two_stage_body_step(h, [at(0), at(1), at(TWO_STAGES - 1)])
         } else {
-            BodyStep::Polynomial { length: h, speed: self.interpolation.polynomial(|stage| at(stage)[1]) }
+            BodyStep::Polynomial { length: h, speed: self.interpolation.polynomial(|stage| at(stage).speed) }
         }
     }
 
@@ -455,7 +455,7 @@ impl Integrator {
     pub fn keep_link_forces(&mut self, model: &Model) {
         if self.stages.tracks_energy {
             let links = || {
-                let [vertical, horizontal, ..] = Forces::zeros_by_link(model);
+                let [vertical, horizontal, ..] = Forces::zeros_by_link(model).0;
                 [horizontal, vertical]
             };
             self.stages.link_forces = std::iter::repeat_with(links).take(self.pair.stages() - 2).collect();

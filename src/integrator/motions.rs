@@ -3,9 +3,8 @@
 use super::dense::DenseOutput;
 use super::rates::Rates;
 use super::tableau::STAGES;
-use crate::math::{Jet, Quintic};
+use crate::math::Quintic;
 use crate::model::Axis;
-use crate::model::CarrierPoint;
 
 /// The motions of the masses by the [`DenseOutput`] of one step.
 #[derive(Clone, Debug)]
@@ -28,24 +27,16 @@ impl<'a> Motions<'a> {
     pub fn new(step: &'a DenseOutput<'a>) -> Self {
         let weights =
             step.interpolation.bernstein_integral().map(|stage| stage.map(|weight| step.span.length * weight));
-        let quintic = |axis: Axis, jet: fn(&CarrierPoint) -> Jet, start: f64| {
+        let quintic = |axis: Axis, start: f64| {
             if step.carrier.is_body(axis) {
                 // Its stages give its motion as those of a mass do: nothing is left of it in the difference.
-                return Quintic::constant(start + jet(&step.start.carrier).position);
+                return Quintic::constant(start + step.start.carrier[axis].position);
             }
-            let carrier = Quintic::hermite(jet(&step.start.carrier), jet(&step.end.carrier), step.span.length);
-            carrier.plus(start, step.carriers.iter().map(|at| -jet(at).speed).zip(&weights))
+            let carrier = Quintic::hermite(step.start.carrier[axis], step.end.carrier[axis], step.span.length);
+            carrier.plus(start, step.carriers.iter().map(|at| -at[axis].speed).zip(&weights))
         };
-        let x = quintic(
-            Axis::X,
-            |at| Jet { position: at.du, speed: at.u_rate, acceleration: at.u_acceleration },
-            step.carrier.profile_position,
-        );
-        let z = quintic(
-            Axis::Z,
-            |at| Jet { position: at.dw, speed: at.w_rate, acceleration: at.w_acceleration },
-            step.carrier.w,
-        );
+        let x = quintic(Axis::X, step.carrier.profile_position);
+        let z = quintic(Axis::Z, step.carrier.start.z);
         let reach = (0..6).map(|k| weights.iter().map(|stage| stage[k].abs()).sum()).fold(0.0, f64::max);
         let ((x_low, x_high), (z_low, _)) = (x.range(), z.range());
         Self { step, weights, reach, bounds: (x_low, x_high, z_low), x, z }

@@ -7,7 +7,7 @@ use super::carrier_sums::CarrierSums;
 use super::dense::{DenseOutput, DenseWorkspace, StepSpan};
 use super::energy::{MassesInStep, StepSums, SummedStep};
 use super::tableau::STAGES;
-use crate::model::{BoundaryPowers, Carrier, ChannelEnergies, Model, State};
+use crate::model::{BoundaryPowers, ByAxis, Carrier, ChannelEnergies, Model, State};
 
 /// The event-driven step of the whole layer that its integrator has attempted last.
 #[derive(Debug)]
@@ -72,13 +72,14 @@ impl PartSums {
     }
 
     fn set_exchange(&mut self, step: &mut WholeLayer<'_>, part: &Model) {
-        let at_start = self.on_carrier(step, part, 0.0);
+        let (x, z) = self.on_carrier(step, part, 0.0);
+        let at_start = ByAxis { x, z };
         let (integrator, masses) = (step.integrator, self.masses.clone());
-        let [vertical, horizontal, ..] = &integrator.end_forces().link;
+        let [vertical, horizontal, ..] = &integrator.end_forces().link.0;
         let sum = |links: &[f64]| links.get(masses.clone()).map_or(0.0, |part| part.iter().sum());
-        let between = integrator.stages.link_forces.iter().map(|[x, z]| (sum(x), sum(z)));
-        let on_carrier =
-            std::iter::once(at_start).chain(between).chain(std::iter::once((sum(horizontal), sum(vertical))));
+        let between = integrator.stages.link_forces.iter().map(|[x, z]| ByAxis { x: sum(x), z: sum(z) });
+        let at_end = ByAxis { x: sum(horizontal), z: sum(vertical) };
+        let on_carrier = std::iter::once(at_start).chain(between).chain(std::iter::once(at_end));
         let stages = integrator.stages.rates.iter().zip(&integrator.stages.carrier);
         for ((exchange, on_carrier), (rates, carrier)) in self.exchange.iter_mut().zip(on_carrier).zip(stages) {
             let [v_x, v_z, normal] =

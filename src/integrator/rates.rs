@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::largest::Largest;
 use crate::model::{
-    BoundaryPowers, CarrierPoint, ContactForces, Forces, FrictionCurve, LinkKind, MaxwellRow, Mode, Model, SlipCurve,
-    State, SurfacePoint,
+    BoundaryPowers, ByLink, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, SlipCurve, State,
+    SurfacePoint,
 };
 
 /// The share of an explicit acceleration that friction may take away within the step without the implicit one in its
@@ -29,7 +29,7 @@ pub struct Rates {
     /// z̈_i, m/s²; in contact along the surface, s ẍ + κ ẋ².
     pub acceleration_z: Vec<f64>,
     /// ė of the links by kind, m/s; empty where the scene has no such link.
-    pub elongation_rate: [Vec<f64>; 4],
+    pub elongation_rate: ByLink<Vec<f64>>,
     /// F_N of the masses in contact, N; [`NO_LIMIT`] for a free one.
     pub normal: Vec<f64>,
     /// Margin to the next mode change along t: σẋ (m/s) of a slipping mass, T - |f·t| (N) of a sticking one;
@@ -83,7 +83,7 @@ impl Rates {
         for i in 0..model.masses() {
             self.evaluate_mass(model, state, forces, i);
             if state.mode[i].slips()
-                && let Some(curve) = model.slip_curve(self.normal[i])
+                && let Some(curve) = model.friction.slip_curve(self.normal[i])
             {
                 self.soften(model, &curve, state, i, beta);
             }
@@ -135,11 +135,11 @@ impl Rates {
         self.evaluate_mass(model, state, forces, i);
         for kind in LinkKind::ALL {
             let (velocity, carrier_rate) = if kind.is_along_x() {
-                (&state.velocity_x, carrier.u_rate)
+                (&state.velocity_x, carrier.x.speed)
             } else {
-                (&state.velocity_z, carrier.w_rate)
+                (&state.velocity_z, carrier.z.speed)
             };
-            let rate = &mut self.elongation_rate[kind as usize];
+            let rate = &mut self.elongation_rate[kind];
             for link in if kind.is_lateral() { i.saturating_sub(1)..i + 1 } else { i..i + 1 } {
                 if let Some(rate) = rate.get_mut(link) {
                     *rate = if kind.is_lateral() { velocity[link + 1] } else { velocity[link] };
@@ -164,7 +164,7 @@ impl Rates {
         self.normal[i] = contact.normal;
         self.margin[i] = match mode {
             Mode::Stick => contact.limit - contact.tangential.abs(),
-            _ if model.has_friction => mode.direction() * velocity_x,
+            _ if model.friction.present => mode.direction() * velocity_x,
             _ => NO_LIMIT,
         };
     }
@@ -173,8 +173,8 @@ impl Rates {
     /// Ḟ = Σ c ė + d ë + Σ_j c_j (ė - a_j/τ_j) over the links to the carrier.
     pub fn on_carrier(&self, model: &Model, maxwell: &[f64], carrier: &CarrierPoint) -> (f64, f64) {
         let of = |kind: LinkKind, acceleration: &[f64], rate_change: f64| {
-            let law = &model.links[kind as usize];
-            let rate: f64 = self.elongation_rate[kind as usize].iter().sum();
+            let law = &model.links[kind];
+            let rate: f64 = self.elongation_rate[kind].iter().sum();
             let damper: f64 = acceleration.iter().map(|a| law.damping * (a - rate_change)).sum();
             let relaxing = |row: &MaxwellRow| {
                 row.stiffness * (rate - maxwell[row.range.clone()].iter().sum::<f64>() / row.relaxation_time)
@@ -183,8 +183,8 @@ impl Rates {
             law.stiffness * rate + damper + elements
         };
         (
-            of(LinkKind::Horizontal, &self.acceleration_x, carrier.u_acceleration),
-            of(LinkKind::Vertical, &self.acceleration_z, carrier.w_acceleration),
+            of(LinkKind::Horizontal, &self.acceleration_x, carrier.x.acceleration),
+            of(LinkKind::Vertical, &self.acceleration_z, carrier.z.acceleration),
         )
     }
 }

@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 
 use super::rates::Rates;
 use super::stage::{SlippingMass, StagePoint, StageSolver};
-use crate::model::{Axis, Body, Forces, Input, LinkKind, LinkMotion, Mode, Model, State, TangentsOf};
+use crate::model::{Axis, Body, ByAxis, Forces, Input, LinkKind, LinkMotion, Mode, Model, State, TangentsOf};
 
 /// The variation of the layer's state: dimensionless for positions, 1/s for velocities.
 #[derive(Clone, Debug)]
@@ -24,7 +24,7 @@ struct Variation {
     /// Of the elongations a_j of the Maxwell elements.
     maxwell: Vec<f64>,
     /// Of the displacements and speeds of the bodies along x and z.
-    bodies: [[f64; 2]; 2],
+    bodies: ByAxis<[f64; 2]>,
 }
 
 /// The variation of the rates at one stage.
@@ -36,7 +36,7 @@ struct VariationRates {
     a_z: Vec<f64>,
     maxwell: Vec<f64>,
     /// Of the speeds and accelerations of the bodies along x and z.
-    bodies: [[f64; 2]; 2],
+    bodies: ByAxis<[f64; 2]>,
 }
 
 /// The variation of the carrier at one instant.
@@ -91,12 +91,10 @@ impl KnownMotion {
 
     fn links(&self, carrier: &CarrierVariation) -> LinkMotion<'_> {
         LinkMotion {
-            elongation_x: &self.elongation_x,
-            elongation_z: &self.elongation_z,
-            velocity_x: &self.velocity_x,
-            velocity_z: &self.velocity_z,
-            carrier_rates: (carrier.u_rate, carrier.w_rate),
-            ends: [[0.0; 2]; 2],
+            elongation: ByAxis { x: &self.elongation_x, z: &self.elongation_z },
+            velocity: ByAxis { x: &self.velocity_x, z: &self.velocity_z },
+            carrier_rate: ByAxis { x: carrier.u_rate, z: carrier.w_rate },
+            ends: Default::default(),
         }
     }
 }
@@ -105,7 +103,7 @@ impl Variation {
     fn new(model: &Model) -> Self {
         let zero = vec![0.0; model.masses()];
         let maxwell = vec![0.0; model.maxwell_variables()];
-        Self { x: zero.clone(), z: zero.clone(), v_x: zero.clone(), v_z: zero, maxwell, bodies: [[0.0; 2]; 2] }
+        Self { x: zero.clone(), z: zero.clone(), v_x: zero.clone(), v_z: zero, maxwell, bodies: ByAxis::default() }
     }
 
     fn parts(&mut self) -> [&mut Vec<f64>; 5] {
@@ -122,7 +120,7 @@ impl Tangent {
             a_x: zero.clone(),
             a_z: zero,
             maxwell: vec![0.0; model.maxwell_variables()],
-            bodies: [[0.0; 2]; 2],
+            bodies: ByAxis::default(),
         };
         Self {
             input,
@@ -147,17 +145,17 @@ impl Tangent {
         for part in self.start.parts() {
             part.fill(0.0);
         }
-        self.start.bodies = [[0.0; 2]; 2];
+        self.start.bodies = ByAxis::default();
     }
 
     /// The carrier's variation `s` seconds after the start of its motion, with `bodies` the displacements and speeds of
     /// bodies.
-    fn carrier(&self, model: &Model, s: f64, bodies: &[[f64; 2]; 2]) -> CarrierVariation {
+    fn carrier(&self, model: &Model, s: f64, bodies: &ByAxis<[f64; 2]>) -> CarrierVariation {
         let mut carrier = CarrierVariation::default();
         for axis in Axis::ALL {
             let driven = self.input.is_displacement() && self.input.axis() == Some(axis);
-            if model.bodies[axis as usize].is_some() {
-                carrier.set_along(axis, bodies[axis as usize]);
+            if model.bodies[axis].is_some() {
+                carrier.set_along(axis, bodies[axis]);
             } else if driven {
                 carrier.set_along(axis, self.ramp(s));
             }
@@ -196,7 +194,8 @@ impl Tangent {
         }
         self.end.bodies = self.start.bodies;
         for (stage, weight) in self.stages.iter().zip(weights) {
-            for (sums, rates) in self.end.bodies.iter_mut().zip(stage.bodies) {
+            for axis in Axis::ALL {
+                let (sums, rates) = (&mut self.end.bodies[axis], stage.bodies[axis]);
                 sums.iter_mut().zip(rates).for_each(|(sum, rate)| *sum += h * weight * rate);
             }
         }
@@ -235,14 +234,14 @@ impl Tangent {
             };
             rates.a_z[i] = on_mass.1 / model.mass;
         }
-        for (axis, of_layer) in Axis::ALL.into_iter().zip([self.forces.on_carrier_x(), self.forces.on_carrier_z()]) {
-            let Some(body) = &model.bodies[axis as usize] else { continue };
-            let motion = self.start.bodies[axis as usize];
-            let acceleration = (of_layer + self.on_body(body, axis, s, motion)) / body.mass;
-            self.stages[0].bodies[axis as usize] = [motion[1], acceleration];
+        for axis in Axis::ALL {
+            let Some(body) = &model.bodies[axis] else { continue };
+            let motion = self.start.bodies[axis];
+            let acceleration = (self.forces.on_carrier(axis) + self.on_body(body, axis, s, motion)) / body.mass;
+            self.stages[0].bodies[axis] = [motion[1], acceleration];
         }
         for row in &model.rows {
-            let start = self.start.maxwell[row.range.clone()].iter().zip(&self.forces.rate[row.kind as usize]);
+            let start = self.start.maxwell[row.range.clone()].iter().zip(&self.forces.rate[row.kind]);
             for (rate, (a, elongation_rate)) in self.stages[0].maxwell[row.range.clone()].iter_mut().zip(start) {
                 *rate = elongation_rate - a / row.relaxation_time;
             }
@@ -257,7 +256,7 @@ impl Tangent {
     /// The derivatives at the start of the next step, `s` seconds after the start of the motion.
     pub(super) fn tangents(&mut self, model: &Model, s: f64) -> TangentsOf {
         self.forces_at_start(model, &self.carrier(model, s, &self.start.bodies));
-        TangentsOf { force: [self.forces.on_carrier_x(), self.forces.on_carrier_z()], body: self.start.bodies }
+        TangentsOf { force: ByAxis::from_fn(|axis| self.forces.on_carrier(axis)), body: self.start.bodies }
     }
 
     /// Computes the variation of the forces of the links at the start of the step.
@@ -268,19 +267,17 @@ impl Tangent {
             self.known.elongation_z[i] = start.z[i] - carrier.w;
         }
         let motion = LinkMotion {
-            elongation_x: &self.known.elongation_x,
-            elongation_z: &self.known.elongation_z,
-            velocity_x: &start.v_x,
-            velocity_z: &start.v_z,
-            carrier_rates: (carrier.u_rate, carrier.w_rate),
-            ends: [[0.0; 2]; 2],
+            elongation: ByAxis { x: &self.known.elongation_x, z: &self.known.elongation_z },
+            velocity: ByAxis { x: &start.v_x, z: &start.v_z },
+            carrier_rate: ByAxis { x: carrier.u_rate, z: carrier.w_rate },
+            ends: Default::default(),
         };
         for kind in LinkKind::ALL {
-            let law = &model.links[kind as usize];
+            let law = &model.links[kind];
             self.forces.spring_and_damper(kind, law.stiffness, law.damping, &motion, &[]);
         }
         for row in &model.rows {
-            add(&mut self.forces.link[row.kind as usize], row.stiffness, &start.maxwell[row.range.clone()]);
+            add(&mut self.forces.link[row.kind], row.stiffness, &start.maxwell[row.range.clone()]);
         }
         self.forces.sum_on_masses();
     }
@@ -303,8 +300,8 @@ impl Tangent {
             solver.system.right[i] = self.right_side(model, solver, i, point.beta, rates.acceleration_x[i]);
         }
         for axis in Axis::ALL {
-            if let Some(body) = &model.bodies[axis as usize] {
-                let history = self.end.bodies[axis as usize];
+            if let Some(body) = &model.bodies[axis] {
+                let history = self.end.bodies[axis];
                 let outside = self.on_body(body, axis, s, [history[0], 0.0]) + body.mass / point.beta * history[1];
                 solver.set_border_right(axis, &self.forces, outside);
             }
@@ -319,8 +316,8 @@ impl Tangent {
 
     /// Takes the variation of a body at stage `stage` from its speed `found`.
     fn set_body(&mut self, axis: Axis, found: f64, beta: f64, stage: usize) {
-        let [displacement, rate] = &mut self.end.bodies[axis as usize];
-        self.stages[stage].bodies[axis as usize] = [found, (found - *rate) / beta];
+        let [displacement, rate] = &mut self.end.bodies[axis];
+        self.stages[stage].bodies[axis] = [found, (found - *rate) / beta];
         (*displacement, *rate) = (*displacement + beta * found, found);
     }
 
@@ -338,12 +335,12 @@ impl Tangent {
         }
         let motion = known.links(carrier);
         for kind in LinkKind::ALL {
-            let law = &solver.laws[kind as usize];
+            let law = &solver.laws[kind];
             self.forces.spring_and_damper(kind, law.stiffness, law.damping, &motion, &[]);
         }
         for row in &model.rows {
             let weight = row.stiffness * row.relaxation_time / (row.relaxation_time + beta);
-            add(&mut self.forces.link[row.kind as usize], weight, &self.end.maxwell[row.range.clone()]);
+            add(&mut self.forces.link[row.kind], weight, &self.end.maxwell[row.range.clone()]);
         }
         self.forces.sum_on_masses();
     }
@@ -388,19 +385,17 @@ impl Tangent {
     fn set_elements(&mut self, model: &Model, beta: f64, carrier: &CarrierVariation, stage: usize) {
         let (end, rates) = (&mut self.end, &mut self.stages[stage]);
         let motion = LinkMotion {
-            elongation_x: &end.x,
-            elongation_z: &end.z,
-            velocity_x: &end.v_x,
-            velocity_z: &end.v_z,
-            carrier_rates: (carrier.u_rate, carrier.w_rate),
-            ends: [[0.0; 2]; 2],
+            elongation: ByAxis { x: &end.x, z: &end.z },
+            velocity: ByAxis { x: &end.v_x, z: &end.v_z },
+            carrier_rate: ByAxis { x: carrier.u_rate, z: carrier.w_rate },
+            ends: Default::default(),
         };
         for kind in LinkKind::ALL {
             self.forces.spring_and_damper(kind, 0.0, 0.0, &motion, &[]);
         }
         for row in &model.rows {
             let g = row.relaxation_time / (row.relaxation_time + beta);
-            let elongation_rates = &self.forces.rate[row.kind as usize];
+            let elongation_rates = &self.forces.rate[row.kind];
             let a = end.maxwell[row.range.clone()].iter_mut().zip(&mut rates.maxwell[row.range.clone()]);
             for ((a, rate), elongation_rate) in a.zip(elongation_rates) {
                 let found = g * (*a + beta * elongation_rate);

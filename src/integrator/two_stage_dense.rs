@@ -8,8 +8,8 @@ use super::carrier_sums::{AxisSums, CarrierSums, Motion};
 use super::dense::{MassPoint, StepSpan};
 use super::rates::Rates;
 use super::tableau::{GAMMA, sdirk2_weights};
-use crate::math::{dot, weighted_sum};
-use crate::model::{BodyStep, Carrier, CarrierPoint, Mode, Model, State};
+use crate::math::{Jet, dot, weighted_sum};
+use crate::model::{BodyStep, ByAxis, Carrier, CarrierPoint, Mode, Model, State};
 
 /// The interpolant of one step of the method of two stages.
 #[derive(Clone, Copy, Debug)]
@@ -31,7 +31,7 @@ pub struct TwoStageDense<'a> {
     /// u as a position on the profile and w at the start, m.
     carrier_start: (f64, f64),
     /// Displacement of the carrier through the step, m.
-    carrier_moved: (f64, f64),
+    carrier_moved: ByAxis<f64>,
     /// u as a position on the profile and w at the end, m.
     carrier_end: (f64, f64),
 }
@@ -49,9 +49,9 @@ impl<'a> TwoStageDense<'a> {
         last: &'a Rates,
     ) -> Self {
         let at = carrier.at(span.start);
-        let carrier_start = (carrier.profile_position + at.du, carrier.w + at.dw);
+        let carrier_start = (carrier.profile_position + at.x.position, carrier.start.z + at.z.position);
         let carrier_moved = carrier.moved(span.start, span.length);
-        let carrier_end = (carrier_start.0 + carrier_moved.0, carrier_start.1 + carrier_moved.1);
+        let carrier_end = (carrier_start.0 + carrier_moved.x, carrier_start.1 + carrier_moved.z);
         Self { model, carrier, span, start, first, end, last, carrier_start, carrier_moved, carrier_end }
     }
 
@@ -64,7 +64,7 @@ impl<'a> TwoStageDense<'a> {
         let (start, end) = (self.start.elongation_x[i], self.end.elongation_x[i]);
         let middle = GAMMA * self.span.length * self.first.velocity_x[i];
         self.model.rest_x[i]
-            + (self.carrier_start.0 + (start + parabola(theta, middle, self.carrier_moved.0 + (end - start))))
+            + (self.carrier_start.0 + (start + parabola(theta, middle, self.carrier_moved.x + (end - start))))
     }
 
     /// The height of mass `i` above the profile's datum at the fraction `theta` of the step, m.
@@ -73,7 +73,7 @@ impl<'a> TwoStageDense<'a> {
         let (start, end) = (self.start.elongation_z[i], self.end.elongation_z[i]);
         let middle = GAMMA * self.span.length * self.first.velocity_z[i];
         self.model.rest_z[i]
-            + (self.carrier_start.1 + (start + parabola(theta, middle, self.carrier_moved.1 + (end - start))))
+            + (self.carrier_start.1 + (start + parabola(theta, middle, self.carrier_moved.z + (end - start))))
     }
 
     /// The position of mass `i` on the profile at the end of the step, m.
@@ -102,7 +102,7 @@ impl<'a> TwoStageDense<'a> {
     pub fn state_at(&self, theta: f64, state: &mut State) {
         let StepSpan { start: s, length: h } = self.span;
         let (from, first, to) = (self.start, self.first, self.end);
-        let ((u, w), (end_u, end_w)) = (self.carrier.moved(s, theta * h), self.carrier_moved);
+        let (moved, in_step) = (self.carrier.moved(s, theta * h), self.carrier_moved);
         (0..self.model.masses()).for_each(|i| state.mode[i] = self.mode(i));
         state.surface.copy_from_slice(&from.surface);
         let elongations = |out: &mut [f64], start: &[f64], velocity: &[f64], end: &[f64], moved: f64, in_step: f64| {
@@ -111,8 +111,8 @@ impl<'a> TwoStageDense<'a> {
             }
         };
         let (e_x, e_z) = (&mut state.elongation_x, &mut state.elongation_z);
-        elongations(e_x, &from.elongation_x, &first.velocity_x, &to.elongation_x, u, end_u);
-        elongations(e_z, &from.elongation_z, &first.velocity_z, &to.elongation_z, w, end_w);
+        elongations(e_x, &from.elongation_x, &first.velocity_x, &to.elongation_x, moved.x, in_step.x);
+        elongations(e_z, &from.elongation_z, &first.velocity_z, &to.elongation_z, moved.z, in_step.z);
         let weights = piecewise_linear(theta);
         let velocities = |out: &mut [f64], values: [&[f64]; 3]| {
             weighted_sum(out, weights.into_iter().zip(values).filter(|(weight, _)| *weight != 0.0));
@@ -138,10 +138,10 @@ impl<'a> TwoStageDense<'a> {
         let (v_x, surface) = if self.mode(i) == Mode::Stick {
             (0.0, self.start.surface[i])
         } else {
-            let x = self.model.rest_x[i] + (self.carrier.profile_position + (here.du + along_x.0));
+            let x = self.model.rest_x[i] + (self.carrier.profile_position + (here.x.position + along_x.0));
             (along_x.1, self.model.surface_at(x))
         };
-        let elongation_z = surface.height - self.model.rest_z[i] - (self.carrier.w + here.dw);
+        let elongation_z = surface.height - self.model.rest_z[i] - (self.carrier.start.z + here.z.position);
         MassPoint { elongation: (along_x.0, elongation_z), velocity: (v_x, surface.slope * v_x), surface }
     }
 
@@ -155,8 +155,8 @@ impl<'a> TwoStageDense<'a> {
         };
         Motion {
             elongation: (
-                elongation(&sums.x, moved.0, self.carrier_moved.0),
-                elongation(&sums.z, moved.1, self.carrier_moved.1),
+                elongation(&sums.x, moved.x, self.carrier_moved.x),
+                elongation(&sums.z, moved.z, self.carrier_moved.z),
             ),
             velocity: (dot(&weights, &sums.x.velocity), dot(&weights, &sums.z.velocity)),
         }
@@ -174,11 +174,11 @@ fn parabola(theta: f64, middle: f64, end: f64) -> f64 {
 
 /// The motion of a body through a step of length `h` (s), from its displacement, speed and acceleration at the start, at
 /// the first stage and at the end.
-pub(super) fn two_stage_body_step(h: f64, [start, first, end]: [[f64; 3]; 3]) -> BodyStep {
-    let (middle, moved) = (GAMMA * h * first[1], end[0] - start[0]);
+pub(super) fn two_stage_body_step(h: f64, [start, first, end]: [Jet; 3]) -> BodyStep {
+    let (middle, moved) = (GAMMA * h * first.speed, end.position - start.position);
     let half = parabola(0.5, middle, moved);
     let displacement = [4.0 * half - moved, 2.0 * moved - 4.0 * half];
-    BodyStep::TwoStages { length: h, node: GAMMA, displacement, speed: [first[1], end[1]] }
+    BodyStep::TwoStages { length: h, node: GAMMA, displacement, speed: [first.speed, end.speed] }
 }
 
 /// Weights of the values at the start, at the first stage and at the end in their piecewise linear interpolant.

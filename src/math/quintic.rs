@@ -1,5 +1,9 @@
 //! Polynomials of degree 5 over a step.
 
+use std::ops::Sub;
+
+use serde::{Deserialize, Serialize};
+
 /// A polynomial of degree 5 on [0, 1] in Bernstein form: its values lie between the least and the largest coefficient.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quintic {
@@ -7,7 +11,7 @@ pub struct Quintic {
 }
 
 /// Position, speed and acceleration at one instant.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Jet {
     /// Position.
     pub position: f64,
@@ -15,6 +19,18 @@ pub struct Jet {
     pub speed: f64,
     /// Its second derivative.
     pub acceleration: f64,
+}
+
+impl Sub for Jet {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self {
+            position: self.position - other.position,
+            speed: self.speed - other.speed,
+            acceleration: self.acceleration - other.acceleration,
+        }
+    }
 }
 
 impl Quintic {

@@ -1,69 +1,68 @@
 //! The carrier's motion: prescribed along an axis, or that of a body there.
 
+use std::ops::{Index, IndexMut};
+
 use serde::{Deserialize, Serialize};
 
 use super::{EndForces, Forces, Model};
-use crate::math::Spline;
-use crate::scene::{Axis, Force, Path, Scene};
+use crate::math::{Jet, Spline};
+use crate::scene::{Axis, ByAxis, Motion, Path, Scene};
 
-/// The carrier on a smooth piece of its motion. Displacements are counted from the start of the piece, so that a carrier
-/// far away loses no digits but those of u itself.
+/// The carrier on a smooth segment of its motion. Displacements are counted from the start of the segment, so that a
+/// carrier far away loses no digits but those of u itself.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Carrier {
-    /// Time at the start of the piece, s.
+    /// Time at the start of the segment, s.
     pub time: f64,
-    /// u at the start of the piece, m.
-    pub u: f64,
-    /// w at the start of the piece, m.
-    pub w: f64,
-    /// u at the start of the piece as a position on the profile, m: reduced to its period if it is periodic.
+    /// u and w at the start of the segment, m.
+    pub start: ByAxis<f64>,
+    /// u at the start of the segment as a position on the profile, m: reduced to its period if it is periodic.
     pub profile_position: f64,
-    /// The path of u, or that of the drive of a body.
-    u_path: Path,
-    /// The path of w, or that of the drive of a body.
-    w_path: Path,
-    /// The bodies along x and z; `None` where the displacement is prescribed.
-    bodies: [Option<BodyMotion>; 2],
+    /// The paths of u and w, or of the drives of a body.
+    paths: ByAxis<Path>,
+    /// The bodies; `None` where the displacement is prescribed.
+    bodies: ByAxis<Option<BodyMotion>>,
     /// What acts on the ends of a part of a layer; `None` for a whole layer.
     #[serde(skip)]
     pub ends: Option<EndForces>,
 }
 
-/// The carrier at one instant of a piece.
+/// The carrier at one instant of a segment.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CarrierPoint {
-    /// u minus u at the start of the piece, m.
-    pub du: f64,
-    /// w minus w at the start of the piece, m.
-    pub dw: f64,
-    /// u̇, m/s.
-    pub u_rate: f64,
-    /// ẇ, m/s.
-    pub w_rate: f64,
-    /// ü, m/s².
-    pub u_acceleration: f64,
-    /// ẅ, m/s².
-    pub w_acceleration: f64,
-    /// What acts on the first and on the last mass from beyond a part of a layer, along x and z, N; 0 for a whole
-    /// layer.
+    /// u minus u at the start of the segment (m), u̇ and ü.
+    pub x: Jet,
+    /// w minus w at the start of the segment (m), ẇ and ẅ.
+    pub z: Jet,
+    /// What acts on the first and on the last mass from beyond a part of a layer, N; 0 for a whole layer.
     #[serde(skip)]
-    pub ends: [[f64; 2]; 2],
+    pub ends: [ByAxis<f64>; 2],
 }
 
 impl CarrierPoint {
-    /// Displacement since the start of the piece (m), speed (m/s) and acceleration (m/s²) along an axis.
-    pub fn along(&self, axis: Axis) -> [f64; 3] {
+    /// u̇ and ẇ, m/s.
+    #[inline(always)]
+    pub fn rates(&self) -> ByAxis<f64> {
+        ByAxis { x: self.x.speed, z: self.z.speed }
+    }
+}
+
+impl Index<Axis> for CarrierPoint {
+    type Output = Jet;
+
+    fn index(&self, axis: Axis) -> &Jet {
         match axis {
-            Axis::X => [self.du, self.u_rate, self.u_acceleration],
-            Axis::Z => [self.dw, self.w_rate, self.w_acceleration],
+            Axis::X => &self.x,
+            Axis::Z => &self.z,
         }
     }
+}
 
-    /// Sets the same.
-    pub fn set_along(&mut self, axis: Axis, [displacement, rate, acceleration]: [f64; 3]) {
+impl IndexMut<Axis> for CarrierPoint {
+    fn index_mut(&mut self, axis: Axis) -> &mut Jet {
         match axis {
-            Axis::X => (self.du, self.u_rate, self.u_acceleration) = (displacement, rate, acceleration),
-            Axis::Z => (self.dw, self.w_rate, self.w_acceleration) = (displacement, rate, acceleration),
+            Axis::X => &mut self.x,
+            Axis::Z => &mut self.z,
         }
     }
 }
@@ -92,9 +91,9 @@ pub struct Body {
 
 impl Body {
     /// The bodies of `scene` along x and z.
-    pub(super) fn along_axes(scene: &Scene) -> [Option<Self>; 2] {
-        Axis::ALL.map(|axis| {
-            let body = scene.carrier.along(axis)?;
+    pub(super) fn along_axes(scene: &Scene) -> ByAxis<Option<Self>> {
+        ByAxis::from_fn(|axis| {
+            let body = scene.carrier[axis].as_ref()?;
             let force = match axis {
                 Axis::X => body.pull,
                 Axis::Z => body.load,
@@ -106,20 +105,20 @@ impl Body {
     }
 }
 
-/// The motion of a body along one axis on a smooth piece: where it stands at the start of a step, how it moves through
+/// The motion of a body along one axis on a smooth segment: where it stands at the start of a step, how it moves through
 /// the step tried last, and what acts on it from outside.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct BodyMotion {
-    /// Start of the step, s after the start of the piece.
+    /// Start of the step, s after the start of the segment.
     s: f64,
-    /// Displacement since the start of the piece (m), speed (m/s) and acceleration (m/s²) there.
-    start: [f64; 3],
+    /// Displacement there since the start of the segment (m), speed and acceleration.
+    start: Jet,
     /// The step tried last; none between motions.
     #[serde(skip)]
     step: BodyStep,
-    /// Displacement of the drive at the start of the piece, m.
+    /// Displacement of the drive at the start of the segment, m.
     drive: f64,
-    /// Load or tangential force at the start of the piece without its constant part, N.
+    /// Load or tangential force at the start of the segment without its constant part, N.
     force: f64,
     /// Its change from there, N.
     force_path: Path,
@@ -156,10 +155,10 @@ pub enum BodyStep {
 pub struct Outside {
     /// P or -N along the axis, N.
     pub force: f64,
-    /// Displacement of the drive since the start of the piece, m, and its speed, m/s.
-    pub drive: [f64; 2],
-    /// Displacement of the body from where the drive was at the start of the piece, m, and its speed, m/s.
-    pub body: [f64; 2],
+    /// Displacement of the drive since the start of the segment (m), its speed and acceleration.
+    pub drive: Jet,
+    /// Displacement of the body from where the drive was at the start of the segment (m), its speed and acceleration.
+    pub body: Jet,
 }
 
 /// Energies of the bodies, J.
@@ -179,72 +178,76 @@ impl BodyEnergy {
 }
 
 impl Outside {
-    /// Elongation of the drive's spring, m, and its rate, m/s: those of the body less the drive's.
-    pub fn stretch(&self) -> [f64; 2] {
-        [self.body[0] - self.drive[0], self.body[1] - self.drive[1]]
+    /// Elongation of the drive's spring (m), its rate and the rate's change: those of the body less the drive's.
+    pub fn stretch(&self) -> Jet {
+        self.body - self.drive
     }
 
     /// R, the drive's force on the body, N.
     pub fn drive_force(&self, body: &Body) -> f64 {
-        let [stretch, rate] = self.stretch();
-        -(body.stiffness * stretch + body.damping * rate)
+        let stretch = self.stretch();
+        -(body.stiffness * stretch.position + body.damping * stretch.speed)
+    }
+
+    /// Ṙ, N/s.
+    pub fn drive_force_rate(&self, body: &Body) -> f64 {
+        let stretch = self.stretch();
+        -(body.stiffness * stretch.speed + body.damping * stretch.acceleration)
     }
 
     /// The power of the load and of the drive into the body, W.
     pub fn input(&self, body: &Body) -> f64 {
-        self.force * self.body[1] + self.drive_force(body) * self.drive[1]
+        self.force * self.body.speed + self.drive_force(body) * self.drive.speed
     }
 
     /// The power lost in the damper to the drive, W.
     pub fn lost(&self, body: &Body) -> f64 {
-        body.damping * self.stretch()[1].powi(2)
+        body.damping * self.stretch().speed.powi(2)
     }
 }
 
 impl BodyMotion {
-    fn motion(&self, s: f64) -> [f64; 3] {
-        let [displacement, rate, acceleration] = self.start;
-        let of_step = |length: f64| ((s - self.s) / length, length);
+    fn at(&self, s: f64) -> Jet {
+        let Jet { position, speed: start_speed, .. } = self.start;
+        let in_step = |length: f64| ((s - self.s) / length, length);
         match self.step {
             _ if s <= self.s => self.start,
-            BodyStep::None => [displacement + (s - self.s) * rate, rate, acceleration],
+            BodyStep::None => Jet { position: position + (s - self.s) * start_speed, ..self.start },
             BodyStep::Polynomial { length, speed } => {
-                let (theta, h) = of_step(length);
+                let (theta, h) = in_step(length);
                 let sum = |term: fn(usize, f64) -> f64| {
                     (0..speed.len()).rev().fold(0.0, |sum, power| sum * theta + term(power, speed[power]))
                 };
                 let moved = h * theta * sum(|power, c| c / (power + 1) as f64);
                 let slope = (1..speed.len()).rev().fold(0.0, |sum, power| sum * theta + power as f64 * speed[power]);
-                [displacement + moved, sum(|_, c| c), slope / h]
+                Jet { position: position + moved, speed: sum(|_, c| c), acceleration: slope / h }
             }
             BodyStep::TwoStages { length, node, displacement: [linear, square], speed } => {
-                let (theta, h) = of_step(length);
+                let (theta, h) = in_step(length);
                 let moved = theta * (linear + theta * square);
-                let (from, to, share, span) = if theta < node {
-                    (rate, speed[0], theta / node, node)
+                let (from, to, fraction, span) = if theta < node {
+                    (start_speed, speed[0], theta / node, node)
                 } else {
                     (speed[0], speed[1], (theta - node) / (1.0 - node), 1.0 - node)
                 };
-                [displacement + moved, from + share * (to - from), (to - from) / (span * h)]
+                let change = to - from;
+                let (speed, acceleration) = (from + fraction * change, change / (span * h));
+                Jet { position: position + moved, speed, acceleration }
             }
         }
     }
 
-    /// All its numbers, to be checked.
-    fn numbers(&self) -> impl Iterator<Item = f64> {
-        let Path { rate, amplitude, frequency } = self.force_path;
-        let others = [self.s, self.drive, self.force, rate, amplitude, frequency];
-        self.start.into_iter().chain(others)
+    /// The changing part of the load or of the tangential force at the time `s` of the segment, N.
+    fn force_at(&self, s: f64) -> f64 {
+        self.force + self.force_path.at(s).position
     }
-}
 
-/// A new piece of the carrier's motion.
-#[derive(Clone, Copy, Debug)]
-pub struct Piece {
-    /// The paths of u and w, or of the drives of a body.
-    pub paths: (Path, Path),
-    /// The tangential force on a body along x and the load on one along z, without their constant parts.
-    pub forces: (Force, Force),
+    /// All its numbers, to be checked.
+    fn numbers(&self) -> [f64; 9] {
+        let Path { rate, amplitude, frequency } = self.force_path;
+        let Jet { position, speed, acceleration } = self.start;
+        [position, speed, acceleration, self.s, self.drive, self.force, rate, amplitude, frequency]
+    }
 }
 
 /// Where a body starts.
@@ -261,221 +264,205 @@ pub struct BodyStart {
 }
 
 impl Carrier {
-    /// A piece that starts at `time` (s) from `u`, `w` (m) over `profile`, with the displacement prescribed along both
-    /// axes.
-    pub fn new(time: f64, (u, w): (f64, f64), (u_path, w_path): (Path, Path), profile: &Spline) -> Self {
-        Self { time, u, w, profile_position: profile.reduce(u), u_path, w_path, bodies: [None; 2], ends: None }
+    /// A segment that starts at `time` (s) from `start`, u and w (m), over `profile`, with the displacement prescribed along
+    /// both axes.
+    pub fn new(time: f64, start: ByAxis<f64>, paths: ByAxis<Path>, profile: &Spline) -> Self {
+        Self { time, start, profile_position: profile.reduce(start.x), paths, bodies: ByAxis::default(), ends: None }
     }
 
-    /// The same with a body along an axis, whose drive follows the path there.
+    /// Makes it a body along an axis, whose drive follows the path there.
     pub fn start_body(&mut self, axis: Axis, start: &BodyStart, profile: &Spline) {
         let BodyStart { displacement, rate, drive, force } = *start;
-        match axis {
-            Axis::X => self.u = displacement,
-            Axis::Z => self.w = displacement,
-        }
-        let (start, step) = ([0.0, rate, 0.0], BodyStep::None);
-        self.bodies[axis as usize] =
-            Some(BodyMotion { s: 0.0, start, step, drive, force, force_path: Path::default() });
+        self.start[axis] = displacement;
+        self.bodies[axis] = Some(BodyMotion {
+            s: 0.0,
+            start: Jet { speed: rate, ..Jet::default() },
+            step: BodyStep::None,
+            drive,
+            force,
+            force_path: Path::default(),
+        });
         self.find_profile_position(profile);
     }
 
-    /// Begins another `piece` at the time `s` after the start of this one, s. Returns whether the acceleration of a body
-    /// jumps there.
-    pub fn begin(&mut self, s: f64, piece: &Piece, model: &Model) -> bool {
+    /// Begins another segment, that of `motion`, at the time `s` after the start of this one, s. Returns whether the
+    /// acceleration of a body jumps there.
+    pub fn begin(&mut self, s: f64, motion: &Motion, model: &Model) -> bool {
         let (before, here) = (*self, self.at(s));
-        let paths = piece.paths;
-        *self = Self::new(before.time + s, (before.u + here.du, before.w + here.dw), paths, &model.profile);
-        for (axis, force) in Axis::ALL.into_iter().zip([piece.forces.0, piece.forces.1]) {
-            let Some(body) = &before.bodies[axis as usize] else { continue };
-            let [_, rate, acceleration] = here.along(axis);
-            let reached = body.force + body.force_path.at(s);
-            self.bodies[axis as usize] = Some(BodyMotion {
+        let start = ByAxis::from_fn(|axis| before.start[axis] + here[axis].position);
+        *self = Self::new(before.time + s, start, ByAxis::from_fn(|axis| motion.path(axis)), &model.profile);
+        self.bodies = ByAxis::from_fn(|axis| {
+            let (body, force) = (before.bodies[axis].as_ref()?, motion.force(axis));
+            Some(BodyMotion {
                 s: 0.0,
-                start: [0.0, rate, acceleration],
+                start: Jet { position: 0.0, ..here[axis] },
                 step: BodyStep::None,
-                drive: body.drive + before.path(axis).at(s),
-                force: force.start.unwrap_or(reached),
+                drive: body.drive + before.paths[axis].at(s).position,
+                force: force.start.unwrap_or(body.force_at(s)),
                 force_path: force.change,
-            });
-        }
+            })
+        });
         Axis::ALL.into_iter().any(|axis| self.jumps_from(&before, s, axis, model))
     }
 
-    /// Whether what acts on a body along `axis` at the start of this piece has jumped from what acted at the time `s` of the
-    /// piece `before`, s.
+    /// Whether what acts on a body along `axis` at the start of this segment has jumped from what acted at the time `s` of
+    /// the segment `before`, s.
     fn jumps_from(&self, before: &Self, s: f64, axis: Axis, model: &Model) -> bool {
         let Some((body, was)) = before.outside(model, axis, s) else { return false };
         let Some((_, is)) = self.outside(model, axis, 0.0) else { return false };
-        is.force != was.force || (body.damping > 0.0 && is.drive[1] != was.drive[1])
-    }
-
-    fn path(&self, axis: Axis) -> &Path {
-        match axis {
-            Axis::X => &self.u_path,
-            Axis::Z => &self.w_path,
-        }
+        is.force != was.force || (body.damping > 0.0 && is.drive.speed != was.drive.speed)
     }
 
     /// Whether it is a body along an axis.
     pub fn has_bodies(&self) -> bool {
-        self.bodies.iter().any(Option::is_some)
+        self.bodies.any()
     }
 
     /// Whether it is a body along `axis`.
     pub fn is_body(&self, axis: Axis) -> bool {
-        self.bodies[axis as usize].is_some()
+        self.bodies[axis].is_some()
     }
 
-    /// The carrier at the time `s` after the start of the piece, s.
+    /// The carrier at the time `s` after the start of the segment, s.
     pub fn at(&self, s: f64) -> CarrierPoint {
-        let [du, u_rate, u_acceleration] = self.motion(Axis::X, s);
-        let [dw, w_rate, w_acceleration] = self.motion(Axis::Z, s);
-        let ends = self.ends.as_ref().map_or([[0.0; 2]; 2], |ends| ends.at(s));
-        CarrierPoint { du, dw, u_rate, w_rate, u_acceleration, w_acceleration, ends }
+        let ends = self.ends.as_ref().map_or_else(Default::default, |ends| ends.at(s));
+        CarrierPoint { x: self.along(Axis::X, s), z: self.along(Axis::Z, s), ends }
     }
 
     #[inline]
-    fn motion(&self, axis: Axis, s: f64) -> [f64; 3] {
-        match &self.bodies[axis as usize] {
-            None => self.path(axis).motion(s),
-            Some(body) => body.motion(s),
+    fn along(&self, axis: Axis, s: f64) -> Jet {
+        match &self.bodies[axis] {
+            None => self.paths[axis].at(s),
+            Some(body) => body.at(s),
         }
     }
 
-    /// The carrier's position at the time `s` after the start of the piece, s.
+    /// u and w at the time `s` after the start of the segment (s), m.
+    pub fn displacement(&self, s: f64) -> ByAxis<f64> {
+        let point = self.at(s);
+        ByAxis { x: self.start.x + point.x.position, z: self.start.z + point.z.position }
+    }
+
+    /// The carrier's position at the time `s` after the start of the segment, s.
     pub fn position(&self, s: f64) -> CarrierPosition {
         let point = self.at(s);
-        CarrierPosition { profile_position: self.profile_position + point.du, w: self.w + point.dw }
+        CarrierPosition {
+            profile_position: self.profile_position + point.x.position,
+            w: self.start.z + point.z.position,
+        }
     }
 
     /// Computes the position on the profile anew from u.
     pub fn find_profile_position(&mut self, profile: &Spline) {
-        self.profile_position = profile.reduce(self.u);
+        self.profile_position = profile.reduce(self.start.x);
     }
 
     /// The changes of u and w from the time `s` on over `span`, m; both in s.
-    pub fn moved(&self, s: f64, span: f64) -> (f64, f64) {
-        let change = |axis: Axis| match &self.bodies[axis as usize] {
-            None => self.path(axis).change(s, span),
-            Some(body) => body.motion(s + span)[0] - body.motion(s)[0],
-        };
-        (change(Axis::X), change(Axis::Z))
+    pub fn moved(&self, s: f64, span: f64) -> ByAxis<f64> {
+        ByAxis::from_fn(|axis| match &self.bodies[axis] {
+            None => self.paths[axis].change(s, span),
+            Some(body) => body.at(s + span).position - body.at(s).position,
+        })
     }
 
     /// The shortest period of the sines, s; infinite if there is none.
     pub fn shortest_period(&self) -> f64 {
-        let of_forces = self.bodies.iter().flatten().map(|body| body.force_path.period());
-        of_forces.fold(self.u_path.period().min(self.w_path.period()), f64::min)
+        let forces = self.bodies.iter().flatten().map(|body| &body.force_path);
+        self.paths.iter().chain(forces).map(Path::period).fold(f64::INFINITY, f64::min)
     }
 
     /// The amplitude of the sine of w, m; 0 for a body.
     pub fn amplitude_w(&self) -> f64 {
-        if self.is_body(Axis::Z) { 0.0 } else { self.w_path.amplitude.abs() }
+        if self.is_body(Axis::Z) { 0.0 } else { self.paths.z.amplitude.abs() }
     }
 
-    /// The body of `model` along `axis` and what acts on it from outside at the time `s` after the start of the piece, s.
+    /// The body of `model` along `axis` and what acts on it from outside at the time `s` after the start of the segment, s.
     pub fn outside<'a>(&self, model: &'a Model, axis: Axis, s: f64) -> Option<(&'a Body, Outside)> {
-        let [displacement, rate, _] = self.motion(axis, s);
-        self.outside_at(model, axis, s, [displacement, rate])
+        self.outside_at(model, axis, s, self.along(axis, s))
     }
 
-    /// The same with the body displaced since the start of the piece (m) and at a speed (m/s) as given.
-    pub fn outside_at<'a>(
-        &self,
-        model: &'a Model,
-        axis: Axis,
-        s: f64,
-        [displacement, rate]: [f64; 2],
-    ) -> Option<(&'a Body, Outside)> {
-        let (body, motion) = (model.bodies[axis as usize].as_ref()?, self.bodies[axis as usize].as_ref()?);
-        let [drive, drive_rate, _] = self.path(axis).motion(s);
-        let (sign, start) = match axis {
-            Axis::X => (1.0, self.u),
-            Axis::Z => (-1.0, self.w),
+    /// What acts from outside on the body of `model` along `axis`, displaced since the start of the segment as `at` says, at
+    /// the time `s` (s).
+    pub fn outside_at<'a>(&self, model: &'a Model, axis: Axis, s: f64, at: Jet) -> Option<(&'a Body, Outside)> {
+        let (body, motion) = (model.bodies[axis].as_ref()?, self.bodies[axis].as_ref()?);
+        let sign = match axis {
+            Axis::X => 1.0,
+            Axis::Z => -1.0,
         };
-        let force = sign * (body.force + (motion.force + motion.force_path.at(s)));
-        // The difference of the displacements at the start of the piece keeps the digits of what has moved since.
-        let offset = start - motion.drive;
-        Some((body, Outside { force, drive: [drive, drive_rate], body: [offset + displacement, rate] }))
+        let force = sign * (body.force + motion.force_at(s));
+        // The difference of the displacements at the start of the segment keeps the digits of what has moved since.
+        let offset = self.start[axis] - motion.drive;
+        Some((
+            body,
+            Outside { force, drive: self.paths[axis].at(s), body: Jet { position: offset + at.position, ..at } },
+        ))
     }
 
-    /// Ṙ of the drive along `axis` at the time `s` after the start of the piece, s, N/s; 0 where there is none.
-    pub fn drive_force_rate(&self, model: &Model, axis: Axis, s: f64) -> f64 {
-        let Some(body) = &model.bodies[axis as usize] else { return 0.0 };
-        let ([_, rate, acceleration], drive) = (self.motion(axis, s), self.path(axis).motion(s));
-        -(body.stiffness * (rate - drive[1]) + body.damping * (acceleration - drive[2]))
-    }
-
-    /// Displacement of the drive of a body along `axis` at the time `s` after the start of the piece, s, m; `None` where it
-    /// is no body.
+    /// Displacement of the drive of a body along `axis` at the time `s` after the start of the segment, s, m; `None` where
+    /// it is no body.
     pub fn drive(&self, axis: Axis, s: f64) -> Option<f64> {
-        Some(self.bodies[axis as usize].as_ref()?.drive + self.path(axis).at(s))
+        Some(self.bodies[axis].as_ref()?.drive + self.paths[axis].at(s).position)
     }
 
-    /// The changing part of the load or of the tangential force at the time `s` after the start of the piece, s, N; 0 where
+    /// The changing part of the load or of the tangential force at the time `s` after the start of the segment, s, N; 0 where
     /// the axis is no body.
     pub fn force(&self, axis: Axis, s: f64) -> f64 {
-        self.bodies[axis as usize].as_ref().map_or(0.0, |body| body.force + body.force_path.at(s))
+        self.bodies[axis].as_ref().map_or(0.0, |body| body.force_at(s))
     }
 
-    /// Sets the accelerations of the bodies at the time `s` of the piece, where a step starts, from the `forces` there.
+    /// Sets the accelerations of the bodies at the time `s` of the segment, where a step starts, from the `forces` there.
     pub fn accelerate(&mut self, model: &Model, s: f64, forces: &Forces) {
-        for (axis, of_layer) in Axis::ALL.into_iter().zip([Forces::on_carrier_x, Forces::on_carrier_z]) {
+        for axis in Axis::ALL {
             let Some((body, outside)) = self.outside(model, axis, s) else { continue };
-            let acceleration = (of_layer(forces) + outside.force + outside.drive_force(body)) / body.mass;
-            if let Some(motion) = &mut self.bodies[axis as usize] {
-                motion.start[2] = acceleration;
+            let acceleration = (forces.on_carrier(axis) + outside.force + outside.drive_force(body)) / body.mass;
+            if let Some(motion) = &mut self.bodies[axis] {
+                motion.start.acceleration = acceleration;
             }
         }
     }
 
     /// Sets how a body along `axis` moves through the step tried last.
     pub fn set_step(&mut self, axis: Axis, step: BodyStep) {
-        if let Some(body) = &mut self.bodies[axis as usize] {
+        if let Some(body) = &mut self.bodies[axis] {
             body.step = step;
         }
     }
 
-    /// Ends a step at the time `s` of the piece with the carrier at `point`: the next one starts there.
+    /// Ends a step at the time `s` of the segment with the carrier at `point`: the next one starts there.
     pub fn take_step(&mut self, s: f64, point: &CarrierPoint) {
-        for (axis, body) in Axis::ALL.into_iter().zip(&mut self.bodies) {
-            if let Some(body) = body {
-                (body.s, body.start, body.step) = (s, point.along(axis), BodyStep::None);
+        for axis in Axis::ALL {
+            if let Some(body) = &mut self.bodies[axis] {
+                (body.s, body.start, body.step) = (s, point[axis], BodyStep::None);
             }
         }
     }
 
-    /// Changes the bodies' speeds at `point` by impulses along x and z, N s.
-    pub fn push(&self, point: &mut CarrierPoint, model: &Model, impulse: [f64; 2]) {
-        for (axis, impulse) in Axis::ALL.into_iter().zip(impulse) {
-            if let Some(body) = &model.bodies[axis as usize] {
-                let [displacement, rate, acceleration] = point.along(axis);
-                point.set_along(axis, [displacement, rate + impulse / body.mass, acceleration]);
+    /// Changes the bodies' speeds at `point` by impulses, N s.
+    pub fn push(&self, point: &mut CarrierPoint, model: &Model, impulse: ByAxis<f64>) {
+        for axis in Axis::ALL {
+            if let Some(body) = &model.bodies[axis] {
+                point[axis].speed += impulse[axis] / body.mass;
             }
         }
     }
 
-    /// The bodies' energies at the time `s` after the start of the piece, s.
+    /// The bodies' energies at the time `s` after the start of the segment, s.
     pub fn energy(&self, model: &Model, s: f64) -> BodyEnergy {
         let mut energy = BodyEnergy::default();
-        for axis in Axis::ALL {
-            if let Some((body, outside)) = self.outside(model, axis, s) {
-                energy.kinetic += 0.5 * body.mass * outside.body[1].powi(2);
-                energy.elastic += 0.5 * body.stiffness * outside.stretch()[0].powi(2);
-            }
+        for (body, outside) in Axis::ALL.into_iter().filter_map(|axis| self.outside(model, axis, s)) {
+            energy.kinetic += 0.5 * body.mass * outside.body.speed.powi(2);
+            energy.elastic += 0.5 * body.stiffness * outside.stretch().position.powi(2);
         }
         energy
     }
 
-    /// All numbers of the piece, to be checked.
+    /// All numbers of the segment, to be checked.
     pub fn numbers(&self) -> impl Iterator<Item = f64> {
-        let Self { time, u, w, profile_position, u_path, w_path, bodies, ends: _ } = *self;
-        let of_path = |Path { rate, amplitude, frequency }: Path| [rate, amplitude, frequency];
-        let paths = [u_path, w_path].into_iter().flat_map(of_path);
-        [time, u, w, profile_position]
+        let Self { time, start, profile_position, paths, bodies, ends: _ } = self;
+        let of_path = |path: &Path| [path.rate, path.amplitude, path.frequency];
+        [*time, start.x, start.z, *profile_position]
             .into_iter()
-            .chain(paths)
-            .chain(bodies.into_iter().flatten().flat_map(|body| body.numbers().collect::<Vec<_>>()))
+            .chain(paths.iter().flat_map(of_path))
+            .chain(bodies.iter().flatten().flat_map(BodyMotion::numbers))
     }
 }

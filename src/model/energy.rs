@@ -3,10 +3,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::math::{dot, sum};
-use crate::scene::Axis;
+use crate::math::dot;
+use crate::scene::{Axis, ByAxis};
 
-use super::{Carrier, CarrierPoint, ContactForces, Forces, FrictionCurve, LinkKind, Mode, Model, State};
+use super::{Carrier, CarrierPoint, ContactForces, Forces, FrictionPower, LinkKind, Mode, Model, State};
 
 /// Power through the channels, W.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -119,25 +119,24 @@ impl BoundaryPowers {
         modes: &[Mode],
         (velocity_x, velocity_z, normal): (&[f64], &[f64], &[f64]),
         carrier: &CarrierPoint,
-        on_carrier: (f64, f64),
+        on_carrier: ByAxis<f64>,
     ) -> Self {
         let mut power = FrictionPower::default();
-        for i in (0..modes.len()).filter(|&i| model.has_friction && modes[i].slips() && velocity_x[i] != 0.0) {
+        for i in (0..modes.len()).filter(|&i| model.friction.present && modes[i].slips() && velocity_x[i] != 0.0) {
             let contact = ContactForces::in_slip(model, normal[i], (velocity_x[i], velocity_z[i]));
-            power.add(model, modes[i], velocity_x[i], &contact);
+            power.add(&model.friction, modes[i], velocity_x[i], &contact);
         }
-        Self::with_powers(model, &power, -(on_carrier.0 * carrier.u_rate + on_carrier.1 * carrier.w_rate))
+        Self::with_powers(model, &power, -(on_carrier.x * carrier.x.speed + on_carrier.z * carrier.z.speed))
     }
 
     fn with_powers(model: &Model, power: &FrictionPower, input: f64) -> Self {
-        Self { friction: power.friction(), shear: power.shear(model), input, carrier: 0.0 }
+        Self { friction: power.friction(), shear: power.shear(&model.friction), input, carrier: 0.0 }
     }
 
-    /// Adds the powers of what acts on the bodies from outside, at the time `s` after the start of the `carrier`'s piece (s).
+    /// Adds the powers of what acts on the bodies from outside, at the time `s` after the start of the `carrier`'s segment (s).
     pub fn add_bodies(&mut self, model: &Model, carrier: &Carrier, s: f64, point: &CarrierPoint) {
         for axis in Axis::ALL {
-            let [displacement, rate, _] = point.along(axis);
-            if let Some((body, outside)) = carrier.outside_at(model, axis, s, [displacement, rate]) {
+            if let Some((body, outside)) = carrier.outside_at(model, axis, s, point[axis]) {
                 self.input += outside.input(body);
                 self.carrier += outside.lost(body);
             }
@@ -146,8 +145,8 @@ impl BoundaryPowers {
 }
 
 fn damper(model: &Model, forces: &Forces, kind: LinkKind) -> f64 {
-    let damping = model.links[kind as usize].damping;
-    if damping == 0.0 { 0.0 } else { damping * dot(&forces.rate[kind as usize], &forces.rate[kind as usize]) }
+    let damping = model.links[kind].damping;
+    if damping == 0.0 { 0.0 } else { damping * dot(&forces.rate[kind], &forces.rate[kind]) }
 }
 
 fn square_sum(values: impl Iterator<Item = f64>) -> f64 {
@@ -161,66 +160,13 @@ fn maxwell(model: &Model, state: &State) -> f64 {
     model.rows.iter().map(row_power).sum()
 }
 
-/// The power of friction, summed mass by mass.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct FrictionPower {
-    /// Of T(0), W.
-    at_rest: f64,
-    /// Of its part μ F_N, W; 0 where the scene does not tell the two apart.
-    coulomb: f64,
-    /// Of A τ_f(v) - A τ_f(v_c), W.
-    excess: f64,
-}
-
-impl FrictionPower {
-    /// Of all masses in `state` with the forces there.
-    fn evaluate(model: &Model, state: &State, forces: &Forces) -> Self {
-        let mut power = Self::default();
-        for i in (0..model.masses()).filter(|&i| model.has_friction && state.mode[i].slips()) {
-            let v = state.velocity_x[i];
-            power.add(model, state.mode[i], v, &forces.contact(model, i, v, &state.surface[i]));
-        }
-        power
-    }
-
-    /// Under a linear law of friction: of masses with these σ v_t (m/s; 0 of those that do not slip) and normal forces (N).
-    pub fn from_linear_law(model: &Model, slip_speeds: &[f64], normal: &[f64]) -> Self {
-        let coulomb = model.friction_coefficient * dot(slip_speeds, normal);
-        let shear = if model.shear_force > 0.0 { model.shear_force * sum(slip_speeds) } else { 0.0 };
-        Self { at_rest: coulomb + shear, coulomb: if model.has_both_frictions { coulomb } else { 0.0 }, excess: 0.0 }
-    }
-
-    /// Adds that of a mass which slips in `mode` with the velocity ẋ (m/s) under the forces of `contact`.
-    #[inline]
-    pub fn add(&mut self, model: &Model, mode: Mode, velocity_x: f64, contact: &ContactForces) {
-        let (sigma, v) = (mode.direction(), velocity_x);
-        self.at_rest += sigma * contact.limit * v * contact.q;
-        if model.has_both_frictions {
-            self.coulomb += sigma * (model.friction_coefficient * contact.normal) * v * contact.q;
-        }
-        if let Some(curve) = model.slip_curve(contact.normal) {
-            let speed = sigma * v * contact.q;
-            self.excess += curve.excess(speed) * speed;
-        }
-    }
-
-    /// P_friction, W.
-    fn friction(&self) -> f64 {
-        self.at_rest + self.excess
-    }
-
-    /// P_shear, W; 0 where the scene does not tell the two apart.
-    fn shear(&self, model: &Model) -> f64 {
-        if model.has_both_frictions { (self.at_rest - self.coulomb) + self.excess } else { 0.0 }
-    }
-}
-
 /// The power of a prescribed carrier into the layer, W. One at rest does no work, whatever the forces.
 fn input(model: &Model, forces: &Forces, carrier: &CarrierPoint) -> f64 {
-    let [body_x, body_z] = &model.bodies;
-    let along_x = if carrier.u_rate == 0.0 || body_x.is_some() { 0.0 } else { forces.on_carrier_x() * carrier.u_rate };
-    let along_z = if carrier.w_rate == 0.0 || body_z.is_some() { 0.0 } else { forces.on_carrier_z() * carrier.w_rate };
-    -(along_x + along_z)
+    let along = |axis: Axis| {
+        let rate = carrier[axis].speed;
+        if rate == 0.0 || model.bodies[axis].is_some() { 0.0 } else { forces.on_carrier(axis) * rate }
+    };
+    -(along(Axis::X) + along(Axis::Z))
 }
 
 /// T = Σ ½ m (ẋ² + ż²), J.
@@ -241,7 +187,7 @@ pub fn elastic_energy(model: &Model, state: &State) -> f64 {
 pub fn vertical_spring_energy_at(model: &Model, state: &State, i: usize) -> f64 {
     let e = &state.elongation_z;
     let of_link = |kind: LinkKind, link: usize, e: f64| {
-        let law = &model.links[kind as usize];
+        let law = &model.links[kind];
         let frozen = if law.frozen == 0.0 { 0.0 } else { e - model.frozen_dashpot(kind, link) };
         let of_row = |row: &super::MaxwellRow| row.stiffness * state.maxwell[row.range.start + link].powi(2);
         let elements: f64 = model.rows_of(kind).map(of_row).sum();
@@ -253,7 +199,7 @@ pub fn vertical_spring_energy_at(model: &Model, state: &State, i: usize) -> f64 
 }
 
 fn spring_energy(model: &Model, state: &State, kind: LinkKind) -> f64 {
-    let law = &model.links[kind as usize];
+    let law = &model.links[kind];
     match kind {
         LinkKind::Vertical => springs_energy(model, kind, state.elongation_z.iter().copied()),
         LinkKind::Horizontal => 0.5 * law.stiffness * square_sum(state.elongation_x.iter().copied()),
@@ -265,7 +211,7 @@ fn spring_energy(model: &Model, state: &State, kind: LinkKind) -> f64 {
 
 /// Σ ½ c e², and ½ c_j (e - y_j)² of the part with frozen dashpots.
 fn springs_energy(model: &Model, kind: LinkKind, elongations: impl Iterator<Item = f64> + Clone) -> f64 {
-    let law = &model.links[kind as usize];
+    let law = &model.links[kind];
     let whole = 0.5 * (law.stiffness - law.frozen) * square_sum(elongations.clone());
     if law.frozen == 0.0 {
         return whole;

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::reduction::{Reduction, Replacement};
 use super::{CarrierPoint, Model, State};
 use crate::math::{add_weighted_sum, sum};
-use crate::scene::{Initial, LinkKind, Scene};
+use crate::scene::{Axis, ByAxis, ByLink, Initial, LinkKind, Scene};
 
 /// The spring and the damper of one kind of link.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -100,9 +100,9 @@ pub(super) fn maxwell_rows(scene: &Scene, reduction: Option<&Reduction>) -> (Vec
 #[derive(Clone, Debug, Default)]
 pub struct Forces {
     /// Forces of the links by kind, N; empty where the scene has no such link.
-    pub link: [Vec<f64>; 4],
+    pub link: ByLink<Vec<f64>>,
     /// Elongation rates ė of the links by kind, m/s; empty where the scene has no such link.
-    pub rate: [Vec<f64>; 4],
+    pub rate: ByLink<Vec<f64>>,
     /// f_x,i of all links on mass i, N (3).
     pub on_mass_x: Vec<f64>,
     /// f_z,i of all links on mass i, N (4).
@@ -118,9 +118,9 @@ impl Forces {
     }
 
     /// A zero for each link of `model` by kind; none of a kind that it has not.
-    pub fn zeros_by_link(model: &Model) -> [Vec<f64>; 4] {
-        LinkKind::ALL.map(|kind| {
-            let present = model.links[kind as usize].present;
+    pub fn zeros_by_link(model: &Model) -> ByLink<Vec<f64>> {
+        ByLink::from_fn(|kind| {
+            let present = model.links[kind].present;
             vec![0.0; if present { kind.count(model.masses()) } else { 0 }]
         })
     }
@@ -129,17 +129,17 @@ impl Forces {
     pub fn evaluate(&mut self, model: &Model, state: &State, carrier: &CarrierPoint) {
         let motion = LinkMotion::new(state, carrier);
         for kind in LinkKind::ALL {
-            let law = &model.links[kind as usize];
+            let law = &model.links[kind];
             self.spring_and_damper(kind, law.stiffness, law.damping, &motion, &[]);
-            model.subtract_frozen(kind, &mut self.link[kind as usize]);
+            model.subtract_frozen(kind, &mut self.link[kind]);
         }
         for kind in LinkKind::ALL {
             let elements = model.rows_of(kind).map(|row| (row.stiffness, &state.maxwell[row.range.clone()]));
-            add_weighted_sum(&mut self.link[kind as usize], elements);
+            add_weighted_sum(&mut self.link[kind], elements);
         }
         self.sum_on_masses();
-        add_ends(&mut self.on_mass_x, carrier.ends.map(|end| end[0]));
-        add_ends(&mut self.on_mass_z, carrier.ends.map(|end| end[1]));
+        add_ends(&mut self.on_mass_x, carrier.ends.map(|end| end.x));
+        add_ends(&mut self.on_mass_z, carrier.ends.map(|end| end.z));
     }
 
     /// Evaluates ė and F = c e + d ė of every link of a kind with c = `stiffness` (N/m) and d = `damping` (N s/m), and
@@ -152,7 +152,7 @@ impl Forces {
         motion: &LinkMotion<'_>,
         known: &[f64],
     ) {
-        let links = (&mut self.link[kind as usize][..], &mut self.rate[kind as usize][..]);
+        let links = (&mut self.link[kind][..], &mut self.rate[kind][..]);
         let (elongation, velocity, carrier_rate) = motion.along(kind);
         let law = |e: f64, rate: f64| stiffness * e + damping * rate;
         if kind.is_lateral() {
@@ -168,13 +168,13 @@ impl Forces {
     /// Evaluates the forces F = c e + d ė + `known` of all links, with c (N/m) and d (N s/m) by kind in `laws`, and their
     /// sums on the masses, but not ė. Only links that the scene does not have are without `known` forces (N).
     #[inline(always)]
-    pub fn evaluate_with(&mut self, laws: [(f64, f64); 4], motion: &LinkMotion<'_>, known: &[Vec<f64>; 4]) {
-        let [vertical, horizontal, lateral_x, lateral_z] = &mut self.link;
+    pub fn evaluate_with(&mut self, laws: ByLink<(f64, f64)>, motion: &LinkMotion<'_>, known: &ByLink<Vec<f64>>) {
+        let [vertical, horizontal, lateral_x, lateral_z] = &mut self.link.0;
         let axis = |carrier: LinkKind, lateral: LinkKind| AxisForces {
             motion: motion.along(carrier),
-            ends: motion.ends.map(|end| if carrier.is_along_x() { end[0] } else { end[1] }),
-            to_carrier: (laws[carrier as usize], &known[carrier as usize]),
-            lateral: (laws[lateral as usize], &known[lateral as usize]),
+            ends: motion.ends.map(|end| end[carrier.axis()]),
+            to_carrier: (laws[carrier], &known[carrier]),
+            lateral: (laws[lateral], &known[lateral]),
         };
         axis(LinkKind::Horizontal, LinkKind::LateralX).evaluate(horizontal, lateral_x, &mut self.on_mass_x);
         axis(LinkKind::Vertical, LinkKind::LateralZ).evaluate(vertical, lateral_z, &mut self.on_mass_z);
@@ -182,7 +182,7 @@ impl Forces {
 
     /// f_x,i = -F_x,i + F_lx,i - F_lx,i-1, and alike along z (3), (4).
     pub fn sum_on_masses(&mut self) {
-        let [vertical, horizontal, lateral_x, lateral_z] = &self.link;
+        let [vertical, horizontal, lateral_x, lateral_z] = &self.link.0;
         sum_on_masses(&mut self.on_mass_x, horizontal, lateral_x);
         sum_on_masses(&mut self.on_mass_z, vertical, lateral_z);
     }
@@ -193,24 +193,24 @@ impl Forces {
         let motion = LinkMotion::new(state, carrier);
         for kind in LinkKind::ALL {
             let links = if kind.is_lateral() { i.saturating_sub(1)..(i + 1).min(k - 1) } else { i..i + 1 };
-            for link in links.filter(|_| model.links[kind as usize].present) {
+            for link in links.filter(|_| model.links[kind].present) {
                 self.refresh_link(model, state, &motion, kind, link);
             }
         }
         for i in i.saturating_sub(1)..(i + 2).min(k) {
-            let [vertical, horizontal, lateral_x, lateral_z] = &self.link;
-            let [of_end_x, of_end_z] = carrier.on_end(i, k);
-            self.on_mass_x[i] = sum_on_mass(i, horizontal, lateral_x) + of_end_x;
-            self.on_mass_z[i] = sum_on_mass(i, vertical, lateral_z) + of_end_z;
+            let [vertical, horizontal, lateral_x, lateral_z] = &self.link.0;
+            let of_end = carrier.on_end(i, k);
+            self.on_mass_x[i] = sum_on_mass(i, horizontal, lateral_x) + of_end.x;
+            self.on_mass_z[i] = sum_on_mass(i, vertical, lateral_z) + of_end.z;
         }
     }
 
     /// Updates the dampers' forces on mass `i` and on its neighbours for a change of its velocity by (`dx`, `dz`), m/s.
     pub fn add_velocity(&mut self, model: &Model, i: usize, (dx, dz): (f64, f64)) {
-        for kind in LinkKind::ALL.into_iter().filter(|&kind| model.links[kind as usize].present) {
+        for kind in LinkKind::ALL.into_iter().filter(|&kind| model.links[kind].present) {
             let change = if kind.is_along_x() { dx } else { dz };
-            let by = model.links[kind as usize].damping * change;
-            let force = &mut self.link[kind as usize];
+            let by = model.links[kind].damping * change;
+            let force = &mut self.link[kind];
             let on_mass = if kind.is_along_x() { &mut self.on_mass_x } else { &mut self.on_mass_z };
             if i < force.len() {
                 let sign = if kind.is_lateral() { -1.0 } else { 1.0 };
@@ -229,7 +229,7 @@ impl Forces {
     }
 
     fn refresh_link(&mut self, model: &Model, state: &State, motion: &LinkMotion<'_>, kind: LinkKind, link: usize) {
-        let law = &model.links[kind as usize];
+        let law = &model.links[kind];
         let (elongation, velocity, carrier_rate) = motion.along(kind);
         let (e, rate) = if kind.is_lateral() {
             (elongation[link + 1] - elongation[link], velocity[link + 1] - velocity[link])
@@ -239,18 +239,13 @@ impl Forces {
         let of_element = |row: &MaxwellRow| row.stiffness * state.maxwell[row.range.start + link];
         let maxwell: f64 = model.rows_of(kind).map(of_element).sum();
         let frozen = if law.frozen > 0.0 { law.frozen * model.frozen_dashpot(kind, link) } else { 0.0 };
-        self.link[kind as usize][link] = law.stiffness * e + law.damping * rate + maxwell - frozen;
+        self.link[kind][link] = law.stiffness * e + law.damping * rate + maxwell - frozen;
     }
 
-    /// F_x of the layer on the carrier, N.
-    pub fn on_carrier_x(&self) -> f64 {
-        sum(&self.link[LinkKind::Horizontal as usize])
-    }
-
-    /// F_z of the layer on the carrier, N: positive when the layer is compressed (e > 0, the masses are nearer to the
-    /// carrier than at rest).
-    pub fn on_carrier_z(&self) -> f64 {
-        sum(&self.link[LinkKind::Vertical as usize])
+    /// F_x or F_z of the layer on the carrier, N. F_z is positive when the layer is compressed (e > 0, the masses are nearer
+    /// to the carrier than at rest).
+    pub fn on_carrier(&self, axis: Axis) -> f64 {
+        sum(&self.link[axis.link()])
     }
 
     /// Bytes that the vectors hold.
@@ -263,29 +258,23 @@ impl Forces {
 /// Elongations of the carrier links and velocities, from which the elongations of all links and their rates follow.
 #[derive(Clone, Copy, Debug)]
 pub struct LinkMotion<'a> {
-    /// Elongations of the horizontal links, m.
-    pub elongation_x: &'a [f64],
-    /// Elongations of the vertical links, m.
-    pub elongation_z: &'a [f64],
-    /// Velocities of the masses along x, m/s.
-    pub velocity_x: &'a [f64],
-    /// Velocities of the masses along z, m/s.
-    pub velocity_z: &'a [f64],
+    /// Elongations of the links to the carrier, m.
+    pub elongation: ByAxis<&'a [f64]>,
+    /// Velocities of the masses, m/s.
+    pub velocity: ByAxis<&'a [f64]>,
     /// u̇ and ẇ, m/s.
-    pub carrier_rates: (f64, f64),
+    pub carrier_rate: ByAxis<f64>,
     /// [`CarrierPoint::ends`], N.
-    pub ends: [[f64; 2]; 2],
+    pub ends: [ByAxis<f64>; 2],
 }
 
 impl<'a> LinkMotion<'a> {
     /// The motion in `state` under a carrier with these rates.
     pub fn new(state: &'a State, carrier: &CarrierPoint) -> Self {
         Self {
-            elongation_x: &state.elongation_x,
-            elongation_z: &state.elongation_z,
-            velocity_x: &state.velocity_x,
-            velocity_z: &state.velocity_z,
-            carrier_rates: (carrier.u_rate, carrier.w_rate),
+            elongation: ByAxis { x: &state.elongation_x, z: &state.elongation_z },
+            velocity: ByAxis { x: &state.velocity_x, z: &state.velocity_z },
+            carrier_rate: carrier.rates(),
             ends: carrier.ends,
         }
     }
@@ -304,11 +293,8 @@ impl<'a> LinkMotion<'a> {
 
     #[inline(always)]
     fn along(&self, kind: LinkKind) -> (&'a [f64], &'a [f64], f64) {
-        if kind.is_along_x() {
-            (self.elongation_x, self.velocity_x, self.carrier_rates.0)
-        } else {
-            (self.elongation_z, self.velocity_z, self.carrier_rates.1)
-        }
+        let axis = kind.axis();
+        (self.elongation[axis], self.velocity[axis], self.carrier_rate[axis])
     }
 }
 
@@ -439,6 +425,7 @@ fn sum_on_mass(i: usize, to_carrier: &[f64], lateral: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::Jet;
 
     const SCENE: &str = "name = 'a'
         layer = { masses = 4, spacing = 1.0, mass = 1.0,
@@ -450,14 +437,20 @@ mod tests {
         solver = { reduce = 1e-3 }
         excitation = [{ duration = 1.0 }]";
 
+    /// A carrier that moves with these rates (m/s).
+    fn moving(x: f64, z: f64) -> CarrierPoint {
+        let at = |speed| Jet { speed, ..Jet::default() };
+        CarrierPoint { x: at(x), z: at(z), ..CarrierPoint::default() }
+    }
+
     /// With dashpots that are frozen where the profile has lifted the masses to.
     #[test]
     fn refreshed_forces_are_those_evaluated_anew() {
         let mut model = Model::from_text(SCENE);
-        model.freeze_dashpots(0.0, -0.3);
-        assert!(model.links[0].frozen == 5.0 && model.links[3].frozen == 1.5 && model.frozen[1] > 0.1);
+        model.freeze_dashpots(ByAxis { x: 0.0, z: -0.3 });
+        assert!(model.links.0.map(|law| law.frozen) == [5.0, 0.0, 0.0, 1.5] && model.frozen[1] > 0.1);
         let mut state = State::new(model.masses(), model.maxwell_variables());
-        let carrier = CarrierPoint { u_rate: 0.2, w_rate: -0.1, ..CarrierPoint::default() };
+        let carrier = moving(0.2, -0.1);
         let mut refreshed = Forces::new(&model);
         refreshed.evaluate(&model, &state, &carrier);
         for i in 0..model.masses() {
@@ -469,7 +462,8 @@ mod tests {
         }
         let mut evaluated = Forces::new(&model);
         evaluated.evaluate(&model, &state, &carrier);
-        let all = |forces: &Forces| [forces.on_mass_x.clone(), forces.on_mass_z.clone(), forces.link.concat()].concat();
+        let all =
+            |forces: &Forces| [forces.on_mass_x.clone(), forces.on_mass_z.clone(), forces.link.0.concat()].concat();
         for (found, expected) in all(&refreshed).iter().zip(all(&evaluated)) {
             assert!((found - expected).abs() < 1e-13, "{refreshed:?} {evaluated:?}");
         }
@@ -484,7 +478,7 @@ mod tests {
             .flat_map(|k| [SCENE, &horizontal].map(|scene| scene.replace("masses = 4", &format!("masses = {k}"))))
         {
             let mut model = Model::from_text(&text);
-            model.freeze_dashpots(0.0, -0.3);
+            model.freeze_dashpots(ByAxis { x: 0.0, z: -0.3 });
             let mut state = State::new(model.masses(), model.maxwell_variables());
             let number = |i: usize| (i as f64).sin();
             for i in 0..model.masses() {
@@ -492,28 +486,24 @@ mod tests {
                 (state.velocity_x[i], state.velocity_z[i]) = (number(i + 20), number(i + 30));
             }
             (0..state.maxwell.len()).for_each(|i| state.maxwell[i] = number(i + 40));
-            let carrier = CarrierPoint { u_rate: 0.2, w_rate: -0.1, ..CarrierPoint::default() };
+            let carrier = moving(0.2, -0.1);
             let (mut expected, mut found) = (Forces::new(&model), Forces::new(&model));
             expected.evaluate(&model, &state, &carrier);
 
             let mut known = Forces::new(&model).link;
             for kind in LinkKind::ALL {
                 let elements = model.rows_of(kind).map(|row| (row.stiffness, &state.maxwell[row.range.clone()]));
-                add_weighted_sum(&mut known[kind as usize], elements);
-                model.subtract_frozen(kind, &mut known[kind as usize]);
+                add_weighted_sum(&mut known[kind], elements);
+                model.subtract_frozen(kind, &mut known[kind]);
             }
             let motion = LinkMotion::new(&state, &carrier);
-            found.evaluate_with(
-                [0, 1, 2, 3].map(|i| (model.links[i].stiffness, model.links[i].damping)),
-                &motion,
-                &known,
-            );
+            found.evaluate_with(model.links.map(|law| (law.stiffness, law.damping)), &motion, &known);
             for kind in LinkKind::ALL {
-                motion.elongation_rates(kind, &mut found.rate[kind as usize]);
+                motion.elongation_rates(kind, &mut found.rate[kind]);
             }
             assert_eq!(found.rate, expected.rate);
             let all =
-                |forces: &Forces| [forces.on_mass_x.clone(), forces.on_mass_z.clone(), forces.link.concat()].concat();
+                |forces: &Forces| [forces.on_mass_x.clone(), forces.on_mass_z.clone(), forces.link.0.concat()].concat();
             for (a, b) in all(&found).iter().zip(all(&expected)) {
                 // A few roundings of numbers of some tens.
                 assert!((a - b).abs() < 1e-13, "{text}: {found:?} {expected:?}");

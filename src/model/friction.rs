@@ -1,4 +1,4 @@
-//! The contact laws: the normal force of a mass in contact, and its friction.
+//! Friction of a mass in contact: the law, and all that follows from it.
 //!
 //! Friction has three parts: Coulomb's, a constant shear force, and a shear force that depends on the speed,
 //!
@@ -6,105 +6,139 @@
 //!
 //! The last is the shear strength of rubber, τ_f(v) = τ_f0 exp(-c [log10(v/v_0)]²) above a creep speed v_c and constant
 //! below it (B. Lorenz et al., J. Phys.: Condens. Matter 25, 2013). Its plateau A τ_f(v_c) acts at rest too and is
-//! counted in [`Model::shear_force`]; a contact that slips has the [excess](FrictionCurve::excess) over it.
+//! counted in [`FrictionLaw::shear`]; a contact that slips has the [excess](SlipCurve::excess) over it.
 //!
 //! With roughness below the profile's the shear forces act on the part A_r/A of the area alone, which depends on F_N and on
 //! the speed ([`RealArea`](super::RealArea)): at rest on A_r(F_N, v_c).
+//!
+//! A law is what [`FrictionLaw`] answers: T(0), its derivative by F_N, and the excess in slip with its derivative by the
+//! speed; its tangent for Newton's method, its power, the share of the shear force, and what it takes in an impact.
 
 use std::f64::consts::LN_10;
 
-use super::{Forces, Mode, Model, RealArea, SurfacePoint};
-use crate::math::bracketed_root;
-use crate::scene;
+use super::{AreaShare, ContactForces, Forces, Mode, Model, RealArea, State};
+use crate::math::{bracketed_root, dot, sum};
+use crate::scene::{self, Scene};
 
-/// The forces in one contact, from (6)-(9).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactForces {
-    /// F_N of the surface on the mass, N.
+/// The law of friction of one mass in contact.
+#[derive(Clone, Debug)]
+pub struct FrictionLaw {
+    /// Whether a part of it is not zero, so that contacts can stick.
+    pub present: bool,
+    /// Coulomb's coefficient μ.
+    pub coulomb: f64,
+    /// Shear force A τ_0 + A τ_f(v_c) at rest or slower than the creep speed, N, where it acts on all of the area.
+    pub shear: f64,
+    /// Whether the scene has Coulomb's friction and a shear force, so that their parts are told apart.
+    has_both: bool,
+    /// The excess over the shear force in slip; `None` where it does not depend on the speed.
+    rate_shear: Option<RateShear>,
+    /// The part of a contact's area that the shear force acts on; `None`: all of it.
+    real_area: Option<RealArea>,
+}
+
+/// A law of friction that is linear in the normal force, or the tangent of another: T(0) = μ F_N + `shear`.
+#[derive(Clone, Copy, Debug)]
+pub struct LinearFriction {
+    /// F_N at which it is the tangent, N; 0 where the law itself is linear.
     pub normal: f64,
-    /// f·t = (f_x + s f_z)/q of the links, N.
-    pub tangential: f64,
-    /// T(0) = μ F_N + A τ_0 + A τ_f(v_c): the largest friction force at rest, N.
-    pub limit: f64,
-    /// q = √(1 + s²).
-    pub q: f64,
+    /// ∂T/∂F_N.
+    pub coulomb: f64,
+    /// T(0) less that times F_N, N.
+    pub shear: f64,
 }
 
-impl ContactForces {
-    /// The contact forces that follow from the links' force on the mass (f_x, f_z), N, its velocity ẋ, m/s, and the
-    /// surface under it.
-    #[inline]
-    pub fn new(model: &Model, forces: (f64, f64), velocity_x: f64, surface: &SurfacePoint) -> Self {
-        let contact = Self::without_limit(model.mass, forces, velocity_x, surface);
-        let limit = model.friction_coefficient * contact.normal + model.shear_at_rest(contact.normal);
-        Self { limit, ..contact }
+impl FrictionLaw {
+    /// The law of a scene.
+    pub fn new(scene: &Scene) -> Self {
+        let coulomb = scene.friction.as_ref().and_then(|friction| friction.coulomb).unwrap_or(0.0);
+        let shear = scene.shear_force().unwrap_or(0.0);
+        let rate_shear = scene.rate_shear().and_then(|law| RateShear::new(&law));
+        Self {
+            present: coulomb > 0.0 || shear > 0.0 || rate_shear.is_some(),
+            coulomb,
+            shear: shear + rate_shear.map_or(0.0, |rate_shear| rate_shear.plateau()),
+            has_both: scene.has_both_frictions(),
+            rate_shear,
+            real_area: RealArea::new(scene),
+        }
     }
 
-    /// The same without T(0), of a mass of `mass`, kg.
+    /// Whether it depends on the speed of slip.
+    pub fn depends_on_speed(&self) -> bool {
+        self.rate_shear.is_some() || self.real_area.as_ref().is_some_and(RealArea::depends_on_speed)
+    }
+
+    /// Whether it is linear in the normal force.
+    pub fn is_linear_in_normal(&self) -> bool {
+        self.real_area.is_none()
+    }
+
+    /// Whether it is linear in the normal force and does not depend on the speed.
+    pub fn is_linear(&self) -> bool {
+        self.rate_shear.is_none() && self.real_area.is_none()
+    }
+
+    /// T(0) under the normal force F_N (N), μ F_N + A_r(F_N, v_c) (τ_0 + τ_f(v_c)), N.
+    #[inline]
+    pub fn limit(&self, normal: f64) -> f64 {
+        let shear = match &self.real_area {
+            None => self.shear,
+            Some(area) => area.share_at_rest(normal) * self.shear,
+        };
+        self.coulomb * normal + shear
+    }
+
+    /// ∂T/∂F_N, 1, under F_N (N) at the `speed` of slip, m/s.
+    pub fn by_normal(&self, normal: f64, speed: f64) -> f64 {
+        let strength = |law: &RateShear| law.with_slope(speed.abs()).0;
+        let force = self.shear + self.rate_shear.as_ref().map_or(0.0, strength);
+        self.coulomb + self.real_area.as_ref().map_or(0.0, |area| area.share(normal, speed).by_normal * force)
+    }
+
+    /// The excess in slip over T(0) under the normal force F_N (N); `None` where friction does not depend on the speed.
+    #[inline]
+    pub fn slip_curve(&self, normal: f64) -> Option<SlipCurve<'_>> {
+        self.depends_on_speed().then_some(SlipCurve { law: self, normal })
+    }
+
+    /// The law without its dependence on the speed, where it is linear in the normal force.
     #[inline(always)]
-    pub fn without_limit(mass: f64, (f_x, f_z): (f64, f64), velocity_x: f64, surface: &SurfacePoint) -> Self {
-        let s = surface.slope;
-        let q = (1.0 + s * s).sqrt();
-        // From (6)-(9): the normal force needs no acceleration.
-        let normal = (mass * surface.curvature * velocity_x * velocity_x - f_z + s * f_x) / q;
-        Self { normal, tangential: (f_x + s * f_z) / q, limit: 0.0, q }
+    pub fn linear(&self) -> LinearFriction {
+        LinearFriction { normal: 0.0, coulomb: self.coulomb, shear: self.shear }
     }
 
-    /// Those of a slipping mass with a normal force (N) and velocities ẋ ≠ 0 and ż (m/s), but for f·t.
-    pub fn in_slip(model: &Model, normal: f64, (velocity_x, velocity_z): (f64, f64)) -> Self {
-        let limit = model.friction_coefficient * normal + model.shear_at_rest(normal);
-        let slope = velocity_z / velocity_x;
-        Self { normal, tangential: 0.0, limit, q: (1.0 + slope * slope).sqrt() }
+    /// The tangent at F_N (N) and the `speed` of slip (m/s), where the law is not linear in the normal force.
+    #[inline(never)]
+    pub fn tangent(&self, normal: f64, speed: f64) -> LinearFriction {
+        let coulomb = self.by_normal(normal, speed);
+        LinearFriction { normal, coulomb, shear: self.limit(normal) - coulomb * normal }
     }
 
-    /// ∂T/∂F_N, 1, at the `speed` of slip, m/s.
-    pub fn limit_by_normal(&self, model: &Model, speed: f64) -> f64 {
-        model.friction_coefficient + SlipCurve { model, normal: self.normal }.by_normal(speed)
+    /// The part of a contact's area that touches under F_N (N) at the `speed` (m/s): all of it without roughness below the
+    /// profile's.
+    pub fn area_share(&self, normal: f64, speed: f64) -> AreaShare {
+        let whole = AreaShare { value: 1.0, ..AreaShare::default() };
+        self.real_area.as_ref().map_or(whole, |area| area.share(normal, speed))
     }
 
-    /// The part of T(0) that is shear force, 1: what a sticking force is shared out by.
-    pub fn shear_share(&self, model: &Model) -> f64 {
-        let coulomb = model.friction_coefficient * self.normal.max(0.0);
-        if self.limit > coulomb { 1.0 - coulomb / self.limit } else { 0.0 }
+    /// The part of T(0) that is shear force under F_N (N), 1: what a sticking force is shared out by.
+    pub fn shear_share(&self, normal: f64) -> f64 {
+        let (limit, coulomb) = (self.limit(normal), self.coulomb * normal.max(0.0));
+        if limit > coulomb { 1.0 - coulomb / limit } else { 0.0 }
     }
 
-    /// The derivative of the [share](Self::shear_share) by F_N, 1/N, where that of T(0) is `limit_by_normal`.
-    pub fn shear_share_by_normal(&self, model: &Model, limit_by_normal: f64) -> f64 {
-        let mu = model.friction_coefficient;
-        let has_share = self.normal > 0.0 && self.limit > mu * self.normal;
-        if has_share { mu * (self.normal * limit_by_normal / self.limit - 1.0) / self.limit } else { 0.0 }
+    /// The derivative of the [share](Self::shear_share) by F_N, 1/N, where that of T(0) is `by_normal`.
+    pub fn shear_share_by_normal(&self, normal: f64, by_normal: f64) -> f64 {
+        let (limit, coulomb) = (self.limit(normal), self.coulomb);
+        let has_share = normal > 0.0 && limit > coulomb * normal;
+        if has_share { coulomb * (normal * by_normal / limit - 1.0) / limit } else { 0.0 }
     }
 
-    /// F_T on a mass in `mode` at the velocity ẋ, N, positive against +t: f·t of a sticking mass, T(v_t) sign(v_t) of a
-    /// slipping one.
-    #[inline]
-    pub fn friction(&self, model: &Model, mode: Mode, velocity_x: f64) -> f64 {
-        match mode {
-            Mode::Free => 0.0,
-            Mode::Stick => self.tangential,
-            Mode::Forward | Mode::Backward => {
-                let sigma = mode.direction();
-                let excess = model.slip_curve(self.normal).map_or(0.0, |law| law.excess(sigma * velocity_x * self.q));
-                sigma * (self.limit + excess)
-            }
-        }
-    }
-
-    /// ẍ of a mass in contact in `mode`: m q² ẍ + m s κ ẋ² = f_x + s f_z - F_T q.
-    pub fn acceleration(&self, model: &Model, mode: Mode, velocity_x: f64, surface: &SurfacePoint) -> f64 {
-        if mode == Mode::Stick {
-            return 0.0;
-        }
-        let centripetal = surface.slope * surface.curvature * velocity_x * velocity_x;
-        ((self.tangential - self.friction(model, mode, velocity_x)) / model.mass - centripetal / self.q) / self.q
-    }
-}
-
-impl Forces {
-    /// The contact forces on mass `i`, which is in contact with `surface` and has the velocity ẋ.
-    #[inline]
-    pub fn contact(&self, model: &Model, i: usize, velocity_x: f64, surface: &SurfacePoint) -> ContactForces {
-        ContactForces::new(model, (self.on_mass_x[i], self.on_mass_z[i]), velocity_x, surface)
+    /// v_t (m/s) after an impact with the velocity v_n < 0 (m/s) along the normal: by its impulse J = -m v_n Coulomb's friction
+    /// takes μ J, and shear forces, which are finite, nothing.
+    pub fn after_impact(&self, v_t: f64, v_n: f64) -> f64 {
+        (v_t.abs() + self.coulomb * v_n).max(0.0).copysign(v_t)
     }
 }
 
@@ -152,25 +186,77 @@ impl RateShear {
         let y = (speed * self.per_reference).ln();
         (self.largest * (-self.sharpness * y * y).exp(), -2.0 * self.sharpness * y)
     }
+
+    /// Bounds of the excess over the plateau, N.
+    fn bounds(&self) -> (f64, f64) {
+        (-self.plateau, self.largest - self.plateau)
+    }
+
+    /// The speeds of the largest strength and of the steepest fall, m/s.
+    fn marks(&self) -> [f64; 2] {
+        [1.0, self.fastest_fall].map(|share| share / self.per_reference)
+    }
+
+    /// The excess over the plateau, N, and its derivative by the speed, N s/m.
+    fn with_slope(&self, speed: f64) -> (f64, f64) {
+        let size = speed.abs();
+        if size <= self.creep_speed {
+            return (0.0, 0.0);
+        }
+        let (force, slope) = self.whole(size);
+        ((force - self.plateau) * 1.0_f64.copysign(speed), slope * force / size)
+    }
 }
 
-/// The excess of the friction in slip over that at rest, over the speed in the direction of slip. It is odd, so that a mass
-/// that turns round is braked before its mode changes.
-pub trait FrictionCurve {
+/// The excess of the friction in slip over that at rest, over the speed in the direction of slip, of one contact under a
+/// normal force that is held. It is odd, so that a mass that turns round is braked before its mode changes.
+#[derive(Clone, Copy, Debug)]
+pub struct SlipCurve<'a> {
+    law: &'a FrictionLaw,
+    /// F_N, N.
+    normal: f64,
+}
+
+impl SlipCurve<'_> {
     /// The speed up to which there is no excess, m/s.
-    fn creep_speed(&self) -> f64;
+    pub fn creep_speed(&self) -> f64 {
+        match (&self.law.rate_shear, &self.law.real_area) {
+            (Some(law), _) => law.creep_speed,
+            (None, Some(area)) => area.creep_speed(),
+            (None, None) => 0.0,
+        }
+    }
 
     /// Bounds of the excess, N.
-    fn bounds(&self) -> (f64, f64);
+    fn bounds(&self) -> (f64, f64) {
+        let (least, most) = self.law.rate_shear.as_ref().map_or((0.0, 0.0), RateShear::bounds);
+        match &self.law.real_area {
+            None => (least, most),
+            Some(area) => {
+                let (share, at_rest) = (area.at_rest(self.normal).value, self.law.shear);
+                (-share * at_rest, share * most)
+            }
+        }
+    }
 
     /// Speeds that divide the curve into parts in which it bends one way, m/s.
-    fn marks(&self) -> [f64; 2];
+    fn marks(&self) -> [f64; 2] {
+        self.law.rate_shear.as_ref().map_or([self.creep_speed(); 2], RateShear::marks)
+    }
 
     /// The excess, N, and its derivative by the speed, N s/m, at the `speed` in the direction of slip, m/s.
-    fn with_slope(&self, speed: f64) -> (f64, f64);
+    pub fn with_slope(&self, speed: f64) -> (f64, f64) {
+        let of_rate = self.law.rate_shear.as_ref().map_or((0.0, 0.0), |law| law.with_slope(speed));
+        let Some(area) = &self.law.real_area else { return of_rate };
+        let sign = 1.0_f64.copysign(speed);
+        let (share, at_rest) = (area.share(self.normal, speed), area.at_rest(self.normal).value);
+        let force = self.law.shear + sign * of_rate.0;
+        let by_size = share.by_speed * sign * force + share.value * of_rate.1;
+        (sign * (share.value * force - at_rest * self.law.shear), by_size)
+    }
 
     /// The excess, N.
-    fn excess(&self, speed: f64) -> f64 {
+    pub fn excess(&self, speed: f64) -> f64 {
         self.with_slope(speed).0
     }
 
@@ -179,7 +265,7 @@ pub trait FrictionCurve {
     ///
     /// The curve is nearly a logarithm: at creep speeds its tangent is steep and valid over a short range only, and
     /// corrections along it would alternate between both ends of the decades.
-    fn along_curve(&self, speed: f64, by: f64, weight: f64) -> f64 {
+    pub fn along_curve(&self, speed: f64, by: f64, weight: f64) -> f64 {
         let linear = speed + by;
         let constant = linear.abs() <= self.creep_speed() && speed.abs() <= self.creep_speed();
         if constant || by.abs() <= STRAIGHT * speed.abs() || weight.is_nan() || weight <= 0.0 {
@@ -191,7 +277,7 @@ pub trait FrictionCurve {
 
     /// The speed v, m/s, at which `weight` (v - `from`) and the excess add up to `force` (N). Where friction falls faster than
     /// the weight there may be three: then it is the first one from `from`, as the motion reaches it.
-    fn balance(&self, from: f64, force: f64, weight: f64) -> f64 {
+    pub fn balance(&self, from: f64, force: f64, weight: f64) -> f64 {
         let free = from + force / weight;
         if free < 0.0 {
             return -self.balance(-from, -force, weight);
@@ -210,6 +296,13 @@ pub trait FrictionCurve {
         let speed = |y: f64| creep_speed * y.exp();
         let bracket = [low, high].map(|v| (v / creep_speed).ln());
         speed(bracketed_root(|y| residual(speed(y)), (bracket[0], bracket[1]), SPEED_ACCURACY))
+    }
+
+    /// The steepest fall of friction up to the `speed` of slip, m/s, by the real area that shrinks: ∂T/∂v, N s/m, 0 where
+    /// friction does not fall.
+    pub fn steepest_fall(&self, speed: f64) -> f64 {
+        let falls = self.law.real_area.iter().flat_map(RealArea::speeds).take_while(|&at| at <= speed);
+        falls.map(|at| self.with_slope(at).1).fold(0.0, f64::min)
     }
 }
 
@@ -236,113 +329,57 @@ fn first_bracket(
     (low, high)
 }
 
-impl FrictionCurve for RateShear {
-    fn creep_speed(&self) -> f64 {
-        self.creep_speed
-    }
+/// The power of friction, summed mass by mass.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FrictionPower {
+    /// Of T(0), W.
+    at_rest: f64,
+    /// Of its part μ F_N, W; 0 where the scene does not tell the two apart.
+    coulomb: f64,
+    /// Of A τ_f(v) - A τ_f(v_c), W.
+    excess: f64,
+}
 
-    fn bounds(&self) -> (f64, f64) {
-        (-self.plateau, self.largest - self.plateau)
-    }
-
-    /// The largest strength and the steepest fall.
-    fn marks(&self) -> [f64; 2] {
-        [1.0, self.fastest_fall].map(|share| share / self.per_reference)
-    }
-
-    fn with_slope(&self, speed: f64) -> (f64, f64) {
-        let size = speed.abs();
-        if size <= self.creep_speed {
-            return (0.0, 0.0);
+impl FrictionPower {
+    /// Of all masses in `state` with the forces there.
+    pub(super) fn evaluate(model: &Model, state: &State, forces: &Forces) -> Self {
+        let mut power = Self::default();
+        for i in (0..model.masses()).filter(|&i| model.friction.present && state.mode[i].slips()) {
+            let v = state.velocity_x[i];
+            power.add(&model.friction, state.mode[i], v, &forces.contact(model, i, v, &state.surface[i]));
         }
-        let (force, slope) = self.whole(size);
-        ((force - self.plateau) * 1.0_f64.copysign(speed), slope * force / size)
+        power
     }
-}
 
-/// The friction of one contact under a normal force that is held.
-#[derive(Clone, Copy, Debug)]
-pub struct SlipCurve<'a> {
-    model: &'a Model,
-    /// F_N, N.
-    normal: f64,
-}
+    /// Under a linear law of friction: of masses with these σ v_t (m/s; 0 of those that do not slip) and normal forces (N).
+    pub fn from_linear_law(law: &FrictionLaw, slip_speeds: &[f64], normal: &[f64]) -> Self {
+        let coulomb = law.coulomb * dot(slip_speeds, normal);
+        let shear = if law.shear > 0.0 { law.shear * sum(slip_speeds) } else { 0.0 };
+        Self { at_rest: coulomb + shear, coulomb: if law.has_both { coulomb } else { 0.0 }, excess: 0.0 }
+    }
 
-impl Model {
-    /// The curve of a contact under the normal force F_N, N; `None` where friction does not depend on the speed.
+    /// Adds that of a mass which slips in `mode` with the velocity ẋ (m/s) under the forces of `contact`.
     #[inline]
-    pub fn slip_curve(&self, normal: f64) -> Option<SlipCurve<'_>> {
-        self.friction_depends_on_speed().then_some(SlipCurve { model: self, normal })
-    }
-
-    /// Whether friction depends on the speed of slip.
-    pub fn friction_depends_on_speed(&self) -> bool {
-        self.rate_shear.is_some() || self.real_area.as_ref().is_some_and(RealArea::depends_on_speed)
-    }
-
-    /// Whether friction is linear in the normal force and does not depend on the speed.
-    pub fn friction_is_linear(&self) -> bool {
-        self.rate_shear.is_none() && self.real_area.is_none()
-    }
-
-    /// The shear force at rest under F_N (N), A_r(F_N, v_c) (τ_0 + τ_f(v_c)), N.
-    #[inline]
-    fn shear_at_rest(&self, normal: f64) -> f64 {
-        match &self.real_area {
-            None => self.shear_force,
-            Some(area) => area.share_at_rest(normal) * self.shear_force,
+    pub fn add(&mut self, law: &FrictionLaw, mode: Mode, velocity_x: f64, contact: &ContactForces) {
+        let (sigma, v) = (mode.direction(), velocity_x);
+        self.at_rest += sigma * contact.limit * v * contact.q;
+        if law.has_both {
+            self.coulomb += sigma * (law.coulomb * contact.normal) * v * contact.q;
         }
-    }
-}
-
-impl SlipCurve<'_> {
-    /// The derivative of the whole shear force by F_N, 1, at the `speed` of slip, m/s: 0 where it acts on the whole area.
-    pub fn by_normal(&self, speed: f64) -> f64 {
-        let strength = |law: &RateShear| law.with_slope(speed.abs()).0;
-        let force = self.model.shear_force + self.model.rate_shear.as_ref().map_or(0.0, strength);
-        self.model.real_area.as_ref().map_or(0.0, |area| area.share(self.normal, speed).by_normal * force)
-    }
-
-    /// The steepest fall of friction up to the `speed` of slip, m/s, by the real area that shrinks: ∂T/∂v, N s/m, 0 where
-    /// friction does not fall.
-    pub fn steepest_fall(&self, speed: f64) -> f64 {
-        let falls = self.model.real_area.iter().flat_map(RealArea::speeds).take_while(|&at| at <= speed);
-        falls.map(|at| self.with_slope(at).1).fold(0.0, f64::min)
-    }
-}
-
-impl FrictionCurve for SlipCurve<'_> {
-    fn creep_speed(&self) -> f64 {
-        match (&self.model.rate_shear, &self.model.real_area) {
-            (Some(law), _) => law.creep_speed,
-            (None, Some(area)) => area.creep_speed(),
-            (None, None) => 0.0,
+        if let Some(curve) = law.slip_curve(contact.normal) {
+            let speed = sigma * v * contact.q;
+            self.excess += curve.excess(speed) * speed;
         }
     }
 
-    fn bounds(&self) -> (f64, f64) {
-        let (least, most) = self.model.rate_shear.as_ref().map_or((0.0, 0.0), RateShear::bounds);
-        match &self.model.real_area {
-            None => (least, most),
-            Some(area) => {
-                let (share, at_rest) = (area.at_rest(self.normal).value, self.model.shear_force);
-                (-share * at_rest, share * most)
-            }
-        }
+    /// P_friction, W.
+    pub(super) fn friction(&self) -> f64 {
+        self.at_rest + self.excess
     }
 
-    fn marks(&self) -> [f64; 2] {
-        self.model.rate_shear.as_ref().map_or([self.creep_speed(); 2], RateShear::marks)
-    }
-
-    fn with_slope(&self, speed: f64) -> (f64, f64) {
-        let of_rate = self.model.rate_shear.as_ref().map_or((0.0, 0.0), |law| law.with_slope(speed));
-        let Some(area) = &self.model.real_area else { return of_rate };
-        let sign = 1.0_f64.copysign(speed);
-        let (share, at_rest) = (area.share(self.normal, speed), area.at_rest(self.normal).value);
-        let force = self.model.shear_force + sign * of_rate.0;
-        let by_size = share.by_speed * sign * force + share.value * of_rate.1;
-        (sign * (share.value * force - at_rest * self.model.shear_force), by_size)
+    /// P_shear, W; 0 where the scene does not tell the two apart.
+    pub(super) fn shear(&self, law: &FrictionLaw) -> f64 {
+        if law.has_both { (self.at_rest - self.coulomb) + self.excess } else { 0.0 }
     }
 }
 
@@ -364,10 +401,20 @@ mod tests {
     };
     const FORCE: f64 = 3.0e-4;
 
-    fn laws() -> impl Iterator<Item = RateShear> {
+    fn friction(law: &scene::RateShear) -> FrictionLaw {
+        let rate_shear = RateShear::new(law);
+        let shear = rate_shear.map_or(0.0, |law| law.plateau);
+        FrictionLaw { present: true, coulomb: 0.0, shear, has_both: false, rate_shear, real_area: None }
+    }
+
+    fn laws() -> [FrictionLaw; 3] {
         let sharp = scene::RateShear { sharpness: 4.0, creep_speed: Some(1.0e-5), ..LAW };
         let level = scene::RateShear { sharpness: 0.0, ..LAW };
-        [LAW, sharp, level].into_iter().filter_map(|law| RateShear::new(&law))
+        [LAW, sharp, level].map(|law| friction(&law))
+    }
+
+    fn curve(law: &FrictionLaw) -> SlipCurve<'_> {
+        law.slip_curve(0.0).unwrap_or_else(|| panic!("no law"))
     }
 
     /// Speeds over eleven decades, from the creep speed of [`LAW`] on.
@@ -378,16 +425,17 @@ mod tests {
     #[test]
     fn strength_is_what_its_formula_says() {
         for law in [LAW, scene::RateShear { sharpness: 4.0, ..LAW }] {
-            let found = RateShear::new(&law).unwrap_or_else(|| panic!("no law"));
+            let whole = friction(&law);
+            let found = curve(&whole);
             let expected = |speed: f64| {
                 let decades = (speed / law.reference_speed).log10();
                 FORCE * (-law.sharpness * decades * decades).exp()
             };
             // Roundings of an exponent of some hundreds.
-            assert!((found.plateau() - expected(6.0e-9)).abs() < 1e-12 * FORCE);
+            assert!((whole.shear - expected(6.0e-9)).abs() < 1e-12 * FORCE);
             for speed in speeds() {
-                let whole = found.plateau() + found.excess(speed);
-                assert!((whole - expected(speed)).abs() < 1e-12 * FORCE, "{speed:e}: {whole:e}");
+                let force = whole.shear + found.excess(speed);
+                assert!((force - expected(speed)).abs() < 1e-12 * FORCE, "{speed:e}: {force:e}");
             }
             for speed in [6.0e-9, 1.0e-9, 0.0, -6.0e-9] {
                 assert_eq!((found.excess(speed), found.with_slope(speed)), (0.0, (0.0, 0.0)));
@@ -401,14 +449,15 @@ mod tests {
 
     #[test]
     fn slope_is_that_of_a_difference_quotient() {
-        for law in laws() {
-            for speed in speeds().filter(|&speed| speed > 1.01 * law.creep_speed) {
+        for law in &laws() {
+            let law = curve(law);
+            for speed in speeds().filter(|&speed| speed > 1.01 * law.creep_speed()) {
                 let h = 1e-4 * speed;
                 let quotient = (law.excess(speed + h) - law.excess(speed - h)) / (2.0 * h);
                 let (force, slope) = law.with_slope(speed);
                 assert_eq!(force, law.excess(speed));
                 // The third derivative times h², and roundings over h.
-                let scale = law.largest / speed;
+                let scale = FORCE / speed;
                 assert!((slope - quotient).abs() < 1e-6 * scale, "{speed:e}: {slope:e} {quotient:e}");
             }
         }
@@ -417,7 +466,8 @@ mod tests {
     /// From any speed to any other, in the same direction and in the other.
     #[test]
     fn a_correction_ends_on_the_curve() {
-        for law in laws() {
+        for law in &laws() {
+            let law = curve(law);
             for weight in [1e-3, 1.0, 1e3] {
                 let pairs = speeds().flat_map(|from| speeds().map(move |to| (from, to)));
                 for (from, to) in pairs.flat_map(|(from, to)| [(from, to), (from, -to)]) {

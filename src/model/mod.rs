@@ -3,6 +3,7 @@
 //! (`ContactForces`), and the energies.
 
 mod carrier;
+mod contact;
 mod ends;
 mod energy;
 mod forces;
@@ -13,13 +14,12 @@ mod scales;
 mod state;
 mod tangents;
 
-pub use carrier::{Body, BodyEnergy, BodyStart, BodyStep, Carrier, CarrierPoint, CarrierPosition, Outside, Piece};
+pub use carrier::{Body, BodyEnergy, BodyStart, BodyStep, Carrier, CarrierPoint, CarrierPosition, Outside};
+pub use contact::ContactForces;
 pub use ends::EndForces;
-pub use energy::{
-    BoundaryPowers, ChannelEnergies, FrictionPower, Powers, elastic_energy, kinetic_energy, vertical_spring_energy_at,
-};
+pub use energy::{BoundaryPowers, ChannelEnergies, Powers, elastic_energy, kinetic_energy, vertical_spring_energy_at};
 pub use forces::{Forces, LinkLaw, LinkMotion, MaxwellRow};
-pub use friction::{ContactForces, FrictionCurve, RateShear, SlipCurve};
+pub use friction::{FrictionLaw, FrictionPower, LinearFriction, RateShear, SlipCurve};
 pub use real_area::{AreaShare, RealArea};
 pub use reduction::{Reduction, Replaced, Replacement};
 pub use state::{Mode, State};
@@ -30,7 +30,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::math::Spline;
-pub use crate::scene::{Axis, Input, LinkKind};
+pub use crate::scene::{Axis, ByAxis, ByLink, Input, LinkKind};
 use crate::scene::{Initial, Scene};
 
 /// The profile at one position.
@@ -80,31 +80,21 @@ pub struct Model {
     pub rest_x: Vec<f64>,
     /// Heights Z_i of the masses at rest, m.
     pub rest_z: Vec<f64>,
-    /// Springs and dampers of the four kinds of link, in the order of [`LinkKind::ALL`].
-    pub links: [LinkLaw; 4],
+    /// Springs and dampers of the four kinds of link.
+    pub links: ByLink<LinkLaw>,
     /// The Maxwell elements: one row for each element of each kind of link.
     pub rows: Vec<MaxwellRow>,
     /// The relaxation times of the Maxwell elements, each once, s.
     pub relaxation_times: Vec<f64>,
     /// Glassy stiffness c + Σ c_j of each kind of link, N/m, as the scene has it: tolerances are derived from it,
     /// whatever `solver.reduce` replaces.
-    pub glassy: [f64; 4],
+    pub glassy: ByLink<f64>,
     /// The rigid profile z_r(x).
     pub profile: Arc<Spline>,
     /// The carrier as a body along x and z; `None` where its displacement is prescribed.
-    pub bodies: [Option<Body>; 2],
-    /// Coulomb's coefficient μ.
-    pub friction_coefficient: f64,
-    /// Shear force A τ_0 + A τ_f(v_c) of a mass in contact, at rest or slower than the creep speed, N.
-    pub shear_force: f64,
-    /// The law of the excess over it in slip; `None` where the shear force does not depend on the speed.
-    pub rate_shear: Option<RateShear>,
-    /// The part of a contact's area that the shear force acts on; `None`: all of it.
-    pub real_area: Option<RealArea>,
-    /// Whether contacts can stick: whether a part of the friction law is not zero.
-    pub has_friction: bool,
-    /// Whether the scene has Coulomb's friction and a shear force, so that their parts are told apart.
-    pub has_both_frictions: bool,
+    pub bodies: ByAxis<Option<Body>>,
+    /// Friction in the contacts.
+    pub friction: FrictionLaw,
     /// How the dashpots start.
     pub initial: Initial,
     /// Elongations of the vertical links at the start, m: those of the frozen dashpots, see [`LinkLaw::frozen`]. Empty
@@ -117,13 +107,9 @@ impl Model {
     pub fn new(scene: &Scene) -> Self {
         let layer = &scene.layer;
         let k = layer.masses;
-        let friction = scene.friction.as_ref();
         let roughness = |i| layer.roughness.get(i).copied().unwrap_or(0.0);
-        let rate_shear = scene.rate_shear().and_then(|law| RateShear::new(&law));
-        let shear_force = scene.shear_force().unwrap_or(0.0);
-        let coulomb = friction.and_then(|f| f.coulomb).unwrap_or(0.0);
         let reduction = Reduction::new(scene);
-        let links = LinkKind::ALL.map(|kind| LinkLaw::new(scene, kind, reduction.as_ref()));
+        let links = ByLink::from_fn(|kind| LinkLaw::new(scene, kind, reduction.as_ref()));
         let (rows, relaxation_times) = forces::maxwell_rows(scene, reduction.as_ref());
         Self {
             mass: scene.mass(),
@@ -134,15 +120,10 @@ impl Model {
             links,
             rows,
             relaxation_times,
-            glassy: LinkKind::ALL.map(|kind| scene.link(kind).as_ref().map_or(0.0, scales::glassy)),
+            glassy: ByLink::from_fn(|kind| scene.link(kind).as_ref().map_or(0.0, scales::glassy)),
             profile: Arc::clone(scene.surface.spline()),
             bodies: Body::along_axes(scene),
-            friction_coefficient: coulomb,
-            shear_force: shear_force + rate_shear.map_or(0.0, |rate_shear| rate_shear.plateau()),
-            rate_shear,
-            real_area: RealArea::new(scene),
-            has_friction: coulomb > 0.0 || shear_force > 0.0 || rate_shear.is_some(),
-            has_both_frictions: scene.has_both_frictions(),
+            friction: FrictionLaw::new(scene),
             initial: layer.initial,
         }
     }
@@ -150,10 +131,8 @@ impl Model {
     /// Takes over what depends on the temperature from `scene`, this model's at another one: relaxation times, viscosity, the
     /// speeds of the friction law and the modulus of the fine roughness. Stiffnesses stay.
     pub fn set_temperature(&mut self, scene: &Scene) {
-        let other = Self::new(scene);
-        let Self { links, rows, relaxation_times, shear_force, rate_shear, real_area, .. } = other;
-        (self.links, self.rows, self.relaxation_times) = (links, rows, relaxation_times);
-        (self.shear_force, self.rate_shear, self.real_area) = (shear_force, rate_shear, real_area);
+        let Self { links, rows, relaxation_times, friction, .. } = Self::new(scene);
+        (self.links, self.rows, self.relaxation_times, self.friction) = (links, rows, relaxation_times, friction);
     }
 
     /// The model of the scene with this text.
@@ -163,19 +142,19 @@ impl Model {
     }
 
     /// Freezes the dashpots that have [frozen springs](LinkLaw::frozen) at their links' elongations at the start, m:
-    /// `u` and `w` are the carrier's displacement there, m. A mass that would lie under the profile is lifted onto it.
-    pub fn freeze_dashpots(&mut self, u: f64, w: f64) {
-        let profile_position = self.profile.reduce(u);
+    /// `carrier` is u and w there, m. A mass that would lie under the profile is lifted onto it.
+    pub fn freeze_dashpots(&mut self, carrier: ByAxis<f64>) {
+        let profile_position = self.profile.reduce(carrier.x);
         for i in 0..self.frozen.len() {
             let surface = self.surface_at(self.rest_x[i] + profile_position);
-            let gap = self.rest_z[i] + w - surface.height;
-            self.frozen[i] = if gap < 0.0 { surface.height - self.rest_z[i] - w } else { 0.0 };
+            let gap = self.rest_z[i] + carrier.z - surface.height;
+            self.frozen[i] = if gap < 0.0 { surface.height - self.rest_z[i] - carrier.z } else { 0.0 };
         }
     }
 
     /// Subtracts c_j y_j of the frozen dashpots from the `forces` of the links of `kind`, N.
     pub fn subtract_frozen(&self, kind: LinkKind, forces: &mut [f64]) {
-        let stiffness = self.links[kind as usize].frozen;
+        let stiffness = self.links[kind].frozen;
         if stiffness > 0.0 {
             forces.iter_mut().zip(self.frozen_dashpots(kind)).for_each(|(force, y)| *force -= stiffness * y);
         }
@@ -193,7 +172,7 @@ impl Model {
 
     /// The inputs that move the carrier.
     pub fn inputs(&self) -> Vec<Input> {
-        let body = |input: &Input| input.axis().map(|axis| &self.bodies[axis as usize]);
+        let body = |input: &Input| input.axis().map(|axis| &self.bodies[axis]);
         let acts = |input: &Input| match (body(input).unwrap_or(&None), input.is_displacement()) {
             (None, is_displacement) => is_displacement,
             (Some(body), true) => body.stiffness > 0.0 || body.damping > 0.0,
@@ -204,7 +183,7 @@ impl Model {
 
     /// Whether the carrier is a body along an axis.
     pub fn has_bodies(&self) -> bool {
-        self.bodies.iter().any(Option::is_some)
+        self.bodies.any()
     }
 
     /// Number of masses k.

@@ -39,7 +39,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::LinkKind;
+use super::{ByLink, LinkKind};
 use crate::math::Spline;
 use crate::scene::{Axis, Initial, MaxwellElement, Phase, Scene};
 
@@ -52,8 +52,8 @@ pub struct Reduction {
     pub run: f64,
     /// The highest frequency considered ω, rad/s.
     pub frequency: f64,
-    /// Storage stiffness of the links at 1/T, N/m, in the order of [`LinkKind::ALL`]: the bounds refer to it.
-    pub stiffness: [f64; 4],
+    /// Storage stiffness of the links at 1/T, N/m: the bounds refer to it.
+    pub stiffness: ByLink<f64>,
 }
 
 /// An element of all links of a kind that is replaced.
@@ -90,12 +90,12 @@ impl Reduction {
         let run = if scene.excitation.is_empty() { f64::INFINITY } else { scene.duration() };
         let frequencies = [carrier_frequency, passage_frequency, own_frequency, body_frequency].map(|of| of(scene));
         let frequency = frequencies.into_iter().fold(0.0, f64::max);
-        let links = LinkKind::ALL.map(|kind| scene.link(kind).unwrap_or_default());
-        let stiffness = links.each_ref().map(|link| link.complex_stiffness(1.0 / run).0);
+        let links = ByLink::from_fn(|kind| scene.link(kind).unwrap_or_default());
+        let stiffness = ByLink::from_fn(|kind| links[kind].complex_stiffness(1.0 / run).0);
         let mut replaced = Vec::new();
         for kind in LinkKind::ALL {
-            let allowed = scene.solver.reduce * stiffness[kind as usize];
-            let elements = &links[kind as usize].maxwell;
+            let allowed = scene.solver.reduce * stiffness[kind];
+            let elements = &links[kind].maxwell;
             let relaxed = scene.layer.initial == Initial::Relaxed && scene.carrier.x.is_none();
             let candidates = elements.iter().enumerate().filter_map(|(index, &element)| {
                 let (by, bound) = better(&element, run, relaxed.then_some(frequency))?;
@@ -166,7 +166,7 @@ fn shortest_wave(x: &[f64], profile: &Spline) -> f64 {
 /// The largest ω at which M ω² = |k K*(ω)| + K for a body on the layer and its drive, rad/s; 0 without a body.
 fn body_frequency(scene: &Scene) -> f64 {
     let along = |axis: Axis| {
-        let body = scene.carrier.along(axis)?;
+        let body = scene.carrier[axis].as_ref()?;
         let (link, masses) = (scene.link(axis.link()).unwrap_or_default(), scene.layer.masses as f64);
         let stiffness = |omega: f64| {
             let (storage, loss) = link.complex_stiffness(omega);

@@ -3,7 +3,7 @@
 //! All start from the glassy stiffness c + Σ c_j of each kind of link ([`Model::glassy`]), with every dashpot at rest.
 
 use super::{LinkKind, Model};
-use crate::scene::{Axis, Link};
+use crate::scene::{Axis, ByLink, Link};
 
 impl Model {
     /// Stiffness of all links on one mass while the dashpots are at rest, N/m, lateral links counted twice: along x or
@@ -24,7 +24,7 @@ impl Model {
     /// do not.
     pub fn is_rod(&self, kind: LinkKind) -> bool {
         let reference = self.reference_stiffness();
-        let (stiffness, damping) = (self.glassy[kind as usize], self.links[kind as usize].damping);
+        let (stiffness, damping) = (self.glassy[kind], self.links[kind].damping);
         reference > 0.0
             && (stiffness > ROD_FREQUENCY * ROD_FREQUENCY * reference
                 || damping > ROD_FREQUENCY * (reference * self.mass).sqrt())
@@ -35,34 +35,35 @@ impl Model {
     /// position within its tolerance does not determine the force that presses a mass on.
     pub fn long_term_stiffness(&self) -> Option<f64> {
         let elements: f64 = self.rows_of(LinkKind::Vertical).map(|row| row.stiffness).sum();
-        let long_term = self.links[LinkKind::Vertical as usize].stiffness.max(self.softest_other_link());
+        let long_term = self.links[LinkKind::Vertical].stiffness.max(self.softest_other_link());
         (long_term > 0.0 && elements > ROD_FREQUENCY * ROD_FREQUENCY * long_term).then_some(long_term)
     }
 
     /// The largest stiffness by which the rounding of a position becomes a force, N/m. Vertical Maxwell elements far
     /// stiffer than the long-term stiffness do not count: each integrates its own elongation.
     pub fn rounding_stiffness(&self) -> f64 {
-        let [vertical, horizontal, lateral_x, lateral_z] = self.glassy;
-        let link = &self.links[LinkKind::Vertical as usize];
-        let vertical = if self.long_term_stiffness().is_some() { link.stiffness } else { vertical };
-        on_mass([vertical, horizontal, lateral_x, lateral_z])
+        let mut stiffness = self.glassy;
+        if self.long_term_stiffness().is_some() {
+            stiffness[LinkKind::Vertical] = self.links[LinkKind::Vertical].stiffness;
+        }
+        on_mass(stiffness)
     }
 
     /// c + Σ c_j of the links of `kind` as they are in this model, N/m: replaced Maxwell elements count as what they are
     /// replaced by.
     pub fn instantaneous_stiffness(&self, kind: LinkKind) -> f64 {
-        self.links[kind as usize].stiffness + self.rows_of(kind).map(|row| row.stiffness).sum::<f64>()
+        self.links[kind].stiffness + self.rows_of(kind).map(|row| row.stiffness).sum::<f64>()
     }
 
     /// The stiffness that the others are compared with, N/m: that of the vertical links, whose elongation is prescribed,
     /// or of the softest others where these are stiffer.
     fn reference_stiffness(&self) -> f64 {
-        self.glassy[LinkKind::Vertical as usize].max(self.softest_other_link())
+        self.glassy[LinkKind::Vertical].max(self.softest_other_link())
     }
 
     /// Of the links that are not vertical, N/m; 0 where there are none.
     fn softest_other_link(&self) -> f64 {
-        let [_, others @ ..] = self.glassy;
+        let [_, others @ ..] = self.glassy.0;
         others.into_iter().filter(|&stiffness| stiffness > 0.0).reduce(f64::min).unwrap_or(0.0)
     }
 
@@ -88,7 +89,7 @@ impl Model {
     /// m ω² = c + Σ c_j ω²τ_j²/(1 + ω²τ_j²), and the damping is d + Σ c_j τ_j/(1 + ω²τ_j²).
     pub fn horizontal_oscillation(&self) -> (f64, f64) {
         let kind = LinkKind::Horizontal;
-        let link = &self.links[kind as usize];
+        let link = &self.links[kind];
         // From above, where all dashpots are at rest, the frequency falls to the largest solution.
         let mut square = self.instantaneous_stiffness(kind) / self.mass;
         let mut damping = link.damping;
@@ -112,8 +113,8 @@ impl Model {
     /// The frequency of the body along `axis` on the glassy springs of the layer and on its drive, rad/s; the rate of its
     /// dampers, 1/s, where there are no springs, and that of a mass where there are no dampers either; 1 without a body.
     pub fn body_frequency(&self, axis: Axis) -> f64 {
-        let Some(body) = &self.bodies[axis as usize] else { return 1.0 };
-        let (kind, masses) = (axis.link() as usize, self.masses() as f64);
+        let Some(body) = &self.bodies[axis] else { return 1.0 };
+        let (kind, masses) = (axis.link(), self.masses() as f64);
         let frequency = ((masses * self.glassy[kind] + body.stiffness) / body.mass).sqrt();
         let damping = (masses * self.links[kind].damping).max(body.damping) / body.mass;
         let own = [frequency, damping].into_iter().find(|&rate| rate > 0.0);
@@ -133,7 +134,7 @@ pub(super) fn glassy(link: &Link) -> f64 {
     link.stiffness.unwrap_or(0.0) + maxwell
 }
 
-fn on_mass([vertical, horizontal, lateral_x, lateral_z]: [f64; 4]) -> f64 {
+fn on_mass(ByLink([vertical, horizontal, lateral_x, lateral_z]): ByLink<f64>) -> f64 {
     (horizontal + 2.0 * lateral_x).max(vertical + 2.0 * lateral_z)
 }
 

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::scene::Input;
+use crate::scene::{ByAxis, Input};
 
 /// Derivatives of the run's forces and of its bodies' motion by the targets of its inputs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -14,9 +14,9 @@ pub struct Tangents {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TangentsOf {
     /// Of F_x and F_z.
-    pub force: [f64; 2],
+    pub force: ByAxis<f64>,
     /// Of the displacement and the speed of the bodies along x and z; 0 where the displacement is prescribed.
-    pub body: [[f64; 2]; 2],
+    pub body: ByAxis<[f64; 2]>,
 }
 
 impl Tangents {
@@ -32,7 +32,7 @@ impl Tangents {
 
     /// Whether all of them are finite.
     pub fn are_finite(&self) -> bool {
-        let finite = |of: &TangentsOf| of.force.iter().chain(of.body.as_flattened()).all(|value| value.is_finite());
+        let finite = |of: &TangentsOf| of.force.iter().chain(of.body.iter().flatten()).all(|value| value.is_finite());
         self.by_input.iter().all(finite)
     }
 }

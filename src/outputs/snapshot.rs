@@ -10,10 +10,10 @@ use std::cell::{Cell, OnceCell, RefCell};
 use super::{Counters, Energies, Monitored, Variable};
 use crate::integrator::LayerWithin;
 use crate::model::{
-    AreaShare, BodyEnergy, Carrier, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, Powers,
-    State, Tangents, elastic_energy, kinetic_energy,
+    BodyEnergy, Carrier, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, Powers, State,
+    Tangents, elastic_energy, kinetic_energy,
 };
-use crate::scene::Axis;
+use crate::scene::{Axis, ByAxis};
 
 /// The layer's state and the forces in it. Within a step they are computed when they are first asked for: F_x, F_z and
 /// the energies do without.
@@ -62,9 +62,9 @@ pub struct Snapshot<'a> {
     /// The carrier's motion, and the time since the start of its piece, s.
     pub motion: (&'a Carrier, f64),
     /// Displacement of the carrier: u and w, m.
-    pub displacement: (f64, f64),
+    pub displacement: ByAxis<f64>,
     /// u and w at the start of the run, m.
-    pub start: [f64; 2],
+    pub start: ByAxis<f64>,
     /// Energies since the start.
     pub energies: Energies,
     /// The derivatives by the targets of the last motion.
@@ -164,9 +164,8 @@ impl<'a> Snapshot<'a> {
 
     /// How far bodies are from their start along x and z, m; 0 where the displacement is prescribed.
     pub fn ways(&self) -> [f64; 2] {
-        let [x, z] = &self.model.bodies;
-        let way = |is_body: bool, now: f64, start: f64| if is_body { now - start } else { 0.0 };
-        [way(x.is_some(), self.displacement.0, self.start[0]), way(z.is_some(), self.displacement.1, self.start[1])]
+        let way = |axis| self.model.bodies[axis].as_ref().map_or(0.0, |_| self.displacement[axis] - self.start[axis]);
+        Axis::ALL.map(way)
     }
 
     pub(super) fn dissipated_power(&self) -> f64 {
@@ -200,8 +199,8 @@ impl<'a> Snapshot<'a> {
     /// Position of mass `i` along x and z, m.
     pub(super) fn position(&self, i: usize) -> (f64, f64) {
         (
-            self.model.rest_x[i] + (self.displacement.0 + self.state().elongation_x[i]),
-            self.model.rest_z[i] + (self.displacement.1 + self.state().elongation_z[i]),
+            self.model.rest_x[i] + (self.displacement.x + self.state().elongation_x[i]),
+            self.model.rest_z[i] + (self.displacement.z + self.state().elongation_z[i]),
         )
     }
 
@@ -228,7 +227,8 @@ impl<'a> Snapshot<'a> {
             sums.hysteresis -= contact.normal * s / contact.q;
             sums.adhesion -= friction / contact.q;
             sums.shear -= self.shear(mode, &contact, friction) / contact.q;
-            sums.real_area += self.area_share(v, &contact).value * self.model.element_area;
+            sums.real_area +=
+                self.model.friction.area_share(contact.normal, v * contact.q).value * self.model.element_area;
             sums.force_z += (contact.normal - friction * s) / contact.q;
         }
         sums
@@ -242,31 +242,24 @@ impl<'a> Snapshot<'a> {
 
     /// F_T (N) in a `contact` of this mode and ẋ (m/s).
     fn friction(&self, (mode, v): (Mode, f64), contact: &ContactForces) -> f64 {
-        if self.model.has_friction { contact.friction(self.model, mode, v) } else { 0.0 }
+        if self.model.friction.present { contact.friction(self.model, mode, v) } else { 0.0 }
     }
 
     /// The part of the `friction` in a `contact` (N) that is shear force, N: of a sticking mass, as the two limits share it.
     fn shear(&self, mode: Mode, contact: &ContactForces, friction: f64) -> f64 {
         match mode {
-            Mode::Stick => contact.shear_share(self.model) * friction,
-            _ if self.model.has_friction => {
-                friction - mode.direction() * self.model.friction_coefficient * contact.normal
+            Mode::Stick => self.model.friction.shear_share(contact.normal) * friction,
+            _ if self.model.friction.present => {
+                friction - mode.direction() * self.model.friction.coulomb * contact.normal
             }
             _ => 0.0,
         }
     }
 
-    /// The share of the area of a mass with ẋ (m/s), in `contact`, that touches: all of it without a law.
-    fn area_share(&self, v: f64, contact: &ContactForces) -> AreaShare {
-        let whole = AreaShare { value: 1.0, ..AreaShare::default() };
-        let speed = v * contact.q;
-        self.model.real_area.as_ref().map_or(whole, |area| area.share(contact.normal, speed))
-    }
-
     /// The mode of mass `i`; without friction a contact slips in the direction of its velocity.
     pub(super) fn mode(&self, i: usize) -> Mode {
         match self.state().mode[i] {
-            mode if mode.slips() && !self.model.has_friction => Mode::along(self.state().velocity_x[i]),
+            mode if mode.slips() && !self.model.friction.present => Mode::along(self.state().velocity_x[i]),
             mode => mode,
         }
     }
@@ -280,20 +273,19 @@ pub(super) struct CarrierShift {
     /// Of the forces of the links on each mass, N.
     on_mass: (f64, f64),
     /// Of the drives' displacements along x and z, m.
-    drive: [f64; 2],
+    drive: ByAxis<f64>,
 }
 
 impl CarrierShift {
     /// A shift of u and w by (δu, δw), m; along the axis of a body it shifts the drive, and the layer not at all.
     pub(super) fn new(model: &Model, direction: (f64, f64)) -> Self {
-        let of =
-            |axis: Axis, change: f64| if model.bodies[axis as usize].is_some() { (0.0, change) } else { (change, 0.0) };
+        let of = |axis: Axis, change: f64| if model.bodies[axis].is_some() { (0.0, change) } else { (change, 0.0) };
         let ((du, drive_x), (dw, drive_z)) = (of(Axis::X, direction.0), of(Axis::Z, direction.1));
         let stiffness = |kind| model.instantaneous_stiffness(kind);
         Self {
             elongation: (-du, -dw),
             on_mass: (stiffness(LinkKind::Horizontal) * du, stiffness(LinkKind::Vertical) * dw),
-            drive: [drive_x, drive_z],
+            drive: ByAxis { x: drive_x, z: drive_z },
         }
     }
 }
@@ -351,15 +343,15 @@ impl Snapshot<'_> {
 
     /// δR = K δu_d of the drive along `axis`.
     pub(super) fn drive_force_change(&self, axis: Axis, shift: &CarrierShift) -> f64 {
-        let body = &self.model.bodies[axis as usize];
-        body.as_ref().map_or(0.0, |body| body.stiffness * shift.drive[axis as usize])
+        let body = &self.model.bodies[axis];
+        body.as_ref().map_or(0.0, |body| body.stiffness * shift.drive[axis])
     }
 
     /// Of V_c = ½ K (u - u_d)² of both axes.
     pub(super) fn drive_energy_change(&self, shift: &CarrierShift) -> f64 {
         let (carrier, s) = self.motion;
         let of = |axis: Axis| {
-            let stretch = carrier.outside(self.model, axis, s).map_or(0.0, |(_, outside)| outside.stretch()[0]);
+            let stretch = carrier.outside(self.model, axis, s).map_or(0.0, |(_, outside)| outside.stretch().position);
             -self.drive_force_change(axis, shift) * stretch
         };
         of(Axis::X) + of(Axis::Z)
@@ -386,18 +378,17 @@ impl Snapshot<'_> {
         let (f_x, f_z) = shift.on_mass;
         let normal = (slope * f_x - f_z) / q;
         let contact = self.forces().contact(self.model, i, self.state().velocity_x[i], &self.state().surface[i]);
-        let by_normal = contact.limit_by_normal(self.model, self.state().velocity_x[i].abs() * q);
-        let mu = self.model.friction_coefficient;
+        let (law, v) = (&self.model.friction, self.state().velocity_x[i]);
+        let by_normal = law.by_normal(contact.normal, v.abs() * q);
         let (friction, shear) = match mode {
             Mode::Stick => {
                 let friction = (f_x + slope * f_z) / q;
-                let of_share = contact.tangential * contact.shear_share_by_normal(self.model, by_normal) * normal;
-                (friction, contact.shear_share(self.model) * friction + of_share)
+                let of_share = contact.tangential * law.shear_share_by_normal(contact.normal, by_normal) * normal;
+                (friction, law.shear_share(contact.normal) * friction + of_share)
             }
-            _ => (mode.direction() * by_normal * normal, mode.direction() * (by_normal - mu) * normal),
+            _ => (mode.direction() * by_normal * normal, mode.direction() * (by_normal - law.coulomb) * normal),
         };
-        let real_area =
-            self.area_share(self.state().velocity_x[i], &contact).by_normal * normal * self.model.element_area;
+        let real_area = law.area_share(contact.normal, v * contact.q).by_normal * normal * self.model.element_area;
         ContactChange { normal, friction, shear, real_area, slope, q }
     }
 
@@ -422,7 +413,7 @@ impl Snapshot<'_> {
     /// Of V = Σ ½ c e² + Σ_j ½ c_j a_j², where a_j = e - y_j of frozen dashpots.
     pub(super) fn elastic_energy_change(&self, shift: &CarrierShift) -> f64 {
         let spring = |kind: LinkKind, elongations: &[f64], moved: f64| {
-            let law = &self.model.links[kind as usize];
+            let law = &self.model.links[kind];
             let frozen =
                 if law.frozen > 0.0 { law.frozen * self.model.frozen_dashpots(kind).sum::<f64>() } else { 0.0 };
             moved * (law.stiffness * elongations.iter().sum::<f64>() - frozen)

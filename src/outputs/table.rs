@@ -186,16 +186,16 @@ pub(super) static TABLE: [OutputRow; 70] = {
             |now| now.at.on_carrier.1)
             .depending(elastic_z, |now, shift| now.at.force_changes(shift).1),
         layer(Output::CarrierU, Carrier, "carrier.u", Real, Meter, "Displacement of the carrier along x",
-            |now| now.at.displacement.0)
+            |now| now.at.displacement.x)
             .only_where(|scene| scene.carrier.x.is_some()),
         layer(Output::CarrierW, Carrier, "carrier.w", Real, Meter, "Displacement of the carrier along z",
-            |now| now.at.displacement.1)
+            |now| now.at.displacement.z)
             .only_where(|scene| scene.carrier.z.is_some()),
         layer(Output::CarrierURate, Carrier, "carrier.u_rate", Real, MeterPerSecond, "Speed of the carrier along x",
-            |now| now.at.carrier.u_rate)
+            |now| now.at.carrier.x.speed)
             .only_where(|scene| scene.carrier.x.is_some()),
         layer(Output::CarrierWRate, Carrier, "carrier.w_rate", Real, MeterPerSecond, "Speed of the carrier along z",
-            |now| now.at.carrier.w_rate)
+            |now| now.at.carrier.z.speed)
             .only_where(|scene| scene.carrier.z.is_some()),
         layer(Output::DriveX, Carrier, "carrier.drive_x", Real, Newton, "Force of the drive on the carrier along x",
             |now| now.at.drive_force(Axis::X))
@@ -284,76 +284,76 @@ pub(super) static TABLE: [OutputRow; 70] = {
             |now| now.energy_residual())
             .depending(springs, |now, shift| -(now.at.elastic_energy_change(shift) + now.at.drive_energy_change(shift))),
         layer(Output::Tangent(Tangent::ForceX, Input::U), Tangents, "tangent.dF_x_du", Real, NewtonPerMeter, "Derivative of F_x at the end of a communication step with respect to u there",
-            |now| now.at.tangents.by(Input::U).force[0])
+            |now| now.at.tangents.by(Input::U).force.x)
             .only_where(|scene| scene.inputs().contains(&Input::U)),
         layer(Output::Tangent(Tangent::ForceX, Input::W), Tangents, "tangent.dF_x_dw", Real, NewtonPerMeter, "Derivative of F_x at the end of a communication step with respect to w there",
-            |now| now.at.tangents.by(Input::W).force[0])
+            |now| now.at.tangents.by(Input::W).force.x)
             .only_where(|scene| scene.inputs().contains(&Input::W)),
         layer(Output::Tangent(Tangent::ForceX, Input::Load), Tangents, "tangent.dF_x_dload", Real, One, "Derivative of F_x at the end of a communication step with respect to load there",
-            |now| now.at.tangents.by(Input::Load).force[0])
+            |now| now.at.tangents.by(Input::Load).force.x)
             .only_where(|scene| scene.inputs().contains(&Input::Load)),
         layer(Output::Tangent(Tangent::ForceX, Input::Pull), Tangents, "tangent.dF_x_dpull", Real, One, "Derivative of F_x at the end of a communication step with respect to pull there",
-            |now| now.at.tangents.by(Input::Pull).force[0])
+            |now| now.at.tangents.by(Input::Pull).force.x)
             .only_where(|scene| scene.inputs().contains(&Input::Pull)),
         layer(Output::Tangent(Tangent::ForceZ, Input::U), Tangents, "tangent.dF_z_du", Real, NewtonPerMeter, "Derivative of F_z at the end of a communication step with respect to u there",
-            |now| now.at.tangents.by(Input::U).force[1])
+            |now| now.at.tangents.by(Input::U).force.z)
             .only_where(|scene| scene.inputs().contains(&Input::U)),
         layer(Output::Tangent(Tangent::ForceZ, Input::W), Tangents, "tangent.dF_z_dw", Real, NewtonPerMeter, "Derivative of F_z at the end of a communication step with respect to w there",
-            |now| now.at.tangents.by(Input::W).force[1])
+            |now| now.at.tangents.by(Input::W).force.z)
             .only_where(|scene| scene.inputs().contains(&Input::W)),
         layer(Output::Tangent(Tangent::ForceZ, Input::Load), Tangents, "tangent.dF_z_dload", Real, One, "Derivative of F_z at the end of a communication step with respect to load there",
-            |now| now.at.tangents.by(Input::Load).force[1])
+            |now| now.at.tangents.by(Input::Load).force.z)
             .only_where(|scene| scene.inputs().contains(&Input::Load)),
         layer(Output::Tangent(Tangent::ForceZ, Input::Pull), Tangents, "tangent.dF_z_dpull", Real, One, "Derivative of F_z at the end of a communication step with respect to pull there",
-            |now| now.at.tangents.by(Input::Pull).force[1])
+            |now| now.at.tangents.by(Input::Pull).force.z)
             .only_where(|scene| scene.inputs().contains(&Input::Pull)),
         layer(Output::Tangent(Tangent::U, Input::U), Tangents, "tangent.dcarrier_u_du", Real, One, "Derivative of the carrier's u at the end of a communication step with respect to u there",
-            |now| now.at.tangents.by(Input::U).body[0][0])
+            |now| now.at.tangents.by(Input::U).body.x[0])
             .only_where(|scene| scene.inputs().contains(&Input::U) && scene.carrier.x.is_some()),
         layer(Output::Tangent(Tangent::U, Input::W), Tangents, "tangent.dcarrier_u_dw", Real, One, "Derivative of the carrier's u at the end of a communication step with respect to w there",
-            |now| now.at.tangents.by(Input::W).body[0][0])
+            |now| now.at.tangents.by(Input::W).body.x[0])
             .only_where(|scene| scene.inputs().contains(&Input::W) && scene.carrier.x.is_some()),
         layer(Output::Tangent(Tangent::U, Input::Load), Tangents, "tangent.dcarrier_u_dload", Real, MeterPerNewton, "Derivative of the carrier's u at the end of a communication step with respect to load there",
-            |now| now.at.tangents.by(Input::Load).body[0][0])
+            |now| now.at.tangents.by(Input::Load).body.x[0])
             .only_where(|scene| scene.inputs().contains(&Input::Load) && scene.carrier.x.is_some()),
         layer(Output::Tangent(Tangent::U, Input::Pull), Tangents, "tangent.dcarrier_u_dpull", Real, MeterPerNewton, "Derivative of the carrier's u at the end of a communication step with respect to pull there",
-            |now| now.at.tangents.by(Input::Pull).body[0][0])
+            |now| now.at.tangents.by(Input::Pull).body.x[0])
             .only_where(|scene| scene.inputs().contains(&Input::Pull) && scene.carrier.x.is_some()),
         layer(Output::Tangent(Tangent::URate, Input::U), Tangents, "tangent.dcarrier_u_rate_du", Real, PerSecond, "Derivative of the carrier's speed along x at the end of a communication step with respect to u there",
-            |now| now.at.tangents.by(Input::U).body[0][1])
+            |now| now.at.tangents.by(Input::U).body.x[1])
             .only_where(|scene| scene.inputs().contains(&Input::U) && scene.carrier.x.is_some()),
         layer(Output::Tangent(Tangent::URate, Input::W), Tangents, "tangent.dcarrier_u_rate_dw", Real, PerSecond, "Derivative of the carrier's speed along x at the end of a communication step with respect to w there",
-            |now| now.at.tangents.by(Input::W).body[0][1])
+            |now| now.at.tangents.by(Input::W).body.x[1])
             .only_where(|scene| scene.inputs().contains(&Input::W) && scene.carrier.x.is_some()),
         layer(Output::Tangent(Tangent::URate, Input::Load), Tangents, "tangent.dcarrier_u_rate_dload", Real, MeterPerNewtonSecond, "Derivative of the carrier's speed along x at the end of a communication step with respect to load there",
-            |now| now.at.tangents.by(Input::Load).body[0][1])
+            |now| now.at.tangents.by(Input::Load).body.x[1])
             .only_where(|scene| scene.inputs().contains(&Input::Load) && scene.carrier.x.is_some()),
         layer(Output::Tangent(Tangent::URate, Input::Pull), Tangents, "tangent.dcarrier_u_rate_dpull", Real, MeterPerNewtonSecond, "Derivative of the carrier's speed along x at the end of a communication step with respect to pull there",
-            |now| now.at.tangents.by(Input::Pull).body[0][1])
+            |now| now.at.tangents.by(Input::Pull).body.x[1])
             .only_where(|scene| scene.inputs().contains(&Input::Pull) && scene.carrier.x.is_some()),
         layer(Output::Tangent(Tangent::W, Input::U), Tangents, "tangent.dcarrier_w_du", Real, One, "Derivative of the carrier's w at the end of a communication step with respect to u there",
-            |now| now.at.tangents.by(Input::U).body[1][0])
+            |now| now.at.tangents.by(Input::U).body.z[0])
             .only_where(|scene| scene.inputs().contains(&Input::U) && scene.carrier.z.is_some()),
         layer(Output::Tangent(Tangent::W, Input::W), Tangents, "tangent.dcarrier_w_dw", Real, One, "Derivative of the carrier's w at the end of a communication step with respect to w there",
-            |now| now.at.tangents.by(Input::W).body[1][0])
+            |now| now.at.tangents.by(Input::W).body.z[0])
             .only_where(|scene| scene.inputs().contains(&Input::W) && scene.carrier.z.is_some()),
         layer(Output::Tangent(Tangent::W, Input::Load), Tangents, "tangent.dcarrier_w_dload", Real, MeterPerNewton, "Derivative of the carrier's w at the end of a communication step with respect to load there",
-            |now| now.at.tangents.by(Input::Load).body[1][0])
+            |now| now.at.tangents.by(Input::Load).body.z[0])
             .only_where(|scene| scene.inputs().contains(&Input::Load) && scene.carrier.z.is_some()),
         layer(Output::Tangent(Tangent::W, Input::Pull), Tangents, "tangent.dcarrier_w_dpull", Real, MeterPerNewton, "Derivative of the carrier's w at the end of a communication step with respect to pull there",
-            |now| now.at.tangents.by(Input::Pull).body[1][0])
+            |now| now.at.tangents.by(Input::Pull).body.z[0])
             .only_where(|scene| scene.inputs().contains(&Input::Pull) && scene.carrier.z.is_some()),
         layer(Output::Tangent(Tangent::WRate, Input::U), Tangents, "tangent.dcarrier_w_rate_du", Real, PerSecond, "Derivative of the carrier's speed along z at the end of a communication step with respect to u there",
-            |now| now.at.tangents.by(Input::U).body[1][1])
+            |now| now.at.tangents.by(Input::U).body.z[1])
             .only_where(|scene| scene.inputs().contains(&Input::U) && scene.carrier.z.is_some()),
         layer(Output::Tangent(Tangent::WRate, Input::W), Tangents, "tangent.dcarrier_w_rate_dw", Real, PerSecond, "Derivative of the carrier's speed along z at the end of a communication step with respect to w there",
-            |now| now.at.tangents.by(Input::W).body[1][1])
+            |now| now.at.tangents.by(Input::W).body.z[1])
             .only_where(|scene| scene.inputs().contains(&Input::W) && scene.carrier.z.is_some()),
         layer(Output::Tangent(Tangent::WRate, Input::Load), Tangents, "tangent.dcarrier_w_rate_dload", Real, MeterPerNewtonSecond, "Derivative of the carrier's speed along z at the end of a communication step with respect to load there",
-            |now| now.at.tangents.by(Input::Load).body[1][1])
+            |now| now.at.tangents.by(Input::Load).body.z[1])
             .only_where(|scene| scene.inputs().contains(&Input::Load) && scene.carrier.z.is_some()),
         layer(Output::Tangent(Tangent::WRate, Input::Pull), Tangents, "tangent.dcarrier_w_rate_dpull", Real, MeterPerNewtonSecond, "Derivative of the carrier's speed along z at the end of a communication step with respect to pull there",
-            |now| now.at.tangents.by(Input::Pull).body[1][1])
+            |now| now.at.tangents.by(Input::Pull).body.z[1])
             .only_where(|scene| scene.inputs().contains(&Input::Pull) && scene.carrier.z.is_some()),
         layer(Output::Steps, Solver, "solver.steps", Integer, One, "Accepted steps since the start",
             |now| as_integer(now.at.counters.steps)),
@@ -406,11 +406,11 @@ fn has_dampers(scene: &Scene) -> bool {
 }
 
 fn has_drive(scene: &Scene, axis: Axis) -> bool {
-    scene.carrier.along(axis).is_some_and(CarrierBody::has_drive)
+    scene.carrier[axis].as_ref().is_some_and(CarrierBody::has_drive)
 }
 
 fn any_body(scene: &Scene, test: fn(&CarrierBody) -> bool) -> bool {
-    Axis::ALL.into_iter().any(|axis| scene.carrier.along(axis).is_some_and(test))
+    Axis::ALL.into_iter().any(|axis| scene.carrier[axis].as_ref().is_some_and(test))
 }
 
 fn none(_: &Scene) -> Dependencies {
@@ -442,13 +442,15 @@ fn dissipated_power(scene: &Scene) -> Dependencies {
 /// The inputs whose links to the carrier pass `test`: u elongates the horizontal ones, w the vertical ones. A body's u and w
 /// are states.
 fn carrier_links(scene: &Scene, test: fn(&Link) -> bool) -> Dependencies {
-    let along = |axis: Axis| scene.carrier.along(axis).is_none() && scene.link(axis.link()).as_ref().is_some_and(test);
+    let along =
+        |axis: Axis| scene.carrier[axis].as_ref().is_none() && scene.link(axis.link()).as_ref().is_some_and(test);
     Dependencies { on_u: along(Axis::X), on_w: along(Axis::Z) }
 }
 
 /// The inputs that move drives with springs to bodies.
 fn drive_springs(scene: &Scene) -> Dependencies {
-    let along = |axis: Axis| scene.carrier.along(axis).is_some_and(|body| body.stiffness.is_some() && body.has_drive());
+    let along =
+        |axis: Axis| scene.carrier[axis].as_ref().is_some_and(|body| body.stiffness.is_some() && body.has_drive());
     Dependencies { on_u: along(Axis::X), on_w: along(Axis::Z) }
 }
 

@@ -335,7 +335,7 @@ fn short_times(scene: &Scene, reduction: &Reduction) -> String {
 
 fn reduced_link(scene: &Scene, reduction: &Reduction, kind: LinkKind) -> Vec<String> {
     let Some(link) = scene.link(kind).filter(|link| !link.maxwell.is_empty()) else { return Vec::new() };
-    let stiffness = reduction.stiffness[kind as usize];
+    let stiffness = reduction.stiffness[kind];
     let replaced: Vec<_> = reduction.replaced.iter().filter(|one| one.kind == kind).collect();
     let left = link.maxwell.len() - replaced.len();
     let head = format!("{:<12}{left} of {} elements stay, K' = {stiffness:.4e} N/m", kind.name(), link.maxwell.len());
@@ -368,7 +368,7 @@ fn input(scene: &Scene) -> String {
 
 /// The axes along which the carrier is a body.
 fn carrier(scene: &Scene) -> Vec<LabelledLine> {
-    let bodies = Axis::ALL.into_iter().filter_map(|axis| Some((axis, scene.carrier.along(axis)?)));
+    let bodies = Axis::ALL.into_iter().filter_map(|axis| Some((axis, scene.carrier[axis].as_ref()?)));
     labelled("Carrier", bodies.map(|(axis, body)| body_text(axis, body)))
 }
 

@@ -24,17 +24,16 @@ pub(crate) struct CarrierSample {
 }
 
 impl CarrierSample {
-    /// The carrier a time `s` (s) after the start of `phase` of a layer of `area` (m²), where `self` is the carrier at its
-    /// start.
-    pub(crate) fn moved(self, phase: &Phase, area: Option<f64>, s: f64) -> Self {
-        let force = |force: Force, reached: f64| force.start.unwrap_or(reached) + force.change.at(s);
+    /// The sample a time `s` (s) after this one, at which `motion` starts.
+    pub(crate) fn after(self, motion: &Motion, s: f64) -> Self {
+        let force = |force: Force, reached: f64| force.start.unwrap_or(reached) + force.change.at(s).position;
         Self {
             time: self.time + s,
-            u: self.u + phase.u.at(s),
-            w: self.w + phase.w.at(s),
-            load: force(phase.load(area), self.load),
-            pull: force(phase.pull(), self.pull),
-            temperature: phase.temperature.unwrap_or(self.temperature),
+            u: self.u + motion.u.at(s).position,
+            w: self.w + motion.w.at(s).position,
+            load: force(motion.load, self.load),
+            pull: force(motion.pull, self.pull),
+            temperature: motion.temperature.unwrap_or(self.temperature),
         }
     }
 
@@ -83,8 +82,8 @@ impl Rows {
 pub(crate) fn start(scene: &Scene, u: f64) -> Start {
     let first = scene.excitation.first();
     Start {
-        u_rate: first.map_or(0.0, |phase| phase.u.velocity(0.0)),
-        w_rate: first.map_or(0.0, |phase| phase.w.velocity(0.0)),
+        u_rate: first.map_or(0.0, |phase| phase.u.at(0.0).speed),
+        w_rate: first.map_or(0.0, |phase| phase.w.at(0.0).speed),
         u,
         load: scene.first_load(),
         pull: scene.first_pull(),
@@ -148,15 +147,7 @@ impl Runner {
         phase: &Phase,
         mut observe: impl FnMut(CarrierSample, &Snapshot<'_>),
     ) -> Result<f64, SimulationError> {
-        let load = phase.load(self.area);
-        let motion = Motion {
-            duration: phase.duration,
-            u: phase.u,
-            w: phase.w,
-            load,
-            pull: phase.pull(),
-            temperature: phase.temperature,
-        };
+        let motion = phase.motion(self.area);
         let force = phase.end_force(self.area);
         let reached = self.time_of_force(&motion, force)?;
         self.phases += 1;
@@ -168,10 +159,10 @@ impl Runner {
             return Ok(0.0);
         }
         let times: Vec<f64> = self.rows.times(duration).collect();
-        let (start, area) = (self.carrier, self.area);
-        let observe = |s: f64, snapshot: &Snapshot<'_>| observe(start.moved(phase, area, s), snapshot);
+        let start = self.carrier;
+        let observe = |s: f64, snapshot: &Snapshot<'_>| observe(start.after(&motion, s), snapshot);
         self.simulation.advance_observed(&Motion { duration, ..motion }, None, &times, observe)?;
-        self.carrier = CarrierSample { time: self.simulation.time(), ..start.moved(phase, area, duration) };
+        self.carrier = CarrierSample { time: self.simulation.time(), ..start.after(&motion, duration) };
         Ok(duration)
     }
 

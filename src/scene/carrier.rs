@@ -4,68 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use super::error::{ParameterError, Problem};
 use super::values::Word;
-use super::{LinkKind, Phase, Scene, Unit, is_possible};
-
-/// The two axes of the carrier.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub enum Axis {
-    /// Along x: u.
-    X,
-    /// Along z: w.
-    Z,
-}
-
-impl Axis {
-    /// Both; `axis as usize` counts them.
-    pub const ALL: [Self; 2] = [Self::X, Self::Z];
-
-    /// The name of the axis's table in `[carrier]`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::X => "x",
-            Self::Z => "z",
-        }
-    }
-
-    /// The links to the carrier along the axis.
-    pub fn link(self) -> LinkKind {
-        match self {
-            Self::X => LinkKind::Horizontal,
-            Self::Z => LinkKind::Vertical,
-        }
-    }
-}
+use super::{Axis, ByAxis, LinkKind, Phase, Scene, Unit, is_possible};
 
 /// `[carrier]`: the axes along which the carrier is a body; `None` where its displacement is prescribed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct CarrierBodies {
-    /// Along x.
-    pub x: Option<CarrierBody>,
-    /// Along z.
-    pub z: Option<CarrierBody>,
-}
-
-impl CarrierBodies {
-    /// The body along an axis, if it is one there.
-    pub fn along(&self, axis: Axis) -> Option<&CarrierBody> {
-        match axis {
-            Axis::X => self.x.as_ref(),
-            Axis::Z => self.z.as_ref(),
-        }
-    }
-
-    pub(super) fn along_mut(&mut self, axis: Axis) -> Option<&mut CarrierBody> {
-        match axis {
-            Axis::X => self.x.as_mut(),
-            Axis::Z => self.z.as_mut(),
-        }
-    }
-
-    /// Whether the carrier is a body along any axis.
-    pub fn any(&self) -> bool {
-        self.x.is_some() || self.z.is_some()
-    }
-}
+pub type CarrierBodies = ByAxis<Option<CarrierBody>>;
 
 /// The carrier as a body along one axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -172,8 +114,8 @@ impl Scene {
     pub fn inputs(&self) -> Vec<Input> {
         let acts = |input: &Input| {
             let Some(axis) = input.axis() else { return self.temperature_input };
-            let body = self.carrier.along(axis);
-            if input.is_displacement() { body.is_none_or(CarrierBody::has_drive) } else { body.is_some() }
+            let body = &self.carrier[axis];
+            if input.is_displacement() { body.as_ref().is_none_or(CarrierBody::has_drive) } else { body.is_some() }
         };
         Input::ALL.into_iter().filter(acts).collect()
     }

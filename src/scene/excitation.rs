@@ -5,7 +5,8 @@ use std::f64::consts::TAU;
 use serde::{Deserialize, Serialize};
 
 use super::error::{ParameterError, Problem};
-use super::{Scene, keys};
+use super::{Axis, Scene, keys};
+use crate::math::Jet;
 
 /// One phase of the carrier's motion.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -40,6 +41,12 @@ impl Phase {
     /// The tangential force, N.
     pub fn pull(&self) -> Force {
         self.pull.unwrap_or_default()
+    }
+
+    /// The motion that a run of a layer of this area (m²) follows through the phase.
+    pub fn motion(&self, area: Option<f64>) -> Motion {
+        let Self { duration, u, w, temperature, .. } = *self;
+        Motion { duration, u, w, load: self.load(area), pull: self.pull(), temperature }
     }
 
     /// F_z at which the phase of a layer of this area (m²) ends, N, if it does: given, or that of the pressure.
@@ -110,6 +117,41 @@ impl Scene {
 /// What the paths of the excitation's numbers begin with.
 pub const EXCITATION: &str = "excitation[";
 
+/// The carrier's motion over a time, from where the carrier stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Motion {
+    /// Duration, s.
+    pub duration: f64,
+    /// Displacement along x; of the drive of a body.
+    pub u: Path,
+    /// Displacement along z; of the drive of a body.
+    pub w: Path,
+    /// The load on a body along z without its constant part.
+    pub load: Force,
+    /// The tangential force on a body along x without its constant part.
+    pub pull: Force,
+    /// The layer's temperature, K, where it is an input; `None`: as it was.
+    pub temperature: Option<f64>,
+}
+
+impl Motion {
+    /// The displacement along an axis.
+    pub fn path(&self, axis: Axis) -> Path {
+        match axis {
+            Axis::X => self.u,
+            Axis::Z => self.w,
+        }
+    }
+
+    /// The force on a body along an axis.
+    pub fn force(&self, axis: Axis) -> Force {
+        match axis {
+            Axis::X => self.pull,
+            Axis::Z => self.load,
+        }
+    }
+}
+
 /// A force from the start of a phase or a motion on, N, or a pressure, Pa.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Force {
@@ -142,16 +184,6 @@ pub struct Path {
 }
 
 impl Path {
-    /// The displacement at `time` (s) after the start, m.
-    pub fn at(&self, time: f64) -> f64 {
-        self.motion(time)[0]
-    }
-
-    /// The velocity at `time` (s) after the start, m/s.
-    pub fn velocity(&self, time: f64) -> f64 {
-        self.motion(time)[1]
-    }
-
     /// The displacement from `time` to `span` after it, s, m: where the rate is large and the time long, with more
     /// digits than the difference of two displacements.
     pub fn change(&self, time: f64, span: f64) -> f64 {
@@ -166,14 +198,19 @@ impl Path {
     }
 
     /// Displacement (m), velocity (m/s) and acceleration (m/s²) at `time` (s) after the start.
-    pub fn motion(&self, time: f64) -> [f64; 3] {
+    #[inline]
+    pub fn at(&self, time: f64) -> Jet {
         if self.amplitude == 0.0 {
-            return [self.rate * time, self.rate, 0.0];
+            return Jet { position: self.rate * time, speed: self.rate, acceleration: 0.0 };
         }
         let omega = TAU * self.frequency;
         let (sine, cosine) = (omega * time).sin_cos();
         let swing = self.amplitude * sine;
-        [self.rate * time + swing, self.rate + self.amplitude * omega * cosine, -omega * omega * swing]
+        Jet {
+            position: self.rate * time + swing,
+            speed: self.rate + self.amplitude * omega * cosine,
+            acceleration: -omega * omega * swing,
+        }
     }
 }
 
@@ -212,10 +249,9 @@ mod tests {
     fn a_path_has_the_rates_of_its_displacement() {
         let path = Path { rate: 0.3, amplitude: 1e-3, frequency: 40.0 };
         let (s, h) = (0.0123, 1e-6);
-        let [_, velocity, acceleration] = path.motion(s);
-        let difference = |component: usize| (path.motion(s + h)[component] - path.motion(s - h)[component]) / (2.0 * h);
+        let (here, around) = (path.at(s), path.at(s + h) - path.at(s - h));
         // Central differences: error h² ω³ amplitude / 6, and roundings of 1e-16 over h.
-        assert!((difference(0) - velocity).abs() < 1e-8);
-        assert!((difference(1) - acceleration).abs() < 1e-5);
+        assert!((around.position / (2.0 * h) - here.speed).abs() < 1e-8);
+        assert!((around.speed / (2.0 * h) - here.acceleration).abs() < 1e-5);
     }
 }

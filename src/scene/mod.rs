@@ -6,12 +6,14 @@
 //! A new key is a line in the table of `keys`, a field of the data below and a line in `reader`. A key that the FMU has
 //! as a parameter is also a variant of [`Parameter`], with its path and its field in `parameters`.
 
+mod axis;
 mod carrier;
 mod error;
 mod excitation;
 mod fine_roughness;
 mod foundation;
 mod keys;
+mod link_kind;
 mod material;
 mod parameters;
 mod patch_file;
@@ -33,11 +35,13 @@ use serde::Serialize;
 
 use values::Word;
 
-pub use carrier::{Axis, CarrierBodies, CarrierBody, CarrierInitial, Input};
+pub use axis::{Axis, ByAxis};
+pub use carrier::{CarrierBodies, CarrierBody, CarrierInitial, Input};
 pub use error::{ParameterError, Problem, SceneError};
-pub use excitation::{EXCITATION, Force, Path, Phase};
+pub use excitation::{EXCITATION, Force, Motion, Path, Phase};
 pub use fine_roughness::FineRoughness;
 pub use foundation::{Body, Foundation, FoundationKind, Quality, Stiffness, Wave, Waves};
+pub use link_kind::{ByLink, LinkKind};
 pub use material::{Material, PronyTerm, Wlf, complex_stiffness};
 pub use parameters::{Parameter, Value};
 pub use patch_file::{FaceShape, Grid, NotDoubled, PatchFile, PatchGroup, TableExtrapolation};
@@ -143,59 +147,6 @@ impl Layer {
             LinkKind::LateralX => self.lateral_x.as_mut(),
             LinkKind::LateralZ => self.lateral_z.as_mut(),
         }
-    }
-}
-
-/// The four kinds of link.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum LinkKind {
-    /// Carrier to mass, along z: elongation ζ_i - w.
-    Vertical,
-    /// Carrier to mass, along x: elongation ξ_i - u.
-    Horizontal,
-    /// Mass i to mass i+1, along x: elongation ξ_{i+1} - ξ_i.
-    LateralX,
-    /// Mass i to mass i+1, along z: elongation ζ_{i+1} - ζ_i.
-    LateralZ,
-}
-
-impl LinkKind {
-    /// The kinds in the order of the scene's keys; `kind as usize` counts them.
-    pub const ALL: [Self; 4] = [Self::Vertical, Self::Horizontal, Self::LateralX, Self::LateralZ];
-
-    /// The name of the link's table in `[layer]`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Vertical => "vertical",
-            Self::Horizontal => "horizontal",
-            Self::LateralX => "lateral_x",
-            Self::LateralZ => "lateral_z",
-        }
-    }
-
-    /// What the link joins, in a few words.
-    pub fn description(self) -> &'static str {
-        match self {
-            Self::Vertical => "vertical link (carrier to mass)",
-            Self::Horizontal => "horizontal link (carrier to mass)",
-            Self::LateralX => "lateral link along x (mass to mass)",
-            Self::LateralZ => "lateral link along z (mass to mass)",
-        }
-    }
-
-    /// Whether the link joins two masses.
-    pub fn is_lateral(self) -> bool {
-        matches!(self, Self::LateralX | Self::LateralZ)
-    }
-
-    /// Whether the link's elongation lies along x.
-    pub fn is_along_x(self) -> bool {
-        matches!(self, Self::Horizontal | Self::LateralX)
-    }
-
-    /// How many links of this kind a layer of `masses` ≥ 1 masses has.
-    pub fn count(self, masses: usize) -> usize {
-        masses - usize::from(self.is_lateral())
     }
 }
 

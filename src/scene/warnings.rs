@@ -84,7 +84,7 @@ fn carrier_reach(excitation: &[Phase]) -> Reach {
     for phase in excitation {
         let during = start.plus(phase.u.reach(phase.duration));
         whole = Reach { low: whole.low.min(during.low), high: whole.high.max(during.high) };
-        let end = phase.u.at(phase.duration);
+        let end = phase.u.at(phase.duration).position;
         // A phase that a force ends can end anywhere on its travel.
         start = if phase.until_force.or(phase.until_pressure).is_some() {
             during

@@ -3,15 +3,13 @@
 use std::sync::Arc;
 
 use super::controller::LengthBounds;
-use super::motion::{ModeChange, SimulationError, Start};
+use super::motion::{ModeChange, Motion, SimulationError, Start};
 use super::settings::Settings;
 use super::state::RunState;
 use crate::contact::{EventTolerance, decide_modes, free_unloaded, impacts_due, place_layer, stop_reversed};
 use crate::integrator::{DenseOutput, DenseWorkspace, Integrator, LayerWithin, Overlay};
-use crate::model::{
-    BodyStart, Carrier, CarrierPoint, Forces, LinkKind, Mode, Model, Piece, State, elastic_energy, kinetic_energy,
-};
-use crate::scene::Axis;
+use crate::model::{BodyStart, CarrierPoint, Forces, LinkKind, Mode, Model, State, elastic_energy, kinetic_energy};
+use crate::scene::{Axis, ByAxis};
 
 /// The longest step, as a fraction of the period of the carrier's sine: a longer one could alias the excitation, all
 /// stages seeing the same and the error estimate nothing.
@@ -40,7 +38,12 @@ pub(super) struct Context {
 
 impl Context {
     /// The context of a run with the layer placed under the carrier at `start`.
-    pub(super) fn new(model: Arc<Model>, settings: Settings, start: &Start, bodies: &[Option<BodyStart>; 2]) -> Self {
+    pub(super) fn new(
+        model: Arc<Model>,
+        settings: Settings,
+        start: &Start,
+        bodies: &ByAxis<Option<BodyStart>>,
+    ) -> Self {
         let state = RunState::new(&model, &settings, start, bodies);
         let mut context = Self {
             integrator: settings.integrator(&model),
@@ -93,16 +96,15 @@ impl Context {
         self.dense = DenseWorkspace::new(&self.model);
     }
 
-    /// Begins a motion of `duration` (s) on a smooth `piece`. At a kink the damper forces jump, so all modes are decided
+    /// Begins a smooth motion. At a kink the damper forces jump, so all modes are decided
     /// anew.
-    pub(super) fn begin(&mut self, piece: &Piece, duration: f64) {
+    pub(super) fn begin(&mut self, motion: &Motion) {
         let state = &mut self.state;
-        let rates = |carrier: &Carrier, s: f64| (carrier.at(s).u_rate, carrier.at(s).w_rate);
-        let before = rates(&state.carrier, state.s);
-        let jumps = state.carrier.begin(state.s, piece, &self.model);
+        let before = state.carrier.at(state.s).rates();
+        let jumps = state.carrier.begin(state.s, motion, &self.model);
         state.s = 0.0;
-        self.integrator.begin_tangents(duration);
-        if !state.rates_valid || rates(&state.carrier, 0.0) != before {
+        self.integrator.begin_tangents(motion.duration);
+        if !state.rates_valid || state.carrier.at(0.0).rates() != before {
             self.change_modes(0.0);
             return;
         }
@@ -218,7 +220,7 @@ impl Context {
     /// Whether a step shorter than a good one needs no error test. Where friction falls with the speed the stages may
     /// have several solutions, and the two need not find the same.
     pub(super) fn shorter_is_no_worse(&self) -> bool {
-        !self.model.friction_depends_on_speed()
+        !self.model.friction.depends_on_speed()
     }
 
     /// The bounds of the next step of a motion of `duration`, s.
@@ -287,7 +289,7 @@ impl Context {
 
     /// See [`Simulation::lower_carrier`](super::Simulation::lower_carrier).
     pub(super) fn lower_carrier(&mut self, way: f64) {
-        self.state.carrier.w -= way;
+        self.state.carrier.start.z -= way;
         let elongations = &mut self.state.layer.state.elongation_z;
         elongations.iter_mut().for_each(|elongation| *elongation += way);
         self.state.rates_valid = false;

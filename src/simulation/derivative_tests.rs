@@ -35,7 +35,7 @@ fn runs(scene: &Scene) -> Vec<Simulation> {
 fn moved(simulation: &Simulation, (du, dw): (f64, f64)) -> Simulation {
     let mut simulation = simulation.clone();
     let Context { model, state, .. } = &mut simulation.run.context;
-    (state.carrier.u, state.carrier.w) = (state.carrier.u + du, state.carrier.w + dw);
+    (state.carrier.start.x, state.carrier.start.z) = (state.carrier.start.x + du, state.carrier.start.z + dw);
     let layer = &mut state.layer.state;
     layer.elongation_x.iter_mut().for_each(|e| *e -= du);
     layer.elongation_z.iter_mut().for_each(|e| *e -= dw);

@@ -31,7 +31,7 @@ use std::sync::Arc;
 
 use crate::model::Model;
 use crate::outputs::{Output, Snapshot, Variable};
-use crate::scene::{Axis, ParameterError, Scene};
+use crate::scene::{Axis, ByAxis, ParameterError, Scene};
 use context::Context;
 use controller::WorkLimit;
 pub use motion::{Divergence, MethodSwitch, ModeChange, Motion, OutOfRange, SimulationError, Start};
@@ -81,9 +81,9 @@ impl Simulation {
     fn started(scene: &Scene, start: &Start) -> Self {
         let mut model = Model::new(scene);
         let bodies = body_starts(scene, &model, start);
-        let [u, w] = [(start.u, bodies[0]), (start.w, bodies[1])]
-            .map(|(prescribed, body)| body.map_or(prescribed, |body| body.displacement));
-        model.freeze_dashpots(u, w);
+        let prescribed = ByAxis { x: start.u, z: start.w };
+        let at = |axis| bodies[axis].map_or(prescribed[axis], |body| body.displacement);
+        model.freeze_dashpots(ByAxis::from_fn(at));
         let model = Arc::new(model);
         let settings = Settings::new(scene, &model);
         let reference_run = settings.accounts.solver.then(|| ReferenceRun::new(&model, &settings, start, &bodies));
@@ -145,8 +145,8 @@ impl Simulation {
     }
 
     /// Makes the model that of a run that started at these u and w, m.
-    fn freeze_dashpots(&mut self, [u, w]: [f64; 2]) {
-        Arc::make_mut(&mut self.run.context.model).freeze_dashpots(u, w);
+    fn freeze_dashpots(&mut self, start: ByAxis<f64>) {
+        Arc::make_mut(&mut self.run.context.model).freeze_dashpots(start);
         self.share_model();
     }
 
@@ -178,7 +178,8 @@ impl Simulation {
 
     /// Displacement of the carrier: u and w, m.
     pub fn carrier(&self) -> (f64, f64) {
-        self.run.context.state.displacement()
+        let ByAxis { x: u, z: w } = self.run.context.state.displacement();
+        (u, w)
     }
 
     /// Displacements of the carrier where they are prescribed, of the drive where the carrier is a body: û and ŵ, m.
@@ -331,15 +332,19 @@ impl Simulation {
         let (force_x, force_z) = self.run.context.force_rates();
         let (carrier, s) = (&self.run.context.state.carrier, self.run.context.state.s);
         let point = carrier.at(s);
+        let drive = |axis| {
+            let model = &self.run.context.model;
+            carrier.outside(model, axis, s).map_or(0.0, |(body, outside)| outside.drive_force_rate(body))
+        };
         match output {
             Output::ForceX => force_x,
             Output::ForceZ => force_z,
-            Output::CarrierU => point.u_rate,
-            Output::CarrierW => point.w_rate,
-            Output::CarrierURate => point.u_acceleration,
-            Output::CarrierWRate => point.w_acceleration,
-            Output::DriveX => carrier.drive_force_rate(&self.run.context.model, Axis::X, s),
-            Output::DriveZ => carrier.drive_force_rate(&self.run.context.model, Axis::Z, s),
+            Output::CarrierU => point.x.speed,
+            Output::CarrierW => point.z.speed,
+            Output::CarrierURate => point.x.acceleration,
+            Output::CarrierWRate => point.z.acceleration,
+            Output::DriveX => drive(Axis::X),
+            Output::DriveZ => drive(Axis::Z),
             _ => 0.0,
         }
     }

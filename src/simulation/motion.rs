@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+pub use crate::scene::Motion;
 use crate::scene::{Force, LARGEST, ParameterError, Path, is_possible};
 
 /// The carrier at the start of a run. Along the axis of a body the displacements and speeds are those of its drive; where the
@@ -23,23 +24,6 @@ pub struct Start {
     /// Tangential force on a body along x without its constant part, N.
     pub pull: f64,
     /// The layer's temperature, K, where it is an input; `None`: the material's.
-    pub temperature: Option<f64>,
-}
-
-/// One smooth piece of the carrier's motion, from where the carrier stands.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Motion {
-    /// Duration, s.
-    pub duration: f64,
-    /// Displacement along x; of the drive of a body.
-    pub u: Path,
-    /// Displacement along z; of the drive of a body.
-    pub w: Path,
-    /// The load on a body along z without its constant part.
-    pub load: Force,
-    /// The tangential force on a body along x without its constant part.
-    pub pull: Force,
-    /// The layer's temperature, K, where it is an input; `None`: as it was.
     pub temperature: Option<f64>,
 }
 

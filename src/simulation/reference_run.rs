@@ -15,7 +15,7 @@ use super::settings::Settings;
 use super::state::RunState;
 use crate::contact::EventTolerance;
 use crate::integrator::Tolerance;
-use crate::model::{BodyStart, Model};
+use crate::model::{BodyStart, ByAxis, Model};
 use crate::outputs::{Accounts, Monitored, Snapshot};
 
 /// The reference run's tolerance, as a fraction of the run's.
@@ -55,7 +55,12 @@ pub(super) struct ReferenceRun {
 
 impl ReferenceRun {
     /// The reference run of one with these `settings`.
-    pub(super) fn new(model: &Arc<Model>, settings: &Settings, start: &Start, bodies: &[Option<BodyStart>; 2]) -> Self {
+    pub(super) fn new(
+        model: &Arc<Model>,
+        settings: &Settings,
+        start: &Start,
+        bodies: &ByAxis<Option<BodyStart>>,
+    ) -> Self {
         let run = Run::new(Arc::clone(model), settings.tighter(model), start, bodies);
         let work = WorkLimit::new(run.context.settings.max_steps);
         Self { run, duration: 0.0, work, steps_of_run: 0, pending: None, failed: false }

@@ -12,9 +12,9 @@ use super::state::RunState;
 use super::stepper::Stepper;
 use super::time_stepping::TimeStepping;
 use crate::math::bracketed_root;
-use crate::model::{BodyStart, Model, Piece};
+use crate::model::{BodyStart, ByAxis, Model};
 use crate::outputs::{Energies, LayerView, Snapshot};
-use crate::scene::Method;
+use crate::scene::{Axis, Method};
 
 /// Mean number of mode changes per time step above which the run switches to time-stepping: 1.5 times the break-even of
 /// 1/3, so that a few changes are still located.
@@ -66,7 +66,12 @@ pub(super) struct Run {
 
 impl Run {
     /// A run with the layer placed under the carrier at `start`.
-    pub(super) fn new(model: Arc<Model>, settings: Settings, start: &Start, bodies: &[Option<BodyStart>; 2]) -> Self {
+    pub(super) fn new(
+        model: Arc<Model>,
+        settings: Settings,
+        start: &Start,
+        bodies: &ByAxis<Option<BodyStart>>,
+    ) -> Self {
         let local_regions = LocalRegions::new(&model, &settings);
         let event_driven = EventDriven::new(&model, !local_regions.is_empty());
         let time_stepping = TimeStepping::new(&model, settings.method != Method::Event);
@@ -134,8 +139,7 @@ impl Run {
     pub(super) fn begin(&mut self, motion: &Motion) {
         self.event_driven.begin();
         self.local_regions.close();
-        let piece = Piece { paths: (motion.u, motion.w), forces: (motion.pull, motion.load) };
-        self.context.begin(&piece, motion.duration);
+        self.context.begin(motion);
     }
 
     /// The steps of the method that has the run now.
@@ -246,7 +250,7 @@ impl Run {
     pub(super) fn snapshot(&mut self) -> Snapshot<'_> {
         self.context.evaluate_forces();
         let Context { model, state, forces, .. } = &self.context;
-        let on_carrier = (forces.on_carrier_x(), forces.on_carrier_z());
+        let on_carrier = (forces.on_carrier(Axis::X), forces.on_carrier(Axis::Z));
         snapshot_of((model, state), state.s, LayerView::at(&state.layer.state, forces), on_carrier)
     }
 

@@ -2,12 +2,12 @@
 
 use super::motion::Start;
 use crate::model::{BodyStart, Model};
-use crate::scene::{Axis, CarrierInitial, Scene};
+use crate::scene::{Axis, ByAxis, CarrierInitial, Scene};
 
 /// Where and how fast the bodies of `scene` start, along x and z; `None` where the displacement is prescribed.
-pub(super) fn body_starts(scene: &Scene, model: &Model, start: &Start) -> [Option<BodyStart>; 2] {
+pub(super) fn body_starts(scene: &Scene, model: &Model, start: &Start) -> ByAxis<Option<BodyStart>> {
     let at_start = |axis: Axis, drive: f64, force: f64| {
-        let body = scene.carrier.along(axis)?;
+        let body = scene.carrier[axis].as_ref()?;
         // Without a drive there is none to follow.
         let drive = if body.has_drive() { drive } else { 0.0 };
         let displacement = body.start.unwrap_or(drive);
@@ -20,14 +20,14 @@ pub(super) fn body_starts(scene: &Scene, model: &Model, start: &Start) -> [Optio
         let u = x.map_or(start.u, |x| x.displacement);
         z.displacement = equilibrium_of(model, scene.bearing_stiffness(), u, z);
     }
-    [x, z]
+    ByAxis { x, z }
 }
 
 /// The displacement w at which the springs of the masses that it lifts, of stiffness `bearing` (N/m) each, and the drive's
 /// bear the load of a carrier at `u` (m), m: Σ C max(0, h_i - w) = N + K (w - w_d), h_i = z_r(X_i + u) - Z_i. The left side
 /// falls with w and the right one does not, so there is one solution, linear between two heights.
 fn equilibrium_of(model: &Model, bearing: f64, u: f64, start: &BodyStart) -> f64 {
-    let Some(body) = &model.bodies[Axis::Z as usize] else { return start.displacement };
+    let Some(body) = &model.bodies[Axis::Z] else { return start.displacement };
     let position = model.profile.reduce(u);
     let height = |i: usize| model.surface_at(model.rest_x[i] + position).height - model.rest_z[i];
     let mut heights: Vec<f64> = (0..model.masses()).map(height).collect();
@@ -65,7 +65,7 @@ mod tests {
         );
         let scene = Scene::parse(&text, "a.toml".as_ref()).unwrap();
         let model = Model::new(&scene);
-        body_starts(&scene, &model, &Start { w: 0.5, ..Start::default() })[1].unwrap().displacement
+        body_starts(&scene, &model, &Start { w: 0.5, ..Start::default() }).z.unwrap().displacement
     }
 
     /// Heights under which masses touch: 0.2, -0.1, -0.3. Two springs bear 2 (0.2 - w) + 2 (-0.1 - w).

@@ -8,7 +8,7 @@ use super::settings::Settings;
 use crate::integrator::{LayerState, Rates, StepSpan};
 use crate::model::{BodyStart, Carrier, CarrierPosition, Mode, Model, State, Tangents};
 use crate::outputs::{Counters, Energies};
-use crate::scene::{Axis, Method, ParameterError, Path, is_possible};
+use crate::scene::{Axis, ByAxis, Method, ParameterError, Path, is_possible};
 
 /// The first step to try, as a fraction of the stiffest period over 2π; the error test corrects it at once.
 const FIRST_STEP: f64 = 0.1;
@@ -54,7 +54,7 @@ pub(super) struct RunState {
     /// The derivatives with respect to the targets of the last motion; 0 before the first.
     pub tangents: Tangents,
     /// u and w at the start of the run, m.
-    pub start: [f64; 2],
+    pub start: ByAxis<f64>,
     /// The layer's temperature, K; 0 where it is no input.
     pub temperature: f64,
     /// Whether time-stepping is active, or the event-driven method.
@@ -65,15 +65,15 @@ pub(super) struct RunState {
 
 impl RunState {
     /// A run of `model` that starts at `start`, before the masses are placed.
-    pub(super) fn new(model: &Model, settings: &Settings, start: &Start, bodies: &[Option<BodyStart>; 2]) -> Self {
+    pub(super) fn new(model: &Model, settings: &Settings, start: &Start, bodies: &ByAxis<Option<BodyStart>>) -> Self {
         let path = |rate| Path { rate, ..Path::default() };
-        let paths = (path(start.u_rate), path(start.w_rate));
-        let mut carrier = Carrier::new(start.time, (start.u, start.w), paths, &model.profile);
-        for (axis, body) in Axis::ALL.into_iter().zip(bodies) {
-            body.iter().for_each(|body| carrier.start_body(axis, body, &model.profile));
+        let paths = ByAxis { x: path(start.u_rate), z: path(start.w_rate) };
+        let mut carrier = Carrier::new(start.time, ByAxis { x: start.u, z: start.w }, paths, &model.profile);
+        for axis in Axis::ALL {
+            bodies[axis].iter().for_each(|body| carrier.start_body(axis, body, &model.profile));
         }
         Self {
-            start: [carrier.u, carrier.w],
+            start: carrier.start,
             temperature: start.temperature.unwrap_or(0.0),
             carrier,
             s: 0.0,
@@ -115,14 +115,13 @@ impl RunState {
     }
 
     /// u and w, m.
-    pub(super) fn displacement(&self) -> (f64, f64) {
+    pub(super) fn displacement(&self) -> ByAxis<f64> {
         self.displacement_at(self.s)
     }
 
     /// u and w `s` seconds after the start of the carrier's piece, m.
-    pub(super) fn displacement_at(&self, s: f64) -> (f64, f64) {
-        let point = self.carrier.at(s);
-        (self.carrier.u + point.du, self.carrier.w + point.dw)
+    pub(super) fn displacement_at(&self, s: f64) -> ByAxis<f64> {
+        self.carrier.displacement(s)
     }
 
     /// A step of length `h` (s) from here.
@@ -145,9 +144,9 @@ impl RunState {
         if !self.carrier.has_bodies() {
             return Ok(());
         }
-        let (u, w) = self.displacement();
+        let ByAxis { x: u, z: w } = self.displacement();
         let point = self.carrier.at(self.s);
-        let numbers = [("u", u), ("w", w), ("rate of u", point.u_rate), ("rate of w", point.w_rate)];
+        let numbers = [("u", u), ("w", w), ("rate of u", point.x.speed), ("rate of w", point.z.speed)];
         match numbers.into_iter().find(|(_, value)| !is_possible(*value)) {
             Some((what, value)) => Err(OutOfRange { what, value }),
             None => Ok(()),
@@ -204,7 +203,7 @@ impl RunState {
         }
         check_layer(&self.layer, &present.layer)?;
         check_numbers(self)?;
-        check_modes(&self.layer.state.mode, model.has_friction)?;
+        check_modes(&self.layer.state.mode, model.friction.present)?;
         self.check_surface(model, settings.tolerance.position)
     }
 
@@ -215,10 +214,10 @@ impl RunState {
     fn check_surface(&self, model: &Model, tolerance: f64) -> Result<(), RestoreError> {
         let (state, mut carrier) = (&self.layer.state, self.carrier);
         carrier.find_profile_position(&model.profile);
-        let position = carrier.profile_position + carrier.at(self.s).du;
+        let position = carrier.profile_position + carrier.at(self.s).x.position;
         let fits = |i: usize| {
             let x = model.rest_x[i] + (position + state.elongation_x[i]);
-            let summed = x.abs() + state.elongation_x[i].abs() + carrier.u.abs();
+            let summed = x.abs() + state.elongation_x[i].abs() + carrier.start.x.abs();
             let reach = tolerance + POSITION_ROUNDING * summed;
             let (found, here) = (&state.surface[i], model.surface_at(x));
             let bounds = model.profile.local_bounds(x - reach, x + reach);
@@ -259,7 +258,8 @@ fn arrays(layer: &LayerState) -> [(&'static str, &[f64]); 15] {
     let State { elongation_x, elongation_z, velocity_x, velocity_z, maxwell, mode: _, surface: _ } = &layer.state;
     let rates = &layer.rates;
     let Rates { velocity_x: rate_x, velocity_z: rate_z, acceleration_x, acceleration_z, .. } = rates;
-    let Rates { elongation_rate: [vertical, horizontal, lateral_x, lateral_z], normal, margin, .. } = rates;
+    let Rates { elongation_rate, normal, margin, .. } = rates;
+    let [vertical, horizontal, lateral_x, lateral_z] = &elongation_rate.0;
     [
         ("elongations along x", elongation_x),
         ("elongations along z", elongation_z),
@@ -294,7 +294,7 @@ fn check_numbers(run: &RunState) -> Result<(), RestoreError> {
         ("the time between events", &[event_spacing]),
         ("the time since the last event", &[since_event]),
         ("the step after the last event", &[step_after_event]),
-        ("the carrier's displacement at the start", &run.start),
+        ("the carrier's displacement at the start", &[run.start.x, run.start.z]),
         ("the temperature", &[run.temperature]),
         ("the mode changes per time step", &[run.mode_changes_per_step]),
     ];
@@ -437,7 +437,7 @@ mod tests {
         let before = simulation.state();
         let mut state = before.clone();
         state.reference_run.as_mut().unwrap().s = -1.0;
-        state.run.start = [1.0, 1.0];
+        state.run.start = ByAxis { x: 1.0, z: 1.0 };
         assert!(simulation.set_state(&state).is_err());
         assert_eq!(simulation.state(), before);
     }

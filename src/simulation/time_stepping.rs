@@ -8,6 +8,7 @@ use super::stepper::{ErrorTest, Stepper};
 use crate::contact::{EndCorrection, FixedModeStep, longest_weakening};
 use crate::integrator::{StepAttempt, TwoStageDense};
 use crate::model::{ChannelEnergies, Model};
+use crate::scene::Axis;
 
 /// A new step is this fraction of what the error allows. Mode changes come unforeseen, so it is less than in smooth
 /// motion.
@@ -150,7 +151,7 @@ impl Stepper for TimeStepping {
     /// where they change F_z little.
     fn can_show(&self, context: &Context, h: f64, theta: f64) -> bool {
         let (correction, relative) = (&self.end_correction, context.settings.tolerance.relative);
-        let allowed = MAX_UNCORRECTED * relative * context.integrator.end_forces().on_carrier_z().abs();
+        let allowed = MAX_UNCORRECTED * relative * context.integrator.end_forces().on_carrier(Axis::Z).abs();
         correction.uncorrected_force() < allowed || correction.comes_after(&dense_output(context, h), theta)
     }
 }

@@ -50,8 +50,8 @@ impl Drive {
         assert_eq!((fmu.setup(start.time), fmu.enter()), (OK, OK), "{}", case.name);
         let first = scene.excitation.first();
         let rates = [
-            first.map_or(start.u_rate, |phase| phase.u.velocity(0.0)),
-            first.map_or(start.w_rate, |phase| phase.w.velocity(0.0)),
+            first.map_or(start.u_rate, |phase| phase.u.at(0.0).speed),
+            first.map_or(start.w_rate, |phase| phase.w.at(0.0).speed),
         ];
         let position = [start.u, start.w];
         for (name, (value, rate)) in ["u", "w"].into_iter().zip(position.into_iter().zip(rates)) {
@@ -134,10 +134,11 @@ impl Drive {
             for i in 0..count {
                 let h = at(i + 1) - at(i);
                 let rates = [phase.u.change(at(i), h) / h, phase.w.change(at(i), h) / h];
-                self.position = [start[0] + phase.u.at(at(i)), start[1] + phase.w.at(at(i))];
+                self.position = [start[0] + phase.u.at(at(i)).position, start[1] + phase.w.at(at(i)).position];
                 self.step(h, rates.map(Some), Answer::Ok)?;
             }
-            self.position = [start[0] + phase.u.at(phase.duration), start[1] + phase.w.at(phase.duration)];
+            self.position =
+                [start[0] + phase.u.at(phase.duration).position, start[1] + phase.w.at(phase.duration).position];
         }
         Ok(())
     }

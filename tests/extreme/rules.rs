@@ -108,7 +108,7 @@ impl Limits {
     /// |F_T| ≤ T, but for the tolerance within which a break is located and the row's own error.
     fn friction(&self, normal: f64, friction: f64, mode: f64) -> Option<String> {
         // On the area that touches at rest: the rubber is no softer in slip.
-        let share = self.model.real_area.as_ref().map_or(1.0, |area| area.at_rest(normal.max(0.0)).value);
+        let share = self.model.friction.area_share(normal.max(0.0), 0.0).value;
         let limit = self.friction.0 * normal.max(0.0) + share * (self.friction.1 + self.rate_limit(mode));
         let slack = self.force * (1.0 + self.friction.0) + self.relative * limit;
         (friction.abs() > limit + slack).then(|| format!("|F_T| = {:.2e} above {limit:.2e}", friction.abs()))
@@ -162,7 +162,7 @@ impl Limits {
 /// where nothing has, N/m.
 fn softest(model: &Model) -> f64 {
     let softest = |kinds: &[f64]| kinds.iter().copied().filter(|&c| c > 0.0).reduce(f64::min);
-    let [carrier, between] = [&model.glassy[..2], &model.glassy[2..]].map(softest);
+    let [carrier, between] = [&model.glassy.0[..2], &model.glassy.0[2..]].map(softest);
     carrier.or(between).unwrap_or_else(|| model.mass * model.stiffest_frequency().powi(2))
 }
 

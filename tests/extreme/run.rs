@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use asperity::outputs::{self, Snapshot, Variable};
 use asperity::robustness::{ForceHistory, ScaledQuantity};
-use asperity::scene::Scene;
+use asperity::scene::{ByAxis, Scene};
 use asperity::simulation::{Motion, Simulation, SimulationError, Start};
 use toml::{Table, Value};
 
@@ -137,8 +137,8 @@ pub fn by_library_scaled(
 fn follow(case: &Case, scene: &Scene) -> Outcome {
     let first = scene.excitation.first();
     let start = Start {
-        u_rate: first.map_or(0.0, |phase| phase.u.velocity(0.0)),
-        w_rate: first.map_or(0.0, |phase| phase.w.velocity(0.0)),
+        u_rate: first.map_or(0.0, |phase| phase.u.at(0.0).speed),
+        w_rate: first.map_or(0.0, |phase| phase.w.at(0.0).speed),
         load: scene.first_load(),
         pull: scene.first_pull(),
         ..case.start
@@ -197,7 +197,7 @@ impl Watch {
 
     fn look(&mut self, snapshot: &Snapshot<'_>) {
         snapshot.evaluate(&self.variables, &mut self.values);
-        let (u, w) = snapshot.displacement;
+        let ByAxis { x: u, z: w } = snapshot.displacement;
         self.note(snapshot.time, [u, w]);
     }
 

@@ -103,7 +103,7 @@ impl Case {
         let (key, value) = tolerance.split_once('=').unwrap();
         scene.set_by_name(key, value).unwrap();
         let first = &scene.excitation[0];
-        let start = Start { u_rate: first.u.velocity(0.0), w_rate: first.w.velocity(0.0), ..Start::default() };
+        let start = Start { u_rate: first.u.at(0.0).speed, w_rate: first.w.at(0.0).speed, ..Start::default() };
         let mut simulation = Simulation::new(&scene, &start).unwrap();
         simulation.record_mode_changes(true);
         for phase in &scene.excitation {

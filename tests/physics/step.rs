@@ -38,7 +38,7 @@ struct Run {
 impl Run {
     fn of(scene: &Scene) -> Self {
         let first = &scene.excitation[0];
-        let start = Start { u_rate: first.u.velocity(0.0), w_rate: first.w.velocity(0.0), ..Start::default() };
+        let start = Start { u_rate: first.u.at(0.0).speed, w_rate: first.w.at(0.0).speed, ..Start::default() };
         let mut simulation = Simulation::new(scene, &start).unwrap();
         let variables = variables(scene);
         let values = |snapshot: &Snapshot<'_>| {

@@ -8,12 +8,13 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::{StagePoint, StageSolver};
-use crate::model::{Axis, Body, Forces, LinkKind, Mode, Model, Outside};
+use crate::math::Jet;
+use crate::model::{Axis, Body, ByAxis, Forces, LinkKind, Mode, Model, Outside};
 
 /// The rows and columns of the bodies.
 #[derive(Clone, Debug)]
 pub(in crate::integrator) struct Border {
-    sides: [Option<Side>; 2],
+    sides: ByAxis<Option<Side>>,
     /// The Schur complement, inverted.
     inverse: Matrix2<f64>,
 }
@@ -54,7 +55,7 @@ pub(in crate::integrator) struct BodyHistory {
 impl Border {
     pub(super) fn new(model: &Model) -> Option<Box<Self>> {
         let side = |axis: Axis| {
-            let body = model.bodies[axis as usize]?;
+            let body = model.bodies[axis]?;
             let zero = vec![Vector2::zeros(); model.masses()];
             Some(Side {
                 axis,
@@ -68,13 +69,13 @@ impl Border {
                 inertia: 0.0,
             })
         };
-        let sides = Axis::ALL.map(side);
-        sides.iter().any(Option::is_some).then(|| Box::new(Self { sides, inverse: Matrix2::zeros() }))
+        let sides = ByAxis::from_fn(side);
+        sides.any().then(|| Box::new(Self { sides, inverse: Matrix2::zeros() }))
     }
 
     /// Sets what a stage knows of the body along `axis`.
     pub(in crate::integrator) fn prepare(&mut self, axis: Axis, star: BodyHistory, outside: Outside) {
-        if let Some(side) = &mut self.sides[axis as usize] {
+        if let Some(side) = &mut self.sides[axis] {
             (side.star, side.outside) = (star, outside);
         }
     }
@@ -94,7 +95,8 @@ impl Border {
         let product = |row: &Side, column: &Side| -> f64 {
             row.row.iter().zip(&column.column).map(|(row, column)| row.dot(column)).sum()
         };
-        let element = |i: usize, j: usize| match (&self.sides[i], &self.sides[j]) {
+        let sides = [&self.sides.x, &self.sides.z];
+        let element = |i: usize, j: usize| match (sides[i], sides[j]) {
             (Some(row), Some(column)) => (if i == j { row.diagonal } else { 0.0 }) - product(row, column),
             _ => f64::from(u8::from(i == j)),
         };
@@ -112,7 +114,7 @@ impl Border {
                 side.right - side.row.iter().zip(&*masses).map(|(row, mass)| row.dot(mass)).sum::<f64>()
             })
         };
-        let found = self.inverse * Vector2::new(left(&self.sides[0]), left(&self.sides[1]));
+        let found = self.inverse * Vector2::new(left(&self.sides.x), left(&self.sides.z));
         for (side, found) in self.sides.iter().zip(found.iter()) {
             let Some(side) = side else { continue };
             masses.iter_mut().zip(&side.column).for_each(|(mass, column)| *mass -= column * *found);
@@ -146,7 +148,7 @@ impl StageSolver {
             Axis::X => (LinkKind::Horizontal, LinkKind::LateralX, 0),
             Axis::Z => (LinkKind::Vertical, LinkKind::LateralZ, 1),
         };
-        let (own_law, lateral_law) = (&self.laws[own as usize], &self.laws[lateral as usize]);
+        let (own_law, lateral_law) = (&self.laws[own], &self.laws[lateral]);
         let inertia = model.mass / beta;
         let modes = &self.state.mode;
         side.column.fill(Vector2::zeros());
@@ -196,12 +198,14 @@ impl StageSolver {
     pub(super) fn move_bodies(&mut self, change: Vector2<f64>, point: &mut StagePoint) {
         let Some(border) = &mut self.border else { return };
         for side in border.sides() {
-            let rate = side.outside.body[1] + change[side.axis as usize];
+            let rate = side.outside.body.speed + change[side.axis as usize];
             let moved = side.star.moved + point.beta * rate;
             let displacement = side.star.start + moved;
-            let before = point.carrier.along(side.axis)[0];
-            side.outside.body = [side.outside.body[0] + (displacement - before), rate];
-            point.carrier.set_along(side.axis, [displacement, rate, (rate - side.star.rate) / point.beta]);
+            let before = point.carrier[side.axis].position;
+            let acceleration = (rate - side.star.rate) / point.beta;
+            let position = side.outside.body.position + (displacement - before);
+            side.outside.body = Jet { position, speed: rate, acceleration };
+            point.carrier[side.axis] = Jet { position: displacement, speed: rate, acceleration };
             match side.axis {
                 Axis::X => (point.integrated.0, point.moved) = (moved, moved),
                 Axis::Z => point.integrated.1 = moved,
@@ -213,7 +217,7 @@ impl StageSolver {
     pub(super) fn set_border_residuals(&mut self, beta: f64) {
         let Some(border) = &mut self.border else { return };
         for side in border.sides() {
-            let gained = side.body.mass * (side.outside.body[1] - side.star.rate) / beta;
+            let gained = side.body.mass * (side.outside.body.speed - side.star.rate) / beta;
             let outside = side.outside.force + side.outside.drive_force(&side.body) - gained;
             side.right = outside + with_free_masses(side.axis, &self.forces, &self.system.right, &self.state.mode);
         }
@@ -223,7 +227,7 @@ impl StageSolver {
     /// the right sides of the masses are set.
     pub(in crate::integrator) fn set_border_right(&mut self, axis: Axis, forces: &Forces, outside: f64) {
         let Some(border) = &mut self.border else { return };
-        if let Some(side) = &mut border.sides[axis as usize] {
+        if let Some(side) = &mut border.sides[axis] {
             side.right = outside + with_free_masses(axis, forces, &self.system.right, &self.state.mode);
         }
     }
@@ -232,7 +236,7 @@ impl StageSolver {
 /// The force of the links on the body along `axis` and the right sides of the free masses, N: what the links between the two
 /// exert cancels.
 fn with_free_masses(axis: Axis, forces: &Forces, right: &[Vector2<f64>], modes: &[Mode]) -> f64 {
-    let links = &forces.link[axis.link() as usize];
+    let links = &forces.link[axis.link()];
     let of_mass = |(i, (right, mode)): (usize, (&Vector2<f64>, &Mode))| {
         let link = links.get(i).copied().unwrap_or(0.0);
         if mode.in_contact() { link } else { link + right[axis as usize] }

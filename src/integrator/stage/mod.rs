@@ -23,7 +23,7 @@ use super::error::{NEWTON_SHARE, Tolerance};
 use super::rates::{NO_LIMIT, Rates};
 use crate::math::{BLOCK, BlockTridiagonal, Spline, weighted_sum, with_widest_vectors};
 use crate::model::{
-    CarrierPoint, ContactForces, Forces, FrictionPower, LinkKind, LinkMotion, Mode, Model, State, SurfacePoint,
+    ByLink, CarrierPoint, ContactForces, Forces, FrictionPower, LinkKind, LinkMotion, Mode, Model, State, SurfacePoint,
 };
 use newton::{ContactJacobian, NeighbourWeights, RateFriction, RowShares, largest_of};
 
@@ -46,7 +46,7 @@ pub(super) struct StageHistory {
     /// v*_z, m/s.
     pub velocity_z: Vec<f64>,
     /// H by kind of link, N; empty where the scene has no such link.
-    pub force: [Vec<f64>; 4],
+    pub force: ByLink<Vec<f64>>,
 }
 
 impl StageHistory {
@@ -63,8 +63,8 @@ impl StageHistory {
 
     /// Subtracts the forces of the frozen dashpots from H.
     fn subtract_frozen(&mut self, model: &Model) {
-        for kind in LinkKind::ALL.into_iter().filter(|&kind| model.links[kind as usize].frozen > 0.0) {
-            let force = &mut self.force[kind as usize];
+        for kind in LinkKind::ALL.into_iter().filter(|&kind| model.links[kind].frozen > 0.0) {
+            let force = &mut self.force[kind];
             if model.rows_of(kind).next().is_none() {
                 force.fill(0.0);
             }
@@ -90,12 +90,12 @@ pub(super) struct StagePoint {
 impl StagePoint {
     /// u at the stage as a position on the profile, m.
     fn profile_position(&self) -> f64 {
-        self.piece.0 + self.carrier.du
+        self.piece.0 + self.carrier.x.position
     }
 
     /// w at the stage, m.
     fn w(&self) -> f64 {
-        self.piece.1 + self.carrier.dw
+        self.piece.1 + self.carrier.z.position
     }
 }
 
@@ -178,7 +178,7 @@ pub(super) struct StageSolver {
     slip_speed: Vec<f64>,
     friction: Friction,
     /// By kind of link.
-    pub laws: [StageLaw; 4],
+    pub laws: ByLink<StageLaw>,
     /// The modes of which the following are lists.
     listed: Vec<Mode>,
     /// The masses in contact, in their order.
@@ -222,13 +222,13 @@ impl StageSolver {
             friction_power: FrictionPower::default(),
             slip_speed: vec![0.0; k],
             friction: Friction::Held,
-            laws: [StageLaw::default(); 4],
+            laws: ByLink::default(),
             listed: vec![Mode::Free; k],
             contacts: Vec::with_capacity(k),
             slips: Vec::with_capacity(k),
             sticks: Vec::with_capacity(k),
             slip_runs: Vec::with_capacity(k.div_ceil(2)),
-            rate: Vec::with_capacity(if model.friction_depends_on_speed() { k } else { 0 }),
+            rate: Vec::with_capacity(if model.friction.depends_on_speed() { k } else { 0 }),
             rows: vec![RowShares::default(); k],
             columns: vec![NeighbourWeights::default(); k],
             system: BlockTridiagonal::new(k),
@@ -274,7 +274,7 @@ impl StageSolver {
         self.slip_runs.clear();
         let runs = self.slips.chunk_by(|&i, &next| i + 1 == next);
         self.slip_runs.extend(runs.map(|run| run[0]..run[0] + run.len()));
-        if model.friction_depends_on_speed() {
+        if model.friction.depends_on_speed() {
             self.rate.resize(self.slips.len(), RateFriction::default());
         }
     }
@@ -286,7 +286,7 @@ impl StageSolver {
         }
         for row in &model.rows {
             let tau = row.relaxation_time;
-            self.laws[row.kind as usize].damping += row.stiffness * beta * tau / (tau + beta);
+            self.laws[row.kind].damping += row.stiffness * beta * tau / (tau + beta);
         }
         for law in &mut self.laws {
             law.weight = beta * law.stiffness + law.damping;
@@ -382,7 +382,7 @@ impl StageSolver {
                 self.factor_slips(model, point.beta);
             }
             let of_bodies = self.solve_bordered();
-            let steep = if model.friction_depends_on_speed() {
+            let steep = if model.friction.depends_on_speed() {
                 self.correct_along_friction_curve(model, point.beta)
             } else {
                 0.0
@@ -418,7 +418,7 @@ impl StageSolver {
         self.assemble_slips(model, beta);
         self.system.factor();
         self.factor_border(model, beta);
-        if self.factors == Factors::Outdated && model.friction_is_linear() {
+        if self.factors == Factors::Outdated && model.friction.is_linear() {
             self.factors = Factors::Held;
         }
     }
@@ -481,16 +481,16 @@ impl StageSolver {
             #[inline(always)]
             || {
                 self.set_rates(point, rates);
-                if model.friction_is_linear() {
+                if model.friction.is_linear() {
                     let Rates { acceleration_x, acceleration_z, normal, margin, .. } = rates;
                     set_contact_motion(acceleration_z, normal, acceleration_x, model, &self.state, &self.forces);
                     set_slips(&mut self.slip_speed, margin, model, &self.state);
                 }
             },
         );
-        if model.friction_is_linear() {
+        if model.friction.is_linear() {
             self.set_stick_rates(model, rates);
-            self.friction_power = FrictionPower::from_linear_law(model, &self.slip_speed, &rates.normal);
+            self.friction_power = FrictionPower::from_linear_law(&model.friction, &self.slip_speed, &rates.normal);
         } else {
             self.set_contact_rates(model, rates);
         }
@@ -535,8 +535,8 @@ impl StageSolver {
             }
             let contact = ContactForces::new(model, (f_x[i], f_z[i]), v, surface);
             rates.set_contact(model, i, mode, v, surface, &contact);
-            if mode.slips() && model.has_friction {
-                friction_power.add(model, mode, v, &contact);
+            if mode.slips() && model.friction.present {
+                friction_power.add(&model.friction, mode, v, &contact);
             }
         }
         self.friction_power = friction_power;
@@ -636,7 +636,7 @@ fn set_slips(slip_speed: &mut [f64], margin: &mut [f64], model: &Model, state: &
     let k = slip_speed.len();
     let (margin, mode) = (&mut margin[..k], &state.mode[..k]);
     let (surface, v_x) = (&state.surface[..k], &state.velocity_x[..k]);
-    let has_friction = model.has_friction;
+    let has_friction = model.friction.present;
     for i in 0..k {
         let (sigma, s) = (mode[i].direction(), surface[i].slope);
         let along_x = sigma * v_x[i];

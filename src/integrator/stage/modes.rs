@@ -7,7 +7,7 @@ impl StageSolver {
     /// Stops the slips that have reversed and breaks the sticks that hold more than T(0), by the velocities and forces
     /// evaluated last. Returns whether a mode has changed.
     pub(super) fn change_modes(&mut self, model: &Model, point: &StagePoint) -> bool {
-        if self.friction == Friction::Held || !model.has_friction {
+        if self.friction == Friction::Held || !model.friction.present {
             return false;
         }
         let mut changed = false;

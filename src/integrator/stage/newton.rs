@@ -7,8 +7,8 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::{StageHistory, StageLaw, StageSolver};
 use crate::math::with_widest_vectors;
-use crate::model::Axis;
-use crate::model::{ContactForces, Forces, FrictionCurve, Mode, Model, State, SurfacePoint};
+use crate::model::{Axis, ByLink};
+use crate::model::{ContactForces, Forces, LinearFriction, Mode, Model, State, SurfacePoint};
 
 impl StageSolver {
     /// Factors the Jacobian at the solution, for the tangents of the stage.
@@ -40,10 +40,10 @@ impl StageSolver {
             #[inline(always)]
             || set_linear_residuals(&mut system.right, model, state, history, forces, beta),
         );
-        if !model.friction_is_linear() {
+        if !model.friction.is_linear() {
             self.slip_residuals(model, 1.0 / beta);
         }
-        if model.friction_depends_on_speed() {
+        if model.friction.depends_on_speed() {
             self.add_rate_shear(model, beta);
         }
         self.set_border_residuals(beta);
@@ -102,7 +102,7 @@ impl StageSolver {
         }
         let k = self.state.mode.len();
         let inertia = model.mass / beta;
-        let [vertical, horizontal, lateral_x, lateral_z] = self.laws.map(|law| law.weight);
+        let [vertical, horizontal, lateral_x, lateral_z] = self.laws.0.map(|law| law.weight);
         let diagonal = |neighbours: f64| {
             let weights = (horizontal + neighbours * lateral_x, vertical + neighbours * lateral_z);
             Matrix2::new(inertia + weights.0, 0.0, 0.0, inertia + weights.1)
@@ -137,7 +137,7 @@ impl StageSolver {
     pub(super) fn assemble_slips(&mut self, model: &Model, beta: f64) {
         let Self { rows, columns, state, history, forces, laws, slip_runs, system, .. } = self;
         let stage = EvaluatedStage { model, state, history, forces, laws, beta };
-        if model.real_area.is_some() {
+        if !model.friction.is_linear_in_normal() {
             for i in slip_runs.iter().cloned().flatten() {
                 (system.diagonal[i], rows[i], columns[i]) = stage.assembled(i, &stage.slipping_mass(i));
             }
@@ -152,7 +152,7 @@ impl StageSolver {
                 },
             );
         }
-        if model.friction_depends_on_speed() {
+        if model.friction.depends_on_speed() {
             self.assemble_rate_shear(model, beta);
         }
         self.couple_slips();
@@ -182,7 +182,7 @@ struct EvaluatedStage<'a> {
     state: &'a State,
     history: &'a StageHistory,
     forces: &'a Forces,
-    laws: &'a [StageLaw; 4],
+    laws: &'a ByLink<StageLaw>,
     /// β of the stage, s.
     beta: f64,
 }
@@ -202,7 +202,7 @@ impl EvaluatedStage<'_> {
         let (rows, columns) = (&mut rows[..diagonal.len()], &mut columns[..diagonal.len()]);
         for n in 0..diagonal.len() {
             let i = start + n;
-            let slip = self.slipping_mass_under(TangentLaw::linear(self.model), i);
+            let slip = self.slipping_mass_under(self.model.friction.linear(), i);
             (diagonal[n], rows[n], columns[n]) = self.assembled(i, &slip);
         }
     }
@@ -214,7 +214,7 @@ impl EvaluatedStage<'_> {
 
     /// The same under this law of friction.
     #[inline(always)]
-    fn slipping_mass_under(&self, law: TangentLaw, i: usize) -> SlippingMass {
+    fn slipping_mass_under(&self, law: LinearFriction, i: usize) -> SlippingMass {
         let (sigma, surface) = (self.state.mode[i].direction(), &self.state.surface[i]);
         SlippingMass::under(law, sigma, surface, (self.state.velocity_x[i], self.acceleration(i)))
     }
@@ -228,7 +228,7 @@ impl EvaluatedStage<'_> {
     /// The diagonal block, row and column of mass `i`, which slips.
     #[inline(always)]
     fn assembled(&self, i: usize, slip: &SlippingMass) -> (Matrix2<f64>, RowShares, NeighbourWeights) {
-        let [vertical, horizontal, lateral_x, lateral_z] = self.laws;
+        let [vertical, horizontal, lateral_x, lateral_z] = self.laws.0;
         let (neighbours, climb) = (neighbours(i, self.state.mode.len()), slip.climb(self.beta));
         let along_z = lateral_z.along(climb);
         let weights = (horizontal.weight + neighbours * lateral_x.weight, vertical.along(climb) + neighbours * along_z);
@@ -277,7 +277,7 @@ fn set_linear_residuals(
     let (star_x, star_z) = (&history.velocity_x[..k], &history.velocity_z[..k]);
     let (f_x, f_z) = (&forces.on_mass_x[..k], &forces.on_mass_z[..k]);
     let (mode, surface) = (&state.mode[..k], &state.surface[..k]);
-    let (law, mass) = (TangentLaw::linear(model), model.mass);
+    let (law, mass) = (model.friction.linear(), model.mass);
     for i in 0..k {
         let (gained_x, gained_z) = (v_x[i] - star_x[i], v_z[i] - star_z[i]);
         let sigma = mode[i].direction();
@@ -352,22 +352,23 @@ impl SlippingMass {
     #[inline]
     fn new(model: &Model, mode: Mode, surface: &SurfacePoint, motion: (f64, f64), forces: (f64, f64)) -> Self {
         let sigma = mode.direction();
-        let law = if model.real_area.is_some() {
-            let (velocity, _) = motion;
-            TangentLaw::new(model, &ContactForces::new(model, forces, velocity, surface), sigma * velocity)
+        let law = if model.friction.is_linear_in_normal() {
+            model.friction.linear()
         } else {
-            TangentLaw::linear(model)
+            let (velocity, _) = motion;
+            let contact = ContactForces::without_limit(model.mass, forces, velocity, surface);
+            model.friction.tangent(contact.normal, sigma * velocity * contact.q)
         };
         Self::under(law, sigma, surface, motion)
     }
 
     /// A mass that slips in the direction `sigma` over `surface` with ẋ and ẍ (`motion`), under this law of friction.
     #[inline(always)]
-    fn under(law: TangentLaw, sigma: f64, surface: &SurfacePoint, (velocity, acceleration): (f64, f64)) -> Self {
-        let TangentLaw { normal, mu, shear } = law;
+    fn under(law: LinearFriction, sigma: f64, surface: &SurfacePoint, (velocity, acceleration): (f64, f64)) -> Self {
+        let LinearFriction { normal, coulomb, shear } = law;
         let s = surface.slope;
         let q2 = 1.0 + s * s;
-        let sigma_mu = sigma * mu;
+        let sigma_mu = sigma * coulomb;
         Self {
             s,
             kappa: surface.curvature,
@@ -445,6 +446,7 @@ impl SlippingMass {
         let (ds, dkappa) = (kappa * x, self.third * x);
         let centripetal = dkappa * v * v * share_z + 2.0 * kappa * v * v_x * share_z + kappa * v * v * ds;
         let rate_shear = model
+            .friction
             .slip_curve(self.normal)
             .map_or(0.0, |curve| self.rate_variation(curve.with_slope(self.sigma * self.speed()), v_x, s * ds));
         share_x * varied.0 + share_z * varied.1 + ds * (f_z - self.sigma_mu * f_x)
@@ -471,31 +473,6 @@ impl SlippingMass {
     #[inline(always)]
     fn climb(&self, beta: f64) -> ContactJacobian {
         ContactJacobian { height: beta * self.s, rate: self.s + beta * self.kappa * self.velocity }
-    }
-}
-
-/// A law of friction that is linear in the normal force, or its tangent.
-#[derive(Clone, Copy, Debug)]
-struct TangentLaw {
-    /// F_N, N; 0 where the law is linear.
-    normal: f64,
-    /// ∂T/∂F_N.
-    mu: f64,
-    /// T(0) less that times F_N, N.
-    shear: f64,
-}
-
-impl TangentLaw {
-    #[inline(always)]
-    fn linear(model: &Model) -> Self {
-        Self { normal: 0.0, mu: model.friction_coefficient, shear: model.shear_force }
-    }
-
-    /// At the forces of `contact` and the `speed` σẋ: out of the way of the usual, linear law.
-    #[inline(never)]
-    fn new(model: &Model, contact: &ContactForces, speed: f64) -> Self {
-        let mu = contact.limit_by_normal(model, speed * contact.q);
-        Self { normal: contact.normal, mu, shear: contact.limit - mu * contact.normal }
     }
 }
 
@@ -550,7 +527,7 @@ impl StageSolver {
         for n in 0..self.slips.len() {
             let i = self.slips[n];
             let slip = self.slipping_mass(model, i, beta);
-            let curve = model.slip_curve(slip.normal);
+            let curve = model.friction.slip_curve(slip.normal);
             self.rate[n].excess = curve.map_or((0.0, 0.0), |curve| curve.with_slope(slip.sigma * slip.speed()));
             self.system.right[i].x -= slip.sigma * slip.q * self.rate[n].excess.0;
         }
@@ -575,7 +552,7 @@ impl StageSolver {
         for (n, rate) in self.rate.iter().enumerate() {
             let i = self.slips[n];
             let slip = self.slipping_mass(model, i, beta);
-            let Some(curve) = model.slip_curve(slip.normal) else { return largest };
+            let Some(curve) = model.friction.slip_curve(slip.normal) else { return largest };
             let right = &mut self.system.right[i].x;
             let per_velocity = slip.sigma * slip.q;
             let (speed, by) = (slip.sigma * slip.speed(), per_velocity * *right);

@@ -136,7 +136,7 @@ fn unit_definition(xml: &mut Xml, unit: Unit) -> io::Result<()> {
 }
 
 fn input_description(definition: &Definition, input: Input) -> &'static str {
-    let has_body = |axis| matches!(definition, Definition::Layer(scene) if scene.carrier.along(axis).is_some());
+    let has_body = |axis| matches!(definition, Definition::Layer(scene) if scene.carrier[axis].as_ref().is_some());
     match (input, input.axis().is_some_and(has_body)) {
         (Input::U, false) => "Displacement of the carrier along x",
         (Input::W, false) => "Displacement of the carrier along z, negative presses",

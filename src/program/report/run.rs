@@ -6,7 +6,7 @@ use asperity::fmi::{Input, InputOutOfRange, Inputs};
 use asperity::outputs::{Output, Snapshot, Variable, variables};
 use asperity::robustness::{Budget, RunFailure};
 use asperity::scene::{OutputGroup, Phase, Scene};
-use asperity::simulation::{Simulation, SimulationError};
+use asperity::simulation::{Motion, Simulation, SimulationError};
 use cpu_time::ThreadTime;
 use indicatif::ProgressBar;
 
@@ -194,10 +194,10 @@ pub(super) fn drive(
     let mut master = Master::new(&limited, given, u).map_err(|error| failed(error.into()))?;
     let clock = ThreadTime::now();
     for (phase, points) in scene.excitation.iter().zip(points) {
-        let start = master.carrier;
+        let (motion, start) = (phase.motion(scene.layer.area()), master.carrier);
         let mut from = 0.0;
         for &to in points {
-            master.step(phase, start, from, to).map_err(failed)?;
+            master.step(&motion, start, from, to).map_err(failed)?;
             master.recorder.check(budget)?;
             from = to;
             tick(master.carrier.time / duration);
@@ -235,7 +235,7 @@ impl<'a> Master<'a> {
         inputs.set_input(Input::Load, scene.first_load());
         inputs.set_input(Input::Pull, scene.first_pull());
         if let Some(phase) = scene.excitation.first().filter(|_| given == Given::Rates) {
-            set_rates(&mut inputs, phase, scene.layer.area(), 0.0);
+            set_rates(&mut inputs, &phase.motion(scene.layer.area()), 0.0);
         }
         let mut simulation = Simulation::new(scene, &inputs.start(0.0))?;
         let mut recorder = TraceRecorder::new(scene);
@@ -244,31 +244,31 @@ impl<'a> Master<'a> {
         Ok(Self { scene, given, inputs, simulation, recorder, carrier })
     }
 
-    /// Does the communication step between two times (s) of the phase that began at `start`.
-    fn step(&mut self, phase: &Phase, start: CarrierSample, from: f64, to: f64) -> Result<(), StepError> {
+    /// Does the communication step between two times (s) of the `motion` that began at `start`.
+    fn step(&mut self, motion: &Motion, start: CarrierSample, from: f64, to: f64) -> Result<(), StepError> {
         // A force jumps at the start of a phase.
-        let at_start = if from == 0.0 { start.moved(phase, self.scene.layer.area(), 0.0) } else { self.carrier };
+        let at_start = if from == 0.0 { start.after(motion, 0.0) } else { self.carrier };
         for input in Input::MECHANICAL {
             self.inputs.set_input(input, at_start.input(input));
         }
         if self.given == Given::Rates {
-            set_rates(&mut self.inputs, phase, self.scene.layer.area(), from);
+            set_rates(&mut self.inputs, motion, from);
         }
         let (stands, h) = (self.simulation.driven(), to - from);
-        let motion = self.inputs.motion(stands, self.carrier.time, h, self.scene.extrapolation)?;
-        self.simulation.advance(&motion)?;
+        let step = self.inputs.motion(stands, self.carrier.time, h, self.scene.extrapolation)?;
+        self.simulation.advance(&step)?;
         self.inputs.complete_step(h);
         self.recorder.row(&self.simulation.snapshot());
-        self.carrier = start.moved(phase, self.scene.layer.area(), to);
+        self.carrier = start.after(motion, to);
         Ok(())
     }
 }
 
-fn set_rates(inputs: &mut Inputs, phase: &Phase, area: Option<f64>, s: f64) {
-    inputs.set_rate(Input::U, phase.u.velocity(s));
-    inputs.set_rate(Input::W, phase.w.velocity(s));
-    inputs.set_rate(Input::Load, phase.load(area).change.velocity(s));
-    inputs.set_rate(Input::Pull, phase.pull().change.velocity(s));
+fn set_rates(inputs: &mut Inputs, motion: &Motion, s: f64) {
+    inputs.set_rate(Input::U, motion.u.at(s).speed);
+    inputs.set_rate(Input::W, motion.w.at(s).speed);
+    inputs.set_rate(Input::Load, motion.load.change.at(s).speed);
+    inputs.set_rate(Input::Pull, motion.pull.change.at(s).speed);
 }
 
 /// What is read at every row, in this order.

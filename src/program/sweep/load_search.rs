@@ -106,7 +106,7 @@ struct WinklerFoundation {
 impl WinklerFoundation {
     /// The long-term vertical springs of the layer.
     fn new(model: &Model, heights: &[f64]) -> Self {
-        let stiffness = model.links[LinkKind::Vertical as usize].stiffness;
+        let stiffness = model.links[LinkKind::Vertical].stiffness;
         let stiffness = if stiffness > 0.0 { stiffness } else { model.mass_stiffness() };
         let mut rest = model.rest_z.clone();
         rest.sort_by(f64::total_cmp);

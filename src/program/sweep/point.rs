@@ -232,7 +232,7 @@ pub(super) fn find(scene: &Scene, speed: f64, load: f64, bounds: Bounds) -> Poin
     let scene = &Scene { carrier: CarrierBodies::default(), ..scene.clone() };
     let model = Model::new(scene);
     let (load, blocks) = (LoadSearch::estimated(load, scene, &model), Blocks::new(scene, speed));
-    let stiffness = model.links[LinkKind::Vertical as usize].stiffness;
+    let stiffness = model.links[LinkKind::Vertical].stiffness;
     let frequency = if stiffness > 0.0 { (stiffness / model.mass).sqrt() } else { model.stiffest_frequency() };
     match tangential_stiffness(scene, blocks, load, frequency) {
         Ok(found) => result.with_stiffness(found),

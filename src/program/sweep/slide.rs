@@ -169,15 +169,15 @@ impl Slide {
         let motion = Motion { duration, u: rate(self.blocks.speed), w: Path::default(), ..Motion::default() };
         let (mut values, mut sums) = (vec![0.0; self.sampled.len()], vec![0.0; self.sampled.len()]);
         self.elongations.fill(0.0);
-        let (before, rate_before) = (self.energies(), self.simulation.snapshot().carrier.w_rate);
+        let (before, rate_before) = (self.energies(), self.simulation.snapshot().carrier.z.speed);
         let (mut w, mut w_rate) = (0.0, 0.0);
         let (sampled, elongations) = (&self.sampled, &mut self.elongations);
         self.simulation.advance_observed(&motion, None, &self.times, |_, snapshot| {
             snapshot.evaluate(sampled, &mut values);
             add(&mut sums, &values);
             add(elongations, &snapshot.state().maxwell);
-            w += snapshot.displacement.1;
-            w_rate = snapshot.carrier.w_rate;
+            w += snapshot.displacement.z;
+            w_rate = snapshot.carrier.z.speed;
         })?;
         self.slid += 1.0;
         let share = 1.0 / f64::from(self.blocks.samples);

@@ -218,9 +218,9 @@ impl Parameter {
 }
 
 /// Where a Real parameter is in a scene, `None` where the scene does not have it: to be read (`field!(scene, parameter,
-/// as_ref, get, link, along)`) or changed (`field!(scene, parameter, as_mut, get_mut, link_mut, along_mut, mut)`).
+/// as_ref, get, link)`) or changed (`field!(scene, parameter, as_mut, get_mut, link_mut, mut)`).
 macro_rules! field {
-    ($scene:expr, $parameter:expr, $as_ref:ident, $get:ident, $link:ident, $along:ident $(, $mut:tt)?) => {{
+    ($scene:expr, $parameter:expr, $as_ref:ident, $get:ident, $link:ident $(, $mut:tt)?) => {{
         use Parameter::*;
         let scene = $scene;
         match $parameter {
@@ -241,13 +241,13 @@ macro_rules! field {
             WlfC2 => Some(&$($mut)? scene.material.$as_ref()?.wlf.$as_ref()?.c2),
             ReferenceTemperature => Some(&$($mut)? scene.material.$as_ref()?.wlf.$as_ref()?.reference_temperature),
             Temperature => Some(&$($mut)? scene.material.$as_ref()?.wlf.$as_ref()?.temperature),
-            CarrierMass(axis) => Some(&$($mut)? scene.carrier.$along(axis)?.mass),
-            CarrierStiffness(axis) => scene.carrier.$along(axis)?.stiffness.$as_ref(),
-            CarrierDamping(axis) => scene.carrier.$along(axis)?.damping.$as_ref(),
-            Load => scene.carrier.$along(Axis::Z)?.load.$as_ref(),
-            Pull => scene.carrier.$along(Axis::X)?.pull.$as_ref(),
-            CarrierStart(axis) => scene.carrier.$along(axis)?.start.$as_ref(),
-            CarrierStartRate(axis) => scene.carrier.$along(axis)?.start_rate.$as_ref(),
+            CarrierMass(axis) => Some(&$($mut)? scene.carrier[axis].$as_ref()?.mass),
+            CarrierStiffness(axis) => scene.carrier[axis].$as_ref()?.stiffness.$as_ref(),
+            CarrierDamping(axis) => scene.carrier[axis].$as_ref()?.damping.$as_ref(),
+            Load => scene.carrier[Axis::Z].$as_ref()?.load.$as_ref(),
+            Pull => scene.carrier[Axis::X].$as_ref()?.pull.$as_ref(),
+            CarrierStart(axis) => scene.carrier[axis].$as_ref()?.start.$as_ref(),
+            CarrierStartRate(axis) => scene.carrier[axis].$as_ref()?.start_rate.$as_ref(),
             Coulomb => scene.friction.$as_ref()?.coulomb.$as_ref(),
             ShearForce => scene.friction.$as_ref()?.shear_force.$as_ref(),
             ShearStrength => scene.friction.$as_ref()?.shear_strength.$as_ref(),
@@ -322,7 +322,7 @@ impl Scene {
         match parameter {
             Parameter::CreepSpeed => Some(self.friction.as_ref()?.rate_shear?.creep_speed()),
             Parameter::AbsoluteTolerance => Some(self.absolute_tolerance()),
-            _ => field!(self, parameter, as_ref, get, link, along).copied(),
+            _ => field!(self, parameter, as_ref, get, link).copied(),
         }
     }
 
@@ -365,7 +365,7 @@ impl Scene {
             // These follow others until they are set themselves.
             Parameter::CreepSpeed => self.friction.as_mut()?.rate_shear.as_mut()?.creep_speed = Some(number),
             Parameter::AbsoluteTolerance => self.solver.absolute_tolerance = Some(number),
-            _ => *field!(&mut *self, parameter, as_mut, get_mut, link_mut, along_mut, mut)? = number,
+            _ => *field!(&mut *self, parameter, as_mut, get_mut, link_mut, mut)? = number,
         }
         if matches!(parameter, Parameter::Thickness | Parameter::PoissonRatio) {
             self.refit();

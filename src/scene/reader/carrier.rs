@@ -101,7 +101,7 @@ fn read_temperature(table: &mut TableReader<'_>, input: TemperatureInput<'_>) ->
 }
 
 fn read_motion(table: &mut TableReader<'_>, keys: &PhaseKeys, carrier: &CarrierBodies) -> Result<Path> {
-    if carrier.along(keys.axis).is_some_and(|body| !body.has_drive()) {
+    if carrier[keys.axis].as_ref().is_some_and(|body| !body.has_drive()) {
         for key in [keys.rate, keys.sine] {
             let name = keys.axis.name();
             let reason =
@@ -114,7 +114,7 @@ fn read_motion(table: &mut TableReader<'_>, keys: &PhaseKeys, carrier: &CarrierB
 
 /// A force; `None` where the phase names none of its keys.
 fn read_force(table: &mut TableReader<'_>, keys: &ForceKeys, carrier: &CarrierBodies) -> Result<Option<Force>> {
-    if carrier.along(keys.axis).is_none() {
+    if carrier[keys.axis].as_ref().is_none() {
         for key in keys.all() {
             let name = keys.axis.name();
             refuse(table, key, format_args!("no such key without [carrier.{name}]: the displacement is prescribed"))?;

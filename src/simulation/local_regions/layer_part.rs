@@ -24,8 +24,7 @@ impl Model {
             (mine.relaxation_time, mine.time_index) = (theirs.relaxation_time, theirs.time_index);
         }
         self.relaxation_times.clone_from(&whole.relaxation_times);
-        (self.shear_force, self.rate_shear) = (whole.shear_force, whole.rate_shear);
-        self.real_area.clone_from(&whole.real_area);
+        self.friction.clone_from(&whole.friction);
     }
 
     /// Makes this part of `whole` the one from mass `first` on.

@@ -403,10 +403,10 @@ fn reach(model: &Model, relative: f64) -> Option<usize> {
             let half = 0.5 * own / lateral;
             if lateral > 0.0 { 1.0 / (1.0 + half + (half * (half + 2.0)).sqrt()) } else { 0.0 }
         };
-        let long_term = |kind: LinkKind| model.links[kind as usize].stiffness;
-        let glassy = |kind: LinkKind| model.glassy[kind as usize];
+        let long_term = |kind: LinkKind| model.links[kind].stiffness;
+        let glassy = |kind: LinkKind| model.glassy[kind];
         // Within a time t a mass is held by m/t + d + ct, at least by d + 2√(mc), and a damper passes d_l on.
-        let damping = |kind: LinkKind| model.links[kind as usize].damping;
+        let damping = |kind: LinkKind| model.links[kind].damping;
         let held = damping(own) + 2.0 * (model.mass * glassy(own)).sqrt();
         of(long_term(own), long_term(lateral)).max(of(glassy(own), glassy(lateral))).max(of(held, damping(lateral)))
     };

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::integrator::{DenseWorkspace, PartSums, STAGES, WholeLayer};
-use crate::model::{ChannelEnergies, EndForces, LinkKind, Model, State};
+use crate::model::{ByAxis, ChannelEnergies, EndForces, LinkKind, Model, State};
 use crate::outputs::{Counters, Energies};
 use crate::simulation::context::Context;
 use crate::simulation::controller::{Controller, TrialStep, WorkLimit};
@@ -39,7 +39,7 @@ impl LocalRegion {
         Self {
             whole: PartSums::new(&part, 0),
             stepper: EventDriven::new(&part, false),
-            context: Context::new(Arc::new(part), settings.of_local_region(), &Start::default(), &[None, None]),
+            context: Context::new(Arc::new(part), settings.of_local_region(), &Start::default(), &ByAxis::default()),
             open: false,
             trial: TrialStep { h: 0.0, fraction: 1.0 },
             trial_end: 0.0,
@@ -117,7 +117,7 @@ impl LocalRegion {
     fn end_forces(&self, step: &mut WholeLayer<'_>, nodes: &mut [DenseWorkspace]) -> EndForces {
         let (masses, span) = (self.masses(), step.span);
         let (dense, _) = step.dense(&masses);
-        let mut coefficients = [[[0.0; 5]; 2]; 2];
+        let mut coefficients = [ByAxis::<[f64; 5]>::default(); 2];
         let (before, after) = (masses.start.checked_sub(1), masses.end - 1);
         let links = [before.map(|link| (0, link, -1.0)), (after + 1 < step.model.masses()).then_some((1, after, 1.0))];
         for (end, link, sign) in links.into_iter().flatten() {
@@ -125,7 +125,8 @@ impl LocalRegion {
             for (stage, (value, workspace)) in values.iter_mut().zip(&mut *nodes).enumerate() {
                 *value = dense.lateral_forces(link, dense.interpolation.node(stage), workspace);
             }
-            coefficients[end] = [0, 1].map(|axis| dense.interpolation.polynomial(|stage| sign * values[stage][axis]));
+            let [x, z] = [0, 1].map(|axis| dense.interpolation.polynomial(|stage| sign * values[stage][axis]));
+            coefficients[end] = ByAxis { x, z };
         }
         EndForces { span: (span.start, span.length), coefficients }
     }
@@ -208,7 +209,7 @@ impl LocalRegion {
         ends.fold(0.0, |largest: f64, end| {
             let [(x, z), (v_x, v_z)] = dense.motion(masses.start + end, theta, weights);
             let force = |kind: LinkKind, off: f64, rate_off: f64| {
-                model.glassy[kind as usize] * off.abs() + model.links[kind as usize].damping * rate_off.abs()
+                model.glassy[kind] * off.abs() + model.links[kind].damping * rate_off.abs()
             };
             let along_x = force(LinkKind::LateralX, x - layer.elongation_x[end], v_x - layer.velocity_x[end]);
             let along_z = force(LinkKind::LateralZ, z - layer.elongation_z[end], v_z - layer.velocity_z[end]);

@@ -146,7 +146,7 @@ fn roughness(heights: &[f64]) -> String {
 }
 
 fn carrier(scene: &Scene, axis: Axis) -> String {
-    let Some(body) = scene.carrier.along(axis) else { return String::new() };
+    let Some(body) = &scene.carrier[axis] else { return String::new() };
     let numbers = [
         number("mass", Some(body.mass)),
         number("stiffness", body.stiffness),
@@ -222,7 +222,7 @@ impl Record {
         let mut values = vec![0.0; self.variables.len()];
         snapshot.evaluate(&self.variables, &mut values);
         self.rows.push(values);
-        self.carrier.push(snapshot.displacement);
+        self.carrier.push((snapshot.displacement.x, snapshot.displacement.z));
     }
 
     /// The column of an output that the scene has; `None` where it has not.

@@ -252,8 +252,8 @@ fn motions_are_those_of_the_state_within_the_step() {
     for theta in THETAS {
         let (within, at) = (stepper.within(h, theta), stepper.carrier.at(theta * h));
         for i in 0..within.mode.len() {
-            let x = rest.0[i] + stepper.carrier.profile_position + at.du + within.elongation_x[i];
-            let z = rest.1[i] + stepper.carrier.w + at.dw + within.elongation_z[i];
+            let x = rest.0[i] + stepper.carrier.profile_position + at.x.position + within.elongation_x[i];
+            let z = rest.1[i] + stepper.carrier.start.z + at.z.position + within.elongation_z[i];
             let found = (motions.position(i).evaluate(theta).position, motions.height(i).evaluate(theta).position);
             // Some roundings of positions of the size of 1 m.
             assert!((found.0 - x).abs() < 1e-14 && (found.1 - z).abs() < 1e-14, "{theta}, mass {i}: {found:?} {x} {z}");

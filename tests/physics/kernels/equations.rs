@@ -1,6 +1,7 @@
 //! The structured code against the dense equations of motion, and a solved stage against the explicit rates.
 
 use asperity::integrator::{NO_LIMIT, Rates, STAGES};
+use asperity::math::Jet;
 use asperity::model::{CarrierPoint, Forces, LinkKind, Mode, Model, State};
 use asperity::scene::{Path, RateShear};
 use nalgebra::{DVector, Vector2};
@@ -43,7 +44,7 @@ pub fn random_state(random: &mut Random, model: &Model, position: &Vector2<f64>)
         state.elongation_z[i] = random.between(0.0, 0.1);
         (state.velocity_x[i], state.velocity_z[i]) = (random.between(-2.0, 2.0), random.between(-2.0, 2.0));
         let contact =
-            if model.has_friction { [Mode::Forward, Mode::Backward, Mode::Stick] } else { [Mode::Forward; 3] };
+            if model.friction.present { [Mode::Forward, Mode::Backward, Mode::Stick] } else { [Mode::Forward; 3] };
         if random.below(3) > 0 {
             put_on_profile(model, &mut state, i, contact[random.below(3)], position);
         }
@@ -54,7 +55,7 @@ pub fn random_state(random: &mut Random, model: &Model, position: &Vector2<f64>)
 fn put_on_profile(model: &Model, state: &mut State, i: usize, mode: Mode, position: &Vector2<f64>) {
     let surface = model.surface_at(model.rest_x[i] + (position.x + state.elongation_x[i]));
     let speed = state.velocity_x[i].abs();
-    let v = if model.has_friction { mode.direction() * speed } else { state.velocity_x[i] };
+    let v = if model.friction.present { mode.direction() * speed } else { state.velocity_x[i] };
     (state.mode[i], state.surface[i]) = (mode, surface);
     state.elongation_z[i] = surface.height - model.rest_z[i] - position.y;
     (state.velocity_x[i], state.velocity_z[i]) = (v, surface.slope * v);
@@ -93,7 +94,7 @@ fn difference(
     let found = DVector::from_iterator(2 * k, rates.acceleration_x.iter().chain(&rates.acceleration_z).copied());
     let mut worst = (found - &accelerations).amax() / accelerations.amax().max(1.0);
     let elongation_rates = matrices.elongations(&v, rate);
-    let of_rows = model.rows.iter().flat_map(|row| &rates.elongation_rate[row.kind as usize]).copied();
+    let of_rows = model.rows.iter().flat_map(|row| &rates.elongation_rate[row.kind]).copied();
     let found = DVector::from_iterator(elongation_rates.len(), of_rows);
     if !found.is_empty() {
         worst = worst.max((found - &elongation_rates).amax() / elongation_rates.amax());
@@ -102,7 +103,7 @@ fn difference(
     for (i, (normal, tangential)) in contacts.into_iter().enumerate().filter(|&(i, _)| state.mode[i].in_contact()) {
         let margin = match state.mode[i] {
             Mode::Stick => mu * normal + matrices.shear(0.0) - tangential.abs(),
-            mode if model.has_friction => mode.direction() * state.velocity_x[i],
+            mode if model.friction.present => mode.direction() * state.velocity_x[i],
             _ => NO_LIMIT,
         };
         let misses = [rates.normal[i] - normal, rates.margin[i] - margin];
@@ -129,7 +130,8 @@ fn rates_agree_with_the_dense_matrices() {
         let (model, matrices) = (layer.model(), Matrices::new(&layer));
         let motion = random_motion(&mut random);
         let state = random_state(&mut random, &model, &motion.0);
-        let carrier = CarrierPoint { u_rate: motion.1.x, w_rate: motion.1.y, ..CarrierPoint::default() };
+        let moving = |speed| Jet { speed, ..Jet::default() };
+        let carrier = CarrierPoint { x: moving(motion.1.x), z: moving(motion.1.y), ..CarrierPoint::default() };
         let (mut forces, mut rates) = (Forces::new(&model), Rates::new(&model));
         forces.evaluate(&model, &state, &carrier);
         rates.evaluate(&model, &state, &forces, 1e-12);
@@ -170,7 +172,8 @@ fn a_solved_stage_satisfies_the_equations_of_motion() {
         stepper.attempt(h);
         let carrier = stepper.carrier.at(h);
         let (end, last) = (stepper.integrator.end(), &stepper.integrator.stages()[STAGES - 1]);
-        let motion = (Vector2::new(carrier.du, carrier.dw), Vector2::new(carrier.u_rate, carrier.w_rate));
+        let motion =
+            (Vector2::new(carrier.x.position, carrier.z.position), Vector2::new(carrier.x.speed, carrier.z.speed));
         let worst = difference(&matrices, &stepper.model, end, last, motion);
         // (v - v*)/β loses the digits that v and v* share, ε v/β; Newton's iterations end far below.
         let tolerance = 3e-13 + 5e-15 / h;

@@ -5,7 +5,7 @@ use std::path::Path as FilePath;
 use asperity::integrator::{
     DenseOutput, DenseWorkspace, Integrator, LayerState, Pair, StepAttempt, StepSpan, Steps, Tolerance, Tracked,
 };
-use asperity::model::{Carrier, Forces, LinkKind, Model, State};
+use asperity::model::{Axis, ByAxis, Carrier, Forces, LinkKind, Model, State};
 use asperity::outputs::Snapshot;
 use asperity::scene::{Path, RateShear, Scene};
 
@@ -129,7 +129,7 @@ impl Stepper {
     /// From `state` along the carrier's paths, counted from its position 0. Newton's iterations converge to `tolerance`
     /// (m).
     pub fn new(model: Model, (u, w): (Path, Path), state: State, tolerance: f64) -> Self {
-        let carrier = Carrier::new(0.0, (0.0, 0.0), (u, w), &model.profile);
+        let carrier = Carrier::new(0.0, ByAxis::default(), ByAxis { x: u, z: w }, &model.profile);
         let tolerance = Tolerance::new(&model, tolerance, tolerance);
         let mut forces = Forces::new(&model);
         let integrator = Integrator::new(&model, Tracked::default(), Steps::Both(Pair::Fifth));
@@ -223,7 +223,7 @@ impl Stepper {
         } else {
             integrator.on_carrier(model, carrier, &start.state, span, theta, &mut DenseWorkspace::new(model))
         };
-        [summed, (forces.on_carrier_x(), forces.on_carrier_z())]
+        [summed, (forces.on_carrier(Axis::X), forces.on_carrier(Axis::Z))]
     }
 }
 

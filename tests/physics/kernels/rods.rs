@@ -123,5 +123,5 @@ fn without_rods_all_springs_are_felt() {
         assert_eq!(model.frequency_without_rods(), model.stiffest_frequency());
     }
     let rod = Model::new(&scene(&[("layer.lateral_x.stiffness", "5e14")]));
-    assert_eq!(rod.mass_stiffness_without_rods(), Model::new(&scene(&[])).glassy[0] + 2.0 * 500.0);
+    assert_eq!(rod.mass_stiffness_without_rods(), Model::new(&scene(&[])).glassy[LinkKind::Vertical] + 2.0 * 500.0);
 }

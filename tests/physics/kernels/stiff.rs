@@ -16,7 +16,7 @@ pub fn on_slow_manifold(relaxation_time: f64) -> State {
     let mut state = State::new(1, 2);
     (state.elongation_x[0], state.elongation_z[0]) = (0.1, -0.2);
     (state.velocity_x[0], state.velocity_z[0]) = (1.0, 0.5);
-    let (u_rate, w_rate) = (PATHS.0.velocity(0.0), PATHS.1.velocity(0.0));
+    let (u_rate, w_rate) = (PATHS.0.at(0.0).speed, PATHS.1.at(0.0).speed);
     // The rows stand vertical first.
     state.maxwell.copy_from_slice(&[relaxation_time * (0.5 - w_rate), relaxation_time * (1.0 - u_rate)]);
     state
@@ -46,7 +46,7 @@ fn the_error_of_a_step_does_not_depend_on_short_relaxation_times() {
             Exact::new(&layer).at(&start, h)
         } else {
             let (v_x, v_z) =
-                (unforced.velocity_x[0] - PATHS.0.velocity(h), unforced.velocity_z[0] - PATHS.1.velocity(h));
+                (unforced.velocity_x[0] - PATHS.0.at(h).speed, unforced.velocity_z[0] - PATHS.1.at(h).speed);
             State { maxwell: vec![tau * v_z, tau * v_x], ..unforced.clone() }
         };
         let errors = error(&layer, &start, &reference);
@@ -75,7 +75,7 @@ pub fn falls_onto_its_slow_manifold(method: Method, most: f64) {
         stepper.step(h);
         let carrier = stepper.carrier.at(h);
         let rates =
-            [stepper.start.state.velocity_z[0] - carrier.w_rate, stepper.start.state.velocity_x[0] - carrier.u_rate];
+            [stepper.start.state.velocity_z[0] - carrier.z.speed, stepper.start.state.velocity_x[0] - carrier.x.speed];
         for (a, rate) in stepper.start.state.maxwell.iter().zip(rates) {
             let off = (a - tau * rate).abs();
             assert!(off < most * tau / h, "{tau:e}: {off:e}");
