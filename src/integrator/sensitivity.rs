@@ -293,8 +293,8 @@ impl Tangent {
     /// Solves stage `i` of a step of length `h` (s) for the tangent: into `end` and the rates of the stage. The `solver`
     /// has solved the stage itself, which lies `s` seconds after the start of the motion and has these `rates`, and has
     /// factored its matrix there; `weights` are those of the earlier stages.
-    pub(super) fn solve_stage(&mut self, model: &Model, solver: &mut StageSolver, stage: &SolvedStage<'_>) {
-        let &SolvedStage { i, s, h, weights, rates, point } = stage;
+    pub(super) fn solve_stage(&mut self, model: &Model, solver: &mut StageSolver, stage: &Solved<'_>) {
+        let &Solved { i, s, h, weights, rates, point } = stage;
         self.collect_history(h, &weights[..i]);
         // The known part of a body's motion: its speed, unknown, is not varied.
         let known = self.end.bodies.map(|[displacement, _]| [displacement, 0.0]);
@@ -413,7 +413,7 @@ impl Tangent {
 
 /// A stage that is solved, for which tangents are to be computed.
 #[derive(Clone, Copy)]
-pub(super) struct SolvedStage<'a> {
+pub(super) struct Solved<'a> {
     /// Its index.
     pub i: usize,
     /// Its time after the start of the carrier's motion, s.

@@ -5,7 +5,7 @@ use super::driver::{AFTER_FAILURE, StepBounds, TrialStep, WorkLimit};
 use super::motion::SimulationError;
 use super::run::{Run, Settings};
 use crate::contact::{EventTolerance, first_event, is_due, longest_unstable};
-use crate::integrator::{DenseOutput, Motions, Pair, StepAttempt};
+use crate::integrator::{ContactModes, DenseOutput, ErrorEstimate, Motions};
 
 /// A new step is this share of what the error estimate allows, so that few are rejected.
 const SAFETY: f64 = 0.9;
@@ -96,10 +96,10 @@ impl Run {
         self.discard_windows();
         let Self { model, settings, state, workspace, .. } = self;
         workspace.interpolated_at = None;
-        let span = state.span(h);
-        let attempt = workspace.integrator.attempt(model, &state.layer, &state.carrier, span, &settings.tolerance);
+        let start = (&**model, &state.layer, &state.carrier);
+        let attempt = workspace.integrator.attempt(ContactModes::Held, start, state.span(h), &settings.tolerance);
         self.trace_bodies(h);
-        let of_step = |attempt: StepAttempt| if resolvable { attempt.error } else { attempt.motion_error };
+        let of_step = |attempt: ErrorEstimate| if resolvable { attempt.error } else { attempt.motion_error };
         let mut error = attempt.map_or(f64::NAN, of_step);
         let mut allowed = self.allowed_error();
         if attempt.is_ok_and(|attempt| attempt.carrier_error > error.max(1.0)) && self.may_touch(h) {
@@ -116,7 +116,7 @@ impl Run {
         }
         self.state.counters.rejected += 1;
         self.state.step_size = if error.is_finite() {
-            (h * growth(self.pair(), error).min(SAFETY)).min(longest)
+            (h * growth(self.order(), error).min(SAFETY)).min(longest)
         } else {
             AFTER_FAILURE * h
         };
@@ -133,7 +133,7 @@ impl Run {
     /// The length of the next step after a good one of length `h`. One that was cut short to `limit` by the end of a
     /// piece or by the events says nothing; one that `starts_anew` says how long the first after the next event may be.
     fn propose(&mut self, h: f64, limit: f64, tried: &GoodStep, starts_anew: bool) -> f64 {
-        let grown = h * growth(self.pair(), tried.error);
+        let grown = h * growth(self.order(), tried.error);
         if starts_anew {
             self.state.step_after_event = grown;
         }
@@ -172,8 +172,9 @@ impl Run {
         first_event(&dense, &events, &mut workspace.dense)
     }
 
-    fn pair(&self) -> Pair {
-        self.workspace.integrator.pair()
+    /// The order of the scheme of its event-driven steps.
+    fn order(&self) -> i32 {
+        self.workspace.integrator.event_driven().tableau().embedded_order + 1
     }
 
     pub(super) fn event_tolerance(&self) -> EventTolerance {
@@ -192,7 +193,8 @@ impl Run {
         let TrialStep { h, share } = *step;
         if self.settings.accounts.energy {
             let Self { model, state, workspace, .. } = self;
-            let gain = workspace.integrator.energies(model, &state.layer.state, h, share);
+            let start = (&**model, &state.carrier, &state.layer.state);
+            let gain = workspace.integrator.energies(start, state.span(h), share);
             state.energies.channels.add(&gain);
         }
         let in_windows = self.energies_of_windows(end);
@@ -230,7 +232,7 @@ impl Run {
     fn accept_whole(&mut self, end: f64) {
         let largest = self.state.layer.largest;
         self.state.event_spacing = self.state.event_spacing.max(self.state.since_event);
-        self.state.carrier.take_step(end, &self.workspace.integrator.end_carrier(false));
+        self.state.carrier.take_step(end, &self.workspace.integrator.end_carrier());
         self.workspace.integrator.accept(&mut self.state.layer);
         self.state.s = end;
         if self.has_windows() {
@@ -250,8 +252,7 @@ impl Run {
     }
 }
 
-/// The ratio of the next step to one with this error over the tolerance.
-fn growth(pair: Pair, error: f64) -> f64 {
-    let order = f64::from(pair.embedded_order() + 1);
-    (SAFETY * error.powf(-1.0 / order)).clamp(GROWTH.0, GROWTH.1)
+/// The ratio of the next step to one with this error over the tolerance, by a method of this order.
+fn growth(order: i32, error: f64) -> f64 {
+    (SAFETY * error.powf(-1.0 / f64::from(order))).clamp(GROWTH.0, GROWTH.1)
 }

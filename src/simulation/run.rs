@@ -9,7 +9,7 @@ use super::windows::Windows;
 use crate::contact::{
     EndCorrection, EventTolerance, decide_modes, free_unloaded, impacts_due, place_layer, stop_reversed,
 };
-use crate::integrator::{DenseWorkspace, Integrator, LayerState, Pair, StepSpan, Steps, Tolerance, Tracked};
+use crate::integrator::{DenseWorkspace, Integrator, LayerState, Scheme, StepSpan, Tolerance, Tracked};
 use crate::model::{
     BodyStart, Carrier, CarrierPoint, CarrierPosition, Forces, LinkKind, Mode, Model, Piece, State, Tangents,
     elastic_energy, kinetic_energy,
@@ -363,13 +363,13 @@ impl Run {
     }
 
     fn integrator(model: &Model, settings: &Settings) -> Integrator {
-        let pair = Pair::at_tolerance(model, settings.tolerance.relative);
-        let steps = match settings.method {
-            Method::Event => Steps::EventDriven(pair),
-            Method::Step => Steps::TwoStages,
-            Method::Auto => Steps::Both(pair),
+        let event_driven = Scheme::event_driven_at(model, settings.tolerance.relative);
+        let schemes: &[Scheme] = match settings.method {
+            Method::Event => &[event_driven],
+            Method::Step => &[Scheme::Sdirk2],
+            Method::Auto => &[event_driven, Scheme::Sdirk2],
         };
-        Integrator::new(model, settings.tracked(), steps)
+        Integrator::new(model, settings.tracked(), schemes)
     }
 
     /// Computes the bodies' accelerations anew from the forces, of which one from outside has jumped. No force on a mass has.
@@ -398,7 +398,7 @@ impl Run {
         let Self { state, workspace, .. } = self;
         for axis in Axis::ALL {
             if state.carrier.is_body(axis) {
-                state.carrier.set_step(axis, workspace.integrator.body_step(axis, h, state.time_stepping));
+                state.carrier.set_step(axis, workspace.integrator.body_step(axis, h));
             }
         }
     }
@@ -482,7 +482,7 @@ impl Run {
     /// The tangents' rates from the forces evaluated last.
     fn refresh_tangents(&mut self) {
         let Self { model, state, workspace, .. } = self;
-        workspace.integrator.refresh_tangents(model, &state.layer, &workspace.forces, state.s);
+        workspace.integrator.refresh_tangents(model, &state.layer, Some(&workspace.forces), state.s);
     }
 
     /// See [`Simulation::relax_dashpots`](super::Simulation::relax_dashpots).

@@ -2,7 +2,7 @@
 
 use super::driver::TrialStep;
 use super::run::{Run, RunState};
-use crate::integrator::{LayerWithin, Overlay};
+use crate::integrator::{InterpolatedLayer, LayerStep, Overlay};
 use crate::math::bracketed_root;
 use crate::outputs::{Energies, LayerView, Snapshot};
 
@@ -51,7 +51,7 @@ impl Run {
         let s = self.state.s + theta * h;
         let (within, state) = self.within(h, theta);
         Snapshot {
-            model: within.model,
+            model: within.step.dense.model,
             time: state.carrier.time + s,
             on_carrier,
             dissipated_power,
@@ -68,17 +68,12 @@ impl Run {
     }
 
     /// The layer at the fraction `theta` of the step of length `h` tried last, and the run at the step's start.
-    fn within(&mut self, h: f64, theta: f64) -> (LayerWithin<'_>, &RunState) {
+    fn within(&mut self, h: f64, theta: f64) -> (InterpolatedLayer<'_>, &RunState) {
         let Self { model, state, workspace, .. } = self;
-        let within = LayerWithin {
-            model,
-            carrier: &state.carrier,
-            start: &state.layer.state,
-            span: state.span(h),
-            time_step: state.time_stepping,
+        let dense = workspace.integrator.dense(model, &state.carrier, &state.layer.state, state.span(h));
+        let within = InterpolatedLayer {
+            step: LayerStep { dense, workspace: &mut workspace.dense },
             theta,
-            integrator: &workspace.integrator,
-            workspace: &mut workspace.dense,
             state: &mut workspace.interpolated,
             state_at: &mut workspace.interpolated_at,
             forces: &mut workspace.forces,
@@ -92,13 +87,8 @@ impl Run {
         let mut energies = self.state.energies;
         if self.settings.accounts.energy {
             let Self { model, state, workspace, .. } = self;
-            let (integrator, start) = (&mut workspace.integrator, &state.layer.state);
-            let gain = if state.time_stepping {
-                integrator.two_stage_energies(model, start, h, theta)
-            } else {
-                integrator.energies(model, start, h, theta)
-            };
-            energies.channels.add(&gain);
+            let start = (&**model, &state.carrier, &state.layer.state);
+            energies.channels.add(&workspace.integrator.energies(start, state.span(h), theta));
         }
         energies.gain(&self.energies_of_windows(self.state.s + theta * h));
         energies
@@ -121,13 +111,12 @@ impl Run {
         let (windows_x, windows_z) = self.forces_of_windows(self.state.s + theta * h);
         let Self { model, state, workspace, .. } = self;
         let (carrier, start, span) = (&state.carrier, &state.layer.state, state.span(h));
+        let (x, z) = workspace.integrator.on_carrier((&**model, carrier, start), span, theta, &mut workspace.dense);
         if state.time_stepping {
-            let (x, z) = workspace.integrator.two_stage_on_carrier(model, carrier, start, span, theta);
-            let step = workspace.integrator.two_stage_dense(model, carrier, start, span);
+            let step = workspace.integrator.dense(model, carrier, start, span).parabolas();
             let of_touches = workspace.end_correction.forces_of_touches(&step, theta);
             (x + of_touches.0, z + of_touches.1)
         } else {
-            let (x, z) = workspace.integrator.on_carrier(model, carrier, start, span, theta, &mut workspace.dense);
             (x + windows_x, z + windows_z)
         }
     }
@@ -139,12 +128,9 @@ impl Run {
         }
         let in_windows = self.dissipated_power_of_windows(self.state.s + theta * h);
         let Self { model, state, workspace, .. } = self;
-        let (integrator, start) = (&mut workspace.integrator, &state.layer.state);
-        Some(if state.time_stepping {
-            integrator.two_stage_dissipated_power(model, start, h, theta)
-        } else {
-            (integrator.dissipated_power(model, start, h, theta) + in_windows).max(0.0)
-        })
+        let start = (&**model, &state.carrier, &state.layer.state);
+        let of_layer = workspace.integrator.dissipated_power(start, state.span(h), theta);
+        Some((of_layer + in_windows).max(0.0))
     }
 
     /// Whether the powers at the stages say P_diss within a step.
@@ -162,7 +148,7 @@ impl Run {
         }
         let (integrator, correction) = (&workspace.integrator, &workspace.end_correction);
         let allowed = MAX_UNCORRECTED * settings.tolerance.relative * integrator.end_forces().on_carrier_z().abs();
-        let dense = || integrator.two_stage_dense(model, &state.carrier, &state.layer.state, state.span(step.h));
+        let dense = || integrator.dense(model, &state.carrier, &state.layer.state, state.span(step.h)).parabolas();
         correction.uncorrected_force() < allowed || correction.comes_after(&dense(), (s - state.s) / step.h)
     }
 

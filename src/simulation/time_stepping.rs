@@ -5,7 +5,7 @@ use super::driver::{AFTER_FAILURE, StepBounds, TrialStep, WorkLimit};
 use super::motion::SimulationError;
 use super::run::Run;
 use crate::contact::{FixedModeStep, longest_weakening};
-use crate::integrator::StepAttempt;
+use crate::integrator::{ContactModes, ErrorEstimate};
 use crate::model::ChannelEnergies;
 
 /// A new step is this share of what the error allows. Mode changes come unforeseen, so it is less than in smooth
@@ -46,11 +46,11 @@ impl Run {
     }
 
     /// Tries a step of length `h`; `None` where it is rejected: the run's step size is then a better length.
-    pub(super) fn try_time_step(&mut self, h: f64, any_error: bool) -> Option<StepAttempt> {
+    pub(super) fn try_time_step(&mut self, h: f64, any_error: bool) -> Option<ErrorEstimate> {
         let Self { model, settings, state, workspace, .. } = self;
         workspace.interpolated_at = None;
-        let (layer, carrier, span) = (&state.layer, &state.carrier, state.span(h));
-        let attempt = workspace.integrator.attempt_two_stages(model, layer, carrier, span, &settings.tolerance);
+        let (start, span) = ((&**model, &state.layer, &state.carrier), state.span(h));
+        let attempt = workspace.integrator.attempt(ContactModes::SetValued, start, span, &settings.tolerance);
         self.trace_bodies(h);
         let attempt = attempt.ok().map(|attempt| self.with_lateness(h, attempt));
         let error = attempt.map_or(f64::NAN, |attempt| attempt.error);
@@ -63,11 +63,11 @@ impl Run {
     }
 
     /// The attempt of length `h` with the error that the lateness of its mode changes adds.
-    fn with_lateness(&mut self, h: f64, attempt: StepAttempt) -> StepAttempt {
+    fn with_lateness(&mut self, h: f64, attempt: ErrorEstimate) -> ErrorEstimate {
         let Self { model, settings, state, workspace, .. } = self;
-        let step = workspace.integrator.two_stage_dense(model, &state.carrier, &state.layer.state, state.span(h));
-        let late = workspace.end_correction.detect(&step, &settings.tolerance);
-        StepAttempt { error: attempt.error.hypot(late), ..attempt }
+        let step = workspace.integrator.dense(model, &state.carrier, &state.layer.state, state.span(h));
+        let late = workspace.end_correction.detect(&step.parabolas(), &settings.tolerance);
+        ErrorEstimate { error: attempt.error.hypot(late), ..attempt }
     }
 
     /// Accepts the step of length `h` tried last, which ends at the time `end` of the piece, with its mode changes
@@ -78,7 +78,7 @@ impl Run {
         let start = &state.layer.state;
         let gain = settings.accounts.energy.then(|| {
             let missed = integrator.friction_between_stages(model, start, h);
-            let shown = integrator.two_stage_energies(model, start, h, 1.0);
+            let shown = integrator.energies((&**model, &state.carrier, start), state.span(h), 1.0);
             ChannelEnergies { friction: shown.friction + missed, ..shown }
         });
         workspace.interpolated_at = None;
@@ -93,16 +93,16 @@ impl Run {
             energies.channels.add(&corrected.map_or_else(ChannelEnergies::default, |corrected| corrected.channels));
             energies.impact += corrected.map_or(0.0, |corrected| corrected.impact);
         }
-        let mut point = integrator.end_carrier(true);
+        let mut point = integrator.end_carrier();
         if let Some(corrected) = &corrected {
             state.carrier.push(&mut point, model, corrected.impulse);
         }
         state.carrier.take_step(end, &point);
-        integrator.accept_two_stages(&mut state.layer);
+        integrator.accept(&mut state.layer);
         state.counters.steps += 1;
         state.s = end;
         if workspace.modes_before != state.layer.state.mode {
-            integrator.refresh_tangents_after(model, &state.layer, end);
+            integrator.refresh_tangents(model, &state.layer, None, end);
             self.count_mode_changes();
         }
     }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::driver::{TrialStep, WorkLimit};
 use super::motion::{SimulationError, Start};
 use super::run::{Run, Settings};
-use crate::integrator::{DenseWorkspace, LayerStep, PartOfStep, STAGES};
+use crate::integrator::{DenseWorkspace, LayerStep, LayerSums, MAX_STAGES};
 use crate::model::{ChannelEnergies, EndForces, LinkKind, Model, State};
 use crate::outputs::{Counters, Energies};
 
@@ -22,7 +22,7 @@ pub(super) struct Window {
     trial: TrialStep,
     trial_end: f64,
     /// Its masses in the whole layer's step.
-    whole: PartOfStep,
+    whole: LayerSums,
     /// The energies of that through the channels up to where the window was opened, J.
     opened: ChannelEnergies,
 }
@@ -30,7 +30,7 @@ pub(super) struct Window {
 impl Window {
     /// A window of the masses of `part`, in a layer with these settings.
     pub(super) fn new(part: Model, settings: &Settings) -> Self {
-        let whole = PartOfStep::new(&part, 0);
+        let whole = LayerSums::new(&part, 0);
         let run = Run::new(Arc::new(part), settings.of_window(), &Start::default(), &[None, None]);
         let trial = TrialStep { h: 0.0, share: 1.0 };
         Self { run, open: false, trial, trial_end: 0.0, whole, opened: ChannelEnergies::default() }
@@ -84,42 +84,43 @@ impl Window {
     ) {
         self.open = true;
         Arc::make_mut(&mut self.run.model).move_part(&run.model, first);
-        self.whole.begin(step, &self.run.model, first);
+        self.whole.begin_part(step, &self.run.model, first);
         let ends = self.end_forces(step, nodes);
         let Self { whole, run: own, .. } = self;
         let Run { state, workspace, .. } = own;
         state.carrier = run.state.carrier;
         state.carrier.ends = Some(ends);
-        let theta = step.theta(s);
-        let (dense, weights) = step.dense(&whole.masses);
+        let theta = step.dense.theta(s);
+        let (dense, weights) = step.of(&whole.masses);
         dense.state_at(theta, weights, &mut state.layer.state);
         state.s = s;
         state.layer.largest = run.state.layer.largest;
         state.energies = Energies::default();
-        (state.step_size, state.step_after_event) = (step.span.length, run.state.step_after_event);
+        (state.step_size, state.step_after_event) = (step.dense.span.length, run.state.step_after_event);
         (state.event_spacing, state.since_event) = (f64::MAX, 0.0);
         workspace.interpolated_at = None;
         workspace.stall.reset();
         state.counters = Counters::default();
         own.mode_changes = run.mode_changes.as_ref().map(|_| Vec::new());
         if own.settings.accounts.energy {
-            self.opened = whole.energies(step, theta);
+            self.opened = whole.energies(&step.dense, theta);
         }
     }
 
     /// What the links to the other masses exert on both ends through `step`.
     fn end_forces(&self, step: &mut LayerStep<'_>, nodes: &mut [DenseWorkspace]) -> EndForces {
-        let (masses, span) = (self.masses(), step.span);
-        let (dense, _) = step.dense(&masses);
+        let (masses, span) = (self.masses(), step.dense.span);
+        let (dense, _) = step.of(&masses);
         let mut coefficients = [[[0.0; 5]; 2]; 2];
         let (before, after) = (masses.start.checked_sub(1), masses.end - 1);
-        let links = [before.map(|link| (0, link, -1.0)), (after + 1 < step.model.masses()).then_some((1, after, 1.0))];
+        let links =
+            [before.map(|link| (0, link, -1.0)), (after + 1 < step.dense.model.masses()).then_some((1, after, 1.0))];
         for (end, link, sign) in links.into_iter().flatten() {
-            let mut values = [[0.0; 2]; STAGES];
+            let mut values = [[0.0; 2]; MAX_STAGES];
             for (stage, (value, workspace)) in values.iter_mut().zip(&mut *nodes).enumerate() {
-                *value = dense.lateral_forces(link, dense.interpolation.node(stage), workspace);
+                *value = dense.lateral_forces(link, dense.interpolation().node(stage), workspace);
             }
-            coefficients[end] = [0, 1].map(|axis| dense.interpolation.polynomial(|stage| sign * values[stage][axis]));
+            coefficients[end] = [0, 1].map(|axis| dense.interpolation().polynomial(|stage| sign * values[stage][axis]));
         }
         EndForces { span: (span.start, span.length), coefficients }
     }
@@ -128,9 +129,9 @@ impl Window {
     /// output there is at most `largest` in the tolerance's norm.
     pub(super) fn is_resolved(&mut self, step: &mut LayerStep<'_>, largest: f64) -> bool {
         let Run { model, state, workspace, settings, .. } = &mut self.run;
-        let theta = step.theta(state.s);
+        let theta = step.dense.theta(state.s);
         workspace.forces.evaluate(model, &state.layer.state, &state.carrier.at(state.s));
-        let (dense, weights) = step.dense(&self.whole.masses);
+        let (dense, weights) = step.of(&self.whole.masses);
         dense.defect(theta, &state.layer.state, &workspace.forces, weights, &settings.tolerance) <= largest
     }
 
@@ -194,10 +195,10 @@ impl Window {
     /// The largest force, N, by which its masses, as its run has them, load a link to others beyond that of the whole layer's
     /// `step`.
     pub(super) fn mismatch(&self, step: &mut LayerStep<'_>) -> f64 {
-        let (theta, ends) = (step.theta(self.reached()), self.ends(step.model.masses()));
+        let (theta, ends) = (step.dense.theta(self.reached()), self.ends(step.dense.model.masses()));
         let Run { model, state, .. } = &self.run;
         let masses = self.masses();
-        let (dense, weights) = step.dense(&masses);
+        let (dense, weights) = step.of(&masses);
         let layer = &state.layer.state;
         ends.fold(0.0, |largest: f64, end| {
             let [(x, z), (v_x, v_z)] = dense.motion(masses.start + end, theta, weights);
@@ -217,7 +218,7 @@ impl Window {
             None => self.run.state.energies,
         };
         if self.run.settings.accounts.energy {
-            energies.channels.subtract(&self.whole.energies(step, step.theta(s)));
+            energies.channels.subtract(&self.whole.energies(&step.dense, step.dense.theta(s)));
             energies.channels.add(&self.opened);
         }
         energies
@@ -227,12 +228,12 @@ impl Window {
     /// say it; 0 elsewhere.
     pub(super) fn dissipated_power(&mut self, step: &LayerStep<'_>, s: f64) -> f64 {
         let mine = self.theta(s).and_then(|theta| self.run.dissipated_power_within(self.trial.h, theta));
-        mine.map_or(0.0, |mine| mine - self.whole.dissipated_power(step, step.theta(s)))
+        mine.map_or(0.0, |mine| mine - self.whole.dissipated_power(&step.dense, step.dense.theta(s)))
     }
 
     /// F_x and F_z of its masses in its run at the time `s`, less those in the whole layer's `step`, N.
     pub(super) fn forces(&mut self, step: &mut LayerStep<'_>, s: f64) -> (f64, f64) {
-        let (theta, theta_of_layer) = (self.theta(s).unwrap_or(0.0), step.theta(s));
+        let (theta, theta_of_layer) = (self.theta(s).unwrap_or(0.0), step.dense.theta(s));
         let mine = self.run.on_carrier_within(self.trial.h, theta);
         let theirs = self.whole.on_carrier(step, &self.run.model, theta_of_layer);
         (mine.0 - theirs.0, mine.1 - theirs.1)

@@ -18,7 +18,7 @@ use super::run::{Run, RunState, Settings, Workspace};
 use super::snapshot::MAX_DEFECT;
 use super::window::Window;
 use crate::contact::mode_changes;
-use crate::integrator::{DenseWorkspace, Integrator, LayerStep, Overlay, Pair, StepSpan};
+use crate::integrator::{DenseWorkspace, Integrator, LayerStep, Overlay, Scheme, StepSpan};
 use crate::model::{LinkKind, Model, State};
 use crate::outputs::Energies;
 use crate::scene::Method;
@@ -111,7 +111,7 @@ impl Windows {
             workspace: DenseWorkspace::new(model),
             nodes: vec![
                 DenseWorkspace::for_single_masses(model);
-                Pair::at_tolerance(model, settings.tolerance.relative).stages()
+                Scheme::event_driven_at(model, settings.tolerance.relative).tableau().stages
             ],
         }))
     }
@@ -239,7 +239,7 @@ fn layer_step<'a>(
     span: StepSpan,
     workspace: &'a mut DenseWorkspace,
 ) -> LayerStep<'a> {
-    LayerStep { integrator, model, carrier: &state.carrier, start: &state.layer.state, span, workspace }
+    LayerStep { dense: integrator.dense(model, &state.carrier, &state.layer.state, span), workspace }
 }
 
 /// The widths of windows, from the `least` one on, and the number of windows of each: all of one width have at most

@@ -1,6 +1,6 @@
 //! The structured code against the dense equations of motion, and a solved stage against the explicit rates.
 
-use asperity::integrator::{NO_LIMIT, Rates, STAGES};
+use asperity::integrator::{MAX_STAGES, NO_LIMIT, Rates};
 use asperity::model::{CarrierPoint, Forces, LinkKind, Mode, Model, State};
 use asperity::scene::{Path, RateShear};
 use nalgebra::{DVector, Vector2};
@@ -169,7 +169,7 @@ fn a_solved_stage_satisfies_the_equations_of_motion() {
         let h = 10.0_f64.powf(random.between(-6.0, -2.5));
         stepper.attempt(h);
         let carrier = stepper.carrier.at(h);
-        let (end, last) = (stepper.integrator.end(), &stepper.integrator.stages()[STAGES - 1]);
+        let (end, last) = (stepper.integrator.end(), &stepper.integrator.stages()[MAX_STAGES - 1]);
         let motion = (Vector2::new(carrier.du, carrier.dw), Vector2::new(carrier.u_rate, carrier.w_rate));
         let worst = difference(&matrices, &stepper.model, end, last, motion);
         // (v - v*)/β loses the digits that v and v* share, ε v/β; Newton's iterations end far below.
