@@ -11,7 +11,7 @@ mod floor;
 
 use std::time::Duration;
 
-use asperity::integrator::{Integrator, LayerState, Pair, STAGES, StepSpan, Steps, Tolerance, Tracked};
+use asperity::integrator::{ContactModes, Integrator, LayerState, MAX_STAGES, Scheme, StepSpan, Tolerance, Tracked};
 use asperity::model::{ByAxis, Carrier, Forces, Mode, Model, State};
 use common::{layer, parse, prints_tables, side_by_side};
 use criterion::{BenchmarkId, Criterion, Throughput};
@@ -20,7 +20,7 @@ use floor::Floor;
 /// Length of the step, s.
 const STEP: f64 = 1e-6;
 /// The implicit stages of a step: a benchmark takes them all, so that the earlier ones are there to be summed.
-const IMPLICIT: usize = STAGES - 1;
+const IMPLICIT: usize = MAX_STAGES - 1;
 
 fn main() {
     let mut criterion = common::criterion();
@@ -60,7 +60,7 @@ impl Stages {
         let carrier = Carrier::new(0.0, ByAxis::default(), ByAxis::default(), &model.profile);
         let mut forces = Forces::new(&model);
         forces.evaluate(&model, &state, &carrier.at(0.0));
-        let integrator = Integrator::new(&model, Tracked::default(), Steps::EventDriven(Pair::Fifth));
+        let integrator = Integrator::new(&model, Tracked::default(), &[Scheme::Esdirk5]);
         let mut start = LayerState { state, ..LayerState::new(&model) };
         integrator.evaluate_start(&model, &mut start, (&carrier, 0.0), &forces, 1e-6);
         let tolerance = Tolerance::new(&model, 1e-6, 1e-11);
@@ -70,9 +70,9 @@ impl Stages {
     /// All stages of a step, and its error estimate.
     fn run(&mut self) {
         let Self { model, start, carrier, integrator, tolerance } = self;
-        std::hint::black_box(
-            integrator.attempt(model, start, carrier, StepSpan { start: 0.0, length: STEP }, tolerance).unwrap(),
-        );
+        let span = StepSpan { start: 0.0, length: STEP };
+        let attempt = integrator.attempt(ContactModes::Held, (&*model, &*start, &*carrier), span, tolerance);
+        std::hint::black_box(attempt.unwrap());
     }
 }
 

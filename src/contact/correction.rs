@@ -21,7 +21,7 @@
 //! strong a damper or the friction is.
 
 use super::laws::{collision, decide_mode};
-use crate::integrator::{Rates, StepEnd, StepSpan, Tolerance, TwoStageDense};
+use crate::integrator::{OpenEnd, Parabolas, Rates, StepSpan, Tolerance};
 use crate::math::{Bounds, bracketed_root};
 use crate::model::{Carrier, CarrierPoint, ChannelEnergies, LinkKind, Mode, Model, SlipCurve, State, SurfacePoint};
 
@@ -108,7 +108,7 @@ impl EndCorrection {
 
     /// Finds the masses whose modes were violated in `step`. Returns the error of their lateness over the tolerance, as
     /// a mean over all masses.
-    pub fn detect(&mut self, step: &TwoStageDense<'_>, tolerance: &Tolerance) -> f64 {
+    pub fn detect(&mut self, step: &Parabolas<'_>, tolerance: &Tolerance) -> f64 {
         self.touches.clear();
         self.changed.clear();
         (self.force, self.pressed) = (0.0, 1.0);
@@ -138,14 +138,14 @@ impl EndCorrection {
 
     /// Whether the touches and lifts that [`detect`](Self::detect) found in `step` come after its fraction `theta`. Of dips,
     /// which the correction leaves alone, and of breaks, which begin at the end, nothing is asked.
-    pub fn comes_after(&self, step: &TwoStageDense<'_>, theta: f64) -> bool {
+    pub fn comes_after(&self, step: &Parabolas<'_>, theta: f64) -> bool {
         theta <= self.pressed && self.touches.iter().all(|&i| step.gap(i, theta) >= 0.0)
     }
 
     /// The lateness of the touch of free mass `i`, if there is one.
-    fn detect_touch(&mut self, step: &TwoStageDense<'_>, i: usize) -> Option<EventTimeError> {
+    fn detect_touch(&mut self, step: &Parabolas<'_>, i: usize) -> Option<EventTimeError> {
         let (height, highest) = (step.end_height(i), self.profile.z_max);
-        if height > highest && step.height(i, TwoStageDense::FIRST_STAGE) > highest {
+        if height > highest && step.height(i, Parabolas::FIRST_STAGE) > highest {
             return None;
         }
         let x = step.end_position(i);
@@ -164,24 +164,18 @@ impl EndCorrection {
 
     /// A mass that is above the profile at the end, at `x` and `height` and by `gap`, and below it at the first stage has passed
     /// through an asperity: the whole penetration is an error.
-    fn detect_dip(
-        &self,
-        step: &TwoStageDense<'_>,
-        i: usize,
-        gap: f64,
-        (x, height): (f64, f64),
-    ) -> Option<EventTimeError> {
-        let rise = height - step.height(i, TwoStageDense::FIRST_STAGE);
-        let distance = (x - step.position(i, TwoStageDense::FIRST_STAGE)).abs();
+    fn detect_dip(&self, step: &Parabolas<'_>, i: usize, gap: f64, (x, height): (f64, f64)) -> Option<EventTimeError> {
+        let rise = height - step.height(i, Parabolas::FIRST_STAGE);
+        let distance = (x - step.position(i, Parabolas::FIRST_STAGE)).abs();
         if gap > rise + distance * self.profile.slope_max_abs {
             return None;
         }
-        let gap_at_first = step.gap(i, TwoStageDense::FIRST_STAGE);
+        let gap_at_first = step.gap(i, Parabolas::FIRST_STAGE);
         (gap_at_first < 0.0).then_some(EventTimeError { length: -gap_at_first, time: f64::INFINITY })
     }
 
     /// The lateness of the lift of contact `i`, if F_N < 0, by the elongation that makes such a force.
-    fn detect_lift(&mut self, step: &TwoStageDense<'_>, i: usize, stiffness: f64) -> Option<EventTimeError> {
+    fn detect_lift(&mut self, step: &Parabolas<'_>, i: usize, stiffness: f64) -> Option<EventTimeError> {
         let (first, last) = (step.first.normal[i], step.last.normal[i]);
         if last >= 0.0 {
             return None;
@@ -195,7 +189,7 @@ impl EndCorrection {
 
     /// The lateness of a contact that slipped at the start and sticks at the first stage already: none of the way of its
     /// stop is seen. One that the forces alone would no longer hold breaks loose at the end.
-    fn detect_stop(&mut self, step: &TwoStageDense<'_>, i: usize) -> Option<EventTimeError> {
+    fn detect_stop(&mut self, step: &Parabolas<'_>, i: usize) -> Option<EventTimeError> {
         if step.end.mode[i] != Mode::Stick {
             return None;
         }
@@ -213,13 +207,13 @@ impl EndCorrection {
 
     /// What the touches that [`detect`](Self::detect) found before the fraction `theta` of `step` add to F_x and F_z there, N:
     /// the forces of the links to the carrier of masses that have had their impacts and lie on the profile.
-    pub fn forces_of_touches(&self, step: &TwoStageDense<'_>, theta: f64) -> (f64, f64) {
+    pub fn forces_of_touches(&self, step: &Parabolas<'_>, theta: f64) -> (f64, f64) {
         let forces = self.touches.iter().map(|&i| forces_of_touch(step, i, theta));
         forces.fold((0.0, 0.0), |sum, force| (sum.0 + force.0, sum.1 + force.1))
     }
 
     /// Corrects the masses that [`detect`](Self::detect) found; `None` where there are none.
-    pub fn apply(&mut self, step: FixedModeStep<'_>, end: StepEnd<'_>) -> Option<CorrectionEnergies> {
+    pub fn apply(&mut self, step: FixedModeStep<'_>, end: OpenEnd<'_>) -> Option<CorrectionEnergies> {
         if self.touches.is_empty() && self.changed.is_empty() {
             return None;
         }
@@ -260,7 +254,7 @@ struct Correction<'a> {
     step: FixedModeStep<'a>,
     /// The carrier at the end.
     carrier: CarrierPoint,
-    end: StepEnd<'a>,
+    end: OpenEnd<'a>,
     energies: CorrectionEnergies,
 }
 
@@ -284,7 +278,7 @@ struct Speed {
 }
 
 impl<'a> Correction<'a> {
-    fn new(step: FixedModeStep<'a>, end: StepEnd<'a>) -> Self {
+    fn new(step: FixedModeStep<'a>, end: OpenEnd<'a>) -> Self {
         Self {
             carrier: step.carrier.at(step.span.start + step.span.length),
             step,
@@ -293,9 +287,9 @@ impl<'a> Correction<'a> {
         }
     }
 
-    fn dense(&self) -> TwoStageDense<'_> {
+    fn dense(&self) -> Parabolas<'_> {
         let FixedModeStep { model, carrier, span, start, first } = self.step;
-        TwoStageDense::new(model, carrier, span, start, first, self.end.state, self.end.rates)
+        Parabolas::new(model, carrier, span, start, first, self.end.state, self.end.rates)
     }
 
     /// Takes mass `i`, which is free and below the profile, back to its touch and through its impact, and moves it along
@@ -521,7 +515,7 @@ fn component(kind: LinkKind, (x, z): (f64, f64)) -> f64 {
 
 /// What the links of free mass `i` would exert on the carrier along x and z beyond what they do, N, if the mass did not pass
 /// below the profile but had its impact and went on along it: at the fraction `theta` of the step (docs/theory.md, \[12a\]).
-fn forces_of_touch(step: &TwoStageDense<'_>, i: usize, theta: f64) -> (f64, f64) {
+fn forces_of_touch(step: &Parabolas<'_>, i: usize, theta: f64) -> (f64, f64) {
     let surface = step.model.surface_at(step.position(i, theta));
     let depth = surface.height - step.height(i, theta);
     if depth <= 0.0 {
@@ -546,11 +540,11 @@ fn forces_of_touch(step: &TwoStageDense<'_>, i: usize, theta: f64) -> (f64, f64)
 }
 
 /// The fraction of the step at which free mass `i`, below the profile at the end, touched it.
-fn instant_of_touch(dense: &TwoStageDense<'_>, i: usize) -> f64 {
+fn instant_of_touch(dense: &Parabolas<'_>, i: usize) -> f64 {
     if dense.gap(i, 0.0) <= 0.0 { 0.0 } else { bracketed_root(|theta| dense.gap(i, theta), (0.0, 1.0), INSTANT) }
 }
 
-impl TwoStageDense<'_> {
+impl Parabolas<'_> {
     /// The height of mass `i` above the profile at the fraction `theta` of the step, m.
     fn gap(&self, i: usize, theta: f64) -> f64 {
         self.height(i, theta) - self.model.surface_at(self.position(i, theta)).height

@@ -92,7 +92,7 @@ pub fn first_event(step: &DenseOutput<'_>, tolerance: &EventTolerance, workspace
     let mut first = Contacts { step, tolerance, workspace }.first_change();
     let (motions, profile) = (Motions::new(step), &step.model.profile);
     for i in 0..step.model.masses() {
-        if step.start.state.mode[i] == Mode::Free && may_touch(&motions, i, profile, tolerance.gap) {
+        if step.start.mode[i] == Mode::Free && may_touch(&motions, i, profile, tolerance.gap) {
             let motion = (motions.position(i), motions.height(i));
             first = earlier(first, first_touch(profile, motion, tolerance.gap, first.unwrap_or(1.0)));
         }
@@ -112,7 +112,7 @@ pub fn mode_changes(
     contacts.all_changes(changes);
     let (motions, profile) = (Motions::new(step), &step.model.profile);
     for i in 0..step.model.masses() {
-        if step.start.state.mode[i] == Mode::Free && may_touch(&motions, i, profile, tolerance.gap) {
+        if step.start.mode[i] == Mode::Free && may_touch(&motions, i, profile, tolerance.gap) {
             let motion = (motions.position(i), motions.height(i));
             changes.extend(first_touch(profile, motion, tolerance.gap, 1.0).map(|theta| (theta, i)));
         }
@@ -173,10 +173,10 @@ impl Contacts<'_> {
     /// As a bit each, the masses in contact of which a quantity may pass its limit within the step, of the [`BLOCK`] from mass
     /// `first` on: those of which one does at a stage or on a parabola through its values there.
     fn suspects(&self, first: usize) -> u64 {
-        let modes = &self.step.start.state.mode[first..];
-        let overshoot = if self.carrier_swings() { self.step.interpolation.overshoot() } else { 0.0 };
+        let modes = &self.step.start.mode[first..];
+        let overshoot = if self.carrier_swings() { self.step.interpolation().overshoot() } else { 0.0 };
         let least = |function: EventFunction| {
-            let stages = self.step.stages.iter().map(|stage| &function.values(stage)[first..]);
+            let stages = self.step.stages().iter().map(|stage| &function.values(stage)[first..]);
             least_within(stages, overshoot)
         };
         let (normal, margin) = (least(EventFunction::Normal), least(EventFunction::Margin));
@@ -199,7 +199,7 @@ impl Contacts<'_> {
 
     /// Whether no contact of the block from mass `first` on that is not suspected changes its mode.
     fn others_hold(&mut self, first: usize) -> bool {
-        let (suspects, modes) = (self.suspects(first), &self.step.start.state.mode);
+        let (suspects, modes) = (self.suspects(first), &self.step.start.mode);
         let mut others = (first..modes.len().min(first + BLOCK)).filter(|i| suspects >> (i - first) & 1 == 0);
         others.all(|i| !modes[i].in_contact() || self.change_of(i, None).is_none())
     }
@@ -225,7 +225,7 @@ impl Contacts<'_> {
 
     /// The fraction at which mass `i`, in contact, first changes its mode; `first` if it does not before that.
     fn change_of(&mut self, i: usize, first: Option<f64>) -> Option<f64> {
-        let (force, of_margin) = (self.tolerance.force, self.tolerance.margin(self.step.start.state.mode[i]));
+        let (force, of_margin) = (self.tolerance.force, self.tolerance.margin(self.step.start.mode[i]));
         let first = self.fall(i, EventFunction::Normal, force, first);
         let first = self.fall(i, EventFunction::Margin, of_margin, first);
         if !self.carrier_swings() {
@@ -238,7 +238,7 @@ impl Contacts<'_> {
     /// The same as [`fall`](Self::fall) where a quantity falls below its tolerance between the stages alone: at the vertex
     /// of the parabola through its least value at a stage and those before and after.
     fn dip(&mut self, i: usize, function: EventFunction, tolerance: f64, first: Option<f64>) -> Option<f64> {
-        let inner = 1..self.step.stages.len() - 1;
+        let inner = 1..self.step.stages().len() - 1;
         let least =
             inner.min_by(|&a, &b| f64::total_cmp(&self.at_stage(a, i, function), &self.at_stage(b, i, function)));
         let Some(rank) = least else { return first };
@@ -255,11 +255,11 @@ impl Contacts<'_> {
     /// The fraction at which a quantity of mass `i` first falls below -`tolerance`, located where it is -`tolerance`/2;
     /// `first` if it does not before that.
     fn fall(&mut self, i: usize, function: EventFunction, tolerance: f64, first: Option<f64>) -> Option<f64> {
-        if !self.step.stages[1..].iter().any(|stage| function.values(stage)[i] < -tolerance) {
+        if !self.step.stages()[1..].iter().any(|stage| function.values(stage)[i] < -tolerance) {
             return first;
         }
         let latest = first.unwrap_or(1.0);
-        let ranks = self.step.stages.len();
+        let ranks = self.step.stages().len();
         let rank = (1..ranks).find(|&rank| self.at_stage(rank, i, function) < -tolerance);
         let Some(rank) = rank.filter(|&rank| self.node(rank - 1) < latest) else { return first };
         for rank in rank..ranks {
@@ -290,17 +290,17 @@ impl Contacts<'_> {
 
     /// The fraction of the step at which the stage lies that is `rank`-th in time.
     fn node(&self, rank: usize) -> f64 {
-        self.step.interpolation.node(self.step.interpolation.in_time()[rank])
+        self.step.interpolation().node(self.step.interpolation().in_time()[rank])
     }
 
     /// The quantity at the stage that is `rank`-th in time.
     fn at_stage(&self, rank: usize, i: usize, function: EventFunction) -> f64 {
-        function.values(&self.step.stages[self.step.interpolation.in_time()[rank]])[i]
+        function.values(&self.step.stages()[self.step.interpolation().in_time()[rank]])[i]
     }
 
     /// The quantity at the fraction `theta` of the step.
     fn value(&mut self, i: usize, function: EventFunction, theta: f64) -> f64 {
-        let mode = self.step.start.state.mode[i];
+        let mode = self.step.start.mode[i];
         if function == EventFunction::Margin && mode.slips() {
             return mode.direction() * self.step.velocity_x(i, theta);
         }

@@ -6,8 +6,10 @@
 
 use std::ops::Range;
 
+use super::maxwell::ElementWeights;
 use super::rates::Rates;
-use super::tableau::STAGES;
+use super::scheme::ContactHeights;
+use super::tableau::Weights;
 use crate::math::{BLOCK, dot, sum};
 use crate::model::{Carrier, CarrierPoint, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint};
 
@@ -52,7 +54,7 @@ pub(super) struct Placement {
     /// Its displacement along x since then, m.
     du: f64,
     /// w, m.
-    w: f64,
+    pub w: f64,
 }
 
 impl Placement {
@@ -66,23 +68,6 @@ impl Placement {
     pub(super) fn position(&self, rest_x: f64, x: f64) -> f64 {
         rest_x + (self.profile_position + (self.du + x))
     }
-}
-
-/// The weights of an element's elongation at the start and at the end of a step, and of its link's rates at the stages (s),
-/// in its elongation within the step.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct ElementWeights {
-    pub ends: [f64; 2],
-    pub rates: [f64; STAGES],
-}
-
-/// Where the heights of the masses in contact come from within a step (docs/theory.md, section 5).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum ContactHeights {
-    /// From those at the ends of the step and from ż at its stages, as the heights of free masses do.
-    Interpolated,
-    /// From the profile.
-    OfProfile,
 }
 
 /// Sums over the masses, or some of them, and their links to the carrier of the last attempted step.
@@ -109,9 +94,9 @@ pub(super) struct AxisSums {
     /// Σ e of the masses that are summed up at the start and at the end, m.
     pub elongation: [f64; 2],
     /// Σ v of these masses at the stages, m/s.
-    pub velocity: [f64; STAGES],
+    pub velocity: Weights,
     /// Σ ė of all links at the stages, m/s; 0 without Maxwell elements.
-    rate: [f64; STAGES],
+    rate: Weights,
     /// Σ a of all links at the start and at the end, m, by row of elements of this kind.
     elements: Vec<[f64; 2]>,
 }
@@ -189,7 +174,7 @@ fn one_if(condition: bool) -> f64 {
 
 impl AxisSums {
     fn new(model: &Model, kind: LinkKind) -> Self {
-        let none = [0.0; STAGES];
+        let none = Weights::default();
         let elements = vec![[0.0; 2]; model.rows_of(kind).count()];
         Self { kind, elongation: [0.0; 2], velocity: none, rate: none, elements }
     }

@@ -1,46 +1,26 @@
-//! Dense output of event-driven steps: the motion and the state within a step (docs/theory.md, section 5).
+//! Dense output: the motion and the state within a step (docs/theory.md, section 5).
 //!
-//! Velocities are combinations of those at the stages ([`StageInterpolation`]), positions their integrals. The Maxwell
-//! elements follow these velocities by the exact solution of ȧ = ė - a/τ, for any τ; its difference from the step's own end
-//! is distributed linearly over the step.
+//! Velocities are combinations of those at the stages ([`Interpolation`]), positions their integrals; in steps of time-stepping
+//! positions are the parabolas through the start and the end. The Maxwell elements follow polynomial velocities by the exact
+//! solution of ȧ = ė - a/τ, for any τ; its difference from the step's own end is distributed linearly over the step. Beside
+//! broken lines they are broken lines, too.
 
 use std::ops::Range;
 
-use super::carrier_sums::{AxisSums, CarrierSums, ElementWeights, Motion, Placement};
-use super::error::Tolerance;
-use super::interpolation::StageInterpolation;
+use super::carrier_sums::{AxisSums, CarrierSums, Motion, Placement};
+use super::interpolation::{Interpolation, Velocities, parabola};
+use super::maxwell::{ElementWeights, by_rate};
+use super::method::{RungeKutta, Stages, StepSpan};
+use super::parabolas::Parabolas;
 use super::rates::Rates;
-use super::tableau::STAGES;
+use super::scheme::Scheme;
+use super::tableau::{GAMMA, Weights};
+use super::tolerance::Tolerance;
 use crate::math::{BLOCK, Relaxation, dot, weighted_sum, with_widest_vectors};
 use crate::model::{
     ByAxis, ByLink, Carrier, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, State,
     SurfacePoint,
 };
-
-/// Where a step lies in time.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StepSpan {
-    /// Start of the step, s after the start of the carrier's piece.
-    pub start: f64,
-    /// Length of the step, s.
-    pub length: f64,
-}
-
-impl StepSpan {
-    /// The time at the fraction `theta` of the step, s after the start of the carrier's piece.
-    pub fn at(&self, theta: f64) -> f64 {
-        self.start + theta * self.length
-    }
-}
-
-/// State and carrier at the start or at the end of a step.
-#[derive(Clone, Copy, Debug)]
-pub struct StepBoundary<'a> {
-    /// The state.
-    pub state: &'a State,
-    /// The carrier.
-    pub carrier: CarrierPoint,
-}
 
 /// The interpolant of one step by the values at its stages.
 #[derive(Clone, Debug)]
@@ -53,54 +33,124 @@ pub struct DenseOutput<'a> {
     pub carrier: &'a Carrier,
     /// The step.
     pub span: StepSpan,
-    /// Its start.
-    pub start: StepBoundary<'a>,
-    /// Its end.
-    pub end: StepBoundary<'a>,
-    /// The rates at its stages.
-    pub stages: &'a [Rates],
-    /// The carrier at its stages.
-    pub carriers: &'a [CarrierPoint],
-    /// The weights of its stages.
-    pub interpolation: &'a StageInterpolation,
+    /// The state at its start.
+    pub start: &'a State,
+    pub(super) method: &'a RungeKutta,
+    pub(super) values: &'a Stages,
 }
 
-impl DenseOutput<'_> {
+impl<'a> DenseOutput<'a> {
     /// Of these masses alone.
     #[must_use]
-    pub fn restricted_to(self, masses: Range<usize>) -> Self {
-        Self { masses, ..self }
+    pub fn of(&self, masses: Range<usize>) -> Self {
+        Self { masses, ..*self }
+    }
+
+    /// The fraction of the step at the time `s` after the start of the carrier's piece.
+    pub fn theta(&self, s: f64) -> f64 {
+        (s - self.span.start) / self.span.length
+    }
+
+    /// The rates at its stages.
+    pub fn stages(&self) -> &'a [Rates] {
+        &self.values.rates[..self.method.coefficients.tableau.stages]
+    }
+
+    /// The carrier at its stages, the first of which is the start and the last the end.
+    pub fn carriers(&self) -> &'a [CarrierPoint] {
+        &self.values.carrier[..self.method.coefficients.tableau.stages]
+    }
+
+    /// The state at its end.
+    pub fn end(&self) -> &'a State {
+        &self.values.solver.state
+    }
+
+    /// The forces at its end.
+    pub fn end_forces(&self) -> &'a Forces {
+        &self.values.solver.forces
+    }
+
+    /// The weights of its stages.
+    pub fn interpolation(&self) -> &'static Interpolation {
+        &self.method.coefficients.interpolation
+    }
+
+    /// The motions of single masses in a step of time-stepping.
+    pub fn parabolas(&self) -> Parabolas<'a> {
+        let rates = &self.values.rates;
+        Parabolas::new(self.model, self.carrier, self.span, self.start, &rates[1], self.end(), &rates[2])
     }
 
     /// Writes the state at the fraction `theta` of the step.
     pub fn state_at(&self, theta: f64, workspace: &mut DenseWorkspace, state: &mut State) {
         workspace.set_weights(self, theta);
-        let (start, masses) = (self.start.state, self.masses.clone());
+        state.surface.copy_from_slice(&self.start.surface[self.masses.clone()]);
+        match self.interpolation().velocities() {
+            Velocities::Polynomial => self.write_polynomials(theta, workspace, state),
+            Velocities::BrokenLine => self.write_parabolas(theta, workspace, state),
+        }
+        let mut elements = &mut state.maxwell[..];
+        for row in &self.model.rows {
+            let (of_row, further) = elements.split_at_mut(row.kind.count(self.masses.len()));
+            elements = further;
+            let weights = workspace.of_elements(row);
+            let first = row.range.start + self.masses.start;
+            let ends = weights.ends.into_iter().zip([self.start, self.end()]).filter(|(weight, _)| *weight != 0.0);
+            let terms = ends.map(|(weight, state)| (weight, &state.maxwell[first..]));
+            let rates = by_rate(row.kind, &weights.rates, self.stages());
+            weighted_sum(of_row, terms.chain(rates.map(|(weight, rates)| (weight, &rates[self.masses.start..]))));
+        }
+    }
+
+    /// Writes the masses as the polynomials through the values at the stages have them.
+    fn write_polynomials(&self, theta: f64, workspace: &DenseWorkspace, state: &mut State) {
+        let (start, masses) = (self.start, self.masses.clone());
         state.mode.copy_from_slice(&start.mode[masses.clone()]);
-        state.surface.copy_from_slice(&start.surface[masses.clone()]);
         let carrier = self.carrier_at(theta, workspace);
-        let DenseWorkspace { values, integral, .. } = &*workspace;
+        let DenseWorkspace { values, integral, .. } = workspace;
         self.combine(&mut state.velocity_x, values, None, |stage| &stage.velocity_x, carrier.missing_rate.0);
         self.combine(&mut state.velocity_z, values, None, |stage| &stage.velocity_z, carrier.missing_rate.1);
         let (from_x, from_z) = (Some(&start.elongation_x[..]), Some(&start.elongation_z[..]));
         self.combine(&mut state.elongation_x, integral, from_x, |stage| &stage.velocity_x, -carrier.integrated.0);
         self.combine(&mut state.elongation_z, integral, from_z, |stage| &stage.velocity_z, -carrier.integrated.1);
-        for i in (0..masses.len()).filter(|&i| state.mode[i].in_contact()) {
-            let mass = self.on_profile(masses.start + i, (state.elongation_x[i], state.velocity_x[i]), &carrier);
-            (state.elongation_x[i], state.elongation_z[i]) = mass.elongation;
-            (state.velocity_x[i], state.velocity_z[i]) = mass.velocity;
-            state.surface[i] = mass.surface;
+        for i in 0..masses.len() {
+            if state.mode[i].in_contact() {
+                let along_x = (state.elongation_x[i], state.velocity_x[i]);
+                self.in_contact(masses.start + i, along_x, &carrier).write(state, i);
+            }
         }
-        let mut elements = &mut state.maxwell[..];
-        for row in &self.model.rows {
-            let (of_row, further) = elements.split_at_mut(row.kind.count(masses.len()));
-            elements = further;
-            let weights = &workspace.relaxation[row.time_index];
-            let ends = [(weights.start, start), (theta, self.end.state)];
-            let ends =
-                ends.into_iter().map(|(weight, state)| (weight, &state.maxwell[row.range.start + masses.start..]));
-            let rates = self.stages.iter().map(|stage| &stage.elongation_rate[row.kind][masses.start..]);
-            weighted_sum(of_row, ends.chain(weights.rate.into_iter().zip(rates)));
+    }
+
+    /// Writes the masses, all of the layer, on parabolas, with velocities on broken lines.
+    fn write_parabolas(&self, theta: f64, workspace: &DenseWorkspace, state: &mut State) {
+        let StepSpan { start: s, length: h } = self.span;
+        let (from, first, to) = (self.start, &self.stages()[1], self.end());
+        let (moved, in_step) = (self.carrier.moved(s, theta * h), self.carrier.moved(s, h));
+        // One that stops or breaks loose on the way moves.
+        for (mode, (start, end)) in state.mode.iter_mut().zip(from.mode.iter().zip(&to.mode)) {
+            *mode = if start.slips() { *start } else { *end };
+        }
+        let elongations = |out: &mut [f64], start: &[f64], velocity: &[f64], end: &[f64], moved: f64, in_step: f64| {
+            for (out, ((start, end), velocity)) in out.iter_mut().zip(start.iter().zip(end).zip(velocity)) {
+                *out = start + (parabola(theta, GAMMA * h * velocity, in_step + (end - start)) - moved);
+            }
+        };
+        let (e_x, e_z) = (&mut state.elongation_x, &mut state.elongation_z);
+        elongations(e_x, &from.elongation_x, &first.velocity_x, &to.elongation_x, moved.x, in_step.x);
+        elongations(e_z, &from.elongation_z, &first.velocity_z, &to.elongation_z, moved.z, in_step.z);
+        let velocities = |out: &mut [f64], values: [&[f64]; 3]| {
+            weighted_sum(out, workspace.values.into_iter().zip(values).filter(|(weight, _)| *weight != 0.0));
+        };
+        velocities(&mut state.velocity_x, [&from.velocity_x, &first.velocity_x, &to.velocity_x]);
+        velocities(&mut state.velocity_z, [&from.velocity_z, &first.velocity_z, &to.velocity_z]);
+        let here = self.carrier.at(self.span.at(theta));
+        for i in 0..self.model.masses() {
+            let mode = state.mode[i];
+            if mode.in_contact() {
+                let v_x = if mode.slips() { state.velocity_x[i] } else { 0.0 };
+                self.on_profile(i, mode, (state.elongation_x[i], v_x), &here).write(state, i);
+            }
         }
     }
 
@@ -108,12 +158,12 @@ impl DenseOutput<'_> {
     fn combine(
         &self,
         out: &mut [f64],
-        weights: &[f64; STAGES],
+        weights: &Weights,
         from: Option<&[f64]>,
         value: fn(&Rates) -> &[f64],
         shift: f64,
     ) {
-        let stages = weights.iter().zip(self.stages).map(|(&weight, stage)| (weight, value(stage)));
+        let stages = weights.iter().zip(self.stages()).map(|(&weight, stage)| (weight, value(stage)));
         let terms = from.map(|from| (1.0, from)).into_iter().chain(stages);
         weighted_sum(out, terms.map(|(weight, values)| (weight, &values[self.masses.start..])));
         if shift != 0.0 {
@@ -164,14 +214,14 @@ impl DenseOutput<'_> {
     }
 
     /// The carrier at the fraction `theta`, for which the weights of `workspace` are set.
-    fn carrier_at(&self, theta: f64, workspace: &DenseWorkspace) -> CarrierWithin {
+    fn carrier_at(&self, theta: f64, workspace: &DenseWorkspace) -> CarrierMotion {
         let now = self.carrier.at(self.span.at(theta));
-        let sum = |weights: &[f64; STAGES], rate: fn(&CarrierPoint) -> f64| -> f64 {
-            weights.iter().zip(self.carriers).map(|(weight, at)| weight * rate(at)).sum()
+        let sum = |weights: &Weights, rate: fn(&CarrierPoint) -> f64| -> f64 {
+            weights.iter().zip(self.carriers()).map(|(weight, at)| weight * rate(at)).sum()
         };
         let both = |weights| (sum(weights, |at| at.x.speed), sum(weights, |at| at.z.speed));
         let rate = both(&workspace.values);
-        CarrierWithin {
+        CarrierMotion {
             moved: self.carrier.moved(self.span.start, theta * self.span.length),
             integrated: both(&workspace.integral),
             missing_rate: (now.x.speed - rate.0, now.z.speed - rate.1),
@@ -180,16 +230,16 @@ impl DenseOutput<'_> {
     }
 
     /// Mass `i` at the fraction of the step for which the weights of `workspace` are set.
-    fn mass_at(&self, i: usize, carrier: &CarrierWithin, workspace: &DenseWorkspace) -> MassPoint {
-        let start = self.start.state;
-        let sum = |weights: &[f64; STAGES], value: fn(&Rates) -> &[f64]| -> f64 {
-            weights.iter().zip(self.stages).map(|(weight, stage)| weight * value(stage)[i]).sum()
+    fn mass_at(&self, i: usize, carrier: &CarrierMotion, workspace: &DenseWorkspace) -> MassPoint {
+        let start = self.start;
+        let sum = |weights: &Weights, value: fn(&Rates) -> &[f64]| -> f64 {
+            weights.iter().zip(self.stages()).map(|(weight, stage)| weight * value(stage)[i]).sum()
         };
         let along_x = |weights| sum(weights, |stage| &stage.velocity_x);
         let x = start.elongation_x[i] + along_x(&workspace.integral) - carrier.integrated.0;
         let v_x = along_x(&workspace.values) + carrier.missing_rate.0;
         if start.mode[i].in_contact() {
-            return self.on_profile(i, (x, v_x), carrier);
+            return self.in_contact(i, (x, v_x), carrier);
         }
         let along_z = |weights| sum(weights, |stage| &stage.velocity_z);
         MassPoint {
@@ -202,6 +252,27 @@ impl DenseOutput<'_> {
     /// The sums of the elongations and of the velocities of all masses at the fraction `theta`, from the `sums` of the step.
     pub(super) fn summed_motion(&self, theta: f64, sums: &CarrierSums, workspace: &mut DenseWorkspace) -> Motion {
         workspace.set_weights(self, theta);
+        match self.interpolation().velocities() {
+            Velocities::Polynomial => self.summed_polynomials(theta, sums, workspace),
+            Velocities::BrokenLine => self.summed_parabolas(theta, sums, workspace),
+        }
+    }
+
+    fn summed_parabolas(&self, theta: f64, sums: &CarrierSums, workspace: &DenseWorkspace) -> Motion {
+        let (n, StepSpan { start: s, length: h }) = (sums.summed, self.span);
+        let (moved, in_step) = (self.carrier.moved(s, theta * h), self.carrier.moved(s, h));
+        let elongation = |axis: &AxisSums, moved: f64, in_step: f64| {
+            let ([start, end], middle) = (axis.elongation, GAMMA * h * axis.velocity[1]);
+            start + (parabola(theta, middle, n * in_step + (end - start)) - n * moved)
+        };
+        let weights = &workspace.values[..self.stages().len()];
+        Motion {
+            elongation: (elongation(&sums.x, moved.x, in_step.x), elongation(&sums.z, moved.z, in_step.z)),
+            velocity: (dot(weights, &sums.x.velocity), dot(weights, &sums.z.velocity)),
+        }
+    }
+
+    fn summed_polynomials(&self, theta: f64, sums: &CarrierSums, workspace: &mut DenseWorkspace) -> Motion {
         let carrier = self.carrier_at(theta, workspace);
         // Elongations are integrated as differences from the carrier's motion at the stages. But sticks along x and contacts along
         // z are where the surface has them, and the carrier moves away from there on its own path.
@@ -225,7 +296,7 @@ impl DenseOutput<'_> {
             return all;
         }
         let DenseWorkspace { values, integral, of_masses: [x, v_x], .. } = workspace;
-        let (x, v_x, start) = (&mut x[..self.masses.len()], &mut v_x[..self.masses.len()], self.start.state);
+        let (x, v_x, start) = (&mut x[..self.masses.len()], &mut v_x[..self.masses.len()], self.start);
         if start.mode[self.masses.clone()].iter().any(|mode| mode.slips()) {
             self.combine(x, integral, Some(&start.elongation_x), |stage| &stage.velocity_x, -carrier.integrated.0);
             self.combine(v_x, values, None, |stage| &stage.velocity_x, carrier.missing_rate.0);
@@ -239,8 +310,8 @@ impl DenseOutput<'_> {
 
     /// Adds the masses in contact, of which those that slip have the elongations `x` (m) and velocities `v_x` (m/s).
     #[inline(always)]
-    fn add_contacts(&self, all: &mut Motion, (x, v_x): (&[f64], &[f64]), carrier: &CarrierWithin) {
-        let modes = &self.start.state.mode[self.masses.clone()];
+    fn add_contacts(&self, all: &mut Motion, (x, v_x): (&[f64], &[f64]), carrier: &CarrierMotion) {
+        let modes = &self.start.mode[self.masses.clone()];
         let (placement, of_layer) = (Placement::new(self.carrier, &carrier.now), self.masses.start);
         let mut first = 0;
         for run in modes.chunk_by(|mode, next| mode.slips() == next.slips()) {
@@ -253,31 +324,37 @@ impl DenseOutput<'_> {
                 }
             } else {
                 for i in masses.filter(|&i| modes[i].in_contact()) {
-                    all.add(&self.on_profile(of_layer + i, (x[i], v_x[i]), carrier).motion());
+                    all.add(&self.in_contact(of_layer + i, (x[i], v_x[i]), carrier).motion());
                 }
             }
         }
     }
 
-    /// Mass `i`, in contact, with the elongation and velocity `along_x` (m, m/s) if it slips.
+    /// Mass `i`, in contact, with the elongation and velocity `along_x` (m, m/s) if it slips; it goes with the carrier if not.
     #[inline(always)]
-    fn on_profile(&self, i: usize, along_x: (f64, f64), carrier: &CarrierWithin) -> MassPoint {
-        let start = self.start.state;
-        let (elongation_x, v_x, surface) = if start.mode[i].slips() {
-            let placement = Placement::new(self.carrier, &carrier.now);
-            let at = placement.position(self.model.rest_x[i], along_x.0);
-            (along_x.0, along_x.1, self.model.surface_at(at))
+    fn in_contact(&self, i: usize, along_x: (f64, f64), carrier: &CarrierMotion) -> MassPoint {
+        let (start, mode) = (self.start, self.start.mode[i]);
+        let along_x = if mode.slips() { along_x } else { (start.elongation_x[i] - carrier.moved.x, 0.0) };
+        self.on_profile(i, mode, along_x, &carrier.now)
+    }
+
+    /// Mass `i`, in contact in `mode` with the elongation and velocity `along_x` (m, m/s), under the carrier.
+    #[inline(always)]
+    fn on_profile(&self, i: usize, mode: Mode, (x, v_x): (f64, f64), carrier: &CarrierPoint) -> MassPoint {
+        let placement = Placement::new(self.carrier, carrier);
+        let surface = if mode.slips() {
+            self.model.surface_at(placement.position(self.model.rest_x[i], x))
         } else {
-            (start.elongation_x[i] - carrier.moved.x, 0.0, start.surface[i])
+            self.start.surface[i]
         };
-        let elongation_z = surface.height - self.model.rest_z[i] - (self.carrier.start.z + carrier.now.z.position);
-        MassPoint { elongation: (elongation_x, elongation_z), velocity: (v_x, surface.slope * v_x), surface }
+        let z = surface.height - self.model.rest_z[i] - placement.w;
+        MassPoint { elongation: (x, z), velocity: (v_x, surface.slope * v_x), surface }
     }
 
     /// ẋ of mass `i` at the fraction `theta`, m/s.
     pub fn velocity_x(&self, i: usize, theta: f64) -> f64 {
-        let values = self.interpolation.values(theta);
-        let relative = values.iter().zip(self.stages).zip(self.carriers);
+        let values = self.interpolation().values(theta);
+        let relative = values.iter().zip(self.stages()).zip(self.carriers());
         let relative = relative.map(|((weight, stage), carrier)| weight * (stage.velocity_x[i] - carrier.x.speed));
         relative.sum::<f64>() + self.carrier.at(self.span.at(theta)).x.speed
     }
@@ -290,15 +367,15 @@ impl DenseOutput<'_> {
         let here = self.mass_at(i, &carrier, workspace);
         let rate = (here.velocity.0 - carrier.now.x.speed, here.velocity.1 - carrier.now.z.speed);
         let to_carrier = LinkPoint { elongation: here.elongation, rate };
-        let mut force_x = -self.link_force(LinkKind::Horizontal, i, theta, &to_carrier, workspace);
-        let mut force_z = -self.link_force(LinkKind::Vertical, i, theta, &to_carrier, workspace);
+        let mut force_x = -self.link_force(LinkKind::Horizontal, i, &to_carrier, workspace);
+        let mut force_z = -self.link_force(LinkKind::Vertical, i, &to_carrier, workspace);
         for (j, link, sign) in [(i.wrapping_sub(1), i.wrapping_sub(1), -1.0), (i + 1, i, 1.0)] {
             if j >= self.model.masses() {
                 continue;
             }
             let between = LinkPoint::between(&here, &self.mass_at(j, &carrier, workspace), sign);
-            force_x += sign * self.link_force(LinkKind::LateralX, link, theta, &between, workspace);
-            force_z += sign * self.link_force(LinkKind::LateralZ, link, theta, &between, workspace);
+            force_x += sign * self.link_force(LinkKind::LateralX, link, &between, workspace);
+            force_z += sign * self.link_force(LinkKind::LateralZ, link, &between, workspace);
         }
         let of_end = carrier.now.on_end(i, self.model.masses());
         (force_x, force_z) = (force_x + of_end.x, force_z + of_end.z);
@@ -313,7 +390,7 @@ impl DenseOutput<'_> {
         let between = LinkPoint::between(&here, &there, 1.0);
         [LinkKind::LateralX, LinkKind::LateralZ].map(|kind| {
             let present = self.model.links[kind].present;
-            if present { self.link_force(kind, i, theta, &between, workspace) } else { 0.0 }
+            if present { self.link_force(kind, i, &between, workspace) } else { 0.0 }
         })
     }
 
@@ -326,15 +403,8 @@ impl DenseOutput<'_> {
         [elongation, velocity]
     }
 
-    /// The force of one link at the fraction `theta`, for which the weights of `workspace` are set, N.
-    fn link_force(
-        &self,
-        kind: LinkKind,
-        link: usize,
-        theta: f64,
-        point: &LinkPoint,
-        workspace: &DenseWorkspace,
-    ) -> f64 {
+    /// The force of one link at the fraction for which the weights of `workspace` are set, N.
+    fn link_force(&self, kind: LinkKind, link: usize, point: &LinkPoint, workspace: &DenseWorkspace) -> f64 {
         let law = &self.model.links[kind];
         let of = |(x, z): (f64, f64)| if kind.is_along_x() { x } else { z };
         let mut force = law.stiffness * of(point.elongation) + law.damping * of(point.rate);
@@ -346,17 +416,17 @@ impl DenseOutput<'_> {
             return force;
         }
         for row in rows {
-            let (start, end) =
-                (self.start.state.maxwell[row.range.start + link], self.end.state.maxwell[row.range.start + link]);
-            force += row.stiffness * (workspace.relaxation[row.time_index].start * start + theta * end);
+            let (start, end) = (self.start.maxwell[row.range.start + link], self.end().maxwell[row.range.start + link]);
+            let [of_start, of_end] = workspace.of_elements(row).ends;
+            force += row.stiffness * (of_start * start + of_end * end);
         }
-        let rates = self.stages.iter().map(|stage| stage.elongation_rate[kind][link]);
+        let rates = self.stages().iter().map(|stage| stage.elongation_rate[kind][link]);
         force + workspace.of_rate[kind].iter().zip(rates).map(|(weight, rate)| weight * rate).sum::<f64>()
     }
 }
 
 /// The carrier at one instant within a step.
-struct CarrierWithin {
+struct CarrierMotion {
     now: CarrierPoint,
     /// Its displacement along x and z since the start of the step, m.
     moved: ByAxis<f64>,
@@ -367,14 +437,20 @@ struct CarrierWithin {
 }
 
 /// A mass at one instant within a step; along x and z.
-pub(super) struct MassPoint {
-    pub elongation: (f64, f64),
-    pub velocity: (f64, f64),
-    pub surface: SurfacePoint,
+struct MassPoint {
+    elongation: (f64, f64),
+    velocity: (f64, f64),
+    surface: SurfacePoint,
 }
 
 impl MassPoint {
-    pub(super) fn motion(&self) -> Motion {
+    fn write(self, state: &mut State, i: usize) {
+        (state.elongation_x[i], state.elongation_z[i]) = self.elongation;
+        (state.velocity_x[i], state.velocity_z[i]) = self.velocity;
+        state.surface[i] = self.surface;
+    }
+
+    fn motion(&self) -> Motion {
         Motion { elongation: self.elongation, velocity: self.velocity }
     }
 }
@@ -421,39 +497,32 @@ impl InertialFraction {
 /// Workspace of [`DenseOutput`]: the weights of the stages at one fraction of a step.
 #[derive(Clone, Debug)]
 pub struct DenseWorkspace {
-    /// The fraction and the length of the step for which the weights are set.
-    at: (f64, f64),
+    /// The scheme and the length of the step and its fraction for which the weights are set; `None` where they are not.
+    at: Option<(Scheme, f64, f64)>,
     /// Of the stages' values in a value.
-    values: [f64; STAGES],
+    values: Weights,
     /// Of the stages' rates in a value's change since the start, s.
-    integral: [f64; STAGES],
+    integral: Weights,
     /// By relaxation time.
-    relaxation: Vec<RelaxationWeights>,
+    elements: Vec<ElementWeights>,
+    /// By relaxation time: the exact solution over the whole step.
+    whole: Vec<Relaxation>,
     /// By kind of link: of the stages' elongation rates in the force of all Maxwell elements, N s/m.
-    of_rate: ByLink<[f64; STAGES]>,
+    of_rate: ByLink<Weights>,
     /// Of the masses that are meant: their accelerations in the defect, x and v_x in sums.
     of_masses: [Vec<f64>; 2],
-}
-
-/// The weights of a Maxwell element's elongation at the start and of its link's rates at the stages (s). They make the
-/// element follow the interpolated rate exactly, less the linear share of the difference at the step's own end.
-#[derive(Clone, Copy, Debug, Default)]
-struct RelaxationWeights {
-    start: f64,
-    rate: [f64; STAGES],
-    /// The exact solution over the whole step.
-    whole: Relaxation,
 }
 
 impl DenseWorkspace {
     /// Workspace for steps of `model`.
     pub fn new(model: &Model) -> Self {
         Self {
-            at: (f64::NAN, f64::NAN),
-            values: [0.0; STAGES],
-            integral: [0.0; STAGES],
-            relaxation: vec![RelaxationWeights::default(); model.relaxation_times.len()],
-            of_rate: ByLink([[0.0; STAGES]; 4]),
+            at: None,
+            values: Weights::default(),
+            integral: Weights::default(),
+            elements: vec![ElementWeights::default(); model.relaxation_times.len()],
+            whole: vec![Relaxation::default(); model.relaxation_times.len()],
+            of_rate: ByLink::default(),
             of_masses: [vec![0.0; model.masses()], vec![0.0; model.masses()]],
         }
     }
@@ -465,7 +534,7 @@ impl DenseWorkspace {
 
     /// Forgets the weights: the model has changed.
     pub fn invalidate(&mut self) {
-        self.at = (f64::NAN, f64::NAN);
+        self.at = None;
     }
 
     /// Bytes that this holds.
@@ -474,46 +543,63 @@ impl DenseWorkspace {
     }
 
     /// The weights of the elements of one row at the fraction for which the weights are set.
-    pub(super) fn of_elements(&self, row: &MaxwellRow) -> ElementWeights {
-        let RelaxationWeights { start, rate, .. } = self.relaxation[row.time_index];
-        ElementWeights { ends: [start, self.at.0], rates: rate }
+    pub(super) fn of_elements(&self, row: &MaxwellRow) -> &ElementWeights {
+        &self.elements[row.time_index]
     }
 
     /// Sets the weights at the fraction `theta` of `step`, unless they are there already.
     fn set_weights(&mut self, step: &DenseOutput<'_>, theta: f64) {
-        let h = step.span.length;
-        if self.at == (theta, h) {
+        let at = (step.method.scheme, step.span.length, theta);
+        if self.at == Some(at) {
             return;
         }
-        let is_other_step = self.at.1 != h;
-        self.at = (theta, h);
-        self.values = step.interpolation.values(theta);
-        self.integral = step.interpolation.integral(theta).map(|weight| h * weight);
-        self.of_rate = ByLink([[0.0; STAGES]; 4]);
-        for (relaxation, tau) in self.relaxation.iter_mut().zip(&step.model.relaxation_times) {
-            if is_other_step {
-                relaxation.whole = Relaxation::new(h / tau, 1.0);
-            }
-            let whole = relaxation.whole;
-            let here = if theta == 1.0 { whole } else { Relaxation::new(h / tau, theta) };
-            let driven = std::array::from_fn(|power| h * (here.driven[power] - theta * whole.driven[power]));
-            relaxation.start = here.decay - theta * whole.decay;
-            relaxation.rate = step.interpolation.combined(&driven);
+        let (h, interpolation) = (step.span.length, step.interpolation());
+        self.values = interpolation.values(theta);
+        self.integral = interpolation.integral(theta).map(|weight| h * weight);
+        match interpolation.velocities() {
+            Velocities::Polynomial => self.set_relaxing_elements(step, theta),
+            Velocities::BrokenLine => self.set_linear_elements(step),
         }
+        self.of_rate = ByLink::default();
         for row in &step.model.rows {
-            let rates = self.relaxation[row.time_index].rate;
+            let rates = self.elements[row.time_index].rates;
             for (weight, rate) in self.of_rate[row.kind].iter_mut().zip(rates) {
                 *weight += row.stiffness * rate;
             }
+        }
+        self.at = Some(at);
+    }
+
+    /// Lets the elements follow the interpolated rate exactly, less the linear share of the difference at the step's own end.
+    fn set_relaxing_elements(&mut self, step: &DenseOutput<'_>, theta: f64) {
+        let h = step.span.length;
+        let is_other_step = self.at.is_none_or(|(scheme, length, _)| (scheme, length) != (step.method.scheme, h));
+        let relaxations = self.elements.iter_mut().zip(&mut self.whole).zip(&step.model.relaxation_times);
+        for ((elements, whole), tau) in relaxations {
+            if is_other_step {
+                *whole = Relaxation::new(h / tau, 1.0);
+            }
+            let here = if theta == 1.0 { *whole } else { Relaxation::new(h / tau, theta) };
+            let driven = std::array::from_fn(|power| h * (here.driven[power] - theta * whole.driven[power]));
+            elements.ends = [here.decay - theta * whole.decay, theta];
+            elements.rates = step.interpolation().combined(&driven);
+        }
+    }
+
+    /// Puts the elements on the broken lines through their elongations at the start, at the first implicit stage and at the end.
+    fn set_linear_elements(&mut self, step: &DenseOutput<'_>) {
+        let [of_start, of_first, of_end, ..] = self.values;
+        for (time_index, elements) in self.elements.iter_mut().enumerate() {
+            *elements = step.method.maxwell.weights_between(time_index, 1, [of_start, of_first, of_end]);
         }
     }
 
     /// Computes the accelerations of the interpolant along x and z (m/s²) at the fraction `theta` of `step`, with the carrier
     /// there.
     fn set_accelerations(&mut self, step: &DenseOutput<'_>, theta: f64, carrier: &CarrierPoint) {
-        let slope = step.interpolation.slope(theta).map(|weight| weight / step.span.length);
+        let slope = step.interpolation().slope(theta).map(|weight| weight / step.span.length);
         let missing = |of_carrier: f64, rate: fn(&CarrierPoint) -> f64| {
-            of_carrier - slope.iter().zip(step.carriers).map(|(weight, at)| weight * rate(at)).sum::<f64>()
+            of_carrier - slope.iter().zip(step.carriers()).map(|(weight, at)| weight * rate(at)).sum::<f64>()
         };
         let [x, z] = self.of_masses.each_mut().map(|values| &mut values[..step.masses.len()]);
         let missing_x = missing(carrier.x.acceleration, |at| at.x.speed);

@@ -5,39 +5,41 @@
 //! (`maxwell`). So sums over the layer are taken of their products, once per step, and not of every element at every
 //! stage.
 
-use std::ops::Range;
-
-use super::maxwell::{Maxwell, StageCoefficients};
-use super::rates::Rates;
-use super::tableau::STAGES;
+use super::dense::DenseOutput;
+use super::maxwell::ElementCoefficients;
+use super::tableau::{MAX_STAGES, Weights};
 use crate::math::{dot, dots, square_and_dots, sum_of_pairs};
-use crate::model::{BoundaryPowers, ByLink, ChannelEnergies, LinkKind, MaxwellRow, Model, State};
+use crate::model::{BoundaryPowers, ByLink, ChannelEnergies, LinkKind, MaxwellRow, Model};
+
+/// ė of the links of one kind at the stages, m/s; none where there is no such link, and beyond the last stage.
+type LinkRates<'a> = [&'a [f64]; MAX_STAGES];
 
 /// Σ ė_i ė_j over the links of one kind, m²/s², where they are needed; 0 elsewhere.
-type RateProducts<const N: usize> = [[f64; N]; N];
+type RateProducts = [Weights; MAX_STAGES];
 
 /// What the energies up to any fraction of a step follow from: the powers at its stages, summed over the layer or a part of
 /// it.
 #[derive(Clone, Debug)]
-pub(super) struct StepSums {
+pub(super) struct EnergySums {
     /// Whether they are those of the last attempted step.
     known: bool,
     /// The power lost in dampers, W.
-    dampers: [f64; STAGES],
+    dampers: Weights,
     /// The power lost in Maxwell elements, W.
-    elements: [f64; STAGES],
+    elements: Weights,
     /// What the stages do not resolve of it, by relaxation time.
     relaxing: Vec<RelaxingPower>,
 }
 
 /// Sums over all elements of one relaxation time, from which the power lost in them at the stages follows.
-struct ElementSums<const N: usize> {
+#[derive(Default)]
+struct ElementSums {
     /// Σ c a_0²/τ, W.
     square: f64,
     /// Σ c a_0 ė_j/τ, W/s.
-    mixed: [f64; N],
+    mixed: Weights,
     /// Σ c ė_i ė_j/τ, W/s².
-    rates: RateProducts<N>,
+    rates: RateProducts,
 }
 
 /// The power lost in the elements of one relaxation time that do not follow their links yet: of l = a_0 - τė_0, over all of
@@ -50,43 +52,11 @@ struct RelaxingPower {
     mixed: f64,
 }
 
-/// Some masses of a layer in a step from its `start`, of length `h` (s), with these `stages`.
-pub(super) struct MassesInStep<'a> {
-    pub model: &'a Model,
-    pub masses: Range<usize>,
-    pub start: &'a State,
-    pub stages: &'a [Rates],
-    pub h: f64,
-}
-
-impl<'a> MassesInStep<'a> {
-    /// ė of the links of one kind at the first `N` stages, m/s; none where there is no such link.
-    fn rates<const N: usize>(&self, kind: LinkKind) -> [&'a [f64]; N] {
-        let links = self.masses.start..self.masses.start + kind.count(self.masses.len());
-        std::array::from_fn(|i| self.stages[i].elongation_rate[kind].get(links.clone()).unwrap_or_default())
-    }
-
-    /// The elongations of the elements of `row` at the start, m.
-    fn elements(&self, row: &MaxwellRow) -> &'a [f64] {
-        let first = row.range.start + self.masses.start;
-        &self.start.maxwell[first..first + row.kind.count(self.masses.len())]
-    }
-}
-
-/// A step with sums over some of its masses.
-pub(super) struct SummedStep<'a> {
-    pub of: MassesInStep<'a>,
-    pub sums: &'a mut StepSums,
-    /// The powers of these masses through the surface and the carrier at the stages.
-    pub exchange: &'a [BoundaryPowers],
-}
-
-impl StepSums {
+impl EnergySums {
     /// Workspace for the elements of `model`.
     pub(super) fn new(model: &Model) -> Self {
-        let none = [0.0; STAGES];
         let relaxing = vec![RelaxingPower::default(); model.relaxation_times.len()];
-        Self { known: false, dampers: none, elements: none, relaxing }
+        Self { known: false, dampers: Weights::default(), elements: Weights::default(), relaxing }
     }
 
     /// A new step is attempted.
@@ -94,57 +64,100 @@ impl StepSums {
         self.known = false;
     }
 
+    /// Energies through the channels, J, that the powers at the stages of `step` make with these `weights`, which stand for
+    /// `measure`; the masses' powers through the surface and the carrier at the stages are `exchange`.
+    pub(super) fn energies(
+        &mut self,
+        step: &DenseOutput<'_>,
+        exchange: &[BoundaryPowers],
+        weights: &Weights,
+        measure: Measure,
+    ) -> ChannelEnergies {
+        self.collect(step);
+        let (h, mut energy) = (step.span.length, self.lost(step, weights, measure));
+        for (weight, exchange) in weights.iter().zip(exchange).take(step.stages().len()) {
+            energy.friction += h * weight * exchange.friction;
+            energy.shear += h * weight * exchange.shear;
+            energy.input += h * weight * exchange.input;
+            energy.carrier += h * weight * exchange.carrier;
+        }
+        energy
+    }
+
+    /// Energies lost in the dampers and Maxwell elements, J.
+    fn lost(&self, step: &DenseOutput<'_>, weights: &Weights, measure: Measure) -> ChannelEnergies {
+        let (h, weights) = (step.span.length, &weights[..step.stages().len()]);
+        let mut missed = 0.0;
+        let times = step.method.maxwell.coefficients().iter().zip(&step.model.relaxation_times).zip(&self.relaxing);
+        for ((coefficients, tau), relaxing) in times.filter(|(_, relaxing)| relaxing.square > 0.0) {
+            missed += UnresolvedRelaxation::new(h / tau, coefficients, weights, measure).of(relaxing);
+        }
+        ChannelEnergies {
+            damper: h * dot(weights, &self.dampers),
+            maxwell: h * (dot(weights, &self.elements) + missed),
+            ..ChannelEnergies::default()
+        }
+    }
+
     /// Takes the sums over the masses of `step`, unless they are known.
-    pub(super) fn collect<const N: usize>(&mut self, step: &MassesInStep<'_>, maxwell: &Maxwell<N>) {
+    fn collect(&mut self, step: &DenseOutput<'_>) {
         if self.known {
             return;
         }
         self.known = true;
-        let MassesInStep { model, h, .. } = *step;
-        let rates: ByLink<[&[f64]; N]> = ByLink::from_fn(|kind| step.rates(kind));
-        let products = ByLink::from_fn(|kind| rate_products(model, &rates[kind], kind));
-        (self.dampers, self.elements) = ([0.0; STAGES], [0.0; STAGES]);
-        for (i, power) in self.dampers[..N].iter_mut().enumerate() {
+        let (model, h, stages) = (step.model, step.span.length, step.stages().len());
+        let rates = ByLink::from_fn(|kind| link_rates(step, kind));
+        let products = ByLink::from_fn(|kind| rate_products(model, &rates[kind][..stages], kind));
+        (self.dampers, self.elements) = (Weights::default(), Weights::default());
+        for (i, power) in self.dampers[..stages].iter_mut().enumerate() {
             *power = model.links.iter().zip(&products).map(|(link, products)| link.damping * products[i][i]).sum();
         }
         let changes = ByLink::from_fn(|kind| {
             let unresolved = model.rows_of(kind).any(|row| h / row.relaxation_time > RESOLVED);
-            if unresolved { largest_change(&rates[kind]) } else { 0.0 }
+            if unresolved { largest_change(&rates[kind][..stages]) } else { 0.0 }
         });
-        for (index, (coefficients, relaxing)) in maxwell.coefficients().iter().zip(&mut self.relaxing).enumerate() {
-            let mut sums = ElementSums::zero();
+        let coefficients = step.method.maxwell.coefficients();
+        for (index, (coefficients, relaxing)) in coefficients.iter().zip(&mut self.relaxing).enumerate() {
+            let mut sums = ElementSums::default();
             *relaxing = RelaxingPower::default();
             for row in model.rows.iter().filter(|row| row.time_index == index) {
-                let (a, kind) = (step.elements(row), row.kind);
-                sums.add(row, a, &rates[kind], &products[kind]);
+                let kind = row.kind;
+                let first = row.range.start + step.masses.start;
+                let a = &step.start.maxwell[first..first + row.kind.count(step.masses.len())];
+                sums.add(row, a, &rates[kind][..stages], &products[kind]);
                 if h / row.relaxation_time > RESOLVED {
                     relaxing.add(row, a, rates[kind][0], changes[kind]);
                 }
             }
-            self.elements[..N].iter_mut().enumerate().for_each(|(i, power)| *power += sums.power(coefficients, i));
+            self.elements[..stages].iter_mut().enumerate().for_each(|(i, power)| *power += sums.power(coefficients, i));
         }
     }
 }
 
-impl<const N: usize> ElementSums<N> {
-    fn zero() -> Self {
-        let none = [0.0; N];
-        Self { square: 0.0, mixed: none, rates: [none; N] }
+fn link_rates<'a>(step: &DenseOutput<'a>, kind: LinkKind) -> LinkRates<'a> {
+    let links = step.masses.start..step.masses.start + kind.count(step.masses.len());
+    let mut rates = LinkRates::default();
+    for (rates, stage) in rates.iter_mut().zip(step.stages()) {
+        *rates = stage.elongation_rate[kind].get(links.clone()).unwrap_or_default();
     }
+    rates
+}
 
+impl ElementSums {
     /// Adds the elements of `row` with the elongations `a` (m) at the start of a step, with the `rates` of their links at its
     /// stages (m/s) and the `products` of these.
-    fn add(&mut self, row: &MaxwellRow, a: &[f64], rates: &[&[f64]; N], products: &RateProducts<N>) {
+    fn add(&mut self, row: &MaxwellRow, a: &[f64], rates: &[&[f64]], products: &RateProducts) {
         let power = row.stiffness / row.relaxation_time;
-        let (square, mixed) = square_and_dots(a, *rates);
-        self.square += power * square;
+        let mut mixed = Weights::default();
+        self.square += power * square_and_dots(a, rates, &mut mixed);
         self.mixed.iter_mut().zip(mixed).for_each(|(sum, mixed)| *sum += power * mixed);
-        let rates = self.rates.as_flattened_mut().iter_mut().zip(products.as_flattened());
-        rates.for_each(|(sum, product)| *sum += power * product);
+        for (sums, products) in self.rates.iter_mut().zip(products).take(rates.len()) {
+            sums.iter_mut().zip(products).for_each(|(sum, product)| *sum += power * product);
+        }
     }
 
     /// Σ c a_i²/τ at stage `i`, W: a_i = p_i a_0 + h Σ_j q_ij ė_j multiplied out.
-    fn power(&self, coefficients: &StageCoefficients<N>, i: usize) -> f64 {
+    fn power(&self, coefficients: &ElementCoefficients, i: usize) -> f64 {
         let (p, q) = (coefficients.start[i], &coefficients.rate[i]);
         let of_rate = |j: usize| {
             let with_earlier: f64 = (0..j).map(|l| q[l] * self.rates[j][l]).sum();
@@ -171,22 +184,6 @@ impl RelaxingPower {
     }
 }
 
-/// A step over which energies are to be integrated.
-#[derive(Clone, Copy)]
-pub(super) struct StepPowers<'a, const N: usize> {
-    pub model: &'a Model,
-    pub maxwell: &'a Maxwell<N>,
-    pub sums: &'a StepSums,
-    /// The powers through the surface and the carrier at the stages.
-    pub exchange: &'a [BoundaryPowers],
-    /// The length of the step, s.
-    pub h: f64,
-    /// The weights of the stages.
-    pub weights: &'a [f64; N],
-    /// What they make of the values at the stages.
-    pub measure: Measure,
-}
-
 /// What weights of the stages stand for.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Measure {
@@ -206,49 +203,24 @@ impl Measure {
     }
 }
 
-impl<const N: usize> StepPowers<'_, N> {
-    /// Energies through all channels, J.
-    pub(super) fn energies(&self) -> ChannelEnergies {
-        let mut energy = self.lost();
-        for (weight, exchange) in self.weights.iter().zip(self.exchange) {
-            energy.friction += self.h * weight * exchange.friction;
-            energy.shear += self.h * weight * exchange.shear;
-            energy.input += self.h * weight * exchange.input;
-            energy.carrier += self.h * weight * exchange.carrier;
-        }
-        energy
-    }
-
-    /// Energies lost in the dampers and Maxwell elements, J.
-    fn lost(&self) -> ChannelEnergies {
-        let Self { model, maxwell, sums, h, weights, measure, .. } = *self;
-        let mut missed = 0.0;
-        let times = maxwell.coefficients().iter().zip(&model.relaxation_times).zip(&sums.relaxing);
-        for ((coefficients, tau), relaxing) in times.filter(|(_, relaxing)| relaxing.square > 0.0) {
-            missed += UnresolvedRelaxation::new(h / tau, coefficients, weights, measure).of(relaxing);
-        }
-        ChannelEnergies {
-            damper: h * dot(weights, &sums.dampers),
-            maxwell: h * (dot(weights, &sums.elements) + missed),
-            ..ChannelEnergies::default()
-        }
-    }
-}
-
 /// The products of one kind of link: of each stage with itself where there are dampers, of all with each other where there
 /// are elements; 0 elsewhere.
-fn rate_products<const N: usize>(model: &Model, rates: &[&[f64]; N], kind: LinkKind) -> RateProducts<N> {
+fn rate_products(model: &Model, rates: &[&[f64]], kind: LinkKind) -> RateProducts {
+    let mut products = RateProducts::default();
     let all = model.rows_of(kind).next().is_some();
     if !all && model.links[kind].damping == 0.0 {
-        return [[0.0; N]; N];
+        return products;
     }
-    let mut products = [[0.0; N]; N];
     // Each stage with the one that is so many behind it, around the end: half of the distances make all pairs.
-    for distance in 0..=if all { N / 2 } else { 0 } {
-        let other = |i: usize| (i + distance) % N;
-        let sums: [f64; N] = dots(std::array::from_fn(|i| (rates[i], rates[other(i)])));
-        for (i, sum) in sums.into_iter().enumerate() {
-            (products[i][other(i)], products[other(i)][i]) = (sum, sum);
+    let stages = rates.len();
+    let mut sums = Weights::default();
+    for distance in 0..=if all { stages / 2 } else { 0 } {
+        let other = |i: usize| (i + distance) % stages;
+        let pairs: [_; MAX_STAGES] =
+            std::array::from_fn(|i| rates.get(i).map_or(Default::default(), |rate| (*rate, rates[other(i)])));
+        dots(&pairs[..stages], &mut sums);
+        for (i, sum) in sums[..stages].iter().enumerate() {
+            (products[i][other(i)], products[other(i)][i]) = (*sum, *sum);
         }
     }
     products
@@ -281,7 +253,7 @@ struct UnresolvedRelaxation {
 }
 
 impl UnresolvedRelaxation {
-    fn new<const N: usize>(z: f64, coefficients: &StageCoefficients<N>, weights: &[f64; N], measure: Measure) -> Self {
+    fn new(z: f64, coefficients: &ElementCoefficients, weights: &[f64], measure: Measure) -> Self {
         let squares: f64 = weights.iter().zip(coefficients.start).map(|(weight, p)| weight * p * p).sum();
         let share = (z / RESOLVED - 1.0).min(1.0);
         Self {
@@ -298,8 +270,10 @@ impl UnresolvedRelaxation {
 
 #[cfg(test)]
 mod tests {
+    use super::super::method::{RungeKutta, Stages, StepSpan};
+    use super::super::scheme::Scheme;
     use super::*;
-    use crate::integrator::ESDIRK5;
+    use crate::model::{Carrier, State};
 
     const SCENE: &str = "name = 'a'
         layer = { masses = 5, spacing = 1.0, mass = 1.0,
@@ -319,23 +293,33 @@ mod tests {
             f64::from(seed) / f64::from(u32::MAX) - 0.5
         };
         let h = 0.01;
-        let mut stages = vec![Rates::new(&model); STAGES];
-        stages.iter_mut().flat_map(|stage| &mut stage.elongation_rate).flatten().for_each(|rate| *rate = number());
+        let mut values = Stages::new(&model, MAX_STAGES, true, Vec::new());
+        values
+            .rates
+            .iter_mut()
+            .flat_map(|stage| &mut stage.elongation_rate)
+            .flatten()
+            .for_each(|rate| *rate = number());
         // An elongation of the order of its relaxation time.
         let mut start = State::new(model.masses(), model.maxwell_variables());
         for row in &model.rows {
             start.maxwell[row.range.clone()].iter_mut().for_each(|a| *a = row.relaxation_time.min(1.0) * number());
         }
-        let mut maxwell = Maxwell::<STAGES>::new(&model, true);
-        maxwell.begin(&model, &ESDIRK5, &start.maxwell, h);
-        let weights: [f64; STAGES] = std::array::from_fn(|_| number());
-        let mut sums = StepSums::new(&model);
-        let step = MassesInStep { model: &model, masses: 0..5, start: &start, stages: &stages, h };
-        sums.collect(&step, &maxwell);
-        let (measure, weights) = (Measure::Integral(weights.iter().sum()), &weights);
-        let powers = StepPowers { model: &model, maxwell: &maxwell, sums: &sums, exchange: &[], h, weights, measure };
-        let found = powers.lost();
+        let mut method = RungeKutta::new(Scheme::Esdirk5, &model, true);
+        method.maxwell.begin(&model, &start.maxwell, h);
+        let weights: Weights = std::array::from_fn(|_| number());
+        let mut sums = EnergySums::new(&model);
+        let (masses, carrier, span) = (
+            0..5,
+            &Carrier::new(0.0, Default::default(), Default::default(), &model.profile),
+            StepSpan { start: 0.0, length: h },
+        );
+        let step =
+            DenseOutput { model: &model, masses, carrier, span, start: &start, method: &method, values: &values };
+        sums.collect(&step);
+        let found = sums.lost(&step, &weights, Measure::Integral(weights.iter().sum()));
 
+        let (stages, maxwell) = (&values.rates, &method.maxwell);
         let mut expected = ChannelEnergies::default();
         for (i, weight) in weights.iter().enumerate() {
             for kind in LinkKind::ALL {

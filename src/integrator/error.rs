@@ -1,4 +1,4 @@
-//! The error test of a step: its tolerances and its embedded error estimate (docs/theory.md, section 9).
+//! The error test of a step: its embedded error estimate (docs/theory.md, section 9).
 
 use std::hint::select_unpredictable;
 
@@ -6,132 +6,10 @@ use super::largest::Largest;
 use super::maxwell::Maxwell;
 use super::rates::Rates;
 use super::tableau::Tableau;
+use super::tolerance::{Rod, Tolerance, square};
 use crate::math::{Jet, dot, sum_of, sum_of_pairs, sum_of_triples, weighted_sum, with_widest_vectors};
-use crate::model::{Axis, ByAxis, ByLink};
+use crate::model::Axis;
 use crate::model::{BoundaryPowers, CarrierPoint, LinkKind, Model, State};
-
-/// The tolerances of the local error of a step. The error of each quantity is divided by absolute + relative · size.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Tolerance {
-    /// Relative tolerance, 1.
-    pub relative: f64,
-    /// Absolute tolerance of positions, m.
-    pub position: f64,
-    /// Absolute tolerance of velocities, m/s: that of positions times the highest natural frequency without rods.
-    pub velocity: f64,
-    /// By kind of link, the stiffness that turns the error of a force into one of an elongation, N/m: c + Σ c_j, but
-    /// for a rod the stiffness with which the other links hold a mass.
-    force_scale: ByLink<f64>,
-    /// The kinds of link that are rods: their errors count as errors of their forces.
-    rods: ByLink<Option<Rod>>,
-    /// [`Model::long_term_stiffness`], N/m.
-    long_term_stiffness: Option<f64>,
-    /// Number of masses of the layer, over which their errors are averaged.
-    pub(super) masses: usize,
-    /// Absolute tolerance of the speed of a body along x and z, m/s: that of positions times its natural frequency on the
-    /// layer and the drive.
-    body_velocity: ByAxis<f64>,
-}
-
-/// A kind of link that is stiff enough to act as a rod.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Rod {
-    /// c, N/m.
-    pub(super) stiffness: f64,
-    /// d, N s/m.
-    pub(super) damping: f64,
-    /// The larger of the natural frequency √(c/m) of a mass on it and of its decay rate d/m, 1/s.
-    rate: f64,
-}
-
-impl Rod {
-    fn new(model: &Model, kind: LinkKind) -> Self {
-        let (stiffness, damping) = (model.links[kind].stiffness, model.links[kind].damping);
-        Self { stiffness, damping, rate: (stiffness / model.mass).sqrt().max(damping / model.mass) }
-    }
-
-    /// Relative error that a step of length `h` (s) may make of its force in addition. Where the steps resolve the
-    /// rod's own motion after a jump, the velocities of the masses decide; a long step forgets the errors of the
-    /// previous one.
-    pub(super) fn transient(&self, h: f64) -> f64 {
-        TRANSIENT / (1.0 + (h * self.rate).powi(2))
-    }
-}
-
-/// Allowed relative error of a rod's force just after a jump.
-///
-/// Recommended 0.01 to 0.3. It dies out together with the force of the jump.
-const TRANSIENT: f64 = 0.1;
-
-/// Newton's iterations end when their error is below this share of the tolerance.
-///
-/// Recommended 0.001 to 0.1. A larger share spoils the error estimate, a smaller one costs iterations.
-pub(super) const NEWTON_SHARE: f64 = 0.05;
-
-impl Tolerance {
-    /// The tolerances of `model` for a `relative` tolerance and an `absolute` one of positions, m.
-    pub fn new(model: &Model, relative: f64, absolute: f64) -> Self {
-        let stiffness = model.mass_stiffness_without_rods();
-        let rod = |kind: LinkKind| (model.is_rod(kind) && stiffness > 0.0).then(|| Rod::new(model, kind));
-        let force_scale = |kind: LinkKind| if rod(kind).is_some() { stiffness } else { model.glassy[kind] };
-        Self {
-            relative,
-            position: absolute,
-            velocity: absolute * model.frequency_without_rods(),
-            force_scale: ByLink::from_fn(force_scale),
-            rods: ByLink::from_fn(rod),
-            long_term_stiffness: model.long_term_stiffness(),
-            masses: model.masses(),
-            body_velocity: ByAxis::from_fn(|axis| absolute * model.body_frequency(axis)),
-        }
-    }
-
-    /// The square of the allowed error of a position of this size, m².
-    #[inline]
-    pub fn position_tolerance_sq(&self, size: f64) -> f64 {
-        square(self.position + self.relative * size.abs())
-    }
-
-    /// The square of the allowed error of a velocity of this size, m²/s².
-    #[inline]
-    pub fn velocity_tolerance_sq(&self, size: f64) -> f64 {
-        square(self.velocity + self.relative * size.abs())
-    }
-
-    /// The factor that turns the error of the force of a link, or of all its Maxwell elements, into one of an elongation,
-    /// m/N.
-    pub(super) fn per_force(&self, kind: LinkKind) -> f64 {
-        let stiffness = self.force_scale[kind];
-        if stiffness > 0.0 { 1.0 / stiffness } else { 0.0 }
-    }
-
-    /// The same for the vertical Maxwell elements of masses in contact, where their stiffness is far above the long-term
-    /// one; `None` otherwise, and for the other links.
-    pub(super) fn per_contact_force(&self, kind: LinkKind) -> Option<f64> {
-        self.long_term_stiffness.filter(|_| kind == LinkKind::Vertical).map(|stiffness| 1.0 / stiffness)
-    }
-
-    pub(super) fn rod(&self, kind: LinkKind) -> Option<Rod> {
-        self.rods[kind]
-    }
-
-    /// The correction of the velocities, m/s, below which Newton's iterations of a stage with β = `beta` (s) end.
-    pub(super) fn newton(&self, beta: f64) -> f64 {
-        NEWTON_SHARE * self.velocity.min(self.position / beta)
-    }
-
-    /// The correction of the velocities, m/s, that changes the forces of the rods by [`NEWTON_SHARE`] of their
-    /// tolerance; infinite without rods.
-    pub(super) fn newton_of_rods(&self, beta: f64) -> f64 {
-        let rods = LinkKind::ALL.into_iter().filter_map(|kind| Some((self.rod(kind)?, self.per_force(kind))));
-        let share = |(rod, per_force): (Rod, f64)| self.position / (per_force * (rod.damping + beta * rod.stiffness));
-        NEWTON_SHARE * rods.map(share).fold(f64::INFINITY, f64::min)
-    }
-}
-
-fn square(x: f64) -> f64 {
-    x * x
-}
 
 /// The shortest step over the stiffest period/2π in which energies are resolved. An enormous friction stops a mass in
 /// less, down to below the resolution of time; what it loses there is its kinetic energy.
@@ -155,9 +33,9 @@ fn weight_of_force_x(model: &Model) -> f64 {
     if model.friction.depends_on_speed() { 1.0 } else { WEIGHT_OF_FORCE_X }
 }
 
-/// The outcome of a step attempt.
+/// The errors of an attempted step by its embedded estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StepAttempt {
+pub struct ErrorEstimate {
     /// The error estimate over the tolerance.
     pub error: f64,
     /// The same without the energies.
@@ -187,9 +65,9 @@ impl ErrorWorkspace {
 
 /// What the error test of an attempted step needs.
 #[derive(Clone, Copy)]
-pub(super) struct ErrorTest<'a, const STAGES: usize> {
-    pub tableau: &'a Tableau<STAGES>,
-    pub maxwell: &'a Maxwell<STAGES>,
+pub(super) struct ErrorTest<'a> {
+    pub tableau: &'static Tableau,
+    pub maxwell: &'a Maxwell,
     pub stages: &'a [Rates],
     /// The carrier at the stages.
     pub carrier: &'a [CarrierPoint],
@@ -205,7 +83,7 @@ pub(super) struct ErrorTest<'a, const STAGES: usize> {
     pub largest: Largest,
 }
 
-impl<const STAGES: usize> ErrorTest<'_, STAGES> {
+impl ErrorTest<'_> {
     /// The embedded error estimate of the step, of length `h` (s), in the tolerance's norm.
     ///
     /// The carrier's displacement is known, not integrated. Yet where masses are in contact the steps must resolve it: the
@@ -217,10 +95,10 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
         h: f64,
         tolerance: &Tolerance,
         workspace: &mut ErrorWorkspace,
-    ) -> StepAttempt {
+    ) -> ErrorEstimate {
         let carrier_error = CarrierError::new(self.carrier, &self.tableau.error, h);
         self.collect(h, &carrier_error, workspace);
-        let (end, rates) = (self.end, &self.carrier[STAGES - 1]);
+        let (end, rates) = (self.end, &self.carrier[self.tableau.last()]);
         let of_positions = |error: &[f64], elongation: &[f64]| {
             sum_of_pairs(error, elongation, |error, e| error * error / tolerance.position_tolerance_sq(e))
         };
@@ -259,14 +137,14 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
         let of_bodies = if model.has_bodies() { self.body_squares(model, &carrier_error, tolerance) } else { 0.0 };
         let motion_error = mean(sum).hypot(of_bodies.sqrt()).hypot(self.tableau.force_weight * of_forces.sqrt());
         let error = motion_error.hypot(self.tableau.energy_weight * of_energies.sqrt());
-        StepAttempt { error, motion_error, carrier_error: mean(free) }
+        ErrorEstimate { error, motion_error, carrier_error: mean(free) }
     }
 
     /// The sum of squares of the errors of the bodies' displacements and speeds over their tolerances, relative to the way
     /// since the start of the piece.
     fn body_squares(&self, model: &Model, error: &CarrierError, tolerance: &Tolerance) -> f64 {
         let of = |axis: Axis| {
-            let Jet { position: way, speed: rate, .. } = self.carrier[STAGES - 1][axis];
+            let Jet { position: way, speed: rate, .. } = self.carrier[self.tableau.last()][axis];
             let (position, velocity) = match axis {
                 Axis::X => (error.position.0, error.velocity.0),
                 Axis::Z => (error.position.1, error.velocity.1),
@@ -295,7 +173,7 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
             errors.iter_mut().zip(powers).for_each(|(sum, power)| *sum += h * error * power);
             input += h * weight * exchange.input;
         }
-        let carrier = &self.carrier[STAGES - 1];
+        let carrier = &self.carrier[self.tableau.last()];
         let scale = self.largest.energy_scale(model, tolerance, carrier.x.speed.hypot(carrier.z.speed));
         let allowed = tolerance.relative * scale.max(input.abs());
         errors.iter().map(|error| square(error / allowed)).sum()
@@ -399,7 +277,7 @@ impl<const STAGES: usize> ErrorTest<'_, STAGES> {
     /// The sum of squares of the errors c δe + d δė of the forces of the links of `kind`, which are rods, for a step of
     /// length `h` (s).
     fn rod_squares(&self, kind: LinkKind, rod: &Rod, h: f64, tolerance: &Tolerance, workspace: &ErrorWorkspace) -> f64 {
-        let (end, carrier) = (self.end, &self.carrier[STAGES - 1]);
+        let (end, carrier) = (self.end, &self.carrier[self.tableau.last()]);
         let (errors, e, v, carrier_rate) = if kind.is_along_x() {
             ((&workspace.x, &workspace.v_x), &end.elongation_x, &end.velocity_x, carrier.x.speed)
         } else {

@@ -13,47 +13,73 @@
 //! stage at the ends, and the position at the end is that of the method. The four of [`ESDIRK3`](super::ESDIRK3) meet the
 //! first three. One direction n is left to them, and w = w_p + φ(θ) n with a parabola φ that makes the ends and the integral
 //! so.
+//!
+//! The two implicit stages of [`SDIRK2`](super::SDIRK2) give positions as parabolas, the integrals of the straight line through
+//! the velocities there. Velocities themselves, which may have followed a jump in no time, are linear from the start to the
+//! first of these stages and from there to the end, so they do not oscillate.
 
 use nalgebra::{DMatrix, DVector};
 
-use super::tableau::{STAGES, Tableau};
+use super::tableau::{GAMMA, MAX_STAGES, SDIRK2, Tableau, Weights, sdirk2_weights};
+use crate::math::Jet;
+use crate::model::BodyStep;
 
 /// Number of powers of θ in the weights: they are of degree 4.
 const POWERS: usize = 5;
 
-/// The weights w_j(θ) of the stages in a value within the step. Those beyond the method's number of stages are 0.
+/// The weights w_j(θ) of the stages in a value within the step.
 #[derive(Clone, Debug, PartialEq)]
-pub struct StageInterpolation {
+pub struct Interpolation {
+    velocities: Velocities,
     /// c.
-    nodes: [f64; STAGES],
+    nodes: Weights,
     /// The indices of the stages in the order of time.
-    in_time: [usize; STAGES],
+    in_time: [usize; MAX_STAGES],
     /// Number of stages.
     stages: usize,
     /// See [`overshoot`](Self::overshoot).
     overshoot: f64,
-    /// The coefficients of 1, θ, … θ⁴.
-    by_power: [[f64; STAGES]; POWERS],
+    /// The coefficients of 1, θ, … θ⁴ in the polynomial whose integrals are the positions.
+    by_power: [Weights; POWERS],
     /// By stage: the integrals in Bernstein's basis of degree 5.
-    bernstein_integral: [[f64; POWERS + 1]; STAGES],
+    bernstein_integral: [[f64; POWERS + 1]; MAX_STAGES],
 }
 
-impl StageInterpolation {
+/// What the velocities within a step are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Velocities {
+    /// The polynomial whose integrals are the positions.
+    Polynomial,
+    /// Linear from the start to the first implicit stage and from there to the end.
+    BrokenLine,
+}
+
+impl Interpolation {
     /// The weights of a method whose stages have order 2.
-    pub(super) fn new<const N: usize>(tableau: &Tableau<N>) -> Self {
-        let by_power = weights(tableau);
-        let nodes = std::array::from_fn(|stage| tableau.c.get(stage).copied().unwrap_or(1.0));
+    pub fn new(tableau: &Tableau) -> Self {
+        Self::with_weights(tableau, weights(tableau), Velocities::Polynomial)
+    }
+
+    /// Those of [`SDIRK2`](super::SDIRK2).
+    pub(super) fn sdirk2() -> Self {
+        let (mut by_power, slope) = ([Weights::default(); POWERS], 1.0 / (1.0 - GAMMA));
+        (by_power[0][1], by_power[0][2]) = (slope, -GAMMA * slope);
+        (by_power[1][1], by_power[1][2]) = (-slope, slope);
+        Self::with_weights(&SDIRK2, by_power, Velocities::BrokenLine)
+    }
+
+    fn with_weights(tableau: &Tableau, by_power: [Weights; POWERS], velocities: Velocities) -> Self {
+        let (stages, nodes) = (tableau.stages, tableau.c);
         let mut in_time = std::array::from_fn(|stage| stage);
-        in_time[..N].sort_by(|&a, &b| f64::total_cmp(&nodes[a], &nodes[b]));
-        let overshoot = overshoot(&in_time.map(|stage: usize| nodes[stage])[..N]);
-        Self {
-            nodes,
-            in_time,
-            stages: N,
-            overshoot,
-            bernstein_integral: integral_in_bernstein_basis(&by_power),
-            by_power,
-        }
+        in_time[..stages].sort_by(|&a, &b| f64::total_cmp(&nodes[a], &nodes[b]));
+        let overshoot = overshoot(&in_time.map(|stage: usize| nodes[stage])[..stages]);
+        let bernstein_integral = integral_in_bernstein_basis(&by_power);
+        Self { velocities, nodes, in_time, stages, overshoot, bernstein_integral, by_power }
+    }
+
+    /// What the velocities within a step are.
+    pub(super) fn velocities(&self) -> Velocities {
+        self.velocities
     }
 
     /// How far a parabola through the values at three stages that follow each other leaves their range between them, as a share
@@ -73,46 +99,88 @@ impl StageInterpolation {
     }
 
     /// w(θ).
-    pub fn values(&self, theta: f64) -> [f64; STAGES] {
-        self.horner(|_| 1.0, theta)
+    pub fn values(&self, theta: f64) -> Weights {
+        match self.velocities {
+            Velocities::Polynomial => self.horner(|_| 1.0, theta),
+            Velocities::BrokenLine => broken_line(theta),
+        }
     }
 
     /// ∫_0^θ w: of the rates in the position, over the length of the step.
-    pub fn integral(&self, theta: f64) -> [f64; STAGES] {
+    pub fn integral(&self, theta: f64) -> Weights {
         self.horner(|power| 1.0 / (power + 1) as f64, theta).map(|weight| theta * weight)
     }
 
-    /// dw/dθ.
-    pub fn slope(&self, theta: f64) -> [f64; STAGES] {
+    /// The slope of the polynomial at θ.
+    pub fn slope(&self, theta: f64) -> Weights {
         let derivative =
             |j: usize| (1..POWERS).rev().fold(0.0, |sum, power| sum * theta + power as f64 * self.by_power[power][j]);
         std::array::from_fn(derivative)
     }
 
     /// Σ_power `factors[power]` w_power, by stage.
-    pub fn combined(&self, factors: &[f64; POWERS]) -> [f64; STAGES] {
+    pub fn combined(&self, factors: &[f64; POWERS]) -> Weights {
         std::array::from_fn(|j| factors.iter().zip(&self.by_power).map(|(factor, weights)| factor * weights[j]).sum())
     }
 
     /// The coefficients of 1, θ, … θ⁴ of a value by those at the stages.
     pub fn polynomial(&self, values: impl Fn(usize) -> f64) -> [f64; POWERS] {
-        let values: [f64; STAGES] = std::array::from_fn(|stage| if stage < self.stages { values(stage) } else { 0.0 });
+        let values: Weights = std::array::from_fn(|stage| if stage < self.stages { values(stage) } else { 0.0 });
         self.by_power.map(|weights| weights.iter().zip(values).map(|(weight, value)| weight * value).sum())
     }
 
     /// By stage: the coefficients of ∫_0^θ w in Bernstein's basis of degree 5.
-    pub fn bernstein_integral(&self) -> &[[f64; POWERS + 1]; STAGES] {
+    pub fn bernstein_integral(&self) -> &[[f64; POWERS + 1]; MAX_STAGES] {
         &self.bernstein_integral
     }
 
-    fn horner(&self, factor: impl Fn(usize) -> f64, theta: f64) -> [f64; STAGES] {
+    /// The motion of a body through a step of length `h` (s), from its displacement, speed and acceleration at the stages.
+    pub fn body_step(&self, h: f64, at: impl Fn(usize) -> Jet) -> BodyStep {
+        match self.velocities {
+            Velocities::Polynomial => {
+                BodyStep::Polynomial { length: h, speed: self.polynomial(|stage| at(stage).speed) }
+            }
+            Velocities::BrokenLine => {
+                let [start, first, end] = [0, 1, 2].map(at);
+                let moved = end.position - start.position;
+                let half = parabola(0.5, GAMMA * h * first.speed, moved);
+                let displacement = [4.0 * half - moved, 2.0 * moved - 4.0 * half];
+                BodyStep::TwoStages { length: h, node: GAMMA, displacement, speed: [first.speed, end.speed] }
+            }
+        }
+    }
+
+    fn horner(&self, factor: impl Fn(usize) -> f64, theta: f64) -> Weights {
         std::array::from_fn(|j| {
             (0..POWERS).rev().fold(0.0, |sum, power| sum * theta + factor(power) * self.by_power[power][j])
         })
     }
 }
 
-/// See [`StageInterpolation::overshoot`]: of the parabolas through values at three of these places that follow each other.
+/// Weights of the values at the start, at the first implicit stage of [`SDIRK2`](super::SDIRK2) and at the end in the broken line
+/// through them.
+#[inline]
+fn broken_line(theta: f64) -> Weights {
+    let mut weights = Weights::default();
+    if theta < GAMMA {
+        (weights[0], weights[1]) = (1.0 - theta / GAMMA, theta / GAMMA);
+    } else {
+        let share = (theta - GAMMA) / (1.0 - GAMMA);
+        (weights[1], weights[2]) = (1.0 - share, share);
+    }
+    weights
+}
+
+/// The parabola from 0 at the start to `end` whose velocity at the first implicit stage of [`SDIRK2`](super::SDIRK2) makes
+/// `middle` in the fraction γ: the integral of the straight line through the velocities at the implicit stages.
+#[inline(always)]
+pub(super) fn parabola(theta: f64, middle: f64, end: f64) -> f64 {
+    let (first, last) = sdirk2_weights(theta);
+    let (of_middle, of_end) = ((first - last * ((1.0 - GAMMA) / GAMMA)) / GAMMA, last / GAMMA);
+    of_middle * middle + of_end * end
+}
+
+/// See [`Interpolation::overshoot`]: of the parabolas through values at three of these places that follow each other.
 fn overshoot(places: &[f64]) -> f64 {
     // Lagrange's polynomial of an outer place is least half-way between the two others.
     let of_three = |places: &[f64]| {
@@ -123,22 +191,22 @@ fn overshoot(places: &[f64]) -> f64 {
 }
 
 /// The right side of every condition: a power of θ and its coefficient.
-const RIGHT: [(usize, f64); STAGES] =
-    [(0, 1.0), (1, 1.0), (2, 1.0), (3, 1.0 / 3.0), (3, 1.0), (4, 0.25), (4, 1.0 / 12.0)];
+const RIGHT: [(usize, f64); 7] = [(0, 1.0), (1, 1.0), (2, 1.0), (3, 1.0 / 3.0), (3, 1.0), (4, 0.25), (4, 1.0 / 12.0)];
 
 /// Number of conditions that stages of the method's order can meet.
-fn conditions<const N: usize>(tableau: &Tableau<N>) -> usize {
+fn conditions(tableau: &Tableau) -> usize {
     if tableau.embedded_order >= 4 { RIGHT.len() } else { 3 }
 }
 
 /// The weights by power of θ.
-fn weights<const N: usize>(tableau: &Tableau<N>) -> [[f64; STAGES]; POWERS] {
-    let a = DMatrix::from_fn(N, N, |i, j| tableau.a[i][j]);
-    let c = DVector::from_column_slice(&tableau.c);
+fn weights(tableau: &Tableau) -> [Weights; POWERS] {
+    let stages = tableau.stages;
+    let a = DMatrix::from_fn(stages, stages, |i, j| tableau.a[i][j]);
+    let c = DVector::from_column_slice(&tableau.c[..stages]);
     let (square, cube) = (c.component_mul(&c), c.component_mul(&c).component_mul(&c));
     let once = &a * &square;
-    let all = [DVector::repeat(N, 1.0), c, square, once.clone(), cube.clone(), &a * cube, &a * once];
-    let rows = DMatrix::from_fn(conditions(tableau), N, |row, stage| all[row][stage]);
+    let all = [DVector::repeat(stages, 1.0), c, square, once.clone(), cube.clone(), &a * cube, &a * once];
+    let rows = DMatrix::from_fn(conditions(tableau), stages, |row, stage| all[row][stage]);
     let least = Least::new(rows);
     let mut weights: [DVector<f64>; POWERS] = std::array::from_fn(|power| {
         least.solve(&DVector::from_fn(
@@ -148,12 +216,12 @@ fn weights<const N: usize>(tableau: &Tableau<N>) -> [[f64; STAGES]; POWERS] {
     });
     if let Some(free) = least.free_direction() {
         // The least weights have no part along it.
-        let integral = free.dot(&DVector::from_column_slice(tableau.weights()));
-        for (weights, coefficient) in weights.iter_mut().zip(parabola(free[0], free[N - 1], integral)) {
+        let integral = free.dot(&DVector::from_column_slice(&tableau.weights()[..stages]));
+        for (weights, coefficient) in weights.iter_mut().zip(parabola_between(free[0], free[stages - 1], integral)) {
             *weights += coefficient * &free;
         }
     }
-    weights.map(|weights| std::array::from_fn(|j| if j < N { weights[j] } else { 0.0 }))
+    weights.map(|weights| std::array::from_fn(|j| if j < stages { weights[j] } else { 0.0 }))
 }
 
 /// Least solutions of R w = r.
@@ -190,13 +258,13 @@ impl Least {
 }
 
 /// The coefficients of the parabola with these values at 0 and 1 and this integral between them.
-fn parabola(start: f64, end: f64, integral: f64) -> [f64; 3] {
+fn parabola_between(start: f64, end: f64, integral: f64) -> [f64; 3] {
     let bend = 3.0 * (start + end) - 6.0 * integral;
     [start, end - start - bend, bend]
 }
 
 /// The integrals of the weights from 0 on, by stage.
-fn integral_in_bernstein_basis(by_power: &[[f64; STAGES]; POWERS]) -> [[f64; POWERS + 1]; STAGES] {
+fn integral_in_bernstein_basis(by_power: &[Weights; POWERS]) -> [[f64; POWERS + 1]; MAX_STAGES] {
     // binomial(k, m)/binomial(4, m).
     const SHARE: [[f64; POWERS]; POWERS] = [
         [1.0, 0.0, 0.0, 0.0, 0.0],
@@ -223,13 +291,12 @@ mod tests {
     /// Roundings times the condition of the equations for the weights, some 1e4.
     const ROUNDING: f64 = 1e-11;
 
-    fn meets_its_conditions<const N: usize>(tableau: &Tableau<N>) {
-        let times =
-            |x: &[f64; N]| -> [f64; N] { std::array::from_fn(|i| (0..N).map(|j| tableau.a[i][j] * x[j]).sum()) };
+    fn meets_its_conditions(tableau: &Tableau) {
+        let times = |x: &Weights| tableau.a.map(|row| row.iter().zip(x).map(|(a, x)| a * x).sum());
         let c = tableau.c;
         let (square, cube) = (c.map(|c| c * c), c.map(|c| c * c * c));
-        let elementary = [[1.0; N], c, square, times(&square), cube, times(&cube), times(&times(&square))];
-        let interpolation = StageInterpolation::new(tableau);
+        let elementary = [[1.0; MAX_STAGES], c, square, times(&square), cube, times(&cube), times(&times(&square))];
+        let interpolation = Interpolation::new(tableau);
         for theta in [0.0, 0.1, 0.45, 0.9, 1.0_f64] {
             let weights = interpolation.values(theta);
             for (values, (power, coefficient)) in elementary.iter().zip(RIGHT).take(conditions(tableau)) {
@@ -246,12 +313,12 @@ mod tests {
         meets_its_conditions(&ESDIRK3);
     }
 
-    fn has_the_ends_of<const N: usize>(tableau: &Tableau<N>) {
-        let interpolation = StageInterpolation::new(tableau);
+    fn has_the_ends_of(tableau: &Tableau) {
+        let interpolation = Interpolation::new(tableau);
         let unit = |at: usize| std::array::from_fn(|j| f64::from(u8::from(j == at)));
-        let ends: [([f64; STAGES], [f64; N]); 3] = [
+        let ends: [(Weights, Weights); 3] = [
             (interpolation.values(0.0), unit(0)),
-            (interpolation.values(1.0), unit(N - 1)),
+            (interpolation.values(1.0), unit(tableau.last())),
             (interpolation.integral(1.0), *tableau.weights()),
         ];
         for (found, expected) in ends {
@@ -266,8 +333,8 @@ mod tests {
     }
 
     /// The largest error of the sine from its rates at the stages, with a quarter of its period in the step.
-    fn error_of_a_sine<const N: usize>(tableau: &Tableau<N>) -> f64 {
-        let interpolation = StageInterpolation::new(tableau);
+    fn error_of_a_sine(tableau: &Tableau) -> f64 {
+        let interpolation = Interpolation::new(tableau);
         let quarter = std::f64::consts::FRAC_PI_2;
         let error = |theta: f64, phase: f64| {
             let rates = tableau.c.map(|c| (phase + quarter * c).cos());
@@ -289,7 +356,7 @@ mod tests {
     /// Against the least of Lagrange's polynomials on a fine grid: what the search for dips relies on.
     #[test]
     fn a_parabola_leaves_the_range_of_its_values_by_the_overshoot_and_no_more() {
-        for interpolation in [StageInterpolation::new(&ESDIRK3), StageInterpolation::new(&ESDIRK5)] {
+        for interpolation in [Interpolation::new(&ESDIRK3), Interpolation::new(&ESDIRK5)] {
             let places: Vec<f64> = interpolation.in_time().iter().map(|&stage| interpolation.node(stage)).collect();
             let lowest = |three: &[f64]| {
                 let grid = (0..=1000).map(|i| three[0] + (three[2] - three[0]) * f64::from(i) / 1000.0);
@@ -307,16 +374,16 @@ mod tests {
 
     #[test]
     fn stages_come_in_the_order_of_time() {
-        assert_eq!(StageInterpolation::new(&ESDIRK3).in_time(), [0, 2, 1, 3]);
-        assert_eq!(StageInterpolation::new(&ESDIRK5).in_time(), [0, 3, 1, 2, 4, 5, 6]);
+        assert_eq!(Interpolation::new(&ESDIRK3).in_time(), [0, 2, 1, 3]);
+        assert_eq!(Interpolation::new(&ESDIRK5).in_time(), [0, 3, 1, 2, 4, 5, 6]);
     }
 
     #[test]
     fn slope_integral_and_bernstein_coefficients_belong_to_the_values() {
-        let interpolation = StageInterpolation::new(&ESDIRK5);
+        let interpolation = Interpolation::new(&ESDIRK5);
         let (theta, by) = (0.37, 1e-5);
         let of = |theta: f64, j: usize| interpolation.values(theta)[j];
-        for j in 0..STAGES {
+        for j in 0..MAX_STAGES {
             let slope = (of(theta + by, j) - of(theta - by, j)) / (2.0 * by);
             // The quotient misses by² of a third derivative of some 1e3.
             assert!((interpolation.slope(theta)[j] - slope).abs() < 1e-6);

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::error::Tolerance;
+use super::tolerance::Tolerance;
 use crate::model::{Axis, Forces, LinkKind, Model};
 
 /// The least scale of the errors of one force, as a share of the other, and as one of the force that the scene's height makes

@@ -12,60 +12,67 @@
 //! So the elements are visited once per step, not once per stage, and the cost of a stage does not depend on their
 //! number.
 
-use super::Tableau;
-use super::carrier_sums::ElementWeights;
 use super::rates::Rates;
-use super::tableau::STAGES as ALL_STAGES;
+use super::tableau::{MAX_STAGES, Tableau, Weights};
 use crate::math::weighted_sum;
 use crate::model::{ByLink, LinkKind, MaxwellRow, Model};
 
 /// Workspace for the Maxwell elements of a layer over one step.
 #[derive(Clone, Debug)]
-pub(super) struct Maxwell<const STAGES: usize> {
+pub(super) struct Maxwell {
+    tableau: &'static Tableau,
     /// By relaxation time of the model.
-    coefficients: Vec<StageCoefficients<STAGES>>,
-    kinds: ByLink<KindSums<STAGES>>,
+    coefficients: Vec<ElementCoefficients>,
+    kinds: ByLink<KindSums>,
 }
 
 /// What the elongation of an element at the stages of a step consists of, for one relaxation time.
-#[derive(Clone, Debug)]
-pub(super) struct StageCoefficients<const STAGES: usize> {
+#[derive(Clone, Debug, Default)]
+pub(super) struct ElementCoefficients {
     /// p_i.
-    pub start: [f64; STAGES],
+    pub start: Weights,
     /// h q_ij, s.
-    pub rate: [[f64; STAGES]; STAGES],
+    pub rate: [Weights; MAX_STAGES],
     /// The embedded error estimate of a: the weights of a_0 and of ė_j, the latter in s.
     error_start: f64,
-    error_rate: [f64; STAGES],
+    error_rate: Weights,
+}
+
+/// The weights of an element's elongation at the start and at the end of a step, and of its link's rates at the stages (s),
+/// in its elongation within the step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct ElementWeights {
+    pub ends: [f64; 2],
+    pub rates: Weights,
 }
 
 /// The elements of one kind of link, summed.
 #[derive(Clone, Debug)]
-struct KindSums<const STAGES: usize> {
+struct KindSums {
     /// h Q_ij, N s/m.
-    rate: [[f64; STAGES]; STAGES],
-    error_rate: [f64; STAGES],
+    rate: [Weights; MAX_STAGES],
+    error_rate: Weights,
     /// P_i of the implicit stages one after another, by link, N; empty where the links have no elements.
     start: Vec<f64>,
     /// The part of the embedded error estimate that a_0 makes, by link, N.
     error_start: Vec<f64>,
 }
 
-impl<const STAGES: usize> Maxwell<STAGES> {
-    /// Workspace for the elements of `model`, if the method `is_used`.
-    pub(super) fn new(model: &Model, is_used: bool) -> Self {
+impl Maxwell {
+    /// Workspace for the elements of `model` over steps by a method, if it `is_used`.
+    pub(super) fn new(tableau: &'static Tableau, model: &Model, is_used: bool) -> Self {
         let times = if is_used { model.relaxation_times.len() } else { 0 };
         let kinds = ByLink::from_fn(|kind| {
             let present = is_used && model.rows.iter().any(|row| row.kind == kind);
-            KindSums::new(if present { kind.count(model.masses()) } else { 0 })
+            KindSums::new(tableau, if present { kind.count(model.masses()) } else { 0 })
         });
-        Self { coefficients: vec![StageCoefficients::new(); times], kinds }
+        Self { tableau, coefficients: vec![ElementCoefficients::default(); times], kinds }
     }
 
     /// Begins a step of length `h` (s) from the elongations `a` (m).
-    pub(super) fn begin(&mut self, model: &Model, tableau: &Tableau<STAGES>, a: &[f64], h: f64) {
+    pub(super) fn begin(&mut self, model: &Model, a: &[f64], h: f64) {
         for (coefficients, relaxation_time) in self.coefficients.iter_mut().zip(&model.relaxation_times) {
-            coefficients.set(tableau, h / relaxation_time, h);
+            coefficients.set(self.tableau, h / relaxation_time, h);
         }
         for (kind, sums) in LinkKind::ALL.into_iter().zip(&mut self.kinds) {
             if sums.error_start.is_empty() {
@@ -82,7 +89,7 @@ impl<const STAGES: usize> Maxwell<STAGES> {
     }
 
     /// The coefficients by relaxation time of the model.
-    pub(super) fn coefficients(&self) -> &[StageCoefficients<STAGES>] {
+    pub(super) fn coefficients(&self) -> &[ElementCoefficients] {
         &self.coefficients
     }
 
@@ -113,68 +120,50 @@ impl<const STAGES: usize> Maxwell<STAGES> {
         }
     }
 
-    /// Writes the sum of the elongations at the start, at stage `i` and at the end of a step with these weights to `a`, m.
-    pub(super) fn between(
-        &self,
-        model: &Model,
-        i: usize,
-        [of_start, of_stage, of_end]: [f64; 3],
-        (start, end): (&[f64], &[f64]),
-        stages: &[Rates],
-        a: &mut [f64],
-    ) {
-        for row in &model.rows {
-            let weights = self.weights_between(row, i, [of_start, of_stage, of_end]);
-            let ends = weights.ends.into_iter().zip([start, end]).filter(|(weight, _)| *weight != 0.0);
-            let terms = ends.map(|(weight, end)| (weight, &end[row.range.clone()]));
-            weighted_sum(&mut a[row.range.clone()], terms.chain(by_rate(row.kind, &weights.rates[..=i], stages)));
-        }
-    }
-
-    /// The weights of the elements of a row in such a sum.
+    /// The weights of the elements of one relaxation time in the sum of their elongations at the start, at stage `i` and at the
+    /// end of a step.
     pub(super) fn weights_between(
         &self,
-        row: &MaxwellRow,
+        time_index: usize,
         i: usize,
         [of_start, of_stage, of_end]: [f64; 3],
     ) -> ElementWeights {
-        let coefficients = &self.coefficients[row.time_index];
-        let mut weights =
-            ElementWeights { ends: [of_start + of_stage * coefficients.start[i], of_end], rates: [0.0; ALL_STAGES] };
-        for (weight, rate) in weights.rates.iter_mut().zip(&coefficients.rate[i][..=i]) {
+        let coefficients = &self.coefficients[time_index];
+        let ends = [of_start + of_stage * coefficients.start[i], of_end];
+        let mut rates = [0.0; MAX_STAGES];
+        for (weight, rate) in rates.iter_mut().zip(&coefficients.rate[i][..=i]) {
             *weight = of_stage * rate;
         }
-        weights
+        ElementWeights { ends, rates }
     }
 
     pub(super) fn floats(&self) -> usize {
-        self.kinds.iter().map(|sums| STAGES * sums.error_start.len()).sum()
+        self.kinds.iter().map(|sums| self.tableau.stages * sums.error_start.len()).sum()
     }
 }
 
 /// The elongation rates of the links of `kind` at the stages, with their weights; stages of weight 0 are left out.
-fn by_rate<'a>(kind: LinkKind, weights: &'a [f64], stages: &'a [Rates]) -> impl Iterator<Item = (f64, &'a [f64])> {
+pub(super) fn by_rate<'a>(
+    kind: LinkKind,
+    weights: &'a [f64],
+    stages: &'a [Rates],
+) -> impl Iterator<Item = (f64, &'a [f64])> {
     let stages = weights.iter().zip(stages).filter(|(weight, _)| **weight != 0.0);
     stages.map(move |(&weight, stage)| (weight, &stage.elongation_rate[kind][..]))
 }
 
-impl<const STAGES: usize> StageCoefficients<STAGES> {
-    fn new() -> Self {
-        let zero = [0.0; STAGES];
-        Self { start: zero, rate: [zero; STAGES], error_start: 0.0, error_rate: zero }
-    }
-
+impl ElementCoefficients {
     /// Sets the coefficients for a step of length `h` and its ratio `z` = h/τ. A stage gives a_i = g (a*_i + γhė_i),
     /// g = 1/(1 + γz), from a*_i = a_0 + h Σ_{j<i} a_ij ȧ_j. Its rate hȧ_i = hė_i - z a_i equals g (hė_i - z a*_i), in
     /// which nothing cancels, however large z is.
-    fn set(&mut self, tableau: &Tableau<STAGES>, z: f64, h: f64) {
+    fn set(&mut self, tableau: &Tableau, z: f64, h: f64) {
         let gamma = tableau.gamma();
         let g = 1.0 / (1.0 + gamma * z);
         // hȧ_i by a_0 and by hė_j.
-        let mut change_start = [0.0; STAGES];
-        let mut change_rate = [[0.0; STAGES]; STAGES];
+        let mut change_start = [0.0; MAX_STAGES];
+        let mut change_rate = [[0.0; MAX_STAGES]; MAX_STAGES];
         (self.start[0], change_start[0], change_rate[0][0]) = (1.0, -z, 1.0);
-        for i in 1..STAGES {
+        for i in 1..tableau.stages {
             let weights = &tableau.a[i][..i];
             let start = 1.0 + sum(weights, &change_start, |change| *change);
             (self.start[i], change_start[i]) = (g * start, -z * g * start);
@@ -184,8 +173,11 @@ impl<const STAGES: usize> StageCoefficients<STAGES> {
             }
             (self.rate[i][i], change_rate[i][i]) = (h * g * gamma, g);
         }
-        self.error_start = sum(&tableau.error, &change_start, |change| *change);
-        self.error_rate = std::array::from_fn(|j| h * sum(&tableau.error, &change_rate, |change| change[j]));
+        let error = &tableau.error[..tableau.stages];
+        self.error_start = sum(error, &change_start, |change| *change);
+        for j in 0..tableau.stages {
+            self.error_rate[j] = h * sum(error, &change_rate, |change| change[j]);
+        }
     }
 }
 
@@ -193,12 +185,12 @@ fn sum<T>(weights: &[f64], terms: &[T], number: impl Fn(&T) -> f64) -> f64 {
     weights.iter().zip(terms).map(|(weight, term)| weight * number(term)).sum()
 }
 
-impl<const STAGES: usize> KindSums<STAGES> {
-    fn new(links: usize) -> Self {
+impl KindSums {
+    fn new(tableau: &Tableau, links: usize) -> Self {
         Self {
-            rate: [[0.0; STAGES]; STAGES],
-            error_rate: [0.0; STAGES],
-            start: vec![0.0; (STAGES - 1) * links],
+            rate: [[0.0; MAX_STAGES]; MAX_STAGES],
+            error_rate: [0.0; MAX_STAGES],
+            start: vec![0.0; tableau.last() * links],
             error_start: vec![0.0; links],
         }
     }
@@ -211,18 +203,18 @@ impl<const STAGES: usize> KindSums<STAGES> {
 
     fn collect<'a, Rows>(&mut self, a: &[f64], rows: impl Fn() -> Rows)
     where
-        Rows: Iterator<Item = (&'a MaxwellRow, &'a StageCoefficients<STAGES>)>,
+        Rows: Iterator<Item = (&'a MaxwellRow, &'a ElementCoefficients)>,
     {
         let start = |i: usize| {
             rows().map(move |(row, coefficients)| (row.stiffness * coefficients.start[i], &a[row.range.clone()]))
         };
         let links = self.error_start.len();
-        for (i, sums) in (1..STAGES).zip(self.start.chunks_exact_mut(links)) {
+        for (i, sums) in (1..).zip(self.start.chunks_exact_mut(links)) {
             weighted_sum(sums, start(i));
         }
         let error = rows().map(|(row, coefficients)| (row.stiffness * coefficients.error_start, &a[row.range.clone()]));
         weighted_sum(&mut self.error_start, error);
-        (self.rate, self.error_rate) = ([[0.0; STAGES]; STAGES], [0.0; STAGES]);
+        (self.rate, self.error_rate) = ([[0.0; MAX_STAGES]; MAX_STAGES], [0.0; MAX_STAGES]);
         for (row, coefficients) in rows() {
             let sums = self.rate.iter_mut().chain([&mut self.error_rate]);
             for (sums, rates) in sums.zip(coefficients.rate.iter().chain([&coefficients.error_rate])) {
@@ -235,15 +227,15 @@ impl<const STAGES: usize> KindSums<STAGES> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::integrator::{ESDIRK5, STAGES};
+    use crate::integrator::ESDIRK5;
 
-    const METHOD: Tableau<STAGES> = ESDIRK5;
+    const METHOD: Tableau = ESDIRK5;
 
     /// Stage by stage, as the method is defined: a_i and the embedded estimate, in units where h = 1.
-    fn stage_by_stage(z: f64, a: f64, rates: &[f64; STAGES]) -> ([f64; STAGES], f64) {
-        let (mut found, mut changes) = ([a; STAGES], [0.0; STAGES]);
+    fn stage_by_stage(z: f64, a: f64, rates: &Weights) -> (Weights, f64) {
+        let (mut found, mut changes) = ([a; MAX_STAGES], [0.0; MAX_STAGES]);
         changes[0] = rates[0] - z * a;
-        for i in 1..STAGES {
+        for i in 1..MAX_STAGES {
             let star = a + (0..i).map(|j| METHOD.a[i][j] * changes[j]).sum::<f64>();
             found[i] = (star + METHOD.gamma() * rates[i]) / (1.0 + METHOD.gamma() * z);
             changes[i] = rates[i] - z * found[i];
@@ -256,10 +248,10 @@ mod tests {
         let rates = [0.3, -0.7, 1.1, 0.2, -0.4, 0.9, 0.5];
         for z in [0.0, 1e-8, 0.1, 1.0, 30.0, 1e4] {
             let a = 0.8 / (1.0 + z);
-            let mut coefficients = StageCoefficients::<STAGES>::new();
+            let mut coefficients = ElementCoefficients::default();
             coefficients.set(&METHOD, z, 1.0);
             let (expected, expected_error) = stage_by_stage(z, a, &rates);
-            for i in 0..STAGES {
+            for i in 0..MAX_STAGES {
                 let driven: f64 = coefficients.rate[i].iter().zip(&rates).map(|(q, rate)| q * rate).sum();
                 let found = coefficients.start[i] * a + driven;
                 // In the plain recursion a change hȧ loses the digits that ė and z a share.
@@ -279,10 +271,10 @@ mod tests {
     #[test]
     fn a_short_element_is_a_damper() {
         for z in [1e9, 1e13, 1e100] {
-            let mut coefficients = StageCoefficients::<STAGES>::new();
+            let mut coefficients = ElementCoefficients::default();
             coefficients.set(&METHOD, z, 1.0);
             let a = 1.0 / z;
-            let end = coefficients.start[STAGES - 1] * a + coefficients.rate[STAGES - 1].iter().sum::<f64>();
+            let end = coefficients.start[MAX_STAGES - 1] * a + coefficients.rate[MAX_STAGES - 1].iter().sum::<f64>();
             // R(∞) = 0 within the digits of the printed coefficients; of 1/z a few roundings.
             assert!((end * z - 1.0).abs() < 1e-8, "z {z:e}: {}", end * z);
         }

@@ -1,35 +1,48 @@
-//! One Runge-Kutta method: the stages of an attempted step, from their history to their error test and energies.
+//! One Runge-Kutta step: the stages of an attempted step, from their history to their error test.
 
-use super::dense::StepSpan;
-use super::energy::{Measure, StepPowers, SummedStep};
-use super::error::{ErrorTest, ErrorWorkspace, StepAttempt, Tolerance};
+use super::error::{ErrorEstimate, ErrorTest, ErrorWorkspace};
 use super::maxwell::Maxwell;
 use super::rates::{LayerState, Rates};
-use super::sensitivity::{SolvedStage, Tangent};
-use super::stage::{BodyHistory, ConvergenceTest, Friction, NoConvergence, StagePoint, StageSolver};
-use super::tableau::{ContinuousWeights, STAGES, Tableau};
+use super::scheme::{Coefficients, InitialGuess, Scheme};
+use super::sensitivity::{Solved, Tangent};
+use super::stage::{BodyHistory, ConvergenceTest, NoConvergence, StagePoint, StageSolver};
+use super::tableau::MAX_STAGES;
+use super::tolerance::Tolerance;
 use crate::math::{Jet, weighted_sum, with_widest_vectors};
 use crate::model::Axis;
-use crate::model::{BoundaryPowers, Carrier, CarrierPoint, ChannelEnergies, Mode, Model, State};
+use crate::model::{BoundaryPowers, Carrier, CarrierPoint, Input, Mode, Model, State};
 
-/// One Runge-Kutta method with its workspace.
-#[derive(Clone, Debug)]
-pub(super) struct RungeKutta<const N: usize> {
-    pub tableau: &'static Tableau<N>,
-    pub continuous_weights: &'static ContinuousWeights<N>,
-    pub initial_guess: InitialGuess<N>,
-    pub maxwell: Maxwell<N>,
-    /// How friction is treated within a step.
-    pub friction: Friction,
+/// Where a step lies in time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepSpan {
+    /// Start of the step, s after the start of the carrier's piece.
+    pub start: f64,
+    /// Length of the step, s.
+    pub length: f64,
 }
 
-/// The values at the stages of the last attempted step, of either method. Stage 0 is the start of the step.
+impl StepSpan {
+    /// The time at the fraction `theta` of the step, s after the start of the carrier's piece.
+    pub fn at(&self, theta: f64) -> f64 {
+        self.start + theta * self.length
+    }
+}
+
+/// A Runge-Kutta method with its workspace.
+#[derive(Clone, Debug)]
+pub(super) struct RungeKutta {
+    pub scheme: Scheme,
+    pub coefficients: &'static Coefficients,
+    pub maxwell: Maxwell,
+}
+
+/// The values at the stages of the last attempted step. Stage 0 is the start of the step.
 #[derive(Clone, Debug)]
 pub(super) struct Stages {
     pub rates: Vec<Rates>,
-    pub carrier: [CarrierPoint; STAGES],
+    pub carrier: [CarrierPoint; MAX_STAGES],
     /// The powers through the surface and the carrier; computed if `tracks_energy`.
-    pub exchange: [BoundaryPowers; STAGES],
+    pub exchange: [BoundaryPowers; MAX_STAGES],
     /// The forces of the horizontal and vertical links at the stages between the first and the last; kept where energies of
     /// parts of the layer may be asked for.
     pub link_forces: Vec<[Vec<f64>; 2]>,
@@ -37,17 +50,6 @@ pub(super) struct Stages {
     pub tracks_energy: bool,
     /// The sensitivities to the targets of the inputs; empty if they are not asked for.
     pub tangents: Vec<Tangent>,
-}
-
-/// How the velocities from which Newton's iterations of a stage start are guessed.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum InitialGuess<const N: usize> {
-    /// The accelerations of slipping masses are extrapolated from the earlier stages with these weights, by stage. Free
-    /// masses, whose equations are linear, start from the step's start: a guess far off costs digits.
-    Extrapolated([[f64; N]; N]),
-    /// The accelerations are those of the stage before. Just after a jump those of a stiff layer are no guide, so no
-    /// velocity is guessed to change by more than the velocities in play.
-    Limited,
 }
 
 /// The input of an attempted step.
@@ -65,21 +67,13 @@ pub(super) struct StepInput<'a> {
 /// speed there may be several solutions: the one that the motion reaches first is found from its present speed.
 const MAX_GUESSED: f64 = 2.0;
 
-impl<const N: usize> InitialGuess<N> {
-    /// With the weights of Lagrange's polynomials through the latest three stages, which lie at `c`.
-    pub(super) fn extrapolated(c: &[f64; N]) -> Self {
-        let mut weights = [[0.0; N]; N];
-        for i in 1..N {
-            let nodes = i.saturating_sub(3)..i;
-            for j in nodes.clone() {
-                weights[i][j] = nodes.clone().filter(|&m| m != j).map(|m| (c[i] - c[m]) / (c[j] - c[m])).product();
-            }
-        }
-        Self::Extrapolated(weights)
+impl RungeKutta {
+    /// The method of a `scheme` for `model`, without workspace unless it `is_used`.
+    pub(super) fn new(scheme: Scheme, model: &Model, is_used: bool) -> Self {
+        let coefficients = scheme.coefficients();
+        Self { scheme, coefficients, maxwell: Maxwell::new(coefficients.tableau, model, is_used) }
     }
-}
 
-impl<const N: usize> RungeKutta<N> {
     /// Solves all stages of a step.
     pub(super) fn attempt(
         &mut self,
@@ -87,26 +81,30 @@ impl<const N: usize> RungeKutta<N> {
         step: &StepInput<'_>,
         convergence: ConvergenceTest,
     ) -> Result<(), NoConvergence> {
-        let StepInput { model, start, carrier, span, beta } = *step;
+        let (StepInput { model, start, carrier, span, beta }, tableau) = (*step, self.coefficients.tableau);
         let state = &start.state;
+        // The first stage is the start of the step.
         stages.rates[0].copy_from(&start.rates);
         stages.exchange[0] = start.exchange;
         stages.carrier[0] = carrier.at(span.start);
-        stages.solver.begin(model, state, beta, self.friction);
-        self.maxwell.begin(model, self.tableau, &state.maxwell, span.length);
-        for i in 1..N {
-            let (weights, s) = (&self.tableau.a[i][..], span.at(self.tableau.c[i]));
-            let moved = carrier.moved(span.start, self.tableau.c[i] * span.length).x;
+        stages.solver.begin(model, state, beta, self.scheme.contact_modes());
+        self.maxwell.begin(model, &state.maxwell, span.length);
+        for i in 1..tableau.stages {
+            // What the earlier stages contribute, and a guess of the velocities.
+            let (weights, s) = (&tableau.a[i][..], span.at(tableau.c[i]));
+            let moved = carrier.moved(span.start, tableau.c[i] * span.length).x;
             let mut point = stages.prepare(step, i, s, moved, weights);
             self.maxwell.known_forces(i, &stages.rates[..i], &mut stages.solver.history.force);
-            stages.guess(step, i, &self.initial_guess);
+            stages.guess(step, i, &self.coefficients.initial_guess);
+            // The velocities at the stage, and their sensitivities.
             stages.solve(step, &mut point, i, s, convergence)?;
             stages.vary(step, &point, i, s, weights);
-            if i + 1 < N {
+            if i < tableau.last() {
                 stages.keep_link_forces(i);
             }
         }
-        self.maxwell.at_stage(model, N - 1, &state.maxwell, &stages.rates, &mut stages.solver.state.maxwell);
+        // The last stage is the end of the step; its Maxwell elements are still to be found.
+        self.maxwell.at_stage(model, tableau.last(), &state.maxwell, &stages.rates, &mut stages.solver.state.maxwell);
         Ok(())
     }
 
@@ -117,12 +115,13 @@ impl<const N: usize> RungeKutta<N> {
         step: &StepInput<'_>,
         tolerance: &Tolerance,
         workspace: &mut ErrorWorkspace,
-    ) -> StepAttempt {
+    ) -> ErrorEstimate {
+        let tableau = self.coefficients.tableau;
         let test = ErrorTest {
-            tableau: self.tableau,
+            tableau,
             maxwell: &self.maxwell,
-            stages: &stages.rates,
-            carrier: &stages.carrier[..N],
+            stages: &stages.rates[..tableau.stages],
+            carrier: &stages.carrier[..tableau.stages],
             end: &stages.solver.state,
             contacts: stages.solver.contacts(),
             sticks: stages.solver.sticks(),
@@ -131,29 +130,22 @@ impl<const N: usize> RungeKutta<N> {
         };
         test.run(step.model, step.span.length, tolerance, workspace)
     }
-
-    /// Energies through the channels over `step` up to its fraction `theta`, J.
-    pub(super) fn energies(&self, step: SummedStep<'_>, theta: f64) -> ChannelEnergies {
-        let weights = if theta < 1.0 { &self.continuous_weights.at(theta) } else { self.tableau.weights() };
-        self.measure(step, (weights, Measure::Integral(theta)))
-    }
-
-    /// P_diss at the fraction `theta` of `step`, where the values at the stages have these `weights`, W.
-    pub(super) fn dissipated_power(&self, step: SummedStep<'_>, theta: f64, weights: &[f64; N]) -> f64 {
-        let h = step.of.h;
-        // Powers that fall steeply through a step have combinations below 0.
-        (self.measure(step, (weights, Measure::Value(theta))).dissipated() / h).max(0.0)
-    }
-
-    /// The energies that weighted powers at the stages make in `step`, J.
-    fn measure(&self, step: SummedStep<'_>, (weights, measure): (&[f64; N], Measure)) -> ChannelEnergies {
-        let (maxwell, SummedStep { of, sums, exchange }) = (&self.maxwell, step);
-        sums.collect(&of, maxwell);
-        StepPowers { model: of.model, maxwell, sums, exchange, h: of.h, weights, measure }.energies()
-    }
 }
 
 impl Stages {
+    /// Values at so many `stages` of the steps of `model`, with sensitivities to these `inputs`.
+    pub(super) fn new(model: &Model, stages: usize, tracks_energy: bool, inputs: Vec<Input>) -> Self {
+        Self {
+            rates: (0..stages).map(|_| Rates::new(model)).collect(),
+            carrier: [CarrierPoint::default(); MAX_STAGES],
+            exchange: [BoundaryPowers::default(); MAX_STAGES],
+            link_forces: Vec::new(),
+            solver: StageSolver::new(model),
+            tracks_energy,
+            tangents: inputs.into_iter().map(|input| Tangent::new(model, input, stages)).collect(),
+        }
+    }
+
     /// Prepares stage `i`, at `s` seconds after the start of the carrier's piece, which has moved by `moved` (m) along x
     /// since the start of the step: the history of the masses' motion with the `weights` of the stages, and its point.
     fn prepare(&mut self, step: &StepInput<'_>, i: usize, s: f64, moved: f64, weights: &[f64]) -> StagePoint {
@@ -236,7 +228,7 @@ impl Stages {
     }
 
     /// Sets the velocities from which Newton's iterations of stage `i` start.
-    fn guess<const N: usize>(&mut self, step: &StepInput<'_>, i: usize, guess: &InitialGuess<N>) {
+    fn guess(&mut self, step: &StepInput<'_>, i: usize, guess: &InitialGuess) {
         match guess {
             InitialGuess::Extrapolated(weights) => self.guess_extrapolated(step, &weights[i][..i]),
             InitialGuess::Limited => self.guess_limited(step, i),
@@ -317,7 +309,7 @@ impl Stages {
             return;
         }
         self.solver.factor_at_solution(step.model, point.beta);
-        let stage = SolvedStage { i, s, h: step.span.length, weights, rates: &self.rates[i], point };
+        let stage = Solved { i, s, h: step.span.length, weights, rates: &self.rates[i], point };
         for tangent in &mut self.tangents {
             tangent.solve_stage(step.model, &mut self.solver, &stage);
         }

@@ -2,7 +2,7 @@
 
 use super::dense::DenseOutput;
 use super::rates::Rates;
-use super::tableau::STAGES;
+use super::tableau::MAX_STAGES;
 use crate::math::Quintic;
 use crate::model::Axis;
 
@@ -11,7 +11,7 @@ use crate::model::Axis;
 pub struct Motions<'a> {
     step: &'a DenseOutput<'a>,
     /// By stage: the Bernstein coefficients of a position by the rate there, s.
-    weights: [[f64; 6]; STAGES],
+    weights: [[f64; 6]; MAX_STAGES],
     /// The largest distance from the start that rates of 1 m/s at all stages, of any signs, can make, s.
     reach: f64,
     /// The carrier's position on the profile, less its displacement since the start by the stages' rates, m.
@@ -26,14 +26,16 @@ impl<'a> Motions<'a> {
     /// The motions through `step`.
     pub fn new(step: &'a DenseOutput<'a>) -> Self {
         let weights =
-            step.interpolation.bernstein_integral().map(|stage| stage.map(|weight| step.span.length * weight));
+            step.interpolation().bernstein_integral().map(|stage| stage.map(|weight| step.span.length * weight));
+        let carriers = step.carriers();
+        let (at_start, at_end) = (&carriers[0], &carriers[carriers.len() - 1]);
         let quintic = |axis: Axis, start: f64| {
             if step.carrier.is_body(axis) {
                 // Its stages give its motion as those of a mass do: nothing is left of it in the difference.
-                return Quintic::constant(start + step.start.carrier[axis].position);
+                return Quintic::constant(start + at_start[axis].position);
             }
-            let carrier = Quintic::hermite(step.start.carrier[axis], step.end.carrier[axis], step.span.length);
-            carrier.plus(start, step.carriers.iter().map(|at| -at[axis].speed).zip(&weights))
+            let carrier = Quintic::hermite(at_start[axis], at_end[axis], step.span.length);
+            carrier.plus(start, carriers.iter().map(|at| -at[axis].speed).zip(&weights))
         };
         let x = quintic(Axis::X, step.carrier.profile_position);
         let z = quintic(Axis::Z, step.carrier.start.z);
@@ -44,37 +46,37 @@ impl<'a> Motions<'a> {
 
     /// Bounds of the position of mass `i` on the profile, m, by its speeds at the stages.
     pub fn position_bounds(&self, i: usize) -> (f64, f64) {
-        let start = self.step.model.rest_x[i] + self.step.start.state.elongation_x[i];
+        let start = self.step.model.rest_x[i] + self.step.start.elongation_x[i];
         let distance = self.distance(|stage| stage.velocity_x[i]);
         (self.bounds.0 + start - distance, self.bounds.1 + start + distance)
     }
 
     /// A bound of the least height of mass `i` above the profile's datum, m, by its speeds at the stages.
     pub fn least_height(&self, i: usize) -> f64 {
-        let start = self.step.model.rest_z[i] + self.step.start.state.elongation_z[i];
+        let start = self.step.model.rest_z[i] + self.step.start.elongation_z[i];
         self.bounds.2 + start - self.distance(|stage| stage.velocity_z[i])
     }
 
     #[inline]
     fn distance(&self, rate: impl Fn(&Rates) -> f64) -> f64 {
-        let speeds = self.step.stages.iter().map(|stage| rate(stage).abs());
+        let speeds = self.step.stages().iter().map(|stage| rate(stage).abs());
         self.reach * speeds.fold(0.0, |most, speed| if speed > most { speed } else { most })
     }
 
     /// The position of mass `i` on the profile, m.
     pub fn position(&self, i: usize) -> Quintic {
-        let start = self.step.model.rest_x[i] + self.step.start.state.elongation_x[i];
+        let start = self.step.model.rest_x[i] + self.step.start.elongation_x[i];
         self.motion(&self.x, start, |stage| stage.velocity_x[i])
     }
 
     /// The height of mass `i` above the profile's datum, m.
     pub fn height(&self, i: usize) -> Quintic {
-        let start = self.step.model.rest_z[i] + self.step.start.state.elongation_z[i];
+        let start = self.step.model.rest_z[i] + self.step.start.elongation_z[i];
         self.motion(&self.z, start, |stage| stage.velocity_z[i])
     }
 
     #[inline]
     fn motion(&self, carrier: &Quintic, start: f64, rate: impl Fn(&Rates) -> f64) -> Quintic {
-        carrier.plus(start, self.step.stages.iter().map(rate).zip(&self.weights))
+        carrier.plus(start, self.step.stages().iter().map(rate).zip(&self.weights))
     }
 }

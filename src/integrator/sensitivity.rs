@@ -10,7 +10,8 @@ use super::rates::Rates;
 use super::stage::{SlippingMass, StagePoint, StageSolver};
 use crate::model::{Axis, Body, ByAxis, Forces, Input, LinkKind, LinkMotion, Mode, Model, State, TangentsOf};
 
-/// The variation of the layer's state: dimensionless for positions, 1/s for velocities.
+/// The variation of the layer's state: dimensionless for positions, 1/s for velocities. Or its rate of change, each part that of
+/// the part of the state.
 #[derive(Clone, Debug)]
 struct Variation {
     /// Of the displacements ξ_i, in the inertial frame.
@@ -24,18 +25,6 @@ struct Variation {
     /// Of the elongations a_j of the Maxwell elements.
     maxwell: Vec<f64>,
     /// Of the displacements and speeds of the bodies along x and z.
-    bodies: ByAxis<[f64; 2]>,
-}
-
-/// The variation of the rates at one stage.
-#[derive(Clone, Debug)]
-struct VariationRates {
-    v_x: Vec<f64>,
-    v_z: Vec<f64>,
-    a_x: Vec<f64>,
-    a_z: Vec<f64>,
-    maxwell: Vec<f64>,
-    /// Of the speeds and accelerations of the bodies along x and z.
     bodies: ByAxis<[f64; 2]>,
 }
 
@@ -68,35 +57,12 @@ pub(super) struct Tangent {
     start: Variation,
     /// At the stage, and so at the end of the step; before a stage is solved, the contribution of the earlier ones.
     end: Variation,
-    stages: Vec<VariationRates>,
+    /// The rates at the stages.
+    stages: Vec<Variation>,
     forces: Forces,
-    known: KnownMotion,
-}
-
-/// The known part of the variation of the links' motion at a stage: with the unknown velocities not varied.
-#[derive(Clone, Debug)]
-struct KnownMotion {
-    elongation_x: Vec<f64>,
-    elongation_z: Vec<f64>,
-    /// Always 0.
-    velocity_x: Vec<f64>,
-    velocity_z: Vec<f64>,
-}
-
-impl KnownMotion {
-    fn new(model: &Model) -> Self {
-        let zero = vec![0.0; model.masses()];
-        Self { elongation_x: zero.clone(), elongation_z: zero.clone(), velocity_x: zero.clone(), velocity_z: zero }
-    }
-
-    fn links(&self, carrier: &CarrierVariation) -> LinkMotion<'_> {
-        LinkMotion {
-            elongation: ByAxis { x: &self.elongation_x, z: &self.elongation_z },
-            velocity: ByAxis { x: &self.velocity_x, z: &self.velocity_z },
-            carrier_rate: ByAxis { x: carrier.u_rate, z: carrier.w_rate },
-            ends: Default::default(),
-        }
-    }
+    /// The known part of the motion of the links at a stage, with the unknown velocities not varied; positions relative to the
+    /// carrier, and no elements.
+    known: Variation,
 }
 
 impl Variation {
@@ -106,30 +72,35 @@ impl Variation {
         Self { x: zero.clone(), z: zero.clone(), v_x: zero.clone(), v_z: zero, maxwell, bodies: ByAxis::default() }
     }
 
-    fn parts(&mut self) -> [&mut Vec<f64>; 5] {
+    fn parts(&self) -> [&[f64]; 5] {
+        [&self.x, &self.z, &self.v_x, &self.v_z, &self.maxwell]
+    }
+
+    fn parts_mut(&mut self) -> [&mut [f64]; 5] {
         [&mut self.x, &mut self.z, &mut self.v_x, &mut self.v_z, &mut self.maxwell]
+    }
+
+    /// The motion of the links of masses that move so relative to the carrier, whose speeds are varied, too.
+    fn links(&self, carrier: &CarrierVariation) -> LinkMotion<'_> {
+        LinkMotion {
+            elongation: ByAxis { x: &self.x, z: &self.z },
+            velocity: ByAxis { x: &self.v_x, z: &self.v_z },
+            carrier_rate: ByAxis { x: carrier.u_rate, z: carrier.w_rate },
+            ends: Default::default(),
+        }
     }
 }
 
 impl Tangent {
     pub(super) fn new(model: &Model, input: Input, stages: usize) -> Self {
-        let zero = vec![0.0; model.masses()];
-        let rates = VariationRates {
-            v_x: zero.clone(),
-            v_z: zero.clone(),
-            a_x: zero.clone(),
-            a_z: zero,
-            maxwell: vec![0.0; model.maxwell_variables()],
-            bodies: ByAxis::default(),
-        };
         Self {
             input,
             duration: 1.0,
             start: Variation::new(model),
             end: Variation::new(model),
-            stages: vec![rates; stages],
+            stages: vec![Variation::new(model); stages],
             forces: Forces::new(model),
-            known: KnownMotion::new(model),
+            known: Variation { maxwell: Vec::new(), ..Variation::new(model) },
         }
     }
 
@@ -142,7 +113,7 @@ impl Tangent {
     /// Begins a motion of the carrier of `duration` (s). The present state does not depend on its target.
     pub(super) fn begin(&mut self, duration: f64) {
         self.duration = duration;
-        for part in self.start.parts() {
+        for part in self.start.parts_mut() {
             part.fill(0.0);
         }
         self.start.bodies = ByAxis::default();
@@ -182,14 +153,12 @@ impl Tangent {
 
     /// Writes the contribution of the earlier stages, with these weights, in a step of length `h` to `end`.
     fn collect_history(&mut self, h: f64, weights: &[f64]) {
-        for (end, start) in self.end.parts().into_iter().zip(self.start.parts()) {
+        for (end, start) in self.end.parts_mut().into_iter().zip(self.start.parts()) {
             end.copy_from_slice(start);
         }
         for (stage, weight) in self.stages.iter().zip(weights) {
-            let step = h * weight;
-            let terms = [&stage.v_x, &stage.v_z, &stage.a_x, &stage.a_z, &stage.maxwell];
-            for (sum, term) in self.end.parts().into_iter().zip(terms) {
-                add(sum, step, term);
+            for (sum, term) in self.end.parts_mut().into_iter().zip(stage.parts()) {
+                add(sum, h * weight, term);
             }
         }
         self.end.bodies = self.start.bodies;
@@ -222,8 +191,8 @@ impl Tangent {
             let on_mass = (self.forces.on_mass_x[i], self.forces.on_mass_z[i]);
             let rates = &mut self.stages[0];
             let (x, v_x) = (self.start.x[i], self.start.v_x[i]);
-            (rates.v_x[i], rates.v_z[i]) = (v_x, self.start.v_z[i]);
-            rates.a_x[i] = match state.mode[i] {
+            (rates.x[i], rates.z[i]) = (v_x, self.start.v_z[i]);
+            rates.v_x[i] = match state.mode[i] {
                 Mode::Free => on_mass.0 / model.mass,
                 Mode::Stick => 0.0,
                 Mode::Forward | Mode::Backward => {
@@ -232,7 +201,7 @@ impl Tangent {
                     slip.variation(model, x, v_x, on_mass, forces) / (model.mass * slip.q2())
                 }
             };
-            rates.a_z[i] = on_mass.1 / model.mass;
+            rates.v_z[i] = on_mass.1 / model.mass;
         }
         for axis in Axis::ALL {
             let Some(body) = &model.bodies[axis] else { continue };
@@ -263,15 +232,10 @@ impl Tangent {
     fn forces_at_start(&mut self, model: &Model, carrier: &CarrierVariation) {
         let start = &self.start;
         for i in 0..model.masses() {
-            self.known.elongation_x[i] = start.x[i] - carrier.u;
-            self.known.elongation_z[i] = start.z[i] - carrier.w;
+            self.known.x[i] = start.x[i] - carrier.u;
+            self.known.z[i] = start.z[i] - carrier.w;
         }
-        let motion = LinkMotion {
-            elongation: ByAxis { x: &self.known.elongation_x, z: &self.known.elongation_z },
-            velocity: ByAxis { x: &start.v_x, z: &start.v_z },
-            carrier_rate: ByAxis { x: carrier.u_rate, z: carrier.w_rate },
-            ends: Default::default(),
-        };
+        let motion = LinkMotion { velocity: ByAxis { x: &start.v_x, z: &start.v_z }, ..self.known.links(carrier) };
         for kind in LinkKind::ALL {
             let law = &model.links[kind];
             self.forces.spring_and_damper(kind, law.stiffness, law.damping, &motion, &[]);
@@ -290,8 +254,8 @@ impl Tangent {
     /// Solves stage `i` of a step of length `h` (s) for the tangent: into `end` and the rates of the stage. The `solver`
     /// has solved the stage itself, which lies `s` seconds after the start of the motion and has these `rates`, and has
     /// factored its matrix there; `weights` are those of the earlier stages.
-    pub(super) fn solve_stage(&mut self, model: &Model, solver: &mut StageSolver, stage: &SolvedStage<'_>) {
-        let &SolvedStage { i, s, h, weights, rates, point } = stage;
+    pub(super) fn solve_stage(&mut self, model: &Model, solver: &mut StageSolver, stage: &Solved<'_>) {
+        let &Solved { i, s, h, weights, rates, point } = stage;
         self.collect_history(h, &weights[..i]);
         // The known part of a body's motion: its speed, unknown, is not varied.
         let known = self.end.bodies.map(|[displacement, _]| [displacement, 0.0]);
@@ -329,9 +293,9 @@ impl Tangent {
                 Some(mass) => (mass.z, mass.v_z),
                 None => (self.end.z[i], 0.0),
             };
-            known.elongation_x[i] = self.end.x[i] - carrier.u;
-            known.elongation_z[i] = z - carrier.w;
-            known.velocity_z[i] = v_z;
+            known.x[i] = self.end.x[i] - carrier.u;
+            known.z[i] = z - carrier.w;
+            known.v_z[i] = v_z;
         }
         let motion = known.links(carrier);
         for kind in LinkKind::ALL {
@@ -374,22 +338,17 @@ impl Tangent {
                 Some(mass) => (end.z[i], end.v_x[i], end.v_z[i]) = (mass.z, mass.v_x, mass.v_z),
                 None => end.z[i] += beta * found.y,
             }
-            (rates.v_x[i], rates.v_z[i]) = (end.v_x[i], end.v_z[i]);
+            (rates.x[i], rates.z[i]) = (end.v_x[i], end.v_z[i]);
             let sticks = solver.state.mode[i] == Mode::Stick;
-            rates.a_x[i] = if sticks { 0.0 } else { (end.v_x[i] - history.0) / beta };
-            rates.a_z[i] = (end.v_z[i] - history.1) / beta;
+            rates.v_x[i] = if sticks { 0.0 } else { (end.v_x[i] - history.0) / beta };
+            rates.v_z[i] = (end.v_z[i] - history.1) / beta;
         }
     }
 
     /// Computes the Maxwell elements' variations at stage `i` from those of the masses.
     fn set_elements(&mut self, model: &Model, beta: f64, carrier: &CarrierVariation, stage: usize) {
         let (end, rates) = (&mut self.end, &mut self.stages[stage]);
-        let motion = LinkMotion {
-            elongation: ByAxis { x: &end.x, z: &end.z },
-            velocity: ByAxis { x: &end.v_x, z: &end.v_z },
-            carrier_rate: ByAxis { x: carrier.u_rate, z: carrier.w_rate },
-            ends: Default::default(),
-        };
+        let motion = end.links(carrier);
         for kind in LinkKind::ALL {
             self.forces.spring_and_damper(kind, 0.0, 0.0, &motion, &[]);
         }
@@ -408,7 +367,7 @@ impl Tangent {
 
 /// A stage that is solved, for which tangents are to be computed.
 #[derive(Clone, Copy)]
-pub(super) struct SolvedStage<'a> {
+pub(super) struct Solved<'a> {
     /// Its index.
     pub i: usize,
     /// Its time after the start of the carrier's motion, s.

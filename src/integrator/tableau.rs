@@ -1,19 +1,27 @@
-//! The coefficients of the two Runge-Kutta methods and of their continuous extensions.
+//! The coefficients of the Runge-Kutta methods and of their continuous extensions.
 
-use std::sync::LazyLock;
+use std::array::from_fn;
 
-use nalgebra::{DMatrix, SMatrix, SVector};
+use nalgebra::{DMatrix, DVector};
+
+/// The most stages that a method has, the explicit one included.
+pub const MAX_STAGES: usize = 7;
+
+/// One number for each stage of a method; 0 beyond its last.
+pub type Weights = [f64; MAX_STAGES];
 
 /// A diagonally implicit Runge-Kutta method with an explicit first stage, the same γ in every other stage, and the end
 /// of the step as its last stage (stiffly accurate: b is the last row of A).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tableau<const STAGES: usize> {
+pub struct Tableau {
+    /// Number of stages, the explicit one included.
+    pub stages: usize,
     /// a_ij; the diagonal is γ but for the first stage, where it is 0.
-    pub a: [[f64; STAGES]; STAGES],
+    pub a: [Weights; MAX_STAGES],
     /// c_i: stage i lies at the fraction c_i of the step.
-    pub c: [f64; STAGES],
+    pub c: Weights,
     /// b_i - b̂_i: the weights of the error estimate.
-    pub error: [f64; STAGES],
+    pub error: Weights,
     /// Order of the embedded method. That of the method itself is one higher.
     pub embedded_order: i32,
     /// Weight of the error of F_z in the error test; that of F_x is a multiple of it. It makes the errors of whole runs about the
@@ -23,95 +31,116 @@ pub struct Tableau<const STAGES: usize> {
     pub energy_weight: f64,
 }
 
-impl<const STAGES: usize> Tableau<STAGES> {
+impl Tableau {
     /// A method from A without its first column, c, b̂ and the order of b̂. The first column of A follows from
     /// Σ_j a_ij = c_i; the last row is b. The `weight` is that of the forces and of the energies.
-    const fn new(
-        mut a: [[f64; STAGES]; STAGES],
-        c: [f64; STAGES],
-        embedded: [f64; STAGES],
+    const fn new<const N: usize>(
+        a: [[f64; N]; N],
+        c: [f64; N],
+        embedded: [f64; N],
         embedded_order: i32,
         weight: f64,
     ) -> Self {
-        let mut i = 1;
-        while i < STAGES - 1 {
-            let mut first = c[i];
-            let mut j = 1;
-            while j <= i {
-                first -= a[i][j];
-                j += 1;
+        let mut padded = [[0.0; MAX_STAGES]; MAX_STAGES];
+        let mut i = 0;
+        while i < N {
+            padded[i] = pad(a[i]);
+            if 0 < i && i < N - 1 {
+                let mut first = c[i];
+                let mut j = 1;
+                while j <= i {
+                    first -= a[i][j];
+                    j += 1;
+                }
+                padded[i][0] = first;
             }
-            a[i][0] = first;
             i += 1;
         }
-        let mut error = a[STAGES - 1];
+        let mut error = padded[N - 1];
         let mut j = 0;
-        while j < STAGES {
+        while j < N {
             error[j] -= embedded[j];
             j += 1;
         }
-        Self { a, c, error, embedded_order, force_weight: weight, energy_weight: weight }
+        Self { stages: N, a: padded, c: pad(c), error, embedded_order, force_weight: weight, energy_weight: weight }
+    }
+
+    /// The index of the last stage, at the end of the step.
+    pub fn last(&self) -> usize {
+        self.stages - 1
     }
 
     /// The weights b.
-    pub fn weights(&self) -> &[f64; STAGES] {
-        &self.a[STAGES - 1]
+    pub fn weights(&self) -> &Weights {
+        &self.a[self.last()]
     }
 
     /// The coefficient γ of every implicit stage.
     pub fn gamma(&self) -> f64 {
-        self.a[STAGES - 1][STAGES - 1]
+        self.a[self.last()][self.last()]
     }
 }
 
 /// Continuous weights b_i(θ): h Σ_i b_i(θ) P_i over the stages is the integral of P from the start of a step to its
 /// fraction θ.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContinuousWeights<const STAGES: usize> {
+pub struct ContinuousWeights {
     /// The coefficients of θ, θ², … θ⁵.
-    by_power: [SVector<f64, STAGES>; 5],
+    by_power: [Weights; 5],
 }
 
-impl<const STAGES: usize> ContinuousWeights<STAGES> {
-    /// The continuous weights of a method.
+impl ContinuousWeights {
+    /// The continuous weights of a method of stage order 2.
     ///
     /// Of all weights that are exact to the order p of the embedded method, Σ b_i (1, c, c², …)_i = (θ, θ²/2, θ³/3, …),
     /// with Σ b_i (A c²)_i = θ⁴/12 at order 4, these are the smallest for θ → 0. A term in θ^{p+1} brings them to the
     /// method's own weights at θ = 1.
-    pub fn new(tableau: &Tableau<STAGES>) -> Self {
-        let order = tableau.embedded_order.clamp(1, 4) as usize;
-        let c = SVector::from(tableau.c);
-        let a = SMatrix::<f64, STAGES, STAGES>::from_fn(|i, j| tableau.a[i][j]);
+    pub fn new(tableau: &Tableau) -> Self {
+        let (stages, order) = (tableau.stages, tableau.embedded_order.clamp(1, 4) as usize);
+        let a = DMatrix::from_fn(stages, stages, |i, j| tableau.a[i][j]);
+        let c = DVector::from_column_slice(&tableau.c[..stages]);
         let square = c.component_mul(&c);
-        let conditions = [SVector::repeat(1.0), c, square, c.component_mul(&square), a * square];
+        let cube = c.component_mul(&square);
+        let conditions = [DVector::repeat(stages, 1.0), c, square.clone(), cube, a * square];
         let count = if order == 4 { 5 } else { order };
-        let rows = DMatrix::from_fn(count, STAGES, |row, stage| conditions[row][stage]);
+        let rows = DMatrix::from_fn(count, stages, |row, stage| conditions[row][stage]);
         // The least squares solution is the transpose times the inverse of the normal matrix, which is not singular:
         // the conditions of a method that obeys them do not depend on each other.
         let normal = (&rows * rows.transpose()).try_inverse().unwrap_or_else(|| DMatrix::zeros(count, count));
         let smallest = rows.transpose() * normal;
-        let of = |row: usize, factor: f64| SVector::from_fn(|stage, _| factor * smallest[(stage, row)]);
-        let mut by_power = [SVector::zeros(); 5];
-        for power in 0..order {
-            by_power[power] = of(power, 1.0 / (power + 1) as f64);
+        let of =
+            |stage: usize, row: usize, factor: f64| if stage < stages { factor * smallest[(stage, row)] } else { 0.0 };
+        let mut by_power = [[0.0; MAX_STAGES]; 5];
+        for (power, weights) in by_power.iter_mut().enumerate().take(order) {
+            *weights = from_fn(|stage| of(stage, power, 1.0 / (power + 1) as f64));
         }
         if order == 4 {
-            by_power[3] += of(4, 1.0 / 12.0);
+            by_power[3] = from_fn(|stage| by_power[3][stage] + of(stage, 4, 1.0 / 12.0));
         }
-        by_power[order] = SVector::from(*tableau.weights()) - by_power.iter().sum::<SVector<f64, STAGES>>();
+        let so_far = by_power;
+        by_power[order] =
+            from_fn(|stage| tableau.weights()[stage] - so_far.iter().map(|weights| weights[stage]).sum::<f64>());
+        Self { by_power }
+    }
+
+    /// Those of [`SDIRK2`]: the straight line through the rates at its two implicit stages, integrated.
+    pub(super) fn sdirk2() -> Self {
+        let bend = 0.5 / (1.0 - GAMMA);
+        let mut by_power = [[0.0; MAX_STAGES]; 5];
+        by_power[0] = pad([0.0, 1.0 + 2.0 * GAMMA * bend, -2.0 * GAMMA * bend]);
+        by_power[1] = pad([0.0, -bend, bend]);
         Self { by_power }
     }
 
     /// The weights up to the fraction `theta`.
-    pub fn at(&self, theta: f64) -> [f64; STAGES] {
-        let sum = self.by_power.iter().rev().fold(SVector::zeros(), |sum, weights| (sum + weights) * theta);
-        sum.into()
+    pub fn at(&self, theta: f64) -> Weights {
+        from_fn(|stage| self.by_power.iter().rev().fold(0.0, |sum, weights| (sum + weights[stage]) * theta))
     }
 }
 
 /// ESDIRK5(4)7L\[2\]SA2 of C. A. Kennedy and M. H. Carpenter, *Diagonally implicit Runge-Kutta methods for stiff ordinary
 /// differential equations* (Appl. Numer. Math. 146, 2019).
-pub const ESDIRK5: Tableau<7> = {
+pub const ESDIRK5: Tableau = {
     const GAMMA: f64 = 23.0 / 125.0;
     const B: [f64; 7] = complete([
         0.0,
@@ -174,18 +203,17 @@ pub const ESDIRK5: Tableau<7> = {
 
 /// ESDIRK3(2)4L\[2\]SA of C. A. Kennedy and M. H. Carpenter, *Diagonally implicit Runge-Kutta methods for ordinary
 /// differential equations: a review* (NASA/TM-2016-219173).
-pub const ESDIRK3: Tableau<FOUR_STAGES> = {
+pub const ESDIRK3: Tableau = {
     const GAMMA: f64 = 1767732205903.0 / 4055673282236.0;
-    const B: [f64; FOUR_STAGES] =
-        complete([0.0, -4482444167858.0 / 7529755066697.0, 11266239266428.0 / 11593286722821.0, GAMMA]);
-    const EMBEDDED: [f64; FOUR_STAGES] = complete([
+    const B: [f64; 4] = complete([0.0, -4482444167858.0 / 7529755066697.0, 11266239266428.0 / 11593286722821.0, GAMMA]);
+    const EMBEDDED: [f64; 4] = complete([
         0.0,
         -10771552573575.0 / 22201958757719.0,
         9247589265047.0 / 10645013368117.0,
         2193209047091.0 / 5459859503100.0,
     ]);
     Tableau::new(
-        [[0.0; FOUR_STAGES], [0.0, GAMMA, 0.0, 0.0], [0.0, -640167445237.0 / 6845629431997.0, GAMMA, 0.0], B],
+        [[0.0; 4], [0.0, GAMMA, 0.0, 0.0], [0.0, -640167445237.0 / 6845629431997.0, GAMMA, 0.0], B],
         [0.0, 2.0 * GAMMA, 0.6, 1.0],
         EMBEDDED,
         2,
@@ -205,14 +233,16 @@ const fn complete<const N: usize>(mut weights: [f64; N]) -> [f64; N] {
     weights
 }
 
-/// Number of stages of [`ESDIRK5`], the explicit one included: the most of any method.
-pub const STAGES: usize = ESDIRK5.c.len();
-
-/// Number of stages of [`ESDIRK3`], the explicit one included.
-pub(super) const FOUR_STAGES: usize = 4;
-
-/// Number of stages of [`SDIRK2`]; the first is the start of the step, which serves as a guess alone.
-pub const TWO_STAGES: usize = 3;
+/// Values at the first stages, padded with 0 for the others.
+const fn pad<const N: usize>(values: [f64; N]) -> Weights {
+    let mut padded = [0.0; MAX_STAGES];
+    let mut i = 0;
+    while i < N {
+        padded[i] = values[i];
+        i += 1;
+    }
+    padded
+}
 
 /// γ of [`SDIRK2`]: the fraction of the step at which its first implicit stage lies.
 pub(super) const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
@@ -225,14 +255,12 @@ pub(super) const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
 pub(super) const SDIRK2_ESTIMATE: f64 = 5.0 * GAMMA;
 
 /// SDIRK2 of R. Alexander (SIAM J. Numer. Anal. 14, 1977): γ = 1 - 1/√2, order 2, L-stable and stiffly accurate. The
-/// start of the step counts as a stage without weight.
-pub const SDIRK2: Tableau<TWO_STAGES> = Tableau {
-    a: [[0.0; 3], [0.0, GAMMA, 0.0], [0.0, 1.0 - GAMMA, GAMMA]],
-    c: [0.0, GAMMA, 1.0],
-    error: [0.0, -SDIRK2_ESTIMATE, SDIRK2_ESTIMATE],
-    embedded_order: 1,
+/// start of the step counts as a stage without weight: it serves as a guess alone.
+pub const SDIRK2: Tableau = Tableau {
     force_weight: 0.2,
     energy_weight: 0.05,
+    error: pad([0.0, -SDIRK2_ESTIMATE, SDIRK2_ESTIMATE]),
+    ..Tableau::new([[0.0; 3], [0.0, GAMMA, 0.0], [0.0, 1.0 - GAMMA, GAMMA]], [0.0, GAMMA, 1.0], [0.0; 3], 1, 1.0)
 };
 
 /// The continuous weights of the two implicit stages of [`SDIRK2`]: the straight line through their rates, integrated
@@ -241,18 +269,4 @@ pub const SDIRK2: Tableau<TWO_STAGES> = Tableau {
 pub(super) fn sdirk2_weights(theta: f64) -> (f64, f64) {
     let last = theta * (0.5 * theta - GAMMA) / (1.0 - GAMMA);
     (theta - last, last)
-}
-
-impl ContinuousWeights<TWO_STAGES> {
-    /// Those of `sdirk2_weights`, by powers of θ.
-    pub(super) fn sdirk2() -> &'static Self {
-        static WEIGHTS: LazyLock<ContinuousWeights<TWO_STAGES>> = LazyLock::new(|| {
-            let bend = 0.5 / (1.0 - GAMMA);
-            let mut by_power = [SVector::zeros(); 5];
-            by_power[0] = SVector::from([0.0, 1.0 + 2.0 * GAMMA * bend, -2.0 * GAMMA * bend]);
-            by_power[1] = SVector::from([0.0, -bend, bend]);
-            ContinuousWeights { by_power }
-        });
-        &WEIGHTS
-    }
 }

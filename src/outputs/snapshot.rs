@@ -8,7 +8,7 @@
 use std::cell::{Cell, OnceCell, RefCell};
 
 use super::{Counters, Energies, Monitored, Variable};
-use crate::integrator::LayerWithin;
+use crate::integrator::InterpolatedLayer;
 use crate::model::{
     BodyEnergy, Carrier, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, Powers, State,
     Tangents, elastic_energy, kinetic_energy,
@@ -21,7 +21,7 @@ use crate::scene::{Axis, ByAxis};
 pub struct LayerView<'a> {
     known: Cell<(&'a State, &'a Forces)>,
     /// The layer that is still to be computed in place of the known one.
-    within: RefCell<Option<LayerWithin<'a>>>,
+    within: RefCell<Option<InterpolatedLayer<'a>>>,
 }
 
 impl<'a> LayerView<'a> {
@@ -31,8 +31,8 @@ impl<'a> LayerView<'a> {
     }
 
     /// The layer within a step.
-    pub(crate) fn within(within: LayerWithin<'a>) -> Self {
-        let end = (within.integrator.end(), within.integrator.end_forces());
+    pub(crate) fn within(within: InterpolatedLayer<'a>) -> Self {
+        let end = (within.step.dense.end(), within.step.dense.end_forces());
         Self { known: Cell::new(end), within: RefCell::new(Some(within)) }
     }
 

@@ -7,8 +7,10 @@ use super::motion::{ModeChange, Motion, SimulationError, Start};
 use super::settings::Settings;
 use super::state::RunState;
 use crate::contact::{EventTolerance, decide_modes, free_unloaded, impacts_due, place_layer, stop_reversed};
-use crate::integrator::{DenseOutput, DenseWorkspace, Integrator, LayerWithin, Overlay};
-use crate::model::{BodyStart, CarrierPoint, Forces, LinkKind, Mode, Model, State, elastic_energy, kinetic_energy};
+use crate::integrator::{DenseOutput, DenseWorkspace, Integrator, InterpolatedLayer, LayerStep, Overlay};
+use crate::model::{
+    BodyStart, CarrierPoint, ChannelEnergies, Forces, LinkKind, Mode, Model, State, elastic_energy, kinetic_energy,
+};
 use crate::scene::{Axis, ByAxis};
 
 /// The longest step, as a fraction of the period of the carrier's sine: a longer one could alias the excitation, all
@@ -128,7 +130,7 @@ impl Context {
         let Self { state, integrator, .. } = self;
         for axis in Axis::ALL {
             if state.carrier.is_body(axis) {
-                state.carrier.set_step(axis, integrator.body_step(axis, h, state.time_stepping));
+                state.carrier.set_step(axis, integrator.body_step(axis, h));
             }
         }
     }
@@ -194,6 +196,24 @@ impl Context {
         layer.rates.on_carrier(&self.model, &layer.state.maxwell, &carrier)
     }
 
+    /// Energies through the channels up to the fraction `theta` of the step of length `h` (s) tried last, J.
+    pub(super) fn channel_energies_within(&mut self, h: f64, theta: f64) -> ChannelEnergies {
+        let Self { model, state, integrator, .. } = self;
+        integrator.energies((&**model, &state.carrier, &state.layer.state), state.span(h), theta)
+    }
+
+    /// F_x and F_z at the fraction `theta` of the step of length `h` (s) tried last, N.
+    pub(super) fn on_carrier_within(&mut self, h: f64, theta: f64) -> (f64, f64) {
+        let Self { model, state, integrator, dense, .. } = self;
+        integrator.on_carrier((&**model, &state.carrier, &state.layer.state), state.span(h), theta, dense)
+    }
+
+    /// P_diss at the fraction `theta` of the step of length `h` (s) tried last, by the powers at its stages, W.
+    pub(super) fn dissipated_power_within(&mut self, h: f64, theta: f64) -> f64 {
+        let Self { model, state, integrator, .. } = self;
+        integrator.dissipated_power((&**model, &state.carrier, &state.layer.state), state.span(h), theta)
+    }
+
     /// Finds the tangents of the motion that ends here.
     pub(super) fn find_tangents(&mut self) {
         if self.integrator.has_tangents() {
@@ -203,7 +223,7 @@ impl Context {
 
     /// The tangents' rates from the forces evaluated last.
     fn refresh_tangents(&mut self) {
-        self.integrator.refresh_tangents(&self.model, &self.state.layer, &self.forces, self.state.s);
+        self.integrator.refresh_tangents(&self.model, &self.state.layer, Some(&self.forces), self.state.s);
     }
 
     /// Includes the energies in the largest so far, by which errors are measured.
@@ -250,16 +270,12 @@ impl Context {
         &'a mut self,
         (h, theta): (f64, f64),
         overlay: Option<&'a mut dyn Overlay>,
-    ) -> (LayerWithin<'a>, &'a RunState) {
-        let within = LayerWithin {
-            model: &self.model,
-            carrier: &self.state.carrier,
-            start: &self.state.layer.state,
-            span: self.state.span(h),
-            time_step: self.state.time_stepping,
+    ) -> (InterpolatedLayer<'a>, &'a RunState) {
+        let dense =
+            self.integrator.dense(&self.model, &self.state.carrier, &self.state.layer.state, self.state.span(h));
+        let within = InterpolatedLayer {
+            step: LayerStep { dense, workspace: &mut self.dense },
             theta,
-            integrator: &self.integrator,
-            workspace: &mut self.dense,
             state: &mut self.interpolated,
             state_at: &mut self.interpolated_at,
             forces: &mut self.forces,

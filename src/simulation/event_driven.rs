@@ -6,8 +6,8 @@ use super::controller::{ChatterGuard, GROWTH, TrialStep, WorkLimit};
 use super::motion::SimulationError;
 use super::stepper::{ErrorTest, Stepper};
 use crate::contact::{first_event, is_due, longest_unstable, mode_changes};
-use crate::integrator::{Motions, Overlay, Pair};
-use crate::model::{ChannelEnergies, Model};
+use crate::integrator::{ContactModes, Integrator, Motions, Overlay};
+use crate::model::Model;
 
 /// A new step is this fraction of what the error estimate allows, so that few are rejected.
 const SAFETY: f64 = 0.9;
@@ -99,7 +99,9 @@ impl EventDriven {
         self.clear_changes();
         context.interpolated_at = None;
         let Context { model, settings, state, integrator, .. } = context;
-        let attempt = integrator.attempt(model, &state.layer, &state.carrier, state.span(h), &settings.tolerance).ok();
+        let attempt = integrator
+            .attempt(ContactModes::Held, (&**model, &state.layer, &state.carrier), state.span(h), &settings.tolerance)
+            .ok();
         context.trace_bodies(h);
         // Some steps need no error test.
         let good = |longest| attempt.map(|attempt| GoodAttempt { error: attempt.error, longest });
@@ -125,7 +127,7 @@ impl EventDriven {
         if error <= allowed && h <= longest {
             return good(longest);
         }
-        let ratio = error.is_finite().then(|| growth(integrator.pair(), error).min(SAFETY));
+        let ratio = error.is_finite().then(|| growth(integrator, error).min(SAFETY));
         context.state.counters.rejected += 1;
         context.state.controller.reject(h, ratio, longest);
         None
@@ -192,7 +194,7 @@ impl Stepper for EventDriven {
             };
             // Propose the length of the next.
             let proposed = *proposal.get_or_insert_with(|| {
-                let grown = h * growth(context.integrator.pair(), tried.error);
+                let grown = h * growth(&context.integrator, tried.error);
                 let controller = &mut context.state.controller;
                 if starts_anew {
                     controller.step_after_event = grown;
@@ -221,20 +223,14 @@ impl Stepper for EventDriven {
         is_good
     }
 
-    fn channel_energies(&mut self, context: &mut Context, h: f64, theta: f64) -> ChannelEnergies {
-        let Context { model, state, integrator, .. } = context;
-        integrator.energies(model, &state.layer.state, h, theta)
-    }
-
     fn on_carrier(&mut self, context: &mut Context, h: f64, theta: f64) -> (f64, f64) {
-        let Context { model, state, integrator, dense, .. } = context;
-        integrator.on_carrier(model, &state.carrier, &state.layer.state, state.span(h), theta, dense)
+        context.on_carrier_within(h, theta)
     }
 
     fn dissipated_power(&mut self, context: &mut Context, h: f64, theta: f64) -> Option<f64> {
-        let Context { model, settings, state, integrator, .. } = context;
+        let settings = &context.settings;
         let is_known = settings.accounts.energy && settings.tolerance.relative >= POWERS_OF_STAGES_FROM;
-        is_known.then(|| integrator.dissipated_power(model, &state.layer.state, h, theta))
+        is_known.then(|| context.dissipated_power_within(h, theta))
     }
 }
 
@@ -311,7 +307,7 @@ fn accept_part(context: &mut Context, step: &TrialStep, end: f64, regions: Optio
 fn accept_whole(context: &mut Context, end: f64, regions: Option<&mut dyn Overlay>) {
     let Context { model, state, integrator, .. } = context;
     let largest = state.layer.largest;
-    state.carrier.take_step(end, &integrator.end_carrier(false));
+    state.carrier.take_step(end, &integrator.end_carrier());
     integrator.accept(&mut state.layer);
     state.s = end;
     if let Some(regions) = regions {
@@ -327,7 +323,7 @@ fn accept_whole(context: &mut Context, end: f64, regions: Option<&mut dyn Overla
 }
 
 /// The ratio of the next step to one with this error over the tolerance.
-fn growth(pair: Pair, error: f64) -> f64 {
-    let order = f64::from(pair.embedded_order() + 1);
+fn growth(integrator: &Integrator, error: f64) -> f64 {
+    let order = f64::from(integrator.event_driven().tableau().embedded_order + 1);
     (SAFETY * error.powf(-1.0 / order)).clamp(GROWTH.0, GROWTH.1)
 }

@@ -260,7 +260,7 @@ impl Run {
         let on_carrier = self.on_carrier_within(h, theta);
         let Self { context, local_regions, .. } = self;
         let (within, state) = context.within((h, theta), Some(local_regions));
-        let model = within.model;
+        let model = within.step.dense.model;
         let now = snapshot_of((model, state), state.s + theta * h, LayerView::within(within), on_carrier);
         Snapshot { energies, dissipated_power, ..now }
     }
@@ -285,9 +285,6 @@ impl Run {
     fn dissipated_power_within(&mut self, h: f64, theta: f64) -> Option<f64> {
         let (stepper, context) = self.stepper();
         let power = stepper.dissipated_power(context, h, theta)?;
-        if self.context.state.time_stepping {
-            return Some(power);
-        }
         let of_regions = self.local_regions.dissipated_power(&self.context, self.context.state.s + theta * h);
         Some((power + of_regions).max(0.0))
     }

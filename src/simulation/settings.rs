@@ -1,7 +1,7 @@
 //! What of a scene a run needs beside the model.
 
 use crate::contact::EventTolerance;
-use crate::integrator::{Integrator, Pair, Steps, Tolerance, Tracked};
+use crate::integrator::{Integrator, Scheme, Tolerance, Tracked};
 use crate::model::Model;
 use crate::outputs::Accounts;
 use crate::scene::{Method, Scene};
@@ -39,13 +39,13 @@ impl Settings {
 
     /// An integrator for `model`.
     pub(super) fn integrator(&self, model: &Model) -> Integrator {
-        let pair = Pair::at_tolerance(model, self.tolerance.relative);
-        let steps = match self.method {
-            Method::Event => Steps::EventDriven(pair),
-            Method::Step => Steps::TwoStages,
-            Method::Auto => Steps::Both(pair),
+        let event_driven = Scheme::event_driven_at(model, self.tolerance.relative);
+        let schemes: &[Scheme] = match self.method {
+            Method::Event => &[event_driven],
+            Method::Step => &[Scheme::Sdirk2],
+            Method::Auto => &[event_driven, Scheme::Sdirk2],
         };
         let tracked = Tracked { energy: self.accounts.energy, tangents: self.accounts.tangents };
-        Integrator::new(model, tracked, steps)
+        Integrator::new(model, tracked, schemes)
     }
 }

@@ -3,7 +3,6 @@
 use super::context::Context;
 use super::controller::{TrialStep, WorkLimit};
 use super::motion::SimulationError;
-use crate::model::ChannelEnergies;
 use crate::outputs::Energies;
 
 /// The least fraction of the length asked for at which a shorter step is given up.
@@ -37,9 +36,6 @@ pub(super) trait Stepper {
     /// controller's step size is a better length.
     fn try_shorter(&mut self, context: &mut Context, h: f64, test: ErrorTest) -> bool;
 
-    /// Energies through the channels up to the fraction `theta` of the step, J.
-    fn channel_energies(&mut self, context: &mut Context, h: f64, theta: f64) -> ChannelEnergies;
-
     /// F_x and F_z at the fraction `theta` of the step, N.
     fn on_carrier(&mut self, context: &mut Context, h: f64, theta: f64) -> (f64, f64);
 
@@ -55,7 +51,7 @@ pub(super) trait Stepper {
     fn energies(&mut self, context: &mut Context, h: f64, theta: f64) -> Energies {
         let mut energies = context.state.energies;
         if context.settings.accounts.energy {
-            energies.channels.add(&self.channel_energies(context, h, theta));
+            energies.channels.add(&context.channel_energies_within(h, theta));
         }
         energies
     }

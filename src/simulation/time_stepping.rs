@@ -6,7 +6,7 @@ use super::controller::{GROWTH, TrialStep, WorkLimit};
 use super::motion::SimulationError;
 use super::stepper::{ErrorTest, Stepper};
 use crate::contact::{EndCorrection, FixedModeStep, longest_weakening};
-use crate::integrator::{StepAttempt, TwoStageDense};
+use crate::integrator::{ContactModes, ErrorEstimate, Parabolas};
 use crate::model::{ChannelEnergies, Model};
 use crate::scene::Axis;
 
@@ -38,7 +38,7 @@ impl TimeStepping {
         let start = &state.layer.state;
         let gain = settings.accounts.energy.then(|| {
             let missed = integrator.friction_between_stages(model, start, h);
-            let shown = integrator.two_stage_energies(model, start, h, 1.0);
+            let shown = integrator.energies((&**model, &state.carrier, start), state.span(h), 1.0);
             ChannelEnergies { friction: shown.friction + missed, ..shown }
         });
         // The mode changes, corrected in the state at its end.
@@ -55,28 +55,28 @@ impl TimeStepping {
             energies.channels.add(&corrected.map_or_else(ChannelEnergies::default, |corrected| corrected.channels));
             energies.impact += corrected.map_or(0.0, |corrected| corrected.impact);
         }
-        let mut point = integrator.end_carrier(true);
+        let mut point = integrator.end_carrier();
         if let Some(corrected) = &corrected {
             state.carrier.push(&mut point, model, corrected.impulse);
         }
         // The end of the step becomes the start of the next.
         state.carrier.take_step(end, &point);
-        integrator.accept_two_stages(&mut state.layer);
+        integrator.accept(&mut state.layer);
         state.counters.steps += 1;
         state.s = end;
         if context.modes_before != state.layer.state.mode {
-            integrator.refresh_tangents_after(model, &state.layer, end);
+            integrator.refresh_tangents(model, &state.layer, None, end);
             context.record_mode_changes();
         }
         context.record_largest_energy();
     }
 
     /// Tries a step of length `h`; `None` where it is rejected: the controller's step size is then a better length.
-    fn try_step(&mut self, context: &mut Context, h: f64, test: ErrorTest) -> Option<StepAttempt> {
+    fn try_step(&mut self, context: &mut Context, h: f64, test: ErrorTest) -> Option<ErrorEstimate> {
         context.interpolated_at = None;
         let Context { model, settings, state, integrator, .. } = context;
-        let (layer, carrier, span) = (&state.layer, &state.carrier, state.span(h));
-        let attempt = integrator.attempt_two_stages(model, layer, carrier, span, &settings.tolerance).ok();
+        let (start, span) = ((&**model, &state.layer, &state.carrier), state.span(h));
+        let attempt = integrator.attempt(ContactModes::SetValued, start, span, &settings.tolerance).ok();
         context.trace_bodies(h);
         let attempt = attempt.map(|attempt| self.with_lateness(context, h, attempt));
         let error = attempt.map_or(f64::NAN, |attempt| attempt.error);
@@ -90,9 +90,9 @@ impl TimeStepping {
     }
 
     /// The attempt of length `h` with the error that the lateness of its mode changes adds.
-    fn with_lateness(&mut self, context: &Context, h: f64, attempt: StepAttempt) -> StepAttempt {
-        let late = self.end_correction.detect(&dense_output(context, h), &context.settings.tolerance);
-        StepAttempt { error: attempt.error.hypot(late), ..attempt }
+    fn with_lateness(&mut self, context: &Context, h: f64, attempt: ErrorEstimate) -> ErrorEstimate {
+        let late = self.end_correction.detect(&parabolas(context, h), &context.settings.tolerance);
+        ErrorEstimate { error: attempt.error.hypot(late), ..attempt }
     }
 }
 
@@ -128,23 +128,14 @@ impl Stepper for TimeStepping {
         self.try_step(context, h, test).is_some()
     }
 
-    fn channel_energies(&mut self, context: &mut Context, h: f64, theta: f64) -> ChannelEnergies {
-        let Context { model, state, integrator, .. } = context;
-        integrator.two_stage_energies(model, &state.layer.state, h, theta)
-    }
-
     fn on_carrier(&mut self, context: &mut Context, h: f64, theta: f64) -> (f64, f64) {
-        let Context { model, state, integrator, .. } = context;
-        let start = &state.layer.state;
-        let (x, z) = integrator.two_stage_on_carrier(model, &state.carrier, start, state.span(h), theta);
-        let of_touches = self.end_correction.forces_of_touches(&dense_output(context, h), theta);
+        let (x, z) = context.on_carrier_within(h, theta);
+        let of_touches = self.end_correction.forces_of_touches(&parabolas(context, h), theta);
         (x + of_touches.0, z + of_touches.1)
     }
 
     fn dissipated_power(&mut self, context: &mut Context, h: f64, theta: f64) -> Option<f64> {
-        let Context { model, settings, state, integrator, .. } = context;
-        let power = || integrator.two_stage_dissipated_power(model, &state.layer.state, h, theta);
-        settings.accounts.energy.then(power)
+        context.settings.accounts.energy.then(|| context.dissipated_power_within(h, theta))
     }
 
     /// Touches and lifts are corrected at the end of a step, and its dense output is not: it is shown before them, and
@@ -152,14 +143,13 @@ impl Stepper for TimeStepping {
     fn can_show(&self, context: &Context, h: f64, theta: f64) -> bool {
         let (correction, relative) = (&self.end_correction, context.settings.tolerance.relative);
         let allowed = MAX_UNCORRECTED * relative * context.integrator.end_forces().on_carrier(Axis::Z).abs();
-        correction.uncorrected_force() < allowed || correction.comes_after(&dense_output(context, h), theta)
+        correction.uncorrected_force() < allowed || correction.comes_after(&parabolas(context, h), theta)
     }
 }
 
-/// The dense output of the step of length `h` (s) tried last.
-fn dense_output(context: &Context, h: f64) -> TwoStageDense<'_> {
-    let Context { model, state, integrator, .. } = context;
-    integrator.two_stage_dense(model, &state.carrier, &state.layer.state, state.span(h))
+/// The motions of the masses through the step of length `h` (s) tried last.
+fn parabolas(context: &Context, h: f64) -> Parabolas<'_> {
+    context.dense_output(h).parabolas()
 }
 
 /// The ratio of the next step to one with this error over the tolerance.

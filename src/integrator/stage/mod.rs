@@ -19,8 +19,9 @@ use std::ops::Range;
 
 use nalgebra::Vector2;
 
-use super::error::{NEWTON_SHARE, Tolerance};
 use super::rates::{NO_LIMIT, Rates};
+use super::scheme::ContactModes;
+use super::tolerance::{NEWTON_SHARE, Tolerance};
 use crate::math::{BLOCK, BlockTridiagonal, Spline, weighted_sum, with_widest_vectors};
 use crate::model::{
     ByLink, CarrierPoint, ContactForces, Forces, FrictionPower, LinkKind, LinkMotion, Mode, Model, State, SurfacePoint,
@@ -36,7 +37,7 @@ pub struct NoConvergence;
 
 /// Contributions of the earlier stages to a stage: the starred values and the known forces of the Maxwell elements.
 #[derive(Clone, Debug)]
-pub(super) struct StageHistory {
+pub(super) struct History {
     /// e*_x, m: as if the carrier stood where it was at the start of the step.
     pub elongation_x: Vec<f64>,
     /// e*_z, m.
@@ -49,7 +50,7 @@ pub(super) struct StageHistory {
     pub force: ByLink<Vec<f64>>,
 }
 
-impl StageHistory {
+impl History {
     fn new(model: &Model) -> Self {
         let zero = vec![0.0; model.masses()];
         Self {
@@ -116,16 +117,16 @@ impl ConvergenceTest {
     }
 }
 
-/// c and D of one kind of link.
+/// c and D of one kind of link in an implicit stage.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct StageLaw {
+pub(super) struct ImplicitLaw {
     pub stiffness: f64,
     pub damping: f64,
     /// -∂F/∂v of a link to a free mass: βc + D.
     weight: f64,
 }
 
-impl StageLaw {
+impl ImplicitLaw {
     /// ∂F/∂ẋ of a vertical link to a slipping mass.
     #[inline(always)]
     fn along(&self, climb: ContactJacobian) -> f64 {
@@ -145,29 +146,11 @@ enum Factors {
     Single,
 }
 
-/// How the friction of the contacts is treated within a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Friction {
-    /// Slips go on in their direction, sticks hold, whatever the forces.
-    Held,
-    /// A slip that would reverse stops, a stick that would need more than T(0) breaks loose.
-    SetValued,
-}
-
-impl Friction {
-    fn most_iterations(self) -> usize {
-        match self {
-            Self::Held => MAX_ITERATIONS,
-            Self::SetValued => MAX_WITH_CHANGES,
-        }
-    }
-}
-
 /// Solver of the stages of one model.
 #[derive(Clone, Debug)]
 pub(super) struct StageSolver {
     /// To be set before a stage is solved.
-    pub history: StageHistory,
+    pub history: History,
     /// The state at the stage without its Maxwell elements. Its velocities are the initial guess before the solution.
     pub state: State,
     /// The forces at the stage.
@@ -176,9 +159,10 @@ pub(super) struct StageSolver {
     pub friction_power: FrictionPower,
     /// σ v_t of the slipping masses at the solved stage, 0 of the others, m/s.
     slip_speed: Vec<f64>,
-    friction: Friction,
+    /// What becomes of the contact modes through the step.
+    modes: ContactModes,
     /// By kind of link.
-    pub laws: ByLink<StageLaw>,
+    pub laws: ByLink<ImplicitLaw>,
     /// The modes of which the following are lists.
     listed: Vec<Mode>,
     /// The masses in contact, in their order.
@@ -216,12 +200,12 @@ impl StageSolver {
     pub(super) fn new(model: &Model) -> Self {
         let k = model.masses();
         Self {
-            history: StageHistory::new(model),
+            history: History::new(model),
             state: State::new(k, model.maxwell_variables()),
             forces: Forces::new(model),
             friction_power: FrictionPower::default(),
             slip_speed: vec![0.0; k],
-            friction: Friction::Held,
+            modes: ContactModes::Held,
             laws: ByLink::default(),
             listed: vec![Mode::Free; k],
             contacts: Vec::with_capacity(k),
@@ -238,10 +222,9 @@ impl StageSolver {
         }
     }
 
-    /// Prepares the stages of a step from `state`. Its modes are held through the step, but where `friction` is of
-    /// [`Friction::SetValued`] contacts may stop and break loose.
-    pub(super) fn begin(&mut self, model: &Model, state: &State, beta: f64, friction: Friction) {
-        self.friction = friction;
+    /// Prepares the stages of a step from `state`, through which its `modes` are held or not.
+    pub(super) fn begin(&mut self, model: &Model, state: &State, beta: f64, modes: ContactModes) {
+        self.modes = modes;
         self.state.mode.copy_from_slice(&state.mode);
         self.state.surface.copy_from_slice(&state.surface);
         self.set_laws(model, beta);
@@ -282,7 +265,7 @@ impl StageSolver {
     /// Sets c and D = d + Σ_j c_j β τ_j/(τ_j + β) of every kind of link.
     fn set_laws(&mut self, model: &Model, beta: f64) {
         for (law, link) in self.laws.iter_mut().zip(&model.links) {
-            *law = StageLaw { stiffness: link.stiffness, damping: link.damping, weight: 0.0 };
+            *law = ImplicitLaw { stiffness: link.stiffness, damping: link.damping, weight: 0.0 };
         }
         for row in &model.rows {
             let tau = row.relaxation_time;
@@ -376,7 +359,11 @@ impl StageSolver {
     fn iterate(&mut self, model: &Model, point: &mut StagePoint, test: ConvergenceTest) -> Result<(), NoConvergence> {
         let mut residual = self.residuals(model, point.beta);
         let mut last = f64::INFINITY;
-        for _ in 0..self.friction.most_iterations() {
+        let most_iterations = match self.modes {
+            ContactModes::Held => MAX_ITERATIONS,
+            ContactModes::SetValued => MAX_WITH_CHANGES,
+        };
+        for _ in 0..most_iterations {
             let held = self.factors == Factors::Held;
             if !held {
                 self.factor_slips(model, point.beta);

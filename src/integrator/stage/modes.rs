@@ -1,13 +1,14 @@
 //! Set-valued friction: stops and breaks found together with the motion of a stage (docs/theory.md, section 10).
 
-use super::{Friction, StagePoint, StageSolver};
+use super::super::scheme::ContactModes;
+use super::{StagePoint, StageSolver};
 use crate::model::{Mode, Model};
 
 impl StageSolver {
     /// Stops the slips that have reversed and breaks the sticks that hold more than T(0), by the velocities and forces
     /// evaluated last. Returns whether a mode has changed.
     pub(super) fn change_modes(&mut self, model: &Model, point: &StagePoint) -> bool {
-        if self.friction == Friction::Held || !model.friction.present {
+        if self.modes == ContactModes::Held || !model.friction.present {
             return false;
         }
         let mut changed = false;

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::{StageHistory, StageLaw, StageSolver};
+use super::{History, ImplicitLaw, StageSolver};
 use crate::math::with_widest_vectors;
 use crate::model::{Axis, ByLink};
 use crate::model::{ContactForces, Forces, LinearFriction, Mode, Model, State, SurfacePoint};
@@ -77,7 +77,7 @@ impl StageSolver {
     /// The equation of mass `i`, which slips, at the present velocities.
     fn slipping_mass(&self, model: &Model, i: usize, beta: f64) -> SlippingMass {
         let Self { state, history, forces, laws, .. } = self;
-        EvaluatedStage { model, state, history, forces, laws, beta }.slipping_mass(i)
+        Evaluated { model, state, history, forces, laws, beta }.slipping_mass(i)
     }
 
     /// Assembles the part of the Jacobian that is constant through a step: all but the rows and columns of slipping
@@ -136,7 +136,7 @@ impl StageSolver {
     /// Assembles the rows and columns of slipping masses at the velocities of the last residuals.
     pub(super) fn assemble_slips(&mut self, model: &Model, beta: f64) {
         let Self { rows, columns, state, history, forces, laws, slip_runs, system, .. } = self;
-        let stage = EvaluatedStage { model, state, history, forces, laws, beta };
+        let stage = Evaluated { model, state, history, forces, laws, beta };
         if !model.friction.is_linear_in_normal() {
             for i in slip_runs.iter().cloned().flatten() {
                 (system.diagonal[i], rows[i], columns[i]) = stage.assembled(i, &stage.slipping_mass(i));
@@ -177,17 +177,17 @@ impl StageSolver {
 }
 
 /// What the equations of the slipping masses follow from.
-struct EvaluatedStage<'a> {
+struct Evaluated<'a> {
     model: &'a Model,
     state: &'a State,
-    history: &'a StageHistory,
+    history: &'a History,
     forces: &'a Forces,
-    laws: &'a ByLink<StageLaw>,
+    laws: &'a ByLink<ImplicitLaw>,
     /// β of the stage, s.
     beta: f64,
 }
 
-impl EvaluatedStage<'_> {
+impl Evaluated<'_> {
     /// Writes the diagonal blocks, rows and columns of slipping masses that follow one another from mass `start` on, under
     /// a linear law of friction.
     // As for `set_linear_residuals`, what it writes are arguments.
@@ -266,7 +266,7 @@ fn set_linear_residuals(
     right: &mut [Vector2<f64>],
     model: &Model,
     state: &State,
-    history: &StageHistory,
+    history: &History,
     forces: &Forces,
     beta: f64,
 ) {

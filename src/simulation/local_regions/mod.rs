@@ -22,7 +22,7 @@ use super::event_driven::{EventDriven, MAX_CUTS, MAX_DEFECT, accept_motion, can_
 use super::motion::{ModeChange, SimulationError};
 use super::settings::Settings;
 use super::stepper::Stepper;
-use crate::integrator::{DenseWorkspace, Overlay, Pair, StepSpan, WholeLayer};
+use crate::integrator::{DenseWorkspace, LayerStep, Overlay, Scheme, StepSpan};
 use crate::model::{LinkKind, Model, State};
 use crate::outputs::Energies;
 use crate::scene::Method;
@@ -92,7 +92,8 @@ impl LocalRegions {
         let regions: Vec<_> = levels
             .flat_map(|(width, count)| std::iter::repeat_n(LocalRegion::new(model, width, settings), count))
             .collect();
-        let stages = if regions.is_empty() { 0 } else { Pair::at_tolerance(model, tolerance.relative).stages() };
+        let stages =
+            if regions.is_empty() { 0 } else { Scheme::event_driven_at(model, tolerance.relative).tableau().stages };
         Self {
             workspace: workspace(model, regions.is_empty()),
             regions,
@@ -142,7 +143,7 @@ impl LocalRegions {
     fn open_in_step<'a>(
         &'a mut self,
         context: &'a Context,
-    ) -> (impl Iterator<Item = &'a mut LocalRegion>, WholeLayer<'a>) {
+    ) -> (impl Iterator<Item = &'a mut LocalRegion>, LayerStep<'a>) {
         let Self { regions, span, workspace, .. } = self;
         (regions.iter_mut().filter(|region| region.open), whole_layer(context, *span, workspace))
     }
@@ -269,7 +270,7 @@ impl LocalRegions {
             return Ok(Some(Cut::Unresolved(s)));
         }
         for other in others.iter_mut().chain(more).filter(|other| other.open && is_absorbed(other)) {
-            gained.gain(&region.absorb(other, (&step, s)));
+            gained.gain(&region.absorb(other, (&step.dense, s)));
         }
         region.start(end, work)?;
         Ok(None)
@@ -347,7 +348,7 @@ impl LocalRegions {
     pub(super) fn energies(&mut self, context: &Context, s: f64) -> Energies {
         let mut sum = self.gained;
         let (open, step) = self.open_in_step(context);
-        open.for_each(|region| sum.gain(&region.energies(&step, s)));
+        open.for_each(|region| sum.gain(&region.energies(&step.dense, s)));
         sum
     }
 
@@ -361,7 +362,7 @@ impl LocalRegions {
     /// P_diss of the regions at the time `s` beyond that in the whole layer's step, W, where the powers at the stages say it.
     pub(super) fn dissipated_power(&mut self, context: &Context, s: f64) -> f64 {
         let (open, step) = self.open_in_step(context);
-        open.fold(0.0, |sum, region| sum + region.dissipated_power(&step, s))
+        open.fold(0.0, |sum, region| sum + region.dissipated_power(&step.dense, s))
     }
 }
 
@@ -377,9 +378,9 @@ fn workspace(model: &Model, is_empty: bool) -> DenseWorkspace {
 }
 
 /// The step of `context` over `span` that was tried last.
-fn whole_layer<'a>(context: &'a Context, span: StepSpan, workspace: &'a mut DenseWorkspace) -> WholeLayer<'a> {
+fn whole_layer<'a>(context: &'a Context, span: StepSpan, workspace: &'a mut DenseWorkspace) -> LayerStep<'a> {
     let Context { model, state, integrator, .. } = context;
-    WholeLayer { integrator, model, carrier: &state.carrier, start: &state.layer.state, span, workspace }
+    LayerStep { dense: integrator.dense(model, &state.carrier, &state.layer.state, span), workspace }
 }
 
 /// The widths of regions, from the `least` one on, and the number of regions of each: all of one width have at most

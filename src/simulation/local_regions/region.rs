@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::integrator::{DenseWorkspace, PartSums, STAGES, WholeLayer};
+use crate::integrator::{DenseOutput, DenseWorkspace, LayerStep, LayerSums, MAX_STAGES};
 use crate::model::{ByAxis, ChannelEnergies, EndForces, LinkKind, Model, State};
 use crate::outputs::{Counters, Energies};
 use crate::simulation::context::Context;
@@ -27,7 +27,7 @@ pub(super) struct LocalRegion {
     /// The end of that, s after the start of the carrier's piece; infinite where it has tried none from where it stands.
     pub(super) trial_end: f64,
     /// Its masses in the whole layer's step.
-    whole: PartSums,
+    whole: LayerSums,
     /// The energies of that through the channels up to where the region was opened, J.
     opened: ChannelEnergies,
 }
@@ -37,7 +37,7 @@ impl LocalRegion {
     pub(super) fn new(model: &Model, masses: usize, settings: &Settings) -> Self {
         let part = model.part(masses);
         Self {
-            whole: PartSums::new(&part, 0),
+            whole: LayerSums::new(&part, 0),
             stepper: EventDriven::new(&part, false),
             context: Context::new(Arc::new(part), settings.of_local_region(), &Start::default(), &ByAxis::default()),
             open: false,
@@ -83,19 +83,19 @@ impl LocalRegion {
     pub(super) fn open_at(
         &mut self,
         context: &Context,
-        (step, s): (&mut WholeLayer<'_>, f64),
+        (step, s): (&mut LayerStep<'_>, f64),
         first: usize,
         nodes: &mut [DenseWorkspace],
     ) {
         self.open = true;
         // Its place in the layer, and what acts on its ends.
         Arc::make_mut(&mut self.context.model).move_part(&context.model, first);
-        self.whole.begin(step, &self.context.model, first);
+        self.whole.begin_part(step, &self.context.model, first);
         let ends = self.end_forces(step, nodes);
         // Its masses as they are in the layer's step.
         let (state, of_layer) = (&mut self.context.state, &context.state);
-        let theta = step.theta(s);
-        let (dense, weights) = step.dense(&self.whole.masses);
+        let theta = step.dense.theta(s);
+        let (dense, weights) = step.of(&self.whole.masses);
         dense.state_at(theta, weights, &mut state.layer.state);
         state.layer.largest = of_layer.layer.largest;
         state.s = s;
@@ -103,29 +103,30 @@ impl LocalRegion {
         state.carrier.ends = Some(ends);
         // Its steps, its counts and its energies begin anew.
         let step_after_event = of_layer.controller.step_after_event;
-        state.controller = Controller { step_after_event, ..Controller::new(step.span.length) };
+        state.controller = Controller { step_after_event, ..Controller::new(step.dense.span.length) };
         (state.energies, state.counters) = (Energies::default(), Counters::default());
         self.context.interpolated_at = None;
         self.context.mode_changes = context.mode_changes.as_ref().map(|_| Vec::new());
         self.stepper.begin();
         if self.context.settings.accounts.energy {
-            self.opened = self.whole.energies(step, theta);
+            self.opened = self.whole.energies(&step.dense, theta);
         }
     }
 
     /// What the links to the other masses exert on both ends through `step`.
-    fn end_forces(&self, step: &mut WholeLayer<'_>, nodes: &mut [DenseWorkspace]) -> EndForces {
-        let (masses, span) = (self.masses(), step.span);
-        let (dense, _) = step.dense(&masses);
+    fn end_forces(&self, step: &mut LayerStep<'_>, nodes: &mut [DenseWorkspace]) -> EndForces {
+        let (masses, span) = (self.masses(), step.dense.span);
+        let (dense, _) = step.of(&masses);
         let mut coefficients = [ByAxis::<[f64; 5]>::default(); 2];
         let (before, after) = (masses.start.checked_sub(1), masses.end - 1);
-        let links = [before.map(|link| (0, link, -1.0)), (after + 1 < step.model.masses()).then_some((1, after, 1.0))];
+        let links =
+            [before.map(|link| (0, link, -1.0)), (after + 1 < step.dense.model.masses()).then_some((1, after, 1.0))];
         for (end, link, sign) in links.into_iter().flatten() {
-            let mut values = [[0.0; 2]; STAGES];
+            let mut values = [[0.0; 2]; MAX_STAGES];
             for (stage, (value, workspace)) in values.iter_mut().zip(&mut *nodes).enumerate() {
-                *value = dense.lateral_forces(link, dense.interpolation.node(stage), workspace);
+                *value = dense.lateral_forces(link, dense.interpolation().node(stage), workspace);
             }
-            let [x, z] = [0, 1].map(|axis| dense.interpolation.polynomial(|stage| sign * values[stage][axis]));
+            let [x, z] = [0, 1].map(|axis| dense.interpolation().polynomial(|stage| sign * values[stage][axis]));
             coefficients[end] = ByAxis { x, z };
         }
         EndForces { span: (span.start, span.length), coefficients }
@@ -133,17 +134,17 @@ impl LocalRegion {
 
     /// Whether the whole layer's `step` resolves the motion of its masses where it was opened: whether the defect of the dense
     /// output there is at most `largest` in the tolerance's norm.
-    pub(super) fn is_resolved(&mut self, step: &mut WholeLayer<'_>, largest: f64) -> bool {
+    pub(super) fn is_resolved(&mut self, step: &mut LayerStep<'_>, largest: f64) -> bool {
         self.context.evaluate_forces();
         let Context { state, forces, settings, .. } = &self.context;
-        let theta = step.theta(state.s);
-        let (dense, weights) = step.dense(&self.whole.masses);
+        let theta = step.dense.theta(state.s);
+        let (dense, weights) = step.of(&self.whole.masses);
         dense.defect(theta, &state.layer.state, forces, weights, &settings.tolerance) <= largest
     }
 
     /// Takes over the masses of `other`, all of which it has, at the time `s` of the whole layer's `step`, and closes it.
     /// Returns the energies in it beyond those of that step, J.
-    pub(super) fn absorb(&mut self, other: &mut Self, (step, s): (&WholeLayer<'_>, f64)) -> Energies {
+    pub(super) fn absorb(&mut self, other: &mut Self, (step, s): (&DenseOutput<'_>, f64)) -> Energies {
         let Context { model, state, .. } = &mut self.context;
         other.write_state((model, self.whole.masses.start), &mut state.layer.state, s);
         other.open = false;
@@ -200,11 +201,11 @@ impl LocalRegion {
 
     /// The largest force, N, by which its masses, as its own steps have them, load a link to others beyond that of the whole layer's
     /// `step`.
-    pub(super) fn mismatch(&self, step: &mut WholeLayer<'_>) -> f64 {
-        let (theta, ends) = (step.theta(self.reached()), self.ends(step.model.masses()));
+    pub(super) fn mismatch(&self, step: &mut LayerStep<'_>) -> f64 {
+        let (theta, ends) = (step.dense.theta(self.reached()), self.ends(step.dense.model.masses()));
         let Context { model, state, .. } = &self.context;
         let masses = self.masses();
-        let (dense, weights) = step.dense(&masses);
+        let (dense, weights) = step.of(&masses);
         let layer = &state.layer.state;
         ends.fold(0.0, |largest: f64, end| {
             let [(x, z), (v_x, v_z)] = dense.motion(masses.start + end, theta, weights);
@@ -218,7 +219,7 @@ impl LocalRegion {
     }
 
     /// Energies of its masses up to the time `s`, less those in the whole layer's `step` since it was opened, J.
-    pub(super) fn energies(&mut self, step: &WholeLayer<'_>, s: f64) -> Energies {
+    pub(super) fn energies(&mut self, step: &DenseOutput<'_>, s: f64) -> Energies {
         let mut energies = match self.theta(s) {
             Some(theta) => self.stepper.energies(&mut self.context, self.trial.h, theta),
             None => self.context.state.energies,
@@ -232,17 +233,17 @@ impl LocalRegion {
 
     /// P_diss of its masses at the time `s`, less that in the whole layer's `step`, W, where the powers at the stages say it;
     /// 0 elsewhere.
-    pub(super) fn dissipated_power(&mut self, step: &WholeLayer<'_>, s: f64) -> f64 {
+    pub(super) fn dissipated_power(&mut self, step: &DenseOutput<'_>, s: f64) -> f64 {
         let h = self.trial.h;
         let mine = self.theta(s).and_then(|theta| self.stepper.dissipated_power(&mut self.context, h, theta));
         mine.map_or(0.0, |mine| mine.max(0.0) - self.whole.dissipated_power(step, step.theta(s)))
     }
 
     /// F_x and F_z of its masses at the time `s`, less those in the whole layer's `step`, N.
-    pub(super) fn forces(&mut self, step: &mut WholeLayer<'_>, s: f64) -> (f64, f64) {
+    pub(super) fn forces(&mut self, step: &mut LayerStep<'_>, s: f64) -> (f64, f64) {
         let theta = self.theta(s).unwrap_or(0.0);
         let mine = self.stepper.on_carrier(&mut self.context, self.trial.h, theta);
-        let theirs = self.whole.on_carrier(step, &self.context.model, step.theta(s));
+        let theirs = self.whole.on_carrier(step, &self.context.model, step.dense.theta(s));
         (mine.0 - theirs.0, mine.1 - theirs.1)
     }
 

@@ -1,6 +1,6 @@
 //! The dense output of the method of seven stages, against exact solutions.
 
-use asperity::integrator::{DenseWorkspace, Motions, PartSums, StepSpan, WholeLayer};
+use asperity::integrator::{DenseWorkspace, LayerStep, LayerSums, Motions, StepSpan};
 use asperity::model::{Forces, State};
 use nalgebra::Vector2;
 
@@ -197,30 +197,29 @@ fn parts_of_a_step_make_the_whole() {
         stepper.attempt(h);
         let (state, on_carrier) = (stepper.within(h, theta), stepper.on_carrier(h, theta)[0]);
         let Stepper { model, carrier, start, integrator, .. } = &mut stepper;
-        let energies = integrator.energies(model, &start.state, h, theta);
-        let power = integrator.dissipated_power(model, &start.state, h, 1.0);
+        let (start, span) = (&start.state, StepSpan { start: 0.0, length: h });
+        let energies = integrator.energies((model, carrier, start), span, theta);
+        let power = integrator.dissipated_power((model, carrier, start), span, 1.0);
 
         let mut workspace = DenseWorkspace::new(model);
-        let span = StepSpan { start: 0.0, length: h };
-        let start = &start.state;
-        let mut step = WholeLayer { integrator, model, carrier, start, span, workspace: &mut workspace };
+        let mut step = LayerStep { dense: integrator.dense(model, carrier, start, span), workspace: &mut workspace };
         let mut joined = State::new(model.masses(), model.maxwell_variables());
         let (mut sums, mut powers) = ([0.0; 7], Vec::new());
         let middle = 1 + case % (model.masses() - 1);
         for masses in [0..middle, middle..model.masses()] {
             let mut part = model.part(masses.len());
             part.move_part(model, masses.start);
-            let mut of_part = PartSums::new(&part, 0);
-            of_part.begin(&mut step, &part, masses.start);
+            let mut of_part = LayerSums::new(&part, 0);
+            of_part.begin_part(&mut step, &part, masses.start);
             let mut state = State::new(part.masses(), part.maxwell_variables());
-            let (dense, workspace) = step.dense(&masses);
+            let (dense, workspace) = step.of(&masses);
             dense.state_at(theta, workspace, &mut state);
             state.write_part((&part, model), &mut joined, masses.start);
             let (f_x, f_z) = of_part.on_carrier(&mut step, &part, theta);
-            let e = of_part.energies(&step, theta);
+            let e = of_part.energies(&step.dense, theta);
             let values = [f_x, f_z, e.damper, e.maxwell, e.friction, e.shear, e.input];
             sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
-            powers.push(of_part.dissipated_power(&step, 1.0));
+            powers.push(of_part.dissipated_power(&step.dense, 1.0));
         }
         assert_eq!(joined, state, "case {case}");
         let e = energies;

@@ -1,6 +1,6 @@
 //! The structured code against the dense equations of motion, and a solved stage against the explicit rates.
 
-use asperity::integrator::{NO_LIMIT, Rates, STAGES};
+use asperity::integrator::{MAX_STAGES, NO_LIMIT, Rates};
 use asperity::math::Jet;
 use asperity::model::{CarrierPoint, Forces, LinkKind, Mode, Model, State};
 use asperity::scene::{Path, RateShear};
@@ -171,7 +171,7 @@ fn a_solved_stage_satisfies_the_equations_of_motion() {
         let h = 10.0_f64.powf(random.between(-6.0, -2.5));
         stepper.attempt(h);
         let carrier = stepper.carrier.at(h);
-        let (end, last) = (stepper.integrator.end(), &stepper.integrator.stages()[STAGES - 1]);
+        let (end, last) = (stepper.integrator.end(), &stepper.integrator.stages()[MAX_STAGES - 1]);
         let motion =
             (Vector2::new(carrier.x.position, carrier.z.position), Vector2::new(carrier.x.speed, carrier.z.speed));
         let worst = difference(&matrices, &stepper.model, end, last, motion);

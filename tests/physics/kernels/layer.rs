@@ -3,7 +3,8 @@
 use std::path::Path as FilePath;
 
 use asperity::integrator::{
-    DenseOutput, DenseWorkspace, Integrator, LayerState, Pair, StepAttempt, StepSpan, Steps, Tolerance, Tracked,
+    ContactModes, DenseOutput, DenseWorkspace, ErrorEstimate, Integrator, LayerState, Scheme, StepSpan, Tolerance,
+    Tracked,
 };
 use asperity::model::{Axis, ByAxis, Carrier, Forces, LinkKind, Model, State};
 use asperity::outputs::Snapshot;
@@ -115,8 +116,8 @@ pub struct Stepper {
     pub integrator: Integrator,
     pub tolerance: Tolerance,
     pub s: f64,
-    /// Whether the steps have two stages.
-    two_stages: bool,
+    /// Whether the steps are event-driven or of time-stepping.
+    modes: ContactModes,
 }
 
 /// Gives a stepper its method.
@@ -132,16 +133,16 @@ impl Stepper {
         let carrier = Carrier::new(0.0, ByAxis::default(), ByAxis { x: u, z: w }, &model.profile);
         let tolerance = Tolerance::new(&model, tolerance, tolerance);
         let mut forces = Forces::new(&model);
-        let integrator = Integrator::new(&model, Tracked::default(), Steps::Both(Pair::Fifth));
+        let integrator = Integrator::new(&model, Tracked::default(), &[Scheme::Esdirk5, Scheme::Sdirk2]);
         forces.evaluate(&model, &state, &carrier.at(0.0));
         let mut start = LayerState { state, ..LayerState::new(&model) };
         integrator.evaluate_start(&model, &mut start, (&carrier, 0.0), &forces, 1e-9);
-        Self { model, carrier, start, integrator, tolerance, s: 0.0, two_stages: false }
+        Self { model, carrier, start, integrator, tolerance, s: 0.0, modes: ContactModes::Held }
     }
 
-    /// The same by the pair of order 3.
+    /// The same by the scheme of order 3.
     pub fn by_four_stages(self) -> Self {
-        let integrator = Integrator::new(&self.model, Tracked::default(), Steps::EventDriven(Pair::Third));
+        let integrator = Integrator::new(&self.model, Tracked::default(), &[Scheme::Esdirk3]);
         Self { integrator, ..self }
     }
 
@@ -149,7 +150,7 @@ impl Stepper {
     pub fn with_energies(self) -> Self {
         let Self { model, carrier, mut start, .. } = self;
         let tracked = Tracked { energy: true, ..Tracked::default() };
-        let mut integrator = Integrator::new(&model, tracked, Steps::EventDriven(self.integrator.pair()));
+        let mut integrator = Integrator::new(&model, tracked, &[self.integrator.event_driven()]);
         integrator.keep_link_forces(&model);
         let mut forces = Forces::new(&model);
         forces.evaluate(&model, &start.state, &carrier.at(0.0));
@@ -159,27 +160,20 @@ impl Stepper {
 
     /// The same by the method of two stages.
     pub fn by_two_stages(self) -> Self {
-        Self { two_stages: true, ..self }
+        Self { modes: ContactModes::SetValued, ..self }
     }
 
     /// Attempts a step without accepting it.
-    pub fn attempt(&mut self, h: f64) -> StepAttempt {
-        let (integrator, span) = (&mut self.integrator, StepSpan { start: self.s, length: h });
-        if self.two_stages {
-            integrator.attempt_two_stages(&self.model, &self.start, &self.carrier, span, &self.tolerance).unwrap()
-        } else {
-            integrator.attempt(&self.model, &self.start, &self.carrier, span, &self.tolerance).unwrap()
-        }
+    pub fn attempt(&mut self, h: f64) -> ErrorEstimate {
+        let start = (&self.model, &self.start, &self.carrier);
+        let span = StepSpan { start: self.s, length: h };
+        self.integrator.attempt(self.modes, start, span, &self.tolerance).unwrap()
     }
 
     /// Attempts and accepts a step of length `h`.
     pub fn step(&mut self, h: f64) {
         self.attempt(h);
-        if self.two_stages {
-            self.integrator.accept_two_stages(&mut self.start);
-        } else {
-            self.integrator.accept(&mut self.start);
-        }
+        self.integrator.accept(&mut self.start);
         self.s += h;
     }
 
@@ -201,28 +195,15 @@ impl Stepper {
         state
     }
 
-    /// The state at the fraction `theta` of the last attempted two-stage step, of length `h`.
-    pub fn within_two_stages(&self, h: f64, theta: f64) -> State {
-        let mut state = self.start.state.clone();
-        let span = StepSpan { start: self.s, length: h };
-        self.integrator.two_stage_maxwell(&self.model, &self.start.state, theta, &mut state.maxwell);
-        let dense = self.integrator.two_stage_dense(&self.model, &self.carrier, &self.start.state, span);
-        dense.state_at(theta, &mut state);
-        state
-    }
-
     /// F_x and F_z at the fraction `theta` of the last attempted step, of length `h`: from sums, and from its state there.
     pub fn on_carrier(&mut self, h: f64, theta: f64) -> [(f64, f64); 2] {
-        let state = if self.two_stages { self.within_two_stages(h, theta) } else { self.within(h, theta) };
+        let state = self.within(h, theta);
         let span = StepSpan { start: self.s, length: h };
         let mut forces = Forces::new(&self.model);
         forces.evaluate(&self.model, &state, &self.carrier.at(span.at(theta)));
         let Self { model, carrier, start, integrator, .. } = self;
-        let summed = if self.two_stages {
-            integrator.two_stage_on_carrier(model, carrier, &start.state, span, theta)
-        } else {
-            integrator.on_carrier(model, carrier, &start.state, span, theta, &mut DenseWorkspace::new(model))
-        };
+        let mut workspace = DenseWorkspace::new(model);
+        let summed = integrator.on_carrier((model, carrier, &start.state), span, theta, &mut workspace);
         [summed, (forces.on_carrier(Axis::X), forces.on_carrier(Axis::Z))]
     }
 }

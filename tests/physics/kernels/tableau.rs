@@ -1,6 +1,6 @@
 //! The coefficients of the Runge-Kutta methods.
 
-use asperity::integrator::{ContinuousWeights, ESDIRK3, ESDIRK5, Tableau};
+use asperity::integrator::{ContinuousWeights, ESDIRK3, ESDIRK5, MAX_STAGES, Tableau, Weights};
 use nalgebra::Complex;
 
 /// A rooted tree: the trees that hang on its root.
@@ -18,8 +18,8 @@ impl Tree {
     }
 
     /// φ_i(t) = Π over the trees on the root of Σ_j a_ij φ_j: Σ b_i φ_i = 1/γ(t) is the order condition of the tree.
-    fn weights<const N: usize>(&self, a: &[[f64; N]; N]) -> [f64; N] {
-        let mut product = [1.0; N];
+    fn weights(&self, a: &[Weights; MAX_STAGES]) -> Weights {
+        let mut product = [1.0; MAX_STAGES];
         for branch in &self.0 {
             let inner = branch.weights(a);
             for (value, row) in product.iter_mut().zip(a) {
@@ -51,17 +51,17 @@ fn forests(order: usize, from: &[Tree]) -> Vec<Vec<Tree>> {
     found
 }
 
-fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
+fn dot(a: &Weights, b: &Weights) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// The largest |Σ b_i φ_i - 1/γ| over all trees of an order.
-fn miss<const N: usize>(method: &Tableau<N>, weights: &[f64; N], order: usize) -> f64 {
+fn miss(method: &Tableau, weights: &Weights, order: usize) -> f64 {
     let one = |tree: &Tree| (dot(weights, &tree.weights(&method.a)) - 1.0 / tree.density()).abs();
     trees(order).iter().map(one).fold(0.0, f64::max)
 }
 
-fn embedded<const N: usize>(method: &Tableau<N>) -> [f64; N] {
+fn embedded(method: &Tableau) -> Weights {
     std::array::from_fn(|i| method.weights()[i] - method.error[i])
 }
 
@@ -76,7 +76,7 @@ fn the_trees_are_all_there() {
     assert_eq!(counts, [1, 1, 2, 4, 9]);
 }
 
-fn check_order<const N: usize>(method: &Tableau<N>) {
+fn check_order(method: &Tableau) {
     let embedded_order = method.embedded_order as usize;
     for order in 1..=embedded_order + 1 {
         assert!(miss(method, method.weights(), order) < ROUNDING, "b, order {order}");
@@ -96,18 +96,18 @@ fn the_order_conditions_hold() {
     check_order(&ESDIRK3);
 }
 
-fn check_shape<const N: usize>(method: &Tableau<N>) {
+fn check_shape(method: &Tableau) {
     let (a, c) = (&method.a, &method.c);
-    assert_eq!((a[0], c[0], c[N - 1]), ([0.0; N], 0.0, 1.0));
+    assert_eq!((a[0], c[0], c[method.last()]), ([0.0; MAX_STAGES], 0.0, 1.0));
     let gamma = method.gamma();
-    for i in 1..N {
+    for i in 1..method.stages {
         assert_eq!(a[i][i], gamma);
-        assert_eq!(a[i][i + 1..], [0.0; N][i + 1..]);
+        assert_eq!(a[i][i + 1..], [0.0; MAX_STAGES][i + 1..]);
         assert!((a[i].iter().sum::<f64>() - c[i]).abs() < ROUNDING, "row {i}");
         // Stage order 2.
         assert!((dot(&a[i], c) - 0.5 * c[i] * c[i]).abs() < ROUNDING, "row {i}");
     }
-    assert_eq!(method.weights(), &a[N - 1]);
+    assert_eq!(method.weights(), &a[method.last()]);
     assert!(method.error.iter().sum::<f64>().abs() < ROUNDING);
 }
 
@@ -119,17 +119,17 @@ fn rows_and_stages_are_consistent() {
 }
 
 /// R(z) of y' = λy, z = hλ: the last stage of Y_i = 1 + z Σ_j a_ij Y_j.
-fn stability<const N: usize>(method: &Tableau<N>, z: Complex<f64>) -> f64 {
-    let mut stages = [Complex::new(1.0, 0.0); N];
-    for i in 1..N {
+fn stability(method: &Tableau, z: Complex<f64>) -> f64 {
+    let mut stages = [Complex::new(1.0, 0.0); MAX_STAGES];
+    for i in 1..method.stages {
         let earlier: Complex<f64> = stages[..i].iter().zip(&method.a[i]).map(|(y, &a)| y * a).sum();
         stages[i] = (earlier * z + 1.0) / (Complex::new(1.0, 0.0) - z * method.a[i][i]);
     }
-    stages[N - 1].norm()
+    stages[method.last()].norm()
 }
 
 /// |R(z)| |z| for z → -∞, at most.
-fn check_decay<const N: usize>(method: &Tableau<N>) {
+fn check_decay(method: &Tableau) {
     for exponent in 3..=15 {
         let size = 10.0_f64.powi(exponent);
         let decay = stability(method, Complex::new(-size, 0.0));
@@ -138,7 +138,7 @@ fn check_decay<const N: usize>(method: &Tableau<N>) {
     }
 }
 
-fn check_axis<const N: usize>(method: &Tableau<N>) {
+fn check_axis(method: &Tableau) {
     for i in 0..=20_000 {
         // From 1e-5 to 1e5, where R has long fallen.
         let y = 10.0_f64.powf(f64::from(i) / 2000.0 - 5.0);

@@ -82,7 +82,7 @@ fn the_inside_of_a_step_has_its_order() {
         stepper.attempt(h);
         let mut worst = [0.0_f64; 3];
         for theta in [0.0, 0.13, 0.29, 0.5, 0.81, 1.0] {
-            let within = stepper.within_two_stages(h, theta);
+            let within = stepper.within(h, theta);
             let found = differences(&within, &exact.at(&start, theta * h));
             worst = std::array::from_fn(|part| worst[part].max(found[part]));
             let ends = [(0.0, &start), (1.0, stepper.integrator.end())];

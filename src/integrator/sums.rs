@@ -1,0 +1,95 @@
+//! Sums over the masses of a layer, or over some of them, in the step attempted last: the forces on the carrier within it, and
+//! the energies.
+
+use std::ops::Range;
+
+use super::carrier_sums::CarrierSums;
+use super::dense::DenseOutput;
+use super::energy::{EnergySums, Measure};
+use super::layer_step::LayerStep;
+use super::tableau::MAX_STAGES;
+use crate::model::{BoundaryPowers, ByAxis, ChannelEnergies, Model};
+
+/// What is summed over the masses of a layer, or some of them, one after another, in the step attempted last.
+#[derive(Clone, Debug)]
+pub struct LayerSums {
+    /// The masses.
+    pub masses: Range<usize>,
+    carrier: CarrierSums,
+    energy: EnergySums,
+    /// Their powers through the surface and the carrier at the stages, where energies are tracked.
+    exchange: [BoundaryPowers; MAX_STAGES],
+}
+
+impl LayerSums {
+    /// Workspace for the masses of `part`, those from `first` on in a layer.
+    pub fn new(part: &Model, first: usize) -> Self {
+        Self {
+            masses: first..first + part.masses(),
+            carrier: CarrierSums::new(part),
+            energy: EnergySums::new(part),
+            exchange: [BoundaryPowers::default(); MAX_STAGES],
+        }
+    }
+
+    /// Another step is attempted, in which the masses have these powers through the surface and the carrier at the stages.
+    pub(super) fn begin(&mut self, exchange: &[BoundaryPowers; MAX_STAGES]) {
+        self.carrier.forget();
+        self.energy.forget();
+        self.exchange = *exchange;
+    }
+
+    /// The masses are now those of `part` from `first` on, in another `step`.
+    pub fn begin_part(&mut self, step: &mut LayerStep<'_>, part: &Model, first: usize) {
+        self.masses = first..first + part.masses();
+        self.carrier.forget();
+        self.energy.forget();
+        if step.dense.values.tracks_energy {
+            self.set_exchange(step, part);
+        }
+    }
+
+    fn set_exchange(&mut self, step: &mut LayerStep<'_>, part: &Model) {
+        let (x, z) = self.on_carrier(step, part, 0.0);
+        let at_start = ByAxis { x, z };
+        let (values, masses) = (step.dense.values, self.masses.clone());
+        let [vertical, horizontal, ..] = &step.dense.end_forces().link.0;
+        let sum = |links: &[f64]| links.get(masses.clone()).map_or(0.0, |part| part.iter().sum());
+        let between = values.link_forces.iter().map(|[x, z]| ByAxis { x: sum(x), z: sum(z) });
+        let at_end = ByAxis { x: sum(horizontal), z: sum(vertical) };
+        let on_carrier = std::iter::once(at_start).chain(between).chain(std::iter::once(at_end));
+        let stages = step.dense.stages().iter().zip(step.dense.carriers());
+        for ((exchange, on_carrier), (rates, carrier)) in self.exchange.iter_mut().zip(on_carrier).zip(stages) {
+            let [v_x, v_z, normal] =
+                [&rates.velocity_x, &rates.velocity_z, &rates.normal].map(|of| &of[masses.clone()]);
+            let modes = &step.dense.start.mode[masses.clone()];
+            *exchange = BoundaryPowers::from_forces(part, modes, (v_x, v_z, normal), carrier, on_carrier);
+        }
+    }
+
+    /// F_x and F_z of the masses, of `part`, at the fraction `theta` of `step`, N.
+    pub fn on_carrier(&mut self, step: &mut LayerStep<'_>, part: &Model, theta: f64) -> (f64, f64) {
+        let (dense, workspace) = step.of(&self.masses);
+        let (ends, heights) = ((dense.start, dense.end()), dense.method.scheme.contact_heights());
+        self.carrier.collect(dense.model, &dense.masses, ends, dense.stages(), heights);
+        let motion = dense.summed_motion(theta, &self.carrier, workspace);
+        let point = dense.carrier.at(dense.span.at(theta));
+        self.carrier.forces(part, &motion, &point, |row| *workspace.of_elements(row))
+    }
+
+    /// Energies of the masses through the channels up to the fraction `theta` of `step`, J.
+    pub fn energies(&mut self, step: &DenseOutput<'_>, theta: f64) -> ChannelEnergies {
+        let coefficients = step.method.coefficients;
+        let weights =
+            if theta < 1.0 { &coefficients.continuous_weights.at(theta) } else { coefficients.tableau.weights() };
+        self.energy.energies(&step.of(self.masses.clone()), &self.exchange, weights, Measure::Integral(theta))
+    }
+
+    /// P_diss of the masses at the fraction `theta` of `step`, by the powers at its stages, W.
+    pub fn dissipated_power(&mut self, step: &DenseOutput<'_>, theta: f64) -> f64 {
+        let (weights, step) = (step.interpolation().values(theta), step.of(self.masses.clone()));
+        let energies = self.energy.energies(&step, &self.exchange, &weights, Measure::Value(theta));
+        // Powers that fall steeply through a step have combinations below 0.
+        (energies.dissipated() / step.span.length).max(0.0)
+    }
+}
