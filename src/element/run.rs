@@ -5,8 +5,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::grid::Load;
-use super::jenkins::{Jenkins, Listener, MotionRates};
-use super::law::{Contact, Curve, Law};
+use super::jenkins::{Jenkins, MotionRates, Recorder};
+use super::law::{Contact, Law, LawAtSpeed};
 use super::point_contact::{PointContact, Terms, element_output};
 use super::table_format::Quantity;
 use crate::math::Expansion;
@@ -107,7 +107,7 @@ pub struct ElementState {
 pub struct Element {
     law: Arc<Law>,
     /// The law at the present speed.
-    pub(super) curve: Curve,
+    pub(super) curve: LawAtSpeed,
     extrapolates: bool,
     pub(super) state: ElementState,
     pub(super) spring: Jenkins,
@@ -138,7 +138,7 @@ impl Element {
     /// An element in `state`, its spring not set yet.
     fn at(contact: &PointContact, state: ElementState) -> Result<Self, ElementError> {
         let law = Arc::new(Law::new(contact.table(), contact.temperature()));
-        let curve = Curve::new(&law, state.u_rate);
+        let curve = LawAtSpeed::new(&law, state.u_rate);
         let spring = Jenkins::new(&Contact::default());
         let extrapolates = contact.extrapolates_table();
         let element = Self { law, curve, extrapolates, state, spring, mode_changes: None };
@@ -194,17 +194,16 @@ impl Element {
         let approach = |w: f64| -(law.rest_separation + w);
         let (from, to) = (approach(ledger.state.w), approach(end));
         let here = curve.at(from);
-        spring.take_over(&here, from, &mut ledger);
+        spring.set_law(&here, from, &mut ledger);
         if from == to {
             return spring.slide(&here, from, u_rate, duration, &mut ledger);
         }
         let rates = MotionRates { u: u_rate, approach: -w_rate };
-        let closer = to > from;
         let mut at = from;
         while at != to {
-            let stop = curve.end_of_piece(at, closer);
-            let next = if closer { stop.min(to) } else { stop.max(to) };
-            spring.cross(curve, at, next, rates, (at - from) / rates.approach, &mut ledger);
+            let end = curve.end_of_segment(at, to);
+            let next = if to > at { end.min(to) } else { end.max(to) };
+            spring.change_approach(curve, at, next, rates, (at - from) / rates.approach, &mut ledger);
             at = next;
         }
     }
@@ -413,15 +412,15 @@ impl ElementState {
 
 /// Adds up the losses of a motion and records its mode changes.
 struct Ledger<'a> {
-    curve: &'a Curve,
+    curve: &'a LawAtSpeed,
     state: &'a mut ElementState,
     mode_changes: &'a mut Option<Vec<ModeChange>>,
     mode: Mode,
 }
 
-impl Listener for Ledger<'_> {
+impl Recorder for Ledger<'_> {
     /// The channels share the loss as in steady sliding at that approach.
-    fn lost(&mut self, approach: f64, energy: f64) {
+    fn record_loss(&mut self, approach: f64, energy: f64) {
         if energy == 0.0 {
             return;
         }
@@ -430,7 +429,7 @@ impl Listener for Ledger<'_> {
         self.state.lost_by_channel.iter_mut().zip(shares).for_each(|(lost, share)| *lost += share * energy);
     }
 
-    fn changed(&mut self, elapsed: f64, mode: Mode) {
+    fn record_mode(&mut self, elapsed: f64, mode: Mode) {
         let before = std::mem::replace(&mut self.mode, mode);
         if let Some(record) = self.mode_changes {
             let time = self.state.time + elapsed;
@@ -439,7 +438,7 @@ impl Listener for Ledger<'_> {
     }
 }
 
-impl Curve {
+impl LawAtSpeed {
     /// The shares of the channels of [`Quantity::CHANNELS`] in the losses at an approach, m.
     fn channel_shares(&self, approach: f64) -> [f64; 4] {
         let contact = self.at(approach);
