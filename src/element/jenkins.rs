@@ -45,9 +45,9 @@ pub(super) trait Recorder {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Jenkins {
-    /// G = -F_x, N.
+    /// The force in the spring, G = -F_x, N.
     pub(super) force: f64,
-    /// K, N/m.
+    /// K, the tangential stiffness, N/m.
     pub(super) stiffness: f64,
     /// Sticking, slipping, or free where there is no contact.
     pub(super) mode: Mode,
@@ -153,7 +153,7 @@ impl Jenkins {
             };
             let mode = if slips { Mode::along(phase.start.force) } else { Mode::Stick };
             self.set_mode(mode, elapsed + (at - from) / rates.approach, recorder);
-            phase.advance(self, stop, slips, recorder);
+            phase.advance(self, stop, mode, recorder);
             if stop == to {
                 break;
             }
@@ -241,10 +241,11 @@ impl SpringPhase<'_> {
     }
 
     /// Moves on to the approach `to`, m.
-    fn advance(&self, spring: &mut Jenkins, to: f64, slips: bool, recorder: &mut impl Recorder) {
+    fn advance(&self, spring: &mut Jenkins, to: f64, mode: Mode, recorder: &mut impl Recorder) {
         let end = self.curve.at(to);
+        // How far the carrier goes along x per approach.
         let per = self.rates.u / self.rates.approach;
-        let work = if slips {
+        let work = if mode.slips() {
             spring.force = self.sign() * end.limit.value;
             self.sign() * per * self.integral(to, |_, here| here.limit.value)
         } else {

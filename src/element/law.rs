@@ -354,7 +354,7 @@ impl LawAtSpeed {
     }
 
     /// A quantity at a pressure (Pa), limited to those of the table.
-    pub(super) fn at_pressure(&self, quantity: Quantity, pressure: f64) -> f64 {
+    fn at_pressure(&self, quantity: Quantity, pressure: f64) -> f64 {
         let last = self.pressures.len() - 1;
         let y = pressure.ln().clamp(self.pressures[0], self.pressures[last]);
         self.along_pressure(quantity, interval_of(&self.pressures, y), y).value
@@ -406,7 +406,7 @@ pub struct LeftOut {
     /// The largest error of the friction coefficient, as a share of it, and where; `None` where the axis has no inner
     /// point.
     pub friction: Option<(f64, OperatingPoint)>,
-    /// That of F_z at the separation of the point.
+    /// The largest error of F_z at the separation of the point, as a share of it, and where.
     pub force_z: Option<(f64, OperatingPoint)>,
 }
 

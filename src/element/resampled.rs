@@ -100,7 +100,7 @@ struct SpeedSpan {
 }
 
 impl SpeedSpan {
-    /// Those of a table; a table of one speed has one without width.
+    /// The spans of a table; a table of one speed has one without width.
     fn new(speeds: &[f64]) -> Vec<Self> {
         let mut first = 0;
         let mut span = |start: f64, end: f64| {
@@ -151,7 +151,7 @@ pub struct ResampledLaw {
     area: f64,
     /// ln p at the pressures, p in Pa.
     log_pressures: Vec<f64>,
-    /// Of the table, as logarithms.
+    /// The speeds of the table, as logarithms.
     speeds: Vec<f64>,
     spans: Vec<SpeedSpan>,
     /// Even bins of ln v: the last speed of the table at or below where each begins; seldom more than one lies in it.

@@ -23,7 +23,7 @@ pub(super) struct ElementContact<T> {
     pub(super) approach: T,
     /// ln v, v in m/s, limited to the speeds of the table.
     pub(super) log_speed: T,
-    /// That of `log_speed`.
+    /// The cell of the law in which the speed lies.
     pub(super) cell: SpeedCell,
     /// The law at its speed and approach.
     pub(super) point: LawPoint<T>,

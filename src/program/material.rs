@@ -58,19 +58,19 @@ fn set_temperature(scene: &mut Scene, temperature: f64) -> Result<(), MaterialEr
 }
 
 /// A range of angular frequencies, rad/s.
-type Band = (f64, f64);
+type FrequencyBand = (f64, f64);
 
 /// Decades by which a band exceeds the rates 1/τ of its responses.
 const MARGIN: f64 = 1.0;
-/// Band of responses without any rate.
-const DEFAULT_BAND: Band = (1.0, 1e4);
+/// FrequencyBand of responses without any rate.
+const DEFAULT_BAND: FrequencyBand = (1.0, 1e4);
 /// Points per decade in files and plots.
 const POINTS: f64 = 20.0;
 /// Points per decade in the search for the maximum of tan δ, which a parabola then refines.
 const SEARCH_POINTS: f64 = 500.0;
 
 /// Angular frequencies over `band`, even in the logarithm, about `points` per decade.
-fn evenly((low, high): Band, points: f64) -> Vec<f64> {
+fn evenly((low, high): FrequencyBand, points: f64) -> Vec<f64> {
     let decades = (high / low).log10();
     let intervals = (decades * points).round().max(1.0);
     (0..=intervals as usize).map(|i| low * 10.0_f64.powf(decades * i as f64 / intervals)).collect()
@@ -103,7 +103,7 @@ fn responses(scene: &Scene) -> Vec<Response> {
 }
 
 /// The band in which `responses` change, rounded outwards to powers of ten.
-fn band(responses: &[Response]) -> Band {
+fn band(responses: &[Response]) -> FrequencyBand {
     let rates = || responses.iter().flat_map(Response::rates).map(f64::log10);
     let (low, high) = (rates().fold(f64::MAX, f64::min), rates().fold(f64::MIN, f64::max));
     if low > high {
@@ -146,7 +146,7 @@ impl Response {
     }
 
     /// The maximum of tan δ in `band`: ω and tan δ; `None` without any loss.
-    fn maximum_loss(&self, band: Band) -> Option<(f64, f64)> {
+    fn maximum_loss(&self, band: FrequencyBand) -> Option<(f64, f64)> {
         let all: Vec<(f64, f64)> =
             evenly(band, SEARCH_POINTS).into_iter().map(|omega| (omega, self.loss_tangent(omega))).collect();
         let lossy = (0..all.len()).filter(|&i| all[i].1 > 0.0 && all[i].1.is_finite());
@@ -168,11 +168,11 @@ impl Response {
 struct Responses<'a> {
     scene: &'a Scene,
     responses: Vec<Response>,
-    band: Band,
+    band: FrequencyBand,
 }
 
 impl<'a> Responses<'a> {
-    fn new(scene: &'a Scene, asked: Option<Band>) -> Result<Self, MaterialError> {
+    fn new(scene: &'a Scene, asked: Option<FrequencyBand>) -> Result<Self, MaterialError> {
         let responses = responses(scene);
         if responses.is_empty() {
             return Err(MaterialError::NoLinks);

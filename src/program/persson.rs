@@ -31,7 +31,7 @@ pub(super) enum Dimension {
 const ANGLES: u32 = 32;
 
 impl Theory {
-    /// Of the waves that the layer of `scene` resolves, sliding at `speed` (m/s) under `pressure` (Pa); `None` in the
+    /// Area and friction of the waves that the layer of `scene` resolves, sliding at `speed` (m/s) under `pressure` (Pa); `None` in the
     /// direct form.
     pub(super) fn new(scene: &Scene, pressure: f64, speed: f64, dimension: Dimension) -> Option<Self> {
         let material = scene.material.as_ref()?;
@@ -58,7 +58,7 @@ impl Theory {
         [self.area, self.friction, self.friction_reduced]
     }
 
-    /// Of waves (q in rad/m, mean square height in m²) in the order of q.
+    /// Area and friction of waves (q in rad/m, mean square height in m²) in the order of q.
     fn from_waves(
         waves: &[(f64, f64)],
         material: &Material,

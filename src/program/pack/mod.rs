@@ -18,7 +18,7 @@ use super::describe;
 use super::files::{self, FileError, check_output, print, read, write};
 use super::patch;
 use super::terminal::{LabelledLine, lines, warn};
-use archive::{ArchiveError, Entry};
+use archive::{ArchiveEntry, ArchiveError};
 use check::CheckError;
 
 /// `asperity pack` failed.
@@ -103,12 +103,12 @@ fn summary(command: &Pack, definition: &Definition) -> Result<Vec<LabelledLine>,
 }
 
 /// The scene or the table, under a fixed name, and the files that a scene reads.
-fn resources(definition: &Definition, path: &Path) -> Result<Vec<Entry>, PackError> {
+fn resources(definition: &Definition, path: &Path) -> Result<Vec<ArchiveEntry>, PackError> {
     let folder = path.parent().unwrap_or(Path::new(""));
-    let mut entries = vec![Entry::new(format!("resources/{}", definition.file_name()), read(path)?)];
+    let mut entries = vec![ArchiveEntry::new(format!("resources/{}", definition.file_name()), read(path)?)];
     for file in definition.files() {
         let bytes = definition.carried(folder, file).map_err(FileError::io("read", &folder.join(file)))?;
-        entries.push(Entry::new(format!("resources/{}", archive_path(file)?), bytes));
+        entries.push(ArchiveEntry::new(format!("resources/{}", archive_path(file)?), bytes));
     }
     Ok(entries)
 }
@@ -122,7 +122,7 @@ fn archive_path(file: &Path) -> Result<String, PackError> {
     Ok(parts.collect::<Result<Vec<_>, _>>()?.join("/"))
 }
 
-fn documents(definition: &Definition, path: &Path, summary: &[LabelledLine]) -> Result<Vec<Entry>, PackError> {
+fn documents(definition: &Definition, path: &Path, summary: &[LabelledLine]) -> Result<Vec<ArchiveEntry>, PackError> {
     let document = |document, source| PackError::Document { document, source };
     let catalogue = Catalogue::of(definition);
     let guid = guid(&Sources::of(path, definition).map_err(FileError::io("read", path))?, &catalogue);
@@ -137,6 +137,6 @@ fn documents(definition: &Definition, path: &Path, summary: &[LabelledLine]) -> 
     };
     let picture = picture.map_err(|error| FileError::picture(Path::new("model.png"), &*error))?;
     let written = [("modelDescription.xml", description), ("documentation/index.html", index), ("model.png", picture)];
-    let fixed = documentation::FILES.iter().map(|&(name, text)| Entry::new(name, text));
-    Ok(written.into_iter().map(|(name, bytes)| Entry::new(name, bytes)).chain(fixed).collect())
+    let fixed = documentation::FILES.iter().map(|&(name, text)| ArchiveEntry::new(name, text));
+    Ok(written.into_iter().map(|(name, bytes)| ArchiveEntry::new(name, bytes)).chain(fixed).collect())
 }
