@@ -133,16 +133,19 @@ impl Jenkins {
         elapsed: f64,
         recorder: &mut impl Recorder,
     ) {
+        // No contact at either end, and the stiffness only grows or only falls: none between.
         let end = curve.at(to);
         if self.stiffness <= 0.0 && end.stiffness.value <= 0.0 {
             return self.set_mode(Mode::Free, elapsed, recorder);
         }
+        // Phases of stick and slip in turn, until the segment ends.
         let (mut at, mut slip) = (from, None);
         for change in 1..=MAX_MODE_CHANGES {
             let here = curve.at(at);
             let rising = end.stiffness.value >= here.stiffness.value;
             let phase = SpringPhase { curve, rates, from: at, here, start: *self, rising };
             let slips = slip.unwrap_or_else(|| phase.is_slip());
+            // The last one allowed takes the rest.
             let is_last = change == MAX_MODE_CHANGES;
             let stop = if is_last {
                 to
@@ -159,6 +162,7 @@ impl Jenkins {
             }
             (at, slip) = (stop, Some(!slips));
         }
+        // The contact may end where the segment does.
         if self.stiffness <= 0.0 {
             self.set_mode(Mode::Free, elapsed + (to - from) / rates.approach, recorder);
         }

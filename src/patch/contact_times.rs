@@ -51,6 +51,7 @@ pub(super) fn advance_in_segments<T: Number>(
             let fraction = start + (cut - start).times(f64::from(segment) / segments);
             let next = between(law, begin, end, fraction);
             let length = fraction - here.fraction;
+            // The spring follows the law, then the motion.
             let (force, lost) = apply_jump(advanced.force, here.law.stiffness, &here.law);
             let motion = Segment {
                 begin: here.law,

@@ -1,5 +1,7 @@
 //! What a run of a patch is told, what it may refuse, and what it holds.
 
+use std::ops::Range;
+
 use serde::{Deserialize, Serialize};
 
 use super::block::{Block, Sums};
@@ -192,7 +194,7 @@ impl Springs {
 
     /// Sets the springs of a block; its first element is the one at `start` here. Those that are not here are relaxed.
     pub(super) fn load<T: Number>(&self, block: &mut Block<T>, start: isize, count: usize) {
-        for (lane, i) in indices((0, self.x.len()), start, count) {
+        for (lane, i) in indices(0..self.x.len(), start, count) {
             block.force[0][lane] = T::constant(self.x[i]);
             block.force[1][lane] = T::constant(self.y[i]);
             block.stiffness[lane] = T::constant(self.stiffness[i]);
@@ -234,7 +236,7 @@ impl<'a> SpringsMut<'a> {
 
     /// Takes the springs of a block over; its first element has the index `start`. Those that are not here are lost.
     pub(super) fn store<T: Number>(&mut self, block: &Block<T>, start: isize, count: usize) {
-        for (lane, i) in indices((self.first, self.x.len()), start, count) {
+        for (lane, i) in indices(self.first..self.first + self.x.len(), start, count) {
             self.x[i] = block.force[0][lane].value();
             self.y[i] = block.force[1][lane].value();
             self.stiffness[i] = block.stiffness[lane].value();
@@ -250,13 +252,13 @@ fn take<'a, T>(slice: &mut &'a mut [T], count: usize) -> &'a mut [T] {
     front
 }
 
-/// The lanes of a block whose first element has the index `start`, as far as they are among the `length` springs from
-/// index `first` on, and their places there.
-fn indices((first, length): (usize, usize), start: isize, count: usize) -> impl Iterator<Item = (usize, usize)> {
-    let start = start - first as isize;
+/// The lanes of a block of `count` elements from the index `start` on, as far as they are among the `springs`, and their
+/// places there.
+fn indices(springs: Range<usize>, start: isize, count: usize) -> impl Iterator<Item = (usize, usize)> {
+    let start = start - springs.start as isize;
     let skipped = start.min(0).unsigned_abs().min(count);
     let place = start.max(0).unsigned_abs();
-    let shared = (count - skipped).min(length.saturating_sub(place));
+    let shared = (count - skipped).min(springs.len().saturating_sub(place));
     (0..shared).map(move |i| (skipped + i, place + i))
 }
 

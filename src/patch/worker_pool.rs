@@ -69,17 +69,20 @@ impl<T: Number + Send + Sync> WorkerPool<T> {
         work: impl Fn(&mut Block<T>, &mut ResampledLaw, &mut Sums<T>) + Sync,
     ) -> Sums<T> {
         let Self { block, workers, sums } = self;
-        let ElementRange { first, count, shift } = step.elements();
-        let size = count.div_ceil(MAX_BATCHES).next_multiple_of(BLOCK).max(MIN_BLOCKS * BLOCK);
-        let batches = count.div_ceil(size);
+        let range = step.elements();
+        // Divide the blocks into batches of equal size.
+        let size = range.count.div_ceil(MAX_BATCHES).next_multiple_of(BLOCK).max(MIN_BLOCKS * BLOCK);
+        let batches = range.count.div_ceil(size);
         let sums = &mut sums[..batches];
-        let queue = Mutex::new(batches_of(sums, (next.all(), first + shift), (count, size)));
+        let queue = Mutex::new(batches_of(sums, next.all(), range.first + range.shift, range.count, size));
+        // Every worker takes the next batch until none is left.
         let take = || queue.lock().ok().and_then(|mut queue| queue.next());
         let serve = |block: &mut Block<T>, law: &mut ResampledLaw| {
             while let Some(mut batch) = take() {
-                batch.serve((first, shift), springs, block, |block, sums| work(block, law, sums));
+                batch.serve(range, springs, block, |block, sums| work(block, law, sums));
             }
         };
+        // Start no more threads than there are batches beside this one's.
         let wanted = workers.len().min(batches.saturating_sub(1));
         if wanted == 0 {
             serve(block, law);
@@ -96,6 +99,7 @@ impl<T: Number + Send + Sync> WorkerPool<T> {
                 serve(block, law);
             });
         }
+        // Add the batches up in their order, whoever did them.
         drop(queue);
         sums.iter().fold(Sums::zero(), |mut all, batch| {
             all.add(batch);
@@ -107,8 +111,10 @@ impl<T: Number + Send + Sync> WorkerPool<T> {
 /// The batches of `count` elements, `size` of them each; the first element is at `first` in `next`.
 fn batches_of<'a, T: Number>(
     sums: &'a mut [Sums<T>],
-    (mut next, first): (SpringsMut<'a>, isize),
-    (count, size): (usize, usize),
+    mut next: SpringsMut<'a>,
+    first: isize,
+    count: usize,
+    size: usize,
 ) -> impl Iterator<Item = Batch<'a, T>> {
     sums.iter_mut().enumerate().map(move |(i, sums)| {
         let start = i * size;
@@ -121,7 +127,7 @@ fn batches_of<'a, T: Number>(
 impl<T: Number> Batch<'_, T> {
     fn serve(
         &mut self,
-        (first, shift): (isize, isize),
+        range: ElementRange,
         springs: &Springs,
         block: &mut Block<T>,
         mut work: impl FnMut(&mut Block<T>, &mut Sums<T>),
@@ -129,11 +135,11 @@ impl<T: Number> Batch<'_, T> {
         *self.sums = Sums::zero();
         for start in (self.start..self.start + self.count).step_by(BLOCK) {
             let size = BLOCK.min(self.start + self.count - start);
-            let index = first + start as isize;
+            let index = range.first + start as isize;
             block.reset(start, size);
             springs.load(block, index, size);
             work(block, self.sums);
-            self.next.store(block, index + shift, size);
+            self.next.store(block, index + range.shift, size);
         }
     }
 }

@@ -236,18 +236,17 @@ impl<'a> Responses<'a> {
         format!("{name}equilibrium {symbol} {} {unit}, glassy {symbol} {glassy}, {loss}", short(response.equilibrium()))
     }
 
-    /// Column names; with units, as `asperity fit` reads them, for a file.
-    fn names(&self, units: bool) -> Vec<String> {
+    /// The columns' names and units.
+    fn columns(&self) -> Vec<(String, &'static str)> {
         let (symbol, unit) = self.symbol_and_unit();
-        let with = |unit: &str| if units { format!(" [{unit}]") } else { String::new() };
-        let mut names = vec![format!("omega{}", with("rad/s"))];
+        let mut columns = vec![("omega".to_owned(), "rad/s")];
         for response in &self.responses {
             let prefix = if response.name.is_empty() { String::new() } else { format!("{} ", response.name) };
-            names.push(format!("{prefix}{symbol}'{}", with(unit)));
-            names.push(format!("{prefix}{symbol}''{}", with(unit)));
-            names.push(format!("{prefix}tan delta{}", with("1")));
+            columns.push((format!("{prefix}{symbol}'"), unit));
+            columns.push((format!("{prefix}{symbol}''"), unit));
+            columns.push((format!("{prefix}tan delta"), "1"));
         }
-        names
+        columns
     }
 
     fn row(&self, omega: f64) -> Vec<f64> {
@@ -264,7 +263,7 @@ impl<'a> Responses<'a> {
             decades if decades > 3.0 => 2.0,
             _ => 5.0,
         };
-        let names = self.names(false);
+        let names: Vec<String> = self.columns().into_iter().map(|(name, _)| name).collect();
         let widths: Vec<usize> = names.iter().map(|name| name.chars().count().max(11) + 2).collect();
         let line = |fields: Vec<String>| {
             let fields = fields.iter().zip(&widths).map(|(field, width)| format!("{field:<width$}"));
@@ -281,7 +280,9 @@ impl<'a> Responses<'a> {
         if let Some(temperature) = self.temperature() {
             text += &format!("# temperature: {temperature}\n");
         }
-        text += &(self.names(true).join(",") + "\n");
+        // With units, as `asperity fit` reads them.
+        let names: Vec<String> = self.columns().iter().map(|(name, unit)| format!("{name} [{unit}]")).collect();
+        text += &(names.join(",") + "\n");
         let line = |omega: f64| {
             self.row(omega).into_iter().map(|value| format!("{value:e}")).collect::<Vec<_>>().join(",") + "\n"
         };

@@ -55,20 +55,19 @@ pub(crate) fn pack(command: &Pack) -> Result<(), PackError> {
 
 /// What is packed, and the file that it is read from.
 fn load(command: &Pack) -> Result<(Definition, PathBuf), PackError> {
-    match (&command.table, &command.scene) {
-        _ if command.patch.is_some() => {
-            let path = command.patch.clone().unwrap_or_default();
-            let patch = Patch::load(&path)?;
-            warn_of(&patch.table().basis);
-            Ok((patch.into(), path))
-        }
+    match (&command.patch, &command.table) {
         (Some(path), _) => {
+            let patch = Patch::load(path)?;
+            warn_of(&patch.table().basis);
+            Ok((patch.into(), path.clone()))
+        }
+        (None, Some(path)) => {
             let table = Table::load(path)?;
             warn_of(&table.basis);
             Ok((PointContact::new(table).into(), path.clone()))
         }
-        (None, scene) => {
-            let path = scene.clone().unwrap_or_default();
+        (None, None) => {
+            let path = command.scene.clone().unwrap_or_default();
             Ok((files::load(&path)?.into(), path))
         }
     }
@@ -84,20 +83,15 @@ fn warn_of(basis: &Basis) {
 
 /// What there is in the scene or in the table, and the errors of an element or a patch.
 fn summary(command: &Pack, definition: &Definition) -> Result<Vec<LabelledLine>, PackError> {
-    let contact = match definition {
+    let mut rows = match definition {
         Definition::Layer(scene) => return Ok(describe::rows(scene)),
-        Definition::Element(contact) => contact,
-        Definition::Patch(patch) => {
-            let mut rows = [patch::rows(patch), documentation::table_rows(patch.table())].concat();
-            if let Some(scene) = &command.check {
-                rows.extend(check::check_patch(command, patch, scene)?);
-            }
-            return Ok(rows);
-        }
+        Definition::Element(contact) => documentation::table_rows(contact.table()),
+        Definition::Patch(patch) => [patch::rows(patch), documentation::table_rows(patch.table())].concat(),
     };
-    let mut rows = documentation::table_rows(contact.table());
-    if let Some(scene) = &command.check {
-        rows.extend(check::check_element(command, contact, scene)?);
+    match (definition, &command.check) {
+        (Definition::Element(contact), Some(scene)) => rows.extend(check::check_element(command, contact, scene)?),
+        (Definition::Patch(patch), Some(scene)) => rows.extend(check::check_patch(command, patch, scene)?),
+        _ => (),
     }
     Ok(rows)
 }

@@ -11,7 +11,7 @@ use crate::program::cli::Report;
 use crate::program::figure::{Ladder, LadderPanel, Ladders, Rung, Stroke};
 use crate::program::html::{Cell, fill, table};
 use crate::program::report::convergence::{CommunicationRow, PATIENCE, PROGRAM, Timed, ToleranceRow};
-use crate::program::report::reference::Reference;
+use crate::program::report::reference::{Comparison, Reference};
 use crate::program::report::run::{MasterInputs, RunFigures};
 use crate::program::report::trace::{Errors, QUANTITIES, WINDOWS};
 
@@ -345,7 +345,7 @@ fn panels(reference: &Reference, ladders: impl Fn(usize) -> Vec<Ladder>) -> Vec<
         shown.push(1);
     }
     let panel = |quantity: usize| LadderPanel {
-        title: title(quantity, reference.comparison.is_of_means()),
+        title: title(quantity, reference.comparison),
         floor: reference.own[quantity].filter(|own| own.is_finite()),
         lines: Vec::new(),
         ladders: ladders(quantity),
@@ -353,7 +353,11 @@ fn panels(reference: &Reference, ladders: impl Fn(usize) -> Vec<Ladder>) -> Vec<
     shown.into_iter().map(panel).collect()
 }
 
-fn title(quantity: usize, of_means: bool) -> String {
+fn title(quantity: usize, comparison: Comparison) -> String {
     let name = QUANTITIES[quantity];
-    if of_means && quantity != 2 { format!("error of {name}, means") } else { format!("error of {name}") }
+    if comparison.is_of_means() && quantity != 2 {
+        format!("error of {name}, means")
+    } else {
+        format!("error of {name}")
+    }
 }
