@@ -52,7 +52,7 @@ impl<T: Number> LawPoint<T> {
 /// of μ and of κ over ln p from there. Above the last pressure: the slope of ln p, and constants.
 type Coefficients = [[f64; 12]; SAMPLES];
 
-/// Of hysteresis and contact ratio over ln p, in the same interval.
+/// The coefficients of hysteresis and contact ratio over ln p, in such an interval.
 type ShareCoefficients = [[f64; 8]; SAMPLES];
 
 /// Approaches (m) at which intervals of the pressure begin, as straight functions of the fraction of a cell: where it

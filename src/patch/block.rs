@@ -167,7 +167,7 @@ pub(super) struct Block<T> {
     pub(super) stiffness: Lanes<T>,
     /// By the numbers of [`ElementMode`].
     pub(super) mode: Lanes<u8>,
-    /// At the begin of the substep.
+    /// At the beginning of the substep.
     begin: Box<BlockContacts<T>>,
     /// At the end of the substep, or at the instant last evaluated.
     end: Box<BlockContacts<T>>,
@@ -567,7 +567,7 @@ fn advance_all<T: Number>(
 /// Share of the table's speeds and pressures by which an element may exceed them: rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Whether an element is advanced in segments of its own in a substep with these pressures at its begin and end.
+/// Whether an element is advanced in segments of its own in a substep with these pressures at its beginning and end.
 #[inline(always)]
 fn needs_segments(before: f64, after: f64) -> bool {
     (before > MAX_RATIO * after) | (after > MAX_RATIO * before)

@@ -11,7 +11,7 @@ const MAX_CHANGE: f64 = 0.125;
 /// Keeps quotients of numbers that vanish together finite.
 const TINY: f64 = 1e-300;
 
-/// An element at the begin or the end of a substep.
+/// An element at the beginning or the end of a substep.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Endpoint<T> {
     /// How far it is below the plane z = 0, m.
