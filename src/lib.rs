@@ -36,8 +36,8 @@
 //! | a column of a sweep's table | `element/table_format.rs`; its value in `program/sweep/point.rs` and `slide.rs` |
 //! | the rules of mode changes, the impact | `contact/laws.rs`, for both methods; stops and breaks within a time step also in `integrator/stage/modes.rs` |
 //! | an element's law in a patch, its step | `element/resampled.rs`; `element/spring.rs` (closed form), `patch/contact_times.rs` (touch and lift), `patch/block.rs` |
-//! | an output of a patch | `patch/variables.rs`, `patch/survey.rs`, `patch/derivatives.rs` |
-//! | a picture of a patch | `program/figure/patch.rs`; its maps `moment.rs` (what is drawn) and `maps.rs` (how), from `patch/plan.rs` |
+//! | an output of a patch | `patch/variables.rs`, `patch/element_sums.rs`, `patch/derivatives.rs` |
+//! | a picture of a patch | `program/figure/patch.rs`; its maps `moment.rs` (what is drawn) and `maps.rs` (how), from `patch/face_layout.rs` |
 //! | how long steps are, when they are cut | `simulation/controller.rs`; `simulation/event_driven.rs` or `time_stepping.rs` |
 //! | what an FMU state holds | `FmuState` in `fmi/state.rs`, `RunState` in `simulation/state.rs` |
 //! | what acts on a carrier that is a body | `scene/carrier.rs` (keys in `scene/reader/carrier.rs`), `Body` and `Outside` in `model/carrier.rs`; its equation in `integrator/stage/border.rs`, its sensitivity in `integrator/sensitivity.rs` |

@@ -130,7 +130,7 @@ impl ScaledQuantity {
     }
 }
 
-/// The same path, so many times as fast.
+/// Follows the path of a phase so many times as fast.
 fn hasten(phase: &mut Phase, factor: f64) {
     phase.duration /= factor;
     let forces = phase.load.iter_mut().chain(&mut phase.pull).chain(&mut phase.pressure);
@@ -143,7 +143,7 @@ fn hasten(phase: &mut Phase, factor: f64) {
 /// The powers of ten by which quantities are scaled; by default the scene as it is, without a master.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Perturbation {
-    /// Of the scene's own quantities, in the order of [`ScaledQuantity::ALL`].
+    /// The powers of the scene's own quantities, in the order of [`ScaledQuantity::ALL`].
     powers: [i32; 7],
     communication: Option<i32>,
 }
@@ -252,14 +252,14 @@ pub enum RunFailure {
 
 /// A force of the layer on the carrier.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Force {
+pub enum ForceComponent {
     /// F_x.
     X,
     /// F_z.
     Z,
 }
 
-impl Force {
+impl ForceComponent {
     /// Both.
     pub const BOTH: [Self; 2] = [Self::X, Self::Z];
 
@@ -286,8 +286,8 @@ pub struct ForceHistory {
 pub struct Difference {
     /// Over the largest force.
     pub share: f64,
-    /// Of which force it is.
-    pub of: Force,
+    /// Which force differs so much.
+    pub of: ForceComponent,
     /// When, s.
     pub time: f64,
 }
@@ -295,10 +295,11 @@ pub struct Difference {
 impl ForceHistory {
     /// The largest difference of any of `forces` from a reference that has the same rows, over the largest of these
     /// forces in it.
-    pub fn difference(&self, reference: &Self, forces: &[Force]) -> Difference {
+    pub fn difference(&self, reference: &Self, forces: &[ForceComponent]) -> Difference {
         let all = reference.rows.iter().flat_map(|row| forces.iter().map(|&force| row[force as usize]));
         let largest = all.fold(0.0, |most, force| larger(most, force.abs()));
-        let mut found = Difference { share: 0.0, of: Force::Z, time: reference.times.first().copied().unwrap_or(0.0) };
+        let mut found =
+            Difference { share: 0.0, of: ForceComponent::Z, time: reference.times.first().copied().unwrap_or(0.0) };
         for ((row, wanted), &time) in self.rows.iter().zip(&reference.rows).zip(&reference.times) {
             for &of in forces {
                 let difference = (row[of as usize] - wanted[of as usize]).abs();
@@ -314,7 +315,7 @@ impl ForceHistory {
 }
 
 /// The larger; NaN counts as infinite.
-fn larger(a: f64, b: f64) -> f64 {
+pub fn larger(a: f64, b: f64) -> f64 {
     if b.is_nan() { f64::INFINITY } else { a.max(b) }
 }
 
@@ -343,11 +344,11 @@ impl Accuracy {
         tight: &ForceHistory,
         moved: impl FnOnce() -> Option<ForceHistory>,
     ) -> Self {
-        let error = run.difference(tight, &Force::BOTH);
+        let error = run.difference(tight, &ForceComponent::BOTH);
         if error.share <= NOTABLE * scene.solver.relative_tolerance {
             return Self::Error(error);
         }
-        let moved = moved().map_or(0.0, |moved| moved.difference(tight, &Force::BOTH).share);
+        let moved = moved().map_or(0.0, |moved| moved.difference(tight, &ForceComponent::BOTH).share);
         let sensitive = moved > divergence(scene).max(OF_ERROR * error.share);
         if sensitive { Self::Sensitive { error, moved } } else { Self::Error(error) }
     }
@@ -424,7 +425,7 @@ impl Verdict {
         }
     }
 
-    /// As tables have it.
+    /// The word for it in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Kept => "kept",
@@ -546,15 +547,16 @@ kind = 'flat'";
     #[test]
     fn a_difference_is_a_share_of_the_largest_force() {
         let wanted = [[0.0, 1.0], [-4.0, 2.0]];
-        let between = |rows: &[[f64; 2]], tight: &[[f64; 2]]| history(rows).difference(&history(tight), &Force::BOTH);
+        let between =
+            |rows: &[[f64; 2]], tight: &[[f64; 2]]| history(rows).difference(&history(tight), &ForceComponent::BOTH);
         let found = between(&[[0.0, 1.0], [-4.0, 3.0]], &wanted);
-        assert_eq!(found, Difference { share: 0.25, of: Force::Z, time: 1.0 });
-        assert_eq!(history(&[[0.0, 1.0], [-4.0, 3.0]]).difference(&history(&wanted), &[Force::Z]).share, 0.5);
+        assert_eq!(found, Difference { share: 0.25, of: ForceComponent::Z, time: 1.0 });
+        assert_eq!(history(&[[0.0, 1.0], [-4.0, 3.0]]).difference(&history(&wanted), &[ForceComponent::Z]).share, 0.5);
         assert_eq!(between(&wanted, &wanted).share, 0.0);
         assert_eq!(between(&[[0.0; 2]; 2], &[[0.0; 2]; 2]).share, 0.0);
         assert_eq!(between(&[[1.0, 0.0]], &[[0.0; 2]]).share, f64::INFINITY);
         let nowhere = between(&[[f64::NAN, 1.0], wanted[1]], &wanted);
-        assert_eq!(nowhere, Difference { share: f64::INFINITY, of: Force::X, time: 0.0 });
+        assert_eq!(nowhere, Difference { share: f64::INFINITY, of: ForceComponent::X, time: 0.0 });
     }
 
     #[test]

@@ -14,13 +14,13 @@
 //! roots, integrals are by Gauss's formula of six points over segments in which the integrand is a polynomial of degree 11
 //! at most (stick) or close to one (slip).
 
-use super::law::{Contact, Curve};
+use super::law::{Contact, LawAtSpeed};
 use super::spring::{Advanced, Segment, SpringLaw, advance, apply_jump};
 use crate::math::bracketed_root;
 use crate::model::Mode;
 
 /// Most changes between stick and slip in one segment: more are rounding, where both are the same.
-const MAX_TURNS: usize = 6;
+const MAX_MODE_CHANGES: usize = 6;
 /// Share of the limit that counts as the limit.
 const AT_LIMIT: f64 = 1.0 - 1e-12;
 /// Share of a segment to which a change is located.
@@ -29,35 +29,39 @@ const ROOT: f64 = 1e-14;
 /// The rates of a straight motion, m/s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct MotionRates {
+    /// u̇, m/s.
     pub(super) u: f64,
-    /// ȧ = -ẇ
+    /// ȧ = -ẇ, m/s.
     pub(super) approach: f64,
 }
 
-/// Takes note of losses and of changes between stick and slip.
-pub(super) trait Listener {
+/// Records losses and changes between stick and slip.
+pub(super) trait Recorder {
     /// An energy (J) was lost near an approach (m).
-    fn lost(&mut self, approach: f64, energy: f64);
+    fn record_loss(&mut self, approach: f64, energy: f64);
     /// The mode from `elapsed` s after the start of the motion on.
-    fn changed(&mut self, elapsed: f64, mode: Mode);
+    fn record_mode(&mut self, elapsed: f64, mode: Mode);
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Jenkins {
-    /// G = -F_x, N.
+    /// The force in the spring, G = -F_x, N.
     pub(super) force: f64,
-    /// K, N/m.
+    /// K, the tangential stiffness, N/m.
     pub(super) stiffness: f64,
     /// Sticking, slipping, or free where there is no contact.
     pub(super) mode: Mode,
 }
 
 /// A phase of stick or slip while the approach changes.
-struct Phase<'a> {
-    curve: &'a Curve,
+struct SpringPhase<'a> {
+    curve: &'a LawAtSpeed,
     rates: MotionRates,
+    /// The approach where it begins, m.
     from: f64,
+    /// The contact there.
     here: Contact,
+    /// The spring there.
     start: Jenkins,
     /// Whether the stiffness grows.
     rising: bool,
@@ -81,10 +85,10 @@ impl Jenkins {
     }
 
     /// The speed has changed, and with it the law, at the same position.
-    pub(super) fn take_over(&mut self, contact: &Contact, approach: f64, listener: &mut impl Listener) {
+    pub(super) fn set_law(&mut self, contact: &Contact, approach: f64, recorder: &mut impl Recorder) {
         let ([force, _], lost) = apply_jump([self.force, 0.0], self.stiffness, &contact.law());
         (self.force, self.stiffness) = (force, contact.stiffness.value);
-        listener.lost(approach, lost);
+        recorder.record_loss(approach, lost);
     }
 
     /// The carrier moves along x alone, over `time` (s).
@@ -94,7 +98,7 @@ impl Jenkins {
         approach: f64,
         u_rate: f64,
         time: f64,
-        listener: &mut impl Listener,
+        recorder: &mut impl Recorder,
     ) {
         if self.stiffness <= 0.0 {
             return;
@@ -103,44 +107,47 @@ impl Jenkins {
         let segment = Segment { begin: law, end: law, displacement: [u_rate * time, 0.0], half_turn: 0.0 };
         let Advanced { force: [force, _], slips, slip, .. } = advance([start, 0.0], &segment);
         self.force = force;
-        listener.lost(approach, slip);
+        recorder.record_loss(approach, slip);
         if slips && u_rate != 0.0 {
-            self.turn(Mode::along(u_rate), (force - start) / (self.stiffness * u_rate), listener);
+            self.set_mode(Mode::along(u_rate), (force - start) / (self.stiffness * u_rate), recorder);
         } else {
-            self.turn(Mode::Stick, 0.0, listener);
+            self.set_mode(Mode::Stick, 0.0, recorder);
         }
     }
 
-    fn turn(&mut self, mode: Mode, elapsed: f64, listener: &mut impl Listener) {
+    fn set_mode(&mut self, mode: Mode, elapsed: f64, recorder: &mut impl Recorder) {
         if mode != self.mode {
             self.mode = mode;
-            listener.changed(elapsed, mode);
+            recorder.record_mode(elapsed, mode);
         }
     }
 
     /// The carrier moves straight through a segment of the approach, `from` to `to` (m), in which the stiffness only grows
     /// or only falls; the segment begins `elapsed` s after the start of the motion.
-    pub(super) fn cross(
+    pub(super) fn change_approach(
         &mut self,
-        curve: &Curve,
+        curve: &LawAtSpeed,
         from: f64,
         to: f64,
         rates: MotionRates,
         elapsed: f64,
-        listener: &mut impl Listener,
+        recorder: &mut impl Recorder,
     ) {
+        // No contact at either end, and the stiffness only grows or only falls: none between.
         let end = curve.at(to);
         if self.stiffness <= 0.0 && end.stiffness.value <= 0.0 {
-            return self.turn(Mode::Free, elapsed, listener);
+            return self.set_mode(Mode::Free, elapsed, recorder);
         }
+        // Phases of stick and slip in turn, until the segment ends.
         let (mut at, mut slip) = (from, None);
-        for turn in 1..=MAX_TURNS {
+        for change in 1..=MAX_MODE_CHANGES {
             let here = curve.at(at);
             let rising = end.stiffness.value >= here.stiffness.value;
-            let phase = Phase { curve, rates, from: at, here, start: *self, rising };
+            let phase = SpringPhase { curve, rates, from: at, here, start: *self, rising };
             let slips = slip.unwrap_or_else(|| phase.is_slip());
-            let last = turn == MAX_TURNS;
-            let stop = if last {
+            // The last one allowed takes the rest.
+            let is_last = change == MAX_MODE_CHANGES;
+            let stop = if is_last {
                 to
             } else if slips {
                 phase.end_of_slip(to)
@@ -148,20 +155,21 @@ impl Jenkins {
                 phase.end_of_stick(to)
             };
             let mode = if slips { Mode::along(phase.start.force) } else { Mode::Stick };
-            self.turn(mode, elapsed + (at - from) / rates.approach, listener);
-            phase.advance(self, stop, slips, listener);
+            self.set_mode(mode, elapsed + (at - from) / rates.approach, recorder);
+            phase.advance(self, stop, mode, recorder);
             if stop == to {
                 break;
             }
             (at, slip) = (stop, Some(!slips));
         }
+        // The contact may end where the segment does.
         if self.stiffness <= 0.0 {
-            self.turn(Mode::Free, elapsed + (to - from) / rates.approach, listener);
+            self.set_mode(Mode::Free, elapsed + (to - from) / rates.approach, recorder);
         }
     }
 }
 
-impl Phase<'_> {
+impl SpringPhase<'_> {
     fn sign(&self) -> f64 {
         self.start.force.signum()
     }
@@ -237,10 +245,11 @@ impl Phase<'_> {
     }
 
     /// Moves on to the approach `to`, m.
-    fn advance(&self, spring: &mut Jenkins, to: f64, slips: bool, listener: &mut impl Listener) {
+    fn advance(&self, spring: &mut Jenkins, to: f64, mode: Mode, recorder: &mut impl Recorder) {
         let end = self.curve.at(to);
+        // How far the carrier goes along x per approach.
         let per = self.rates.u / self.rates.approach;
-        let work = if slips {
+        let work = if mode.slips() {
             spring.force = self.sign() * end.limit.value;
             self.sign() * per * self.integral(to, |_, here| here.limit.value)
         } else {
@@ -257,7 +266,7 @@ impl Phase<'_> {
         spring.stiffness = end.stiffness.value;
         let loss = work - (spring.energy() - self.start.energy());
         // Of what cancels, a rounding may be left.
-        listener.lost((self.from + to) / 2.0, loss.max(0.0));
+        recorder.record_loss((self.from + to) / 2.0, loss.max(0.0));
     }
 }
 

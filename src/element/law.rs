@@ -18,9 +18,9 @@ use super::table::{Node, Table, TableAxis};
 use super::table_format::Quantity;
 use crate::math::{Expansion, cubic, interval_of, monotone_slopes};
 
-/// Largest change of y over one piece of the approach: over it the limit of the friction force is so close to a
+/// Largest change of y over one segment of the approach: over it the limit of the friction force is so close to a
 /// polynomial that Gauss's formula of six points gives its integral to rounding.
-const LONGEST_PIECE: f64 = 0.25;
+const MAX_SEGMENT: f64 = 0.25;
 
 /// Values along an axis with their slopes along it.
 #[derive(Clone, Debug)]
@@ -42,6 +42,7 @@ impl Series {
     }
 }
 
+/// The law at one temperature.
 #[derive(Clone, Debug)]
 pub(super) struct Law {
     /// A, m².
@@ -50,8 +51,8 @@ pub(super) struct Law {
     pub(super) rest_separation: f64,
     /// Temperatures, K.
     temperatures: Vec<f64>,
-    /// Along temperature: by quantity, where the table has it, pressure and speed.
-    cells: [Option<Vec<Series>>; Quantity::ALL.len()],
+    /// By quantity, where the table has it, pressure and speed.
+    over_temperature: [Option<Vec<Series>>; Quantity::ALL.len()],
     /// Logarithms of the speeds.
     speeds: Vec<f64>,
     /// The least and the largest speed, m/s.
@@ -61,8 +62,8 @@ pub(super) struct Law {
     pub(super) load: Load,
     /// The largest pressure, Pa, or force, N.
     pub(super) largest_pressure: f64,
-    /// Along the logarithm of speed: by quantity, where the table has it, and pressure.
-    rows: [Option<Vec<Series>>; Quantity::ALL.len()],
+    /// Over the logarithm of speed at the present temperature: by quantity, where the table has it, and pressure.
+    over_speed: [Option<Vec<Series>>; Quantity::ALL.len()],
 }
 
 impl Law {
@@ -81,8 +82,8 @@ impl Law {
             nominal_area: table.load.area(),
             rest_separation: table.rest_separation,
             temperatures: grid.temperatures.clone(),
-            rows: Quantity::ALL.map(|quantity| table.has(quantity).then(|| vec![row.clone(); loads])),
-            cells,
+            over_speed: Quantity::ALL.map(|quantity| table.has(quantity).then(|| vec![row.clone(); loads])),
+            over_temperature: cells,
             speed_range: (grid.speeds[0], grid.speeds[speeds - 1]),
             speeds: grid.speeds.iter().map(|speed| speed.ln()).collect(),
             pressures: grid.loads.iter().map(|pressure| pressure.ln()).collect(),
@@ -100,7 +101,7 @@ impl Law {
             0 | 1 => cell.values[0],
             _ => cell.at(temperatures, interval_of(temperatures, kelvin), kelvin).value,
         };
-        for (rows, cells) in self.rows.iter_mut().zip(&self.cells) {
+        for (rows, cells) in self.over_speed.iter_mut().zip(&self.over_temperature) {
             let (Some(rows), Some(cells)) = (rows, cells) else { continue };
             for (row, cells) in rows.iter_mut().zip(cells.chunks(speeds.len())) {
                 row.values.iter_mut().zip(cells).for_each(|(value, cell)| *value = at(cell));
@@ -111,7 +112,7 @@ impl Law {
 
     /// Approaches (m) at which there is no contact at any speed reach up to here.
     pub(super) fn earliest_touch(&self) -> f64 {
-        let Some(rows) = &self.rows[Quantity::Separation as usize] else { return f64::NEG_INFINITY };
+        let Some(rows) = &self.over_speed[Quantity::Separation as usize] else { return f64::NEG_INFINITY };
         let step = self.pressures[1] - self.pressures[0];
         // Between two speeds a difference of separations is no larger than at one of them.
         let touch = |j: usize| {
@@ -148,15 +149,16 @@ fn interpolated(table: &Table, quantity: Quantity, node: Node) -> f64 {
     }
 }
 
-/// The same at all temperatures of the table, whatever that of `node` is.
+/// What is interpolated at all temperatures of the table, whatever that of `node` is.
 fn along_temperature(table: &Table, quantity: Quantity, node: Node) -> Series {
     let temperatures = &table.grid.temperatures;
     let of = |temperature| interpolated(table, quantity, Node { temperature, ..node });
     Series::new(temperatures, (0..temperatures.len().max(1)).map(of).collect())
 }
 
+/// The law at one speed, over the approach.
 #[derive(Clone, Debug)]
-pub(super) struct Curve {
+pub(super) struct LawAtSpeed {
     /// The speed, between the least and the largest of the table, m/s.
     speed: f64,
     /// y = ln p at the pressures.
@@ -167,14 +169,14 @@ pub(super) struct Curve {
     slopes: Vec<f64>,
     /// a_0, m: where the contact begins.
     pub(super) touch: f64,
-    /// Along y, where the table has the quantity.
-    columns: [Option<Series>; Quantity::ALL.len()],
-    /// The ends of the pieces into which the approach is divided, m, rising.
+    /// By quantity, where the table has it, over y.
+    over_pressure: [Option<Series>; Quantity::ALL.len()],
+    /// The ends of the segments into which the approach is divided, m, rising.
     ends: Vec<f64>,
     nominal_area: f64,
 }
 
-impl Curve {
+impl LawAtSpeed {
     /// The law at `speed` (m/s).
     pub(super) fn new(law: &Law, speed: f64) -> Self {
         let n = law.pressures.len();
@@ -186,8 +188,10 @@ impl Curve {
             approaches: vec![0.0; n],
             slopes: vec![0.0; n],
             touch: 0.0,
-            columns: std::array::from_fn(|quantity| column(&law.rows[quantity])),
-            ends: Vec::with_capacity(1 + law.pressures.windows(2).map(|y| 1 + pieces(y[0], y[1])).sum::<usize>()),
+            over_pressure: std::array::from_fn(|quantity| column(&law.over_speed[quantity])),
+            ends: Vec::with_capacity(
+                1 + law.pressures.windows(2).map(|y| 1 + segment_count(y[0], y[1])).sum::<usize>(),
+            ),
             nominal_area: law.nominal_area,
         };
         curve.set_speed(law, speed);
@@ -201,7 +205,7 @@ impl Curve {
             return;
         }
         self.speed = speed;
-        for (column, rows) in self.columns.iter_mut().zip(&law.rows) {
+        for (column, rows) in self.over_pressure.iter_mut().zip(&law.over_speed) {
             let (Some(column), Some(rows)) = (column, rows) else { continue };
             law.at_speed(rows, speed, &mut column.values);
             monotone_slopes(&self.pressures, &column.values, &mut column.slopes);
@@ -216,7 +220,7 @@ impl Curve {
     }
 
     fn find_approaches(&mut self) {
-        let Some(differences) = &self.columns[Quantity::Separation as usize] else { return };
+        let Some(differences) = &self.over_pressure[Quantity::Separation as usize] else { return };
         let mut separation = 0.0;
         for (approach, difference) in self.approaches.iter_mut().zip(&differences.values).rev() {
             separation += difference;
@@ -232,27 +236,27 @@ impl Curve {
         self.touch = self.approaches[0] - 2.0 / self.slopes[0];
     }
 
-    /// Divides the approaches between two pressures into even pieces, the same wherever a step begins.
+    /// Divides the approaches between two pressures into even segments, the same wherever a step begins.
     fn divide(&mut self) {
         self.ends.clear();
         self.ends.push(self.touch);
         for (y, a) in self.pressures.windows(2).zip(self.approaches.windows(2)) {
-            let count = pieces(y[0], y[1]);
+            let count = segment_count(y[0], y[1]);
             self.ends.extend((0..count).map(|i| a[0] + (a[1] - a[0]) * i as f64 / count as f64));
         }
         self.ends.push(self.approaches[self.approaches.len() - 1]);
     }
 
-    /// The ends of the pieces of the approach, m, rising: the first begins where the contact does and ends at the least
+    /// The ends of the segments of the approach, m, rising: the first begins where the contact does and ends at the least
     /// pressure, the last ends at the largest.
     pub(super) fn ends(&self) -> &[f64] {
         &self.ends
     }
 
-    /// The end of the piece that the carrier enters as it leaves `approach` (m), closer or farther; infinite where there
-    /// is none.
-    pub(super) fn end_of_piece(&self, approach: f64, closer: bool) -> f64 {
-        if closer {
+    /// The end of the segment that the carrier enters as it moves from `approach` towards `target` (m); infinite where
+    /// there is none.
+    pub(super) fn end_of_segment(&self, approach: f64, target: f64) -> f64 {
+        if target > approach {
             let next = self.ends.partition_point(|&end| end <= approach);
             self.ends.get(next).copied().unwrap_or(f64::INFINITY)
         } else {
@@ -267,8 +271,8 @@ impl Curve {
     }
 
     /// The values of a quantity at the pressures and its slopes over y, where the table has it.
-    pub(super) fn column(&self, quantity: Quantity) -> Option<[&[f64]; 2]> {
-        self.columns[quantity as usize].as_ref().map(|column| [&column.values[..], &column.slopes])
+    pub(super) fn series(&self, quantity: Quantity) -> Option<[&[f64]; 2]> {
+        self.over_pressure[quantity as usize].as_ref().map(|column| [&column.values[..], &column.slopes])
     }
 
     /// The approach at the largest pressure of the table, m.
@@ -339,18 +343,18 @@ impl Curve {
 
     /// A quantity over y in the interval `i` of the pressures.
     fn along_pressure(&self, quantity: Quantity, i: usize, y: f64) -> Expansion {
-        self.columns[quantity as usize]
+        self.over_pressure[quantity as usize]
             .as_ref()
             .map_or_else(Expansion::default, |column| column.at(&self.pressures, i, y))
     }
 
     /// A quantity at the pressure `i`.
     fn end(&self, quantity: Quantity, i: usize) -> f64 {
-        self.columns[quantity as usize].as_ref().map_or(0.0, |column| column.values[i])
+        self.over_pressure[quantity as usize].as_ref().map_or(0.0, |column| column.values[i])
     }
 
     /// A quantity at a pressure (Pa), limited to those of the table.
-    pub(super) fn at_pressure(&self, quantity: Quantity, pressure: f64) -> f64 {
+    fn at_pressure(&self, quantity: Quantity, pressure: f64) -> f64 {
         let last = self.pressures.len() - 1;
         let y = pressure.ln().clamp(self.pressures[0], self.pressures[last]);
         self.along_pressure(quantity, interval_of(&self.pressures, y), y).value
@@ -375,9 +379,9 @@ impl Curve {
 /// Least slope of y at the ends, as a share of the secant beside them.
 const MIN_END_SLOPE: f64 = 0.5;
 
-/// Number of pieces between two pressures, given by their logarithms.
-fn pieces(from: f64, to: f64) -> usize {
-    ((to - from) / LONGEST_PIECE).ceil().max(1.0) as usize
+/// Number of segments between two pressures, given by their logarithms.
+fn segment_count(from: f64, to: f64) -> usize {
+    ((to - from) / MAX_SEGMENT).ceil().max(1.0) as usize
 }
 
 /// The contact at one approach and speed, and its derivatives with respect to the approach.
@@ -402,7 +406,7 @@ pub struct LeftOut {
     /// The largest error of the friction coefficient, as a share of it, and where; `None` where the axis has no inner
     /// point.
     pub friction: Option<(f64, OperatingPoint)>,
-    /// That of F_z at the separation of the point.
+    /// The largest error of F_z at the separation of the point, as a share of it, and where.
     pub force_z: Option<(f64, OperatingPoint)>,
 }
 
@@ -436,14 +440,14 @@ impl LeftOut {
             let kelvin = table.grid.temperatures.get(temperature).copied();
             let law = Law::new(&rest, kelvin.unwrap_or(0.0));
             for speed in indices(TableAxis::Speed) {
-                let curve = Curve::new(&law, table.grid.speeds[speed]);
+                let curve = LawAtSpeed::new(&law, table.grid.speeds[speed]);
                 indices(TableAxis::Load)
                     .for_each(|load| self.compare(table, &curve, Node { temperature, load, speed }));
             }
         }
     }
 
-    fn compare(&mut self, table: &Table, curve: &Curve, node: Node) {
+    fn compare(&mut self, table: &Table, curve: &LawAtSpeed, node: Node) {
         let point = table.point(node);
         let found = curve.at(-table.value(Quantity::Separation, node));
         keep_larger(&mut self.force_z, found.normal.value / table.load.force(point.load) - 1.0, point);

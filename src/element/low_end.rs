@@ -1,6 +1,6 @@
 //! The low end of a table: what lies below its least load, where the law goes on as a parabola.
 
-use super::law::{Curve, Law};
+use super::law::{Law, LawAtSpeed};
 use super::table::Table;
 
 /// What lies below the least load of a table at a speed.
@@ -16,13 +16,13 @@ pub struct LowEnd {
 impl Table {
     /// The low end at a speed (m/s) and a temperature (K), which counts where the table has temperatures.
     pub fn low_end(&self, speed: f64, temperature: f64) -> LowEnd {
-        let curve = Curve::new(&Law::new(self, temperature), speed);
+        let curve = LawAtSpeed::new(&Law::new(self, temperature), speed);
         let ends = curve.ends();
-        // Simpson's rule is exact on the parabola; on the other pieces, over which the pressure changes by a quarter, it
+        // Simpson's rule is exact on the parabola; on the other segments, over which the pressure changes by a quarter, it
         // errs by 1e-6.
-        let loads = ends.windows(2).map(|piece| {
-            let at = |share: f64| curve.at(piece[0] + share * (piece[1] - piece[0])).normal.value;
-            (piece[1] - piece[0]) * (at(0.0) + 4.0 * at(0.5) + at(1.0)) / 6.0
+        let loads = ends.windows(2).map(|segment| {
+            let at = |fraction: f64| curve.at(segment[0] + fraction * (segment[1] - segment[0])).normal.value;
+            (segment[1] - segment[0]) * (at(0.0) + 4.0 * at(0.5) + at(1.0)) / 6.0
         });
         let loads: Vec<f64> = loads.collect();
         LowEnd { reach: ends[1] - ends[0], share: loads[0] / loads.iter().sum::<f64>() }

@@ -5,19 +5,16 @@ use std::sync::Arc;
 use super::table::Table;
 use super::table_format::Quantity;
 use crate::outputs::{Dependencies, Output, Variable, variable};
-use crate::scene::{Extrapolation, Parameter, ParameterError, Problem, Value};
-
-/// What an element does where its table ends, and whether it then goes on.
-const TABLE_EXTRAPOLATIONS: [(&str, bool); 2] = [("refuse", false), ("hold", true)];
+use crate::scene::{Extrapolation, Parameter, ParameterError, Problem, TableExtrapolation, Value};
 
 /// The definition of an element, as a [`Scene`](crate::scene::Scene) is that of a layer: a table and the parameters that
 /// a master may set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointContact {
     table: Arc<Table>,
-    /// K; 0 where the table has none.
+    /// The temperature, K; 0 where the table has none.
     temperature: f64,
-    extrapolates_table: bool,
+    table_extrapolation: TableExtrapolation,
     /// How the carrier moves on when a master gives no rates.
     pub extrapolation: Extrapolation,
 }
@@ -27,7 +24,12 @@ impl PointContact {
     pub fn new(table: Table) -> Self {
         let temperatures = &table.grid.temperatures;
         let temperature = temperatures.get(temperatures.len() / 2).copied().unwrap_or(0.0);
-        Self { temperature, table: Arc::new(table), extrapolates_table: false, extrapolation: Extrapolation::default() }
+        Self {
+            temperature,
+            table: Arc::new(table),
+            table_extrapolation: TableExtrapolation::Refuse,
+            extrapolation: Extrapolation::default(),
+        }
     }
 
     /// The table.
@@ -40,9 +42,9 @@ impl PointContact {
         self.temperature
     }
 
-    /// Whether the table is extrapolated; if not, a motion beyond it is refused.
-    pub fn extrapolates_table(&self) -> bool {
-        self.extrapolates_table
+    /// What a motion beyond the table does.
+    pub fn table_extrapolation(&self) -> TableExtrapolation {
+        self.table_extrapolation
     }
 
     /// The model's name.
@@ -70,11 +72,7 @@ impl PointContact {
     pub fn parameter(&self, parameter: Parameter) -> Value {
         match parameter {
             Parameter::Temperature => Value::Real(self.temperature),
-            Parameter::TableExtrapolation => {
-                let word =
-                    TABLE_EXTRAPOLATIONS.iter().find(|(_, extrapolates)| *extrapolates == self.extrapolates_table);
-                Value::Text(word.map_or("", |(word, _)| word).into())
-            }
+            Parameter::TableExtrapolation => Value::Text(self.table_extrapolation.word().into()),
             _ => Value::Text(self.extrapolation.word().into()),
         }
     }
@@ -99,12 +97,10 @@ impl PointContact {
                     _ => return refuse("none: the table has no temperatures".into()),
                 }
             }
-            (Parameter::TableExtrapolation, Value::Text(word)) => {
-                match TABLE_EXTRAPOLATIONS.iter().find(|(name, _)| name == word) {
-                    Some((_, extrapolates)) => self.extrapolates_table = *extrapolates,
-                    None => return refuse("one of \"refuse\", \"hold\"".into()),
-                }
-            }
+            (Parameter::TableExtrapolation, Value::Text(word)) => match TableExtrapolation::from_word(word) {
+                Some(extrapolation) => self.table_extrapolation = extrapolation,
+                None => return refuse("one of \"refuse\", \"hold\"".into()),
+            },
             (Parameter::Extrapolation, Value::Text(word)) => match Extrapolation::from_word(word) {
                 Some(extrapolation) => self.extrapolation = extrapolation,
                 None => return refuse("one of \"linear\", \"hold\"".into()),
@@ -121,10 +117,10 @@ impl PointContact {
 
 /// What the outputs are computed from, or how it changes.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Terms {
-    /// G = -F_x, N.
+pub(super) struct OutputTerms {
+    /// The force in the spring, G = -F_x, N.
     pub(super) force: f64,
-    /// F_z, N.
+    /// The normal force F_z, N.
     pub(super) normal: f64,
     /// Power lost, W.
     pub(super) power: f64,
@@ -134,7 +130,7 @@ pub(super) struct Terms {
     pub(super) contact_ratio: f64,
     /// Energy lost since the start, J.
     pub(super) lost: f64,
-    /// Of that, through the channels, J.
+    /// Energy lost since the start by channel, J.
     pub(super) lost_by_channel: [f64; 4],
 }
 
@@ -145,9 +141,10 @@ pub(super) struct ElementOutput {
     needs: Option<Quantity>,
     /// With the slider's position held while the contact sticks: on u through the spring, on w through the pressure.
     dependencies: Dependencies,
-    pub(super) value: fn(Terms) -> f64,
-    /// From the change of the terms and their values.
-    pub(super) change: fn(Terms, Terms) -> f64,
+    /// The output's value, from those of the terms.
+    pub(super) value: fn(OutputTerms) -> f64,
+    /// The output's change, from the change of the terms and their values.
+    pub(super) change: fn(OutputTerms, OutputTerms) -> f64,
 }
 
 const NONE: Dependencies = Dependencies { on_u: false, on_w: false };
@@ -186,7 +183,7 @@ const OUTPUTS: [ElementOutput; 12] = [
           value: |now| now.contact_ratio, change: |change, _| change.contact_ratio },
 ];
 
-fn change_of_coefficient(change: Terms, now: Terms) -> f64 {
+fn change_of_coefficient(change: OutputTerms, now: OutputTerms) -> f64 {
     if now.normal > 0.0 {
         let along = if now.force == 0.0 { 0.0 } else { now.force.signum() * change.force };
         (along - now.force.abs() * change.normal / now.normal) / now.normal
@@ -196,16 +193,16 @@ fn change_of_coefficient(change: Terms, now: Terms) -> f64 {
 }
 
 pub(super) fn element_output(output: Output) -> Option<&'static ElementOutput> {
-    OUTPUTS.iter().find(|row| row.output == output)
+    OUTPUTS.iter().find(|known| known.output == output)
 }
 
 /// The variables of an element, named as a layer's, in the order of the result files.
 pub fn variables(table: &Table) -> Vec<Variable> {
-    let known = OUTPUTS.iter().filter(|row| row.needs.is_none_or(|quantity| table.has(quantity)));
-    known.filter_map(|row| variable(row.output)).collect()
+    let known = OUTPUTS.iter().filter(|known| known.needs.is_none_or(|quantity| table.has(quantity)));
+    known.filter_map(|known| variable(known.output)).collect()
 }
 
 /// What an output depends on directly.
 pub fn dependencies(output: Output) -> Dependencies {
-    element_output(output).map_or(NONE, |row| row.dependencies)
+    element_output(output).map_or(NONE, |known| known.dependencies)
 }

@@ -1,26 +1,26 @@
 //! The law of an element, per unit area and precomputed along the speed: for many elements of different speeds.
 //!
-//! Between two speeds of the table ln v is divided into even intervals. At three speeds of each the law is a [`Curve`];
+//! Between two speeds of the table ln v is divided into even cells. At three speeds of each the law is a [`LawAtSpeed`];
 //! the coefficients of its cubics over the approach and over ln p are interpolated by parabolas of ln v. So an evaluation
-//! takes one logarithm, one exponential and polynomials, no division. Intervals are computed when they are first needed
+//! takes one logarithm, one exponential and polynomials, no division. Cells are computed when they are first needed
 //! at a temperature.
 
-use super::law::{Curve, Law};
+use super::law::{Law, LawAtSpeed};
 use super::table::Table;
 use super::table_format::Quantity;
 use crate::math::Number;
 
-/// Width of an interval, in ln v, at most, and intervals between two speeds of a table, at least.
+/// Width of a cell, in ln v, at most, and cells between two speeds of a table, at least.
 ///
 /// So p, μ p and κ are met to 1e-9 where the table is smooth, and to 1e-6 of their largest values elsewhere:
 /// slopes along the pressure have a corner where they leave 0.
-const WIDEST: f64 = 0.006;
-const FEWEST: f64 = 8.0;
+const MAX_WIDTH: f64 = 0.006;
+const MIN_CELLS: f64 = 8.0;
 
 /// Most bins in which the place of a speed among those of the table is looked up.
 const MAX_BINS: f64 = 1e5;
 
-/// Speeds of an interval at which the law is taken.
+/// Speeds of a cell at which the law is taken.
 const SAMPLES: usize = 3;
 
 /// Approaches that are compared at once.
@@ -47,61 +47,64 @@ impl<T: Number> LawPoint<T> {
     }
 }
 
-/// The law between two pressures of the table, by power of the share of the interval: the approach where it begins; the
-/// slope of ln p over the approach from there and the next two coefficients of its cubic; four of μ and of κ over ln p from
-/// there. Above the last pressure: the slope of ln p, and constants.
-type Piece = [[f64; 12]; SAMPLES];
+/// The law in an interval between two pressures of the table, by power of the fraction of the speed's cell: the approach
+/// where the interval begins; the slope of ln p over the approach from there and the next two coefficients of its cubic; four
+/// of μ and of κ over ln p from there. Above the last pressure: the slope of ln p, and constants.
+type Coefficients = [[f64; 12]; SAMPLES];
 
-/// Of the same piece hysteresis and contact ratio over ln p.
-type Shares = [[f64; 8]; SAMPLES];
+/// The coefficients of hysteresis and contact ratio over ln p, in such an interval.
+type ShareCoefficients = [[f64; 8]; SAMPLES];
 
-/// Approaches (m) at which pieces begin, as straight functions of the share of an interval: where it begins, and by how
-/// much they grow. Those without a piece are never reached.
+/// Approaches (m) at which intervals of the pressure begin, as straight functions of the fraction of a cell: where it
+/// begins, and by how much they grow. Those without an interval are never reached.
 #[derive(Clone, Copy, Debug)]
-struct Beginnings {
+struct IntervalStarts {
     start: [f64; WIDTH],
     growth: [f64; WIDTH],
 }
 
-impl Beginnings {
+impl IntervalStarts {
     const NONE: Self = Self { start: [f64::INFINITY; WIDTH], growth: [0.0; WIDTH] };
 }
 
-/// Where a speed lies: an interval, and the share of it as a straight function of ln v.
+/// The cell in which a speed lies; the fraction of it is a straight function of ln v.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Spot {
-    interval: usize,
-    /// ln v where the interval begins, and intervals per unit of ln v.
+pub struct SpeedCell {
+    index: usize,
+    /// ln v where the cell begins.
     start: f64,
+    /// Cells per unit of ln v.
     density: f64,
 }
 
-impl Spot {
+impl SpeedCell {
     #[inline(always)]
-    fn share<T: Number>(&self, log_speed: T) -> T {
+    fn fraction<T: Number>(&self, log_speed: T) -> T {
         (log_speed - T::constant(self.start)).times(self.density)
     }
 }
 
 /// Between two speeds of the table, as logarithms.
 #[derive(Clone, Copy, Debug)]
-struct Stretch {
+struct SpeedSpan {
     start: f64,
     end: f64,
-    /// Intervals per unit, and the width of one.
+    /// Cells per unit.
     density: f64,
+    /// The width of a cell.
     width: f64,
-    /// The first of its intervals and their number.
+    /// The index of its first cell.
     first: usize,
+    /// How many cells it has.
     count: usize,
 }
 
-impl Stretch {
-    /// Those of a table; a table of one speed has one without width.
+impl SpeedSpan {
+    /// The spans of a table; a table of one speed has one without width.
     fn new(speeds: &[f64]) -> Vec<Self> {
         let mut first = 0;
-        let mut stretch = |start: f64, end: f64| {
-            let count = ((end - start) / WIDEST).ceil().max(FEWEST);
+        let mut span = |start: f64, end: f64| {
+            let count = ((end - start) / MAX_WIDTH).ceil().max(MIN_CELLS);
             let width = (end - start) / count;
             let density = if width > 0.0 { 1.0 / width } else { 0.0 };
             let count = count as usize;
@@ -109,8 +112,8 @@ impl Stretch {
             Self { start, end, density, width, first: first - count, count }
         };
         match speeds {
-            [one] => vec![stretch(*one, *one)],
-            _ => speeds.windows(2).map(|pair| stretch(pair[0], pair[1])).collect(),
+            [one] => vec![span(*one, *one)],
+            _ => speeds.windows(2).map(|pair| span(pair[0], pair[1])).collect(),
         }
     }
 }
@@ -118,10 +121,13 @@ impl Stretch {
 /// The speeds of a table.
 #[derive(Clone, Copy, Debug)]
 pub struct SpeedRange {
+    /// The least, m/s.
     least: f64,
+    /// The largest, m/s.
     largest: f64,
-    /// Their logarithms.
+    /// ln v of the least.
     first: f64,
+    /// ln v of the largest.
     last: f64,
 }
 
@@ -139,26 +145,29 @@ impl SpeedRange {
 #[derive(Clone, Debug)]
 pub struct ResampledLaw {
     law: Law,
-    curve: Curve,
+    curve: LawAtSpeed,
     temperature: f64,
     /// The area that a layer stands for, m².
     area: f64,
     /// ln p at the pressures, p in Pa.
     log_pressures: Vec<f64>,
-    /// Of the table, as logarithms.
+    /// The speeds of the table, as logarithms.
     speeds: Vec<f64>,
-    stretches: Vec<Stretch>,
+    spans: Vec<SpeedSpan>,
     /// Even bins of ln v: the last speed of the table at or below where each begins; seldom more than one lies in it.
     bins: Vec<u32>,
     bin_density: f64,
-    /// By interval those of all pressures but the first.
-    beginnings: Vec<Beginnings>,
-    /// By interval and pressure.
-    pieces: Vec<Piece>,
-    shares: Vec<Shares>,
-    /// By interval the temperature's count at which it was computed.
+    /// By cell those of all pressures but the first.
+    interval_starts: Vec<IntervalStarts>,
+    /// By cell and pressure.
+    coefficients: Vec<Coefficients>,
+    /// By cell and pressure.
+    shares: Vec<ShareCoefficients>,
+    /// By cell the temperature's number for which it was computed.
     computed: Vec<u64>,
-    temperatures: u64,
+    /// The number of the present temperature: how many there have been.
+    temperature_number: u64,
+    /// Up to this approach there is no contact at any speed, m.
     earliest_touch: f64,
 }
 
@@ -166,25 +175,25 @@ impl ResampledLaw {
     /// The law of `table` at `temperature` (K), of a layer that stands for `area` (m²).
     pub fn new(table: &Table, area: f64, temperature: f64) -> Self {
         let law = Law::new(table, temperature);
-        let curve = Curve::new(&law, 0.0);
+        let curve = LawAtSpeed::new(&law, 0.0);
         let shift = (table.load.area() / area).ln();
         let speeds = law.speeds().to_vec();
         let (bins, bin_density) = bins(&speeds);
-        let (stretches, pressures) = (Stretch::new(&speeds), table.grid.loads.len());
-        let intervals = stretches.iter().map(|stretch| stretch.count).sum();
+        let (spans, pressures) = (SpeedSpan::new(&speeds), table.grid.loads.len());
+        let cells = spans.iter().map(|span| span.count).sum();
         Self {
             temperature,
             area,
             log_pressures: curve.points()[0].iter().map(|y| y + shift).collect(),
-            stretches,
+            spans,
             speeds,
             bins,
             bin_density,
-            beginnings: vec![Beginnings::NONE; intervals * beginnings_of(pressures)],
-            pieces: vec![[[0.0; 12]; SAMPLES]; intervals * pressures],
-            shares: vec![[[0.0; 8]; SAMPLES]; intervals * pressures],
-            computed: vec![0; intervals],
-            temperatures: 1,
+            interval_starts: vec![IntervalStarts::NONE; cells * starts_of(pressures)],
+            coefficients: vec![[[0.0; 12]; SAMPLES]; cells * pressures],
+            shares: vec![[[0.0; 8]; SAMPLES]; cells * pressures],
+            computed: vec![0; cells],
+            temperature_number: 1,
             earliest_touch: law.earliest_touch(),
             law,
             curve,
@@ -204,7 +213,7 @@ impl ResampledLaw {
         self.temperature = kelvin;
         self.law.set_temperature(kelvin);
         self.curve.invalidate_speed();
-        self.temperatures += 1;
+        self.temperature_number += 1;
         self.earliest_touch = self.law.earliest_touch();
     }
 
@@ -230,64 +239,65 @@ impl ResampledLaw {
         SpeedRange { least, largest, first: self.speeds[0], last: self.speeds[self.speeds.len() - 1] }
     }
 
-    /// The interval of a [logarithm of a speed](SpeedRange::logarithm), computed if it was not yet.
+    /// The cell of a [logarithm of a speed](SpeedRange::logarithm), computed if it was not yet.
     #[inline(always)]
-    pub fn spot(&mut self, log_speed: f64) -> Spot {
+    pub fn speed_cell(&mut self, log_speed: f64) -> SpeedCell {
         let bin = ((log_speed - self.speeds[0]) * self.bin_density) as u32 as usize;
         let mut below = self.bins[bin.min(self.bins.len() - 1)] as usize;
-        while log_speed >= self.stretches[below].end && below + 1 < self.stretches.len() {
+        while log_speed >= self.spans[below].end && below + 1 < self.spans.len() {
             below += 1;
         }
-        let Stretch { start, density, width, first, count, .. } = self.stretches[below];
-        let interval = (((log_speed - start) * density) as u32 as usize).min(count - 1);
-        let spot = Spot { interval: first + interval, start: start + interval as f64 * width, density };
-        if self.computed[spot.interval] != self.temperatures {
-            self.compute(&spot);
+        let SpeedSpan { start, density, width, first, count, .. } = self.spans[below];
+        let i = (((log_speed - start) * density) as u32 as usize).min(count - 1);
+        let cell = SpeedCell { index: first + i, start: start + i as f64 * width, density };
+        if self.computed[cell.index] != self.temperature_number {
+            self.compute(&cell);
         }
-        spot
+        cell
     }
 
+    /// Computes the coefficients of a cell.
     #[cold]
-    fn compute(&mut self, spot: &Spot) {
-        let width = if spot.density > 0.0 { 1.0 / spot.density } else { 0.0 };
+    fn compute(&mut self, cell: &SpeedCell) {
+        let width = if cell.density > 0.0 { 1.0 / cell.density } else { 0.0 };
         let pressures = self.log_pressures.len();
-        let rows = spot.interval * pressures..(spot.interval + 1) * pressures;
-        self.pieces[rows.clone()].fill([[0.0; 12]; SAMPLES]);
+        let rows = cell.index * pressures..(cell.index + 1) * pressures;
+        self.coefficients[rows.clone()].fill([[0.0; 12]; SAMPLES]);
         self.shares[rows].fill([[0.0; 8]; SAMPLES]);
         for (sample, weights) in LAGRANGE.iter().enumerate() {
-            self.curve.set_speed(&self.law, (spot.start + width * sample as f64 / (SAMPLES - 1) as f64).exp());
-            (0..pressures).for_each(|i| self.add_sample(spot.interval * pressures + i, i, weights));
-            self.record_beginnings(spot.interval, sample);
+            self.curve.set_speed(&self.law, (cell.start + width * sample as f64 / (SAMPLES - 1) as f64).exp());
+            (0..pressures).for_each(|i| self.add_sample(cell.index * pressures + i, i, weights));
+            self.record_starts(cell.index, sample);
         }
-        self.computed[spot.interval] = self.temperatures;
+        self.computed[cell.index] = self.temperature_number;
     }
 
-    /// Adds one of the samples of an interval to the piece `row`, which begins at pressure `i`.
+    /// Adds a sample of the law at a speed of a cell to the coefficients `row`, those of the interval from pressure `i` on.
     fn add_sample(&mut self, row: usize, i: usize, weights: &[f64; SAMPLES]) {
         let [_, approaches, slopes] = self.curve.points();
-        let along = |quantity| cubic_over(&self.log_pressures, self.curve.column(quantity), i);
+        let along = |quantity| cubic_over(&self.log_pressures, self.curve.series(quantity), i);
         let mut now = [0.0; 12];
         now[..4].copy_from_slice(&cubic_over(approaches, Some([&self.log_pressures, slopes]), i));
-        // Where a piece begins ln p is that of the table.
+        // Where an interval begins ln p is that of the table.
         now[0] = approaches[i];
         now[4..8].copy_from_slice(&along(Quantity::Friction));
         now[8..].copy_from_slice(&along(Quantity::Stiffness).map(|k| k / self.area));
         let shares = [along(Quantity::Hysteresis), along(Quantity::ContactRatio)];
         for (power, weight) in weights.iter().enumerate() {
-            let piece = &mut self.pieces[row][power];
-            piece.iter_mut().zip(now).for_each(|(sum, value)| *sum += weight * value);
+            let kept = &mut self.coefficients[row][power];
+            kept.iter_mut().zip(now).for_each(|(sum, value)| *sum += weight * value);
             let kept = &mut self.shares[row][power];
             kept.iter_mut().zip(shares.as_flattened()).for_each(|(sum, value)| *sum += weight * value);
         }
     }
 
-    /// Takes the beginnings of an interval's pieces from its first and its last sample.
-    fn record_beginnings(&mut self, interval: usize, sample: usize) {
+    /// Takes the starts of a cell's intervals from its first and its last sample.
+    fn record_starts(&mut self, cell: usize, sample: usize) {
         let [_, approaches, _] = self.curve.points();
-        let count = beginnings_of(approaches.len());
-        let kept = &mut self.beginnings[interval * count..(interval + 1) * count];
+        let count = starts_of(approaches.len());
+        let kept = &mut self.interval_starts[cell * count..(cell + 1) * count];
         for (i, approach) in approaches[1..].iter().enumerate() {
-            let Beginnings { start, growth } = &mut kept[i / WIDTH];
+            let IntervalStarts { start, growth } = &mut kept[i / WIDTH];
             if sample == 0 {
                 start[i % WIDTH] = *approach;
             } else {
@@ -296,40 +306,41 @@ impl ResampledLaw {
         }
     }
 
-    /// The index of the piece at an approach: near the ends of pieces one or the other, which agree there.
+    /// The index of the interval of the pressure at an approach: near the ends of intervals one or the other, which agree
+    /// there.
     #[inline(always)]
-    pub fn piece(&self, spot: &Spot, log_speed: f64, approach: f64) -> usize {
-        let (share, count) = (spot.share(log_speed), beginnings_of(self.log_pressures.len()));
+    pub fn pressure_interval(&self, cell: &SpeedCell, log_speed: f64, approach: f64) -> usize {
+        let (fraction, count) = (cell.fraction(log_speed), starts_of(self.log_pressures.len()));
         let mut passed = [0_u64; WIDTH];
-        for Beginnings { start, growth } in &self.beginnings[spot.interval * count..(spot.interval + 1) * count] {
+        for IntervalStarts { start, growth } in &self.interval_starts[cell.index * count..(cell.index + 1) * count] {
             for i in 0..WIDTH {
-                passed[i] += u64::from(approach >= start[i] + share * growth[i]);
+                passed[i] += u64::from(approach >= start[i] + fraction * growth[i]);
             }
         }
         passed.iter().sum::<u64>() as usize
     }
 
-    /// The coefficients of a piece at a share of the interval.
+    /// The coefficients of an interval of the pressure at a fraction of a cell.
     #[inline(always)]
-    fn coefficients<T: Number>(&self, interval: usize, share: T, piece: usize) -> [T; 12] {
-        let [a, b, c] = &self.pieces[interval * self.log_pressures.len() + piece];
+    fn coefficients_at<T: Number>(&self, cell: usize, fraction: T, interval: usize) -> [T; 12] {
+        let [a, b, c] = &self.coefficients[cell * self.log_pressures.len() + interval];
         let mut coefficients = [T::constant(0.0); 12];
         for k in 0..12 {
-            coefficients[k] = T::constant(a[k]) + share * (T::constant(b[k]) + share.times(c[k]));
+            coefficients[k] = T::constant(a[k]) + fraction * (T::constant(b[k]) + fraction.times(c[k]));
         }
         coefficients
     }
 
-    /// The law at a logarithm of a speed, whose [`spot`](Self::spot) is given, and an approach (m).
+    /// The law at a logarithm of a speed, whose [`speed_cell`](Self::speed_cell) is given, and an approach (m).
     #[inline(always)]
-    pub fn at<T: Number>(&self, spot: &Spot, log_speed: T, approach: T) -> LawPoint<T> {
-        self.at_piece(spot, self.piece(spot, log_speed.value(), approach.value()), log_speed, approach)
+    pub fn at<T: Number>(&self, cell: &SpeedCell, log_speed: T, approach: T) -> LawPoint<T> {
+        self.at_interval(cell, self.pressure_interval(cell, log_speed.value(), approach.value()), log_speed, approach)
     }
 
-    /// The same where the [`piece`](Self::piece) is known.
+    /// The law where the [`pressure_interval`](Self::pressure_interval), `i`, is known.
     #[inline(always)]
-    pub fn at_piece<T: Number>(&self, spot: &Spot, i: usize, log_speed: T, approach: T) -> LawPoint<T> {
-        let c = self.coefficients(spot.interval, spot.share(log_speed), i);
+    pub fn at_interval<T: Number>(&self, cell: &SpeedCell, i: usize, log_speed: T, approach: T) -> LawPoint<T> {
+        let c = self.coefficients_at(cell.index, cell.fraction(log_speed), i);
         let from = approach - c[0];
         let y = self.log_pressures[i];
         if i + 1 == self.log_pressures.len() {
@@ -348,18 +359,18 @@ impl ResampledLaw {
     }
 
     /// The approaches (m) at a speed where the contact begins and where it reaches the least pressure of the table.
-    pub fn beginning<T: Number>(&self, spot: &Spot, log_speed: T) -> (T, T) {
-        let c = self.coefficients(spot.interval, spot.share(log_speed), 0);
+    pub fn beginning<T: Number>(&self, cell: &SpeedCell, log_speed: T) -> (T, T) {
+        let c = self.coefficients_at(cell.index, cell.fraction(log_speed), 0);
         (c[0] - T::constant(2.0) / c[1], c[0])
     }
 
     /// The share of hysteresis in the friction coefficient, and the contact ratio, at a speed and an approach (m).
-    pub fn shares(&self, spot: &Spot, log_speed: f64, approach: f64) -> (f64, f64) {
-        let (share, i) = (spot.share(log_speed), self.piece(spot, log_speed, approach));
-        let point = self.at_piece(spot, i, log_speed, approach);
+    pub fn shares(&self, cell: &SpeedCell, log_speed: f64, approach: f64) -> (f64, f64) {
+        let (fraction, i) = (cell.fraction(log_speed), self.pressure_interval(cell, log_speed, approach));
+        let point = self.at_interval(cell, i, log_speed, approach);
         let t = point.log_pressure - self.log_pressures[i];
-        let powers = &self.shares[spot.interval * self.log_pressures.len() + i];
-        let at = |k: usize| (0..SAMPLES).rev().fold(0.0, |sum, power| sum * share + powers[power][k]);
+        let powers = &self.shares[cell.index * self.log_pressures.len() + i];
+        let at = |k: usize| (0..SAMPLES).rev().fold(0.0, |sum, power| sum * fraction + powers[power][k]);
         let along = |first: usize| (0..4).rev().fold(0.0, |sum, k| sum * t + at(first + k));
         let (hysteresis, ratio) = (along(0), along(4) * point.factor.min(1.0));
         (if point.friction > 0.0 { hysteresis / point.friction } else { 0.0 }, ratio)
@@ -369,8 +380,8 @@ impl ResampledLaw {
 /// The polynomials that are 1 at one of 0, 1/2 and 1, and 0 at the others, by power.
 const LAGRANGE: [[f64; SAMPLES]; SAMPLES] = [[1.0, -3.0, 2.0], [0.0, 4.0, -4.0], [0.0, -1.0, 2.0]];
 
-/// How many [`Beginnings`] hold those of all pressures but the first.
-const fn beginnings_of(pressures: usize) -> usize {
+/// How many [`IntervalStarts`] hold those of all pressures but the first.
+const fn starts_of(pressures: usize) -> usize {
     (pressures - 1).div_ceil(WIDTH)
 }
 
@@ -432,8 +443,8 @@ mod tests {
         let mut law = ResampledLaw::new(&table, 1.0, 0.0);
         for (j, speed) in speeds.iter().enumerate() {
             let log_speed = law.range().logarithm(*speed);
-            let spot = law.spot(log_speed);
-            let friction = law.at(&spot, log_speed, -1.5e-5).friction;
+            let cell = law.speed_cell(log_speed);
+            let friction = law.at(&cell, log_speed, -1.5e-5).friction;
             assert!((friction - 0.5 - 0.1 * j as f64).abs() < 1e-6, "{speed}: {friction}");
         }
     }
@@ -450,16 +461,16 @@ mod tests {
                 let law = Law::new(&table, temperature);
                 for step in 0..1500 {
                     let speed = (1e-5_f64.ln() + 0.0137 * f64::from(step)).exp();
-                    let curve = Curve::new(&law, speed);
+                    let curve = LawAtSpeed::new(&law, speed);
                     let (from, to) = (curve.touch, curve.closest());
                     let end = curve.at(to);
                     for i in -2..40 {
                         let approach = from + (to - from) * f64::from(i) / 36.0;
                         let exact = curve.at(approach);
                         let log_speed = found.range().logarithm(speed);
-                        let spot = found.spot(log_speed);
-                        let point = found.at(&spot, log_speed, approach);
-                        // In shares of the largest values of the table.
+                        let cell = found.speed_cell(log_speed);
+                        let point = found.at(&cell, log_speed, approach);
+                        // As shares of the largest values of the table.
                         let largest = found.largest_pressure() * area;
                         let close = |value: f64, expected: f64, scale: f64| {
                             assert!((value - expected).abs() <= 1e-6 * scale, "{value} {expected}");

@@ -5,14 +5,14 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::grid::Load;
-use super::jenkins::{Jenkins, Listener, MotionRates};
-use super::law::{Contact, Curve, Law};
-use super::point_contact::{PointContact, Terms, element_output};
+use super::jenkins::{Jenkins, MotionRates, Recorder};
+use super::law::{Contact, Law, LawAtSpeed};
+use super::point_contact::{OutputTerms, PointContact, element_output};
 use super::table_format::Quantity;
 use crate::math::Expansion;
 use crate::model::Mode;
 use crate::outputs::Variable;
-use crate::scene::is_possible;
+use crate::scene::{TableExtrapolation, is_possible};
 use crate::simulation::{ModeChange, OutOfRange, Start};
 
 /// Share of the speeds and separations of the table by which the carrier may exceed them: rounding of a master that goes
@@ -82,6 +82,13 @@ pub enum RestoreError {
     BeyondTable(#[from] ElementError),
 }
 
+/// Where in a step a carrier is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum StepTime {
+    Start,
+    End,
+}
+
 /// All that changes in a run, SI units.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ElementState {
@@ -90,13 +97,13 @@ pub struct ElementState {
     w: f64,
     u_rate: f64,
     w_rate: f64,
-    /// G = -F_x, N.
+    /// The force in the spring, G = -F_x, N.
     force: f64,
     /// As [`Mode::number`] gives it.
     mode: i8,
     /// Lost since the start, J.
     lost: f64,
-    /// Of that, through the channels, J.
+    /// Energy lost since the start by channel, J.
     lost_by_channel: [f64; 4],
 }
 
@@ -107,8 +114,8 @@ pub struct ElementState {
 pub struct Element {
     law: Arc<Law>,
     /// The law at the present speed.
-    pub(super) curve: Curve,
-    extrapolates: bool,
+    pub(super) curve: LawAtSpeed,
+    table_extrapolation: TableExtrapolation,
     pub(super) state: ElementState,
     pub(super) spring: Jenkins,
     mode_changes: Option<Vec<ModeChange>>,
@@ -138,12 +145,12 @@ impl Element {
     /// An element in `state`, its spring not set yet.
     fn at(contact: &PointContact, state: ElementState) -> Result<Self, ElementError> {
         let law = Arc::new(Law::new(contact.table(), contact.temperature()));
-        let curve = Curve::new(&law, state.u_rate);
+        let curve = LawAtSpeed::new(&law, state.u_rate);
         let spring = Jenkins::new(&Contact::default());
-        let extrapolates = contact.extrapolates_table();
-        let element = Self { law, curve, extrapolates, state, spring, mode_changes: None };
+        let table_extrapolation = contact.table_extrapolation();
+        let element = Self { law, curve, table_extrapolation, state, spring, mode_changes: None };
         element.check_speed(state.u_rate)?;
-        element.check_separation(state.w, state.u_rate, false)?;
+        element.check_separation(state.w, state.u_rate, StepTime::Start)?;
         Ok(element)
     }
 
@@ -175,8 +182,8 @@ impl Element {
         self.check_speed(u_rate)?;
         let before = self.curve.speed();
         self.curve.set_speed(&self.law, u_rate);
-        let start = self.check_separation(w, u_rate, false);
-        if let Err(error) = start.and_then(|()| self.check_separation(end.w, u_rate, true)) {
+        let start = self.check_separation(w, u_rate, StepTime::Start);
+        if let Err(error) = start.and_then(|()| self.check_separation(end.w, u_rate, StepTime::End)) {
             self.curve.set_speed(&self.law, before);
             return Err(error);
         }
@@ -188,23 +195,23 @@ impl Element {
         Ok(())
     }
 
+    /// Takes the spring along with the carrier, which moves to `end` (m) along z.
     fn follow(&mut self, duration: f64, u_rate: f64, w_rate: f64, end: f64) {
         let Self { law, curve, state, spring, mode_changes, .. } = self;
         let mut ledger = Ledger { curve, state, mode_changes, mode: spring.mode };
         let approach = |w: f64| -(law.rest_separation + w);
         let (from, to) = (approach(ledger.state.w), approach(end));
         let here = curve.at(from);
-        spring.take_over(&here, from, &mut ledger);
+        spring.set_law(&here, from, &mut ledger);
         if from == to {
             return spring.slide(&here, from, u_rate, duration, &mut ledger);
         }
         let rates = MotionRates { u: u_rate, approach: -w_rate };
-        let closer = to > from;
         let mut at = from;
         while at != to {
-            let stop = curve.end_of_piece(at, closer);
-            let next = if closer { stop.min(to) } else { stop.max(to) };
-            spring.cross(curve, at, next, rates, (at - from) / rates.approach, &mut ledger);
+            let end = curve.end_of_segment(at, to);
+            let next = if to > at { end.min(to) } else { end.max(to) };
+            spring.change_approach(curve, at, next, rates, (at - from) / rates.approach, &mut ledger);
             at = next;
         }
     }
@@ -227,17 +234,18 @@ impl Element {
 
     fn check_speed(&self, speed: f64) -> Result<(), ElementError> {
         let range = self.law.speed_range;
-        if self.extrapolates || speed.abs() <= range.1 * (1.0 + ROUNDING) {
+        if self.table_extrapolation == TableExtrapolation::Hold || speed.abs() <= range.1 * (1.0 + ROUNDING) {
             return Ok(());
         }
         Err(ElementError::Speed { time: self.state.time, speed: speed.abs(), least: range.0, largest: range.1 })
     }
 
-    /// Whether the carrier may be at `w` with the law at the present speed; `within` is the error's.
-    fn check_separation(&self, w: f64, speed: f64, within: bool) -> Result<(), ElementError> {
+    /// Refuses a position `w` (m) of the carrier, at the start or the end of a step at the present speed, that is beyond the
+    /// table.
+    fn check_separation(&self, w: f64, speed: f64, when: StepTime) -> Result<(), ElementError> {
         let (separation, least) = (self.law.rest_separation + w, -self.curve.closest());
         let slack = ROUNDING * (self.curve.closest() - self.curve.touch);
-        if self.extrapolates || separation >= least - slack {
+        if self.table_extrapolation == TableExtrapolation::Hold || separation >= least - slack {
             return Ok(());
         }
         Err(ElementError::Pressure {
@@ -248,7 +256,7 @@ impl Element {
             load: self.law.load,
             largest: self.law.largest_pressure,
             speed: speed.abs(),
-            within,
+            within: when == StepTime::End,
         })
     }
 
@@ -260,8 +268,8 @@ impl Element {
         }
     }
 
-    fn terms(&self, contact: &Contact) -> Terms {
-        Terms {
+    fn terms(&self, contact: &Contact) -> OutputTerms {
+        OutputTerms {
             force: self.spring.force,
             normal: contact.normal.value,
             power: self.power(contact),
@@ -292,16 +300,17 @@ impl Element {
         (-change.force, change.normal)
     }
 
-    fn change(&self, contact: &Contact, du: f64, dw: f64) -> Terms {
+    /// How the terms change as the carrier moves by du and dw (m).
+    fn change(&self, contact: &Contact, du: f64, dw: f64) -> OutputTerms {
         let da = -dw;
         let force = self.force_change(contact, du, da);
-        Terms {
+        OutputTerms {
             force,
             normal: contact.normal.slope * da,
             power: self.power_change(contact, force, da),
             hysteresis: self.hysteresis_share(contact).slope * da,
             contact_ratio: self.contact_ratio(contact).slope * da,
-            ..Terms::default()
+            ..OutputTerms::default()
         }
     }
 
@@ -413,15 +422,15 @@ impl ElementState {
 
 /// Adds up the losses of a motion and records its mode changes.
 struct Ledger<'a> {
-    curve: &'a Curve,
+    curve: &'a LawAtSpeed,
     state: &'a mut ElementState,
     mode_changes: &'a mut Option<Vec<ModeChange>>,
     mode: Mode,
 }
 
-impl Listener for Ledger<'_> {
+impl Recorder for Ledger<'_> {
     /// The channels share the loss as in steady sliding at that approach.
-    fn lost(&mut self, approach: f64, energy: f64) {
+    fn record_loss(&mut self, approach: f64, energy: f64) {
         if energy == 0.0 {
             return;
         }
@@ -430,7 +439,7 @@ impl Listener for Ledger<'_> {
         self.state.lost_by_channel.iter_mut().zip(shares).for_each(|(lost, share)| *lost += share * energy);
     }
 
-    fn changed(&mut self, elapsed: f64, mode: Mode) {
+    fn record_mode(&mut self, elapsed: f64, mode: Mode) {
         let before = std::mem::replace(&mut self.mode, mode);
         if let Some(record) = self.mode_changes {
             let time = self.state.time + elapsed;
@@ -439,7 +448,7 @@ impl Listener for Ledger<'_> {
     }
 }
 
-impl Curve {
+impl LawAtSpeed {
     /// The shares of the channels of [`Quantity::CHANNELS`] in the losses at an approach, m.
     fn channel_shares(&self, approach: f64) -> [f64; 4] {
         let contact = self.at(approach);

@@ -19,19 +19,23 @@ const SHORT: f64 = 1e-2;
 /// Beyond this λ nothing is left of e^-λ.
 const LONG: f64 = 300.0;
 
-/// What an element's spring is held by: its stiffness (N/m) and its limit (N); both 0 without contact.
+/// What an element's spring is held by; both 0 without contact.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SpringLaw<T> {
+    /// The stiffness K, N/m.
     pub(crate) stiffness: T,
+    /// The limit L, N.
     pub(crate) limit: T,
 }
 
 /// A segment of a motion as an element sees it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Segment<T> {
+    /// The law where it begins.
     pub(crate) begin: SpringLaw<T>,
+    /// The law where it ends.
     pub(crate) end: SpringLaw<T>,
-    /// Δ, m.
+    /// Δ, the displacement of the face along the plane, m.
     pub(crate) displacement: [T; 2],
     /// The tangent of half the angle that the velocity turns by.
     pub(crate) half_turn: T,
@@ -44,8 +48,9 @@ pub(crate) struct Advanced<T> {
     pub(crate) force: [T; 2],
     /// Whether it slips there.
     pub(crate) slips: bool,
-    /// Lost by slip and by release, J.
+    /// Energy lost by slip, J.
     pub(crate) slip: f64,
+    /// Energy lost with contacts that were released, J.
     pub(crate) release: f64,
 }
 
@@ -84,6 +89,7 @@ pub(crate) fn apply_jump<T: Number>(force: [T; 2], stiffness: T, law: &SpringLaw
 /// Takes a spring with |G| ≤ L through a segment.
 #[inline(always)]
 pub(crate) fn advance<T: Number>(force: [T; 2], segment: &Segment<T>) -> Advanced<T> {
+    // The stiffness that applies at both ends: that of the contact where it falls, the mean of both where it grows.
     let (tiny, one) = (T::constant(TINY), T::constant(1.0));
     let (begin, end) = (segment.begin, segment.end);
     let (falls, level) = (falls(begin.stiffness, end.stiffness), is_level(begin.stiffness, end.stiffness));
@@ -91,6 +97,7 @@ pub(crate) fn advance<T: Number>(force: [T; 2], segment: &Segment<T>) -> Advance
     let growing = |k: T| (k + middle).times(0.5).or(level, middle);
     let (k_a, k_b) =
         (begin.stiffness.or(falls, growing(begin.stiffness)), end.stiffness.or(falls, growing(end.stiffness)));
+    // The elongation at both ends if it sticks, the radii L/K.
     let per = one / (k_a + tiny);
     let [dx, dy] = segment.displacement;
     let (ex, ey) = (force[0] * per, force[1] * per);
@@ -103,8 +110,9 @@ pub(crate) fn advance<T: Number>(force: [T; 2], segment: &Segment<T>) -> Advance
     let stuck = [force[0] * share_kept + k_b * dx, force[1] * share_kept + k_b * dy];
     let slips = (tx * tx + ty * ty).value() > (l1 * l1).value();
 
+    // It sticks over a fraction t of the displacement and slips over the rest.
     let square = dx * dx + dy * dy;
-    let t = share_of_stick([ex, ey], [dx, dy], l0, growth);
+    let t = fraction_of_stick([ex, ey], [dx, dy], l0, growth);
     let rest = one - t;
     let distance = square.sqrt() + tiny;
     let radius = l0 + growth * t;
@@ -113,12 +121,14 @@ pub(crate) fn advance<T: Number>(force: [T; 2], segment: &Segment<T>) -> Advance
     let lambda = travel / mean;
     let decay = (-lambda.smaller(T::constant(LONG))).exp();
 
+    // The direction of the displacement, turned as the velocity turns meanwhile.
     let share = t.times(0.5) + rest * lag(lambda, decay);
     // A displacement that is nothing beside the radius has no direction: G is cut where it points.
     let least = STANDING * l1.value();
     let moves = square.value() > least * least;
     let per_distance = (one / distance).or(moves, T::constant(0.0));
     let [ux, uy] = turned([dx * per_distance, dy * per_distance], segment.half_turn * share);
+    // G turns towards it: tan(α/2) falls as e^-λ.
     let (nx, ny) = (ex + dx * t, ey + dy * t);
     let size = one / (nx * nx + ny * ny + tiny).sqrt();
     let (nx, ny) = (nx * size, ny * size);
@@ -130,6 +140,7 @@ pub(crate) fn advance<T: Number>(force: [T; 2], segment: &Segment<T>) -> Advance
     let slipped =
         [(l1 * (cos_1 * ux - sin_1 * uy)).or(moves, l1 * nx), (l1 * (cos_1 * uy + sin_1 * ux)).or(moves, l1 * ny)];
 
+    // The energies lost.
     let along = travel + mean * whole.times(0.5).ln() - (l1 - radius);
     let limit = begin.limit + (end.limit - begin.limit) * t;
     let by_slip = 0.5 * (limit + end.limit).value() * along.value();
@@ -144,17 +155,17 @@ pub(crate) fn advance<T: Number>(force: [T; 2], segment: &Segment<T>) -> Advance
     Advanced { force, slips, slip: if slips && by_slip > 0.0 { by_slip } else { 0.0 }, release }
 }
 
-/// The share of a displacement after which |e| reaches the radius, which grows straight from `radius` by `growth`.
+/// The fraction of a displacement after which |e| reaches the radius, which grows straight from `radius` by `growth`.
 #[inline(always)]
-fn share_of_stick<T: Number>(e: [T; 2], d: [T; 2], radius: T, growth: T) -> T {
+fn fraction_of_stick<T: Number>(e: [T; 2], d: [T; 2], radius: T, growth: T) -> T {
     let (tiny, zero, one) = (T::constant(TINY), T::constant(0.0), T::constant(1.0));
     let a = d[0] * d[0] + d[1] * d[1] - growth * growth;
     let b = e[0] * d[0] + e[1] * d[1] - radius * growth;
     let c = (e[0] * e[0] + e[1] * e[1] - radius * radius).smaller(zero);
     let root = (b * b - a * c).larger(zero).sqrt();
     let outwards = b.value() > 0.0;
-    let share = (-c).or(outwards, root - b) / ((b + root).or(outwards, a) + tiny);
-    share.larger(zero).smaller(one)
+    let fraction = (-c).or(outwards, root - b) / ((b + root).or(outwards, a) + tiny);
+    fraction.larger(zero).smaller(one)
 }
 
 /// The share of a turn during slip that the direction lags behind by: 1/(1 - e^-λ) - 1/λ - ½.

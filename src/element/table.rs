@@ -51,6 +51,7 @@ impl TableAxis {
         [node.speed, node.load, node.temperature][self as usize]
     }
 
+    /// The values of a grid on this axis.
     pub(super) fn values(self, grid: &SweepGrid) -> &Vec<f64> {
         [&grid.speeds, &grid.loads, &grid.temperatures][self as usize]
     }
@@ -108,6 +109,7 @@ impl Table {
         self.values[quantity as usize].as_ref().map_or(0.0, |values| values[self.index(node)])
     }
 
+    /// The operating point of a node.
     pub(super) fn point(&self, node: Node) -> OperatingPoint {
         self.grid.point(self.index(node))
     }
@@ -117,7 +119,7 @@ impl Table {
     }
 
     /// The nodes by temperature, load, speed, as the points of the [grid](SweepGrid::points).
-    pub(super) fn nodes(&self) -> impl Iterator<Item = Node> {
+    fn nodes(&self) -> impl Iterator<Item = Node> {
         let (speeds, loads) = (self.grid.speeds.len(), self.grid.loads.len());
         (0..self.grid.count()).map(move |index| Node {
             temperature: index / speeds / loads,

@@ -186,7 +186,7 @@ fn steps_may_be_split() {
         go(&mut split, motion, &[0.13, 0.4, 0.01, 0.29, 1.0, 0.07]);
         let scale = (whole.contact().limit.value, 1e-5);
         let (a, b) = (forces(&whole), forces(&split));
-        // Rounding, and what of the limit over half a piece is no polynomial.
+        // Rounding, and what of the limit over half a segment is no polynomial.
         assert!(
             (a.0 - b.0).abs() <= 1e-9 * (scale.0 + 1.0) && (a.1 - b.1).abs() <= 1e-9 * a.1,
             "{motion:?} {a:?} {b:?}"

@@ -127,7 +127,7 @@ impl Error {
                 Status::Discard
             }
             Self::Element(ElementError::Pressure { within: true, .. }) => Status::Discard,
-            Self::Motion(MotionError::TooManyParts { .. } | MotionError::BeyondTable { within: true, .. }) => {
+            Self::Motion(MotionError::TooManySubsteps { .. } | MotionError::BeyondTable { within: true, .. }) => {
                 Status::Discard
             }
             Self::NoSuchStatus => Status::Discard,

@@ -63,7 +63,7 @@ impl InstanceModel {
     pub(super) fn set_state(&mut self, definition: &Definition, state: &ModelState) -> Result<(), RestoreError> {
         match (&mut *self, state) {
             (Self::Layer(simulation), ModelState::Layer(state)) => simulation.set_state(state)?,
-            (Self::Patch(run), ModelState::Patch(state)) => run.go_on_from(state),
+            (Self::Patch(run), ModelState::Patch(state)) => run.continue_from(state),
             _ => *self = Self::restore(definition, state)?,
         }
         Ok(())

@@ -116,11 +116,11 @@ pub struct Counters {
     pub rejected: u64,
     /// Mode changes.
     pub events: u64,
-    /// Of F_x and F_z, N.
+    /// The largest errors of F_x and F_z, N.
     forces: [LargestError; 2],
-    /// Of the bodies' displacements, m.
+    /// The largest errors of the bodies' displacements, m.
     ways: [LargestError; 2],
-    /// Of E_diss, J.
+    /// The largest error of E_diss, J.
     dissipated: LargestError,
 }
 
@@ -132,7 +132,7 @@ impl Counters {
         std::array::from_fn(|i| numbers[i / 2][i % 2])
     }
 
-    /// Compares a run with its error-estimation run at the same time. The difference is the `share` of the error.
+    /// Compares a run with its reference run at the same time: the difference is this share of the error.
     pub fn record_error(&mut self, found: &Monitored, reference: &Monitored, share: f64) {
         let largest = self.forces.iter().map(|force| force.value).chain(reference.forces.map(f64::abs));
         let rounding = ROUNDING * largest.fold(0.0, f64::max);
@@ -148,7 +148,7 @@ impl Counters {
         }
     }
 
-    /// Notes that the errors of a run are unknown: they count as large as the quantities `found`.
+    /// Records that the errors of a run are unknown: they count as large as the quantities `found`.
     pub fn record_unknown(&mut self, found: &Monitored) {
         for (force, found) in self.forces.iter_mut().zip(found.forces) {
             force.include(found.abs(), found);

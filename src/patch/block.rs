@@ -1,28 +1,40 @@
 //! A block of elements that a step is done for together: in structure of arrays and, where possible, loops without branches.
 
-use super::contact_times::{End, advance_in_segments, half_turn, size};
-use super::face::{Column, Face};
-use super::motion::{Instant, Parts, Path, Run};
-use crate::element::{ResampledLaw, Segment, Spot, SpringLaw, advance, apply_jump};
+use super::contact_times::{Endpoint, advance_in_segments, half_turn, size};
+use super::face::{Face, TreadColumn};
+use super::motion::{BodyKinematics, BodyMotion, Substep, Substeps, TreadMotion};
+use super::state::ElementMode;
+use crate::element::{ResampledLaw, Segment, SpeedCell, SpringLaw, advance, apply_jump};
 use crate::math::Number;
 
 /// Elements of a block.
 pub(super) const BLOCK: usize = 64;
 
-/// e^½: an element whose pressure changes by a larger factor in a part is cut for itself.
+/// e^½: an element whose pressure changes by a larger factor in a substep is advanced in segments of its own.
 const MAX_RATIO: f64 = 1.648_721_270_700_128_2;
 
 type Lanes<T> = [T; BLOCK];
 
 /// A step of the whole patch.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Step<'a, T> {
+pub(super) struct PatchStep<'a, T> {
     pub(super) face: &'a Face,
-    pub(super) path: Path<T>,
-    pub(super) run: Run,
-    pub(super) parts: Parts,
-    /// The velocity at which the tread runs, m/s.
+    pub(super) body: BodyMotion<T>,
+    pub(super) tread: TreadMotion,
+    pub(super) substeps: Substeps,
+    /// The speed at which the tread runs, m/s.
     pub(super) tread_speed: f64,
+}
+
+/// The elements that a step takes in, by their indices before it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ElementRange {
+    /// The index of the first.
+    pub(super) first: isize,
+    /// How many there are.
+    pub(super) count: usize,
+    /// By how much indices grow over the step.
+    pub(super) shift: isize,
 }
 
 /// What the blocks add up to.
@@ -32,56 +44,56 @@ pub(super) struct Sums<T> {
     pub(super) wrench: [T; 6],
     /// Force on the tread, N.
     pub(super) transport: T,
-    /// Lost in the step by slip and by release, J.
+    /// Energy lost in the step by slip, J.
     pub(super) slip: f64,
+    /// Energy lost in the step with contacts that were released, J.
     pub(super) release: f64,
     /// The first element found beyond the table.
-    pub(super) beyond: Option<Beyond>,
+    pub(super) beyond: Option<BeyondTable>,
 }
 
 /// An element beyond the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Beyond {
-    /// As it is counted at that instant.
+pub(super) struct BeyondTable {
+    /// Its index, as elements are counted at that instant.
     pub(super) element: usize,
-    /// Of the step.
-    pub(super) share: f64,
-    /// Pa.
+    /// When: the fraction of the step.
+    pub(super) fraction: f64,
+    /// The pressure on it, Pa.
     pub(super) pressure: f64,
-    /// m/s.
+    /// Its speed along the plane, m/s.
     pub(super) speed: f64,
 }
 
-impl<T> Step<'_, T> {
-    /// The index of the first element of the step as elements were counted before it, the number of elements, and by how
-    /// much indices grow.
-    pub(super) fn elements(&self) -> (isize, usize, isize) {
+impl<T> PatchStep<'_, T> {
+    pub(super) fn elements(&self) -> ElementRange {
         match self.face {
-            Face::Points(_) => (0, self.face.count(), 0),
+            Face::Points(_) => ElementRange { first: 0, count: self.face.count(), shift: 0 },
             Face::Tread(tread) => {
-                let (rows, (first, columns)) = (tread.rows.len(), tread.columns_of(self.run));
+                let (rows, (first, columns)) = (tread.rows.len(), tread.columns_of(self.tread));
                 let indices = |columns: f64| columns as isize * rows as isize;
-                (indices(first), columns * rows, indices(self.run.entered()))
+                let shift = indices(self.tread.whole_cells());
+                ElementRange { first: indices(first), count: columns * rows, shift }
             }
         }
     }
 
-    /// The index after a share of the step of an element as it is counted in the step.
-    fn index_at(&self, element: usize, share: f64) -> usize {
+    /// The index after a fraction of the step of an element as it is counted in the step.
+    fn index_at(&self, element: usize, fraction: f64) -> usize {
         let Face::Tread(tread) = self.face else { return element };
-        let columns = tread.columns_of(self.run).0 + self.run.at(share).floor();
+        let columns = tread.columns_of(self.tread).0 + self.tread.entered_at(fraction).floor();
         element.saturating_add_signed(columns as isize * tread.rows.len() as isize).min(self.face.count() - 1)
     }
 
-    /// Whether some of the `count` elements from `start` on are on the face in a part.
+    /// Whether some of the `count` elements from `start` on are on the face in a substep.
     #[inline(always)]
-    fn is_inside(&self, start: usize, count: usize, (from, to): (f64, f64)) -> bool {
+    fn is_inside(&self, start: usize, count: usize, substep: Substep) -> bool {
         let Face::Tread(tread) = self.face else { return true };
-        let (rows, first) = (tread.rows.len(), tread.columns_of(self.run).0);
+        let (rows, first) = (tread.rows.len(), tread.columns_of(self.tread).0);
         let [front, rear] = [start, start + count - 1].map(|element| first + (element / rows) as f64);
-        let (least, most) = (self.run.at(from), self.run.at(to));
+        let (before, after) = (self.tread.entered_at(substep.begin), self.tread.entered_at(substep.end));
         // Column i is inside while it and the cells that have entered are between 0 and one more than the columns.
-        rear + least.max(most) > 0.0 && front + least.min(most) < tread.columns as f64 + 1.0
+        rear + before.max(after) > 0.0 && front + before.min(after) < tread.columns as f64 + 1.0
     }
 }
 
@@ -99,63 +111,75 @@ impl<T: Number> Sums<T> {
         self.transport = self.transport + further.transport;
         self.slip += further.slip;
         self.release += further.release;
-        if further.beyond.is_some_and(|theirs| self.beyond.is_none_or(|own| theirs.share < own.share)) {
+        if further.beyond.is_some_and(|theirs| self.beyond.is_none_or(|own| theirs.fraction < own.fraction)) {
             self.beyond = further.beyond;
         }
     }
 
-    /// The same without derivatives.
-    pub(super) fn plain(&self) -> Sums<f64> {
+    /// The sums without their derivatives.
+    pub(super) fn values(&self) -> Sums<f64> {
         let Self { wrench, transport, slip, release, beyond } = *self;
         Sums { wrench: wrench.map(T::value), transport: transport.value(), slip, release, beyond }
     }
 }
 
-/// The elements at an instant: where they are and the law there.
+/// The elements of a block at an instant: where they are, how they move, and the contact law there.
 #[derive(Clone, Debug)]
-struct Side<T> {
+struct BlockContacts<T> {
     /// Positions in the body's axes, m.
     place: [Lanes<f64>; 3],
-    /// Of a tread: the direction of the arc in x and z, and where on it the middle is, m.
+    /// Of a tread: the direction of the arc in x and z.
     direction: [Lanes<f64>; 2],
+    /// Of a tread: where on the arc the middle of an element is, m.
     arc: Lanes<f64>,
-    /// m².
+    /// Areas, m².
     area: Lanes<f64>,
     /// From the pose's point, in the ground's axes, m.
     arm: [Lanes<T>; 3],
     /// Of a tread: the direction of the arc in the ground's axes.
     along: [Lanes<T>; 3],
+    /// How far the elements are below the plane z = 0, m.
     approach: Lanes<T>,
+    /// Along the plane, m/s.
     velocity: [Lanes<T>; 2],
+    /// ln v, v in m/s, limited to the speeds of the table.
     log_speed: Lanes<T>,
-    /// Whether no element can be in contact: then these are 0.
+    /// Whether no element can be in contact: then the pressure, the limit and the stiffness are 0.
     is_free: bool,
+    /// Pressure, Pa.
     pressure: Lanes<T>,
+    /// Limit of the friction force, N.
     limit: Lanes<T>,
+    /// Tangential stiffness, N/m.
     stiffness: Lanes<T>,
 }
 
 /// The workspace of a block.
 #[derive(Clone, Debug)]
 pub(super) struct Block<T> {
-    /// The first element as it is counted in the step, and how many there are.
+    /// The first element as it is counted in the step.
     start: usize,
+    /// How many elements there are.
     count: usize,
-    /// G, N.
+    /// G, the forces of the springs on the ground, N.
     pub(super) force: [Lanes<T>; 2],
-    /// K, N/m.
+    /// K, the stiffnesses of the springs, N/m.
     pub(super) stiffness: Lanes<T>,
-    /// 0 free, 1 slips, 2 sticks.
+    /// By the numbers of [`ElementMode`].
     pub(super) mode: Lanes<u8>,
-    begin: Box<Side<T>>,
-    end: Box<Side<T>>,
+    /// At the beginning of the substep.
+    begin: Box<BlockContacts<T>>,
+    /// At the end of the substep, or at the instant last evaluated.
+    end: Box<BlockContacts<T>>,
     /// 1 for those that slip, else 0.
     slips: Lanes<f64>,
+    /// Energy lost in the step by slip, J.
     slip: Lanes<f64>,
+    /// Energy lost in the step with contacts that were released, J.
     release: Lanes<f64>,
 }
 
-impl<T: Number> Side<T> {
+impl<T: Number> BlockContacts<T> {
     fn new() -> Self {
         let zero = [T::constant(0.0); BLOCK];
         Self {
@@ -177,7 +201,7 @@ impl<T: Number> Side<T> {
 
     /// Places the elements from `start` on when `entered` cells of a tread have entered since the start of the step.
     #[inline(always)]
-    fn place(&mut self, step: &Step<'_, T>, start: usize, count: usize, entered: f64) {
+    fn set_positions(&mut self, step: &PatchStep<'_, T>, start: usize, count: usize, entered: f64) {
         match step.face {
             Face::Points(points) => {
                 let range = start..start + count;
@@ -189,15 +213,15 @@ impl<T: Number> Side<T> {
                 self.area[count..].fill(0.0);
             }
             Face::Tread(tread) => {
-                let (rows, first) = (tread.rows.len(), tread.columns_of(step.run).0);
-                let mut column = Column::default();
+                let (rows, first) = (tread.rows.len(), tread.columns_of(step.tread).0);
+                let mut column = TreadColumn::default();
                 self.area[count..].fill(0.0);
                 for i in 0..count {
                     let row = (start + i) % rows;
                     if i == 0 || row == 0 {
                         column = tread.column(first + ((start + i) / rows) as f64, entered);
                     }
-                    let Column { arc, place: [x, z], direction, share } = column;
+                    let TreadColumn { arc, place: [x, z], direction, share } = column;
                     (self.place[0][i], self.place[1][i], self.place[2][i]) = (x, tread.rows[row], z);
                     (self.direction[0][i], self.direction[1][i]) = (direction[0], direction[1]);
                     (self.arc[i], self.area[i]) = (arc, tread.area * share);
@@ -206,9 +230,9 @@ impl<T: Number> Side<T> {
         }
     }
 
-    /// Moves the elements to an instant.
+    /// Finds how the elements move with the body; a tread runs through the face at `tread_speed` (m/s).
     #[inline(always)]
-    fn move_to(&mut self, now: &Instant<T>, tread: Option<f64>) {
+    fn set_motion(&mut self, now: &BodyKinematics<T>, tread_speed: Option<f64>) {
         for i in 0..BLOCK {
             let arm = now.turned([self.place[0][i], self.place[1][i], self.place[2][i]]);
             let velocity = now.velocity(arm);
@@ -216,7 +240,7 @@ impl<T: Number> Side<T> {
             (self.arm[0][i], self.arm[1][i], self.arm[2][i]) = (arm[0], arm[1], arm[2]);
             (self.velocity[0][i], self.velocity[1][i]) = (velocity[0], velocity[1]);
         }
-        let Some(speed) = tread else { return };
+        let Some(speed) = tread_speed else { return };
         for i in 0..BLOCK {
             let along = now.turned([self.direction[0][i], 0.0, self.direction[1][i]]);
             (self.along[0][i], self.along[1][i], self.along[2][i]) = (along[0], along[1], along[2]);
@@ -232,24 +256,25 @@ impl<T: Number> Side<T> {
         self.approach.iter().fold(f64::NEG_INFINITY, |most, a| if a.value() > most { a.value() } else { most }) <= touch
     }
 
-    /// Looks the law up.
+    /// Looks the law up, in loops over the block one after the other: each then runs in vectors, where one loop over all
+    /// would not.
     #[inline(always)]
     fn look_up(&mut self, law: &mut ResampledLaw) {
         let range = law.range();
         for i in 0..BLOCK {
             self.log_speed[i] = range.logarithm(size([self.velocity[0][i], self.velocity[1][i]]));
         }
-        let (mut spots, mut segments) = ([Spot::default(); BLOCK], [0; BLOCK]);
+        let (mut cells, mut intervals) = ([SpeedCell::default(); BLOCK], [0; BLOCK]);
         for i in 0..BLOCK {
-            spots[i] = law.spot(self.log_speed[i].value());
+            cells[i] = law.speed_cell(self.log_speed[i].value());
         }
         for i in 0..BLOCK {
-            segments[i] = law.piece(&spots[i], self.log_speed[i].value(), self.approach[i].value());
+            intervals[i] = law.pressure_interval(&cells[i], self.log_speed[i].value(), self.approach[i].value());
         }
         let mut factor = [T::constant(0.0); BLOCK];
         let mut friction = factor;
         for i in 0..BLOCK {
-            let point = law.at_piece(&spots[i], segments[i], self.log_speed[i], self.approach[i]);
+            let point = law.at_interval(&cells[i], intervals[i], self.log_speed[i], self.approach[i]);
             (self.pressure[i], factor[i]) = (point.log_pressure, point.factor);
             (friction[i], self.stiffness[i]) = (point.friction, point.stiffness);
         }
@@ -261,6 +286,7 @@ impl<T: Number> Side<T> {
         }
     }
 
+    /// No element is in contact.
     fn clear(&mut self) {
         let zero = [T::constant(0.0); BLOCK];
         (self.pressure, self.limit, self.stiffness) = (zero, zero, zero);
@@ -271,8 +297,12 @@ impl<T: Number> Side<T> {
         SpringLaw { stiffness: self.stiffness[i], limit: self.limit[i] }
     }
 
-    fn end(&self, i: usize) -> End<T> {
-        End { approach: self.approach[i], velocity: [self.velocity[0][i], self.velocity[1][i]], area: self.area[i] }
+    fn endpoint(&self, i: usize) -> Endpoint<T> {
+        Endpoint {
+            approach: self.approach[i],
+            velocity: [self.velocity[0][i], self.velocity[1][i]],
+            area: self.area[i],
+        }
     }
 }
 
@@ -285,23 +315,23 @@ impl<T: Number> Block<T> {
             force: [zero; 2],
             stiffness: zero,
             mode: [0; BLOCK],
-            begin: Box::new(Side::new()),
-            end: Box::new(Side::new()),
+            begin: Box::new(BlockContacts::new()),
+            end: Box::new(BlockContacts::new()),
             slips: [0.0; BLOCK],
             slip: [0.0; BLOCK],
             release: [0.0; BLOCK],
         }
     }
 
-    /// Turns to the `count` elements from `start` on, as they are counted in the step; their springs are set afterwards.
-    pub(super) fn turn_to(&mut self, start: usize, count: usize) {
+    /// Makes it the block of the `count` elements from `start` on, as they are counted in the step, with no springs yet.
+    pub(super) fn reset(&mut self, start: usize, count: usize) {
         (self.start, self.count) = (start, count);
         let zero = [T::constant(0.0); BLOCK];
         (self.force, self.stiffness) = ([zero; 2], zero);
         self.slips = [0.0; BLOCK];
         (self.slip, self.release) = ([0.0; BLOCK], [0.0; BLOCK]);
-        for side in [&mut self.begin, &mut self.end] {
-            side.place.iter_mut().for_each(|lanes| lanes[count..].fill(0.0));
+        for contacts in [&mut self.begin, &mut self.end] {
+            contacts.place.iter_mut().for_each(|lanes| lanes[count..].fill(0.0));
         }
         self.end.is_free = true;
         self.end.clear();
@@ -309,69 +339,70 @@ impl<T: Number> Block<T> {
 
     /// Does the step for the block's elements and adds to the sums.
     #[inline(always)]
-    pub(super) fn advance(&mut self, step: &Step<'_, T>, law: &mut ResampledLaw, sums: &mut Sums<T>) {
-        let mut now = step.path.at(0.0);
-        let mut stands = false;
-        for (from, to) in step.parts.iter() {
-            if !step.is_inside(self.start, self.count, (from, to)) {
-                stands = false;
+    pub(super) fn advance(&mut self, step: &PatchStep<'_, T>, law: &mut ResampledLaw, sums: &mut Sums<T>) {
+        let mut now = step.body.at(0.0);
+        // Whether `end` holds the elements at the begin of the substep.
+        let mut is_evaluated = false;
+        for substep in step.substeps.iter() {
+            if !step.is_inside(self.start, self.count, substep) {
+                is_evaluated = false;
                 continue;
             }
-            if !stands {
-                now = step.path.at(from);
-                self.evaluate_at(step, law, &now, from);
-                self.check(step, law, from, sums);
-                stands = true;
+            if !is_evaluated {
+                now = step.body.at(substep.begin);
+                self.evaluate_at(step, law, &now, substep.begin);
+                self.check_table(step, law, substep.begin, sums);
+                is_evaluated = true;
             }
-            let next = step.path.at(to);
+            let next = step.body.at(substep.end);
             std::mem::swap(&mut self.begin, &mut self.end);
-            self.evaluate_at(step, law, &next, to);
-            self.pass_part(step, law, (&now, &next), to - from);
-            self.check(step, law, to, sums);
+            self.evaluate_at(step, law, &next, substep.end);
+            self.advance_springs(step, law, (&now, &next), substep.length());
+            self.check_table(step, law, substep.end, sums);
             now = next;
         }
         self.add_up(step, sums);
     }
 
-    /// Lets the springs, relaxed, take the stiffness of their contacts at the start of a step.
-    pub(super) fn settle(&mut self, step: &Step<'_, T>, law: &mut ResampledLaw, sums: &mut Sums<T>) {
-        self.evaluate_at(step, law, &step.path.at(0.0), 0.0);
-        self.check(step, law, 0.0, sums);
+    /// Gives the springs, relaxed, the stiffness of their contacts at the start of a step.
+    pub(super) fn initialize(&mut self, step: &PatchStep<'_, T>, law: &mut ResampledLaw, sums: &mut Sums<T>) {
+        self.evaluate_at(step, law, &step.body.at(0.0), 0.0);
+        self.check_table(step, law, 0.0, sums);
         self.stiffness = self.end.stiffness;
         self.add_up(step, sums);
     }
 
-    /// Puts the elements where they are after a share of the step: the side `end`.
+    /// Evaluates `end` after a fraction of the step, at which the body is as `now` says.
     #[inline(always)]
-    fn evaluate_at(&mut self, step: &Step<'_, T>, law: &mut ResampledLaw, now: &Instant<T>, share: f64) {
+    fn evaluate_at(&mut self, step: &PatchStep<'_, T>, law: &mut ResampledLaw, now: &BodyKinematics<T>, fraction: f64) {
         let is_tread = matches!(step.face, Face::Tread(_));
-        self.end.place(step, self.start, self.count, step.run.at(share));
-        self.end.move_to(now, is_tread.then_some(step.tread_speed));
+        self.end.set_positions(step, self.start, self.count, step.tread.entered_at(fraction));
+        self.end.set_motion(now, is_tread.then_some(step.tread_speed));
         self.end.is_free = self.end.is_clear(law);
         if self.end.is_free { self.end.clear() } else { self.end.look_up(law) }
     }
 
-    /// Takes the springs through a part.
+    /// Takes the springs from `begin` to `end`, a fraction `length` of the step later.
     #[inline(always)]
-    fn pass_part(
+    fn advance_springs(
         &mut self,
-        step: &Step<'_, T>,
+        step: &PatchStep<'_, T>,
         law: &mut ResampledLaw,
-        (now, next): (&Instant<T>, &Instant<T>),
-        part: f64,
+        (now, next): (&BodyKinematics<T>, &BodyKinematics<T>),
+        length: f64,
     ) {
         if self.begin.is_free && self.end.is_free && self.stiffness.iter().all(|k| k.value() == 0.0) {
             return;
         }
-        let displacement = self.displacements(step, (now, next), part);
+        let displacement = self.displacements(step, (now, next), length);
         let Self { force, stiffness, slips, slip, release, begin, end, count, .. } = self;
-        leap_all(force, stiffness, release, begin);
+        apply_jumps(force, stiffness, release, begin);
         let before = *force;
-        pass_all(force, slips, (slip, release), (begin, end), &displacement);
+        advance_all(force, slips, (slip, release), (begin, end), &displacement);
         for i in 0..*count {
-            if is_cut(begin.pressure[i].value(), end.pressure[i].value()) {
+            if needs_segments(begin.pressure[i].value(), end.pressure[i].value()) {
                 let displacement = [displacement[0][i], displacement[1][i]];
-                let ends = (&begin.end(i), &end.end(i));
+                let ends = (&begin.endpoint(i), &end.endpoint(i));
                 let advanced = advance_in_segments(law, [before[0][i], before[1][i]], ends, displacement);
                 (force[0][i], force[1][i]) = (advanced.force[0], advanced.force[1]);
                 slips[i] = if advanced.slips { 1.0 } else { 0.0 };
@@ -382,9 +413,14 @@ impl<T: Number> Block<T> {
         *stiffness = end.stiffness;
     }
 
-    /// How far the face's material goes along the plane in a part, m.
+    /// How far the face's material goes along the plane from `begin` to `end`, m.
     #[inline(always)]
-    fn displacements(&self, step: &Step<'_, T>, (now, next): (&Instant<T>, &Instant<T>), part: f64) -> [Lanes<T>; 2] {
+    fn displacements(
+        &self,
+        step: &PatchStep<'_, T>,
+        (now, next): (&BodyKinematics<T>, &BodyKinematics<T>),
+        length: f64,
+    ) -> [Lanes<T>; 2] {
         let (begin, end) = (&*self.begin, &*self.end);
         let mut displacement = [[T::constant(0.0); BLOCK]; 2];
         for axis in 0..2 {
@@ -395,10 +431,10 @@ impl<T: Number> Block<T> {
         }
         if let Face::Tread(tread) = step.face {
             // Where a cell is partly inside, its middle does not go as far as its material.
-            let run = step.run.by * part * tread.cell;
+            let travel = step.tread.travel * length * tread.cell;
             for axis in 0..2 {
                 for i in 0..BLOCK {
-                    let rest = run + (end.arc[i] - begin.arc[i]);
+                    let rest = travel + (end.arc[i] - begin.arc[i]);
                     let along = (begin.along[axis][i] + end.along[axis][i]).times(0.5 * rest);
                     displacement[axis][i] = displacement[axis][i] - along;
                 }
@@ -407,9 +443,9 @@ impl<T: Number> Block<T> {
         displacement
     }
 
-    /// Takes note of an element beyond the table.
+    /// Records the first element that is beyond the table, after a fraction of the step.
     #[inline(always)]
-    fn check(&self, step: &Step<'_, T>, law: &ResampledLaw, share: f64, sums: &mut Sums<T>) {
+    fn check_table(&self, step: &PatchStep<'_, T>, law: &ResampledLaw, fraction: f64, sums: &mut Sums<T>) {
         if self.end.is_free {
             return;
         }
@@ -423,26 +459,26 @@ impl<T: Number> Block<T> {
             let p = self.end.pressure[i].value();
             found |= (p > pressure) | ((p > 0.0) & (speed_of(i) > speed * speed));
         }
-        if !found || sums.beyond.is_some_and(|beyond| beyond.share <= share) {
+        if !found || sums.beyond.is_some_and(|beyond| beyond.fraction <= fraction) {
             return;
         }
         let beyond = |i: usize| {
             let (p, v) = (self.end.pressure[i].value(), speed_of(i).sqrt());
             let bears = p > 0.0 && self.end.area[i] > 0.0;
-            let element = step.index_at(self.start + i, share);
-            (bears && (p > pressure || v > speed)).then_some(Beyond { element, share, pressure: p, speed: v })
+            let element = step.index_at(self.start + i, fraction);
+            (bears && (p > pressure || v > speed)).then_some(BeyondTable { element, fraction, pressure: p, speed: v })
         };
         sums.beyond = (0..self.count).find_map(beyond).or(sums.beyond);
     }
 
     /// Adds to the wrench on the body and to the losses.
     #[inline(always)]
-    fn add_up(&mut self, step: &Step<'_, T>, sums: &mut Sums<T>) {
+    fn add_up(&mut self, step: &PatchStep<'_, T>, sums: &mut Sums<T>) {
         let end = &*self.end;
         sums.slip += total(&self.slip);
         sums.release += total(&self.release);
         if end.is_free {
-            self.mode.fill(0);
+            self.mode.fill(ElementMode::Free as u8);
             return;
         }
         let mut loads = [[T::constant(0.0); BLOCK]; 7];
@@ -466,8 +502,8 @@ impl<T: Number> Block<T> {
         }
         sums.transport = sums.transport + total(&loads[6]);
         for i in 0..BLOCK {
-            let mode = if self.slips[i] > 0.0 { 1 } else { 2 };
-            self.mode[i] = if end.stiffness[i].value() > 0.0 { mode } else { 0 };
+            let mode = if self.slips[i] > 0.0 { ElementMode::Slipping } else { ElementMode::Sticking };
+            self.mode[i] = if end.stiffness[i].value() > 0.0 { mode as u8 } else { ElementMode::Free as u8 };
         }
     }
 }
@@ -485,23 +521,29 @@ fn total<T: Number>(lanes: &Lanes<T>) -> T {
     sums[0]
 }
 
-/// Lets all springs of a block follow a jump of the law to that of a side.
+/// Lets all springs of a block follow a jump of their law to that of `contacts`.
 #[inline(always)]
-fn leap_all<T: Number>(force: &mut [Lanes<T>; 2], stiffness: &Lanes<T>, release: &mut Lanes<f64>, side: &Side<T>) {
+fn apply_jumps<T: Number>(
+    force: &mut [Lanes<T>; 2],
+    stiffness: &Lanes<T>,
+    release: &mut Lanes<f64>,
+    contacts: &BlockContacts<T>,
+) {
     for i in 0..BLOCK {
-        let (jumped, lost) = apply_jump([force[0][i], force[1][i]], stiffness[i], &side.law(i));
+        let (jumped, lost) = apply_jump([force[0][i], force[1][i]], stiffness[i], &contacts.law(i));
         (force[0][i], force[1][i]) = (jumped[0], jumped[1]);
         release[i] += lost;
     }
 }
 
-/// Takes all springs of a block through a part; the losses of those that are cut for themselves are left out.
+/// Takes all springs of a block from `begin` to `end` in one segment each; the losses of those that need segments of their
+/// own are left out.
 #[inline(always)]
-fn pass_all<T: Number>(
+fn advance_all<T: Number>(
     force: &mut [Lanes<T>; 2],
     slips: &mut Lanes<f64>,
     (slip, release): (&mut Lanes<f64>, &mut Lanes<f64>),
-    (begin, end): (&Side<T>, &Side<T>),
+    (begin, end): (&BlockContacts<T>, &BlockContacts<T>),
     displacement: &[Lanes<T>; 2],
 ) {
     for i in 0..BLOCK {
@@ -514,7 +556,7 @@ fn pass_all<T: Number>(
             half_turn: half_turn(before, after),
         };
         let advanced = advance([force[0][i], force[1][i]], &segment);
-        let kept = if is_cut(begin.pressure[i].value(), end.pressure[i].value()) { 0.0 } else { 1.0 };
+        let kept = if needs_segments(begin.pressure[i].value(), end.pressure[i].value()) { 0.0 } else { 1.0 };
         (force[0][i], force[1][i]) = (advanced.force[0], advanced.force[1]);
         slips[i] = if advanced.slips { 1.0 } else { 0.0 };
         slip[i] += kept * advanced.slip;
@@ -525,8 +567,8 @@ fn pass_all<T: Number>(
 /// Share of the table's speeds and pressures by which an element may exceed them: rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Whether an element is cut for itself in a part with these pressures at its ends.
+/// Whether an element is advanced in segments of its own in a substep with these pressures at its beginning and end.
 #[inline(always)]
-fn is_cut(before: f64, after: f64) -> bool {
+fn needs_segments(before: f64, after: f64) -> bool {
     (before > MAX_RATIO * after) | (after > MAX_RATIO * before)
 }

@@ -1,63 +1,65 @@
-//! An element whose pressure changes much in a part of a step: its passage, cut where it touches or lifts, at the least
-//! pressure of the table, and each stretch between into segments.
+//! An element whose pressure changes much in a substep: it is cut where the element touches or lifts and where it is at
+//! the least pressure of the table, and each stretch between two cuts is divided into segments.
 
 use crate::element::{Advanced, ResampledLaw, Segment, SpringLaw, advance, apply_jump};
 use crate::math::Number;
 
-/// Pieces of a stretch, at least.
-const MIN_PIECES: f64 = 4.0;
+/// Segments of a stretch, at least.
+const MIN_SEGMENTS: f64 = 4.0;
 /// Change of ln p over a segment, at most.
 const MAX_CHANGE: f64 = 0.125;
 /// Keeps quotients of numbers that vanish together finite.
 const TINY: f64 = 1e-300;
 
-/// An element at the beginning or the end of a part.
+/// An element at the beginning or the end of a substep.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct End<T> {
-    /// m.
+pub(super) struct Endpoint<T> {
+    /// How far it is below the plane z = 0, m.
     pub(super) approach: T,
-    /// m/s.
+    /// Along the plane, m/s.
     pub(super) velocity: [T; 2],
-    /// m².
+    /// Its area, m².
     pub(super) area: f64,
 }
 
-/// An element between two ends, at the share `share` of the way.
+/// An element between two endpoints, after a fraction of the substep.
 struct Between<T> {
-    share: T,
+    fraction: T,
     velocity: [T; 2],
     pressure: f64,
     law: SpringLaw<T>,
 }
 
-/// Takes the spring of an element through a part with the displacement `displacement` (m).
+/// Takes the spring of an element from one endpoint to the other, displaced by `displacement` (m).
 pub(super) fn advance_in_segments<T: Number>(
     law: &mut ResampledLaw,
     force: [T; 2],
-    (begin, end): (&End<T>, &End<T>),
+    (begin, end): (&Endpoint<T>, &Endpoint<T>),
     displacement: [T; 2],
 ) -> Advanced<T> {
-    let stops = stops(law, begin, end);
+    let cuts = cuts(law, begin, end);
     let mut here = between(law, begin, end, T::constant(0.0));
     let mut advanced = Advanced { force, slips: false, slip: 0.0, release: 0.0 };
-    for stop in stops {
-        if stop.value() <= here.share.value() {
+    for cut in cuts {
+        if cut.value() <= here.fraction.value() {
             continue;
         }
-        let (start, there) = (here.share, between(law, begin, end, stop));
-        let segments = segments(here.pressure, there.pressure);
+        // A stretch up to the next cut.
+        let (start, there) = (here.fraction, between(law, begin, end, cut));
+        let segments = segment_count(here.pressure, there.pressure);
         for segment in 1..=segments as u32 {
-            let share = start + (stop - start).times(f64::from(segment) / segments);
-            let next = between(law, begin, end, share);
-            let part = share - here.share;
+            let fraction = start + (cut - start).times(f64::from(segment) / segments);
+            let next = between(law, begin, end, fraction);
+            let length = fraction - here.fraction;
+            // The spring follows the law, then the motion.
             let (force, lost) = apply_jump(advanced.force, here.law.stiffness, &here.law);
-            let this = Segment {
+            let motion = Segment {
                 begin: here.law,
                 end: next.law,
-                displacement: displacement.map(|d| d * part),
+                displacement: displacement.map(|d| d * length),
                 half_turn: half_turn(here.velocity, next.velocity),
             };
-            let further = advance(force, &this);
+            let further = advance(force, &motion);
             advanced = Advanced {
                 slip: advanced.slip + further.slip,
                 release: advanced.release + further.release + lost,
@@ -69,13 +71,13 @@ pub(super) fn advance_in_segments<T: Number>(
     advanced
 }
 
-/// The shares of the part at which the element touches or lifts and at which it is at the least pressure of the table,
-/// in their order, and 1.
-fn stops<T: Number>(law: &mut ResampledLaw, begin: &End<T>, end: &End<T>) -> [T; 3] {
-    let mut beginning = |end: &End<T>| {
+/// The fractions of the substep at which the element touches or lifts and at which it is at the least pressure of the
+/// table, in their order, and 1.
+fn cuts<T: Number>(law: &mut ResampledLaw, begin: &Endpoint<T>, end: &Endpoint<T>) -> [T; 3] {
+    let mut beginning = |end: &Endpoint<T>| {
         let speed = law.range().logarithm(size(end.velocity));
-        let spot = law.spot(speed.value());
-        let (touch, least) = law.beginning(&spot, speed);
+        let cell = law.speed_cell(speed.value());
+        let (touch, least) = law.beginning(&cell, speed);
         (end.approach - touch, end.approach - least)
     };
     let (before, after) = (beginning(begin), beginning(end));
@@ -87,21 +89,22 @@ fn stops<T: Number>(law: &mut ResampledLaw, begin: &End<T>, end: &End<T>) -> [T;
     [touch.smaller(least), touch.larger(least), T::constant(1.0)]
 }
 
-fn segments(before: f64, after: f64) -> f64 {
+/// The number of segments of a stretch with these pressures at its ends.
+fn segment_count(before: f64, after: f64) -> f64 {
     let change = if before > 0.0 && after > 0.0 { (after / before).ln().abs() } else { 0.0 };
-    (change / MAX_CHANGE).ceil().clamp(MIN_PIECES, 1e3)
+    (change / MAX_CHANGE).ceil().clamp(MIN_SEGMENTS, 1e3)
 }
 
-fn between<T: Number>(law: &mut ResampledLaw, begin: &End<T>, end: &End<T>, share: T) -> Between<T> {
-    let straight = |from: T, to: T| from + (to - from) * share;
+fn between<T: Number>(law: &mut ResampledLaw, begin: &Endpoint<T>, end: &Endpoint<T>, fraction: T) -> Between<T> {
+    let straight = |from: T, to: T| from + (to - from) * fraction;
     let velocity = [0, 1].map(|i| straight(begin.velocity[i], end.velocity[i]));
     let area = straight(T::constant(begin.area), T::constant(end.area));
     let speed = law.range().logarithm(size(velocity));
-    let spot = law.spot(speed.value());
-    let point = law.at(&spot, speed, straight(begin.approach, end.approach));
+    let cell = law.speed_cell(speed.value());
+    let point = law.at(&cell, speed, straight(begin.approach, end.approach));
     let pressure = point.pressure();
     let law = SpringLaw { stiffness: area * point.stiffness, limit: area * pressure * point.friction };
-    Between { share, velocity, pressure: pressure.value(), law }
+    Between { fraction, velocity, pressure: pressure.value(), law }
 }
 
 /// The size of a vector.

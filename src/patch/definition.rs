@@ -3,8 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::face::{Arc as Section, Face, Points, Tread};
-use super::motion::Run;
+use super::face::{Face, Points, Section, Tread};
 use crate::element::{Load, ResampledLaw, Table, TableError};
 use crate::scene::{
     Extrapolation, FaceShape, Grid, NotDoubled, Parameter, ParameterError, PatchFile, PatchGroup, Problem, SceneError,
@@ -29,8 +28,19 @@ pub struct PatchElement {
     pub index: usize,
     /// Where it sits in the body's axes, m.
     pub place: [f64; 3],
-    /// m².
+    /// Its area, m².
     pub area: f64,
+}
+
+/// Where an element sits on the face at an instant.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ElementSite {
+    /// In the body's axes, m.
+    pub(super) place: [f64; 3],
+    /// The area of the element that is inside the contact, m².
+    pub(super) area: f64,
+    /// The direction of the arc there, in x and z.
+    pub(super) direction: [f64; 2],
 }
 
 /// The definition of a patch.
@@ -54,7 +64,7 @@ impl Patch {
     /// # Errors
     /// [`PatchError`] with the file, the line, the key, what was given and what is allowed.
     pub fn load(path: &Path) -> Result<Self, PatchError> {
-        Self::of(PatchFile::load(path)?, path)
+        Self::new(PatchFile::load(path)?, path)
     }
 
     /// Reads a patch from `text` as if it were the content of the file at `path`.
@@ -62,10 +72,10 @@ impl Patch {
     /// # Errors
     /// As for [`load`](Self::load).
     pub fn parse(text: &str, path: &Path) -> Result<Self, PatchError> {
-        Self::of(PatchFile::parse(text, path)?, path)
+        Self::new(PatchFile::parse(text, path)?, path)
     }
 
-    fn of(file: PatchFile, path: &Path) -> Result<Self, PatchError> {
+    fn new(file: PatchFile, path: &Path) -> Result<Self, PatchError> {
         let table = Table::load(&path.parent().unwrap_or(Path::new("")).join(&file.table))?;
         Ok(Self {
             nominal_area: nominal_area(&file, &table)?,
@@ -125,6 +135,11 @@ impl Patch {
         }
     }
 
+    /// Whether the changes of the wrench with the targets of a step are asked for.
+    pub(super) fn has_tangents(&self) -> bool {
+        self.groups().contains(&PatchGroup::Tangent)
+    }
+
     /// The groups of variables, in their order.
     pub fn groups(&self) -> &[PatchGroup] {
         &self.file.outputs
@@ -138,7 +153,7 @@ impl Patch {
     /// The elements at the start of a run; a cell of a tread that is not in the contact yet has no area.
     pub fn elements(&self) -> impl Iterator<Item = PatchElement> {
         (0..self.count()).map(|index| {
-            let (place, area, _) = self.element(index, 0.0);
+            let ElementSite { place, area, .. } = self.element(index, 0.0);
             PatchElement { index, place, area }
         })
     }
@@ -196,7 +211,7 @@ impl Patch {
         let law = self.law();
         let lowest = match &*self.face {
             Face::Points(points) => points.z.iter().copied().fold(f64::INFINITY, f64::min),
-            Face::Tread(tread) => tread.arc.at(0.0).0[1] + tread.offset[2],
+            Face::Tread(tread) => tread.section.at(0.0).0[1] + tread.offset[2],
         };
         let step = law.earliest_touch().abs().max(1e-6);
         // A round number, a little higher, is easier to read.
@@ -208,16 +223,18 @@ impl Patch {
         ResampledLaw::new(&self.table, self.nominal_area, self.temperature)
     }
 
-    /// An element's place in the body's axes (m), its area (m²) and the direction of the arc there in x and z, where the
-    /// tread stands `place` cells on.
-    pub(super) fn element(&self, i: usize, place: f64) -> ([f64; 3], f64, [f64; 2]) {
+    /// An element where `entered` cells of the tread have entered.
+    pub(super) fn element(&self, i: usize, entered: f64) -> ElementSite {
         match &*self.face {
-            Face::Points(points) => ([points.x[i], points.y[i], points.z[i]], points.area[i], [1.0, 0.0]),
+            Face::Points(points) => {
+                let place = [points.x[i], points.y[i], points.z[i]];
+                ElementSite { place, area: points.area[i], direction: [1.0, 0.0] }
+            }
             Face::Tread(tread) => {
                 let rows = tread.rows.len();
-                let column = tread.column((i / rows) as f64, place);
+                let column = tread.column((i / rows) as f64, entered);
                 let place = [column.place[0], tread.rows[i % rows], column.place[1]];
-                (place, tread.area * column.share, column.direction)
+                ElementSite { place, area: tread.area * column.share, direction: column.direction }
             }
         }
     }
@@ -316,7 +333,7 @@ fn face(file: &PatchFile) -> Face {
     };
     let Grid { length, width, nx, ny } = *grid;
     let tread = Tread {
-        arc: Section { radius },
+        section: Section { radius },
         length,
         cell: length / nx as f64,
         columns: nx,
@@ -336,7 +353,7 @@ fn single_points(points: &[[f64; 4]], offset: [f64; 3]) -> Points {
 /// The cells of a tread that does not run.
 fn standing(tread: Tread) -> Points {
     let mut points = Points::default();
-    for column in (1..=tread.columns).map(|i| tread.column(i as f64, Run::default().at(0.0))) {
+    for column in (1..=tread.columns).map(|i| tread.column(i as f64, 0.0)) {
         for &y in &tread.rows {
             points.x.push(column.place[0]);
             points.y.push(y);

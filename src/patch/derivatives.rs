@@ -4,9 +4,11 @@
 //! stays at its limit. The pressure follows the approach, arms turn with the body.
 
 use super::contact_times::size;
+use super::definition::ElementSite;
 use super::face::Face;
-use super::motion::{Instant, Path};
+use super::motion::{BodyKinematics, BodyMotion};
 use super::run::PatchRun;
+use super::state::{ElementMode, Totals};
 use super::variables::{PatchOutput, PatchVariable};
 use crate::math::{Dual, Number};
 
@@ -15,33 +17,42 @@ type Rate = Dual<1>;
 /// Outputs that follow the pose at once, and their changes.
 #[derive(Clone, Copy, Debug)]
 struct Changes {
+    /// Force and moment on the body.
     wrench: [Rate; 6],
+    /// The force on the tread.
     transport: Rate,
+    /// The real area of contact.
     real_area: Rate,
-    /// The largest on an element.
+    /// The largest pressure on an element.
     pressure: Rate,
+    /// The part of the normal force on elements beyond the table.
     beyond: Rate,
+    /// Σ|G|.
     tangential: Rate,
+    /// Σ|G|η with the share η of hysteresis in the friction coefficient.
     hysteresis: Rate,
+    /// The energy stored in the springs.
     elastic: Rate,
 }
 
 /// A displacement of the body, or its motion.
 #[derive(Clone, Copy, Debug)]
-struct Shift {
-    /// Of the pose's coordinates.
+struct Displacement {
+    /// Changes of the pose's coordinates.
     pose: [f64; 6],
-    /// Of the tread, in cells.
+    /// How many cells of the tread enter.
     entered: f64,
 }
 
 /// An element as it changes.
 #[derive(Clone, Copy, Debug)]
-struct Changing {
+struct MovingElement {
     area: Rate,
+    /// From the pose's point, in the ground's axes.
     arm: [Rate; 3],
+    /// The direction of the arc in the ground's axes.
     along: [Rate; 3],
-    /// Of the face's material along the plane.
+    /// The displacement of the face's material along the plane.
     displacement: [f64; 2],
 }
 
@@ -52,7 +63,7 @@ fn rate(value: f64, slope: f64) -> Rate {
 impl PatchRun {
     /// Writes into `values` how `variables` change as the pose's coordinates change by `direction` (m and rad per unit).
     pub fn directional_derivative(&mut self, variables: &[PatchVariable], direction: [f64; 6], values: &mut [f64]) {
-        let changes = self.changes(&Shift { pose: direction, entered: 0.0 });
+        let changes = self.changes(&Displacement { pose: direction, entered: 0.0 });
         for (variable, value) in variables.iter().zip(values) {
             *value = changes.rate_of(variable.output).slopes[0];
         }
@@ -67,20 +78,20 @@ impl PatchRun {
             Face::Tread(tread) => self.totals.tread_speed / tread.cell,
             Face::Points(_) => 0.0,
         };
-        Some(self.changes(&Shift { pose: self.totals.rates, entered }).rate_of(output).slopes[0])
+        Some(self.changes(&Displacement { pose: self.totals.rates, entered }).rate_of(output).slopes[0])
     }
 
-    fn changes(&mut self, shift: &Shift) -> Changes {
+    fn changes(&mut self, shift: &Displacement) -> Changes {
         let (totals, now) = (self.totals, self.totals.instant());
         let start = totals.pose.coordinates();
-        let shifted = Path { start, change: shift.pose.map(|slope| rate(0.0, slope)), duration: 1.0 }.at(1.0);
+        let shifted = BodyMotion { start, change: shift.pose.map(|slope| rate(0.0, slope)), duration: 1.0 }.at(1.0);
         let (pressure, speed) = (self.law.largest_pressure(), self.law.largest_speed());
         let mut changes = Changes::zero();
         for i in 0..self.patch.count() {
-            let here = self.present(i, &totals, &now);
-            let element = self.changing(i, shift, &shifted);
+            let here = self.element_contact(i, &totals, &now);
+            let element = self.moving_element(i, shift, &shifted);
             let approach = -(shifted.height + element.arm[2]);
-            let point = self.law.at(&here.spot, rate(here.log_speed, 0.0), approach);
+            let point = self.law.at(&here.cell, rate(here.log_speed, 0.0), approach);
             let normal = point.pressure() * element.area;
             if normal.value <= 0.0 {
                 continue;
@@ -103,8 +114,8 @@ impl PatchRun {
     }
 
     /// An element's place as it changes.
-    fn changing(&self, i: usize, shift: &Shift, shifted: &Instant<Rate>) -> Changing {
-        let (place, area, direction) = self.patch.element(i, self.totals.place);
+    fn moving_element(&self, i: usize, shift: &Displacement, shifted: &BodyKinematics<Rate>) -> MovingElement {
+        let ElementSite { place, area, direction } = self.patch.element(i, self.totals.place);
         let (mut slopes, mut area_slope, mut run) = ([0.0; 3], 0.0, 0.0);
         if let Face::Tread(tread) = &*self.patch.face {
             let (arc, share) = tread.changes((i / tread.rows.len()) as f64, self.totals.place);
@@ -117,7 +128,7 @@ impl PatchRun {
             shifted.rotation.map(|row| row[0].value * slopes[0] + row[1].value * slopes[1] + row[2].value * slopes[2]);
         let along = shifted.turned([direction[0], 0.0, direction[1]]);
         let body = |axis: usize| shifted.moved[axis].slopes[0] + turned[axis].slopes[0];
-        Changing {
+        MovingElement {
             area: rate(area, area_slope),
             arm: std::array::from_fn(|axis| turned[axis] + rate(0.0, moved[axis])),
             along,
@@ -129,8 +140,8 @@ impl PatchRun {
     fn force(&self, i: usize, limit: Rate, stiffness: Rate, displacement: [f64; 2]) -> [Rate; 2] {
         let force = [self.springs.x[i], self.springs.y[i]];
         let slopes = match self.springs.mode[i] {
-            0 => [0.0; 2],
-            1 => {
+            mode if mode == ElementMode::Free as u8 => [0.0; 2],
+            mode if mode == ElementMode::Slipping as u8 => {
                 let strength = force[0].hypot(force[1]);
                 let n = force.map(|g| if strength > 0.0 { g / strength } else { 0.0 });
                 let along = n[0] * displacement[0] + n[1] * displacement[1];
@@ -145,11 +156,11 @@ impl PatchRun {
     }
 
     /// Hysteresis' share of the friction coefficient and the contact ratio, as they change with the approach.
-    fn shares(&mut self, i: usize, totals: &super::state::Totals, now: &Instant<f64>, approach: Rate) -> (Rate, Rate) {
-        let here = self.present(i, totals, now);
+    fn shares(&mut self, i: usize, totals: &Totals, now: &BodyKinematics<f64>, approach: Rate) -> (Rate, Rate) {
+        let here = self.element_contact(i, totals, now);
         // Of smooth cubics over some µm.
         let step = 1e-6 * (approach.value - self.law.earliest_touch()).abs().max(1e-9);
-        let at = |shift: f64| self.law.shares(&here.spot, here.log_speed, approach.value + shift);
+        let at = |shift: f64| self.law.shares(&here.cell, here.log_speed, approach.value + shift);
         let (before, middle, after) = (at(-step), at(0.0), at(step));
         let slope = |from: f64, to: f64| (to - from) / (2.0 * step) * approach.slopes[0];
         (rate(middle.0, slope(before.0, after.0)), rate(middle.1, slope(before.1, after.1)))
@@ -172,7 +183,7 @@ impl Changes {
     }
 
     /// Adds the loads of an element.
-    fn add(&mut self, element: &Changing, force: [Rate; 2], normal: Rate) {
+    fn add(&mut self, element: &MovingElement, force: [Rate; 2], normal: Rate) {
         let [x, y, z] = element.arm;
         let (f_x, f_y, f_z) = (-force[0], -force[1], normal);
         let loads = [f_x, f_y, f_z, y * f_z - z * f_y, z * f_x - x * f_z, x * f_y - y * f_x];

@@ -3,7 +3,7 @@
 //! Elements are in columns across the face: column i from the front, in it the elements from -y to y. A tread has one
 //! column more than the face is divided into; the cells at both ends are partly inside.
 
-use super::motion::Run;
+use super::motion::TreadMotion;
 
 /// The elements of a patch.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,7 +15,7 @@ pub(super) enum Face {
 /// Elements that stay where they are.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Points {
-    /// Positions in the body's axes, m.
+    /// Positions in the body's axes, axis by axis, m.
     pub(super) x: Vec<f64>,
     pub(super) y: Vec<f64>,
     pub(super) z: Vec<f64>,
@@ -28,16 +28,16 @@ pub(super) struct Points {
 /// A grid of cells that moves along -x.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tread {
-    pub(super) arc: Arc,
-    /// Of the contact along the arc, m.
+    pub(super) section: Section,
+    /// The length of the contact along the arc, m.
     pub(super) length: f64,
-    /// Of a cell along the arc, m.
+    /// The length of a cell along the arc, m.
     pub(super) cell: f64,
     /// The number of cells that the length holds.
     pub(super) columns: usize,
     /// Positions of the rows, m.
     pub(super) rows: Vec<f64>,
-    /// Of a cell, m².
+    /// The area of a cell, m².
     pub(super) area: f64,
     /// The face's origin in the body's axes, m.
     pub(super) offset: [f64; 3],
@@ -45,12 +45,12 @@ pub(super) struct Tread {
 
 /// The section of a face: flat, or an arc about an axis along y.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Arc {
-    /// m; `None`: flat.
+pub(super) struct Section {
+    /// The radius of the arc, m; `None` where the face is flat.
     pub(super) radius: Option<f64>,
 }
 
-impl Arc {
+impl Section {
     /// x and z (m) at an arc length from the middle (m), and the direction of the arc there.
     #[inline(always)]
     pub(super) fn at(self, arc: f64) -> ([f64; 2], [f64; 2]) {
@@ -66,27 +66,27 @@ impl Arc {
 
 /// A column of a tread at an instant.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Column {
-    /// The middle of what is inside, m along the arc.
+pub(super) struct TreadColumn {
+    /// Where on the arc the middle of what is inside is, m.
     pub(super) arc: f64,
     /// x and z of it in the body's axes, m.
     pub(super) place: [f64; 2],
-    /// The direction of the arc.
+    /// The direction of the arc there, in x and z.
     pub(super) direction: [f64; 2],
     /// The share of a cell's area that is inside.
     pub(super) share: f64,
 }
 
 impl Tread {
-    /// Column `i` (from the front, as counted at the start of the step) when `entered` cells have entered since.
+    /// TreadColumn `i` (from the front, as counted at the start of the step) when `entered` cells have entered since.
     #[inline(always)]
-    pub(super) fn column(&self, i: f64, entered: f64) -> Column {
+    pub(super) fn column(&self, i: f64, entered: f64) -> TreadColumn {
         let half = 0.5 * self.length;
         let rear = half - (entered + i) * self.cell;
         let (low, high) = (rear.clamp(-half, half), (rear + self.cell).clamp(-half, half));
         let arc = 0.5 * (low + high);
-        let ([x, z], direction) = self.arc.at(arc);
-        Column { arc, place: [self.offset[0] + x, self.offset[2] + z], direction, share: (high - low) / self.cell }
+        let ([x, z], direction) = self.section.at(arc);
+        TreadColumn { arc, place: [self.offset[0] + x, self.offset[2] + z], direction, share: (high - low) / self.cell }
     }
 
     /// How the arc length (m) of the middle of what is inside of a column and its share change as cells enter.
@@ -99,8 +99,8 @@ impl Tread {
     }
 
     /// The first column of a step, as counted at its start, and the number of columns that are inside at some time.
-    pub(super) fn columns_of(&self, run: Run) -> (f64, usize) {
-        let entered = run.entered();
+    pub(super) fn columns_of(&self, motion: TreadMotion) -> (f64, usize) {
+        let entered = motion.whole_cells();
         (-entered.max(0.0), self.columns + 1 + entered.abs() as usize)
     }
 }

@@ -6,16 +6,16 @@
 //!
 //! | file | what it holds |
 //! |------|---------------|
-//! | `motion` | path of the body and of the tread over a step, parts of a step |
+//! | `motion` | motion of the body and of the tread over a step, its substeps |
 //! | `face` | where elements sit |
-//! | `cut` | an element that touches or lifts |
+//! | `contact_times` | an element that touches or lifts |
 //! | `block` | a step of a block of elements |
-//! | `pool` | a step of all blocks, by several threads |
+//! | `worker_pool` | a step of all blocks, by several threads |
 //! | `definition` | a patch: face, table, parameters |
 //! | `state` | motions, errors, what a run holds |
 //! | `run` | a run |
-//! | `survey` | elements one by one, and sums over them |
-//! | `plan` | elements in the plane of their face, for pictures |
+//! | `element_sums` | elements one by one, and sums over them |
+//! | `face_layout` | elements in the plane of their face, for pictures |
 //! | `derivatives` | changes of outputs with the pose and by time |
 //! | `variables` | output variables |
 
@@ -23,17 +23,17 @@ mod block;
 mod contact_times;
 mod definition;
 mod derivatives;
+mod element_sums;
 mod face;
+mod face_layout;
 mod motion;
-mod plan;
 mod run;
 mod state;
-mod survey;
 mod variables;
 mod worker_pool;
 
 pub use definition::{Patch, PatchElement, PatchError};
-pub use plan::{FaceElement, FacePlan};
+pub use face_layout::{FaceElement, FaceLayout};
 pub use run::PatchRun;
 pub use state::{MotionError, PatchMotion, PatchStart, PatchState, Pose, RestoreError};
 pub use variables::{COORDINATES, PatchOutput, PatchVariable};

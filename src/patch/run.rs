@@ -1,16 +1,16 @@
 //! A run of a patch: steps over all its elements.
 
-use super::block::{Beyond, Block, Step, Sums};
+use super::block::{BeyondTable, Block, PatchStep, Sums};
 use super::definition::Patch;
 use super::face::Face;
-use super::motion::{Parts, Path, Run};
+use super::motion::{BodyMotion, Substeps, TreadMotion};
 use super::state::{
-    MotionError, PatchMotion, PatchStart, PatchState, Pose, RestoreError, Springs, Totals, check_duration, max_parts,
+    MotionError, PatchMotion, PatchStart, PatchState, Pose, RestoreError, Springs, Totals, check_duration, max_substeps,
 };
 use super::worker_pool::WorkerPool;
 use crate::element::ResampledLaw;
 use crate::math::Dual;
-use crate::scene::{PatchGroup, TableExtrapolation};
+use crate::scene::TableExtrapolation;
 
 /// What `table.extrapolation = "hold"` does.
 const HELD: &str =
@@ -23,19 +23,27 @@ pub struct PatchRun {
     pub(super) law: ResampledLaw,
     pub(super) totals: Totals,
     pub(super) springs: Springs,
-    /// Of the step under way.
+    /// The springs at the end of the step under way.
     next: Springs,
+    /// Changes of the wrench with the targets of the last step, where they are asked for.
     pub(super) tangents: Option<Box<[[f64; 6]; 6]>>,
-    workspace: Workspace,
-    /// Whether it has warned of a temperature, and of an element, beyond the table: no part of a state, so that a step that
-    /// is repeated does not warn again.
+    workers: Workers,
+    /// By [`Excess`], whether it has warned of it: no part of a state, so that a step that is repeated does not warn again.
     warned: [bool; 2],
+    /// Those not taken yet.
     warnings: Vec<String>,
+}
+
+/// What is beyond the table.
+#[derive(Clone, Copy, Debug)]
+enum Excess {
+    Temperature,
+    Element,
 }
 
 /// Who does the steps, with derivatives where tangents are asked for.
 #[derive(Clone, Debug)]
-enum Workspace {
+enum Workers {
     Plain(WorkerPool<f64>),
     Tangent(WorkerPool<Dual<6>>),
 }
@@ -57,22 +65,22 @@ impl PatchRun {
             temperature: start.temperature,
             ..Totals::default()
         };
-        run.settle()?;
+        run.initialize_springs()?;
         Ok(run)
     }
 
-    /// A run with nothing set.
+    /// A run of a patch at a temperature (K), nothing else of its state set.
     fn at(patch: &Patch, temperature: f64) -> Self {
-        let tangents = patch.groups().contains(&PatchGroup::Tangent);
+        let tangents = patch.has_tangents();
         let mut law = patch.law();
         if let Some(held) = patch.held_temperature(temperature) {
             law.set_temperature(held);
         }
         let work = patch.count() as f64 * f64::from(patch.refine);
-        let workspace = if tangents {
-            Workspace::Tangent(WorkerPool::new(work, &law))
+        let workers = if tangents {
+            Workers::Tangent(WorkerPool::new(work, &law))
         } else {
-            Workspace::Plain(WorkerPool::new(work, &law))
+            Workers::Plain(WorkerPool::new(work, &law))
         };
         let springs = Springs::new(patch.count());
         Self {
@@ -81,29 +89,29 @@ impl PatchRun {
             next: springs.clone(),
             springs,
             tangents: tangents.then(|| Box::new([[0.0; 6]; 6])),
-            workspace,
+            workers,
             warned: [false; 2],
             warnings: Vec::new(),
             patch: patch.clone(),
         }
     }
 
-    /// Lets relaxed springs take the stiffness of their contacts.
-    fn settle(&mut self) -> Result<(), MotionError> {
+    /// Gives relaxed springs the stiffness of their contacts.
+    fn initialize_springs(&mut self) -> Result<(), MotionError> {
         let Totals { time, rates, tread_speed, place, .. } = self.totals;
-        let run = Run { from: place, by: 0.0 };
-        // The rates alone count.
-        let path = Path { start: self.totals.pose.coordinates(), change: rates, duration: 1.0 };
+        let tread = TreadMotion { start: place, travel: 0.0 };
+        // The springs are evaluated at the start alone: of the motion only its rates count.
+        let body = BodyMotion { start: self.totals.pose.coordinates(), change: rates, duration: 1.0 };
         let face = &self.patch.face;
-        let step = Step { face, path, run, parts: Parts::new(run, 0.0, 1), tread_speed };
+        let step = PatchStep { face, body, tread, substeps: Substeps::new(tread, 0.0, 1), tread_speed };
         let springs = (&self.springs, &mut self.next);
         let sums = WorkerPool::with_threads(1, &self.law).work(&step, &mut self.law, springs, |block, law, sums| {
-            block.settle(&step, law, sums);
+            block.initialize(&step, law, sums);
         });
         let mut reached = self.totals;
         reached.add(&sums, 0.0);
         reached.check(None)?;
-        self.judge(reached.temperature, sums.beyond, (time, 0.0))?;
+        self.check_table(reached.temperature, sums.beyond, |_| time)?;
         self.springs.clone_from(&self.next);
         self.totals = reached;
         Ok(())
@@ -135,7 +143,9 @@ impl PatchRun {
     /// [`MotionError`]; the patch is then as it was.
     pub fn advance(&mut self, motion: &PatchMotion) -> Result<(), MotionError> {
         let PatchMotion { duration, rates, transport_speed, temperature } = *motion;
-        let Totals { time, pose, place, temperature: temperature_before, .. } = self.totals;
+        let Totals { time, pose, temperature: temperature_before, .. } = self.totals;
+
+        // Check where the motion leads.
         let start = pose.coordinates();
         let change = rates.map(|rate| rate * duration);
         let end = Pose::from_coordinates(std::array::from_fn(|i| start[i] + change[i]));
@@ -144,44 +154,53 @@ impl PatchRun {
             return Ok(());
         }
         check_duration(duration, time)?;
+
+        // Divide the step.
         let tread_speed = 0.5 * (self.totals.transport_speed + transport_speed);
-        let run = self.run(place, tread_speed * duration);
-        let path = Path { start, change, duration };
-        let parts = Parts::new(run, path.turn(), self.patch.refine);
-        let most = max_parts(self.patch.count());
-        let count = parts.count(most);
+        let tread = self.tread_motion(tread_speed * duration);
+        let body = BodyMotion { start, change, duration };
+        let substeps = Substeps::new(tread, body.turn(), self.patch.refine);
+        let most = max_substeps(self.patch.count());
+        let count = substeps.count(most);
         if count > most || count.is_nan() {
-            return Err(MotionError::TooManyParts { time, parts: count, most });
+            return Err(MotionError::TooManySubsteps { time, substeps: count, most });
         }
+
+        // Advance the springs of all elements, block by block.
         self.set_temperature(temperature);
-        let Self { patch, law, springs, next, workspace, .. } = self;
+        let Self { patch, law, springs, next, workers, .. } = self;
         let face = &*patch.face;
-        let (sums, tangents) = match workspace {
-            Workspace::Plain(pool) => {
-                let step = Step { face, path, run, parts, tread_speed };
+        let (sums, tangents) = match workers {
+            Workers::Plain(pool) => {
+                let step = PatchStep { face, body, tread, substeps, tread_speed };
                 let widest = pulp::Arch::new();
                 let sums = pool.work(&step, law, (springs, next), |block, law, sums| {
                     widest.dispatch(Advance { block, step: &step, law, sums });
                 });
                 (sums, None)
             }
-            Workspace::Tangent(pool) => {
-                let path = Path { start, change: std::array::from_fn(|i| Dual::variable(change[i], i)), duration };
-                let step = Step { face, path, run, parts, tread_speed };
+            Workers::Tangent(pool) => {
+                let body =
+                    BodyMotion { start, change: std::array::from_fn(|i| Dual::variable(change[i], i)), duration };
+                let step = PatchStep { face, body, tread, substeps, tread_speed };
                 let advance = |block: &mut Block<_>, law: &mut _, sums: &mut _| block.advance(&step, law, sums);
                 let sums = pool.work(&step, law, (springs, next), advance);
-                (sums.plain(), Some(sums.wrench.map(|load| load.slopes)))
+                (sums.values(), Some(sums.wrench.map(|load| load.slopes)))
             }
         };
+
+        // Refuse the step or take it over.
         let mut reached = self.totals;
         reached.add(&sums, duration);
         (reached.time, reached.pose, reached.rates) = (time + duration, end, rates);
         (reached.transport_speed, reached.tread_speed, reached.temperature) =
             (transport_speed, tread_speed, temperature);
         // Just below a whole number, rounding may give 1.
-        reached.place = (run.at(1.0) - run.entered()).min(1.0_f64.next_down());
-        let judged = reached.check(tangents.as_ref());
-        if let Err(error) = judged.and_then(|()| self.judge(temperature, sums.beyond, (time, duration))) {
+        reached.place = (tread.entered_at(1.0) - tread.whole_cells()).min(1.0_f64.next_down());
+        let checked = reached.check(tangents.as_ref());
+        if let Err(error) =
+            checked.and_then(|()| self.check_table(temperature, sums.beyond, |fraction| time + fraction * duration))
+        {
             self.set_temperature(temperature_before);
             return Err(error);
         }
@@ -199,32 +218,39 @@ impl PatchRun {
         }
     }
 
-    /// A tread that goes on by a length (m).
-    fn run(&self, place: f64, length: f64) -> Run {
+    /// The tread going on by a length (m).
+    fn tread_motion(&self, length: f64) -> TreadMotion {
         match &*self.patch.face {
-            Face::Tread(tread) => Run { from: place, by: length / tread.cell },
-            Face::Points(_) => Run::default(),
+            Face::Tread(tread) => TreadMotion { start: self.totals.place, travel: length / tread.cell },
+            Face::Points(_) => TreadMotion::default(),
         }
     }
 
-    /// Refuses a temperature or an element beyond the table, or warns of the first.
-    fn judge(&mut self, kelvin: f64, beyond: Option<Beyond>, (time, duration): (f64, f64)) -> Result<(), MotionError> {
+    /// Refuses a temperature (K) or an element beyond the table, or warns of the first; `time_at` is the time (s) after a
+    /// fraction of the step.
+    fn check_table(
+        &mut self,
+        kelvin: f64,
+        beyond: Option<BeyondTable>,
+        time_at: impl Fn(f64) -> f64,
+    ) -> Result<(), MotionError> {
         if self.patch.held_temperature(kelvin).is_some_and(|held| held != kelvin) {
-            self.refuse_or_warn(0, |_| MotionError::TemperatureBeyondTable { time, kelvin })?;
+            let error = |_: &Patch| MotionError::TemperatureBeyondTable { time: time_at(0.0), kelvin };
+            self.refuse_or_warn(Excess::Temperature, error)?;
         }
-        let Some(Beyond { element, share, pressure, speed }) = beyond else { return Ok(()) };
-        self.refuse_or_warn(1, |patch| {
-            let (element, time) = (patch.element_name(element), time + share * duration);
-            MotionError::BeyondTable { element, time, pressure, speed, within: share > 0.0 }
+        let Some(BeyondTable { element, fraction, pressure, speed }) = beyond else { return Ok(()) };
+        self.refuse_or_warn(Excess::Element, |patch| {
+            let (element, time) = (patch.element_name(element), time_at(fraction));
+            MotionError::BeyondTable { element, time, pressure, speed, within: fraction > 0.0 }
         })
     }
 
     /// Refuses what is beyond the table, or warns of this kind of it once a run.
-    fn refuse_or_warn(&mut self, kind: usize, error: impl Fn(&Patch) -> MotionError) -> Result<(), MotionError> {
+    fn refuse_or_warn(&mut self, excess: Excess, error: impl Fn(&Patch) -> MotionError) -> Result<(), MotionError> {
         if self.patch.table_extrapolation == TableExtrapolation::Refuse {
             return Err(error(&self.patch));
         }
-        if !std::mem::replace(&mut self.warned[kind], true) {
+        if !std::mem::replace(&mut self.warned[excess as usize], true) {
             self.warnings.push(format!("{}; {HELD}", error(&self.patch)));
         }
         Ok(())
@@ -257,21 +283,20 @@ impl PatchRun {
     /// # Errors
     /// As for [`restore`](Self::restore); the run is then as it was.
     pub fn set_state(&mut self, saved: &PatchState) -> Result<(), RestoreError> {
-        let wanted = self.tangents.is_some();
-        saved.check(self.patch.count(), wanted)?;
+        saved.check(&self.patch)?;
         let before = self.totals.temperature;
         self.set_temperature(saved.totals.temperature);
         if let Err(error) = self.check_limits(saved) {
             self.set_temperature(before);
             return Err(error);
         }
-        self.go_on_from(saved);
+        self.continue_from(saved);
         Ok(())
     }
 
     /// Continues from `saved`, a state of the same patch that a run has saved or that was checked when it was read;
     /// allocates nothing.
-    pub(crate) fn go_on_from(&mut self, saved: &PatchState) {
+    pub(crate) fn continue_from(&mut self, saved: &PatchState) {
         self.set_temperature(saved.totals.temperature);
         self.totals = saved.totals;
         self.springs.clone_from(&saved.springs);
@@ -284,7 +309,7 @@ impl PatchRun {
 /// A step of a block, to be done with the widest vectors of the processor; numbers are the same with all.
 struct Advance<'a, 'b> {
     block: &'a mut Block<f64>,
-    step: &'a Step<'b, f64>,
+    step: &'a PatchStep<'b, f64>,
     law: &'a mut ResampledLaw,
     sums: &'a mut Sums<f64>,
 }
@@ -320,9 +345,9 @@ mod tests {
                 let pose = Pose { place: [0.0, 0.0, 0.2999], angles: [0.0; 3] };
                 let start = PatchStart { pose, transport_speed: 1.0, ..PatchStart::default() };
                 let mut run = PatchRun::new(&patch, &start).unwrap();
-                match &mut run.workspace {
-                    Workspace::Plain(pool) => *pool = WorkerPool::with_threads(threads, &run.law),
-                    Workspace::Tangent(pool) => *pool = WorkerPool::with_threads(threads, &run.law),
+                match &mut run.workers {
+                    Workers::Plain(pool) => *pool = WorkerPool::with_threads(threads, &run.law),
+                    Workers::Tangent(pool) => *pool = WorkerPool::with_threads(threads, &run.law),
                 }
                 let rates = [0.9, 0.1, -0.01, 0.2, 0.0, 0.3];
                 let motion = PatchMotion { duration: 1e-3, rates, transport_speed: 1.1, temperature: 0.0 };

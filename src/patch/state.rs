@@ -1,35 +1,38 @@
 //! What a run of a patch is told, what it may refuse, and what it holds.
 
+use std::ops::Range;
+
 use serde::{Deserialize, Serialize};
 
 use super::block::{Block, Sums};
-use super::motion::Path;
+use super::definition::Patch;
+use super::motion::BodyMotion;
 use crate::math::Number;
 use crate::scene::{SMALLEST, is_possible};
 
-/// Most parts of a step, whatever the number of elements.
-const MAX_PARTS: f64 = 1e5;
-/// Most parts of a step times elements: some seconds of work. A master that diverges would wait for minutes otherwise.
-const MAX_ELEMENT_PARTS: f64 = 2e6;
-/// Parts that a step may always have, however many elements a patch has.
-const MIN_PARTS_ALLOWED: f64 = 1e3;
+/// Most substeps of a step, whatever the number of elements.
+const MAX_SUBSTEPS: f64 = 1e5;
+/// Most substeps of a step times elements: some seconds of work. A master that diverges would wait for minutes otherwise.
+const MAX_ELEMENT_SUBSTEPS: f64 = 2e6;
+/// Substeps that a step may always have, however many elements a patch has.
+const MIN_SUBSTEPS_ALLOWED: f64 = 1e3;
 
-/// The most parts that a step of a patch of `elements` may have.
-pub(super) fn max_parts(elements: usize) -> f64 {
-    (MAX_ELEMENT_PARTS / elements as f64).clamp(MIN_PARTS_ALLOWED, MAX_PARTS)
+/// The most substeps that a step of a patch of `elements` may have.
+pub(super) fn max_substeps(elements: usize) -> f64 {
+    (MAX_ELEMENT_SUBSTEPS / elements as f64).clamp(MIN_SUBSTEPS_ALLOWED, MAX_SUBSTEPS)
 }
 
 /// Where a body is and how it moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
-    /// x, y, z, m.
+    /// The position of the pose's point: x, y, z, m.
     pub place: [f64; 3],
-    /// Roll, pitch, yaw, rad.
+    /// The orientation: roll, pitch, yaw, rad.
     pub angles: [f64; 3],
 }
 
 impl Pose {
-    /// x, y, z, roll, pitch, yaw.
+    /// x, y, z (m), roll, pitch, yaw (rad).
     pub fn coordinates(&self) -> [f64; 6] {
         let ([x, y, z], [roll, pitch, yaw]) = (self.place, self.angles);
         [x, y, z, roll, pitch, yaw]
@@ -37,7 +40,7 @@ impl Pose {
 
     /// Places of the body's axes (m) from the pose's point in the ground's axes, m.
     pub fn arms(&self, places: impl IntoIterator<Item = [f64; 3]>) -> Vec<[f64; 3]> {
-        let now = Path { start: self.coordinates(), change: [0.0; 6], duration: 1.0 }.at(0.0);
+        let now = BodyMotion { start: self.coordinates(), change: [0.0; 6], duration: 1.0 }.at(0.0);
         places.into_iter().map(|place| now.turned(place)).collect()
     }
 
@@ -50,20 +53,20 @@ impl Pose {
 /// How a patch moves over a step: straight from where it stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PatchMotion {
-    /// s.
+    /// How long the step takes, s.
     pub duration: f64,
     /// The rates of the pose's coordinates, m/s and rad/s.
     pub rates: [f64; 6],
     /// The speed of the tread at the end, m/s; 0 without one.
     pub transport_speed: f64,
-    /// K; 0 where the table has no temperatures.
+    /// The temperature over the step, K; 0 where the table has no temperatures.
     pub temperature: f64,
 }
 
 /// Where a run begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PatchStart {
-    /// s.
+    /// The time, s.
     pub time: f64,
     /// The pose.
     pub pose: Pose,
@@ -71,7 +74,7 @@ pub struct PatchStart {
     pub rates: [f64; 6],
     /// The speed of the tread, m/s; 0 without one.
     pub transport_speed: f64,
-    /// K; 0 where the table has no temperatures.
+    /// The temperature, K; 0 where the table has no temperatures.
     pub temperature: f64,
 }
 
@@ -85,16 +88,16 @@ pub enum MotionError {
         what: &'static str,
         /// Its value.
         value: f64,
-        /// s.
+        /// The time, s.
         time: f64,
     },
-    /// The step would take too many parts.
-    #[error("the step from t = {time} s takes {parts:.0} parts or more: more than {most:.0}; take shorter steps")]
-    TooManyParts {
-        /// s.
+    /// The step would take too many substeps.
+    #[error("the step from t = {time} s takes {substeps:.0} substeps or more: more than {most:.0}; take shorter steps")]
+    TooManySubsteps {
+        /// The time, s.
         time: f64,
         /// How many, at least.
-        parts: f64,
+        substeps: f64,
         /// How many a patch of so many elements may take.
         most: f64,
     },
@@ -103,11 +106,11 @@ pub enum MotionError {
     BeyondTable {
         /// Its name, as its variables have it.
         element: String,
-        /// s.
+        /// The time, s.
         time: f64,
-        /// Pa.
+        /// The pressure on it, Pa.
         pressure: f64,
-        /// m/s.
+        /// Its speed along the plane, m/s.
         speed: f64,
         /// Whether a shorter step may end before.
         within: bool,
@@ -115,9 +118,9 @@ pub enum MotionError {
     /// The temperature is beyond the table.
     #[error("the temperature {kelvin} K is beyond the table at t = {time} s")]
     TemperatureBeyondTable {
-        /// s.
+        /// The time, s.
         time: f64,
-        /// K.
+        /// The temperature, K.
         kelvin: f64,
     },
 }
@@ -143,15 +146,25 @@ pub enum RestoreError {
     },
 }
 
+/// What an element does; in states, as a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub(super) enum ElementMode {
+    Free = 0,
+    Slipping = 1,
+    Sticking = 2,
+}
+
 /// The springs of all elements.
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Springs {
-    /// G, N.
+    /// G along x, the force on the ground, N.
     pub(super) x: Vec<f64>,
+    /// G along y, N.
     pub(super) y: Vec<f64>,
-    /// K, N/m.
+    /// K, the stiffness, N/m.
     pub(super) stiffness: Vec<f64>,
-    /// 0 free, 1 slips, 2 sticks.
+    /// By the numbers of [`ElementMode`].
     pub(super) mode: Vec<u8>,
 }
 
@@ -171,13 +184,17 @@ impl Clone for Springs {
 }
 
 impl Springs {
+    pub(super) fn sticks(&self, i: usize) -> bool {
+        self.mode[i] == ElementMode::Sticking as u8
+    }
+
     pub(super) fn new(count: usize) -> Self {
         Self { x: vec![0.0; count], y: vec![0.0; count], stiffness: vec![0.0; count], mode: vec![0; count] }
     }
 
     /// Sets the springs of a block; its first element is the one at `start` here. Those that are not here are relaxed.
     pub(super) fn load<T: Number>(&self, block: &mut Block<T>, start: isize, count: usize) {
-        for (lane, i) in indices((0, self.x.len()), start, count) {
+        for (lane, i) in indices(0..self.x.len(), start, count) {
             block.force[0][lane] = T::constant(self.x[i]);
             block.force[1][lane] = T::constant(self.y[i]);
             block.stiffness[lane] = T::constant(self.stiffness[i]);
@@ -219,7 +236,7 @@ impl<'a> SpringsMut<'a> {
 
     /// Takes the springs of a block over; its first element has the index `start`. Those that are not here are lost.
     pub(super) fn store<T: Number>(&mut self, block: &Block<T>, start: isize, count: usize) {
-        for (lane, i) in indices((self.first, self.x.len()), start, count) {
+        for (lane, i) in indices(self.first..self.first + self.x.len(), start, count) {
             self.x[i] = block.force[0][lane].value();
             self.y[i] = block.force[1][lane].value();
             self.stiffness[i] = block.stiffness[lane].value();
@@ -235,13 +252,13 @@ fn take<'a, T>(slice: &mut &'a mut [T], count: usize) -> &'a mut [T] {
     front
 }
 
-/// The lanes of a block whose first element has the index `start`, as far as they are among the `length` springs from
-/// index `first` on, and their places there.
-fn indices((first, length): (usize, usize), start: isize, count: usize) -> impl Iterator<Item = (usize, usize)> {
-    let start = start - first as isize;
+/// The lanes of a block of `count` elements from the index `start` on, as far as they are among the `springs`, and their
+/// places there.
+fn indices(springs: Range<usize>, start: isize, count: usize) -> impl Iterator<Item = (usize, usize)> {
+    let start = start - springs.start as isize;
     let skipped = start.min(0).unsigned_abs().min(count);
     let place = start.max(0).unsigned_abs();
-    let shared = (count - skipped).min(length.saturating_sub(place));
+    let shared = (count - skipped).min(springs.len().saturating_sub(place));
     (0..shared).map(move |i| (skipped + i, place + i))
 }
 
@@ -252,18 +269,20 @@ pub(super) struct Totals {
     pub(super) pose: Pose,
     /// The rates of the pose in the last step, or at the start.
     pub(super) rates: [f64; 6],
-    /// At the end of the last step.
+    /// The speed of the tread at the end of the last step.
     pub(super) transport_speed: f64,
-    /// At which the tread ran in the last step, on average.
+    /// The mean speed of the tread over the last step.
     pub(super) tread_speed: f64,
-    /// Of the tread, in cells: from 0 to below 1.
+    /// The part of a cell of the tread that has entered: from 0 to below 1.
     pub(super) place: f64,
     pub(super) temperature: f64,
+    /// Force and moment on the body.
     pub(super) wrench: [f64; 6],
+    /// The force on the tread.
     pub(super) transport_force: f64,
-    /// Since the start, by slip and by release.
+    /// Energies lost since the start, by slip and by release.
     pub(super) lost: [f64; 2],
-    /// Mean over the last step, W.
+    /// The dissipated power, mean over the last step.
     pub(super) power: f64,
 }
 
@@ -272,7 +291,7 @@ pub(super) struct Totals {
 pub struct PatchState {
     pub(super) totals: Totals,
     pub(super) springs: Springs,
-    /// `None` where they are not asked for.
+    /// Changes of the wrench with the targets of a step; `None` where they are not asked for.
     pub(super) tangents: Option<Box<[[f64; 6]; 6]>>,
 }
 
@@ -331,8 +350,9 @@ impl Totals {
 
 impl PatchState {
     /// Refuses numbers that no run can have reached.
-    pub(super) fn check(&self, count: usize, has_tangents: bool) -> Result<(), RestoreError> {
+    pub(super) fn check(&self, patch: &Patch) -> Result<(), RestoreError> {
         let Springs { x, y, stiffness, mode } = &self.springs;
+        let count = patch.count();
         for found in [x.len(), y.len(), stiffness.len(), mode.len()] {
             if found != count {
                 return Err(RestoreError::Count { found, expected: count });
@@ -348,14 +368,14 @@ impl PatchState {
         if let Some(value) = stiffness.iter().find(|value| !(value.is_finite() && **value >= 0.0)) {
             return invalid("the stiffness of a spring", *value);
         }
-        if let Some(value) = mode.iter().find(|value| **value > 2) {
+        if let Some(value) = mode.iter().find(|value| **value > ElementMode::Sticking as u8) {
             return invalid("a mode", f64::from(*value));
         }
         let place = self.totals.place;
         if !(0.0..1.0).contains(&place) {
             return invalid("the place of the tread", place);
         }
-        if self.tangents.is_some() != has_tangents {
+        if self.tangents.is_some() != patch.has_tangents() {
             return invalid("the number of tangents", 0.0);
         }
         if let Some(value) =

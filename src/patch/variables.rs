@@ -1,8 +1,8 @@
 //! The output variables of a patch: names, units and values.
 
 use super::definition::Patch;
+use super::element_sums::ElementSums;
 use super::run::PatchRun;
-use super::survey::Survey;
 use crate::outputs::Kind;
 use crate::scene::{PatchGroup, Unit};
 
@@ -234,14 +234,17 @@ impl PatchRun {
     /// Writes the values of `variables`, in their order, into `values`; allocates nothing.
     pub fn evaluate(&mut self, variables: &[PatchVariable], values: &mut [f64]) {
         let of_all = |group| matches!(group, PatchGroup::Contact | PatchGroup::Friction | PatchGroup::Energy);
-        let survey =
-            if variables.iter().any(|variable| of_all(variable.group)) { self.survey() } else { Survey::default() };
+        let sums = if variables.iter().any(|variable| of_all(variable.group)) {
+            self.element_sums()
+        } else {
+            ElementSums::default()
+        };
         for (variable, value) in variables.iter().zip(values) {
-            *value = self.value(variable.output, &survey);
+            *value = self.value(variable.output, &sums);
         }
     }
 
-    fn value(&mut self, output: PatchOutput, survey: &Survey) -> f64 {
+    fn value(&mut self, output: PatchOutput, sums: &ElementSums) -> f64 {
         let totals = &self.totals;
         match output {
             PatchOutput::Force(axis) => totals.wrench[axis],
@@ -251,15 +254,15 @@ impl PatchRun {
             PatchOutput::Energy => totals.lost[0] + totals.lost[1],
             PatchOutput::SlipEnergy => totals.lost[0],
             PatchOutput::ReleaseEnergy => totals.lost[1],
-            PatchOutput::Count => survey.count as f64,
-            PatchOutput::Sticking => survey.sticking as f64,
-            PatchOutput::NominalArea => survey.nominal_area,
-            PatchOutput::RealArea => survey.real_area,
-            PatchOutput::Pressure => survey.pressure,
-            PatchOutput::Beyond => share(survey.beyond, survey.normal),
+            PatchOutput::Count => sums.count as f64,
+            PatchOutput::Sticking => sums.sticking as f64,
+            PatchOutput::NominalArea => sums.nominal_area,
+            PatchOutput::RealArea => sums.real_area,
+            PatchOutput::Pressure => sums.pressure,
+            PatchOutput::Beyond => share(sums.beyond, sums.normal),
             PatchOutput::Friction => share(totals.wrench[0].hypot(totals.wrench[1]), totals.wrench[2]),
-            PatchOutput::Hysteresis => share(survey.hysteresis, survey.tangential),
-            PatchOutput::ElasticEnergy => survey.elastic,
+            PatchOutput::Hysteresis => share(sums.hysteresis, sums.tangential),
+            PatchOutput::ElasticEnergy => sums.elastic,
             PatchOutput::Tangent(row, column) => self.tangents.as_ref().map_or(0.0, |rows| rows[row][column]),
             PatchOutput::ElementPressure(i) => self.pressure_on(i),
             PatchOutput::ElementTraction(i, axis) => self.traction_on(i, axis),

@@ -8,7 +8,7 @@ use std::num::NonZero;
 use std::sync::Mutex;
 use std::thread;
 
-use super::block::{BLOCK, Block, Step, Sums};
+use super::block::{BLOCK, Block, ElementRange, PatchStep, Sums};
 use super::state::{Springs, SpringsMut};
 use crate::element::ResampledLaw;
 use crate::math::Number;
@@ -17,7 +17,7 @@ use crate::math::Number;
 const MAX_BATCHES: usize = 128;
 /// Blocks of a batch, at least.
 const MIN_BLOCKS: usize = 16;
-/// Elements times parts that are worth a thread: starting one is next to nothing beside them.
+/// Elements times substeps that are worth a thread: starting one is next to nothing beside them.
 const WORTH_A_THREAD: f64 = 16384.0;
 
 /// The workers of a patch, and the sums of their batches.
@@ -44,10 +44,10 @@ struct Batch<'a, T> {
 }
 
 impl<T: Number + Send + Sync> WorkerPool<T> {
-    /// For steps of so many elements times parts or more: as many as the processor serves at once and the steps are worth.
-    pub(super) fn new(elements_and_parts: f64, law: &ResampledLaw) -> Self {
+    /// For steps of so many elements times substeps or more: as many as the processor serves at once and the steps are worth.
+    pub(super) fn new(work: f64, law: &ResampledLaw) -> Self {
         let threads = thread::available_parallelism().map_or(1, NonZero::get);
-        Self::with_threads(threads.min((elements_and_parts / WORTH_A_THREAD) as usize), law)
+        Self::with_threads(threads.min((work / WORTH_A_THREAD) as usize), law)
     }
 
     /// One, or `threads` of them.
@@ -63,23 +63,26 @@ impl<T: Number + Send + Sync> WorkerPool<T> {
     /// Does `work` for every block of a step, from the springs in `springs` to those in `next`; returns the sums.
     pub(super) fn work(
         &mut self,
-        step: &Step<'_, T>,
+        step: &PatchStep<'_, T>,
         law: &mut ResampledLaw,
         (springs, next): (&Springs, &mut Springs),
         work: impl Fn(&mut Block<T>, &mut ResampledLaw, &mut Sums<T>) + Sync,
     ) -> Sums<T> {
         let Self { block, workers, sums } = self;
-        let (first, count, entered) = step.elements();
-        let size = count.div_ceil(MAX_BATCHES).next_multiple_of(BLOCK).max(MIN_BLOCKS * BLOCK);
-        let batches = count.div_ceil(size);
+        let range = step.elements();
+        // Divide the blocks into batches of equal size.
+        let size = range.count.div_ceil(MAX_BATCHES).next_multiple_of(BLOCK).max(MIN_BLOCKS * BLOCK);
+        let batches = range.count.div_ceil(size);
         let sums = &mut sums[..batches];
-        let queue = Mutex::new(batches_of(sums, (next.all(), first + entered), (count, size)));
+        let queue = Mutex::new(batches_of(sums, next.all(), range.first + range.shift, range.count, size));
+        // Every worker takes the next batch until none is left.
         let take = || queue.lock().ok().and_then(|mut queue| queue.next());
         let serve = |block: &mut Block<T>, law: &mut ResampledLaw| {
             while let Some(mut batch) = take() {
-                batch.serve((first, entered), springs, block, |block, sums| work(block, law, sums));
+                batch.serve(range, springs, block, |block, sums| work(block, law, sums));
             }
         };
+        // Start no more threads than there are batches beside this one's.
         let wanted = workers.len().min(batches.saturating_sub(1));
         if wanted == 0 {
             serve(block, law);
@@ -96,6 +99,7 @@ impl<T: Number + Send + Sync> WorkerPool<T> {
                 serve(block, law);
             });
         }
+        // Add the batches up in their order, whoever did them.
         drop(queue);
         sums.iter().fold(Sums::zero(), |mut all, batch| {
             all.add(batch);
@@ -107,8 +111,10 @@ impl<T: Number + Send + Sync> WorkerPool<T> {
 /// The batches of `count` elements, `size` of them each; the first element is at `first` in `next`.
 fn batches_of<'a, T: Number>(
     sums: &'a mut [Sums<T>],
-    (mut next, first): (SpringsMut<'a>, isize),
-    (count, size): (usize, usize),
+    mut next: SpringsMut<'a>,
+    first: isize,
+    count: usize,
+    size: usize,
 ) -> impl Iterator<Item = Batch<'a, T>> {
     sums.iter_mut().enumerate().map(move |(i, sums)| {
         let start = i * size;
@@ -121,7 +127,7 @@ fn batches_of<'a, T: Number>(
 impl<T: Number> Batch<'_, T> {
     fn serve(
         &mut self,
-        (first, entered): (isize, isize),
+        range: ElementRange,
         springs: &Springs,
         block: &mut Block<T>,
         mut work: impl FnMut(&mut Block<T>, &mut Sums<T>),
@@ -129,11 +135,11 @@ impl<T: Number> Batch<'_, T> {
         *self.sums = Sums::zero();
         for start in (self.start..self.start + self.count).step_by(BLOCK) {
             let size = BLOCK.min(self.start + self.count - start);
-            let index = first + start as isize;
-            block.turn_to(start, size);
+            let index = range.first + start as isize;
+            block.reset(start, size);
             springs.load(block, index, size);
             work(block, self.sums);
-            self.next.store(block, index + entered, size);
+            self.next.store(block, index + range.shift, size);
         }
     }
 }

@@ -58,19 +58,19 @@ fn set_temperature(scene: &mut Scene, temperature: f64) -> Result<(), MaterialEr
 }
 
 /// A range of angular frequencies, rad/s.
-type Band = (f64, f64);
+type FrequencyBand = (f64, f64);
 
 /// Decades by which a band exceeds the rates 1/τ of its responses.
 const MARGIN: f64 = 1.0;
-/// Band of responses without any rate.
-const DEFAULT_BAND: Band = (1.0, 1e4);
+/// FrequencyBand of responses without any rate.
+const DEFAULT_BAND: FrequencyBand = (1.0, 1e4);
 /// Points per decade in files and plots.
 const POINTS: f64 = 20.0;
 /// Points per decade in the search for the maximum of tan δ, which a parabola then refines.
 const SEARCH_POINTS: f64 = 500.0;
 
 /// Angular frequencies over `band`, even in the logarithm, about `points` per decade.
-fn evenly((low, high): Band, points: f64) -> Vec<f64> {
+fn evenly((low, high): FrequencyBand, points: f64) -> Vec<f64> {
     let decades = (high / low).log10();
     let intervals = (decades * points).round().max(1.0);
     (0..=intervals as usize).map(|i| low * 10.0_f64.powf(decades * i as f64 / intervals)).collect()
@@ -103,7 +103,7 @@ fn responses(scene: &Scene) -> Vec<Response> {
 }
 
 /// The band in which `responses` change, rounded outwards to powers of ten.
-fn band(responses: &[Response]) -> Band {
+fn band(responses: &[Response]) -> FrequencyBand {
     let rates = || responses.iter().flat_map(Response::rates).map(f64::log10);
     let (low, high) = (rates().fold(f64::MAX, f64::min), rates().fold(f64::MIN, f64::max));
     if low > high {
@@ -146,7 +146,7 @@ impl Response {
     }
 
     /// The maximum of tan δ in `band`: ω and tan δ; `None` without any loss.
-    fn maximum_loss(&self, band: Band) -> Option<(f64, f64)> {
+    fn maximum_loss(&self, band: FrequencyBand) -> Option<(f64, f64)> {
         let all: Vec<(f64, f64)> =
             evenly(band, SEARCH_POINTS).into_iter().map(|omega| (omega, self.loss_tangent(omega))).collect();
         let lossy = (0..all.len()).filter(|&i| all[i].1 > 0.0 && all[i].1.is_finite());
@@ -168,11 +168,11 @@ impl Response {
 struct Responses<'a> {
     scene: &'a Scene,
     responses: Vec<Response>,
-    band: Band,
+    band: FrequencyBand,
 }
 
 impl<'a> Responses<'a> {
-    fn new(scene: &'a Scene, asked: Option<Band>) -> Result<Self, MaterialError> {
+    fn new(scene: &'a Scene, asked: Option<FrequencyBand>) -> Result<Self, MaterialError> {
         let responses = responses(scene);
         if responses.is_empty() {
             return Err(MaterialError::NoLinks);
@@ -236,18 +236,17 @@ impl<'a> Responses<'a> {
         format!("{name}equilibrium {symbol} {} {unit}, glassy {symbol} {glassy}, {loss}", short(response.equilibrium()))
     }
 
-    /// Column names; with units, as `asperity fit` reads them, for a file.
-    fn names(&self, units: bool) -> Vec<String> {
+    /// The columns' names and units.
+    fn columns(&self) -> Vec<(String, &'static str)> {
         let (symbol, unit) = self.symbol_and_unit();
-        let with = |unit: &str| if units { format!(" [{unit}]") } else { String::new() };
-        let mut names = vec![format!("omega{}", with("rad/s"))];
+        let mut columns = vec![("omega".to_owned(), "rad/s")];
         for response in &self.responses {
             let prefix = if response.name.is_empty() { String::new() } else { format!("{} ", response.name) };
-            names.push(format!("{prefix}{symbol}'{}", with(unit)));
-            names.push(format!("{prefix}{symbol}''{}", with(unit)));
-            names.push(format!("{prefix}tan delta{}", with("1")));
+            columns.push((format!("{prefix}{symbol}'"), unit));
+            columns.push((format!("{prefix}{symbol}''"), unit));
+            columns.push((format!("{prefix}tan delta"), "1"));
         }
-        names
+        columns
     }
 
     fn row(&self, omega: f64) -> Vec<f64> {
@@ -264,7 +263,7 @@ impl<'a> Responses<'a> {
             decades if decades > 3.0 => 2.0,
             _ => 5.0,
         };
-        let names = self.names(false);
+        let names: Vec<String> = self.columns().into_iter().map(|(name, _)| name).collect();
         let widths: Vec<usize> = names.iter().map(|name| name.chars().count().max(11) + 2).collect();
         let line = |fields: Vec<String>| {
             let fields = fields.iter().zip(&widths).map(|(field, width)| format!("{field:<width$}"));
@@ -281,7 +280,9 @@ impl<'a> Responses<'a> {
         if let Some(temperature) = self.temperature() {
             text += &format!("# temperature: {temperature}\n");
         }
-        text += &(self.names(true).join(",") + "\n");
+        // With units, as `asperity fit` reads them.
+        let names: Vec<String> = self.columns().iter().map(|(name, unit)| format!("{name} [{unit}]")).collect();
+        text += &(names.join(",") + "\n");
         let line = |omega: f64| {
             self.row(omega).into_iter().map(|value| format!("{value:e}")).collect::<Vec<_>>().join(",") + "\n"
         };

@@ -31,13 +31,13 @@ pub(super) enum Dimension {
 const ANGLES: u32 = 32;
 
 impl Theory {
-    /// Of the waves that the layer of `scene` resolves, sliding at `speed` (m/s) under `pressure` (Pa); `None` in the
+    /// Area and friction of the waves that the layer of `scene` resolves, sliding at `speed` (m/s) under `pressure` (Pa); `None` in the
     /// direct form.
     pub(super) fn new(scene: &Scene, pressure: f64, speed: f64, dimension: Dimension) -> Option<Self> {
         let material = scene.material.as_ref()?;
         let body = scene.layer.body(material)?;
         let waves = resolved(scene);
-        Some(Self::from_waves(&waves, material, body, (pressure, speed), dimension))
+        Some(Self::from_waves(&waves, material, body, pressure, speed, dimension))
     }
 
     /// The friction that the roughness below the profile's adds by hysteresis, on an isotropic surface; `None` where the
@@ -49,7 +49,7 @@ impl Theory {
         let fine = roughness.bands().map(|(q, gradient_square)| (q, 0.5 * gradient_square / (q * q)));
         let coarse = resolved(scene);
         let all: Vec<(f64, f64)> = coarse.iter().copied().chain(fine).collect();
-        let friction = |waves| Self::from_waves(waves, material, body, (pressure, speed), Dimension::Two).friction;
+        let friction = |waves| Self::from_waves(waves, material, body, pressure, speed, Dimension::Two).friction;
         (all.len() > coarse.len()).then(|| friction(&all) - friction(&coarse))
     }
 
@@ -58,12 +58,13 @@ impl Theory {
         [self.area, self.friction, self.friction_reduced]
     }
 
-    /// Of waves (q in rad/m, mean square height in m²) in the order of q.
+    /// Area and friction of waves (q in rad/m, mean square height in m²) in the order of q.
     fn from_waves(
         waves: &[(f64, f64)],
         material: &Material,
         body: Body,
-        (pressure, speed): (f64, f64),
+        pressure: f64,
+        speed: f64,
         dimension: Dimension,
     ) -> Self {
         let (mut variance, mut theory) = (0.0, Self { area: 1.0, friction: 0.0, friction_reduced: 0.0 });
@@ -140,7 +141,7 @@ mod tests {
     }
 
     fn on_half_plane(waves: &[(f64, f64)], material: &Material, pressure: f64, dimension: Dimension) -> Theory {
-        Theory::from_waves(waves, material, Body::HalfPlane, (pressure, 0.3), dimension)
+        Theory::from_waves(waves, material, Body::HalfPlane, pressure, 0.3, dimension)
     }
 
     /// One wave a cos qx in full contact, as Westergaard's: μ = (qa)² Im M(qv)/(4p).

@@ -154,7 +154,7 @@ impl Judge {
         }
         match result {
             Ok(()) => (End::Done, self.fault()),
-            Err(MotionError::TooManyParts { .. }) => (End::TooManyParts, String::new()),
+            Err(MotionError::TooManySubsteps { .. }) => (End::TooManyParts, String::new()),
             Err(MotionError::OutOfRange { .. }) => (End::OutOfRange, String::new()),
             Err(error) => (End::Done, error.to_string()),
         }

@@ -3,7 +3,7 @@
 //! Both axes of a face have the same scale, unless one side is more than [`SLENDER`] times as long as the other. All maps
 //! of a figure have the same colours and the same scale of arrows.
 
-use asperity::patch::FacePlan;
+use asperity::patch::FaceLayout;
 use plotters::coord::ranged1d::{Ranged as _, ValueFormatter as _};
 use plotters::prelude::*;
 
@@ -40,19 +40,19 @@ const STRIP_TITLE: u32 = 24 * FINE;
 /// How the moments of a face are drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Maps {
-    plan: FacePlan,
+    plan: FaceLayout,
     /// The face in the large map and in the strip, subpixels.
     large: (u32, u32),
     small: (u32, u32),
 }
 
 impl Maps {
-    pub(super) fn new(plan: FacePlan) -> Self {
+    pub(super) fn new(plan: FaceLayout) -> Self {
         let [length, width] = plan.extents.map(|(low, high)| high - low);
         Self { large: fitted(length, width, LARGE), small: fitted(length, width, SMALL), plan }
     }
 
-    pub(super) fn plan(&self) -> &FacePlan {
+    pub(super) fn plan(&self) -> &FaceLayout {
         &self.plan
     }
 
@@ -214,7 +214,7 @@ fn size(tile: &Tile) -> f64 {
 
 /// Where a face lies on a canvas, subpixels.
 struct Frame<'a> {
-    plan: &'a FacePlan,
+    plan: &'a FaceLayout,
     corner: (i32, i32),
     size: (u32, u32),
 }

@@ -1,7 +1,7 @@
 //! A moment over the face of a patch: what its elements bear, gathered into as many tiles and arrows as can be told apart,
 //! so that a picture of a million elements is no larger than one of some thousand.
 
-use asperity::patch::{FaceElement, FacePlan, PatchRun};
+use asperity::patch::{FaceElement, FaceLayout, PatchRun};
 
 /// How much is drawn of a face.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,14 +50,14 @@ pub(super) struct Moment {
 }
 
 impl Moment {
-    pub(super) fn new(run: &mut PatchRun, plan: &FacePlan, detail: Detail, force: f64) -> Self {
+    pub(super) fn new(run: &mut PatchRun, plan: &FaceLayout, detail: Detail, force: f64) -> Self {
         let are_points = plan.rows().is_none() && plan.count <= detail.tiles * detail.tiles;
         let tiles = if are_points { Bins::cells(plan, 1, [1, 1]) } else { Bins::for_tiles(plan, detail.tiles) };
         let apart = if are_points { BETWEEN_POINTS } else { 1.0 };
         let arrows = Bins::for_arrows(plan, detail.arrows.map(|distance| distance * apart));
         let mut gathered = [&tiles, &arrows].map(|bins| vec![Gathered::default(); bins.count]);
         let (time, mut pressure) = (run.time(), 0.0_f64);
-        for (i, element) in run.over_face(plan).enumerate() {
+        for (i, element) in run.elements_on_face(plan).enumerate() {
             pressure = pressure.max(element.pressure);
             gathered[0][tiles.index(i, &element)].add(&element);
             gathered[1][arrows.index(i, &element)].add(&element);
@@ -84,14 +84,14 @@ enum Kind {
 }
 
 impl Bins {
-    fn for_tiles(plan: &FacePlan, most: usize) -> Self {
+    fn for_tiles(plan: &FaceLayout, most: usize) -> Self {
         match plan.rows() {
             Some(rows) => Self::cells(plan, rows, [plan.count / rows, rows].map(|count| count.div_ceil(most))),
             None => Self::rectangles(plan, [longest(plan) / most as f64; 2]),
         }
     }
 
-    fn for_arrows(plan: &FacePlan, distance: [f64; 2]) -> Self {
+    fn for_arrows(plan: &FaceLayout, distance: [f64; 2]) -> Self {
         let Some(rows) = plan.rows() else { return Self::rectangles(plan, distance) };
         let [along, across] = [plan.count / rows, rows];
         let together = [(0, along), (1, across)].map(|(axis, count)| {
@@ -101,12 +101,12 @@ impl Bins {
         Self::cells(plan, rows, together)
     }
 
-    fn cells(plan: &FacePlan, rows: usize, together: [usize; 2]) -> Self {
+    fn cells(plan: &FaceLayout, rows: usize, together: [usize; 2]) -> Self {
         let count = (plan.count / rows).div_ceil(together[0]) * rows.div_ceil(together[1]);
         Self { count, kind: Kind::Cells { rows, together } }
     }
 
-    fn rectangles(plan: &FacePlan, edges: [f64; 2]) -> Self {
+    fn rectangles(plan: &FaceLayout, edges: [f64; 2]) -> Self {
         let number = |axis: usize| ((plan.extents[axis].1 - plan.extents[axis].0) / edges[axis]) as usize + 1;
         let (along, across) = (number(0), number(1));
         let corner = plan.extents.map(|(low, _)| low);
@@ -139,7 +139,7 @@ impl Bins {
 }
 
 /// The longer side of a face, m.
-fn longest(plan: &FacePlan) -> f64 {
+fn longest(plan: &FaceLayout) -> f64 {
     plan.extents.iter().map(|(low, high)| high - low).fold(0.0, f64::max)
 }
 
@@ -210,7 +210,7 @@ mod tests {
         let grid = Patch::parse(text, &folder.join("p.toml")).unwrap();
         let in_line = |i: u32| PatchElement { index: 0, place: [f64::from(i) * 1e-3, 0.0, 0.0], area: 1e-12 };
         for (patch, expected) in [(&grid, 21 * 2), (&grid.with_elements((0..1000).map(in_line)), 21 * 5)] {
-            let plan = patch.plan();
+            let plan = patch.layout();
             // 620 by 124 pixels, 30 from arrow to arrow: 20.7 along, 4.1 across; of the grid 48 columns go together.
             let [large, _] = Maps::new(plan.clone()).details();
             assert_eq!(Bins::for_arrows(&plan, large.arrows).count, expected);

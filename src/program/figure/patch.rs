@@ -47,7 +47,7 @@ impl PatchHistory {
             variables,
             times: Vec::new(),
             rows: Vec::new(),
-            maps: Maps::new(patch.plan()),
+            maps: Maps::new(patch.layout()),
             in_strip: ends_of_parts(times),
             strip: Vec::new(),
             largest: None,

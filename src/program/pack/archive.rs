@@ -28,15 +28,15 @@ pub(crate) enum ArchiveError {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Entry {
+pub(super) struct ArchiveEntry {
     /// Its path, with forward slashes.
-    pub(super) name: String,
-    pub(super) bytes: Vec<u8>,
+    name: String,
+    bytes: Vec<u8>,
     /// Some systems want shared libraries to be executable.
-    pub(super) executable: bool,
+    executable: bool,
 }
 
-impl Entry {
+impl ArchiveEntry {
     /// A file that is not executable.
     pub(super) fn new(name: impl Into<String>, bytes: impl Into<Vec<u8>>) -> Self {
         Self { name: name.into(), bytes: bytes.into(), executable: false }
@@ -45,8 +45,8 @@ impl Entry {
 
 /// Packs `entries`, ordered by name and dated 1980-01-01: the same entries give the same bytes. Of entries of one name,
 /// which a scene has that names a file twice, the last is kept.
-pub(super) fn zip(entries: Vec<Entry>) -> ZipResult<Vec<u8>> {
-    let sorted: BTreeMap<String, Entry> = entries.into_iter().map(|entry| (entry.name.clone(), entry)).collect();
+pub(super) fn zip(entries: Vec<ArchiveEntry>) -> ZipResult<Vec<u8>> {
+    let sorted: BTreeMap<String, ArchiveEntry> = entries.into_iter().map(|entry| (entry.name.clone(), entry)).collect();
     let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
     for entry in sorted.values() {
         writer.start_file(entry.name.as_str(), options(entry))?;
@@ -55,7 +55,7 @@ pub(super) fn zip(entries: Vec<Entry>) -> ZipResult<Vec<u8>> {
     Ok(writer.finish()?.into_inner())
 }
 
-fn options(entry: &Entry) -> SimpleFileOptions {
+fn options(entry: &ArchiveEntry) -> SimpleFileOptions {
     SimpleFileOptions::default()
         .compression_method(CompressionMethod::Deflated)
         .last_modified_time(DateTime::default())
@@ -85,7 +85,7 @@ const HOST: Platform = if cfg!(target_os = "windows") {
 };
 
 /// The entries of the shared libraries that `--library` names; by default of the one beside this program.
-pub(super) fn binaries(identifier: &str, arguments: &[OsString]) -> Result<Vec<Entry>, ArchiveError> {
+pub(super) fn binaries(identifier: &str, arguments: &[OsString]) -> Result<Vec<ArchiveEntry>, ArchiveError> {
     let mut libraries: Vec<_> = arguments.iter().map(library).collect();
     if libraries.is_empty() {
         libraries.push((HOST, default_library()));
@@ -120,12 +120,12 @@ fn check_platforms(libraries: &[(Platform, PathBuf)]) -> Result<(), ArchiveError
     Ok(())
 }
 
-fn binary(identifier: &str, platform: &Platform, path: &Path) -> Result<Entry, ArchiveError> {
+fn binary(identifier: &str, platform: &Platform, path: &Path) -> Result<ArchiveEntry, ArchiveError> {
     if !path.is_file() {
         return Err(ArchiveError::NoLibrary { path: path.to_owned() });
     }
     let name = format!("binaries/{}/{identifier}.{}", platform.folder, platform.extension);
-    Ok(Entry { executable: true, ..Entry::new(name, read(path)?) })
+    Ok(ArchiveEntry { executable: true, ..ArchiveEntry::new(name, read(path)?) })
 }
 
 #[cfg(test)]
@@ -136,15 +136,15 @@ mod tests {
 
     #[test]
     fn the_order_of_the_entries_makes_no_difference() {
-        let [a, b] = ["a", "b"].map(|name| Entry::new(name, name.repeat(1000)));
+        let [a, b] = ["a", "b"].map(|name| ArchiveEntry::new(name, name.repeat(1000)));
         let packed = zip(vec![a.clone(), b.clone()]).unwrap();
         assert_eq!(packed, zip(vec![b, a]).unwrap());
     }
 
     #[test]
     fn entries_are_plain_files_that_any_reader_can_unpack() {
-        let library = Entry { executable: true, ..Entry::new("a", [7; 1000]) };
-        let packed = zip(vec![library, Entry::new("b", [])]).unwrap();
+        let library = ArchiveEntry { executable: true, ..ArchiveEntry::new("a", [7; 1000]) };
+        let packed = zip(vec![library, ArchiveEntry::new("b", [])]).unwrap();
         let mut archive = ZipArchive::new(Cursor::new(&packed)).unwrap();
         for (i, mode) in [0o755, 0o644].into_iter().enumerate() {
             let file = archive.by_index(i).unwrap();

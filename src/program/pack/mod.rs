@@ -18,7 +18,7 @@ use super::describe;
 use super::files::{self, FileError, check_output, print, read, write};
 use super::patch;
 use super::terminal::{LabelledLine, lines, warn};
-use archive::{ArchiveError, Entry};
+use archive::{ArchiveEntry, ArchiveError};
 use check::CheckError;
 
 /// `asperity pack` failed.
@@ -55,20 +55,19 @@ pub(crate) fn pack(command: &Pack) -> Result<(), PackError> {
 
 /// What is packed, and the file that it is read from.
 fn load(command: &Pack) -> Result<(Definition, PathBuf), PackError> {
-    match (&command.table, &command.scene) {
-        _ if command.patch.is_some() => {
-            let path = command.patch.clone().unwrap_or_default();
-            let patch = Patch::load(&path)?;
-            warn_of(&patch.table().basis);
-            Ok((patch.into(), path))
-        }
+    match (&command.patch, &command.table) {
         (Some(path), _) => {
+            let patch = Patch::load(path)?;
+            warn_of(&patch.table().basis);
+            Ok((patch.into(), path.clone()))
+        }
+        (None, Some(path)) => {
             let table = Table::load(path)?;
             warn_of(&table.basis);
             Ok((PointContact::new(table).into(), path.clone()))
         }
-        (None, scene) => {
-            let path = scene.clone().unwrap_or_default();
+        (None, None) => {
+            let path = command.scene.clone().unwrap_or_default();
             Ok((files::load(&path)?.into(), path))
         }
     }
@@ -84,31 +83,26 @@ fn warn_of(basis: &Basis) {
 
 /// What there is in the scene or in the table, and the errors of an element or a patch.
 fn summary(command: &Pack, definition: &Definition) -> Result<Vec<LabelledLine>, PackError> {
-    let contact = match definition {
+    let mut rows = match definition {
         Definition::Layer(scene) => return Ok(describe::rows(scene)),
-        Definition::Element(contact) => contact,
-        Definition::Patch(patch) => {
-            let mut rows = [patch::rows(patch), documentation::table_rows(patch.table())].concat();
-            if let Some(scene) = &command.check {
-                rows.extend(check::check_patch(command, patch, scene)?);
-            }
-            return Ok(rows);
-        }
+        Definition::Element(contact) => documentation::table_rows(contact.table()),
+        Definition::Patch(patch) => [patch::rows(patch), documentation::table_rows(patch.table())].concat(),
     };
-    let mut rows = documentation::table_rows(contact.table());
-    if let Some(scene) = &command.check {
-        rows.extend(check::check_element(command, contact, scene)?);
+    match (definition, &command.check) {
+        (Definition::Element(contact), Some(scene)) => rows.extend(check::check_element(command, contact, scene)?),
+        (Definition::Patch(patch), Some(scene)) => rows.extend(check::check_patch(command, patch, scene)?),
+        _ => (),
     }
     Ok(rows)
 }
 
 /// The scene or the table, under a fixed name, and the files that a scene reads.
-fn resources(definition: &Definition, path: &Path) -> Result<Vec<Entry>, PackError> {
+fn resources(definition: &Definition, path: &Path) -> Result<Vec<ArchiveEntry>, PackError> {
     let folder = path.parent().unwrap_or(Path::new(""));
-    let mut entries = vec![Entry::new(format!("resources/{}", definition.file_name()), read(path)?)];
+    let mut entries = vec![ArchiveEntry::new(format!("resources/{}", definition.file_name()), read(path)?)];
     for file in definition.files() {
         let bytes = definition.carried(folder, file).map_err(FileError::io("read", &folder.join(file)))?;
-        entries.push(Entry::new(format!("resources/{}", archive_path(file)?), bytes));
+        entries.push(ArchiveEntry::new(format!("resources/{}", archive_path(file)?), bytes));
     }
     Ok(entries)
 }
@@ -122,7 +116,7 @@ fn archive_path(file: &Path) -> Result<String, PackError> {
     Ok(parts.collect::<Result<Vec<_>, _>>()?.join("/"))
 }
 
-fn documents(definition: &Definition, path: &Path, summary: &[LabelledLine]) -> Result<Vec<Entry>, PackError> {
+fn documents(definition: &Definition, path: &Path, summary: &[LabelledLine]) -> Result<Vec<ArchiveEntry>, PackError> {
     let document = |document, source| PackError::Document { document, source };
     let catalogue = Catalogue::of(definition);
     let guid = guid(&Sources::of(path, definition).map_err(FileError::io("read", path))?, &catalogue);
@@ -137,6 +131,6 @@ fn documents(definition: &Definition, path: &Path, summary: &[LabelledLine]) -> 
     };
     let picture = picture.map_err(|error| FileError::picture(Path::new("model.png"), &*error))?;
     let written = [("modelDescription.xml", description), ("documentation/index.html", index), ("model.png", picture)];
-    let fixed = documentation::FILES.iter().map(|&(name, text)| Entry::new(name, text));
-    Ok(written.into_iter().map(|(name, bytes)| Entry::new(name, bytes)).chain(fixed).collect())
+    let fixed = documentation::FILES.iter().map(|&(name, text)| ArchiveEntry::new(name, text));
+    Ok(written.into_iter().map(|(name, bytes)| ArchiveEntry::new(name, bytes)).chain(fixed).collect())
 }

@@ -21,7 +21,7 @@ const LINE: f64 = 1.4;
 const MASSES: usize = 10;
 /// The carrier's lower edge, pixels from the top.
 const CARRIER: f64 = 22.0;
-/// Of the highest and of the lowest point of profile and masses, pixels from the top.
+/// Heights of the highest and of the lowest point of profile and masses, pixels from the top.
 const HEIGHTS: (f64, f64) = (92.0, 140.0);
 /// Radius of a mass, pixels.
 const MASS: f64 = 4.0;
@@ -46,7 +46,7 @@ struct LayerPicture<'a> {
     /// The profile at each column of pixels, and at the picture's right edge.
     profile: Vec<f64>,
     /// The masses' centres: a mass touches with its lowest point.
-    masses: Vec<Point>,
+    masses: Vec<Pixel>,
 }
 
 impl<'a> LayerPicture<'a> {
@@ -112,7 +112,7 @@ fn rows<'a>(heights: impl Iterator<Item = &'a f64> + Clone) -> impl Fn(f64) -> f
 }
 
 /// A spring from the carrier down to a mass.
-fn spring((x, end): Point) -> impl Iterator<Item = Point> {
+fn spring((x, end): Pixel) -> impl Iterator<Item = Pixel> {
     (0..=CORNERS).map(move |i| {
         let sideways = if i == 0 || i == CORNERS { 0.0 } else { WINDING * [1.0, -1.0][i % 2] };
         (x + sideways, CARRIER + (end - CARRIER) * i as f64 / CORNERS as f64)
@@ -154,7 +154,7 @@ impl Figure for ElementPicture<'_> {
 
 impl ElementPicture<'_> {
     /// The points of a pressure, in pixels.
-    fn points(&self, pressure: usize) -> Vec<Point> {
+    fn points(&self, pressure: usize) -> Vec<Pixel> {
         let table = self.0;
         let temperature = table.grid.temperatures.len() / 2;
         let friction = |load, speed| table.value(Quantity::Friction, Node { temperature, load, speed });
@@ -179,22 +179,22 @@ fn pressure_colour(i: usize, count: usize) -> RGBColor {
 }
 
 /// x to the right, y down.
-type Point = (f64, f64);
+type Pixel = (f64, f64);
 
-fn fill<B: Backend>(canvas: &Canvas<B>, corners: impl Iterator<Item = Point>, colour: RGBColor) -> DrawResult {
+fn fill<B: Backend>(canvas: &Canvas<B>, corners: impl Iterator<Item = Pixel>, colour: RGBColor) -> DrawResult {
     Ok(canvas.draw(&Polygon::new(corners.map(subpixel).collect::<Vec<_>>(), colour.filled()))?)
 }
 
-fn line<B: Backend>(canvas: &Canvas<B>, points: impl Iterator<Item = Point>, colour: RGBColor) -> DrawResult {
+fn line<B: Backend>(canvas: &Canvas<B>, points: impl Iterator<Item = Pixel>, colour: RGBColor) -> DrawResult {
     let width = (LINE * f64::from(FINE)).round() as u32;
     Ok(canvas.draw(&PathElement::new(points.map(subpixel).collect::<Vec<_>>(), colour.stroke_width(width)))?)
 }
 
-fn disc<B: Backend>(canvas: &Canvas<B>, centre: Point, radius: f64, colour: RGBColor) -> DrawResult {
+fn disc<B: Backend>(canvas: &Canvas<B>, centre: Pixel, radius: f64, colour: RGBColor) -> DrawResult {
     Ok(canvas.draw(&Circle::new(subpixel(centre), radius * f64::from(FINE), colour.filled()))?)
 }
 
-fn subpixel((x, y): Point) -> (i32, i32) {
+fn subpixel((x, y): Pixel) -> (i32, i32) {
     let subpixel = |length: f64| (length * f64::from(FINE)).round() as i32;
     (subpixel(x), subpixel(y))
 }

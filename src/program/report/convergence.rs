@@ -4,7 +4,7 @@ use asperity::robustness::{RunFailure, at_tolerance, exact};
 use asperity::scene::{Method, Scene};
 
 use super::reference::{Comparison, Reference};
-use super::run::{Figures, Given, Measured, Progress, UNLIMITED, drive, estimated, follow, weight};
+use super::run::{CompletedRun, MasterInputs, Progress, RunFigures, UNLIMITED, drive, estimated, follow, weight};
 use super::trace::{Errors, Trace};
 use crate::program::runner::Rows;
 
@@ -31,7 +31,7 @@ pub(super) struct ToleranceRow {
     pub(super) tolerance: f64,
     pub(super) timed: Timed,
     /// Or why there are no figures.
-    pub(super) result: Result<Figures, String>,
+    pub(super) result: Result<RunFigures, String>,
 }
 
 /// What a run time is that of. Only times of the same are divided by each other.
@@ -66,7 +66,7 @@ impl ToleranceRow {
         Self::from_run(REFERENCE, reference.tolerance, result)
     }
 
-    fn from_run(method: &str, tolerance: f64, result: Result<Figures, String>) -> Self {
+    fn from_run(method: &str, tolerance: f64, result: Result<RunFigures, String>) -> Self {
         Self { program: PROGRAM.into(), method: method.into(), tolerance, timed: Timed::RunAlone, result }
     }
 }
@@ -83,7 +83,7 @@ pub(super) struct ToleranceLadder<'a> {
 }
 
 impl ToleranceLadder<'_> {
-    /// As [`weight`], without the timings.
+    /// What all runs are likely to take, by [`weight`], without the timings.
     pub(super) fn weight(&self) -> f64 {
         let rungs = METHODS.iter().flat_map(|&(method, _)| self.tolerances.iter().map(move |&rung| (method, rung)));
         rungs.map(|(method, rung)| self.rung_weight(method, rung)).sum()
@@ -130,7 +130,7 @@ impl ToleranceLadder<'_> {
         method: &str,
         reference: &Reference,
         progress: &Progress,
-    ) -> Result<Figures, RunFailure> {
+    ) -> Result<RunFigures, RunFailure> {
         let tolerance = scene.solver.relative_tolerance;
         let message = format!("{method}, tolerance {tolerance:e}, with its estimate");
         let weight = self.rung_weight(scene.solver.method, tolerance);
@@ -138,7 +138,7 @@ impl ToleranceLadder<'_> {
         let follow = |tick: &dyn Fn(f64)| follow(&scene, comparison.rows(), 0.0, UNLIMITED, tick);
         let run = progress.during(&message, weight, follow)?;
         let errors = comparison.errors(&run.trace, &reference.measured.trace);
-        Ok(Figures { estimate: Some(run.estimate), ..run.figures(errors) })
+        Ok(RunFigures { estimate: Some(run.estimate), ..run.figures(errors) })
     }
 
     /// Times the runs of `rows` again without their estimates, in rounds: what disturbs the machine for a while does not
@@ -163,7 +163,7 @@ fn with_method(scene: &Scene, method: Method) -> Scene {
 /// A run that is timed several times.
 #[derive(Debug)]
 struct TimedRun<'a> {
-    figures: &'a mut Figures,
+    figures: &'a mut RunFigures,
     message: String,
     scene: Scene,
     /// What it may take, s.
@@ -174,7 +174,7 @@ struct TimedRun<'a> {
 }
 
 impl<'a> TimedRun<'a> {
-    /// Of a row whose run came to its end; it is timed `most` times at most.
+    /// The timed run of a row whose run came to its end; it is timed `most` times at most.
     fn new(row: &'a mut ToleranceRow, scene: &Scene, most: u32) -> Option<Self> {
         let (method, _) = METHODS.into_iter().find(|(_, name)| *name == row.method)?;
         let scene = with_method(&at_tolerance(scene, row.tolerance), method);
@@ -199,11 +199,11 @@ fn timings(time: f64, most: u32) -> u32 {
 /// A row of the table of errors and communication steps.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct CommunicationRow {
-    pub(super) given: Given,
+    pub(super) given: MasterInputs,
     /// The communication step, s; `None` without a master.
     pub(super) step: Option<f64>,
     /// Where runs are compared row by row, with the root mean squares of the errors; or why there are no figures.
-    pub(super) result: Result<(Figures, Option<Errors>), String>,
+    pub(super) result: Result<(RunFigures, Option<Errors>), String>,
 }
 
 /// The communication steps of a master, at the scene's own tolerance and method. What a user of the FMU meets: its
@@ -224,7 +224,7 @@ impl<'a> CommunicationSteps<'a> {
     /// Parts of the longest step that make the shortest.
     const FINEST: u32 = 1 << (Self::STEPS - 1);
 
-    /// As [`weight`], for a reference and a scene at these tolerances.
+    /// What all runs are likely to take, by [`weight`], for a reference and a scene at these tolerances.
     pub(super) fn weight(reference: f64, scene: f64) -> f64 {
         weight(reference) + f64::from(2 * Self::STEPS + 1) * weight(scene)
     }
@@ -242,9 +242,9 @@ impl<'a> CommunicationSteps<'a> {
             self.progress.during(message, weight, |tick| follow(scene, finest, 0.0, UNLIMITED, tick))
         };
         let Ok(tight) = follow("reference at the communication points", &tight) else { return Vec::new() };
-        let alone = follow(Given::Motion.name(), scene);
+        let alone = follow(MasterInputs::None.name(), scene);
         let mut table = Vec::new();
-        for given in [Given::Rates, Given::Values] {
+        for given in [MasterInputs::Rates, MasterInputs::Values] {
             for parts in (0..Self::STEPS).map(|step| 1 << step) {
                 let result = self.drive(given, parts).map(|run| self.compare(&run, &self.every(&tight, parts)));
                 let step = Some(self.longest / f64::from(parts));
@@ -254,10 +254,10 @@ impl<'a> CommunicationSteps<'a> {
         let result = alone.map(|run| {
             let (figures, mean_squares) = self.compare(&run, &tight.trace);
             // Its time was spent on the rows: there are as many as communication points at the shortest step.
-            (Figures { time: None, ..figures }, mean_squares)
+            (RunFigures { time: None, ..figures }, mean_squares)
         });
         let result = result.map_err(|why| why.to_string());
-        table.push(CommunicationRow { given: Given::Motion, step: None, result });
+        table.push(CommunicationRow { given: MasterInputs::None, step: None, result });
         table
     }
 
@@ -266,11 +266,11 @@ impl<'a> CommunicationSteps<'a> {
     }
 
     /// The rows of the finest run at the communication points of a coarser one.
-    fn every(&self, finest: &Measured, parts: u32) -> Trace {
+    fn every(&self, finest: &CompletedRun, parts: u32) -> Trace {
         finest.trace.every((Self::FINEST / parts) as usize)
     }
 
-    fn drive(&self, given: Given, parts: u32) -> Result<Measured, RunFailure> {
+    fn drive(&self, given: MasterInputs, parts: u32) -> Result<CompletedRun, RunFailure> {
         let scene = &self.reference.scene;
         let times = |duration: f64| self.rows(parts).times(duration).collect();
         let points: Vec<Vec<f64>> = scene.excitation.iter().map(|phase| times(phase.duration)).collect();
@@ -280,7 +280,7 @@ impl<'a> CommunicationSteps<'a> {
         self.progress.during(&message, weight, |tick| drive(scene, given, &points, 0.0, UNLIMITED, tick))
     }
 
-    fn compare(&self, run: &Measured, tight: &Trace) -> (Figures, Option<Errors>) {
+    fn compare(&self, run: &CompletedRun, tight: &Trace) -> (RunFigures, Option<Errors>) {
         let (errors, mean_squares) = match self.reference.comparison {
             Comparison::Pointwise(_) => (run.trace.largest(tight), Some(run.trace.mean_square(tight))),
             Comparison::Means(_) => (run.trace.means(tight), None),

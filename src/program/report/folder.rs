@@ -10,19 +10,19 @@ use crate::program::files::{FileError, check_output, write};
 pub(super) const INDEX: &str = "index.html";
 /// The table and the pictures of errors and run times, without their endings.
 pub(super) const ERRORS: &str = "error-run-time";
-/// Those of errors over the tolerance and estimates over errors.
+/// The table and the pictures of errors over the tolerance and estimates over errors.
 pub(super) const JUDGEMENTS: &str = "tolerance-estimate";
-/// Those of errors and communication steps.
+/// The table and the pictures of errors and communication steps.
 pub(super) const COMMUNICATION: &str = "error-communication-step";
 /// The table of the perturbed runs.
 pub(super) const STRESS: &str = "stress";
 
 #[derive(Debug)]
-pub(super) struct Folder {
+pub(super) struct ReportFolder {
     path: PathBuf,
 }
 
-impl Folder {
+impl ReportFolder {
     /// Checks that no file written, with a table and pictures of each of `names`, takes the place of one of `taken`.
     pub(super) fn new(path: &Path, names: &[&str], taken: &[PathBuf]) -> Result<Self, FileError> {
         let folder = Self { path: path.to_owned() };

@@ -36,7 +36,7 @@ pub(super) enum Standing {
 }
 
 impl Standing {
-    /// As tables have it.
+    /// The word for it in tables.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Counts => "",
@@ -56,7 +56,7 @@ impl Judgement {
         Self { perturbation: None, method: String::new(), tolerance, error, estimate, floor, standing }
     }
 
-    /// Of this program's runs of `rows`; none of a run that failed, or without forces.
+    /// Judgements of this program's runs of `rows`; none of a run that failed, or without forces.
     pub(super) fn from_tolerances<'a>(
         reference: &Reference,
         rows: &'a [ToleranceRow],
@@ -70,7 +70,7 @@ impl Judgement {
         })
     }
 
-    /// Of the perturbed runs that came to their ends, by a method of this name. Their tight runs are taken to be as
+    /// Judgements of the perturbed runs that came to their ends, by a method of this name. Their tight runs are taken to be as
     /// accurate as their tolerances.
     pub(super) fn from_perturbations(robustness: &Robustness, method: &str) -> impl Iterator<Item = Self> {
         let tolerance = robustness.tolerance;

@@ -19,7 +19,7 @@ use asperity::robustness::RunFailure;
 use super::cli::Report;
 use super::files::FileError;
 use super::result_file::ResultFileError;
-use folder::{Folder, INDEX, JUDGEMENTS};
+use folder::{INDEX, JUDGEMENTS, ReportFolder};
 use judgement::Judgement;
 use page::SceneJudgements;
 use scene_report::SceneReport;
@@ -56,7 +56,7 @@ fn report_all(command: &Report) -> Result<(), ReportError> {
     let scenes = command.scenes.iter().zip(&paths);
     let reports =
         scenes.map(|(scene, path)| SceneReport::prepare(command, scene, path)).collect::<Result<Vec<_>, _>>()?;
-    let folder = Folder::new(
+    let folder = ReportFolder::new(
         &command.output,
         &[JUDGEMENTS],
         &reports.iter().flat_map(SceneReport::sources).collect::<Vec<_>>(),
@@ -67,14 +67,14 @@ fn report_all(command: &Report) -> Result<(), ReportError> {
 }
 
 /// Writes the page of several scenes.
-fn write_overview(folder: &Folder, names: &[String], judgements: &[Vec<Judgement>]) -> Result<(), FileError> {
+fn write_overview(folder: &ReportFolder, names: &[String], judgements: &[Vec<Judgement>]) -> Result<(), FileError> {
     let scenes = names.iter().zip(judgements).map(|(name, judgements)| (name.as_str(), judgements.as_slice()));
     let section = write_judgements(folder, &scenes.collect::<Vec<_>>())?;
     folder.write(INDEX, page::overview(names, section))
 }
 
 /// Writes the table and the picture of errors over the tolerance, and returns the section.
-fn write_judgements(folder: &Folder, scenes: &[SceneJudgements<'_>]) -> Result<String, FileError> {
+fn write_judgements(folder: &ReportFolder, scenes: &[SceneJudgements<'_>]) -> Result<String, FileError> {
     tables::write_judgements(&folder.file(JUDGEMENTS, "csv"), scenes.iter().copied())?;
     let picture = folder.draw(JUDGEMENTS, &page::judgement_picture(scenes))?;
     page::judgements(scenes, &picture).map_err(folder.error())

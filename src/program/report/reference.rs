@@ -3,7 +3,7 @@
 use asperity::robustness::{Budget, DISPLACEMENT, RunFailure, at_tolerance, divergence, exact};
 use asperity::scene::Scene;
 
-use super::run::{Counts, Figures, Measured, Progress, UNLIMITED, follow, weight, with_durations};
+use super::run::{CompletedRun, Counts, Progress, RunFigures, UNLIMITED, follow, weight, with_durations};
 use super::trace::{Errors, OF_ALL_SCENES, QUANTITIES, Trace, WINDOWS};
 use crate::program::cli::tenth;
 use crate::program::runner::Rows;
@@ -19,7 +19,7 @@ pub(super) struct Reference {
     pub(super) tolerance: f64,
     /// The relative tolerance of the run that gives its error; `None` where no other run came to its end.
     pub(super) check: Option<f64>,
-    pub(super) measured: Measured,
+    pub(super) measured: CompletedRun,
     /// Its own error; errors below it are not significant.
     pub(super) own: Errors,
     pub(super) sensitivity: Sensitivity,
@@ -104,7 +104,7 @@ impl Reference {
     }
 
     /// The figures of the reference itself; its errors are its own.
-    pub(super) fn figures(&self) -> Figures {
+    pub(super) fn figures(&self) -> RunFigures {
         self.measured.figures(self.own)
     }
 
@@ -126,14 +126,14 @@ struct ReferenceSearch<'a> {
 }
 
 impl ReferenceSearch<'_> {
-    fn run(&self, tolerance: f64, rows: Rows, u: f64, budget: Budget) -> Result<Measured, RunFailure> {
+    fn run(&self, tolerance: f64, rows: Rows, u: f64, budget: Budget) -> Result<CompletedRun, RunFailure> {
         let scene = at_tolerance(self.scene, tolerance);
         let message = format!("reference, tolerance {tolerance:e}");
         self.progress.during(&message, weight(tolerance), |tick| follow(&scene, rows, u, budget, tick))
     }
 
     /// The tightest rung whose run does not fail, and that run; `ladder` is not empty.
-    fn tightest(&self, ladder: &[f64]) -> Result<(usize, Measured), RunFailure> {
+    fn tightest(&self, ladder: &[f64]) -> Result<(usize, CompletedRun), RunFailure> {
         let mut rung = ladder.len() - 1;
         loop {
             match self.run(ladder[rung], self.rows, 0.0, UNLIMITED) {
@@ -145,14 +145,14 @@ impl ReferenceSearch<'_> {
     }
 
     /// A run at a tenth of `tolerance`, where one took `counts`; `None` where it fails.
-    fn tighter(&self, tolerance: f64, counts: &Counts) -> Option<(f64, Measured)> {
+    fn tighter(&self, tolerance: f64, counts: &Counts) -> Option<(f64, CompletedRun)> {
         let budget = Budget(WORK * (counts.work() + counts.events) + 1000);
         let tolerance = tenth(tolerance);
         self.run(tolerance, self.rows, 0.0, budget).ok().map(|run| (tolerance, run))
     }
 
     /// The tightest of the `rungs` whose run does not fail.
-    fn looser(&self, rungs: &[f64]) -> Option<(f64, Measured)> {
+    fn looser(&self, rungs: &[f64]) -> Option<(f64, CompletedRun)> {
         rungs.iter().rev().find_map(|&rung| self.run(rung, self.rows, 0.0, UNLIMITED).ok().map(|run| (rung, run)))
     }
 

@@ -12,7 +12,7 @@ use cpu_time::ThreadTime;
 use rayon::prelude::*;
 
 use super::reference::Reference;
-use super::run::{Counts, Estimate, Given, Measured, drive, estimated, follow};
+use super::run::{CompletedRun, Counts, Estimate, MasterInputs, drive, estimated, follow};
 use super::trace::Errors;
 use crate::program::runner::Rows;
 use crate::program::terminal::bar;
@@ -54,13 +54,13 @@ pub(super) struct Robustness {
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Trial {
-    outcome: Outcome,
+    outcome: TrialOutcome,
     /// Processor time, its tight runs included, s.
     cost: f64,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-enum Outcome {
+enum TrialOutcome {
     Ended {
         counts: Counts,
         /// Each takes a step at least.
@@ -75,11 +75,11 @@ enum Outcome {
 }
 
 impl Trial {
-    const NOT_TRIED: Self = Self { outcome: Outcome::NotTried, cost: 0.0 };
+    const NOT_TRIED: Self = Self { outcome: TrialOutcome::NotTried, cost: 0.0 };
 
     pub(super) fn accuracy(&self) -> Option<&Accuracy> {
         match &self.outcome {
-            Outcome::Ended { accuracy, .. } => Some(accuracy),
+            TrialOutcome::Ended { accuracy, .. } => Some(accuracy),
             _ => None,
         }
     }
@@ -87,7 +87,7 @@ impl Trial {
     /// Each over the largest value of its quantity, against the tight run.
     pub(super) fn errors(&self) -> Option<&Errors> {
         match &self.outcome {
-            Outcome::Ended { errors, .. } => errors.as_ref(),
+            TrialOutcome::Ended { errors, .. } => errors.as_ref(),
             _ => None,
         }
     }
@@ -95,14 +95,14 @@ impl Trial {
     /// What the run says of its own error.
     pub(super) fn estimate(&self) -> Option<Estimate> {
         match self.outcome {
-            Outcome::Ended { estimate, .. } => Some(estimate),
+            TrialOutcome::Ended { estimate, .. } => Some(estimate),
             _ => None,
         }
     }
 
     pub(super) fn counts(&self) -> Option<&Counts> {
         match &self.outcome {
-            Outcome::Ended { counts, .. } => Some(counts),
+            TrialOutcome::Ended { counts, .. } => Some(counts),
             _ => None,
         }
     }
@@ -147,16 +147,16 @@ impl Robustness {
 
     pub(super) fn verdict(&self, trial: &Trial) -> Verdict {
         match &trial.outcome {
-            Outcome::Ended { accuracy, .. } => accuracy.verdict(self.tolerance),
-            Outcome::Failed(failure) => failure.into(),
-            Outcome::NotTried => Verdict::NotTried,
+            TrialOutcome::Ended { accuracy, .. } => accuracy.verdict(self.tolerance),
+            TrialOutcome::Failed(failure) => failure.into(),
+            TrialOutcome::NotTried => Verdict::NotTried,
         }
     }
 
     /// The steps of a run, rejected ones included, over those of the scene as it is and one for each communication
     /// step.
     pub(super) fn times_the_steps(&self, trial: &Trial) -> Option<f64> {
-        let Outcome::Ended { counts, communication_steps, .. } = &trial.outcome else { return None };
+        let TrialOutcome::Ended { counts, communication_steps, .. } = &trial.outcome else { return None };
         let due = self.unperturbed().counts()?.work() + communication_steps;
         Some(counts.work() as f64 / due as f64)
     }
@@ -164,19 +164,19 @@ impl Robustness {
     /// The outcome of a run in words.
     pub(super) fn reason(&self, trial: &Trial) -> String {
         match &trial.outcome {
-            Outcome::Ended { accuracy: Accuracy::Error(error), .. } => self.error(error),
-            Outcome::Ended { accuracy: Accuracy::Sensitive { error, moved }, .. } => {
+            TrialOutcome::Ended { accuracy: Accuracy::Error(error), .. } => self.error(error),
+            TrialOutcome::Ended { accuracy: Accuracy::Sensitive { error, moved }, .. } => {
                 let error = self.error(error);
                 format!("sensitive: {error}, but a start moved by {DISPLACEMENT:e} m changes {moved:.1e}")
             }
-            Outcome::Ended { accuracy: Accuracy::Unknown(reason), .. } => {
+            TrialOutcome::Ended { accuracy: Accuracy::Unknown(reason), .. } => {
                 format!("no tight run to compare with: {reason}")
             }
-            Outcome::Failed(RunFailure::Stopped(reason)) => reason.clone(),
-            Outcome::Failed(RunFailure::OverBudget { time }) => {
+            TrialOutcome::Failed(RunFailure::Stopped(reason)) => reason.clone(),
+            TrialOutcome::Failed(RunFailure::OverBudget { time }) => {
                 format!("more than {} steps, used up at t = {time:.3e} s", self.budget)
             }
-            Outcome::NotTried => "not tried: not enough time".into(),
+            TrialOutcome::NotTried => "not tried: not enough time".into(),
         }
     }
 
@@ -275,7 +275,7 @@ impl Robustness {
         let alone = |quantity: ScaledQuantity| {
             let power = perturbation.power(quantity)?;
             let trial = self.trials.get(&self.same(Perturbation::default().with(quantity, power)))?;
-            let over = matches!(trial.outcome, Outcome::Failed(RunFailure::OverBudget { .. }));
+            let over = matches!(trial.outcome, TrialOutcome::Failed(RunFailure::OverBudget { .. }));
             Some(if over { BEYOND } else { 1.0 } * trial.cost / base)
         };
         base * self.quantities.iter().filter_map(|&quantity| alone(quantity)).product::<f64>()
@@ -315,25 +315,31 @@ impl PerturbedRunner<'_> {
         let clock = ThreadTime::now();
         let outcome = match perturbation.apply(self.scene) {
             Ok(scene) => self.outcome(&scene, perturbation.factor(ScaledQuantity::CommunicationStep)),
-            Err(refused) => Outcome::Failed(RunFailure::Stopped(refused.to_string())),
+            Err(refused) => TrialOutcome::Failed(RunFailure::Stopped(refused.to_string())),
         };
         Trial { outcome, cost: clock.elapsed().as_secs_f64() }
     }
 
     /// The run of a perturbed scene, by a master where there is a factor of the communication step.
-    fn outcome(&self, scene: &Scene, communication: Option<f64>) -> Outcome {
+    fn outcome(&self, scene: &Scene, communication: Option<f64>) -> TrialOutcome {
         let points = communication.map(|factor| communication_points(scene, factor));
         let communication_steps = points.iter().flatten().map(|points| points.len() as u64).sum();
         let along = |scene: &Scene, u: f64, budget: Budget| match &points {
             None => follow(scene, Rows::PerPhase(self.points), u, budget, &|_| ()),
-            Some(points) => drive(scene, Given::Rates, points, u, budget, &|_| ()),
+            Some(points) => drive(scene, MasterInputs::Rates, points, u, budget, &|_| ()),
         };
         let budget = self.budget.saturating_add(2 * communication_steps);
         match along(&estimated(scene), 0.0, Budget(budget)) {
-            Err(failure) => Outcome::Failed(failure),
+            Err(failure) => TrialOutcome::Failed(failure),
             Ok(run) => {
                 let (accuracy, errors) = accuracy(scene, &run, Budget(self.patience.saturating_mul(budget)), along);
-                Outcome::Ended { counts: run.counts, communication_steps, accuracy, errors, estimate: run.estimate }
+                TrialOutcome::Ended {
+                    counts: run.counts,
+                    communication_steps,
+                    accuracy,
+                    errors,
+                    estimate: run.estimate,
+                }
             }
         }
     }
@@ -342,9 +348,9 @@ impl PerturbedRunner<'_> {
 /// Compares a run with a tight one; with the errors, if that comes to its end.
 fn accuracy(
     scene: &Scene,
-    run: &Measured,
+    run: &CompletedRun,
     budget: Budget,
-    along: impl Fn(&Scene, f64, Budget) -> Result<Measured, RunFailure>,
+    along: impl Fn(&Scene, f64, Budget) -> Result<CompletedRun, RunFailure>,
 ) -> (Accuracy, Option<Errors>) {
     let tight_scene = exact(&at_tolerance(scene, scene.solver.relative_tolerance / TIGHTER));
     let tight = match along(&tight_scene, 0.0, budget) {

@@ -19,14 +19,14 @@ pub(super) const UNLIMITED: Budget = Budget(u64::MAX);
 
 /// A run that came to its end.
 #[derive(Clone, Debug)]
-pub(super) struct Measured {
+pub(super) struct CompletedRun {
     pub(super) trace: Trace,
     pub(super) counts: Counts,
     /// Processor time, s.
     pub(super) time: f64,
-    /// Of each phase, s.
+    /// How long each phase took, s.
     pub(super) durations: Vec<f64>,
-    /// Of a scene that is [`estimated`].
+    /// What it says of its own error, where the scene is [`estimated`].
     pub(super) estimate: Estimate,
 }
 
@@ -51,7 +51,7 @@ pub(super) struct Counts {
 
 /// The figures of a run; `None` where they are not known.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Figures {
+pub(super) struct RunFigures {
     /// Against the reference.
     pub(super) errors: Errors,
     pub(super) estimate: Option<Estimate>,
@@ -75,10 +75,10 @@ impl Counts {
     }
 }
 
-impl Measured {
-    pub(super) fn figures(&self, errors: Errors) -> Figures {
+impl CompletedRun {
+    pub(super) fn figures(&self, errors: Errors) -> RunFigures {
         let Counts { steps, rejected, events, iterations, residual } = self.counts;
-        Figures {
+        RunFigures {
             errors,
             time: Some(self.time),
             timings: Some(1),
@@ -87,12 +87,12 @@ impl Measured {
             events: Some(events),
             iterations: Some(iterations),
             residual: Some(residual),
-            ..Figures::default()
+            ..RunFigures::default()
         }
     }
 }
 
-impl Figures {
+impl RunFigures {
     pub(super) fn error(&self) -> Option<f64> {
         self.errors.into_iter().flatten().reduce(f64::max)
     }
@@ -127,14 +127,14 @@ pub(super) fn with_durations(scene: &Scene, durations: &[f64]) -> Scene {
     Scene { excitation: fixed.collect(), ..scene.clone() }
 }
 
-/// Runs `scene` along its excitation from the carrier at `u` (m); `tick` gets the share of the excitation that is done.
+/// Runs `scene` along its excitation from the carrier at `u` (m); `tick` gets the fraction of the excitation that is done.
 pub(super) fn follow(
     scene: &Scene,
     rows: Rows,
     u: f64,
     budget: Budget,
     tick: &dyn Fn(f64),
-) -> Result<Measured, RunFailure> {
+) -> Result<CompletedRun, RunFailure> {
     let failed = |error: SimulationError| budget.failure(scene, &error);
     let duration = scene.duration();
     let mut recorder = TraceRecorder::new(scene);
@@ -154,23 +154,23 @@ pub(super) fn follow(
     Ok(recorder.finish(runner.simulation(), clock.elapsed().as_secs_f64(), durations))
 }
 
-/// What a master gives at a communication point.
+/// What a master sets at a communication point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Given {
+pub(super) enum MasterInputs {
     /// Values and rates.
     Rates,
     /// Values alone.
     Values,
     /// Nothing: there is no master, the program follows the excitation itself.
-    Motion,
+    None,
 }
 
-impl Given {
+impl MasterInputs {
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Rates => "values and rates",
             Self::Values => "values alone",
-            Self::Motion => "no master",
+            Self::None => "no master",
         }
     }
 }
@@ -179,12 +179,12 @@ impl Given {
 /// phase that is run, s after it begins.
 pub(super) fn drive(
     scene: &Scene,
-    given: Given,
+    given: MasterInputs,
     points: &[Vec<f64>],
     u: f64,
     budget: Budget,
     tick: &dyn Fn(f64),
-) -> Result<Measured, RunFailure> {
+) -> Result<CompletedRun, RunFailure> {
     let failed = |error: StepError| match error {
         StepError::Run(error) => budget.failure(scene, &error),
         StepError::Input(error) => RunFailure::Stopped(error.to_string()),
@@ -219,7 +219,7 @@ enum StepError {
 #[derive(Debug)]
 struct Master<'a> {
     scene: &'a Scene,
-    given: Given,
+    given: MasterInputs,
     inputs: Inputs,
     simulation: Simulation,
     recorder: TraceRecorder,
@@ -228,13 +228,13 @@ struct Master<'a> {
 }
 
 impl<'a> Master<'a> {
-    fn new(scene: &'a Scene, given: Given, u: f64) -> Result<Self, SimulationError> {
+    fn new(scene: &'a Scene, given: MasterInputs, u: f64) -> Result<Self, SimulationError> {
         let temperature = scene.temperature_input.then(|| scene.input_start(Input::Temperature));
         let mut inputs = Inputs::new(temperature);
         inputs.set_input(Input::U, u);
         inputs.set_input(Input::Load, scene.first_load());
         inputs.set_input(Input::Pull, scene.first_pull());
-        if let Some(phase) = scene.excitation.first().filter(|_| given == Given::Rates) {
+        if let Some(phase) = scene.excitation.first().filter(|_| given == MasterInputs::Rates) {
             set_rates(&mut inputs, &phase.motion(scene.layer.area()), 0.0);
         }
         let mut simulation = Simulation::new(scene, &inputs.start(0.0))?;
@@ -251,7 +251,7 @@ impl<'a> Master<'a> {
         for input in Input::MECHANICAL {
             self.inputs.set_input(input, at_start.input(input));
         }
-        if self.given == Given::Rates {
+        if self.given == MasterInputs::Rates {
             set_rates(&mut self.inputs, motion, from);
         }
         let (stands, h) = (self.simulation.driven(), to - from);
@@ -338,11 +338,11 @@ impl TraceRecorder {
         if used_up { Err(RunFailure::OverBudget { time: self.trace.end() }) } else { Ok(()) }
     }
 
-    fn finish(self, simulation: &Simulation, time: f64, durations: Vec<f64>) -> Measured {
+    fn finish(self, simulation: &Simulation, time: f64, durations: Vec<f64>) -> CompletedRun {
         let residual = if self.energy > 0.0 { self.residual / self.energy } else { 0.0 };
         let counts = Counts { iterations: simulation.newton_iterations(), residual, ..self.counts };
         let estimate = Estimate { error: self.estimate, warned: simulation.divergence().is_some() };
-        Measured { trace: self.trace, counts, time, durations, estimate }
+        CompletedRun { trace: self.trace, counts, time, durations, estimate }
     }
 }
 
@@ -362,11 +362,12 @@ impl Progress {
         Self { bar: bar(Self::POSITIONS as u64), total, done: Cell::new(0.0) }
     }
 
-    /// Does a run of this weight; it gets what to call with the share that is done.
+    /// Does a run of this weight; it gets what to call with the fraction that is done.
     pub(super) fn during<T>(&self, message: &str, weight: f64, run: impl FnOnce(&dyn Fn(f64)) -> T) -> T {
         self.bar.set_message(message.to_owned());
         let done = self.done.get();
-        let show = |share: f64| self.bar.set_position((Self::POSITIONS * (done + weight * share) / self.total) as u64);
+        let show =
+            |fraction: f64| self.bar.set_position((Self::POSITIONS * (done + weight * fraction) / self.total) as u64);
         let result = run(&show);
         show(1.0);
         self.done.set(done + weight);
@@ -416,7 +417,7 @@ u_rate = 0.01
         let mut scene = Scene::parse(TEXT, "scene.toml".as_ref()).unwrap();
         let along = |scene: &Scene, budget| follow(scene, Rows::PerPhase(4), 0.0, Budget(budget), &|_| ());
         let points = vec![(1..=10).map(|i| 1e-4 * f64::from(i)).collect::<Vec<_>>(); 2];
-        let driven = |scene: &Scene, budget| drive(scene, Given::Rates, &points, 0.0, Budget(budget), &|_| ());
+        let driven = |scene: &Scene, budget| drive(scene, MasterInputs::Rates, &points, 0.0, Budget(budget), &|_| ());
         for (run, rows) in [(&along as &dyn Fn(&Scene, u64) -> _, 9), (&driven, 21)] {
             let measured = run(&scene, 10_000).unwrap();
             assert_eq!(measured.trace.forces().rows.len(), rows);

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use asperity::scene::Scene;
 
 use super::convergence::{CommunicationRow, CommunicationSteps, ToleranceLadder, ToleranceRow};
-use super::folder::{COMMUNICATION, ERRORS, Folder, INDEX, JUDGEMENTS, STRESS};
+use super::folder::{COMMUNICATION, ERRORS, INDEX, JUDGEMENTS, ReportFolder, STRESS};
 use super::judgement::Judgement;
 use super::reference::Reference;
 use super::robustness::Robustness;
@@ -22,7 +22,7 @@ pub(super) struct SceneReport<'a> {
     command: &'a Report,
     path: &'a Path,
     scene: Scene,
-    folder: Folder,
+    folder: ReportFolder,
     peers: Peers,
 }
 
@@ -36,7 +36,7 @@ impl<'a> SceneReport<'a> {
             return Err(ReportError::NoRun { scene: path.to_owned(), why });
         }
         let taken: Vec<PathBuf> = sources(path, &scene).into_iter().chain(command.peers.clone()).collect();
-        let folder = Folder::new(folder, &[ERRORS, JUDGEMENTS, COMMUNICATION], &taken)?;
+        let folder = ReportFolder::new(folder, &[ERRORS, JUDGEMENTS, COMMUNICATION], &taken)?;
         let peers = read_peers(command, path, &scene)?;
         Ok(Self { command, path, scene, folder, peers })
     }
@@ -48,15 +48,15 @@ impl<'a> SceneReport<'a> {
 
     /// Runs the scene and writes its report. Returns how its runs keep what they promise.
     pub(super) fn run(&self) -> Result<Vec<Judgement>, ReportError> {
-        let parts = Parts::run(self.command, self.path, &self.scene, &self.peers)?;
+        let results = SceneResults::run(self.command, self.path, &self.scene, &self.peers)?;
         self.folder.create()?;
-        self.write(&parts)?;
-        Ok(parts.judgements)
+        self.write(&results)?;
+        Ok(results.judgements)
     }
 
-    fn write(&self, parts: &Parts) -> Result<(), FileError> {
+    fn write(&self, results: &SceneResults) -> Result<(), FileError> {
         let Self { command, scene, folder, .. } = self;
-        let Parts { reference, rows, communication, robustness, judgements } = parts;
+        let SceneResults { reference, rows, communication, robustness, judgements } = results;
         let name = scene.name.as_str();
         tables::write_errors(&folder.file(ERRORS, "csv"), name, reference, rows)?;
         tables::write_communication(&folder.file(COMMUNICATION, "csv"), name, reference, communication)?;
@@ -74,7 +74,7 @@ impl<'a> SceneReport<'a> {
 }
 
 #[derive(Debug)]
-struct Parts {
+struct SceneResults {
     reference: Reference,
     /// This program's runs, then whole processes, its own and the peers'.
     rows: Vec<ToleranceRow>,
@@ -84,7 +84,7 @@ struct Parts {
     judgements: Vec<Judgement>,
 }
 
-impl Parts {
+impl SceneResults {
     fn run(command: &Report, path: &Path, scene: &Scene, peers: &Peers) -> Result<Self, ReportError> {
         let scene = run::watched(scene);
         let tolerances = &command.tolerances.0;

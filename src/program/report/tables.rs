@@ -9,13 +9,13 @@ use super::judgement::Judgement;
 use super::machine::{Machine, build};
 use super::reference::Reference;
 use super::robustness::Robustness;
-use super::run::Figures;
+use super::run::RunFigures;
 use super::trace::{Errors, OF_ALL_SCENES, QUANTITIES};
 use crate::program::files::FileError;
 use crate::program::result_file::{CsvFile, CsvWriter, ResultFileError};
 use crate::program::terminal::real;
 
-/// Of errors and run times: errors over the largest value, processor time in s. Tables of other programs have these
+/// The columns of errors and run times: errors over the largest value, processor time in s. Tables of other programs have these
 /// columns.
 const MEASURED: [&str; 10] = [
     "scene",
@@ -142,12 +142,12 @@ pub(super) fn write_judgements<'a>(
     write(path, JUDGEMENTS.split(','), records)
 }
 
-/// Of everything that is scaled.
+/// The factors of everything that may be scaled.
 fn factors(perturbation: Perturbation) -> [String; 8] {
     ScaledQuantity::ALL.map(|quantity| optional(perturbation.factor(quantity)))
 }
 
-/// As many digits as a ratio of counts or times is worth.
+/// A ratio of counts or times, rounded to the digits that it is worth.
 fn short(ratio: f64) -> f64 {
     const DIGITS: f64 = 1e4;
     (ratio * DIGITS).round() / DIGITS
@@ -216,14 +216,14 @@ fn row(
 ) -> Result<ToleranceRow, String> {
     let tolerance = number(tolerance)?.ok_or("expected a tolerance, found none")?;
     let time = number(time)?;
-    let figures = Figures {
+    let figures = RunFigures {
         errors: [number(x)?, number(z)?, number(lost)?, None, None],
         time,
         spread: number(spread)?,
         timings: number(timings)?.map(|count| count as u64),
         steps: number(steps)?.map(|count| count as u64),
         events: number(events)?.map(|count| count as u64),
-        ..Figures::default()
+        ..RunFigures::default()
     };
     let result = if time.is_some() { Ok(figures) } else { Err("no run time".into()) };
     Ok(ToleranceRow { program: program.into(), method: method.into(), tolerance, timed: Timed::WholeProcess, result })

@@ -1,7 +1,7 @@
 //! What runs are compared by: the forces on the carrier, the energy lost and the motion of a carrier that is a body, row by
 //! row.
 
-use asperity::robustness::ForceHistory;
+use asperity::robustness::{ForceHistory, larger};
 
 /// The quantities whose errors are shown, by the names of their variables.
 pub(super) const QUANTITIES: [&str; COUNT] = ["F_x", "F_z", "E_diss", "u", "w"];
@@ -16,7 +16,7 @@ pub(super) const OF_ALL_SCENES: usize = 3;
 pub(super) type Errors = [Option<f64>; COUNT];
 
 /// The values of the [`QUANTITIES`] in a row.
-pub(super) type Row = [f64; COUNT];
+pub(super) type TraceRow = [f64; COUNT];
 
 /// Windows of a phase over which means are taken.
 pub(super) const WINDOWS: u32 = 20;
@@ -29,13 +29,13 @@ const ROUNDING: f64 = 1e-12;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Trace {
     times: Vec<f64>,
-    rows: Vec<Row>,
+    rows: Vec<TraceRow>,
     /// The number of intervals of each phase that took time.
     intervals: Vec<usize>,
 }
 
 impl Trace {
-    pub(super) fn push(&mut self, time: f64, row: Row) {
+    pub(super) fn push(&mut self, time: f64, row: TraceRow) {
         self.times.push(time);
         self.rows.push(row);
     }
@@ -98,7 +98,7 @@ impl Trace {
     }
 
     /// The means over the windows of each phase; of the energy lost, its value at their ends.
-    fn window_means(&self) -> Vec<Row> {
+    fn window_means(&self) -> Vec<TraceRow> {
         let mut start = 0;
         let mut means = Vec::new();
         for &count in &self.intervals {
@@ -119,19 +119,14 @@ impl Trace {
     /// The largest values; `None` for a force that is rounding alone.
     fn scales(&self) -> Errors {
         let largest = |i: usize| self.rows.iter().fold(0.0, |largest, row| larger(largest, row[i].abs()));
-        let scales: Row = std::array::from_fn(largest);
+        let scales: TraceRow = std::array::from_fn(largest);
         let least = ROUNDING * scales[0].max(scales[1]);
         std::array::from_fn(|i| Some(scales[i]).filter(|&scale| scale > if i < 2 { least } else { 0.0 }))
     }
 }
 
-/// The larger; NaN counts as infinite.
-fn larger(a: f64, b: f64) -> f64 {
-    if b.is_nan() { f64::INFINITY } else { a.max(b) }
-}
-
 /// The integrals of the straight lines between the rows, from the first row to each; an interval counts as 1.
-fn running_sums(rows: &[Row]) -> Vec<Row> {
+fn running_sums(rows: &[TraceRow]) -> Vec<TraceRow> {
     let mut sums = vec![[0.0; COUNT]];
     for (i, pair) in rows.windows(2).enumerate() {
         sums.push(std::array::from_fn(|j| sums[i][j] + 0.5 * (pair[0][j] + pair[1][j])));
@@ -140,19 +135,19 @@ fn running_sums(rows: &[Row]) -> Vec<Row> {
 }
 
 /// The integral from the first row to `position`, which counts rows.
-fn sum_to(rows: &[Row], sums: &[Row], position: f64) -> Row {
+fn sum_to(rows: &[TraceRow], sums: &[TraceRow], position: f64) -> TraceRow {
     let (i, part) = interval(rows, position);
     let here = value_at(rows, position);
     std::array::from_fn(|j| sums[i][j] + 0.5 * part * (rows[i][j] + here[j]))
 }
 
-fn value_at(rows: &[Row], position: f64) -> Row {
+fn value_at(rows: &[TraceRow], position: f64) -> TraceRow {
     let (i, part) = interval(rows, position);
     std::array::from_fn(|j| rows[i][j] + part * (rows[i + 1][j] - rows[i][j]))
 }
 
 /// The interval in which `position` lies, and the part of it before `position`.
-fn interval(rows: &[Row], position: f64) -> (usize, f64) {
+fn interval(rows: &[TraceRow], position: f64) -> (usize, f64) {
     let i = (position as usize).min(rows.len() - 2);
     (i, position - i as f64)
 }
@@ -166,7 +161,7 @@ mod tests {
         of(values.map(|value| [value, 2.0 * value, 0.0, 0.0, 0.0]).into(), &[4, 2])
     }
 
-    fn of(rows: Vec<Row>, intervals: &[usize]) -> Trace {
+    fn of(rows: Vec<TraceRow>, intervals: &[usize]) -> Trace {
         Trace { times: (0..rows.len()).map(|i| i as f64).collect(), rows, intervals: intervals.to_vec() }
     }
 

@@ -14,7 +14,7 @@ const ROWS: u32 = 200;
 /// A motion to and fro along x from rest, at constant height.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ToAndFro {
-    /// m/s.
+    /// The speed, m/s.
     pub(super) speed: f64,
     /// The length over which the element sticks, m.
     pub(super) length: f64,

@@ -54,12 +54,11 @@ fn scene_of(table: &Table, path: &Path) -> Result<Scene, CheckError> {
     if scene.name != table.scene {
         return Err(CheckError::OtherScene { table: table.scene.clone(), scene: scene.name });
     }
-    let rest = (separation_at_rest(&scene), table.rest_separation);
     let [most, least] = [0, table.grid.loads.len() - 1].map(|load| Node { load, ..Node::default() });
     let range = table.value(Quantity::Separation, most) - table.value(Quantity::Separation, least);
-    check_number("the separation at w = 0", rest, range, "m")?;
+    check_number("the separation at w = 0", separation_at_rest(&scene), table.rest_separation, range, "m")?;
     if let (Load::Pressure { area }, Some(found)) = (table.load, scene.layer.area()) {
-        check_number("the area of the layer", (found, area), area, "m²")?;
+        check_number("the area of the layer", found, area, area, "m²")?;
     }
     let has_temperature = scene.material.as_ref().is_some_and(|material| material.wlf.is_some());
     if has_temperature == table.grid.temperatures.is_empty() {
@@ -71,7 +70,7 @@ fn scene_of(table: &Table, path: &Path) -> Result<Scene, CheckError> {
 }
 
 /// Refuses a scene in which a number differs from the table's by more than rounding, of numbers of some `size`.
-fn check_number(what: &'static str, (found, swept): (f64, f64), size: f64, unit: &str) -> Result<(), CheckError> {
+fn check_number(what: &'static str, found: f64, swept: f64, size: f64, unit: &str) -> Result<(), CheckError> {
     if (found - swept).abs() <= ROUNDING * size {
         return Ok(());
     }

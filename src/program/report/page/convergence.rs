@@ -11,8 +11,8 @@ use crate::program::cli::Report;
 use crate::program::figure::{Ladder, LadderPanel, Ladders, Rung, Stroke};
 use crate::program::html::{Cell, fill, table};
 use crate::program::report::convergence::{CommunicationRow, PATIENCE, PROGRAM, Timed, ToleranceRow};
-use crate::program::report::reference::Reference;
-use crate::program::report::run::{Figures, Given};
+use crate::program::report::reference::{Comparison, Reference};
+use crate::program::report::run::{MasterInputs, RunFigures};
 use crate::program::report::trace::{Errors, QUANTITIES, WINDOWS};
 
 const TOLERANCES: &str = include_str!("tolerances.html");
@@ -108,14 +108,14 @@ fn quickest(
     rows: &[ToleranceRow],
     bound: f64,
     counts: impl Fn(&ToleranceRow) -> bool,
-) -> Option<(&ToleranceRow, Figures)> {
-    let within = |figures: &Figures| figures.time.is_some() && figures.error().is_some_and(|error| error <= bound);
+) -> Option<(&ToleranceRow, RunFigures)> {
+    let within = |figures: &RunFigures| figures.time.is_some() && figures.error().is_some_and(|error| error <= bound);
     let rows = rows.iter().filter(|row| counts(row));
     let rows = rows.filter_map(|row| Some((row, *row.result.as_ref().ok().filter(|figures| within(figures))?)));
     rows.min_by(|(_, a), (_, b)| a.time.unwrap_or(f64::MAX).total_cmp(&b.time.unwrap_or(f64::MAX)))
 }
 
-fn setting(choice: Option<(&ToleranceRow, Figures)>) -> Vec<Cell> {
+fn setting(choice: Option<(&ToleranceRow, RunFigures)>) -> Vec<Cell> {
     let Some((row, figures)) = choice else { return vec![reason("no run", 4)] };
     let setting = format!("{}, tolerance {:e}", row.method, row.tolerance);
     vec![setting.into(), short(figures.error()), seconds(figures.time), count(figures.steps)]
@@ -171,7 +171,7 @@ fn runs(reference: &Reference, rows: &[ToleranceRow]) -> io::Result<String> {
     table(&head(&["method"], &[&["tolerance"], &figures[..]].concat()), &cells.collect::<Vec<_>>())
 }
 
-fn figure_cells(figures: &Figures, reference: &Reference) -> Vec<Cell> {
+fn figure_cells(figures: &RunFigures, reference: &Reference) -> Vec<Cell> {
     let counts = [figures.steps, figures.rejected, figures.events, figures.iterations].map(count);
     let times = [seconds(figures.time), per_cent(figures.spread), count(figures.timings)];
     let cells = errors(&figures.errors, reference).chain(times).chain(counts);
@@ -319,7 +319,7 @@ fn with_end_labels(mut rungs: Vec<Rung>) -> Vec<Rung> {
 /// Errors over the communication step: the largest and, dashed, the root mean squares.
 pub(in crate::program::report) fn communication_picture(reference: &Reference, rows: &[CommunicationRow]) -> Ladders {
     let panels = panels(reference, |quantity| {
-        let ladder = |given: Given, look: usize, mean_square: bool| {
+        let ladder = |given: MasterInputs, look: usize, mean_square: bool| {
             let pick = |row: &CommunicationRow| {
                 let (figures, mean_squares) = row.result.as_ref().ok()?;
                 let errors: Errors = if mean_square { (*mean_squares)? } else { figures.errors };
@@ -329,7 +329,7 @@ pub(in crate::program::report) fn communication_picture(reference: &Reference, r
             let rungs = rows.iter().filter(|row| row.given == given).filter_map(pick).collect();
             Ladder { name: format!("{}{kind}", given.name()), stroke, look, rungs }
         };
-        let lines = [(Given::Rates, 0), (Given::Values, 1)]
+        let lines = [(MasterInputs::Rates, 0), (MasterInputs::Values, 1)]
             .into_iter()
             .flat_map(|(given, look)| [false, true].map(|mean_square| ladder(given, look, mean_square)));
         lines.filter(|ladder| !ladder.rungs.is_empty()).collect()
@@ -345,7 +345,7 @@ fn panels(reference: &Reference, ladders: impl Fn(usize) -> Vec<Ladder>) -> Vec<
         shown.push(1);
     }
     let panel = |quantity: usize| LadderPanel {
-        title: title(quantity, reference.comparison.is_of_means()),
+        title: title(quantity, reference.comparison),
         floor: reference.own[quantity].filter(|own| own.is_finite()),
         lines: Vec::new(),
         ladders: ladders(quantity),
@@ -353,7 +353,11 @@ fn panels(reference: &Reference, ladders: impl Fn(usize) -> Vec<Ladder>) -> Vec<
     shown.into_iter().map(panel).collect()
 }
 
-fn title(quantity: usize, of_means: bool) -> String {
+fn title(quantity: usize, comparison: Comparison) -> String {
     let name = QUANTITIES[quantity];
-    if of_means && quantity != 2 { format!("error of {name}, means") } else { format!("error of {name}") }
+    if comparison.is_of_means() && quantity != 2 {
+        format!("error of {name}, means")
+    } else {
+        format!("error of {name}")
+    }
 }

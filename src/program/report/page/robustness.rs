@@ -106,7 +106,7 @@ fn lines(robustness: &Robustness) -> io::Result<String> {
         let cell = |power: i32| {
             let perturbation = Perturbation::default().with(quantity, power);
             let trial = robustness.trial(perturbation);
-            let class = class(robustness.verdict(trial));
+            let class = verdict_class(robustness, trial);
             Cell { text: figures(robustness, trial), ..coloured(robustness, perturbation, class) }
         };
         std::iter::once(Cell::from(quantity.name())).chain(robustness.powers(1).map(cell)).collect()
@@ -226,7 +226,8 @@ fn pairs(robustness: &Robustness) -> io::Result<String> {
                 let span = format!("{} to {}", factor(-robustness.powers), factor(robustness.powers));
                 format!("<div class=\"name\"><span>{}<small>{span}</small></span></div>\n", row.name())
             } else {
-                format!("<div>{}</div>\n", map(robustness, column, row, i > j)?)
+                let class: fn(&Robustness, &Trial) -> &'static str = if i > j { work_class } else { verdict_class };
+                format!("<div>{}</div>\n", map(robustness, column, row, class)?)
             };
         }
     }
@@ -259,13 +260,17 @@ fn at_most(bound: f64) -> String {
     }
 }
 
-fn map(robustness: &Robustness, x: ScaledQuantity, y: ScaledQuantity, of_work: bool) -> io::Result<String> {
+/// The runs with two quantities scaled, in the colours of `class`.
+fn map(
+    robustness: &Robustness,
+    x: ScaledQuantity,
+    y: ScaledQuantity,
+    class: fn(&Robustness, &Trial) -> &'static str,
+) -> io::Result<String> {
     let row = |up: i32| {
         let cell = |right: i32| {
             let perturbation = Perturbation::default().with(x, right).with(y, -up);
-            let trial = robustness.trial(perturbation);
-            let class = if of_work { work_class(robustness, trial) } else { class(robustness.verdict(trial)) };
-            coloured(robustness, perturbation, class)
+            coloured(robustness, perturbation, class(robustness, robustness.trial(perturbation)))
         };
         robustness.powers(robustness.stride).map(cell).collect()
     };
@@ -273,9 +278,13 @@ fn map(robustness: &Robustness, x: ScaledQuantity, y: ScaledQuantity, of_work: b
     table(&[], &rows)
 }
 
+fn verdict_class(robustness: &Robustness, trial: &Trial) -> &'static str {
+    class(robustness.verdict(trial))
+}
+
 fn work_class(robustness: &Robustness, trial: &Trial) -> &'static str {
     let class_of = |times: f64| WORK.iter().find(|(bound, _)| times <= *bound).map_or("more", |(_, class)| *class);
-    robustness.times_the_steps(trial).map_or_else(|| class(robustness.verdict(trial)), class_of)
+    robustness.times_the_steps(trial).map_or_else(|| verdict_class(robustness, trial), class_of)
 }
 
 fn left_out(robustness: &Robustness) -> String {

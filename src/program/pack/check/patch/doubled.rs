@@ -8,9 +8,9 @@ use asperity::scene::{NotDoubled, PatchGroup};
 use indicatif::ProgressBar;
 
 use super::elements::{Drag, write_rows};
-use super::tilt::Tilted;
-use super::wrench::{COMPONENTS, Pair, Wrench, text};
-use super::{Setting, extent};
+use super::tilt::TiltedFace;
+use super::wrench::{COMPONENTS, Wrench, WrenchSeries, text};
+use super::{CheckSetting, extent};
 use crate::program::files::FileError;
 use crate::program::pack::check::SLIDING_DISTANCE;
 use crate::program::pack::check::drag::ToAndFro;
@@ -36,15 +36,15 @@ pub(super) struct Doubled {
     /// Elements of the finer one along and across.
     grid: (usize, usize),
     /// In steady sliding, by speed.
-    pub(super) steady: Pair,
-    to_and_fro: Pair,
+    pub(super) steady: WrenchSeries,
+    to_and_fro: WrenchSeries,
     /// Without a tread, empty.
-    rolling: Pair,
+    rolling: WrenchSeries,
 }
 
 impl Doubled {
     /// Drags both; says why there is no finer patch.
-    pub(super) fn run(setting: &Setting<'_>) -> Result<Result<Self, NotDoubled>, MotionError> {
+    pub(super) fn run(setting: &CheckSetting<'_>) -> Result<Result<Self, NotDoubled>, MotionError> {
         let finer = match setting.patch.doubled() {
             Ok(finer) => finer,
             Err(reason) => return Ok(Err(reason)),
@@ -53,12 +53,12 @@ impl Doubled {
         let bar = terminal::bar(2 * (setting.faces.len() + setting.motion.steps().count() + rolling) as u64);
         bar.set_message("of the patch with nx, ny doubled");
         let grid = finer.grid().unwrap_or_default();
-        let fine = Course::run(setting, &finer, &bar)?;
-        let coarse = Course::run(setting, setting.patch, &bar)?;
+        let fine = WrenchCourse::run(setting, &finer, &bar)?;
+        let coarse = WrenchCourse::run(setting, setting.patch, &bar)?;
         bar.finish_and_clear();
         let pair = |fine: Vec<Wrench>, coarse| {
             let sizes = fine.clone();
-            Pair::new(fine, coarse, &sizes, setting.lever)
+            WrenchSeries::new(fine, coarse, &sizes, setting.lever)
         };
         Ok(Ok(Self {
             grid,
@@ -69,10 +69,10 @@ impl Doubled {
     }
 
     /// By how much the wrench changes.
-    pub(super) fn summary(&self, setting: &Setting<'_>) -> Vec<String> {
+    pub(super) fn summary(&self, setting: &CheckSetting<'_>) -> Vec<String> {
         let (nx, ny) = self.grid;
         let shares = self.steady.shares();
-        let line = |(face, share): (&Tilted, Wrench)| format!("at {} m/s: {}", real(face.speed), text(share));
+        let line = |(face, share): (&TiltedFace, Wrench)| format!("at {} m/s: {}", real(face.speed), text(share));
         let mut texts = vec![format!("the whole patch beside one of {nx} by {ny} elements, over its largest values")];
         texts.extend(setting.faces.iter().zip(shares).map(line));
         if setting.motion.length > 0.0 {
@@ -93,7 +93,7 @@ impl Doubled {
 }
 
 /// The wrench of a patch.
-struct Course {
+struct WrenchCourse {
     /// By speed.
     steady: Vec<Wrench>,
     /// Row by row.
@@ -102,10 +102,10 @@ struct Course {
     rolling: Vec<Wrench>,
 }
 
-impl Course {
-    fn run(setting: &Setting<'_>, patch: &Patch, bar: &ProgressBar) -> Result<Self, MotionError> {
+impl WrenchCourse {
+    fn run(setting: &CheckSetting<'_>, patch: &Patch, bar: &ProgressBar) -> Result<Self, MotionError> {
         let patch = patch.with_groups(vec![PatchGroup::Forces]);
-        let slide = |face: &Tilted| {
+        let slide = |face: &TiltedFace| {
             let step = (SLIDING_DISTANCE / face.speed, face.speed);
             let rows = rows(&patch, Drag::new(&patch, face, face.speed)?, std::iter::once(step), bar)?;
             Ok(rows[rows.len() - 1])
@@ -119,7 +119,7 @@ impl Course {
 }
 
 /// The wrench as a tread rolls through a contact of some `length` (m) and slips at the speed of a face.
-fn roll(patch: &Patch, face: &Tilted, length: f64, bar: &ProgressBar) -> Result<Vec<Wrench>, MotionError> {
+fn roll(patch: &Patch, face: &TiltedFace, length: f64, bar: &ProgressBar) -> Result<Vec<Wrench>, MotionError> {
     let (speed, tread) = ((1.0 + ROLLING) * face.speed, ROLLING * face.speed);
     let duration = PASSAGES * length / tread / f64::from(ROLLING_ROWS);
     rows(patch, Drag::rolling(patch, face, speed, tread)?, (0..ROLLING_ROWS).map(|_| (duration, speed)), bar)

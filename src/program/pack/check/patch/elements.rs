@@ -7,9 +7,9 @@ use asperity::patch::{MotionError, Patch, PatchMotion, PatchOutput, PatchRun, Pa
 use asperity::scene::PatchGroup;
 use rayon::prelude::*;
 
-use super::tilt::{Spot, Tilted};
-use super::wrench::{COMPONENTS, Pair, Wrench, wrench};
-use super::{Setting, point};
+use super::tilt::{TiltedElement, TiltedFace};
+use super::wrench::{COMPONENTS, Wrench, WrenchSeries, wrench};
+use super::{CheckSetting, point};
 use crate::program::figure::{Curve, Figure as _, LinearPanel, LinearStack, Stroke};
 use crate::program::files::FileError;
 use crate::program::pack::check::drag::ToAndFro;
@@ -22,19 +22,24 @@ const LAYER: [Output; 2] = [Output::ForceX, Output::ForceZ];
 /// A run of a patch in the pose of a tilted face, along x.
 pub(super) struct Drag {
     pub(super) run: PatchRun,
-    /// Of the tread, m/s.
+    /// The speed of the tread, m/s.
     transport_speed: f64,
     temperature: f64,
 }
 
 impl Drag {
     /// At a speed along x (m/s), the tread standing still.
-    pub(super) fn new(patch: &Patch, face: &Tilted, speed: f64) -> Result<Self, MotionError> {
+    pub(super) fn new(patch: &Patch, face: &TiltedFace, speed: f64) -> Result<Self, MotionError> {
         Self::rolling(patch, face, speed, 0.0)
     }
 
     /// At a speed along x (m/s), the tread running at `transport_speed` (m/s).
-    pub(super) fn rolling(patch: &Patch, face: &Tilted, speed: f64, transport_speed: f64) -> Result<Self, MotionError> {
+    pub(super) fn rolling(
+        patch: &Patch,
+        face: &TiltedFace,
+        speed: f64,
+        transport_speed: f64,
+    ) -> Result<Self, MotionError> {
         let (rates, temperature) = (along_x(speed), patch.temperature());
         let start = PatchStart { pose: face.pose, rates, transport_speed, temperature, ..PatchStart::default() };
         Ok(Self { run: PatchRun::new(patch, &start)?, transport_speed, temperature })
@@ -53,18 +58,18 @@ fn along_x(speed: f64) -> [f64; 6] {
 
 /// The elements of a face alone, dragged.
 pub(super) struct Elements<'a> {
-    spots: &'a [Spot],
+    tilted_elements: &'a [TiltedElement],
     drag: Drag,
     variables: Vec<PatchVariable>,
     values: Vec<f64>,
 }
 
 impl<'a> Elements<'a> {
-    pub(super) fn new(patch: &Patch, face: &'a Tilted, speed: f64) -> Result<Self, MotionError> {
-        let patch = patch.with_elements(face.spots.iter().map(|spot| spot.element));
+    pub(super) fn new(patch: &Patch, face: &'a TiltedFace, speed: f64) -> Result<Self, MotionError> {
+        let patch = patch.with_elements(face.tilted_elements.iter().map(|tilted| tilted.element));
         let patch = patch.with_groups(vec![PatchGroup::Elements]);
         let (variables, drag) = (patch.variables(), Drag::new(&patch, face, speed)?);
-        Ok(Self { spots: &face.spots, values: vec![0.0; variables.len()], variables, drag })
+        Ok(Self { tilted_elements: &face.tilted_elements, values: vec![0.0; variables.len()], variables, drag })
     }
 
     pub(super) fn advance(&mut self, step: (f64, f64)) -> Result<(), MotionError> {
@@ -74,11 +79,11 @@ impl<'a> Elements<'a> {
     /// The ground's forces on them, N.
     pub(super) fn forces(&mut self) -> Vec<[f64; 3]> {
         self.drag.run.evaluate(&self.variables, &mut self.values);
-        let mut forces = vec![[0.0; 3]; self.spots.len()];
+        let mut forces = vec![[0.0; 3]; self.tilted_elements.len()];
         for (variable, value) in self.variables.iter().zip(&self.values) {
             match variable.output {
-                PatchOutput::ElementTraction(i, axis) => forces[i][axis] = value * self.spots[i].element.area,
-                PatchOutput::ElementPressure(i) => forces[i][2] = value * self.spots[i].element.area,
+                PatchOutput::ElementTraction(i, axis) => forces[i][axis] = value * self.tilted_elements[i].element.area,
+                PatchOutput::ElementPressure(i) => forces[i][2] = value * self.tilted_elements[i].element.area,
                 _ => (),
             }
         }
@@ -90,18 +95,18 @@ impl<'a> Elements<'a> {
 pub(super) struct Dragged {
     motion: ToAndFro,
     /// Layers, elements.
-    pair: Pair,
+    pair: WrenchSeries,
 }
 
 impl Dragged {
     /// Drags both; the status where a layer cannot be dragged.
-    pub(super) fn run(setting: &Setting<'_>) -> Result<Result<Self, String>, MotionError> {
+    pub(super) fn run(setting: &CheckSetting<'_>) -> Result<Result<Self, String>, MotionError> {
         let (face, motion) = (setting.middle(), setting.motion);
         if motion.length <= 0.0 {
             return Ok(Err("no contact, or no friction".into()));
         }
         let mut elements = Elements::new(setting.patch, face, 0.0)?;
-        let sum = |forces: Vec<[f64; 3]>| wrench(face.spots.iter().map(|spot| spot.arm).zip(forces)).0;
+        let sum = |forces: Vec<[f64; 3]>| wrench(face.tilted_elements.iter().map(|tilted| tilted.arm).zip(forces)).0;
         let mut other = vec![sum(elements.forces())];
         for step in motion.steps() {
             elements.advance(step)?;
@@ -110,11 +115,11 @@ impl Dragged {
         let layers = layers(setting, face);
         Ok(layers.map(|layers| {
             let (reference, sizes): (Vec<_>, Vec<_>) = layers.into_iter().unzip();
-            Self { motion, pair: Pair::new(reference, other, &sizes, setting.lever) }
+            Self { motion, pair: WrenchSeries::new(reference, other, &sizes, setting.lever) }
         }))
     }
 
-    pub(super) fn pair(&self) -> &Pair {
+    pub(super) fn pair(&self) -> &WrenchSeries {
         &self.pair
     }
 
@@ -143,26 +148,26 @@ impl Dragged {
 }
 
 /// The wrench of the layers and the sums of magnitudes, row by row.
-fn layers(setting: &Setting<'_>, face: &Tilted) -> Result<Vec<(Wrench, Wrench)>, String> {
+fn layers(setting: &CheckSetting<'_>, face: &TiltedFace) -> Result<Vec<(Wrench, Wrench)>, String> {
     let variables: Vec<Variable> = LAYER.into_iter().filter_map(variable).collect();
     let (table, temperature) = (setting.patch.table(), point(setting.patch, face.speed).temperature);
-    let bar = terminal::bar(face.spots.len() as u64);
+    let bar = terminal::bar(face.tilted_elements.len() as u64);
     bar.set_message("of the layers to and fro");
-    let drag = |spot: &Spot| {
-        let w = spot.separation - table.rest_separation;
+    let drag = |tilted: &TiltedElement| {
+        let w = tilted.separation - table.rest_separation;
         let rows = setting.motion.layer::<{ LAYER.len() }>(setting.scene, temperature, w, &variables);
         bar.inc(1);
-        rows.map_err(|status| format!("the layer of element {}: {status}", spot.element.index + 1))
+        rows.map_err(|status| format!("the layer of element {}: {status}", tilted.element.index + 1))
     };
-    let rows: Result<Vec<_>, String> = face.spots.par_iter().with_max_len(1).map(drag).collect();
+    let rows: Result<Vec<_>, String> = face.tilted_elements.par_iter().with_max_len(1).map(drag).collect();
     bar.finish_and_clear();
     let rows = rows?;
     let sum = |row: usize| {
-        let force = |(spot, rows): (&Spot, &Vec<[f64; 2]>)| {
-            let ([along, up], share) = (rows[row], spot.element.area / setting.patch.nominal_area());
-            (spot.arm, [share * along, 0.0, share * up])
+        let force = |(tilted, rows): (&TiltedElement, &Vec<[f64; 2]>)| {
+            let ([along, up], share) = (rows[row], tilted.element.area / setting.patch.nominal_area());
+            (tilted.arm, [share * along, 0.0, share * up])
         };
-        wrench(face.spots.iter().zip(&rows).map(force))
+        wrench(face.tilted_elements.iter().zip(&rows).map(force))
     };
     Ok((0..rows.first().map_or(0, Vec::len)).map(sum).collect())
 }

@@ -23,18 +23,18 @@ use crate::program::terminal::{LabelledLine, labelled};
 use doubled::Doubled;
 use elements::Dragged;
 use sliding::Sliding;
-use tilt::Tilted;
-use wrench::{COMPONENTS, Pair, Wrench, text};
+use tilt::TiltedFace;
+use wrench::{COMPONENTS, Wrench, WrenchSeries, text};
 
 /// Most speeds of the table at which the patch is dragged.
 const SPEEDS: usize = 3;
 
 /// A patch, the layer of its elements, and where both are dragged.
-struct Setting<'a> {
+struct CheckSetting<'a> {
     patch: &'a Patch,
     scene: &'a Scene,
     /// At the speeds, the least first.
-    faces: &'a [Tilted],
+    faces: &'a [TiltedFace],
     /// In the pose of the middle one of the faces.
     motion: ToAndFro,
     /// The longest arm of a moment, m.
@@ -55,16 +55,16 @@ pub(in crate::program::pack) fn check(
     let mut patch = patch.clone();
     patch.set_parameter(Parameter::TableExtrapolation, hold.clone())?;
     let speeds = speeds(&patch.table().grid);
-    let faces: Vec<_> = speeds.map(|speed| Tilted::new(&patch, speed, command.points as usize)).collect();
-    if faces.iter().any(|face| face.spots.is_empty()) {
+    let faces: Vec<_> = speeds.map(|speed| TiltedFace::new(&patch, speed, command.points as usize)).collect();
+    if faces.iter().any(|face| face.tilted_elements.is_empty()) {
         return Err(CheckError::NoElements);
     }
     let middle = &faces[faces.len() / 2];
     let mut contact = PointContact::new(patch.table().clone());
     contact.set_parameter(Parameter::TableExtrapolation, hold)?;
     let motion = ToAndFro { speed: middle.speed, length: stick_length(&contact, &patch, middle) };
-    let lever = faces.iter().map(Tilted::lever).fold(0.0, f64::max);
-    let setting = Setting { patch: &patch, scene: &scene, faces: &faces, motion, lever };
+    let lever = faces.iter().map(TiltedFace::lever).fold(0.0, f64::max);
+    let setting = CheckSetting { patch: &patch, scene: &scene, faces: &faces, motion, lever };
     setting.compare(&folder)
 }
 
@@ -76,12 +76,12 @@ fn speeds(grid: &SweepGrid) -> impl Iterator<Item = usize> + use<> {
 }
 
 /// The longest length over which one of the elements sticks, m.
-fn stick_length(contact: &PointContact, patch: &Patch, face: &Tilted) -> f64 {
+fn stick_length(contact: &PointContact, patch: &Patch, face: &TiltedFace) -> f64 {
     let length = |separation: f64| {
         let start = Start { w: separation - patch.table().rest_separation, ..Start::default() };
         element_at(contact, &point(patch, face.speed), &start).map_or(0.0, |element| element.stick_length())
     };
-    face.spots.iter().map(|spot| length(spot.separation)).fold(0.0, f64::max)
+    face.tilted_elements.iter().map(|tilted| length(tilted.separation)).fold(0.0, f64::max)
 }
 
 /// A speed at the temperature of a patch.
@@ -91,14 +91,14 @@ fn point(patch: &Patch, speed: f64) -> OperatingPoint {
 }
 
 /// The largest and the root mean square differences along a motion.
-fn extent(motion: &str, pair: &Pair) -> [String; 2] {
+fn extent(motion: &str, pair: &WrenchSeries) -> [String; 2] {
     let (largest, root) = pair.extent();
     [format!("{motion}, at most: {}", text(largest)), format!("  in root mean square: {}", text(root))]
 }
 
-impl Setting<'_> {
+impl CheckSetting<'_> {
     /// The face at the middle speed.
-    fn middle(&self) -> &Tilted {
+    fn middle(&self) -> &TiltedFace {
         &self.faces[self.faces.len() / 2]
     }
 
@@ -131,10 +131,13 @@ impl Setting<'_> {
     }
 
     /// Differences in steady sliding over the speed.
-    fn plot(&self, pairs: &[(&str, &Pair)]) -> Ladders {
+    fn plot(&self, pairs: &[(&str, &WrenchSeries)]) -> Ladders {
         let ladder = |look: usize, name: &str, shares: &[Wrench], component: usize| {
-            let rung =
-                |(face, share): (&Tilted, &Wrench)| Rung { x: face.speed, y: share[component], label: String::new() };
+            let rung = |(face, share): (&TiltedFace, &Wrench)| Rung {
+                x: face.speed,
+                y: share[component],
+                label: String::new(),
+            };
             let rungs = self.faces.iter().zip(shares).map(rung).collect();
             Ladder { name: name.to_owned(), stroke: Stroke::Line, look, rungs }
         };

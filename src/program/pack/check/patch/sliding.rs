@@ -8,9 +8,9 @@ use indicatif::ProgressBar;
 use rayon::prelude::*;
 
 use super::elements::Elements;
-use super::tilt::{Spot, Tilted};
-use super::wrench::{Pair, Wrench, text, wrench};
-use super::{Setting, point};
+use super::tilt::{TiltedElement, TiltedFace};
+use super::wrench::{Wrench, WrenchSeries, text, wrench};
+use super::{CheckSetting, point};
 use crate::program::figure::{Ladder, LadderPanel, Ladders, Rung, Stroke};
 use crate::program::files::FileError;
 use crate::program::pack::check::{ERROR, SLIDING_DISTANCE};
@@ -26,38 +26,38 @@ const HEAD: [&str; 9] =
 
 /// Steady sliding at all speeds.
 pub(super) struct Sliding<'a> {
-    setting: &'a Setting<'a>,
-    speeds: Vec<AtSpeed<'a>>,
+    setting: &'a CheckSetting<'a>,
+    speeds: Vec<SlidingAtSpeed<'a>>,
 }
 
 /// Steady sliding at a speed.
-struct AtSpeed<'a> {
-    face: &'a Tilted,
+struct SlidingAtSpeed<'a> {
+    face: &'a TiltedFace,
     /// Forces on the elements, N.
     elements: Vec<[f64; 3]>,
-    /// The same of their layers; the status of one that was not steady.
+    /// Forces on their layers, N; the status of one that was not steady.
     layers: Vec<Result<[f64; 3], String>>,
 }
 
 impl<'a> Sliding<'a> {
-    pub(super) fn run(setting: &'a Setting<'a>) -> Result<Self, MotionError> {
-        let bar = terminal::bar(setting.faces.iter().map(|face| face.spots.len() as u64).sum());
+    pub(super) fn run(setting: &'a CheckSetting<'a>) -> Result<Self, MotionError> {
+        let bar = terminal::bar(setting.faces.iter().map(|face| face.tilted_elements.len() as u64).sum());
         bar.set_message("of the layers in steady sliding");
-        let speeds: Result<_, _> = setting.faces.iter().map(|face| AtSpeed::run(setting, face, &bar)).collect();
+        let speeds: Result<_, _> = setting.faces.iter().map(|face| SlidingAtSpeed::run(setting, face, &bar)).collect();
         bar.finish_and_clear();
         Ok(Self { setting, speeds: speeds? })
     }
 
     /// The wrenches of the layers and of the elements, by speed.
-    pub(super) fn pair(&self) -> Pair {
-        let (layers, other): (Vec<_>, Vec<_>) = self.speeds.iter().map(AtSpeed::wrenches).unzip();
+    pub(super) fn pair(&self) -> WrenchSeries {
+        let (layers, other): (Vec<_>, Vec<_>) = self.speeds.iter().map(SlidingAtSpeed::wrenches).unzip();
         let (reference, sizes): (Vec<_>, Vec<_>) = layers.into_iter().unzip();
-        Pair::new(reference, other, &sizes, self.setting.lever)
+        WrenchSeries::new(reference, other, &sizes, self.setting.lever)
     }
 
     /// Differences by speed, and what could not be compared.
     pub(super) fn summary(&self) -> Vec<String> {
-        let pressures: Vec<f64> = self.speeds.iter().flat_map(AtSpeed::pressures).collect();
+        let pressures: Vec<f64> = self.speeds.iter().flat_map(SlidingAtSpeed::pressures).collect();
         let (least, largest) = pressures.iter().fold((f64::INFINITY, 0.0), |(low, high), p| (p.min(low), p.max(high)));
         let all: usize = self.speeds.iter().map(|sliding| sliding.elements.len()).sum();
         let range =
@@ -67,7 +67,7 @@ impl<'a> Sliding<'a> {
             vec![format!("{compared} of {all} elements beside their layers,{range} over the layers' largest values")];
         let shares = self.pair().shares();
         texts.extend(self.speeds.iter().zip(shares).map(|(sliding, share)| sliding.line(share)));
-        texts.extend(self.speeds.iter().flat_map(AtSpeed::failed));
+        texts.extend(self.speeds.iter().flat_map(SlidingAtSpeed::failed));
         texts
     }
 
@@ -76,16 +76,16 @@ impl<'a> Sliding<'a> {
             COMPARED.iter().flat_map(|(name, _)| ["layer", "element", "error"].map(|of| format!("{name} {of}")));
         let head: Vec<String> = HEAD.map(String::from).into_iter().chain(of_each).collect();
         let mut writer = CsvWriter::create(path, head.iter().map(String::as_str))?;
-        let rows = self.speeds.iter().flat_map(AtSpeed::rows);
+        let rows = self.speeds.iter().flat_map(SlidingAtSpeed::rows);
         rows.into_iter().try_for_each(|row| writer.write(row))?;
         writer.finish()
     }
 
     /// Errors of elements over their pressure, one line for each speed.
     pub(super) fn plot(&self) -> Ladders {
-        let ladder = |(look, sliding): (usize, &AtSpeed<'_>), axis: usize| {
-            let rung = |(spot, layer, element): (&Spot, [f64; 3], [f64; 3])| Rung {
-                x: element[2] / spot.element.area,
+        let ladder = |(look, sliding): (usize, &SlidingAtSpeed<'_>), axis: usize| {
+            let rung = |(tilted, layer, element): (&TiltedElement, [f64; 3], [f64; 3])| Rung {
+                x: element[2] / tilted.element.area,
                 y: (element[axis] / layer[axis] - 1.0).abs(),
                 label: String::new(),
             };
@@ -102,14 +102,14 @@ impl<'a> Sliding<'a> {
     }
 }
 
-impl<'a> AtSpeed<'a> {
-    fn run(setting: &Setting<'_>, face: &'a Tilted, bar: &ProgressBar) -> Result<Self, MotionError> {
+impl<'a> SlidingAtSpeed<'a> {
+    fn run(setting: &CheckSetting<'_>, face: &'a TiltedFace, bar: &ProgressBar) -> Result<Self, MotionError> {
         let mut run = Elements::new(setting.patch, face, face.speed)?;
         run.advance((SLIDING_DISTANCE / face.speed, face.speed))?;
         let elements = run.forces();
-        let pairs: Vec<_> = face.spots.iter().zip(&elements).collect();
-        let layer = |(spot, force): &(&Spot, &[f64; 3])| {
-            let found = layer_force(setting, face.speed, spot, force[2]);
+        let pairs: Vec<_> = face.tilted_elements.iter().zip(&elements).collect();
+        let layer = |(tilted, force): &(&TiltedElement, &[f64; 3])| {
+            let found = layer_force(setting, face.speed, tilted, force[2]);
             bar.inc(1);
             found
         };
@@ -117,20 +117,20 @@ impl<'a> AtSpeed<'a> {
     }
 
     /// The elements whose layers were steady, with the forces on layer and element, N.
-    fn compared(&self) -> impl Iterator<Item = (&Spot, [f64; 3], [f64; 3])> {
-        let all = self.face.spots.iter().zip(&self.layers).zip(&self.elements);
-        all.filter_map(|((spot, layer), element)| Some((spot, *layer.as_ref().ok()?, *element)))
+    fn compared(&self) -> impl Iterator<Item = (&TiltedElement, [f64; 3], [f64; 3])> {
+        let all = self.face.tilted_elements.iter().zip(&self.layers).zip(&self.elements);
+        all.filter_map(|((tilted, layer), element)| Some((tilted, *layer.as_ref().ok()?, *element)))
     }
 
-    /// Pa.
+    /// The pressures on the elements, Pa.
     fn pressures(&self) -> impl Iterator<Item = f64> {
-        self.compared().map(|(spot, _, element)| element[2] / spot.element.area)
+        self.compared().map(|(tilted, _, element)| element[2] / tilted.element.area)
     }
 
     /// The wrench of the layers with the sums of magnitudes, and that of the elements.
     fn wrenches(&self) -> ((Wrench, Wrench), Wrench) {
         let of = |which: fn([f64; 3], [f64; 3]) -> [f64; 3]| {
-            wrench(self.compared().map(|(spot, layer, element)| (spot.arm, which(layer, element))))
+            wrench(self.compared().map(|(tilted, layer, element)| (tilted.arm, which(layer, element))))
         };
         (of(|layer, _| layer), of(|_, element| element).0)
     }
@@ -140,23 +140,24 @@ impl<'a> AtSpeed<'a> {
     }
 
     fn failed(&self) -> impl Iterator<Item = String> {
-        let all = self.face.spots.iter().zip(&self.layers);
-        let failed = all.filter_map(|(spot, layer)| Some((spot, layer.as_ref().err()?)));
-        failed.map(|(spot, status)| {
-            format!("element {} at {} m/s: layer {status}", spot.element.index + 1, real(self.face.speed))
+        let all = self.face.tilted_elements.iter().zip(&self.layers);
+        let failed = all.filter_map(|(tilted, layer)| Some((tilted, layer.as_ref().err()?)));
+        failed.map(|(tilted, status)| {
+            format!("element {} at {} m/s: layer {status}", tilted.element.index + 1, real(self.face.speed))
         })
     }
 
     fn rows(&self) -> impl Iterator<Item = Vec<String>> {
-        let all = self.face.spots.iter().zip(&self.layers).zip(&self.elements);
-        all.map(|((spot, layer), element)| {
+        let all = self.face.tilted_elements.iter().zip(&self.layers).zip(&self.elements);
+        all.map(|((tilted, layer), element)| {
             let status = layer.as_ref().map_or_else(|status| format!("layer {status}"), |_| "compared".into());
-            let mut row = vec![real(self.face.speed), (spot.element.index + 1).to_string()];
+            let mut row = vec![real(self.face.speed), (tilted.element.index + 1).to_string()];
             row.extend(
-                spot.element
+                tilted
+                    .element
                     .place
                     .into_iter()
-                    .chain([spot.element.area, spot.separation, element[2] / spot.element.area])
+                    .chain([tilted.element.area, tilted.separation, element[2] / tilted.element.area])
                     .map(real),
             );
             row.push(status);
@@ -176,11 +177,16 @@ impl<'a> AtSpeed<'a> {
 }
 
 /// The force on a layer of the area of an element in its place, N, where it is near `force_z`.
-fn layer_force(setting: &Setting<'_>, speed: f64, spot: &Spot, force_z: f64) -> Result<[f64; 3], String> {
-    let Setting { patch, scene, .. } = setting;
-    let (load, share) = (patch.table().load, spot.element.area / patch.nominal_area());
+fn layer_force(
+    setting: &CheckSetting<'_>,
+    speed: f64,
+    tilted: &TiltedElement,
+    force_z: f64,
+) -> Result<[f64; 3], String> {
+    let CheckSetting { patch, scene, .. } = setting;
+    let (load, share) = (patch.table().load, tilted.element.area / patch.nominal_area());
     let at = OperatingPoint { load: load.at_force(force_z / share), ..point(patch, speed) };
-    let w = spot.separation - patch.table().rest_separation;
+    let w = tilted.separation - patch.table().rest_separation;
     let found = steady_sliding_at(scene, &at, w, load, Bounds { error: ERROR, distance: None })?;
     Ok([-share * found.drag(), 0.0, share * found.force_z])
 }

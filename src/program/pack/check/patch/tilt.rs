@@ -14,25 +14,25 @@ const SLACK: f64 = 1e-6;
 
 /// An element of a tilted face.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Spot {
+pub(super) struct TiltedElement {
     pub(super) element: PatchElement,
     /// From the pose's point in the ground's axes, m.
     pub(super) arm: [f64; 3],
-    /// m.
+    /// The separation of the face and the ground there, m.
     pub(super) separation: f64,
 }
 
 /// A tilted face at a speed of the table.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Tilted {
-    /// m/s.
+pub(super) struct TiltedFace {
+    /// The speed, m/s.
     pub(super) speed: f64,
     pub(super) pose: Pose,
     /// Elements at even quantiles of the separation.
-    pub(super) spots: Vec<Spot>,
+    pub(super) tilted_elements: Vec<TiltedElement>,
 }
 
-impl Tilted {
+impl TiltedFace {
     /// The face of `patch` over the pressures that its table has at speed number `speed`, with `count` elements or fewer.
     pub(super) fn new(patch: &Patch, speed: usize, count: usize) -> Self {
         let table = patch.table();
@@ -41,19 +41,23 @@ impl Tilted {
         let places: Vec<[f64; 3]> = elements.iter().map(|element| element.place).collect();
         let pose = pose(&places, separations);
         let arms = pose.arms(places);
-        let spot = |(element, arm): (PatchElement, [f64; 3])| Spot { element, arm, separation: pose.place[2] + arm[2] };
+        let tilted = |(element, arm): (PatchElement, [f64; 3])| TiltedElement {
+            element,
+            arm,
+            separation: pose.place[2] + arm[2],
+        };
         let [closest, farthest] = separations;
         let slack = SLACK * (farthest - closest);
-        let mut spots: Vec<Spot> = elements.into_iter().zip(arms).map(spot).collect();
-        spots.retain(|spot| (closest - slack..=farthest + slack).contains(&spot.separation));
-        spots.sort_by(|a, b| a.separation.total_cmp(&b.separation));
-        Self { speed: table.grid.speeds[speed], pose, spots: selected(&spots, count) }
+        let mut tilted_elements: Vec<TiltedElement> = elements.into_iter().zip(arms).map(tilted).collect();
+        tilted_elements.retain(|tilted| (closest - slack..=farthest + slack).contains(&tilted.separation));
+        tilted_elements.sort_by(|a, b| a.separation.total_cmp(&b.separation));
+        Self { speed: table.grid.speeds[speed], pose, tilted_elements: selected(&tilted_elements, count) }
     }
 
     /// The longest arm of its elements, m.
     pub(super) fn lever(&self) -> f64 {
         let length = |[x, y, z]: [f64; 3]| x.hypot(y).hypot(z);
-        self.spots.iter().map(|spot| length(spot.arm)).fold(0.0, f64::max)
+        self.tilted_elements.iter().map(|tilted| length(tilted.arm)).fold(0.0, f64::max)
     }
 }
 
@@ -90,7 +94,7 @@ fn first(mut high: f64, reaches: impl Fn(f64) -> bool) -> f64 {
     high
 }
 
-/// Of the coordinates on an axis, m.
+/// From the least to the largest of the coordinates on an axis, m.
 fn spread(places: &[[f64; 3]], axis: usize) -> f64 {
     let values = || places.iter().map(|place| place[axis]);
     values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)

@@ -24,7 +24,7 @@ pub(super) fn wrench(forces: impl IntoIterator<Item = ([f64; 3], [f64; 3])>) -> 
 
 /// Two series of wrenches, row by row.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Pair {
+pub(super) struct WrenchSeries {
     /// What the other is measured by.
     pub(super) reference: Vec<Wrench>,
     pub(super) other: Vec<Wrench>,
@@ -32,7 +32,7 @@ pub(super) struct Pair {
     scale: Wrench,
 }
 
-impl Pair {
+impl WrenchSeries {
     /// Differences are shares of the largest of `sizes`, by component; `lever` is the longest arm, m.
     pub(super) fn new(reference: Vec<Wrench>, other: Vec<Wrench>, sizes: &[Wrench], lever: f64) -> Self {
         let largest = |i: usize| sizes.iter().fold(f64::MIN_POSITIVE, |largest, row| largest.max(row[i].abs()));
@@ -81,7 +81,7 @@ mod tests {
     fn differences_are_shares_of_the_largest_value_and_rounding_is_none() {
         let reference = vec![[1.0, 10.0, 0.0, 4.0, 1e-15], [-2.0, 5.0, 0.0, 2.0, 0.0]];
         let other = vec![[1.1, 10.0, 0.0, 4.0, -1e-15], [-2.0, 4.0, 0.0, 3.0, 0.0]];
-        let shares = Pair::new(reference.clone(), other, &reference, 0.1).shares();
+        let shares = WrenchSeries::new(reference.clone(), other, &reference, 0.1).shares();
         let expected = [[0.05, 0.0, 0.0, 0.0, 2e-6], [0.0, 0.1, 0.0, 0.25, 0.0]];
         for (found, expected) in shares.iter().flatten().zip(expected.iter().flatten()) {
             assert!((found - expected).abs() < 1e-12, "{shares:?}");

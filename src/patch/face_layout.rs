@@ -2,15 +2,15 @@
 
 use super::definition::Patch;
 use super::face::{Face, Points, Tread};
-use super::motion::Instant;
+use super::motion::BodyKinematics;
 use super::run::PatchRun;
 use super::state::Totals;
 
 /// A face laid out in a plane: a grid along its arc and across it; of points the two axes of the body along which they
 /// reach farthest.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FacePlan {
-    layout: Layout,
+pub struct FaceLayout {
+    kind: LayoutKind,
     /// What is along the first and the second axis.
     pub axes: [&'static str; 2],
     /// From where to where the elements reach along them, m.
@@ -20,25 +20,25 @@ pub struct FacePlan {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-enum Layout {
+enum LayoutKind {
     /// The cells of a tread, or of a grid that stands, and the number of the first column.
     Grid(Tread, f64),
     /// The two axes.
     Points([usize; 2]),
 }
 
-/// An element at an instant, along the axes of a [`FacePlan`].
+/// An element at an instant, along the axes of a [`FaceLayout`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaceElement {
     /// Its middle, m.
     pub place: [f64; 2],
     /// Length and width of what is inside of a cell, m; of a point the edges of a square of its area.
     pub size: [f64; 2],
-    /// m².
+    /// The area that is inside the contact, m².
     pub area: f64,
-    /// Pa.
+    /// The pressure on it, Pa.
     pub pressure: f64,
-    /// Of the ground on the face, Pa.
+    /// The traction of the ground on the face, Pa.
     pub traction: [f64; 2],
     /// Whether it sticks.
     pub sticks: bool,
@@ -46,38 +46,38 @@ pub struct FaceElement {
 
 impl Patch {
     /// Its face, laid out.
-    pub fn plan(&self) -> FacePlan {
+    pub fn layout(&self) -> FaceLayout {
         match &*self.face {
-            Face::Tread(tread) => grid_plan(tread, tread.columns + 1, 0.0),
-            Face::Points(Points { grid: Some(grid), .. }) => grid_plan(grid, grid.columns, 1.0),
-            Face::Points(points) => points_plan(points),
+            Face::Tread(tread) => grid_layout(tread, tread.columns + 1, 0.0),
+            Face::Points(Points { grid: Some(grid), .. }) => grid_layout(grid, grid.columns, 1.0),
+            Face::Points(points) => points_layout(points),
         }
     }
 }
 
-impl FacePlan {
+impl FaceLayout {
     /// The elements of a grid across its face; `None` for points.
     pub fn rows(&self) -> Option<usize> {
-        match &self.layout {
-            Layout::Grid(tread, _) => Some(tread.rows.len()),
-            Layout::Points(_) => None,
+        match &self.kind {
+            LayoutKind::Grid(tread, _) => Some(tread.rows.len()),
+            LayoutKind::Points(_) => None,
         }
     }
 }
 
-fn grid_plan(grid: &Tread, columns: usize, first: f64) -> FacePlan {
+fn grid_layout(grid: &Tread, columns: usize, first: f64) -> FaceLayout {
     let around = |middle: f64, length: f64| (middle - 0.5 * length, middle + 0.5 * length);
     let rows = grid.rows.len();
     let width = grid.area / grid.cell * rows as f64;
-    FacePlan {
-        axes: [if grid.arc.radius.is_some() { "x along the arc" } else { "x" }, "y"],
+    FaceLayout {
+        axes: [if grid.section.radius.is_some() { "x along the arc" } else { "x" }, "y"],
         extents: [around(grid.offset[0], grid.length), around(grid.offset[1], width)],
         count: columns * rows,
-        layout: Layout::Grid(grid.clone(), first),
+        kind: LayoutKind::Grid(grid.clone(), first),
     }
 }
 
-fn points_plan(points: &Points) -> FacePlan {
+fn points_layout(points: &Points) -> FaceLayout {
     let all = [&points.x, &points.y, &points.z];
     let reach = |axis: usize| {
         // A square of the element's area is seen whole.
@@ -90,45 +90,57 @@ fn points_plan(points: &Points) -> FacePlan {
     // Of the three, the shortest is left out; z where they are the same.
     let left_out = [1, 0].into_iter().fold(2, |least, axis| if length(axis) < length(least) { axis } else { least });
     let axes = [[1, 2], [0, 2], [0, 1]][left_out];
-    FacePlan {
+    FaceLayout {
         axes: axes.map(|axis| ["x", "y", "z"][axis]),
         extents: axes.map(|axis| extents[axis]),
         count: points.x.len(),
-        layout: Layout::Points(axes),
+        kind: LayoutKind::Points(axes),
     }
 }
 
 impl PatchRun {
     /// The elements at the present instant, in their order.
-    pub fn over_face<'a>(&'a mut self, plan: &'a FacePlan) -> impl Iterator<Item = FaceElement> + 'a {
+    pub fn elements_on_face<'a>(&'a mut self, layout: &'a FaceLayout) -> impl Iterator<Item = FaceElement> + 'a {
         let (totals, now) = (self.totals, self.totals.instant());
-        (0..plan.count).map(move |i| self.on_face(plan, i, &totals, &now))
+        (0..layout.count).map(move |i| self.element_on_face(layout, i, &totals, &now))
     }
 
-    fn on_face(&mut self, plan: &FacePlan, i: usize, totals: &Totals, now: &Instant<f64>) -> FaceElement {
-        let here = self.present(i, totals, now);
-        let (place, size, directions) = self.laid_out(plan, i, totals, here.area);
+    fn element_on_face(
+        &mut self,
+        layout: &FaceLayout,
+        i: usize,
+        totals: &Totals,
+        now: &BodyKinematics<f64>,
+    ) -> FaceElement {
+        let here = self.element_contact(i, totals, now);
+        let (place, size, directions) = self.laid_out(layout, i, totals, here.area);
         let force = if here.area > 0.0 { [self.springs.x[i], self.springs.y[i]] } else { [0.0; 2] };
         let traction = directions.map(|direction| {
             let [x, y, _] = now.turned(direction);
             -(force[0] * x + force[1] * y) / here.area.max(f64::MIN_POSITIVE)
         });
         let pressure = if here.area > 0.0 { here.pressure } else { 0.0 };
-        FaceElement { place, size, area: here.area, pressure, traction, sticks: self.springs.mode[i] == 2 }
+        FaceElement { place, size, area: here.area, pressure, traction, sticks: self.springs.sticks(i) }
     }
 
-    /// An element's middle and size (m) along the axes of a plan, and their directions in the body's axes.
-    fn laid_out(&self, plan: &FacePlan, i: usize, totals: &Totals, area: f64) -> ([f64; 2], [f64; 2], [[f64; 3]; 2]) {
-        match &plan.layout {
-            Layout::Grid(tread, first) => {
+    /// An element's middle and size (m) along the axes of a layout, and their directions in the body's axes.
+    fn laid_out(
+        &self,
+        layout: &FaceLayout,
+        i: usize,
+        totals: &Totals,
+        area: f64,
+    ) -> ([f64; 2], [f64; 2], [[f64; 3]; 2]) {
+        match &layout.kind {
+            LayoutKind::Grid(tread, first) => {
                 let rows = tread.rows.len();
                 let column = tread.column(first + (i / rows) as f64, totals.place);
                 let place = [tread.offset[0] + column.arc, tread.rows[i % rows]];
                 let along = [column.direction[0], 0.0, column.direction[1]];
                 (place, [tread.cell * column.share, tread.area / tread.cell], [along, [0.0, 1.0, 0.0]])
             }
-            Layout::Points(axes) => {
-                let place = self.patch.element(i, totals.place).0;
+            LayoutKind::Points(axes) => {
+                let place = self.patch.element(i, totals.place).place;
                 let unit = |axis: usize| std::array::from_fn(|other| if other == axis { 1.0 } else { 0.0 });
                 (axes.map(|axis| place[axis]), [area.sqrt(); 2], axes.map(unit))
             }
@@ -152,7 +164,7 @@ mod tests {
         Patch::parse(&text, &folder.join("p.toml")).unwrap()
     }
 
-    /// The forces of a run whose body stands obliquely are the sums over the plan, turned into the ground's axes.
+    /// The forces of a run whose body stands obliquely are the sums over the layout, turned into the ground's axes.
     #[test]
     fn what_is_drawn_adds_up_to_the_wrench() {
         let shapes = [
@@ -171,8 +183,8 @@ mod tests {
             let rates = [0.3, 0.2, 0.0, 0.0, 0.0, 0.0];
             let temperature = patch.temperature();
             run.advance(&PatchMotion { duration: 0.011, rates, transport_speed: speed, temperature }).unwrap();
-            let plan = patch.plan();
-            let elements: Vec<FaceElement> = run.over_face(&plan).collect();
+            let layout = patch.layout();
+            let elements: Vec<FaceElement> = run.elements_on_face(&layout).collect();
             let sum = |of: &dyn Fn(&FaceElement) -> f64| {
                 elements.iter().map(|element| element.area * of(element)).sum::<f64>()
             };
@@ -188,7 +200,7 @@ mod tests {
             close(sum(&|_| wrench[2] / 2e-4), wrench[2]);
             let cells: f64 = elements.iter().map(|element| element.size[0] * element.size[1]).sum();
             assert!((cells - 2e-4).abs() < 1e-12, "{cells}");
-            let [(left, right), (low, high)] = plan.extents;
+            let [(left, right), (low, high)] = layout.extents;
             assert!([left - 0.09, right - 0.11, low - 0.195, high - 0.205].iter().all(|off| off.abs() < 1e-12));
         }
     }
@@ -197,7 +209,7 @@ mod tests {
     fn points_are_seen_along_the_axes_of_their_largest_extents() {
         let points = |places: [[f64; 3]; 2]| {
             let axis = |i: usize| places.iter().map(|place| place[i]).collect();
-            points_plan(&Points { x: axis(0), y: axis(1), z: axis(2), area: vec![1e-6; 2], grid: None })
+            points_layout(&Points { x: axis(0), y: axis(1), z: axis(2), area: vec![1e-6; 2], grid: None })
         };
         assert_eq!(points([[0.0; 3], [0.3, 0.2, 0.1]]).axes, ["x", "y"]);
         let standing = points([[0.0; 3], [0.0, 0.2, 0.4]]);

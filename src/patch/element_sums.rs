@@ -1,63 +1,79 @@
-//! The elements of a run at its present instant, one by one.
+//! The elements of a run at its present instant: the contact of each, and sums over all.
 
 use super::contact_times::size;
+use super::definition::ElementSite;
 use super::face::Face;
-use super::motion::{Instant, Path};
+use super::motion::{BodyKinematics, BodyMotion};
 use super::run::PatchRun;
 use super::state::{PatchState, RestoreError, Totals};
-use crate::element::{LawPoint, Spot};
+use crate::element::{LawPoint, SpeedCell};
 use crate::math::Number;
 
 /// Share of a limit by which a restored force may exceed it: rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// An element at an instant.
+/// An element at an instant, and its law there.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Present<T> {
-    /// m².
+pub(super) struct ElementContact<T> {
+    /// The area that is inside the contact, m².
     pub(super) area: f64,
     /// Along the plane, m/s.
     pub(super) velocity: [T; 2],
+    /// How far it is below the plane z = 0, m.
     pub(super) approach: T,
+    /// ln v, v in m/s, limited to the speeds of the table.
     pub(super) log_speed: T,
-    pub(super) spot: Spot,
+    /// The cell of the law in which the speed lies.
+    pub(super) cell: SpeedCell,
+    /// The law at its speed and approach.
     pub(super) point: LawPoint<T>,
-    /// Pa.
+    /// The pressure on it, Pa.
     pub(super) pressure: T,
 }
 
 /// Sums over all elements.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Survey {
+pub(super) struct ElementSums {
+    /// How many bear.
     pub(super) count: usize,
+    /// How many stick.
     pub(super) sticking: usize,
-    /// m².
+    /// The area of those that bear, m².
     pub(super) nominal_area: f64,
+    /// The real area of contact, m².
     pub(super) real_area: f64,
-    /// The largest, Pa.
+    /// The largest pressure, Pa.
     pub(super) pressure: f64,
-    /// N, and of that beyond the table and below its least pressure.
+    /// The normal force, N.
     pub(super) normal: f64,
+    /// Of that, on elements beyond the table, N.
     pub(super) beyond: f64,
+    /// Of the normal force, on elements below the least pressure of the table, N.
     pub(super) below: f64,
-    /// Σ|G| and Σ|G|η, N.
+    /// Σ|G|, N.
     pub(super) tangential: f64,
+    /// Σ|G|η with the share η of hysteresis in the friction coefficient, N.
     pub(super) hysteresis: f64,
-    /// J.
+    /// The energy stored in the springs, J.
     pub(super) elastic: f64,
 }
 
 impl Totals {
     /// The body now, moving as at the end of the last step.
-    pub(super) fn instant(&self) -> Instant<f64> {
-        Path { start: self.pose.coordinates(), change: self.rates, duration: 1.0 }.at(0.0)
+    pub(super) fn instant(&self) -> BodyKinematics<f64> {
+        BodyMotion { start: self.pose.coordinates(), change: self.rates, duration: 1.0 }.at(0.0)
     }
 }
 
 impl PatchRun {
     /// Element `i` at an instant with the tread where `totals` say.
-    pub(super) fn present<T: Number>(&mut self, i: usize, totals: &Totals, now: &Instant<T>) -> Present<T> {
-        let (place, area, direction) = self.patch.element(i, totals.place);
+    pub(super) fn element_contact<T: Number>(
+        &mut self,
+        i: usize,
+        totals: &Totals,
+        now: &BodyKinematics<T>,
+    ) -> ElementContact<T> {
+        let ElementSite { place, area, direction } = self.patch.element(i, totals.place);
         let arm = now.turned(place);
         let mut velocity = now.velocity(arm);
         if matches!(*self.patch.face, Face::Tread(_)) {
@@ -66,59 +82,61 @@ impl PatchRun {
         }
         let approach = -(now.height + arm[2]);
         let log_speed = self.law.range().logarithm(size(velocity));
-        let spot = self.law.spot(log_speed.value());
-        let point = self.law.at(&spot, log_speed, approach);
-        Present { area, velocity, approach, log_speed, spot, point, pressure: point.pressure() }
+        let cell = self.law.speed_cell(log_speed.value());
+        let point = self.law.at(&cell, log_speed, approach);
+        ElementContact { area, velocity, approach, log_speed, cell, point, pressure: point.pressure() }
     }
 
     /// Whether the pressure on an element is above the largest of the table.
     pub fn pressure_is_beyond(&mut self) -> bool {
-        self.survey().pressure > self.law.largest_pressure()
+        self.element_sums().pressure > self.law.largest_pressure()
     }
 
     /// The share of the normal force that is borne below the least pressure of the table; 0 without contact.
     pub fn share_below_table(&mut self) -> f64 {
-        let survey = self.survey();
-        if survey.normal > 0.0 { survey.below / survey.normal } else { 0.0 }
+        let sums = self.element_sums();
+        if sums.normal > 0.0 { sums.below / sums.normal } else { 0.0 }
     }
 
     /// Sums over all elements now.
-    pub(super) fn survey(&mut self) -> Survey {
+    pub(super) fn element_sums(&mut self) -> ElementSums {
         let (totals, now) = (self.totals, self.totals.instant());
         let (pressure, speed) = (self.law.largest_pressure(), self.law.largest_speed());
-        let mut survey = Survey::default();
+        let mut sums = ElementSums::default();
         for i in 0..self.patch.count() {
-            let here = self.present(i, &totals, &now);
+            let here = self.element_contact(i, &totals, &now);
             let normal = here.pressure * here.area;
             if normal <= 0.0 {
                 continue;
             }
-            let (hysteresis, ratio) = self.law.shares(&here.spot, here.log_speed, here.approach);
+            let (hysteresis, ratio) = self.law.shares(&here.cell, here.log_speed, here.approach);
             let tangential = self.springs.x[i].hypot(self.springs.y[i]);
             let is_beyond = here.pressure > pressure || here.velocity[0].hypot(here.velocity[1]) > speed;
-            survey.count += 1;
-            survey.sticking += usize::from(self.springs.mode[i] == 2);
-            survey.nominal_area += here.area;
-            survey.real_area += here.area * ratio;
-            survey.pressure = survey.pressure.max(here.pressure);
-            survey.normal += normal;
-            survey.beyond += if is_beyond { normal } else { 0.0 };
-            survey.below += if here.point.factor < 1.0 { normal } else { 0.0 };
-            survey.tangential += tangential;
-            survey.hysteresis += tangential * hysteresis;
-            survey.elastic += 0.5 * tangential * tangential / self.springs.stiffness[i];
+            sums.count += 1;
+            sums.sticking += usize::from(self.springs.sticks(i));
+            sums.nominal_area += here.area;
+            sums.real_area += here.area * ratio;
+            sums.pressure = sums.pressure.max(here.pressure);
+            sums.normal += normal;
+            sums.beyond += if is_beyond { normal } else { 0.0 };
+            sums.below += if here.point.factor < 1.0 { normal } else { 0.0 };
+            sums.tangential += tangential;
+            sums.hysteresis += tangential * hysteresis;
+            sums.elastic += 0.5 * tangential * tangential / self.springs.stiffness[i];
         }
-        survey
+        sums
     }
 
+    /// The pressure on element `i` now, Pa.
     pub(super) fn pressure_on(&mut self, i: usize) -> f64 {
         let (totals, now) = (self.totals, self.totals.instant());
-        let here = self.present(i, &totals, &now);
+        let here = self.element_contact(i, &totals, &now);
         if here.area > 0.0 { here.pressure } else { 0.0 }
     }
 
+    /// The traction of the ground on element `i` along x or y, Pa.
     pub(super) fn traction_on(&self, i: usize, axis: usize) -> f64 {
-        let area = self.patch.element(i, self.totals.place).1;
+        let area = self.patch.element(i, self.totals.place).area;
         let force = if axis == 0 { self.springs.x[i] } else { self.springs.y[i] };
         if area > 0.0 { -force / area } else { 0.0 }
     }
@@ -127,7 +145,7 @@ impl PatchRun {
     pub(super) fn check_limits(&mut self, saved: &PatchState) -> Result<(), RestoreError> {
         let now = saved.totals.instant();
         for i in 0..self.patch.count() {
-            let here = self.present(i, &saved.totals, &now);
+            let here = self.element_contact(i, &saved.totals, &now);
             let limit = here.area * here.pressure * here.point.friction;
             let force = saved.springs.x[i].hypot(saved.springs.y[i]);
             let is_held = force == 0.0 || saved.springs.stiffness[i] > 0.0;
