@@ -1,6 +1,7 @@
 //! The order of the modules, held against the sources: which room uses which, and where unsafe code may be.
 #![allow(missing_docs, clippy::unwrap_used, reason = "tests may fail")]
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
@@ -18,6 +19,9 @@ const ROOMS: [(&str, &[&str]); 11] = [
     ("patch", &["math", "scene", "outputs", "element"]),
     ("fmi", &["math", "scene", "model", "integrator", "contact", "outputs", "simulation", "element", "patch"]),
 ];
+
+/// Folders whose files use each other in no circle.
+const WITHOUT_CIRCLES: [&str; 8] = ["math", "scene", "model", "contact", "outputs", "simulation", "element", "patch"];
 
 /// The two files of the C interface; and the C types, which name unsafe functions but call none.
 const UNSAFE: [&str; 3] = ["fmi/exports.rs", "fmi/callbacks.rs", "fmi/bindings.rs"];
@@ -51,6 +55,36 @@ fn each_room_uses_only_rooms_to_its_left() {
                 assert!(!code.contains(&format!("crate::{other}::")), "{path} uses {other}, which {room} may not");
             }
         }
+    }
+}
+
+#[test]
+fn the_files_of_a_folder_use_each_other_in_no_circle() {
+    for folder in WITHOUT_CIRCLES {
+        let mut uses: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+        for (path, code) in sources(folder).iter().filter(|(path, _)| !path.ends_with("tests.rs")) {
+            let inner = &path[folder.len() + 1..];
+            let (module, file) = inner.split_once('/').unwrap_or((inner, "mod.rs"));
+            let code = code.split("#[cfg(test)]\nmod tests {").next().unwrap();
+            let within = |prefix: &str| -> Vec<String> {
+                let word =
+                    |rest: &str| rest.split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap().to_owned();
+                code.split(prefix).skip(1).map(word).collect()
+            };
+            let used = uses.entry(module.trim_end_matches(".rs").to_owned()).or_default();
+            used.extend(within(&format!("crate::{folder}::")));
+            if file == "mod.rs" {
+                used.extend(within("super::"));
+            }
+        }
+        uses.remove("mod");
+        let is_free = |uses: &BTreeMap<String, BTreeSet<String>>, module: &str| {
+            uses[module].iter().all(|used| used == module || !uses.contains_key(used))
+        };
+        while let Some(module) = uses.keys().find(|module| is_free(&uses, module)).cloned() {
+            uses.remove(&module);
+        }
+        assert!(uses.is_empty(), "{folder}: a circle of {:?}", uses.keys());
     }
 }
 
