@@ -24,7 +24,7 @@ use crate::outputs::{Accounts, Monitored, Snapshot};
 /// 1.4 times the run's steps where events are located, 2.2 times with time-stepping.
 const TIGHTER: f64 = 0.2;
 /// The fraction of the error that shows in the difference of the two runs, where errors fall with the tolerance.
-const VISIBLE: f64 = 1.0 - TIGHTER;
+const VISIBLE_FRACTION: f64 = 1.0 - TIGHTER;
 /// Its steps are at most this fraction of the run's. Where steps only grow, both would take the same, with the same error.
 const SHORTER: f64 = 0.7;
 /// Limit of its work in one motion, as a multiple of the run's, in addition to [`MIN_WORK`]. Beyond it the error is not
@@ -90,7 +90,7 @@ impl ReferenceRun {
     pub(super) fn compare(&mut self, s: f64, snapshot: &mut Snapshot<'_>) {
         let found = snapshot.monitored(self.run.context.settings.accounts.energy);
         match self.monitored_at(s) {
-            Some(reference) => snapshot.counters.record_error(&found, &reference, VISIBLE),
+            Some(reference) => snapshot.counters.record_error(&found, &reference, VISIBLE_FRACTION),
             None => snapshot.counters.record_unknown(&found),
         }
     }

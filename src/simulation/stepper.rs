@@ -43,7 +43,7 @@ pub(super) trait Stepper {
     fn dissipated_power(&mut self, context: &mut Context, h: f64, theta: f64) -> Option<f64>;
 
     /// Whether the step's dense output is good enough to be shown at its fraction `theta`.
-    fn can_show(&self, _: &Context, _: f64, _theta: f64) -> bool {
+    fn can_show(&self, _context: &Context, _h: f64, _theta: f64) -> bool {
         true
     }
 
