@@ -11,11 +11,8 @@ use super::tableau::{MAX_STAGES, Weights};
 use crate::math::{dot, dots, square_and_dots, sum_of_pairs};
 use crate::model::{BoundaryPowers, ByLink, ChannelEnergies, LinkKind, MaxwellRow, Model};
 
-/// ė of the links of one kind at the stages, m/s; none where there is no such link, and beyond the last stage.
-type LinkRates<'a> = [&'a [f64]; MAX_STAGES];
-
 /// Σ ė_i ė_j over the links of one kind, m²/s², where they are needed; 0 elsewhere.
-type RateProducts = [Weights; MAX_STAGES];
+type RateProducts<const N: usize> = [[f64; N]; N];
 
 /// What the energies up to any fraction of a step follow from: the powers at its stages, summed over the layer or a part of
 /// it.
@@ -32,14 +29,13 @@ pub(super) struct EnergySums {
 }
 
 /// Sums over all elements of one relaxation time, from which the power lost in them at the stages follows.
-#[derive(Default)]
-struct ElementSums {
+struct ElementSums<const N: usize> {
     /// Σ c a_0²/τ, W.
     square: f64,
     /// Σ c a_0 ė_j/τ, W/s.
-    mixed: Weights,
+    mixed: [f64; N],
     /// Σ c ė_i ė_j/τ, W/s².
-    rates: RateProducts,
+    rates: RateProducts<N>,
 }
 
 /// The power lost in the elements of one relaxation time that do not follow their links yet: of l = a_0 - τė_0, over all of
@@ -105,55 +101,65 @@ impl EnergySums {
             return;
         }
         self.known = true;
-        let (model, h, stages) = (step.model, step.span.length, step.stages().len());
-        let rates = ByLink::from_fn(|kind| link_rates(step, kind));
-        let products = ByLink::from_fn(|kind| rate_products(model, &rates[kind][..stages], kind));
         (self.dampers, self.elements) = (Weights::default(), Weights::default());
-        for (i, power) in self.dampers[..stages].iter_mut().enumerate() {
+        match step.stages().len() {
+            3 => self.collect_stages::<3>(step),
+            4 => self.collect_stages::<4>(step),
+            _ => self.collect_stages::<MAX_STAGES>(step),
+        }
+    }
+
+    /// The same for `N` stages: products of so many arrays are summed at once.
+    fn collect_stages<const N: usize>(&mut self, step: &DenseOutput<'_>) {
+        let (model, h) = (step.model, step.span.length);
+        // The dampers' powers are squares of the rates; the elements' also take their products.
+        let rates: ByLink<[&[f64]; N]> = ByLink::from_fn(|kind| link_rates(step, kind));
+        let products = ByLink::from_fn(|kind| rate_products(model, &rates[kind], kind));
+        for (i, power) in self.dampers[..N].iter_mut().enumerate() {
             *power = model.links.iter().zip(&products).map(|(link, products)| link.damping * products[i][i]).sum();
         }
         let changes = ByLink::from_fn(|kind| {
             let unresolved = model.rows_of(kind).any(|row| h / row.relaxation_time > RESOLVED);
-            if unresolved { largest_change(&rates[kind][..stages]) } else { 0.0 }
+            if unresolved { largest_change(&rates[kind]) } else { 0.0 }
         });
+        // The elements by relaxation time, and what the stages do not resolve of them.
         let coefficients = step.method.maxwell.coefficients();
         for (index, (coefficients, relaxing)) in coefficients.iter().zip(&mut self.relaxing).enumerate() {
-            let mut sums = ElementSums::default();
+            let mut sums = ElementSums::zero();
             *relaxing = RelaxingPower::default();
             for row in model.rows.iter().filter(|row| row.time_index == index) {
-                let kind = row.kind;
-                let first = row.range.start + step.masses.start;
+                let (kind, first) = (row.kind, row.range.start + step.masses.start);
                 let a = &step.start.maxwell[first..first + row.kind.count(step.masses.len())];
-                sums.add(row, a, &rates[kind][..stages], &products[kind]);
+                sums.add(row, a, &rates[kind], &products[kind]);
                 if h / row.relaxation_time > RESOLVED {
                     relaxing.add(row, a, rates[kind][0], changes[kind]);
                 }
             }
-            self.elements[..stages].iter_mut().enumerate().for_each(|(i, power)| *power += sums.power(coefficients, i));
+            self.elements[..N].iter_mut().enumerate().for_each(|(i, power)| *power += sums.power(coefficients, i));
         }
     }
 }
 
-fn link_rates<'a>(step: &DenseOutput<'a>, kind: LinkKind) -> LinkRates<'a> {
-    let links = step.masses.start..step.masses.start + kind.count(step.masses.len());
-    let mut rates = LinkRates::default();
-    for (rates, stage) in rates.iter_mut().zip(step.stages()) {
-        *rates = stage.elongation_rate[kind].get(links.clone()).unwrap_or_default();
-    }
-    rates
+/// ė of the links of one kind at the first `N` stages, m/s; none where there is no such link.
+fn link_rates<'a, const N: usize>(step: &DenseOutput<'a>, kind: LinkKind) -> [&'a [f64]; N] {
+    let (stages, links) = (step.stages(), step.masses.start..step.masses.start + kind.count(step.masses.len()));
+    std::array::from_fn(|i| stages[i].elongation_rate[kind].get(links.clone()).unwrap_or_default())
 }
 
-impl ElementSums {
+impl<const N: usize> ElementSums<N> {
+    fn zero() -> Self {
+        Self { square: 0.0, mixed: [0.0; N], rates: [[0.0; N]; N] }
+    }
+
     /// Adds the elements of `row` with the elongations `a` (m) at the start of a step, with the `rates` of their links at its
     /// stages (m/s) and the `products` of these.
-    fn add(&mut self, row: &MaxwellRow, a: &[f64], rates: &[&[f64]], products: &RateProducts) {
+    fn add(&mut self, row: &MaxwellRow, a: &[f64], rates: &[&[f64]; N], products: &RateProducts<N>) {
         let power = row.stiffness / row.relaxation_time;
-        let mut mixed = Weights::default();
-        self.square += power * square_and_dots(a, rates, &mut mixed);
+        let (square, mixed) = square_and_dots(a, *rates);
+        self.square += power * square;
         self.mixed.iter_mut().zip(mixed).for_each(|(sum, mixed)| *sum += power * mixed);
-        for (sums, products) in self.rates.iter_mut().zip(products).take(rates.len()) {
-            sums.iter_mut().zip(products).for_each(|(sum, product)| *sum += power * product);
-        }
+        let rates = self.rates.as_flattened_mut().iter_mut().zip(products.as_flattened());
+        rates.for_each(|(sum, product)| *sum += power * product);
     }
 
     /// Σ c a_i²/τ at stage `i`, W: a_i = p_i a_0 + h Σ_j q_ij ė_j multiplied out.
@@ -205,22 +211,18 @@ impl Measure {
 
 /// The products of one kind of link: of each stage with itself where there are dampers, of all with each other where there
 /// are elements; 0 elsewhere.
-fn rate_products(model: &Model, rates: &[&[f64]], kind: LinkKind) -> RateProducts {
-    let mut products = RateProducts::default();
+fn rate_products<const N: usize>(model: &Model, rates: &[&[f64]; N], kind: LinkKind) -> RateProducts<N> {
+    let mut products = [[0.0; N]; N];
     let all = model.rows_of(kind).next().is_some();
     if !all && model.links[kind].damping == 0.0 {
         return products;
     }
     // Each stage with the one that is so many behind it, around the end: half of the distances make all pairs.
-    let stages = rates.len();
-    let mut sums = Weights::default();
-    for distance in 0..=if all { stages / 2 } else { 0 } {
-        let other = |i: usize| (i + distance) % stages;
-        let pairs: [_; MAX_STAGES] =
-            std::array::from_fn(|i| rates.get(i).map_or(Default::default(), |rate| (*rate, rates[other(i)])));
-        dots(&pairs[..stages], &mut sums);
-        for (i, sum) in sums[..stages].iter().enumerate() {
-            (products[i][other(i)], products[other(i)][i]) = (*sum, *sum);
+    for distance in 0..=if all { N / 2 } else { 0 } {
+        let other = |i: usize| (i + distance) % N;
+        let sums: [f64; N] = dots(std::array::from_fn(|i| (rates[i], rates[other(i)])));
+        for (i, sum) in sums.into_iter().enumerate() {
+            (products[i][other(i)], products[other(i)][i]) = (sum, sum);
         }
     }
     products

@@ -157,13 +157,22 @@ impl ElementCoefficients {
     /// g = 1/(1 + γz), from a*_i = a_0 + h Σ_{j<i} a_ij ȧ_j. Its rate hȧ_i = hė_i - z a_i equals g (hė_i - z a*_i), in
     /// which nothing cancels, however large z is.
     fn set(&mut self, tableau: &Tableau, z: f64, h: f64) {
+        match tableau.stages {
+            3 => self.set_stages::<3>(tableau, z, h),
+            4 => self.set_stages::<4>(tableau, z, h),
+            _ => self.set_stages::<MAX_STAGES>(tableau, z, h),
+        }
+    }
+
+    /// The same for `N` stages: the compiler unrolls the loops.
+    fn set_stages<const N: usize>(&mut self, tableau: &Tableau, z: f64, h: f64) {
         let gamma = tableau.gamma();
         let g = 1.0 / (1.0 + gamma * z);
         // hȧ_i by a_0 and by hė_j.
-        let mut change_start = [0.0; MAX_STAGES];
-        let mut change_rate = [[0.0; MAX_STAGES]; MAX_STAGES];
+        let mut change_start = [0.0; N];
+        let mut change_rate = [[0.0; N]; N];
         (self.start[0], change_start[0], change_rate[0][0]) = (1.0, -z, 1.0);
-        for i in 1..tableau.stages {
+        for i in 1..N {
             let weights = &tableau.a[i][..i];
             let start = 1.0 + sum(weights, &change_start, |change| *change);
             (self.start[i], change_start[i]) = (g * start, -z * g * start);
@@ -173,9 +182,9 @@ impl ElementCoefficients {
             }
             (self.rate[i][i], change_rate[i][i]) = (h * g * gamma, g);
         }
-        let error = &tableau.error[..tableau.stages];
+        let error = &tableau.error[..N];
         self.error_start = sum(error, &change_start, |change| *change);
-        for j in 0..tableau.stages {
+        for j in 0..N {
             self.error_rate[j] = h * sum(error, &change_rate, |change| change[j]);
         }
     }

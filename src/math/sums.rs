@@ -110,17 +110,19 @@ pub fn sum_of_pairs(a: &[f64], b: &[f64], term: impl Fn(f64, f64) -> f64) -> f64
     )
 }
 
-/// Σ_i a_i b_i of several pairs of arrays of one length, into `sums`.
-pub fn dots(pairs: &[(&[f64], &[f64])], sums: &mut [f64]) {
-    for (sums, pairs) in sums.chunks_mut(PAIRS_IN_A_PASS).zip(pairs.chunks(PAIRS_IN_A_PASS)) {
-        match *pairs {
-            [a] => sums[..1].copy_from_slice(&dots_in_a_pass([a])),
-            [a, b] => sums[..2].copy_from_slice(&dots_in_a_pass([a, b])),
-            [a, b, c] => sums[..3].copy_from_slice(&dots_in_a_pass([a, b, c])),
-            [a, b, c, d, ..] => sums.copy_from_slice(&dots_in_a_pass([a, b, c, d])),
-            [] => (),
-        }
+/// Σ_i a_i b_i of several pairs of arrays of one length.
+pub fn dots<const N: usize>(pairs: [(&[f64], &[f64]); N]) -> [f64; N] {
+    let mut sums = [0.0; N];
+    let (fours, rest) = pairs.as_chunks::<PAIRS_IN_A_PASS>();
+    let (sums_of_fours, sums_of_rest) = sums.as_chunks_mut::<PAIRS_IN_A_PASS>();
+    sums_of_fours.iter_mut().zip(fours).for_each(|(sums, pairs)| *sums = dots_in_a_pass(*pairs));
+    match *rest {
+        [a] => sums_of_rest.copy_from_slice(&dots_in_a_pass([a])),
+        [a, b] => sums_of_rest.copy_from_slice(&dots_in_a_pass([a, b])),
+        [a, b, c] => sums_of_rest.copy_from_slice(&dots_in_a_pass([a, b, c])),
+        _ => (),
     }
+    sums
 }
 
 /// The same for at most [`PAIRS_IN_A_PASS`].
@@ -149,25 +151,11 @@ fn dots_in_a_pass<const N: usize>(pairs: [(&[f64], &[f64]); N]) -> [f64; N] {
     })
 }
 
-/// Σ_i a_i², and Σ_i a_i b_i of several `b` of its length or longer, into `sums`. Faster than [`dots`] for as many as the stages of
-/// a method: what all pairs share is loaded once.
+/// Σ_i a_i², and Σ_i a_i b_i of several `b` of its length or longer. Faster than [`dots`]: what all pairs share is loaded once.
 ///
 /// # Panics
 /// Where one is shorter than `a`.
-pub fn square_and_dots(a: &[f64], others: &[&[f64]], sums: &mut [f64]) -> f64 {
-    match *others {
-        [b, c, d] => square_and_dots_in_a_pass(a, [b, c, d], sums),
-        [b, c, d, e] => square_and_dots_in_a_pass(a, [b, c, d, e], sums),
-        [b, c, d, e, f, g, h] => square_and_dots_in_a_pass(a, [b, c, d, e, f, g, h], sums),
-        _ => {
-            sums.iter_mut().zip(others).for_each(|(sum, other)| *sum = dot(a, other));
-            dot(a, a)
-        }
-    }
-}
-
-#[inline]
-fn square_and_dots_in_a_pass<const N: usize>(a: &[f64], others: [&[f64]; N], out: &mut [f64]) -> f64 {
+pub fn square_and_dots<const N: usize>(a: &[f64], others: [&[f64]; N]) -> (f64, [f64; N]) {
     let others = others.map(|b| b[..a.len()].as_chunks::<LANES>());
     let (a, a_rest) = a.as_chunks::<LANES>();
     let (square, sums) = with_widest_vectors(
@@ -191,8 +179,7 @@ fn square_and_dots_in_a_pass<const N: usize>(a: &[f64], others: [&[f64]; N], out
     let with_rest = |sums: [f64; LANES], b_rest: &[f64]| {
         sums.iter().sum::<f64>() + a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum::<f64>()
     };
-    out.iter_mut().zip(sums.into_iter().zip(others)).for_each(|(out, (sums, (_, rest)))| *out = with_rest(sums, rest));
-    with_rest(square, a_rest)
+    (with_rest(square, a_rest), std::array::from_fn(|other| with_rest(sums[other], others[other].1)))
 }
 
 #[inline(always)]
@@ -266,13 +253,8 @@ mod tests {
                 std::array::from_fn(|pair| (0..n).map(|i| ((i + 1) as f64 * (pair + 2) as f64).sqrt()).collect());
             let pairs: [(&[f64], &[f64]); N] =
                 std::array::from_fn(|pair| (&arrays[pair][..], &arrays[(pair + 1) % N][..]));
-            let of = |pairs: &[(&[f64], &[f64])]| {
-                let mut sums = [0.0; N];
-                dots(pairs, &mut sums);
-                sums
-            };
-            let expected = pairs.map(|pair| of(&[pair])[0]);
-            assert_eq!(of(&pairs), expected, "{N} pairs of {n}");
+            let expected = pairs.map(|pair| dots([pair])[0]);
+            assert_eq!(dots(pairs), expected, "{N} pairs of {n}");
             for ((a, b), sum) in pairs.into_iter().zip(expected) {
                 // The two add in different orders.
                 assert!((sum - dot(a, b)).abs() <= 1e-14 * sum, "{sum} {}", dot(a, b));
@@ -291,14 +273,14 @@ mod tests {
 
     #[test]
     fn a_square_and_dots_are_those_of_each_pair() {
-        for (n, count) in (0..11).flat_map(|n| (0..8).map(move |count| (n, count))) {
-            let array = |by: usize| -> Vec<f64> { (0..n + by).map(|i| (i * (by + 2) + 1) as f64).collect() };
-            let (a, others): (_, Vec<_>) = (array(0), (1..=count).map(array).collect());
-            let others: Vec<&[f64]> = others.iter().map(|other| &other[..]).collect();
-            let mut sums = vec![0.0; count];
-            let square = square_and_dots(&a, &others, &mut sums);
-            let expected: Vec<f64> = others.iter().map(|other| dot(&a, other)).collect();
-            assert_eq!((square, sums), (dot(&a, &a), expected), "{count} of {n}");
+        for n in 0..11 {
+            let arrays: [Vec<f64>; 3] =
+                std::array::from_fn(|array| (0..n + array).map(|i| (i * (array + 2) + 1) as f64).collect());
+            let (square, others) = square_and_dots(&arrays[0], [&arrays[1][..], &arrays[2]]);
+            assert_eq!(
+                (square, others),
+                (dot(&arrays[0], &arrays[0]), [1, 2].map(|other| dot(&arrays[0], &arrays[other])))
+            );
         }
     }
 
