@@ -1,9 +1,10 @@
 //! Dense output: the motion and the state within a step (docs/theory.md, section 5).
 //!
-//! Velocities are combinations of those at the stages ([`Interpolation`]), positions their integrals; in steps of time-stepping
-//! positions are the parabolas through the start and the end. The Maxwell elements follow polynomial velocities by the exact
-//! solution of ȧ = ė - a/τ, for any τ; its difference from the step's own end is distributed linearly over the step. Beside
-//! broken lines they are broken lines, too.
+//! Velocities are combinations of those at the stages ([`Interpolation`]), positions their integrals; in steps of
+//! time-stepping velocities are broken lines and positions the parabolas through the start and the end. The Maxwell
+//! elements follow polynomial velocities by the exact solution of ȧ = ė - a/τ, for any τ; its difference from the
+//! step's own end is distributed linearly over the step. Where velocities are broken lines, so are the elements'
+//! elongations.
 
 use std::ops::Range;
 
@@ -330,7 +331,8 @@ impl<'a> DenseOutput<'a> {
         }
     }
 
-    /// Mass `i`, in contact, with the elongation and velocity `along_x` (m, m/s) if it slips; it goes with the carrier if not.
+    /// Mass `i`, in contact, with the elongation and velocity `along_x` (m, m/s) if it slips; it goes with the carrier
+    /// if not.
     #[inline(always)]
     fn in_contact(&self, i: usize, along_x: (f64, f64), carrier: &CarrierMotion) -> MassPoint {
         let (start, mode) = (self.start, self.start.mode[i]);
@@ -570,7 +572,8 @@ impl DenseWorkspace {
         self.at = Some(at);
     }
 
-    /// Lets the elements follow the interpolated rate exactly, less the linear share of the difference at the step's own end.
+    /// Lets the elements follow the interpolated rate exactly, less the linear share of the difference at the step's
+    /// own end.
     fn set_relaxing_elements(&mut self, step: &DenseOutput<'_>, theta: f64) {
         let h = step.span.length;
         let is_other_step = self.at.is_none_or(|(scheme, length, _)| (scheme, length) != (step.method.scheme, h));
@@ -586,7 +589,8 @@ impl DenseWorkspace {
         }
     }
 
-    /// Puts the elements on the broken lines through their elongations at the start, at the first implicit stage and at the end.
+    /// Puts the elements on the broken lines through their elongations at the start, at the first implicit stage and at
+    /// the end.
     fn set_linear_elements(&mut self, step: &DenseOutput<'_>) {
         let [of_start, of_first, of_end, ..] = self.values;
         for (time_index, elements) in self.elements.iter_mut().enumerate() {

@@ -60,8 +60,8 @@ impl EnergySums {
         self.known = false;
     }
 
-    /// Energies through the channels, J, that the powers at the stages of `step` make with these `weights`, which stand for
-    /// `measure`; the masses' powers through the surface and the carrier at the stages are `exchange`.
+    /// Energies through the channels, J, that the powers at the stages of `step` make with these `weights`, which stand
+    /// for `measure`; the masses' powers through the surface and the carrier at the stages are `exchange`.
     pub(super) fn energies(
         &mut self,
         step: &DenseOutput<'_>,

@@ -14,9 +14,9 @@
 //! first three. One direction n is left to them, and w = w_p + φ(θ) n with a parabola φ that makes the ends and the integral
 //! so.
 //!
-//! The two implicit stages of [`SDIRK2`](super::SDIRK2) give positions as parabolas, the integrals of the straight line through
-//! the velocities there. Velocities themselves, which may have followed a jump in no time, are linear from the start to the
-//! first of these stages and from there to the end, so they do not oscillate.
+//! The two implicit stages of [`SDIRK2`](super::SDIRK2) give positions as parabolas, the integrals of the straight line
+//! through the velocities there. Velocities themselves, which may have followed a jump in no time, are linear from the
+//! start to the first of these stages and from there to the end, so they do not oscillate.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -157,8 +157,8 @@ impl Interpolation {
     }
 }
 
-/// Weights of the values at the start, at the first implicit stage of [`SDIRK2`](super::SDIRK2) and at the end in the broken line
-/// through them.
+/// Weights of the values at the start, at the first implicit stage of [`SDIRK2`](super::SDIRK2) and at the end in the
+/// broken line through them.
 #[inline]
 fn broken_line(theta: f64) -> Weights {
     let mut weights = Weights::default();
@@ -171,8 +171,8 @@ fn broken_line(theta: f64) -> Weights {
     weights
 }
 
-/// The parabola from 0 at the start to `end` whose velocity at the first implicit stage of [`SDIRK2`](super::SDIRK2) makes
-/// `middle` in the fraction γ: the integral of the straight line through the velocities at the implicit stages.
+/// The parabola from 0 at the start to `end` whose velocity at the first implicit stage of [`SDIRK2`](super::SDIRK2)
+/// makes `middle` in the fraction γ: the integral of the straight line through the velocities at the implicit stages.
 #[inline(always)]
 pub(super) fn parabola(theta: f64, middle: f64, end: f64) -> f64 {
     let (first, last) = sdirk2_weights(theta);

@@ -38,8 +38,8 @@ pub(super) struct ElementCoefficients {
     error_rate: Weights,
 }
 
-/// The weights of an element's elongation at the start and at the end of a step, and of its link's rates at the stages (s),
-/// in its elongation within the step.
+/// The weights of an element's elongation at the start and at the end of a step, and of its link's rates at the stages
+/// (s), in its elongation within the step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ElementWeights {
     pub ends: [f64; 2],
@@ -120,8 +120,8 @@ impl Maxwell {
         }
     }
 
-    /// The weights of the elements of one relaxation time in the sum of their elongations at the start, at stage `i` and at the
-    /// end of a step.
+    /// The weights of the elements of one relaxation time in the sum of their elongations at the start, at stage `i`
+    /// and at the end of a step.
     pub(super) fn weights_between(
         &self,
         time_index: usize,

@@ -1,9 +1,10 @@
 //! The implicit Runge-Kutta methods: attempts and acceptance of single steps of the layer, their error tests, dense outputs,
 //! energies and sensitivities.
 //!
-//! Three schemes share one implementation: [`ESDIRK3`] and [`ESDIRK5`] for event-driven runs, and [`SDIRK2`], of order 2 with
-//! two implicit stages, for time-stepping. They differ in their numbers, and in what becomes of the [`ContactModes`] within a
-//! step: the first two hold them, in the steps of the third contacts stop and break loose as the forces at the stages say.
+//! Three schemes share one implementation: [`ESDIRK3`] and [`ESDIRK5`] for event-driven runs, and [`SDIRK2`], of order
+//! 2 with two implicit stages, for time-stepping. They differ in their numbers, and in what becomes of the
+//! [`ContactModes`] within a step: the first two hold them, in the steps of the third contacts stop and break loose as
+//! the forces at the stages say.
 
 mod carrier_sums;
 mod dense;
@@ -86,8 +87,8 @@ pub struct Tracked {
 }
 
 impl Integrator {
-    /// An integrator for `model` with workspace for steps by these schemes: at most one for event-driven steps, and the one for
-    /// time-stepping.
+    /// An integrator for `model` with workspace for steps by these schemes: at most one for event-driven steps, and the
+    /// one for time-stepping.
     pub fn new(model: &Model, tracked: Tracked, schemes: &[Scheme]) -> Self {
         let holds_modes = |scheme: &Scheme| scheme.contact_modes() == ContactModes::Held;
         let event_driven = schemes.iter().copied().find(holds_modes).unwrap_or(Scheme::Esdirk5);
@@ -96,7 +97,7 @@ impl Integrator {
         Self {
             methods: [event_driven, Scheme::Sdirk2]
                 .map(|scheme| RungeKutta::new(scheme, model, schemes.contains(&scheme))),
-            last: ContactModes::Held,
+            last: schemes.first().map_or(ContactModes::Held, |scheme| scheme.contact_modes()),
             stages: Stages::new(model, stages, tracked.energy, inputs),
             sums: LayerSums::new(model, 0),
             error_workspace: ErrorWorkspace::new(model),
@@ -154,7 +155,8 @@ impl Integrator {
         let attempt = method.test(stages, &step, tolerance, error_workspace);
         Ok(match modes {
             ContactModes::Held => attempt,
-            // Touches are looked for at the end of the step alone, so the carrier's motion must be resolved over all masses.
+            // Touches are looked for at the end of the step alone, so the carrier's motion must be resolved over all
+            // masses.
             ContactModes::SetValued => ErrorEstimate { error: attempt.error.hypot(attempt.carrier_error), ..attempt },
         })
     }
@@ -219,7 +221,8 @@ impl Integrator {
         &self.stages.rates[..=self.last_stage()]
     }
 
-    /// The end of the last attempted step, of time-stepping, open to changes, and the rates at its first implicit stage.
+    /// The end of the last attempted step, of time-stepping, open to changes, and the rates at its first implicit
+    /// stage.
     pub fn end_mut(&mut self) -> (OpenEnd<'_>, &Rates) {
         let last_stage = self.last_stage();
         let (earlier, last) = self.stages.rates.split_at_mut(last_stage);
@@ -261,8 +264,8 @@ impl Integrator {
         sums.on_carrier(&mut LayerStep { dense, workspace }, model, theta)
     }
 
-    /// P_diss at the fraction `theta` of the last attempted step, from `start`, by its powers at the stages, W: of order 2 by
-    /// [`ESDIRK3`] and [`SDIRK2`], of order 3 by [`ESDIRK5`]. Only where energies are tracked.
+    /// P_diss at the fraction `theta` of the last attempted step, from `start`, by its powers at the stages, W: of
+    /// order 2 by [`ESDIRK3`] and [`SDIRK2`], of order 3 by [`ESDIRK5`]. Only where energies are tracked.
     pub fn dissipated_power(
         &mut self,
         (model, carrier, start): (&Model, &Carrier, &State),
@@ -284,9 +287,9 @@ impl Integrator {
         sums.energies(&dense, theta)
     }
 
-    /// The energy of friction, J, that the powers at the stages of the last attempted step, of time-stepping and of length `h` from
-    /// `start`, miss as contacts stop or break loose within it: what these lose of their kinetic energy and the stages do
-    /// not show.
+    /// The energy of friction, J, that the powers at the stages of the last attempted step, of time-stepping and of
+    /// length `h` from `start`, miss as contacts stop or break loose within it: what these lose of their kinetic energy
+    /// and the stages do not show.
     pub fn friction_between_stages(&self, model: &Model, start: &State, h: f64) -> f64 {
         let end = self.end();
         let kinetic =
@@ -321,8 +324,9 @@ impl Integrator {
         }
     }
 
-    /// Recomputes the tangents' rates at the start of a step, `s` seconds after the start of the carrier's motion, with the
-    /// `forces` there: `None` where these are those at the end of the step just accepted, as a contact correction left them.
+    /// Recomputes the tangents' rates at the start of a step, `s` seconds after the start of the carrier's motion, with
+    /// the `forces` there: `None` where these are those at the end of the step just accepted, as a contact correction
+    /// left them.
     pub fn refresh_tangents(&mut self, model: &Model, start: &LayerState, forces: Option<&Forces>, s: f64) {
         let Stages { tangents, solver, .. } = &mut self.stages;
         let forces = forces.unwrap_or(&solver.forces);

@@ -7,7 +7,8 @@ use super::scheme::Scheme;
 use super::tableau::GAMMA;
 use crate::model::{ByAxis, Carrier, Model, State};
 
-/// The motions of masses through one step: positions on parabolas, velocities on broken lines, as the dense output has them.
+/// The motions of masses through one step: positions on parabolas, velocities on broken lines, as the dense output has
+/// them.
 #[derive(Clone, Copy, Debug)]
 pub struct Parabolas<'a> {
     /// The model.

@@ -22,8 +22,8 @@ pub enum Scheme {
 pub enum ContactModes {
     /// They are held: slips go on in their direction, sticks hold, whatever the forces. Steps are event-driven.
     Held,
-    /// Set-valued friction decides: a slip that would reverse stops, a stick that would need more than T(0) breaks loose. Steps
-    /// are those of time-stepping.
+    /// Set-valued friction decides: a slip that would reverse stops, a stick that would need more than T(0) breaks
+    /// loose. Steps are those of time-stepping.
     SetValued,
 }
 
@@ -56,14 +56,14 @@ pub(super) struct Coefficients {
     pub initial_guess: InitialGuess,
 }
 
-/// The relative tolerance from which on the scheme of order 3 is the cheaper one: where mode changes cut the steps short,
-/// its fewer stages count for more than longer steps.
+/// The relative tolerance from which on the scheme of order 3 is the cheaper one: where mode changes cut the steps
+/// short, its fewer stages count for more than longer steps.
 ///
 /// Recommended 2e-3 to 5e-3: on blocks of 200 and 800 masses and a chain of 1000 the two take about equal times there.
 const THIRD_FROM: f64 = 4e-3;
-/// The same where friction depends on the speed and no carrier is a body. In the longer steps of the scheme of order 5 masses
-/// that creep and slip by turns make F_x err by ten tolerances and more, or keep the steps as short as the slips are. A body
-/// swings for long and smoothly: at the lower order its phase is off by tens of tolerances.
+/// The same where friction depends on the speed and no carrier is a body. In the longer steps of the scheme of order 5
+/// masses that creep and slip by turns make F_x err by ten tolerances and more, or keep the steps as short as the slips
+/// are. A body swings for long and smoothly: at the lower order its phase is off by tens of tolerances.
 const THIRD_FROM_WITH_CREEP: f64 = 1e-5;
 
 impl Scheme {

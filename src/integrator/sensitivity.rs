@@ -10,8 +10,8 @@ use super::rates::Rates;
 use super::stage::{SlippingMass, StagePoint, StageSolver};
 use crate::model::{Axis, Body, ByAxis, Forces, Input, LinkKind, LinkMotion, Mode, Model, State, TangentsOf};
 
-/// The variation of the layer's state: dimensionless for positions, 1/s for velocities. Or its rate of change, each part that of
-/// the part of the state.
+/// The variation of the layer's state: dimensionless for positions, 1/s for velocities. Or its rate of change, each
+/// part that of the part of the state.
 #[derive(Clone, Debug)]
 struct Variation {
     /// Of the displacements ξ_i, in the inertial frame.
@@ -60,8 +60,8 @@ pub(super) struct Tangent {
     /// The rates at the stages.
     stages: Vec<Variation>,
     forces: Forces,
-    /// The known part of the motion of the links at a stage, with the unknown velocities not varied; positions relative to the
-    /// carrier, and no elements.
+    /// The known part of the motion of the links at a stage, with the unknown velocities not varied; positions relative
+    /// to the carrier, and no elements.
     known: Variation,
 }
 

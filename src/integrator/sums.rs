@@ -1,5 +1,5 @@
-//! Sums over the masses of a layer, or over some of them, in the step attempted last: the forces on the carrier within it, and
-//! the energies.
+//! Sums over the masses of a layer, or over some of them, in the step attempted last: the forces on the carrier within
+//! it, and the energies.
 
 use std::ops::Range;
 
@@ -32,7 +32,8 @@ impl LayerSums {
         }
     }
 
-    /// Another step is attempted, in which the masses have these powers through the surface and the carrier at the stages.
+    /// Another step is attempted, in which the masses have these powers through the surface and the carrier at the
+    /// stages.
     pub(super) fn begin(&mut self, exchange: &[BoundaryPowers; MAX_STAGES]) {
         self.carrier.forget();
         self.energy.forget();

@@ -90,15 +90,15 @@ impl Tolerance {
         square(self.velocity + self.relative * size.abs())
     }
 
-    /// The factor that turns the error of the force of a link, or of all its Maxwell elements, into one of an elongation,
-    /// m/N.
+    /// The factor that turns the error of the force of a link, or of all its Maxwell elements, into one of an
+    /// elongation, m/N.
     pub(super) fn per_force(&self, kind: LinkKind) -> f64 {
         let stiffness = self.force_scale[kind];
         if stiffness > 0.0 { 1.0 / stiffness } else { 0.0 }
     }
 
-    /// The same for the vertical Maxwell elements of masses in contact, where their stiffness is far above the long-term
-    /// one; `None` otherwise, and for the other links.
+    /// The same for the vertical Maxwell elements of masses in contact, where their stiffness is far above the
+    /// long-term one; `None` otherwise, and for the other links.
     pub(super) fn per_contact_force(&self, kind: LinkKind) -> Option<f64> {
         self.long_term_stiffness.filter(|_| kind == LinkKind::Vertical).map(|stiffness| 1.0 / stiffness)
     }
