@@ -156,8 +156,7 @@ impl EndCorrection {
         }
         self.touches.push(i);
         let closing = surface.slope * step.end.velocity_x[i] - step.end.velocity_z[i];
-        let link = &step.model.links[LinkKind::Vertical];
-        self.force += link.stiffness * -gap + link.damping * closing.max(0.0);
+        self.force += step.model.links[LinkKind::Vertical].force(-gap, closing.max(0.0));
         let time = if closing > 0.0 { (-gap / closing).min(step.span.length) } else { step.span.length };
         Some(EventTimeError { length: -gap, time })
     }
@@ -533,8 +532,8 @@ fn forces_of_touch(step: &Parabolas<'_>, i: usize, theta: f64) -> (f64, f64) {
     let moved = time * gain.0;
     let force = |kind: LinkKind, displacement: f64, gain: f64| {
         let link = &step.model.links[kind];
-        let of_elements = step.model.rows_of(kind).map(|row| row.stiffness * row.left_of(displacement, time));
-        link.stiffness * displacement + of_elements.sum::<f64>() + link.damping * gain
+        let elements = step.model.element_force(kind, |row| row.left_of(displacement, time));
+        link.stiffness * displacement + elements + link.damping * gain
     };
     (force(LinkKind::Horizontal, moved, gain.0), force(LinkKind::Vertical, depth + slope * moved, gain.1))
 }

@@ -197,11 +197,7 @@ impl AxisSums {
         (elongation, rate): (f64, f64),
         weights: impl Fn(&MaxwellRow) -> ElementWeights,
     ) -> f64 {
-        let law = &model.links[self.kind];
-        let mut force = law.stiffness * elongation + law.damping * rate;
-        if law.frozen > 0.0 {
-            force -= law.frozen * model.frozen_dashpots(self.kind).sum::<f64>();
-        }
+        let mut force = model.links[self.kind].force(elongation, rate) - model.frozen_force_sum(self.kind);
         for (row, [start, end]) in model.rows_of(self.kind).zip(&self.elements) {
             let ElementWeights { ends, rates } = weights(row);
             let driven: f64 = rates.iter().zip(&self.rate).map(|(weight, rate)| weight * rate).sum();

@@ -390,10 +390,8 @@ impl<'a> DenseOutput<'a> {
         let carrier = self.carrier_at(theta, workspace);
         let (here, there) = (self.mass_at(i, &carrier, workspace), self.mass_at(i + 1, &carrier, workspace));
         let between = LinkPoint::between(&here, &there, 1.0);
-        [LinkKind::LateralX, LinkKind::LateralZ].map(|kind| {
-            let present = self.model.links[kind].present;
-            if present { self.link_force(kind, i, &between, workspace) } else { 0.0 }
-        })
+        [LinkKind::LateralX, LinkKind::LateralZ]
+            .map(|kind| if self.model.has_link[kind] { self.link_force(kind, i, &between, workspace) } else { 0.0 })
     }
 
     /// Elongations of the links of mass `i` to the carrier (m) and its velocities (m/s), along x and z, at the fraction
@@ -407,12 +405,9 @@ impl<'a> DenseOutput<'a> {
 
     /// The force of one link at the fraction for which the weights of `workspace` are set, N.
     fn link_force(&self, kind: LinkKind, link: usize, point: &LinkPoint, workspace: &DenseWorkspace) -> f64 {
-        let law = &self.model.links[kind];
         let of = |(x, z): (f64, f64)| if kind.is_along_x() { x } else { z };
-        let mut force = law.stiffness * of(point.elongation) + law.damping * of(point.rate);
-        if law.frozen > 0.0 {
-            force -= law.frozen * self.model.frozen_dashpot(kind, link);
-        }
+        let mut force = self.model.links[kind].force(of(point.elongation), of(point.rate));
+        force -= self.model.frozen_force(kind, link);
         let mut rows = self.model.rows_of(kind).peekable();
         if rows.peek().is_none() {
             return force;
@@ -484,9 +479,8 @@ struct InertialFraction {
 impl InertialFraction {
     fn new(model: &Model, beta: f64) -> Self {
         let weight = |kind: LinkKind| {
-            let link = &model.links[kind];
             let relaxing = |row: &MaxwellRow| row.stiffness * beta * row.relaxation_time / (row.relaxation_time + beta);
-            beta * link.stiffness + link.damping + model.rows_of(kind).map(relaxing).sum::<f64>()
+            model.links[kind].by_velocity(beta) + model.rows_of(kind).map(relaxing).sum::<f64>()
         };
         let share = |own: LinkKind, lateral: LinkKind| {
             let inertia = model.mass / beta;

@@ -267,7 +267,7 @@ impl ErrorTest<'_> {
         let kind = LinkKind::Vertical;
         let (a, e, per_elongation) = (&self.end.maxwell, &self.end.elongation_z, tolerance.per_force(kind));
         sum_of(error.len(), |i| {
-            let force = || model.rows_of(kind).map(|row| row.stiffness * a[row.range.start + i]).sum::<f64>();
+            let force = || model.element_force(kind, |row| a[row.range.start + i]);
             let (per_force, size) =
                 if self.end.mode[i].in_contact() { (per_force, per_force * force()) } else { (per_elongation, e[i]) };
             (per_force * error[i]).powi(2) / tolerance.position_tolerance_sq(size)
@@ -285,9 +285,9 @@ impl ErrorTest<'_> {
         };
         let force = |elongation: &[f64], velocity: &[f64], carrier_rate: f64, i: usize| {
             if kind.is_lateral() {
-                rod.stiffness * (elongation[i + 1] - elongation[i]) + rod.damping * (velocity[i + 1] - velocity[i])
+                rod.law.force(elongation[i + 1] - elongation[i], velocity[i + 1] - velocity[i])
             } else {
-                rod.stiffness * elongation[i] + rod.damping * (velocity[i] - carrier_rate)
+                rod.law.force(elongation[i], velocity[i] - carrier_rate)
             }
         };
         let (per_force, relative) = (tolerance.per_force(kind), tolerance.relative + rod.transient(h));

@@ -176,10 +176,9 @@ impl Rates {
             let law = &model.links[kind];
             let rate: f64 = self.elongation_rate[kind].iter().sum();
             let damper: f64 = acceleration.iter().map(|a| law.damping * (a - rate_change)).sum();
-            let relaxing = |row: &MaxwellRow| {
-                row.stiffness * (rate - maxwell[row.range.clone()].iter().sum::<f64>() / row.relaxation_time)
-            };
-            let elements: f64 = model.rows.iter().filter(|row| row.kind == kind).map(relaxing).sum();
+            let relaxing =
+                |row: &MaxwellRow| rate - maxwell[row.range.clone()].iter().sum::<f64>() / row.relaxation_time;
+            let elements = model.element_force(kind, relaxing);
             law.stiffness * rate + damper + elements
         };
         (

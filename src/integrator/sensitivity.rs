@@ -237,8 +237,7 @@ impl Tangent {
         }
         let motion = LinkMotion { velocity: ByAxis { x: &start.v_x, z: &start.v_z }, ..self.known.links(carrier) };
         for kind in LinkKind::ALL {
-            let law = &model.links[kind];
-            self.forces.spring_and_damper(kind, law.stiffness, law.damping, &motion, &[]);
+            self.forces.spring_and_damper(kind, &model.links[kind], &motion);
         }
         for row in &model.rows {
             add(&mut self.forces.link[row.kind], row.stiffness, &start.maxwell[row.range.clone()]);
@@ -299,8 +298,7 @@ impl Tangent {
         }
         let motion = known.links(carrier);
         for kind in LinkKind::ALL {
-            let law = &solver.laws[kind];
-            self.forces.spring_and_damper(kind, law.stiffness, law.damping, &motion, &[]);
+            self.forces.spring_and_damper(kind, &solver.laws[kind], &motion);
         }
         for row in &model.rows {
             let weight = row.stiffness * row.relaxation_time / (row.relaxation_time + beta);
@@ -350,7 +348,7 @@ impl Tangent {
         let (end, rates) = (&mut self.end, &mut self.stages[stage]);
         let motion = end.links(carrier);
         for kind in LinkKind::ALL {
-            self.forces.spring_and_damper(kind, 0.0, 0.0, &motion, &[]);
+            motion.elongation_rates(kind, &mut self.forces.rate[kind]);
         }
         for row in &model.rows {
             let g = row.relaxation_time / (row.relaxation_time + beta);

@@ -1,6 +1,6 @@
 //! The tolerances of the local error of a step (docs/theory.md, section 9).
 
-use crate::model::{ByAxis, ByLink, LinkKind, Model};
+use crate::model::{ByAxis, ByLink, LinkKind, LinkLaw, Model};
 
 /// The tolerances of the local error of a step. The error of each quantity is divided by absolute + relative · size.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,18 +28,15 @@ pub struct Tolerance {
 /// A kind of link that is stiff enough to act as a rod.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rod {
-    /// c, N/m.
-    pub(super) stiffness: f64,
-    /// d, N s/m.
-    pub(super) damping: f64,
+    pub(super) law: LinkLaw,
     /// The larger of the natural frequency √(c/m) of a mass on it and of its decay rate d/m, 1/s.
     rate: f64,
 }
 
 impl Rod {
     fn new(model: &Model, kind: LinkKind) -> Self {
-        let (stiffness, damping) = (model.links[kind].stiffness, model.links[kind].damping);
-        Self { stiffness, damping, rate: (stiffness / model.mass).sqrt().max(damping / model.mass) }
+        let law = model.links[kind];
+        Self { law, rate: (law.stiffness / model.mass).sqrt().max(law.damping / model.mass) }
     }
 
     /// Relative error that a step of length `h` (s) may make of its force in addition. Where the steps resolve the
@@ -116,7 +113,7 @@ impl Tolerance {
     /// tolerance; infinite without rods.
     pub(super) fn newton_of_rods(&self, beta: f64) -> f64 {
         let rods = LinkKind::ALL.into_iter().filter_map(|kind| Some((self.rod(kind)?, self.per_force(kind))));
-        let share = |(rod, per_force): (Rod, f64)| self.position / (per_force * (rod.damping + beta * rod.stiffness));
+        let share = |(rod, per_force): (Rod, f64)| self.position / (per_force * rod.law.by_velocity(beta));
         NEWTON_SHARE * rods.map(share).fold(f64::INFINITY, f64::min)
     }
 }

@@ -187,11 +187,11 @@ pub fn elastic_energy(model: &Model, state: &State) -> f64 {
 pub fn vertical_spring_energy_at(model: &Model, state: &State, i: usize) -> f64 {
     let e = &state.elongation_z;
     let of_link = |kind: LinkKind, link: usize, e: f64| {
-        let law = &model.links[kind];
-        let frozen = if law.frozen == 0.0 { 0.0 } else { e - model.frozen_dashpot(kind, link) };
+        let (stiffness, of_frozen) = (model.links[kind].stiffness, model.frozen_stiffness[kind]);
+        let frozen = if of_frozen == 0.0 { 0.0 } else { e - model.frozen_dashpot(kind, link) };
         let of_row = |row: &super::MaxwellRow| row.stiffness * state.maxwell[row.range.start + link].powi(2);
         let elements: f64 = model.rows_of(kind).map(of_row).sum();
-        0.5 * ((law.stiffness - law.frozen) * e * e + law.frozen * frozen * frozen + elements)
+        0.5 * ((stiffness - of_frozen) * e * e + of_frozen * frozen * frozen + elements)
     };
     let beside = i.saturating_sub(1)..(i + 1).min(e.len() - 1);
     let lateral: f64 = beside.map(|link| of_link(LinkKind::LateralZ, link, e[link + 1] - e[link])).sum();
@@ -211,10 +211,10 @@ fn spring_energy(model: &Model, state: &State, kind: LinkKind) -> f64 {
 
 /// Σ ½ c e², and ½ c_j (e - y_j)² of the part with frozen dashpots.
 fn springs_energy(model: &Model, kind: LinkKind, elongations: impl Iterator<Item = f64> + Clone) -> f64 {
-    let law = &model.links[kind];
-    let whole = 0.5 * (law.stiffness - law.frozen) * square_sum(elongations.clone());
-    if law.frozen == 0.0 {
+    let (stiffness, frozen) = (model.links[kind].stiffness, model.frozen_stiffness[kind]);
+    let whole = 0.5 * (stiffness - frozen) * square_sum(elongations.clone());
+    if frozen == 0.0 {
         return whole;
     }
-    whole + 0.5 * law.frozen * square_sum(elongations.zip(model.frozen_dashpots(kind)).map(|(e, y)| e - y))
+    whole + 0.5 * frozen * square_sum(elongations.zip(model.frozen_dashpots(kind)).map(|(e, y)| e - y))
 }

@@ -5,45 +5,54 @@ use std::ops::Range;
 use super::reduction::{Reduction, Replacement};
 use super::{CarrierPoint, Model, State};
 use crate::math::{add_weighted_sum, sum};
-use crate::scene::{Axis, ByAxis, ByLink, Initial, LinkKind, Scene};
+use crate::scene::{Axis, ByAxis, ByLink, Initial, LinkKind, MaxwellElement, Scene};
 
-/// The spring and the damper of one kind of link.
+/// The law of a link of one kind: a spring and a damper in parallel. Its Maxwell elements add their own forces
+/// ([`Model::element_force`]).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LinkLaw {
-    /// Whether the scene has the link at all; an absent one has no forces and no energies.
-    pub present: bool,
     /// Stiffness c, N/m, that of the Maxwell elements replaced by springs included.
     pub stiffness: f64,
     /// Damping d, N s/m, that of the Maxwell elements replaced by dampers included.
     pub damping: f64,
-    /// Part of the stiffness that belongs to replaced Maxwell elements whose dashpots are frozen at the elongation of the
-    /// start, N/m.
-    pub frozen: f64,
 }
 
 impl LinkLaw {
-    pub(super) fn new(scene: &Scene, kind: LinkKind, reduction: Option<&Reduction>) -> Self {
-        let Some(link) = scene.link(kind) else { return Self::default() };
-        let mut law = Self {
-            present: true,
-            stiffness: link.stiffness.unwrap_or(0.0),
-            damping: link.damping.unwrap_or(0.0),
-            frozen: 0.0,
-        };
+    /// c e + d ė, N, for an elongation (m) and its rate (m/s).
+    #[inline(always)]
+    pub fn force(&self, elongation: f64, rate: f64) -> f64 {
+        self.stiffness * elongation + self.damping * rate
+    }
+
+    /// The force by a velocity that lasts for the time `beta` (s), βc + d, N s/m.
+    #[inline(always)]
+    pub fn by_velocity(&self, beta: f64) -> f64 {
+        beta * self.stiffness + self.damping
+    }
+}
+
+/// The laws of the links of a scene, and the part of their stiffness that belongs to replaced Maxwell elements whose dashpots
+/// are frozen at the elongation of the start, N/m.
+pub(super) fn link_laws(scene: &Scene, reduction: Option<&Reduction>) -> (ByLink<LinkLaw>, ByLink<f64>) {
+    let mut frozen = ByLink::default();
+    let mut laws = ByLink::from_fn(|kind| {
+        let link = scene.link(kind).unwrap_or_default();
+        let (stiffness, damping) = (link.stiffness.unwrap_or(0.0), link.damping.unwrap_or(0.0));
+        LinkLaw { stiffness, damping }
+    });
+    for one in reduction.map_or(&[][..], |reduction| &reduction.replaced) {
+        let (law, MaxwellElement { stiffness, relaxation_time }) = (&mut laws[one.kind], one.element);
         // At the start the links along x are not elongated, and in an undeformed layer no dashpot is.
-        let elongated = scene.layer.initial == Initial::Relaxed && !kind.is_along_x();
-        let replaced = reduction.map_or(&[][..], |reduction| &reduction.replaced);
-        for one in replaced.iter().filter(|one| one.kind == kind) {
-            match one.by {
-                Replacement::Spring => law.stiffness += one.element.stiffness,
-                Replacement::Damper => law.damping += one.element.stiffness * one.element.relaxation_time,
-            }
-            if one.by == Replacement::Spring && elongated {
-                law.frozen += one.element.stiffness;
+        let elongated = scene.layer.initial == Initial::Relaxed && one.kind.axis() == Axis::Z;
+        match one.by {
+            Replacement::Damper => law.damping += stiffness * relaxation_time,
+            Replacement::Spring => {
+                law.stiffness += stiffness;
+                frozen[one.kind] += if elongated { stiffness } else { 0.0 };
             }
         }
-        law
     }
+    (laws, frozen)
 }
 
 /// One Maxwell element of every link of a kind: its constants, and the indices of the elongations a_j = e - y_j of its
@@ -119,18 +128,14 @@ impl Forces {
 
     /// A zero for each link of `model` by kind; none of a kind that it has not.
     pub fn zeros_by_link(model: &Model) -> ByLink<Vec<f64>> {
-        ByLink::from_fn(|kind| {
-            let present = model.links[kind].present;
-            vec![0.0; if present { kind.count(model.masses()) } else { 0 }]
-        })
+        ByLink::from_fn(|kind| vec![0.0; if model.has_link[kind] { kind.count(model.masses()) } else { 0 }])
     }
 
     /// Evaluates the forces in `state` with the carrier's rates.
     pub fn evaluate(&mut self, model: &Model, state: &State, carrier: &CarrierPoint) {
         let motion = LinkMotion::new(state, carrier);
         for kind in LinkKind::ALL {
-            let law = &model.links[kind];
-            self.spring_and_damper(kind, law.stiffness, law.damping, &motion, &[]);
+            self.spring_and_damper(kind, &model.links[kind], &motion);
             model.subtract_frozen(kind, &mut self.link[kind]);
         }
         for kind in LinkKind::ALL {
@@ -142,33 +147,23 @@ impl Forces {
         add_ends(&mut self.on_mass_z, carrier.ends.map(|end| end.z));
     }
 
-    /// Evaluates ė and F = c e + d ė of every link of a kind with c = `stiffness` (N/m) and d = `damping` (N s/m), and
-    /// adds the forces `known` (N), if any.
-    pub fn spring_and_damper(
-        &mut self,
-        kind: LinkKind,
-        stiffness: f64,
-        damping: f64,
-        motion: &LinkMotion<'_>,
-        known: &[f64],
-    ) {
-        let links = (&mut self.link[kind][..], &mut self.rate[kind][..]);
-        let (elongation, velocity, carrier_rate) = motion.along(kind);
-        let law = |e: f64, rate: f64| stiffness * e + damping * rate;
+    /// Evaluates ė and the force by its `law` of every link of a kind.
+    pub fn spring_and_damper(&mut self, kind: LinkKind, law: &LinkLaw, motion: &LinkMotion<'_>) {
+        motion.elongation_rates(kind, &mut self.rate[kind]);
+        let (elongation, _, _) = motion.along(kind);
+        let links = self.link[kind].iter_mut().zip(&self.rate[kind]);
         if kind.is_lateral() {
             let elongations = elongation.iter().zip(&elongation[1..]);
-            let pairs = elongations.zip(velocity.iter().zip(&velocity[1..]));
-            set_link_forces(links, pairs.map(|((e, e_next), (v, v_next))| (e_next - e, v_next - v)), known, law);
+            links.zip(elongations).for_each(|((force, rate), (e, e_next))| *force = law.force(e_next - e, *rate));
         } else {
-            let masses = elongation.iter().zip(velocity);
-            set_link_forces(links, masses.map(|(e, v)| (*e, v - carrier_rate)), known, law);
+            links.zip(elongation).for_each(|((force, rate), e)| *force = law.force(*e, *rate));
         }
     }
 
-    /// Evaluates the forces F = c e + d ė + `known` of all links, with c (N/m) and d (N s/m) by kind in `laws`, and their
-    /// sums on the masses, but not ė. Only links that the scene does not have are without `known` forces (N).
+    /// Evaluates the forces of all links by these `laws`, with the forces `known` added, and their sums on the masses, but
+    /// not ė. Only links that the scene does not have are without `known` forces (N).
     #[inline(always)]
-    pub fn evaluate_with(&mut self, laws: ByLink<(f64, f64)>, motion: &LinkMotion<'_>, known: &ByLink<Vec<f64>>) {
+    pub fn evaluate_with(&mut self, laws: &ByLink<LinkLaw>, motion: &LinkMotion<'_>, known: &ByLink<Vec<f64>>) {
         let [vertical, horizontal, lateral_x, lateral_z] = &mut self.link.0;
         let axis = |carrier: LinkKind, lateral: LinkKind| AxisForces {
             motion: motion.along(carrier),
@@ -193,7 +188,7 @@ impl Forces {
         let motion = LinkMotion::new(state, carrier);
         for kind in LinkKind::ALL {
             let links = if kind.is_lateral() { i.saturating_sub(1)..(i + 1).min(k - 1) } else { i..i + 1 };
-            for link in links.filter(|_| model.links[kind].present) {
+            for link in links.filter(|_| model.has_link[kind]) {
                 self.refresh_link(model, state, &motion, kind, link);
             }
         }
@@ -207,7 +202,7 @@ impl Forces {
 
     /// Updates the dampers' forces on mass `i` and on its neighbours for a change of its velocity by (`dx`, `dz`), m/s.
     pub fn add_velocity(&mut self, model: &Model, i: usize, (dx, dz): (f64, f64)) {
-        for kind in LinkKind::ALL.into_iter().filter(|&kind| model.links[kind].present) {
+        for kind in LinkKind::ALL.into_iter().filter(|&kind| model.has_link[kind]) {
             let change = if kind.is_along_x() { dx } else { dz };
             let by = model.links[kind].damping * change;
             let force = &mut self.link[kind];
@@ -229,17 +224,14 @@ impl Forces {
     }
 
     fn refresh_link(&mut self, model: &Model, state: &State, motion: &LinkMotion<'_>, kind: LinkKind, link: usize) {
-        let law = &model.links[kind];
         let (elongation, velocity, carrier_rate) = motion.along(kind);
         let (e, rate) = if kind.is_lateral() {
             (elongation[link + 1] - elongation[link], velocity[link + 1] - velocity[link])
         } else {
             (elongation[link], velocity[link] - carrier_rate)
         };
-        let of_element = |row: &MaxwellRow| row.stiffness * state.maxwell[row.range.start + link];
-        let maxwell: f64 = model.rows_of(kind).map(of_element).sum();
-        let frozen = if law.frozen > 0.0 { law.frozen * model.frozen_dashpot(kind, link) } else { 0.0 };
-        self.link[kind][link] = law.stiffness * e + law.damping * rate + maxwell - frozen;
+        let elements = model.element_force(kind, |row| state.maxwell[row.range.start + link]);
+        self.link[kind][link] = model.links[kind].force(e, rate) + elements - model.frozen_force(kind, link);
     }
 
     /// F_x or F_z of the layer on the carrier, N. F_z is positive when the layer is compressed (e > 0, the masses are nearer
@@ -304,10 +296,10 @@ struct AxisForces<'a> {
     motion: (&'a [f64], &'a [f64], f64),
     /// What acts on the first and on the last mass from beyond a part of a layer, N.
     ends: [f64; 2],
-    /// c (N/m), d (N s/m) and the known forces (N) of the links to the carrier.
-    to_carrier: ((f64, f64), &'a [f64]),
-    /// The same of the lateral links.
-    lateral: ((f64, f64), &'a [f64]),
+    /// The law of the links to the carrier, and their known forces, N.
+    to_carrier: (LinkLaw, &'a [f64]),
+    /// The law of the lateral links, and their known forces, N.
+    lateral: (LinkLaw, &'a [f64]),
 }
 
 impl AxisForces<'_> {
@@ -324,15 +316,15 @@ impl AxisForces<'_> {
         self.set_to_carrier(&mut to_carrier[..1]);
         (on_mass[0], on_mass[k - 1]) = (lateral[0] - to_carrier[0], -lateral[k - 2]);
         let (elongation, velocity, carrier_rate) = self.motion;
-        let ((stiffness, damping), known) = self.to_carrier;
+        let (law, known) = self.to_carrier;
         let between = lateral.iter().zip(&lateral[1..]);
         let masses = elongation[1..].iter().zip(&velocity[1..]).zip(&known[1..]);
         let inner = on_mass[1..].iter_mut().zip(&mut to_carrier[1..]).zip(masses.zip(between));
         for ((sum, force), (((e, v), known), (left, right))) in inner {
-            *force = stiffness * e + damping * (v - carrier_rate) + known;
+            *force = law.force(*e, v - carrier_rate) + known;
             *sum = (right - left) - *force;
         }
-        let last = stiffness * elongation[k - 1] + damping * (velocity[k - 1] - carrier_rate) + known[k - 1];
+        let last = law.force(elongation[k - 1], velocity[k - 1] - carrier_rate) + known[k - 1];
         to_carrier[k - 1] = last;
         on_mass[k - 1] -= last;
         add_ends(on_mass, self.ends);
@@ -340,40 +332,19 @@ impl AxisForces<'_> {
 
     #[inline(always)]
     fn set_to_carrier(&self, force: &mut [f64]) {
-        let ((elongation, velocity, carrier_rate), ((stiffness, damping), known)) = (self.motion, self.to_carrier);
+        let ((elongation, velocity, carrier_rate), (law, known)) = (self.motion, self.to_carrier);
         for ((force, (e, v)), known) in force.iter_mut().zip(elongation.iter().zip(velocity)).zip(known) {
-            *force = stiffness * e + damping * (v - carrier_rate) + known;
+            *force = law.force(*e, v - carrier_rate) + known;
         }
     }
 
     #[inline(always)]
     fn set_lateral(&self, force: &mut [f64]) {
-        let ((elongation, velocity, _), ((stiffness, damping), known)) = (self.motion, self.lateral);
+        let ((elongation, velocity, _), (law, known)) = (self.motion, self.lateral);
         let elongations = elongation.iter().zip(&elongation[1..]);
         let pairs = elongations.zip(velocity.iter().zip(&velocity[1..]));
         for ((force, ((e, e_next), (v, v_next))), known) in force.iter_mut().zip(pairs).zip(known) {
-            *force = stiffness * (e_next - e) + damping * (v_next - v) + known;
-        }
-    }
-}
-
-/// Sets the forces and the elongation rates of links with these elongations and rates: those of the `law`, and the forces
-/// `known`, if any.
-#[inline]
-fn set_link_forces(
-    (force, rate): (&mut [f64], &mut [f64]),
-    motion: impl Iterator<Item = (f64, f64)>,
-    known: &[f64],
-    law: impl Fn(f64, f64) -> f64,
-) {
-    let links = force.iter_mut().zip(rate).zip(motion);
-    if known.is_empty() {
-        for ((force, rate), (e, e_rate)) in links {
-            (*force, *rate) = (law(e, e_rate), e_rate);
-        }
-    } else {
-        for (((force, rate), (e, e_rate)), known) in links.zip(known) {
-            (*force, *rate) = (law(e, e_rate) + known, e_rate);
+            *force = law.force(e_next - e, v_next - v) + known;
         }
     }
 }
@@ -448,7 +419,7 @@ mod tests {
     fn refreshed_forces_are_those_evaluated_anew() {
         let mut model = Model::from_text(SCENE);
         model.freeze_dashpots(ByAxis { x: 0.0, z: -0.3 });
-        assert!(model.links.0.map(|law| law.frozen) == [5.0, 0.0, 0.0, 1.5] && model.frozen[1] > 0.1);
+        assert!(model.frozen_stiffness.0 == [5.0, 0.0, 0.0, 1.5] && model.frozen[1] > 0.1);
         let mut state = State::new(model.masses(), model.maxwell_variables());
         let carrier = moving(0.2, -0.1);
         let mut refreshed = Forces::new(&model);
@@ -497,7 +468,7 @@ mod tests {
                 model.subtract_frozen(kind, &mut known[kind]);
             }
             let motion = LinkMotion::new(&state, &carrier);
-            found.evaluate_with(model.links.map(|law| (law.stiffness, law.damping)), &motion, &known);
+            found.evaluate_with(&model.links, &motion, &known);
             for kind in LinkKind::ALL {
                 motion.elongation_rates(kind, &mut found.rate[kind]);
             }

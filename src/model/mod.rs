@@ -80,8 +80,13 @@ pub struct Model {
     pub rest_x: Vec<f64>,
     /// Heights Z_i of the masses at rest, m.
     pub rest_z: Vec<f64>,
-    /// Springs and dampers of the four kinds of link.
+    /// Which kinds of link the scene has at all; an absent one has no forces and no energies.
+    pub has_link: ByLink<bool>,
+    /// The laws of the links, 0 of absent ones.
     pub links: ByLink<LinkLaw>,
+    /// Part of the stiffness that belongs to replaced Maxwell elements whose dashpots are frozen at the elongation of the start,
+    /// N/m.
+    pub frozen_stiffness: ByLink<f64>,
     /// The Maxwell elements: one row for each element of each kind of link.
     pub rows: Vec<MaxwellRow>,
     /// The relaxation times of the Maxwell elements, each once, s.
@@ -97,7 +102,7 @@ pub struct Model {
     pub friction: FrictionLaw,
     /// How the dashpots start.
     pub initial: Initial,
-    /// Elongations of the vertical links at the start, m: those of the frozen dashpots, see [`LinkLaw::frozen`]. Empty
+    /// Elongations of the vertical links at the start, m: those of the frozen dashpots, see [`frozen_stiffness`](Self::frozen_stiffness). Empty
     /// where there are none.
     pub frozen: Vec<f64>,
 }
@@ -109,15 +114,17 @@ impl Model {
         let k = layer.masses;
         let roughness = |i| layer.roughness.get(i).copied().unwrap_or(0.0);
         let reduction = Reduction::new(scene);
-        let links = ByLink::from_fn(|kind| LinkLaw::new(scene, kind, reduction.as_ref()));
+        let (links, frozen_stiffness) = forces::link_laws(scene, reduction.as_ref());
         let (rows, relaxation_times) = forces::maxwell_rows(scene, reduction.as_ref());
         Self {
             mass: scene.mass(),
             element_area: layer.element_area().unwrap_or(0.0),
             rest_x: (0..k).map(|i| layer.rest_position(i)).collect(),
             rest_z: (0..k).map(|i| layer.clearance + roughness(i)).collect(),
-            frozen: if links.iter().any(|link| link.frozen > 0.0) { vec![0.0; k] } else { Vec::new() },
+            frozen: if frozen_stiffness.iter().any(|&frozen| frozen > 0.0) { vec![0.0; k] } else { Vec::new() },
+            has_link: ByLink::from_fn(|kind| scene.link(kind).is_some()),
             links,
+            frozen_stiffness,
             rows,
             relaxation_times,
             glassy: ByLink::from_fn(|kind| scene.link(kind).as_ref().map_or(0.0, scales::glassy)),
@@ -131,8 +138,9 @@ impl Model {
     /// Takes over what depends on the temperature from `scene`, this model's at another one: relaxation times, viscosity, the
     /// speeds of the friction law and the modulus of the fine roughness. Stiffnesses stay.
     pub fn set_temperature(&mut self, scene: &Scene) {
-        let Self { links, rows, relaxation_times, friction, .. } = Self::new(scene);
-        (self.links, self.rows, self.relaxation_times, self.friction) = (links, rows, relaxation_times, friction);
+        let Self { links, frozen_stiffness, rows, relaxation_times, friction, .. } = Self::new(scene);
+        (self.links, self.frozen_stiffness, self.rows) = (links, frozen_stiffness, rows);
+        (self.relaxation_times, self.friction) = (relaxation_times, friction);
     }
 
     /// The model of the scene with this text.
@@ -141,7 +149,7 @@ impl Model {
         Self::new(&Scene::parse(text, "test.toml".as_ref()).unwrap_or_else(|error| panic!("{error}")))
     }
 
-    /// Freezes the dashpots that have [frozen springs](LinkLaw::frozen) at their links' elongations at the start, m:
+    /// Freezes the dashpots that have [frozen springs](Self::frozen_stiffness) at their links' elongations at the start, m:
     /// `carrier` is u and w there, m. A mass that would lie under the profile is lifted onto it.
     pub fn freeze_dashpots(&mut self, carrier: ByAxis<f64>) {
         let profile_position = self.profile.reduce(carrier.x);
@@ -154,7 +162,7 @@ impl Model {
 
     /// Subtracts c_j y_j of the frozen dashpots from the `forces` of the links of `kind`, N.
     pub fn subtract_frozen(&self, kind: LinkKind, forces: &mut [f64]) {
-        let stiffness = self.links[kind].frozen;
+        let stiffness = self.frozen_stiffness[kind];
         if stiffness > 0.0 {
             forces.iter_mut().zip(self.frozen_dashpots(kind)).for_each(|(force, y)| *force -= stiffness * y);
         }
@@ -168,6 +176,23 @@ impl Model {
     /// y of the frozen dashpots of one link of a kind that has some, m.
     pub fn frozen_dashpot(&self, kind: LinkKind, link: usize) -> f64 {
         if kind.is_lateral() { self.frozen[link + 1] - self.frozen[link] } else { self.frozen[link] }
+    }
+
+    /// c_j y_j of the frozen dashpots of one link of a kind, N; 0 where it has none.
+    pub fn frozen_force(&self, kind: LinkKind, link: usize) -> f64 {
+        let stiffness = self.frozen_stiffness[kind];
+        if stiffness > 0.0 { stiffness * self.frozen_dashpot(kind, link) } else { 0.0 }
+    }
+
+    /// The sum of the [forces](Self::frozen_force) of the frozen dashpots of all links of a kind, N.
+    pub fn frozen_force_sum(&self, kind: LinkKind) -> f64 {
+        let stiffness = self.frozen_stiffness[kind];
+        if stiffness > 0.0 { stiffness * self.frozen_dashpots(kind).sum::<f64>() } else { 0.0 }
+    }
+
+    /// Σ c_j a_j of the Maxwell elements of links of a kind, N, for the elongations `a` of their springs, m.
+    pub fn element_force(&self, kind: LinkKind, a: impl Fn(&MaxwellRow) -> f64) -> f64 {
+        self.rows_of(kind).map(|row| row.stiffness * a(row)).sum()
     }
 
     /// The inputs that move the carrier.

@@ -413,10 +413,8 @@ impl Snapshot<'_> {
     /// Of V = Σ ½ c e² + Σ_j ½ c_j a_j², where a_j = e - y_j of frozen dashpots.
     pub(super) fn elastic_energy_change(&self, shift: &CarrierShift) -> f64 {
         let spring = |kind: LinkKind, elongations: &[f64], moved: f64| {
-            let law = &self.model.links[kind];
-            let frozen =
-                if law.frozen > 0.0 { law.frozen * self.model.frozen_dashpots(kind).sum::<f64>() } else { 0.0 };
-            moved * (law.stiffness * elongations.iter().sum::<f64>() - frozen)
+            let stiffness = self.model.links[kind].stiffness;
+            moved * (stiffness * elongations.iter().sum::<f64>() - self.model.frozen_force_sum(kind))
         };
         spring(LinkKind::Horizontal, &self.state().elongation_x, shift.elongation.0)
             + spring(LinkKind::Vertical, &self.state().elongation_z, shift.elongation.1)

@@ -148,7 +148,6 @@ impl StageSolver {
             Axis::X => (LinkKind::Horizontal, LinkKind::LateralX, 0),
             Axis::Z => (LinkKind::Vertical, LinkKind::LateralZ, 1),
         };
-        let (own_law, lateral_law) = (&self.laws[own], &self.laws[lateral]);
         let inertia = model.mass / beta;
         let modes = &self.state.mode;
         side.column.fill(Vector2::zeros());
@@ -158,7 +157,7 @@ impl StageSolver {
         for (i, mode) in modes.iter().enumerate() {
             let beside = [i.checked_sub(1), Some(i + 1)].into_iter().flatten().filter_map(|j| modes.get(j));
             let other = beside.filter(|other| other.in_contact() != mode.in_contact()).count() as f64;
-            let across = other * lateral_law.weight;
+            let across = other * self.weights[lateral];
             if !mode.in_contact() {
                 side.inertia += model.mass;
                 side.diagonal += inertia + across;
@@ -166,11 +165,11 @@ impl StageSolver {
                 side.row[i][component] = inertia + across;
                 continue;
             }
-            side.diagonal += own_law.weight;
+            side.diagonal += self.weights[own];
             if mode.slips() {
                 let (share, climb) = self.slip_border(model, i, beta, side.axis);
-                side.column[i].x = -share * (own_law.weight + across);
-                side.row[i].x = -(own_law.along(climb) + other * lateral_law.along(climb));
+                side.column[i].x = -share * (self.weights[own] + across);
+                side.row[i].x = -(climb.force(&self.laws[own]) + other * climb.force(&self.laws[lateral]));
             }
         }
     }

@@ -24,9 +24,10 @@ use super::scheme::ContactModes;
 use super::tolerance::{NEWTON_SHARE, Tolerance};
 use crate::math::{BLOCK, BlockTridiagonal, Spline, weighted_sum, with_widest_vectors};
 use crate::model::{
-    ByLink, CarrierPoint, ContactForces, Forces, FrictionPower, LinkKind, LinkMotion, Mode, Model, State, SurfacePoint,
+    ByLink, CarrierPoint, ContactForces, Forces, FrictionPower, LinkKind, LinkLaw, LinkMotion, Mode, Model, State,
+    SurfacePoint,
 };
-use newton::{ContactJacobian, NeighbourWeights, RateFriction, RowShares, largest_of};
+use newton::{NeighbourWeights, RateFriction, RowShares, largest_of};
 
 pub(super) use border::{BodyHistory, Border};
 pub(super) use newton::SlippingMass;
@@ -64,7 +65,7 @@ impl History {
 
     /// Subtracts the forces of the frozen dashpots from H.
     fn subtract_frozen(&mut self, model: &Model) {
-        for kind in LinkKind::ALL.into_iter().filter(|&kind| model.links[kind].frozen > 0.0) {
+        for kind in LinkKind::ALL.into_iter().filter(|&kind| model.frozen_stiffness[kind] > 0.0) {
             let force = &mut self.force[kind];
             if model.rows_of(kind).next().is_none() {
                 force.fill(0.0);
@@ -117,23 +118,6 @@ impl ConvergenceTest {
     }
 }
 
-/// c and D of one kind of link in an implicit stage.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct ImplicitLaw {
-    pub stiffness: f64,
-    pub damping: f64,
-    /// -∂F/∂v of a link to a free mass: βc + D.
-    weight: f64,
-}
-
-impl ImplicitLaw {
-    /// ∂F/∂ẋ of a vertical link to a slipping mass.
-    #[inline(always)]
-    fn along(&self, climb: ContactJacobian) -> f64 {
-        self.stiffness * climb.height + self.damping * climb.rate
-    }
-}
-
 /// Which slipping stages the factors of the Jacobian serve. It changes little through a step, so that those of one stage
 /// nearly always do for the others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -161,8 +145,10 @@ pub(super) struct StageSolver {
     slip_speed: Vec<f64>,
     /// What becomes of the contact modes through the step.
     modes: ContactModes,
-    /// By kind of link.
-    pub laws: ByLink<ImplicitLaw>,
+    /// The links' laws with D in place of the damping d.
+    pub laws: ByLink<LinkLaw>,
+    /// -∂F/∂v of a link to a free mass: βc + D.
+    weights: ByLink<f64>,
     /// The modes of which the following are lists.
     listed: Vec<Mode>,
     /// The masses in contact, in their order.
@@ -207,6 +193,7 @@ impl StageSolver {
             slip_speed: vec![0.0; k],
             modes: ContactModes::Held,
             laws: ByLink::default(),
+            weights: ByLink::default(),
             listed: vec![Mode::Free; k],
             contacts: Vec::with_capacity(k),
             slips: Vec::with_capacity(k),
@@ -264,16 +251,12 @@ impl StageSolver {
 
     /// Sets c and D = d + Σ_j c_j β τ_j/(τ_j + β) of every kind of link.
     fn set_laws(&mut self, model: &Model, beta: f64) {
-        for (law, link) in self.laws.iter_mut().zip(&model.links) {
-            *law = ImplicitLaw { stiffness: link.stiffness, damping: link.damping, weight: 0.0 };
-        }
+        self.laws = model.links;
         for row in &model.rows {
             let tau = row.relaxation_time;
             self.laws[row.kind].damping += row.stiffness * beta * tau / (tau + beta);
         }
-        for law in &mut self.laws {
-            law.weight = beta * law.stiffness + law.damping;
-        }
+        self.weights = self.laws.map(|law| law.by_velocity(beta));
     }
 
     /// The masses in contact, in their order.
@@ -445,8 +428,7 @@ impl StageSolver {
     #[inline(always)]
     fn set_forces(&mut self, point: &StagePoint) {
         let motion = LinkMotion::new(&self.state, &point.carrier);
-        let laws = self.laws.map(|law| (law.stiffness, law.damping));
-        self.forces.evaluate_with(laws, &motion, &self.history.force);
+        self.forces.evaluate_with(&self.laws, &motion, &self.history.force);
     }
 
     /// Adds the corrections to the velocities, which ends an iteration, and returns the largest, m/s.

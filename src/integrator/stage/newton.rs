@@ -5,10 +5,10 @@ use std::ops::Range;
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::{History, ImplicitLaw, StageSolver};
+use super::{History, StageSolver};
 use crate::math::with_widest_vectors;
 use crate::model::{Axis, ByLink};
-use crate::model::{ContactForces, Forces, LinearFriction, Mode, Model, State, SurfacePoint};
+use crate::model::{ContactForces, Forces, LinearFriction, LinkLaw, Mode, Model, State, SurfacePoint};
 
 impl StageSolver {
     /// Factors the Jacobian at the solution, for the tangents of the stage.
@@ -76,8 +76,8 @@ impl StageSolver {
 
     /// The equation of mass `i`, which slips, at the present velocities.
     fn slipping_mass(&self, model: &Model, i: usize, beta: f64) -> SlippingMass {
-        let Self { state, history, forces, laws, .. } = self;
-        Evaluated { model, state, history, forces, laws, beta }.slipping_mass(i)
+        let Self { state, history, forces, laws, weights, .. } = self;
+        Evaluated { model, state, history, forces, laws, weights, beta }.slipping_mass(i)
     }
 
     /// Assembles the part of the Jacobian that is constant through a step: all but the rows and columns of slipping
@@ -102,7 +102,7 @@ impl StageSolver {
         }
         let k = self.state.mode.len();
         let inertia = model.mass / beta;
-        let [vertical, horizontal, lateral_x, lateral_z] = self.laws.0.map(|law| law.weight);
+        let [vertical, horizontal, lateral_x, lateral_z] = self.weights.0;
         let diagonal = |neighbours: f64| {
             let weights = (horizontal + neighbours * lateral_x, vertical + neighbours * lateral_z);
             Matrix2::new(inertia + weights.0, 0.0, 0.0, inertia + weights.1)
@@ -135,8 +135,8 @@ impl StageSolver {
 
     /// Assembles the rows and columns of slipping masses at the velocities of the last residuals.
     pub(super) fn assemble_slips(&mut self, model: &Model, beta: f64) {
-        let Self { rows, columns, state, history, forces, laws, slip_runs, system, .. } = self;
-        let stage = Evaluated { model, state, history, forces, laws, beta };
+        let Self { rows, columns, state, history, forces, laws, weights, slip_runs, system, .. } = self;
+        let stage = Evaluated { model, state, history, forces, laws, weights, beta };
         if !model.friction.is_linear_in_normal() {
             for i in slip_runs.iter().cloned().flatten() {
                 (system.diagonal[i], rows[i], columns[i]) = stage.assembled(i, &stage.slipping_mass(i));
@@ -182,7 +182,8 @@ struct Evaluated<'a> {
     state: &'a State,
     history: &'a History,
     forces: &'a Forces,
-    laws: &'a ByLink<ImplicitLaw>,
+    laws: &'a ByLink<LinkLaw>,
+    weights: &'a ByLink<f64>,
     /// β of the stage, s.
     beta: f64,
 }
@@ -228,16 +229,16 @@ impl Evaluated<'_> {
     /// The diagonal block, row and column of mass `i`, which slips.
     #[inline(always)]
     fn assembled(&self, i: usize, slip: &SlippingMass) -> (Matrix2<f64>, RowShares, NeighbourWeights) {
-        let [vertical, horizontal, lateral_x, lateral_z] = self.laws.0;
+        let [_, horizontal, lateral_x, _] = self.weights.0;
         let (neighbours, climb) = (neighbours(i, self.state.mode.len()), slip.climb(self.beta));
-        let along_z = lateral_z.along(climb);
-        let weights = (horizontal.weight + neighbours * lateral_x.weight, vertical.along(climb) + neighbours * along_z);
+        let [vertical, .., lateral_z] = self.laws.0.map(|law| climb.force(&law));
+        let weights = (horizontal + neighbours * lateral_x, vertical + neighbours * lateral_z);
         let forces = (self.forces.on_mass_x[i], self.forces.on_mass_z[i]);
         let derivative = slip.derivative(self.model, self.beta, forces, weights);
         (
             Matrix2::new(derivative, 0.0, 0.0, 1.0),
             RowShares { x_by_x: slip.share_x, x_by_z: slip.share_z, z_by_z: 0.0 },
-            NeighbourWeights { x: lateral_x.weight, z_by_x: along_z, z: 0.0 },
+            NeighbourWeights { x: lateral_x, z_by_x: lateral_z, z: 0.0 },
         )
     }
 }
@@ -319,6 +320,14 @@ pub(super) struct ContactJacobian {
     pub(super) height: f64,
     /// ∂ż/∂ẋ = s + βκẋ.
     pub(super) rate: f64,
+}
+
+impl ContactJacobian {
+    /// -∂F/∂ẋ of a link along z by this `law` to the mass.
+    #[inline(always)]
+    pub(super) fn force(self, law: &LinkLaw) -> f64 {
+        law.force(self.height, self.rate)
+    }
 }
 
 /// The equation of motion of a slipping mass, (6)-(9), at given velocity and acceleration: its residual and derivatives.

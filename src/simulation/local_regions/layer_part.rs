@@ -19,7 +19,7 @@ impl Model {
 
     /// Takes over from `whole`, of which this is a part, what depends on the temperature.
     pub fn set_temperature_of(&mut self, whole: &Self) {
-        self.links = whole.links;
+        (self.links, self.frozen_stiffness) = (whole.links, whole.frozen_stiffness);
         for (mine, theirs) in self.rows.iter_mut().zip(&whole.rows) {
             (mine.relaxation_time, mine.time_index) = (theirs.relaxation_time, theirs.time_index);
         }
