@@ -9,7 +9,7 @@ use super::jenkins::{Jenkins, MotionRates, Recorder};
 use super::law::{Contact, Law, LawAtSpeed};
 use super::point_contact::{OutputTerms, PointContact, element_output};
 use super::table_format::Quantity;
-use crate::math::Expansion;
+use crate::math::{Expansion, not_finite};
 use crate::model::Mode;
 use crate::outputs::Variable;
 use crate::scene::{TableExtrapolation, is_possible};
@@ -410,11 +410,9 @@ impl Element {
 
 impl ElementState {
     fn check(&self) -> Result<(), RestoreError> {
-        let Self { time, u, w, u_rate, w_rate, force, mode: _, lost, lost_by_channel } = *self;
-        let positions = [time, u, w].into_iter().find(|position| !is_possible(*position));
-        let others = [u_rate, w_rate, force, lost].into_iter().chain(lost_by_channel).find(|other| !other.is_finite());
-        match positions.or(others) {
-            Some(value) => Err(RestoreError::Invalid { what: "a number", value }),
+        let positions = [("time", self.time), ("u", self.u), ("w", self.w)];
+        match not_finite(self).or_else(|| positions.into_iter().find(|(_, position)| !is_possible(*position))) {
+            Some((what, value)) => Err(RestoreError::Invalid { what, value }),
             None => Ok(()),
         }
     }

@@ -349,7 +349,7 @@ fn invalid_states_are_refused() {
     let [w, u_rate, force, mode] = [16, 24, 40, 48];
     assert!(refused(w, &(-1.0_f64).to_le_bytes()).contains("table.extrapolation"));
     assert!(refused(u_rate, &20.0_f64.to_le_bytes()).contains("the speed is 20 m/s"));
-    assert!(refused(w, &f64::NAN.to_le_bytes()).contains("invalid state: a number = NaN"));
+    assert!(refused(w, &f64::NAN.to_le_bytes()).contains("invalid state: w = NaN"));
     assert!(refused(force, &1e3_f64.to_le_bytes()).contains("the force in the spring = 1000"));
     assert!(refused(mode, &[7]).contains("the mode = 7"));
     assert!(refused(mode, &[0]).contains("the mode = 0"));

@@ -1,5 +1,6 @@
 //! Numerical methods, independent of the model.
 
+mod finite;
 mod fourier;
 mod monotone;
 mod number;
@@ -12,6 +13,7 @@ mod sums;
 mod tridiagonal;
 mod vectors;
 
+pub use finite::not_finite;
 pub use fourier::{Direction, fourier};
 pub use monotone::{Expansion, cubic, interval_of, monotone_slopes};
 pub use number::{Dual, Number};

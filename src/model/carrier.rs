@@ -241,13 +241,6 @@ impl BodyMotion {
     fn force_at(&self, s: f64) -> f64 {
         self.force + self.force_path.at(s).position
     }
-
-    /// All its numbers, to be checked.
-    fn numbers(&self) -> [f64; 9] {
-        let Path { rate, amplitude, frequency } = self.force_path;
-        let Jet { position, speed, acceleration } = self.start;
-        [position, speed, acceleration, self.s, self.drive, self.force, rate, amplitude, frequency]
-    }
 }
 
 /// Where a body starts.
@@ -454,15 +447,5 @@ impl Carrier {
             energy.elastic += 0.5 * body.stiffness * outside.stretch().position.powi(2);
         }
         energy
-    }
-
-    /// All numbers of the segment, to be checked.
-    pub fn numbers(&self) -> impl Iterator<Item = f64> {
-        let Self { time, start, profile_position, paths, bodies, ends: _ } = self;
-        let of_path = |path: &Path| [path.rate, path.amplitude, path.frequency];
-        [*time, start.x, start.z, *profile_position]
-            .into_iter()
-            .chain(paths.iter().flat_map(of_path))
-            .chain(bodies.iter().flatten().flat_map(BodyMotion::numbers))
     }
 }

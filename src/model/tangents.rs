@@ -29,10 +29,4 @@ impl Tangents {
     pub fn set(&mut self, input: Input, tangents: TangentsOf) {
         self.by_input[input as usize] = tangents;
     }
-
-    /// Whether all of them are finite.
-    pub fn are_finite(&self) -> bool {
-        let finite = |of: &TangentsOf| of.force.iter().chain(of.body.iter().flatten()).all(|value| value.is_finite());
-        self.by_input.iter().all(finite)
-    }
 }

@@ -56,15 +56,9 @@ impl Energies {
 
     /// The largest of all energies through the channels and in impacts, J.
     pub fn largest(&self) -> f64 {
-        let [through_channels @ .., _] = self.numbers();
-        through_channels.iter().fold(0.0, |largest, energy| largest.max(energy.abs()))
-    }
-
-    /// All numbers, to check that they are finite.
-    pub fn numbers(&self) -> [f64; 8] {
-        let Self { channels, impact, initial } = *self;
-        let ChannelEnergies { damper, maxwell, friction, shear, input, carrier } = channels;
-        [damper, maxwell, friction, shear, input, carrier, impact, initial]
+        let ChannelEnergies { damper, maxwell, friction, shear, input, carrier } = self.channels;
+        let all: [f64; 7] = [damper, maxwell, friction, shear, input, carrier, self.impact];
+        all.iter().fold(0.0, |largest, energy| largest.max(energy.abs()))
     }
 }
 
@@ -125,13 +119,6 @@ pub struct Counters {
 }
 
 impl Counters {
-    /// All numbers that are not counts, to check that they are finite.
-    pub fn numbers(&self) -> [f64; 10] {
-        let ([x, z], [u, w], dissipated) = (self.forces, self.ways, self.dissipated);
-        let numbers = [x, z, u, w, dissipated].map(|LargestError { error, value }| [error, value]);
-        std::array::from_fn(|i| numbers[i / 2][i % 2])
-    }
-
     /// Compares a run with its reference run at the same time: the difference is this share of the error.
     pub fn record_error(&mut self, found: &Monitored, reference: &Monitored, share: f64) {
         let largest = self.forces.iter().map(|force| force.value).chain(reference.forces.map(f64::abs));

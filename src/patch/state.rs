@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::block::{Block, Sums};
 use super::definition::Patch;
 use super::motion::BodyMotion;
-use crate::math::Number;
+use crate::math::{Number, not_finite};
 use crate::scene::{SMALLEST, is_possible};
 
 /// Most substeps of a step, whatever the number of elements.
@@ -362,10 +362,10 @@ impl PatchState {
         if let Some((what, value)) = self.totals.numbers().find(|(_, value)| !is_possible(*value)) {
             return invalid(what, value);
         }
-        if let Some(value) = x.iter().chain(y).find(|value| !value.is_finite()) {
-            return invalid("the force of a spring", *value);
+        if let Some((what, value)) = not_finite(self) {
+            return invalid(what, value);
         }
-        if let Some(value) = stiffness.iter().find(|value| !(value.is_finite() && **value >= 0.0)) {
+        if let Some(value) = stiffness.iter().find(|value| **value < 0.0) {
             return invalid("the stiffness of a spring", *value);
         }
         if let Some(value) = mode.iter().find(|value| **value > ElementMode::Sticking as u8) {
@@ -377,11 +377,6 @@ impl PatchState {
         }
         if self.tangents.is_some() != patch.has_tangents() {
             return invalid("the number of tangents", 0.0);
-        }
-        if let Some(value) =
-            self.tangents.iter().flat_map(|rows| rows.iter().flatten()).find(|value| !value.is_finite())
-        {
-            return invalid("a tangent", *value);
         }
         Ok(())
     }

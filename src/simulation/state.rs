@@ -6,6 +6,7 @@ use super::controller::Controller;
 use super::motion::{OutOfRange, Start};
 use super::settings::Settings;
 use crate::integrator::{LayerState, Rates, StepSpan};
+use crate::math::not_finite;
 use crate::model::{BodyStart, Carrier, CarrierPosition, Mode, Model, State, Tangents};
 use crate::outputs::{Counters, Energies};
 use crate::scene::{Axis, ByAxis, Method, ParameterError, Path, is_possible};
@@ -173,7 +174,7 @@ pub enum RestoreError {
     /// A number that no run can have.
     #[error("invalid state: {what} = {value}")]
     Number {
-        /// Which number.
+        /// The field that holds it.
         what: &'static str,
         /// Its value.
         value: f64,
@@ -241,16 +242,14 @@ pub(super) fn check_length(what: &'static str, found: usize, expected: usize) ->
     if found == expected { Ok(()) } else { Err(RestoreError::Length { what, found, expected }) }
 }
 
-/// Checks that the arrays of `found` are as long as those `expected`, and finite.
+/// Checks that the arrays of `found` are as long as those `expected`.
 fn check_layer(found: &LayerState, expected: &LayerState) -> Result<(), RestoreError> {
     check_length("modes", found.state.mode.len(), expected.state.mode.len())?;
     check_length("surface points", found.state.surface.len(), expected.state.surface.len())?;
     for ((what, found), (_, expected)) in arrays(found).into_iter().zip(arrays(expected)) {
         check_length(what, found.len(), expected.len())?;
-        check_finite(what, found)?;
     }
-    let mut points = found.state.surface.iter();
-    points.try_for_each(|point| check_finite("surface points", &<[f64; 4]>::from(*point)))
+    Ok(())
 }
 
 /// The arrays of numbers of a layer and its rates.
@@ -279,38 +278,13 @@ fn arrays(layer: &LayerState) -> [(&'static str, &[f64]); 15] {
     ]
 }
 
-/// Checks that all other numbers are finite and that those are positive that have to be.
+/// Checks that all numbers are finite and that those are positive that have to be.
 fn check_numbers(run: &RunState) -> Result<(), RestoreError> {
-    let LayerState { exchange, largest, .. } = &run.layer;
-    let Controller { step_size, event_spacing, since_event, step_after_event } = run.controller;
-    let numbers: [(&'static str, &[f64]); 13] = [
-        ("the carrier's motion", &run.carrier.numbers().collect::<Vec<_>>()),
-        ("the time since the carrier's last kink", &[run.s]),
-        ("the powers", &[exchange.friction, exchange.shear, exchange.input, exchange.carrier]),
-        ("the largest forces and energies", &[largest.force_x, largest.force_z, largest.energy]),
-        ("the energies", &run.energies.numbers()),
-        ("the largest error or force", &run.counters.numbers()),
-        ("the step size", &[step_size]),
-        ("the time between events", &[event_spacing]),
-        ("the time since the last event", &[since_event]),
-        ("the step after the last event", &[step_after_event]),
-        ("the carrier's displacement at the start", &[run.start.x, run.start.z]),
-        ("the temperature", &[run.temperature]),
-        ("the mode changes per time step", &[run.mode_changes_per_step]),
-    ];
-    numbers.into_iter().try_for_each(|(what, values)| check_finite(what, values))?;
-    let refuse = |what, value| Err(RestoreError::Number { what, value });
-    match (run.s, step_size) {
-        _ if !run.tangents.are_finite() => refuse("the tangents", f64::NAN),
-        (s, _) if s < 0.0 => refuse("the time since the carrier's last kink", s),
-        (_, step) if step <= 0.0 => refuse("the step size", step),
-        _ => Ok(()),
-    }
-}
-
-fn check_finite(what: &'static str, values: &[f64]) -> Result<(), RestoreError> {
-    match values.iter().find(|value| !value.is_finite()) {
-        Some(&value) => Err(RestoreError::Number { what, value }),
+    let step_size = run.controller.step_size;
+    let negative = (run.s < 0.0).then_some(("s", run.s));
+    let step_size = (step_size <= 0.0).then_some(("step_size", step_size));
+    match not_finite(run).or(negative).or(step_size) {
+        Some((what, value)) => Err(RestoreError::Number { what, value }),
         None => Ok(()),
     }
 }
@@ -399,19 +373,14 @@ mod tests {
         assert_eq!(refused(&|run| run.layer.state.mode.push(Mode::Free)), "7 modes, expected 6");
         assert_eq!(refused(&|run| run.layer.rates.normal.truncate(2)), "2 normal forces, expected 6");
         for bad in [f64::NAN, f64::INFINITY] {
-            assert!(
-                refused(&|run| run.layer.state.velocity_x[3] = bad).starts_with("invalid state: velocities along x = ")
-            );
-            assert!(refused(&|run| run.layer.rates.margin[0] = bad).starts_with("invalid state: margins = "));
-            assert!(refused(&|run| run.energies.impact = bad).starts_with("invalid state: the energies = "));
-            assert!(refused(&|run| run.carrier.time = bad).starts_with("invalid state: the carrier's motion = "));
-            assert!(
-                refused(&|run| run.controller.event_spacing = bad)
-                    .starts_with("invalid state: the time between events = ")
-            );
+            assert!(refused(&|run| run.layer.state.velocity_x[3] = bad).starts_with("invalid state: velocity_x = "));
+            assert!(refused(&|run| run.layer.rates.margin[0] = bad).starts_with("invalid state: margin = "));
+            assert!(refused(&|run| run.energies.impact = bad).starts_with("invalid state: impact = "));
+            assert!(refused(&|run| run.carrier.time = bad).starts_with("invalid state: time = "));
+            assert!(refused(&|run| run.controller.event_spacing = bad).starts_with("invalid state: event_spacing = "));
         }
-        assert!(refused(&|run| run.s = -1.0).contains("the carrier's last kink = -1"));
-        assert!(refused(&|run| run.controller.step_size = 0.0).contains("the step size = 0"));
+        assert!(refused(&|run| run.s = -1.0).contains("s = -1"));
+        assert!(refused(&|run| run.controller.step_size = 0.0).contains("step_size = 0"));
         let mut frictionless = scene.clone();
         frictionless.friction = None;
         let error = Simulation::restore(&frictionless, &stuck(&state)).unwrap_err();

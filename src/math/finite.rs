@@ -1,0 +1,169 @@
+//! The search for a number that is not finite, through all that a value serialises.
+
+use std::fmt;
+
+use serde::ser::{self, Serialize, Serializer};
+
+/// The first number of `value` that is not finite, and the name of the innermost field that holds it.
+pub fn not_finite(value: &impl Serialize) -> Option<(&'static str, f64)> {
+    value.serialize(&mut Search { field: "value" }).err().and_then(|found| found.0)
+}
+
+/// Serialises to nothing and fails at the first such number.
+struct Search {
+    field: &'static str,
+}
+
+/// The number found; `None` where a value cannot be serialised.
+#[derive(Debug, thiserror::Error)]
+#[error("{0:?}")]
+struct Found(Option<(&'static str, f64)>);
+
+impl ser::Error for Found {
+    fn custom<T: fmt::Display>(_: T) -> Self {
+        Self(None)
+    }
+}
+
+type Result<T = ()> = std::result::Result<T, Found>;
+
+/// Methods for what holds no such number.
+macro_rules! pass {
+    ($($method:ident($($type:ty),*);)*) => { $(fn $method(self $(, _: $type)*) -> Result { Ok(()) })* };
+}
+
+/// Methods for what holds other values.
+macro_rules! enter {
+    ($($method:ident($($type:ty),*) -> $compound:ident;)*) => {
+        $(type $compound = Self; fn $method(self $(, _: $type)*) -> Result<Self> { Ok(self) })*
+    };
+}
+
+impl Serializer for &mut Search {
+    type Ok = ();
+    type Error = Found;
+
+    pass! {
+        serialize_bool(bool); serialize_char(char); serialize_str(&str); serialize_bytes(&[u8]);
+        serialize_i8(i8); serialize_i16(i16); serialize_i32(i32); serialize_i64(i64);
+        serialize_u8(u8); serialize_u16(u16); serialize_u32(u32); serialize_u64(u64);
+        serialize_none(); serialize_unit(); serialize_unit_struct(&'static str);
+        serialize_unit_variant(&'static str, u32, &'static str);
+    }
+
+    enter! {
+        serialize_seq(Option<usize>) -> SerializeSeq;
+        serialize_tuple(usize) -> SerializeTuple;
+        serialize_tuple_struct(&'static str, usize) -> SerializeTupleStruct;
+        serialize_tuple_variant(&'static str, u32, &'static str, usize) -> SerializeTupleVariant;
+        serialize_map(Option<usize>) -> SerializeMap;
+        serialize_struct(&'static str, usize) -> SerializeStruct;
+        serialize_struct_variant(&'static str, u32, &'static str, usize) -> SerializeStructVariant;
+    }
+
+    fn serialize_f32(self, value: f32) -> Result {
+        self.serialize_f64(f64::from(value))
+    }
+
+    fn serialize_f64(self, value: f64) -> Result {
+        if value.is_finite() { Ok(()) } else { Err(Found(Some((self.field, value)))) }
+    }
+
+    fn serialize_some<T: Serialize + ?Sized>(self, value: &T) -> Result {
+        value.serialize(self)
+    }
+
+    fn serialize_newtype_struct<T: Serialize + ?Sized>(self, _: &'static str, value: &T) -> Result {
+        value.serialize(self)
+    }
+
+    fn serialize_newtype_variant<T: Serialize + ?Sized>(
+        self,
+        _: &'static str,
+        _: u32,
+        _: &'static str,
+        value: &T,
+    ) -> Result {
+        value.serialize(self)
+    }
+}
+
+/// Compounds without names of fields: the field's around them stands.
+macro_rules! unnamed {
+    ($($compound:ident: $($method:ident),*;)*) => {
+        $(impl ser::$compound for &mut Search {
+            type Ok = ();
+            type Error = Found;
+
+            $(fn $method<T: Serialize + ?Sized>(&mut self, value: &T) -> Result {
+                value.serialize(&mut **self)
+            })*
+
+            fn end(self) -> Result {
+                Ok(())
+            }
+        })*
+    };
+}
+
+unnamed! {
+    SerializeSeq: serialize_element;
+    SerializeTuple: serialize_element;
+    SerializeTupleStruct: serialize_field;
+    SerializeTupleVariant: serialize_field;
+    SerializeMap: serialize_key, serialize_value;
+}
+
+macro_rules! named {
+    ($($compound:ident),*) => {
+        $(impl ser::$compound for &mut Search {
+            type Ok = ();
+            type Error = Found;
+
+            fn serialize_field<T: Serialize + ?Sized>(&mut self, field: &'static str, value: &T) -> Result {
+                self.field = field;
+                value.serialize(&mut **self)
+            }
+
+            fn end(self) -> Result {
+                Ok(())
+            }
+        })*
+    };
+}
+
+named!(SerializeStruct, SerializeStructVariant);
+
+#[cfg(test)]
+mod tests {
+    use serde::Serialize;
+
+    use super::not_finite;
+
+    #[derive(Serialize)]
+    struct Inner {
+        speeds: Vec<f64>,
+        named: Option<(u64, f64)>,
+    }
+
+    #[derive(Serialize)]
+    enum Outer {
+        Empty,
+        Unnamed(f64, Inner),
+        Named { place: f64 },
+    }
+
+    #[test]
+    fn the_first_number_that_is_not_finite_is_found_with_its_field() {
+        let inner = |speed, named| Inner { speeds: vec![1.0, speed], named };
+        assert_eq!(not_finite(&Outer::Empty), None);
+        assert_eq!(not_finite(&Outer::Unnamed(f64::MAX, inner(2.0, Some((u64::MAX, -0.0))))), None);
+        assert_eq!(
+            not_finite(&Outer::Unnamed(1.0, inner(f64::INFINITY, Some((1, f64::NAN))))),
+            Some(("speeds", f64::INFINITY))
+        );
+        assert!(not_finite(&inner(0.0, Some((1, f64::NAN)))).is_some_and(|(field, _)| field == "named"));
+        assert_eq!(not_finite(&Outer::Named { place: f64::NEG_INFINITY }), Some(("place", f64::NEG_INFINITY)));
+        assert_eq!(not_finite(&[f64::INFINITY]), Some(("value", f64::INFINITY)));
+    }
+}
