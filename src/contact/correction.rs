@@ -263,9 +263,9 @@ struct Remainder {
     /// Its duration, s.
     time: f64,
     /// Velocity of the mass at the end of the step if it had stayed free, m/s.
-    free: (f64, f64),
+    free: ByAxis<f64>,
     /// Velocities of its neighbours at the end of the step before they received impulses, m/s.
-    neighbours: [Option<(f64, f64)>; 2],
+    neighbours: [Option<ByAxis<f64>>; 2],
 }
 
 /// The speed v_t along the profile in the remaining part of the step, m/s.
@@ -297,9 +297,9 @@ impl<'a> Correction<'a> {
         let (model, dense) = (self.step.model, self.dense());
         let theta = instant_of_touch(&dense, i);
         let (x, velocity, free) = (dense.position(i, theta), dense.velocity(i, theta), dense.velocity(i, 1.0));
-        let from = (dense.end_position(i), dense.end_height(i));
+        let from = ByAxis { x: dense.end_position(i), z: dense.end_height(i) };
         let slope = model.surface_at(x).slope;
-        if velocity.1 >= slope * velocity.0 {
+        if velocity.z >= slope * velocity.x {
             return self.lift_onto_profile(i, from);
         }
         let (v_t, lost) = collision(model, velocity, slope);
@@ -314,30 +314,30 @@ impl<'a> Correction<'a> {
     }
 
     /// The velocity of mass `j`, m/s; `None` where there is no such mass.
-    fn velocity(&self, j: usize) -> Option<(f64, f64)> {
+    fn velocity(&self, j: usize) -> Option<ByAxis<f64>> {
         let state = &*self.end.state;
-        (j < self.step.model.masses()).then(|| (state.velocity_x[j], state.velocity_z[j]))
+        (j < self.step.model.masses()).then(|| ByAxis { x: state.velocity_x[j], z: state.velocity_z[j] })
     }
 
     /// Lifts mass `i`, which leaves the profile already, onto it. It stays free.
-    fn lift_onto_profile(&mut self, i: usize, from: (f64, f64)) {
-        let surface = self.step.model.surface_at(from.0);
-        self.move_to(i, from, from.0, surface, self.step.span.length);
+    fn lift_onto_profile(&mut self, i: usize, from: ByAxis<f64>) {
+        let surface = self.step.model.surface_at(from.x);
+        self.move_to(i, from, from.x, surface, self.step.span.length);
         self.end.state.release(i);
     }
 
     /// Moves mass `i` from the position `from` to `x` on `surface`. In the last `time` (s) its dashpots have not followed
     /// that displacement, and the lateral dampers have passed it on to the neighbours as an impulse.
-    fn move_to(&mut self, i: usize, from: (f64, f64), x: f64, surface: SurfacePoint, time: f64) {
-        let moved = (x - from.0, surface.height - from.1);
+    fn move_to(&mut self, i: usize, from: ByAxis<f64>, x: f64, surface: SurfacePoint, time: f64) {
+        let moved = ByAxis { x: x - from.x, z: surface.height - from.z };
         let state = &mut *self.end.state;
         state.displace(self.step.model, i, moved, time);
         state.elongation_z[i] =
             surface.height - self.step.model.rest_z[i] - (self.step.carrier.start.z + self.carrier.z.position);
         state.surface[i] = surface;
         self.end.forces.refresh(self.step.model, self.end.state, &self.carrier, i);
-        for (axis, moved) in Axis::ALL.into_iter().zip([moved.0, moved.1]) {
-            self.pass_impulse_to_body(axis, moved, time);
+        for axis in Axis::ALL {
+            self.pass_impulse_to_body(axis, moved[axis], time);
         }
         for j in neighbours(i) {
             if j < self.step.model.masses() {
@@ -358,21 +358,21 @@ impl<'a> Correction<'a> {
 
     /// The impulse d Δ of the lateral dampers on neighbour `j` of a mass that was displaced by Δ (m); `time` (s) bounds
     /// the velocity that it makes where the dampers are faster than that.
-    fn pass_impulse_to(&mut self, j: usize, displacement: (f64, f64), time: f64) {
+    fn pass_impulse_to(&mut self, j: usize, displacement: ByAxis<f64>, time: f64) {
         let model = self.step.model;
-        let gain = |kind| self.passing(kind, time) / model.mass;
-        let (x, z) = (displacement.0 * gain(LinkKind::LateralX), displacement.1 * gain(LinkKind::LateralZ));
+        let gained = |axis: Axis| displacement[axis] * (self.passing(axis.lateral(), time) / model.mass);
+        let ByAxis { x, z } = ByAxis::from_fn(gained);
         if x == 0.0 && z == 0.0 {
             return;
         }
         let state = &*self.end.state;
-        let (mode, slope, v) = (state.mode[j], state.surface[j].slope, (state.velocity_x[j], state.velocity_z[j]));
+        let (mode, slope, v) = (state.mode[j], state.surface[j].slope, state.velocity_x[j]);
         if mode == Mode::Free {
-            self.set_velocity(j, (v.0 + x, v.1 + z));
+            self.set_velocity(j, ByAxis { x: v + x, z: state.velocity_z[j] + z });
         } else if mode.slips() {
-            let after = v.0 + (x + slope * z) / (1.0 + slope * slope);
+            let after = v + (x + slope * z) / (1.0 + slope * slope);
             // Forces decide whether a slip reverses, not this correction.
-            if !model.friction.present || after * v.0 > 0.0 {
+            if !model.friction.present || after * v > 0.0 {
                 self.set_slip_velocity(j, after);
             }
         }
@@ -386,9 +386,8 @@ impl<'a> Correction<'a> {
         self.set_slip_velocity(i, v_t / q);
         let contact = self.end.forces.contact(model, i, v_t / q, &surface);
         let at_rest = if contact.normal < 0.0 { 0.0 } else { mode.direction() * contact.limit };
-        let damping = |along, lateral| self.damping(along) + 2.0 * self.passing(lateral, time);
-        let damping =
-            damping(LinkKind::Horizontal, LinkKind::LateralX) + damping(LinkKind::Vertical, LinkKind::LateralZ) * s * s;
+        let damping = |axis: Axis| self.damping(axis.link()) + 2.0 * self.passing(axis.lateral(), time);
+        let damping = damping(Axis::X) + damping(Axis::Z) * s * s;
         let slowing = time * (damping / (q * q) + time * model.mass_stiffness()) / model.mass;
         // No term in κ: v_t contains already how the profile bends from the touch to here.
         let driving = contact.tangential + self.not_passed(i, rest);
@@ -424,9 +423,9 @@ impl<'a> Correction<'a> {
 
     /// The force along t of the lateral dampers on mass `i` by the part of them that does not pass impulses, N.
     fn not_passed(&self, i: usize, rest: &Remainder) -> f64 {
-        let [x, z] = [LinkKind::LateralX, LinkKind::LateralZ].map(|kind| {
-            let pick = |velocity| component(kind, velocity);
-            let change = |j, before| self.velocity(j).map_or(0.0, |after| pick(after) - pick(before));
+        let ByAxis { x, z } = ByAxis::from_fn(|axis| {
+            let kind = axis.lateral();
+            let change = |j, before: ByAxis<f64>| self.velocity(j).map_or(0.0, |after| after[axis] - before[axis]);
             let by_neighbours = neighbours(i).into_iter().zip(rest.neighbours);
             let own = change(i, rest.free);
             let sum: f64 = by_neighbours.filter_map(|(j, before)| Some(own - change(j, before?))).sum();
@@ -441,12 +440,12 @@ impl<'a> Correction<'a> {
     fn add_damper_energies(&mut self, i: usize, speed: Speed, rest: &Remainder) {
         let s = self.end.state.surface[i].slope;
         let q = (1.0 + s * s).sqrt();
-        let [mean, at_end] = [speed.mean, speed.at_end].map(|v_t| (v_t / q, s * v_t / q));
-        let carrier = (self.carrier.x.speed, self.carrier.z.speed);
+        let [mean, at_end] = [speed.mean, speed.at_end].map(|v_t| ByAxis { x: v_t / q, z: s * v_t / q });
+        let carrier = self.carrier.rates();
         for kind in LinkKind::ALL {
             let (damping, passing) = (rest.time * self.damping(kind), rest.time * self.passing(kind, rest.time));
             let [free, mean, at_end, carrier] =
-                [rest.free, mean, at_end, carrier].map(|velocity| component(kind, velocity));
+                [rest.free, mean, at_end, carrier].map(|velocity| velocity[kind.axis()]);
             if !kind.is_lateral() {
                 let more = (at_end - carrier) * (mean - carrier) - (free - carrier).powi(2);
                 self.energies.channels.damper += damping * more;
@@ -457,7 +456,7 @@ impl<'a> Correction<'a> {
             }
             for (j, before) in neighbours(i).into_iter().zip(rest.neighbours) {
                 let (Some(before), Some(after)) = (before, self.velocity(j)) else { continue };
-                let (before, after) = (component(kind, before), component(kind, after));
+                let (before, after) = (before[kind.axis()], after[kind.axis()]);
                 let trial = free - before;
                 let impulse = damping * trial + passing * (at_end - after - trial);
                 self.energies.channels.damper += impulse * (mean - 0.5 * (before + after)) - damping * trial * trial;
@@ -471,19 +470,19 @@ impl<'a> Correction<'a> {
         let model = self.step.model;
         let x = model.rest_x[i]
             + (self.step.carrier.profile_position + (self.carrier.x.position + self.end.state.elongation_x[i]));
-        let from = (x, self.end.state.surface[i].height);
+        let from = ByAxis { x, z: self.end.state.surface[i].height };
         self.move_to(i, from, x + distance, model.surface_at(x + distance), time);
     }
 
     /// Sets ẋ of mass `i`, and ż along the profile.
     fn set_slip_velocity(&mut self, i: usize, v_x: f64) {
-        self.set_velocity(i, (v_x, self.end.state.surface[i].slope * v_x));
+        self.set_velocity(i, ByAxis { x: v_x, z: self.end.state.surface[i].slope * v_x });
     }
 
-    fn set_velocity(&mut self, i: usize, (v_x, v_z): (f64, f64)) {
+    fn set_velocity(&mut self, i: usize, velocity: ByAxis<f64>) {
         let state = &mut *self.end.state;
-        let change = (v_x - state.velocity_x[i], v_z - state.velocity_z[i]);
-        (state.velocity_x[i], state.velocity_z[i]) = (v_x, v_z);
+        let change = ByAxis { x: velocity.x - state.velocity_x[i], z: velocity.z - state.velocity_z[i] };
+        (state.velocity_x[i], state.velocity_z[i]) = (velocity.x, velocity.z);
         self.end.forces.add_velocity(self.step.model, i, change);
     }
 
@@ -507,11 +506,6 @@ fn neighbours(i: usize) -> [usize; 2] {
     [i.wrapping_sub(1), i + 1]
 }
 
-/// The component of (x, z) along the links of a kind.
-fn component(kind: LinkKind, (x, z): (f64, f64)) -> f64 {
-    if kind.is_along_x() { x } else { z }
-}
-
 /// What the links of free mass `i` would exert on the carrier along x and z beyond what they do, N, if the mass did not pass
 /// below the profile but had its impact and went on along it: at the fraction `theta` of the step (docs/theory.md, \[12a\]).
 fn forces_of_touch(step: &Parabolas<'_>, i: usize, theta: f64) -> (f64, f64) {
@@ -520,12 +514,12 @@ fn forces_of_touch(step: &Parabolas<'_>, i: usize, theta: f64) -> (f64, f64) {
     if depth <= 0.0 {
         return (0.0, 0.0);
     }
-    let (slope, (v_x, v_z)) = (surface.slope, step.velocity(i, theta));
-    let (closing, since_start) = (slope * v_x - v_z, theta * step.span.length);
+    let (slope, velocity) = (surface.slope, step.velocity(i, theta));
+    let (closing, since_start) = (slope * velocity.x - velocity.z, theta * step.span.length);
     let (time, gain) = if closing > 0.0 {
-        let v_t = collision(step.model, (v_x, v_z), slope).0;
+        let v_t = collision(step.model, velocity, slope).0;
         let along = v_t / (1.0 + slope * slope).sqrt();
-        ((depth / closing).min(since_start), (along - v_x, slope * along - v_z))
+        ((depth / closing).min(since_start), (along - velocity.x, slope * along - velocity.z))
     } else {
         (since_start, (0.0, 0.0))
     };

@@ -67,7 +67,7 @@ impl EventTolerance {
         }
     }
 
-    /// The same where the force of one mass may err by no more than `force` (N).
+    /// These tolerances, tightened so that the force of one mass errs by no more than `force` (N).
     #[must_use]
     pub fn within(&self, force: f64) -> Self {
         let force = self.force.min(force).max(self.rounding);
@@ -235,8 +235,8 @@ impl Contacts<'_> {
         self.dip(i, EventFunction::Margin, of_margin, first)
     }
 
-    /// The same as [`fall`](Self::fall) where a quantity falls below its tolerance between the stages alone: at the vertex
-    /// of the parabola through its least value at a stage and those before and after.
+    /// The first fraction at which a quantity of mass `i` falls below its tolerance between the stages alone: at the vertex of
+    /// the parabola through its least value at a stage and those before and after.
     fn dip(&mut self, i: usize, function: EventFunction, tolerance: f64, first: Option<f64>) -> Option<f64> {
         let inner = 1..self.step.stages().len() - 1;
         let least =

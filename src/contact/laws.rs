@@ -4,7 +4,7 @@
 use crate::model::{
     CarrierPoint, CarrierPosition, ChannelEnergies, Forces, Mode, Model, State, SurfacePoint, vertical_spring_energy_at,
 };
-use crate::scene::Initial;
+use crate::scene::{ByAxis, Initial};
 
 /// Places every mass at its rest position, moving with the carrier. A mass that would lie under the profile is lifted
 /// onto it and keeps its velocity along t. [`decide_modes`] then decides which contacts remain and which stick.
@@ -91,11 +91,12 @@ pub fn impacts_due(
 
 /// The energy that mass `i` loses in its impact on the surface, less what it gains where it is lifted onto it, J.
 fn impact(model: &Model, state: &mut State, i: usize, w: f64, surface: &SurfacePoint) -> f64 {
-    let (after, lost) = collision(model, (state.velocity_x[i], state.velocity_z[i]), surface.slope);
+    let velocity = ByAxis { x: state.velocity_x[i], z: state.velocity_z[i] };
+    let (after, lost) = collision(model, velocity, surface.slope);
     let before = vertical_spring_energy_at(model, state, i);
     let lift = (surface.height - model.rest_z[i] - w) - state.elongation_z[i];
     let since_touch = (lift / (surface.slope * state.velocity_x[i] - state.velocity_z[i])).abs();
-    state.displace(model, i, (0.0, lift), since_touch);
+    state.displace(model, i, ByAxis { x: 0.0, z: lift }, since_touch);
     touch_down(model, state, i, w, surface, after / (1.0 + surface.slope * surface.slope).sqrt());
     state.mode[i] = Mode::along(after);
     lost - (vertical_spring_energy_at(model, state, i) - before)
@@ -103,7 +104,7 @@ fn impact(model: &Model, state: &mut State, i: usize, w: f64, surface: &SurfaceP
 
 /// The law of impact, perfectly inelastic along n with Coulomb's friction along t: v_n⁺ = 0 by the impulse J = -m v_n,
 /// and v_t⁺ = sign(v_t) max(|v_t| - μ J/m, 0). `s` is the slope. Returns v_t⁺, m/s, and the energy lost, J.
-pub(super) fn collision(model: &Model, (v_x, v_z): (f64, f64), s: f64) -> (f64, f64) {
+pub(super) fn collision(model: &Model, ByAxis { x: v_x, z: v_z }: ByAxis<f64>, s: f64) -> (f64, f64) {
     let q = (1.0 + s * s).sqrt();
     let v_n = (v_z - s * v_x) / q;
     let v_t = (v_x + s * v_z) / q;

@@ -86,12 +86,12 @@ impl<'a> Parabolas<'a> {
     }
 
     /// The velocity of mass `i` at the fraction `theta` of the step, m/s.
-    pub fn velocity(&self, i: usize, theta: f64) -> (f64, f64) {
+    pub fn velocity(&self, i: usize, theta: f64) -> ByAxis<f64> {
         let weights = Scheme::Sdirk2.coefficients().interpolation.values(theta);
         let of = |values: [f64; 3]| values.iter().zip(weights).map(|(value, weight)| weight * value).sum();
-        (
-            of([self.start.velocity_x[i], self.first.velocity_x[i], self.end.velocity_x[i]]),
-            of([self.start.velocity_z[i], self.first.velocity_z[i], self.end.velocity_z[i]]),
-        )
+        ByAxis {
+            x: of([self.start.velocity_x[i], self.first.velocity_x[i], self.end.velocity_x[i]]),
+            z: of([self.start.velocity_z[i], self.first.velocity_z[i], self.end.velocity_z[i]]),
+        }
     }
 }

@@ -10,7 +10,7 @@ pub fn bracketed_root(mut f: impl FnMut(f64) -> f64, (a, b): (f64, f64), toleran
     root_between(f, ends, tolerance)
 }
 
-/// The same where the values at the ends of the bracket are known: `ends` are places and values.
+/// The root of `f` in a bracket at whose `ends` it is known, as places and values; see [`bracketed_root`].
 pub fn root_between(mut f: impl FnMut(f64) -> f64, ends: [(f64, f64); 2], tolerance: f64) -> f64 {
     let [mut newest, mut other] = ends;
     let chord = newest.1 / (newest.1 - other.1);

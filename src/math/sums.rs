@@ -125,7 +125,7 @@ pub fn dots<const N: usize>(pairs: [(&[f64], &[f64]); N]) -> [f64; N] {
     sums
 }
 
-/// The same for at most [`PAIRS_IN_A_PASS`].
+/// The dot products of at most [`PAIRS_IN_A_PASS`] pairs, in one pass over them.
 fn dots_in_a_pass<const N: usize>(pairs: [(&[f64], &[f64]); N]) -> [f64; N] {
     let n = pairs.iter().map(|(a, b)| a.len().min(b.len())).min().unwrap_or(0);
     let whole = n - n % LANES;

@@ -48,7 +48,7 @@ impl BlockTridiagonal {
         self.factor_by(|a, b| a * b, inverse_of);
     }
 
-    /// The same where all blocks are diagonal, for [`solve_uncoupled`](Self::solve_uncoupled).
+    /// Factors blocks that are all diagonal, for [`solve_uncoupled`](Self::solve_uncoupled).
     pub fn factor_uncoupled(&mut self) {
         let diagonal = |x: f64, z: f64| Matrix2::new(x, 0.0, 0.0, z);
         self.factor_by(|a, b| diagonal(a.m11 * b.m11, a.m22 * b.m22), |m| diagonal(1.0 / m.m11, 1.0 / m.m22));
@@ -109,14 +109,14 @@ impl BlockTridiagonal {
         self.solve_by(right, |block, vector| block * vector);
     }
 
-    /// The same as [`solve`](Self::solve) where all blocks are diagonal.
+    /// The solution where all blocks are diagonal, in place of the right sides.
     pub fn solve_uncoupled(&mut self) {
         let mut right = std::mem::take(&mut self.right);
         self.solve_uncoupled_for(&mut right);
         self.right = right;
     }
 
-    /// The same as [`solve_for`](Self::solve_for) where all blocks are diagonal.
+    /// The solution for other right sides where all blocks are diagonal, in their place.
     pub fn solve_uncoupled_for(&self, right: &mut [Vector2<f64>]) {
         self.solve_by(right, |block, vector| Vector2::new(block.m11 * vector.x, block.m22 * vector.y));
     }

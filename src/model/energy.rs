@@ -107,7 +107,7 @@ impl BoundaryPowers {
         Self::with_friction(model, &FrictionPower::evaluate(model, state, forces), carrier, forces)
     }
 
-    /// The same where the power of friction is known.
+    /// The powers where that of friction is known.
     pub fn with_friction(model: &Model, power: &FrictionPower, carrier: &CarrierPoint, forces: &Forces) -> Self {
         Self::with_powers(model, power, input(model, forces, carrier))
     }
@@ -199,13 +199,12 @@ pub fn vertical_spring_energy_at(model: &Model, state: &State, i: usize) -> f64 
 }
 
 fn spring_energy(model: &Model, state: &State, kind: LinkKind) -> f64 {
-    let law = &model.links[kind];
-    match kind {
-        LinkKind::Vertical => springs_energy(model, kind, state.elongation_z.iter().copied()),
-        LinkKind::Horizontal => 0.5 * law.stiffness * square_sum(state.elongation_x.iter().copied()),
-        LinkKind::LateralX => 0.5 * law.stiffness * square_sum(state.elongation_x.windows(2).map(|e| e[1] - e[0])),
+    let e = state.elongation(kind.axis());
+    if kind.is_lateral() {
         // ζ is counted from rest, so roughness does not stretch the links between the masses.
-        LinkKind::LateralZ => springs_energy(model, kind, state.elongation_z.windows(2).map(|e| e[1] - e[0])),
+        springs_energy(model, kind, e.windows(2).map(|e| e[1] - e[0]))
+    } else {
+        springs_energy(model, kind, e.iter().copied())
     }
 }
 

@@ -200,11 +200,10 @@ impl Forces {
         }
     }
 
-    /// Updates the dampers' forces on mass `i` and on its neighbours for a change of its velocity by (`dx`, `dz`), m/s.
-    pub fn add_velocity(&mut self, model: &Model, i: usize, (dx, dz): (f64, f64)) {
+    /// Updates the dampers' forces on mass `i` and on its neighbours for a change of its velocity by `change`, m/s.
+    pub fn add_velocity(&mut self, model: &Model, i: usize, change: ByAxis<f64>) {
         for kind in LinkKind::ALL.into_iter().filter(|&kind| model.has_link[kind]) {
-            let change = if kind.is_along_x() { dx } else { dz };
-            let by = model.links[kind].damping * change;
+            let by = model.links[kind].damping * change[kind.axis()];
             let force = &mut self.link[kind];
             let on_mass = if kind.is_along_x() { &mut self.on_mass_x } else { &mut self.on_mass_z };
             if i < force.len() {

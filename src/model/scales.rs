@@ -12,7 +12,7 @@ impl Model {
         on_mass(self.glassy)
     }
 
-    /// The same without the links that are [rods](Self::is_rod), N/m: it relates an error of a position to one of the
+    /// Stiffness of the links on one mass that are no [rods](Self::is_rod), N/m, with the dashpots at rest: it relates an error of a position to one of the
     /// forces.
     pub fn mass_stiffness_without_rods(&self) -> f64 {
         let largest = ROD_FREQUENCY * ROD_FREQUENCY * self.reference_stiffness();
@@ -73,7 +73,8 @@ impl Model {
         self.frequency_of(self.mass_stiffness())
     }
 
-    /// The same without the springs of [rods](Self::is_rod).
+    /// The highest frequency of one mass without the springs of [rods](Self::is_rod), rad/s; without any, as
+    /// [`stiffest_frequency`](Self::stiffest_frequency).
     pub fn frequency_without_rods(&self) -> f64 {
         self.frequency_of(self.mass_stiffness_without_rods())
     }

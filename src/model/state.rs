@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Model, SurfacePoint};
+use super::{Axis, ByAxis, Model, SurfacePoint};
 
 /// The contact mode of a mass, with the conditions that hold in it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -80,14 +80,21 @@ pub struct State {
 }
 
 impl State {
+    /// Elongations of the links to the carrier along `axis`, m.
+    pub fn elongation(&self, axis: Axis) -> &[f64] {
+        match axis {
+            Axis::X => &self.elongation_x,
+            Axis::Z => &self.elongation_z,
+        }
+    }
+
     /// Moves mass `i` by `moved` along x and z, m. Its dashpots have `time` (s) to follow, see
     /// [`MaxwellRow::left_of`](super::MaxwellRow::left_of).
-    pub fn displace(&mut self, model: &Model, i: usize, moved: (f64, f64), time: f64) {
-        self.elongation_x[i] += moved.0;
-        self.elongation_z[i] += moved.1;
+    pub fn displace(&mut self, model: &Model, i: usize, moved: ByAxis<f64>, time: f64) {
+        self.elongation_x[i] += moved.x;
+        self.elongation_z[i] += moved.z;
         for row in &model.rows {
-            let along = if row.kind.is_along_x() { moved.0 } else { moved.1 };
-            let by = row.left_of(along, time);
+            let by = row.left_of(moved[row.kind.axis()], time);
             let a = &mut self.maxwell[row.range.clone()];
             if !row.kind.is_lateral() {
                 a[i] += by;

@@ -268,24 +268,23 @@ impl<'a> Snapshot<'a> {
 /// A shift of the carrier: the changes that it makes in each link to it and on each mass.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CarrierShift {
-    /// Of the elongations of the horizontal and the vertical links, m.
-    elongation: (f64, f64),
+    /// Of the elongations of the links to the carrier, m.
+    elongation: ByAxis<f64>,
     /// Of the forces of the links on each mass, N.
-    on_mass: (f64, f64),
-    /// Of the drives' displacements along x and z, m.
+    on_mass: ByAxis<f64>,
+    /// Of the drives' displacements, m.
     drive: ByAxis<f64>,
 }
 
 impl CarrierShift {
     /// A shift of u and w by (δu, δw), m; along the axis of a body it shifts the drive, and the layer not at all.
     pub(super) fn new(model: &Model, direction: (f64, f64)) -> Self {
-        let of = |axis: Axis, change: f64| if model.bodies[axis].is_some() { (0.0, change) } else { (change, 0.0) };
-        let ((du, drive_x), (dw, drive_z)) = (of(Axis::X, direction.0), of(Axis::Z, direction.1));
-        let stiffness = |kind| model.instantaneous_stiffness(kind);
+        let change = ByAxis { x: direction.0, z: direction.1 };
+        let of_layer = ByAxis::from_fn(|axis| if model.bodies[axis].is_some() { 0.0 } else { change[axis] });
         Self {
-            elongation: (-du, -dw),
-            on_mass: (stiffness(LinkKind::Horizontal) * du, stiffness(LinkKind::Vertical) * dw),
-            drive: ByAxis { x: drive_x, z: drive_z },
+            elongation: of_layer.map(|change| -change),
+            on_mass: ByAxis::from_fn(|axis| model.instantaneous_stiffness(axis.link()) * of_layer[axis]),
+            drive: ByAxis::from_fn(|axis| if model.bodies[axis].is_some() { change[axis] } else { 0.0 }),
         }
     }
 }
@@ -338,7 +337,7 @@ impl Snapshot<'_> {
     /// δF_x = -k (c + Σ c_j) δu of the horizontal links, δF_z likewise of the vertical ones.
     pub(super) fn force_changes(&self, shift: &CarrierShift) -> (f64, f64) {
         let k = self.model.masses() as f64;
-        (-k * shift.on_mass.0, -k * shift.on_mass.1)
+        (-k * shift.on_mass.x, -k * shift.on_mass.z)
     }
 
     /// δR = K δu_d of the drive along `axis`.
@@ -375,7 +374,7 @@ impl Snapshot<'_> {
         }
         let slope = self.state().surface[i].slope;
         let q = (1.0 + slope * slope).sqrt();
-        let (f_x, f_z) = shift.on_mass;
+        let ByAxis { x: f_x, z: f_z } = shift.on_mass;
         let normal = (slope * f_x - f_z) / q;
         let contact = self.forces().contact(self.model, i, self.state().velocity_x[i], &self.state().surface[i]);
         let (law, v) = (&self.model.friction, self.state().velocity_x[i]);
@@ -412,22 +411,18 @@ impl Snapshot<'_> {
 
     /// Of V = Σ ½ c e² + Σ_j ½ c_j a_j², where a_j = e - y_j of frozen dashpots.
     pub(super) fn elastic_energy_change(&self, shift: &CarrierShift) -> f64 {
-        let spring = |kind: LinkKind, elongations: &[f64], moved: f64| {
+        let spring = |axis: Axis| {
+            let (kind, elongations) = (axis.link(), self.state().elongation(axis));
             let stiffness = self.model.links[kind].stiffness;
-            moved * (stiffness * elongations.iter().sum::<f64>() - self.model.frozen_force_sum(kind))
+            let force = stiffness * elongations.iter().sum::<f64>() - self.model.frozen_force_sum(kind);
+            shift.elongation[axis] * force
         };
-        spring(LinkKind::Horizontal, &self.state().elongation_x, shift.elongation.0)
-            + spring(LinkKind::Vertical, &self.state().elongation_z, shift.elongation.1)
-            + self.maxwell_sum(shift, |row| row.stiffness)
+        spring(Axis::X) + spring(Axis::Z) + self.maxwell_sum(shift, |row| row.stiffness)
     }
 
     /// Σ weight a δa over the Maxwell elements of the links to the carrier.
     fn maxwell_sum(&self, shift: &CarrierShift, weight: impl Fn(&MaxwellRow) -> f64) -> f64 {
-        let moved = |kind| match kind {
-            LinkKind::Horizontal => shift.elongation.0,
-            LinkKind::Vertical => shift.elongation.1,
-            LinkKind::LateralX | LinkKind::LateralZ => 0.0,
-        };
+        let moved = |kind: LinkKind| if kind.is_lateral() { 0.0 } else { shift.elongation[kind.axis()] };
         let of_row = |row: &MaxwellRow| {
             weight(row) * moved(row.kind) * self.state().maxwell[row.range.clone()].iter().sum::<f64>()
         };

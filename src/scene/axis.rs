@@ -27,6 +27,14 @@ impl Axis {
         }
     }
 
+    /// The lateral links along the axis.
+    pub fn lateral(self) -> LinkKind {
+        match self {
+            Self::X => LinkKind::LateralX,
+            Self::Z => LinkKind::LateralZ,
+        }
+    }
+
     /// The links to the carrier along the axis.
     pub fn link(self) -> LinkKind {
         match self {

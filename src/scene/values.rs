@@ -28,13 +28,13 @@ pub(super) struct NumberRange {
 /// From [`SMALLEST`] to [`LARGEST`].
 pub(super) const POSITIVE: NumberRange =
     NumberRange { smallest: SMALLEST, largest: LARGEST, zero: false, negative: false };
-/// The same, and 0.
+/// 0, and from [`SMALLEST`] to [`LARGEST`].
 pub(super) const NOT_NEGATIVE: NumberRange = NumberRange { zero: true, ..POSITIVE };
 /// Up to [`LARGEST`] in size.
 pub(super) const ANY: NumberRange = NumberRange { smallest: 0.0, negative: true, ..NOT_NEGATIVE };
 
 impl NumberRange {
-    /// The same with another upper bound.
+    /// These numbers up to another bound.
     pub(super) const fn up_to(self, largest: f64) -> Self {
         Self { largest, ..self }
     }

@@ -24,7 +24,7 @@ impl Body {
         self.stiffness(wave_number, normal_numerator)
     }
 
-    /// The same of a wave of tangential traction and the displacement along it, 1/m.
+    /// K(q) of a wave of tangential traction and the displacement along it, 1/m.
     pub fn tangential(self, wave_number: f64) -> f64 {
         self.stiffness(wave_number, tangential_numerator)
     }

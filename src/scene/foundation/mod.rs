@@ -64,7 +64,7 @@ impl Foundation {
         Some(Self::fitted(Waves::new(layer, surface), layer.body(material)?, material.poisson_ratio))
     }
 
-    /// The same waves, fitted anew.
+    /// A foundation fitted anew to these waves.
     pub(super) fn refitted(&self, layer: &Layer, material: &Material) -> Option<Self> {
         Some(Self::fitted(self.waves.clone(), layer.body(material)?, material.poisson_ratio))
     }
