@@ -30,7 +30,7 @@
 //! |---|---|
 //! | what the links stand for | `scene/foundation` (kernels, weights, fit, warnings); `program/foundation.rs` prints it |
 //! | a friction law | `model/friction.rs` (limit at rest, force in slip, derivatives, power, impact); its keys as below |
-//! | a kind of link | `LinkKind` in `scene/mod.rs`; `model/forces.rs`, `model/energy.rs`, `model/scales.rs`; its blocks in `integrator/stage/newton.rs`, its force in `integrator/dense.rs`, `integrator/carrier_sums.rs` and `contact/correction.rs`; its keys and its size in `scene/material.rs` |
+//! | a kind of link | `LinkKind` in `scene/link_kind.rs`, which one lies along an axis in `scene/axis.rs`, its keys in `scene/keys/mod.rs`, its size in `scene/material.rs`; `model/forces.rs` (its elongation; its force is `LinkLaw`), `model/scales.rs`; its blocks in `integrator/stage/newton.rs`, the forces on one mass in `integrator/dense.rs` |
 //! | a key of the scene, a parameter | a line in `scene/keys/mod.rs`, a field in `scene/mod.rs`, a line in `scene/reader`; a parameter also in `scene/parameters/mod.rs` |
 //! | an output | a variant of [`outputs::Output`] and a row in `outputs/table.rs` |
 //! | a column of a sweep's table | `element/table_format.rs`; its value in `program/sweep/point.rs` and `slide.rs` |

@@ -3,7 +3,7 @@
 use std::ops::{Index, IndexMut};
 use std::slice;
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 
 use super::Axis;
 
@@ -108,6 +108,11 @@ impl<'a, T> IntoIterator for &'a mut ByLink<T> {
     fn into_iter(self) -> Self::IntoIter {
         self.0.iter_mut()
     }
+}
+
+/// Serialises the values under the names of the kinds.
+pub(super) fn by_name<T: Serialize, S: Serializer>(values: &ByLink<T>, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(LinkKind::ALL.map(|kind| (kind.name(), &values[kind])))
 }
 
 impl<T> Index<LinkKind> for ByLink<T> {

@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::error::{ContentError, ParameterError, Problem};
 use super::keys;
 use super::text_table::{Columns, decode};
-use super::{Layer, Link, LinkKind, MaxwellElement, RateShear, Scene};
+use super::{ByLink, Layer, Link, LinkKind, MaxwellElement, RateShear, Scene};
 
 /// A linear viscoelastic solid: a spring, a dashpot and Maxwell elements in parallel, as moduli.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -162,7 +162,7 @@ impl Scene {
     pub fn link(&self, kind: LinkKind) -> Option<Link> {
         match &self.material {
             Some(material) => self.link_size(kind, material.poisson_ratio).map(|size| material.link(size)),
-            None => self.layer.link(kind).cloned(),
+            None => self.layer.links[kind].clone(),
         }
     }
 
@@ -219,15 +219,11 @@ impl Scene {
         let mut scene = self.clone();
         if scene.material.take().is_some() {
             scene.foundation = None;
-            let [vertical, horizontal, lateral_x, lateral_z] = LinkKind::ALL.map(|kind| self.link(kind));
             let mass = Some(self.mass());
             let layer = self.layer.clone();
             scene.layer = Layer {
                 mass,
-                vertical,
-                horizontal,
-                lateral_x,
-                lateral_z,
+                links: ByLink::from_fn(|kind| self.link(kind)),
                 thickness: None,
                 width: None,
                 foundation: None,

@@ -114,39 +114,15 @@ pub struct Layer {
     pub initial: Initial,
     /// Heights h_i of the elastic body's roughness, m: k values, or none for a smooth body.
     pub roughness: Vec<f64>,
-    /// Carrier to mass, along z. All four in the direct form alone, see [`Scene::link`].
-    pub vertical: Option<Link>,
-    /// Carrier to mass, along x.
-    pub horizontal: Option<Link>,
-    /// Mass to mass, along x.
-    pub lateral_x: Option<Link>,
-    /// Mass to mass, along z.
-    pub lateral_z: Option<Link>,
+    /// The links; in the direct form alone, see [`Scene::link`].
+    #[serde(flatten, serialize_with = "link_kind::by_name")]
+    pub links: ByLink<Option<Link>>,
 }
 
 impl Layer {
     /// Position X_i of mass `i` (from 0) at rest, m.
     pub fn rest_position(&self, i: usize) -> f64 {
         self.origin + i as f64 * self.spacing
-    }
-
-    /// The link of a kind as it is given; in the direct form alone, see [`Scene::link`].
-    pub fn link(&self, kind: LinkKind) -> Option<&Link> {
-        match kind {
-            LinkKind::Vertical => self.vertical.as_ref(),
-            LinkKind::Horizontal => self.horizontal.as_ref(),
-            LinkKind::LateralX => self.lateral_x.as_ref(),
-            LinkKind::LateralZ => self.lateral_z.as_ref(),
-        }
-    }
-
-    fn link_mut(&mut self, kind: LinkKind) -> Option<&mut Link> {
-        match kind {
-            LinkKind::Vertical => self.vertical.as_mut(),
-            LinkKind::Horizontal => self.horizontal.as_mut(),
-            LinkKind::LateralX => self.lateral_x.as_mut(),
-            LinkKind::LateralZ => self.lateral_z.as_mut(),
-        }
     }
 }
 

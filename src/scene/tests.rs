@@ -2,7 +2,9 @@
 
 use std::path::{Path as FilePath, PathBuf};
 
-use super::{Extrapolation, Initial, Link, MaxwellElement, Method, OutputGroup, Path, Phase, Scene, Solver};
+use super::{
+    ByLink, Extrapolation, Initial, Link, LinkKind, MaxwellElement, Method, OutputGroup, Path, Phase, Scene, Solver,
+};
 
 fn parse(text: &str) -> Scene {
     Scene::parse(text, FilePath::new("scene.toml")).unwrap_or_else(|error| unreachable!("{error}"))
@@ -24,7 +26,7 @@ fn what_is_left_out_is_absent() {
         (4, 0.25, 0.0, 0.0, Some(1.0))
     );
     assert_eq!((layer.initial, &layer.roughness), (Initial::Relaxed, &Vec::new()));
-    assert_eq!([&layer.vertical, &layer.horizontal, &layer.lateral_x, &layer.lateral_z], [&None; 4]);
+    assert_eq!(layer.links, ByLink::default());
     assert_eq!((&scene.description, &scene.friction, scene.extrapolation), (&None, &None, Extrapolation::Linear));
     let defaults = Solver {
         method: Method::Event,
@@ -44,9 +46,9 @@ fn reads_links_and_keeps_what_they_name() {
                  [layer.lateral_x]\ndamping = 0.0\n[layer.lateral_z]\n";
     let layer = scene(links, FLAT).layer;
     let maxwell = vec![MaxwellElement { stiffness: 0.0, relaxation_time: 1e-4 }];
-    assert_eq!(layer.vertical, Some(Link { stiffness: Some(2000.0), damping: None, maxwell }));
-    assert_eq!(layer.lateral_x, Some(Link { damping: Some(0.0), ..Link::default() }));
-    assert_eq!((layer.horizontal, layer.lateral_z), (None, Some(Link::default())));
+    assert_eq!(layer.links[LinkKind::Vertical], Some(Link { stiffness: Some(2000.0), damping: None, maxwell }));
+    assert_eq!(layer.links[LinkKind::LateralX], Some(Link { damping: Some(0.0), ..Link::default() }));
+    assert_eq!([&layer.links[LinkKind::Horizontal], &layer.links[LinkKind::LateralZ]], [&None, &Some(Link::default())]);
 }
 
 #[test]

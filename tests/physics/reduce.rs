@@ -131,7 +131,7 @@ fn the_bounds_of_a_link_add_up_to_no_more_than_its_share() {
             let sum: f64 = of_kind.map(|one| one.bound).sum();
             let allowed = reduce * reduction.stiffness[kind];
             assert!(sum <= allowed, "{kind:?}: {sum} N/m, {allowed} N/m allowed");
-            assert!(reduction.stiffness[kind] > scene.layer.link(kind).unwrap().stiffness.unwrap());
+            assert!(reduction.stiffness[kind] > scene.layer.links[kind].as_ref().unwrap().stiffness.unwrap());
         }
     }
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Output;
 
 use crate::common::{asperity, root, run, scratch};
-use asperity::scene::{Material, PronyTerm, Scene};
+use asperity::scene::{LinkKind, Material, PronyTerm, Scene};
 
 /// A tread-like rubber, one term a decade from 1e-13 s on.
 const SIXTEEN: [f64; 16] =
@@ -265,7 +265,7 @@ fn links_have_stiffnesses_instead() {
         |options: &[&str]| asperity().arg("material").arg(&scene).arg("-o").arg(&table).args(options).output().unwrap();
     let printed = String::from_utf8(material(&["--frequencies", "10..1000"]).stdout).unwrap();
     let known = Scene::load(&scene).unwrap();
-    let link = known.layer.vertical.as_ref().unwrap();
+    let link = known.layer.links[LinkKind::Vertical].as_ref().unwrap();
     assert!(printed.contains("vertical") && printed.contains("equilibrium K"), "{printed}");
     let text = fs::read_to_string(&table).unwrap();
     let mut lines = text.lines().filter(|line| !line.starts_with('#'));

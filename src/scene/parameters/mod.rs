@@ -218,18 +218,18 @@ impl Parameter {
 }
 
 /// Where a Real parameter is in a scene, `None` where the scene does not have it: to be read (`field!(scene, parameter,
-/// as_ref, get, link)`) or changed (`field!(scene, parameter, as_mut, get_mut, link_mut, mut)`).
+/// as_ref, get)`) or changed (`field!(scene, parameter, as_mut, get_mut, mut)`).
 macro_rules! field {
-    ($scene:expr, $parameter:expr, $as_ref:ident, $get:ident, $link:ident $(, $mut:tt)?) => {{
+    ($scene:expr, $parameter:expr, $as_ref:ident, $get:ident $(, $mut:tt)?) => {{
         use Parameter::*;
         let scene = $scene;
         match $parameter {
             Clearance => Some(&$($mut)? scene.layer.clearance),
             Mass => scene.layer.mass.$as_ref(),
-            Stiffness(kind) => scene.layer.$link(kind)?.stiffness.$as_ref(),
-            Damping(kind) => scene.layer.$link(kind)?.damping.$as_ref(),
-            MaxwellStiffness(kind, j) => Some(&$($mut)? scene.layer.$link(kind)?.maxwell.$get(j)?.stiffness),
-            RelaxationTime(kind, j) => Some(&$($mut)? scene.layer.$link(kind)?.maxwell.$get(j)?.relaxation_time),
+            Stiffness(kind) => scene.layer.links[kind].$as_ref()?.stiffness.$as_ref(),
+            Damping(kind) => scene.layer.links[kind].$as_ref()?.damping.$as_ref(),
+            MaxwellStiffness(kind, j) => Some(&$($mut)? scene.layer.links[kind].$as_ref()?.maxwell.$get(j)?.stiffness),
+            RelaxationTime(kind, j) => Some(&$($mut)? scene.layer.links[kind].$as_ref()?.maxwell.$get(j)?.relaxation_time),
             Thickness => scene.layer.thickness.$as_ref(),
             Density => Some(&$($mut)? scene.material.$as_ref()?.density),
             PoissonRatio => Some(&$($mut)? scene.material.$as_ref()?.poisson_ratio),
@@ -268,7 +268,7 @@ impl Scene {
     pub fn parameters(&self) -> Vec<Parameter> {
         use Parameter::*;
         let link = |kind: LinkKind| {
-            let elements = self.layer.link(kind).map_or(0, |link: &Link| link.maxwell.len());
+            let elements = self.layer.links[kind].as_ref().map_or(0, |link: &Link| link.maxwell.len());
             let of_element = move |j| [MaxwellStiffness(kind, j), RelaxationTime(kind, j)];
             [Stiffness(kind), Damping(kind)].into_iter().chain((0..elements).flat_map(of_element))
         };
@@ -322,7 +322,7 @@ impl Scene {
         match parameter {
             Parameter::CreepSpeed => Some(self.friction.as_ref()?.rate_shear?.creep_speed()),
             Parameter::AbsoluteTolerance => Some(self.absolute_tolerance()),
-            _ => field!(self, parameter, as_ref, get, link).copied(),
+            _ => field!(self, parameter, as_ref, get).copied(),
         }
     }
 
@@ -365,7 +365,7 @@ impl Scene {
             // These follow others until they are set themselves.
             Parameter::CreepSpeed => self.friction.as_mut()?.rate_shear.as_mut()?.creep_speed = Some(number),
             Parameter::AbsoluteTolerance => self.solver.absolute_tolerance = Some(number),
-            _ => *field!(&mut *self, parameter, as_mut, get_mut, link_mut, mut)? = number,
+            _ => *field!(&mut *self, parameter, as_mut, get_mut, mut)? = number,
         }
         if matches!(parameter, Parameter::Thickness | Parameter::PoissonRatio) {
             self.refit();

@@ -11,8 +11,9 @@ use std::path::Path as FilePath;
 use super::keys::Form;
 use super::values::Word;
 use super::{
-    CarrierBodies, Extrapolation, Foundation, FoundationKind, Friction, Initial, Layer, Link, Material, MaxwellElement,
-    OutputGroup, PronyTerm, RateShear, RealArea, Scene, SceneError, Solver, Surface, Wlf, warnings,
+    ByLink, CarrierBodies, Extrapolation, Foundation, FoundationKind, Friction, Initial, Layer, Link, LinkKind,
+    Material, MaxwellElement, OutputGroup, PronyTerm, RateShear, RealArea, Scene, SceneError, Solver, Surface, Wlf,
+    warnings,
 };
 use surface::Found;
 use table::{Entry, Result, Source, TableReader};
@@ -131,11 +132,11 @@ fn read_layer(table: &mut TableReader<'_>, found: &mut Found) -> Result<Layer> {
         width: table.number_of_form("width")?,
         initial: table.optional_choice("initial")?.unwrap_or(Initial::Relaxed),
         roughness: Vec::new(),
-        vertical: table.optional_table("vertical", read_link)?,
-        horizontal: table.optional_table("horizontal", read_link)?,
-        lateral_x: table.optional_table("lateral_x", read_link)?,
-        lateral_z: table.optional_table("lateral_z", read_link)?,
+        links: ByLink::default(),
     };
+    for kind in LinkKind::ALL {
+        layer.links[kind] = table.optional_table(kind.name(), read_link)?;
+    }
     if let Some(entry) = table.entry("roughness") {
         layer.roughness = surface::read_roughness(&entry, &layer, found)?;
     }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::{env, fs, process};
 
-use asperity::scene::{Extract, Friction, Link, Method, Scene};
+use asperity::scene::{Extract, Friction, Link, LinkKind, Method, Scene};
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
@@ -108,7 +108,9 @@ fn rubber() -> String {
 
 fn with_links(mut scene: Scene, method: Method) -> Scene {
     let link = Link { stiffness: Some(2e3), damping: Some(8e-3), maxwell: Vec::new() };
-    (scene.layer.vertical, scene.layer.horizontal) = (Some(link.clone()), Some(link));
+    for kind in [LinkKind::Vertical, LinkKind::Horizontal] {
+        scene.layer.links[kind] = Some(link.clone());
+    }
     scene.friction = Some(Friction { coulomb: Some(0.3), ..Friction::default() });
     scene.solver.method = method;
     scene

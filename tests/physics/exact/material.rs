@@ -160,11 +160,11 @@ fn chain(masses: usize, spacing: f64) -> Scene {
         solver(1e-7, 1e-15)
     ))
     .direct_form();
-    let stiffness = 1e4 * scene.layer.vertical.as_ref().and_then(|link| link.stiffness).unwrap();
+    let stiffness = 1e4 * scene.layer.links[LinkKind::Vertical].as_ref().and_then(|link| link.stiffness).unwrap();
     // Critically damped, so that it comes to rest.
     let damping = 2.0 * (stiffness * scene.mass()).sqrt();
     let stiff = Link { stiffness: Some(stiffness), damping: Some(damping), maxwell: Vec::<MaxwellElement>::new() };
-    scene.layer.horizontal = Some(stiff);
+    scene.layer.links[LinkKind::Horizontal] = Some(stiff);
     scene
 }
 

@@ -47,7 +47,7 @@ impl Case {
     /// Whether the layer has a spring or a damper: without one, nothing in the scene says what a short time is.
     pub(crate) fn has_a_time_of_its_own(&self) -> bool {
         let holds = |kind: LinkKind| {
-            let link = self.scene.layer.link(kind)?;
+            let link = self.scene.layer.links[kind].as_ref()?;
             let parts = [link.stiffness, link.damping].into_iter().flatten();
             Some(parts.chain(link.maxwell.iter().map(|element| element.stiffness)).any(|part| part > 0.0))
         };
@@ -121,7 +121,7 @@ impl Case {
 
     fn links(&self) -> Vec<String> {
         let link = |kind: LinkKind| {
-            let link = self.scene.layer.link(kind)?;
+            let link = self.scene.layer.links[kind].as_ref()?;
             let name = kind.name();
             let element = |c: f64, tau: f64| format!("{{ stiffness = {c:?}, relaxation_time = {tau:?} }}");
             let maxwell: Vec<String> =

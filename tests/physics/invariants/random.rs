@@ -7,8 +7,8 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 use asperity::scene::{
-    CarrierBodies, CarrierBody, Extrapolation, Force, Friction, Initial, Layer, Link, MaxwellElement, Method, Path,
-    RateShear, Scene, Solver, Surface,
+    ByLink, CarrierBodies, CarrierBody, Extrapolation, Force, Friction, Initial, Layer, Link, MaxwellElement, Method,
+    Path, RateShear, Scene, Solver, Surface,
 };
 use asperity::simulation::{Motion, Start};
 use proptest::collection::vec;
@@ -146,7 +146,7 @@ fn layer(scales: Scales) -> impl Strategy<Value = Layer> {
     let links = [link(scales, 0.9), link(scales, 0.75), link(scales, 0.6), link(scales, 0.6)];
     let initial = prop_oneof![Just(Initial::Relaxed), Just(Initial::Undeformed)];
     (1_usize..=12, -20.0..20.0_f64, -0.5..1.0_f64, initial, links).prop_flat_map(
-        move |(masses, origin, clearance, initial, [vertical, horizontal, lateral_x, lateral_z])| {
+        move |(masses, origin, clearance, initial, links)| {
             let layer = Layer {
                 masses,
                 spacing: scales.spacing,
@@ -158,10 +158,7 @@ fn layer(scales: Scales) -> impl Strategy<Value = Layer> {
                 width: None,
                 initial,
                 roughness: Vec::new(),
-                vertical,
-                horizontal,
-                lateral_x,
-                lateral_z,
+                links: ByLink(links),
             };
             roughness(scales, masses).prop_map(move |roughness| Layer { roughness, ..layer.clone() })
         },

@@ -86,8 +86,7 @@ impl Powers {
             *value *= length;
         }
         layer.mass.iter_mut().for_each(|each| *each *= mass);
-        let links = [&mut layer.vertical, &mut layer.horizontal, &mut layer.lateral_x, &mut layer.lateral_z];
-        links.into_iter().flatten().for_each(|link| self.link(link));
+        layer.links.iter_mut().flatten().for_each(|link| self.link(link));
         scene.carrier.x.iter_mut().chain(&mut scene.carrier.z).for_each(|body| self.body(body));
         let [x, z] =
             [scene.surface.x(), scene.surface.z()].map(|points| points.iter().map(|value| value * length).collect());

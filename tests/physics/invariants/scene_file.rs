@@ -37,7 +37,7 @@ fn an_empty_link_changes_no_bit() {
     check("an empty link", 100, cases(), |case| {
         let mut with = case.clone();
         let layer = &mut with.scene.layer;
-        for link in [&mut layer.vertical, &mut layer.horizontal, &mut layer.lateral_x, &mut layer.lateral_z] {
+        for link in &mut layer.links {
             link.get_or_insert(Link { stiffness: Some(0.0), damping: None, maxwell: Vec::new() });
         }
         let (one, other) = (run(&case)?, run(&with)?);
