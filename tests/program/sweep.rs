@@ -322,7 +322,7 @@ fn points_that_fail_are_rows() {
     assert!(status.contains("no room for 3 blocks"), "{status}");
 }
 
-/// The scene of the README: adhesion's maximum at low speed, hysteresis' at high speed, and both move with the
+/// The scene two-maxima: adhesion's maximum at low speed, hysteresis' at high speed, and both move with the
 /// temperature as the shift says, μ(v, T) = μ(a_T v, T_ref), the shear strength and the real area included. Between 1 mm/s and
 /// 0.2 m/s the adhesion falls so steeply that masses stick and slip, which does not shift, for the inertia stays: points
 /// on both sides of it are compared.
