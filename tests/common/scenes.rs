@@ -19,7 +19,7 @@ impl SceneText {
         Self::of_keys(masses, spacing).set("layer.mass", mass)
     }
 
-    /// As many pieces of rubber, so long (m), thick (m) and wide (m), with a Poisson's ratio of 0.49 and 1100 kg/m³.
+    /// As many pieces of rubber, so long, thick and wide (m), with a Poisson's ratio of 0.49 and 1100 kg/m³.
     pub fn rubber(masses: usize, spacing: f64, thickness: f64, width: f64) -> Self {
         let layer = Self::of_keys(masses, spacing).set("layer.thickness", thickness).set("layer.width", width);
         layer.set("material.density", 1100.0).set("material.poisson_ratio", 0.49)
@@ -41,12 +41,18 @@ impl SceneText {
         self
     }
 
-    /// Sets `key = value` as in a scene file, such as `friction = { coulomb = 0.3 }`; a table takes the place of keys in it.
-    pub fn with(mut self, line: &str) -> Self {
-        let (key, value) = line.split_once('=').expect("key = value");
-        let (key, value) = (key.trim(), value.trim());
-        self.keys.retain(|(other, _)| !other.starts_with(&format!("{key}.")));
-        self.set_toml(key, value.to_owned())
+    /// Sets each line's `key = value` as in a scene file, such as `friction = { coulomb = 0.3 }`.
+    pub fn with(self, lines: &str) -> Self {
+        lines.lines().filter(|line| !line.trim().is_empty()).fold(self, |scene, line| {
+            let (key, value) = line.split_once('=').expect("key = value");
+            scene.without(&format!("{}.", key.trim())).set_toml(key.trim(), value.trim().to_owned())
+        })
+    }
+
+    /// Without the keys that begin so.
+    pub fn without(mut self, start: &str) -> Self {
+        self.keys.retain(|(key, _)| !key.starts_with(start));
+        self
     }
 
     /// From carrier to mass, along z.
@@ -73,20 +79,40 @@ impl SceneText {
         self.set_toml(&format!("layer.{}", kind.name()), law.into().toml())
     }
 
+    /// The Maxwell elements of a link: stiffness (N/m), relaxation time (s).
+    pub fn maxwell(self, kind: LinkKind, elements: &[(f64, f64)]) -> Self {
+        self.set_toml(&format!("layer.{}.maxwell", kind.name()), self::elements("stiffness", elements))
+    }
+
+    /// The numbers of a table that are there.
+    pub fn numbers(self, table: &str, numbers: &[(&str, Option<f64>)]) -> Self {
+        let given = numbers.iter().filter_map(|(key, value)| Some((key, (*value)?)));
+        given.fold(self, |scene, (key, value)| scene.set(&format!("{table}.{key}"), value))
+    }
+
     /// Maxwell elements of the material: modulus (Pa), relaxation time (s).
     pub fn prony(self, terms: &[(f64, f64)]) -> Self {
         let terms = elements("modulus", terms);
         self.set_toml("material.prony", terms)
     }
 
+    /// The shift with temperature of Williams, Landel and Ferry, its constants c1, c2 (K) and reference temperature (K).
+    pub fn wlf(self, [c1, c2, reference]: [f64; 3], temperature: f64) -> Self {
+        self.with(&format!(
+            "material.wlf = {{ c1 = {c1:?}, c2 = {c2:?}, reference_temperature = {reference:?}, temperature = {temperature:?} }}"
+        ))
+    }
+
     /// A surface of that amplitude and wavelength, m.
     pub fn sinusoid(self, amplitude: f64, wavelength: f64) -> Self {
-        self.with(&format!("surface = {{ kind = 'sinusoid', amplitude = {amplitude:?}, wavelength = {wavelength:?} }}"))
+        let surface = self.without("surface").set("surface.kind", "sinusoid");
+        surface.set("surface.amplitude", amplitude).set("surface.wavelength", wavelength)
     }
 
     /// A surface through these points, m.
     pub fn points(self, x: &[f64], z: &[f64], periodic: bool) -> Self {
-        self.with(&format!("surface = {{ kind = 'points', periodic = {periodic}, x = {x:?}, z = {z:?} }}"))
+        let surface = self.without("surface").set("surface.kind", "points").set("surface.periodic", periodic);
+        surface.set("surface.x", x).set("surface.z", z)
     }
 
     /// Heights of the masses, m.
@@ -120,6 +146,12 @@ impl SceneText {
     /// Adds a phase of the excitation, such as `duration = 1e-3, w_rate = -0.1`.
     pub fn phase(mut self, keys: &str) -> Self {
         self.phases.push(format!("{{ {keys} }}"));
+        self
+    }
+
+    /// The same with its keys in another order.
+    pub fn shuffled(mut self, order: &[usize]) -> Self {
+        self.keys = order.iter().filter_map(|&i| self.keys.get(i).cloned()).collect();
         self
     }
 

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 /// Rows of fields under the names of their columns. A column is asked for by its name, with its unit or without.
-#[derive(Debug)]
+#[derive(Debug, PartialEq)]
 pub struct Table {
     names: Vec<String>,
     rows: Vec<Vec<String>>,
@@ -24,10 +24,11 @@ impl Table {
     }
 
     /// The table with these rows.
-    pub fn new(names: impl IntoIterator<Item = impl Into<String>>, rows: &[Vec<f64>]) -> Self {
+    pub fn new(names: impl IntoIterator<Item = impl ToString>, rows: impl IntoIterator<Item = Vec<f64>>) -> Self {
         // 0 as 0.0: some readers take 0 for a column of integers.
-        let row = |row: &Vec<f64>| row.iter().map(|value| format!("{value:?}")).collect();
-        Self { names: names.into_iter().map(Into::into).collect(), rows: rows.iter().map(row).collect() }
+        let row = |row: Vec<f64>| row.iter().map(|value| format!("{value:?}")).collect();
+        let names = names.into_iter().map(|name| name.to_string()).collect();
+        Self { names, rows: rows.into_iter().map(row).collect() }
     }
 
     pub fn write(&self, path: &Path) {
@@ -81,6 +82,12 @@ impl Table {
     /// The last value of a column that has to be there.
     pub fn last(&self, name: &str) -> f64 {
         self.number(self.len() - 1, name)
+    }
+
+    /// The rows after the first `count`.
+    pub fn skip(mut self, count: usize) -> Self {
+        self.rows.drain(..count);
+        self
     }
 
     /// Every `step`th row.

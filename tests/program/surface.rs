@@ -5,6 +5,7 @@ use std::fs;
 use std::io::{Cursor, Read as _, Write as _};
 use std::path::Path;
 
+use crate::common::scenes::SceneText;
 use crate::common::{asperity, run, scratch};
 use asperity::fmi::{Catalogue, Sources, guid};
 use asperity::scene::Scene;
@@ -19,17 +20,15 @@ const CUT_OFF: f64 = 1e-4;
 
 /// A scene on the surface whose keys are given.
 fn scene(surface: &str) -> String {
-    format!(
-        "name = 's'\n[layer]\nmasses = 2\nspacing = 1e-4\nmass = 1e-7\n[layer.vertical]\nstiffness = 1e3\n\
-         [surface]\n{surface}\n[[excitation]]\nduration = 1e-5\n"
-    )
+    let layer = SceneText::new(2, 1e-4, 1e-7).vertical(1e3).phase("duration = 1e-5");
+    layer.with(&format!("surface = {{ {surface} }}")).text()
 }
 
 /// A self-affine one with `points` points.
 fn rough(hurst: f64, points: usize) -> String {
     scene(&format!(
-        "kind = 'self_affine'\nlength = {LENGTH}\npoints = {points}\nhurst = {hurst}\nrms = {RMS}\n\
-         roll_off_wavelength = {ROLL_OFF}\ncut_off_wavelength = {CUT_OFF}\nseed = 3\n"
+        "kind = 'self_affine', length = {LENGTH}, points = {points}, hurst = {hurst}, rms = {RMS}, \
+         roll_off_wavelength = {ROLL_OFF}, cut_off_wavelength = {CUT_OFF}, seed = 3"
     ))
 }
 
