@@ -44,14 +44,14 @@ impl SceneText {
     /// Sets each line's `key = value` as in a scene file, such as `friction = { coulomb = 0.3 }`.
     pub fn with(self, lines: &str) -> Self {
         lines.lines().filter(|line| !line.trim().is_empty()).fold(self, |scene, line| {
-            let (key, value) = line.split_once('=').expect("key = value");
-            scene.without(&format!("{}.", key.trim())).set_toml(key.trim(), value.trim().to_owned())
+            let (key, value) = line.split_once('=').unwrap();
+            scene.without(key.trim()).set_toml(key.trim(), value.trim().to_owned())
         })
     }
 
-    /// Without the keys that begin so.
-    pub fn without(mut self, start: &str) -> Self {
-        self.keys.retain(|(key, _)| !key.starts_with(start));
+    /// Without a key, or the keys of a table.
+    pub fn without(mut self, key: &str) -> Self {
+        self.keys.retain(|(other, _)| !is_of(other, key));
         self
     }
 
@@ -157,7 +157,7 @@ impl SceneText {
 
     /// Whether a key, or one of a table, is given.
     pub fn has(&self, key: &str) -> bool {
-        self.keys.iter().any(|(other, _)| other.starts_with(key))
+        self.keys.iter().any(|(other, _)| is_of(other, key))
     }
 
     /// The scene file.
@@ -185,6 +185,11 @@ impl SceneText {
         fs::write(&path, self.text()).unwrap();
         path
     }
+}
+
+/// Whether `other` is the key `key` or one of that table.
+fn is_of(other: &str, key: &str) -> bool {
+    other.strip_prefix(key).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
 
 /// What a key can be given.

@@ -20,7 +20,7 @@ impl Table {
     pub fn parse(text: &str) -> Self {
         let mut lines = csv::ReaderBuilder::new().has_headers(false).comment(Some(b'#')).from_reader(text.as_bytes());
         let mut rows = lines.records().map(|line| line.unwrap().iter().map(str::to_owned).collect());
-        Self { names: rows.next().expect("a line of names"), rows: rows.collect() }
+        Self { names: rows.next().unwrap(), rows: rows.collect() }
     }
 
     /// The table with these rows.

@@ -62,7 +62,7 @@ fn driven_in_fmpy_it_gives_what_the_library_gives() {
         let at = |a: f64, b: f64, i: u32| a + (b - a) * f64::from(i) / 40.0;
         rows.extend((0..40).map(|i| vec![at(a.0, b.0, i), at(a.1, b.1, i), start + at(a.2, b.2, i)]));
     }
-    let motion = Table::new(&["time", "u", "w"], rows);
+    let motion = Table::new(["time", "u", "w"], rows);
     motion.write(&folder.join("motion.csv"));
     let driven = drive(&fmu, &folder.join("motion.csv"), &[]);
     let contact = PointContact::new(Sweep::load(&path).unwrap());

@@ -263,8 +263,7 @@ fn links_have_stiffnesses_instead() {
     let link = known.layer.vertical.as_ref().unwrap();
     assert!(printed.contains("vertical") && printed.contains("equilibrium K"), "{printed}");
     let table = Table::read(&table);
-    let [frequency, storage, loss] =
-        ["angular frequency", "vertical K'", "vertical K''"].map(|name| table.number(0, name));
+    let [frequency, storage, loss] = ["omega", "vertical K'", "vertical K''"].map(|name| table.number(0, name));
     let of = |j: &asperity::scene::MaxwellElement| {
         let x = frequency * j.relaxation_time;
         (j.stiffness * x * x / (1.0 + x * x), j.stiffness * x / (1.0 + x * x))

@@ -86,7 +86,7 @@ fn a_measured_surface_is_found_as_it_was_made() {
     fs::write(&source, rough(0.8, 8000)).unwrap();
     run(asperity().arg("surface").arg(&source).arg("--write").arg(&written));
     let surface = Scene::load(&source).unwrap().surface;
-    fs::write(&source, scene("kind = 'file'\npath = 'plain.csv'\nperiodic = true")).unwrap();
+    fs::write(&source, scene("kind = 'file', path = 'plain.csv', periodic = true")).unwrap();
     let read = Scene::load(&source).unwrap().surface;
     assert_eq!((read.x(), read.z()), (surface.x(), surface.z()), "what is written is the same to the last bit");
 
@@ -137,7 +137,7 @@ fn the_analysis_is_printed_and_plotted() {
 fn what_cannot_be_analysed_is_refused() {
     let folder = scratch("surface-refused");
     let [source, profile] = ["scene.toml", "profile.csv"].map(|name| folder.join(name));
-    fs::write(&source, scene("kind = 'file'\npath = 'profile.csv'")).unwrap();
+    fs::write(&source, scene("kind = 'file', path = 'profile.csv'")).unwrap();
     fs::write(&profile, "0 1\n1 2\n2 1\n").unwrap();
     let [source, profile] = [&source, &profile].map(|path| path.to_str().unwrap());
     assert!(failure(&["surface", source, "--unit", "mm"]).contains("a scene defines how its surface is read"));
@@ -173,9 +173,9 @@ fn lines_of_an_areal_measurement_go_into_the_archive_as_text() {
     let [source, fmu, unpacked] = ["scene.toml", "scene.fmu", "unpacked"].map(|name| folder.join(name));
     fs::write(folder.join("road.x3p"), x3p()).unwrap();
     let file = "kind = 'file', path = 'road.x3p'";
-    let text = scene("kind = 'file'\npath = 'road.x3p'\nline = 3\nmissing = 'fill'\ntilt = 'remove'");
-    let roughness = format!("mass = 1e-7\nroughness = {{ {file}, line = 1, unit = 'mm' }}");
-    fs::write(&source, text.replace("mass = 1e-7", &roughness)).unwrap();
+    let text = scene("kind = 'file', path = 'road.x3p', line = 3, missing = 'fill', tilt = 'remove'");
+    let roughness = format!("layer.mass = 1e-7\nlayer.roughness = {{ {file}, line = 1, unit = 'mm' }}");
+    fs::write(&source, text.replace("layer.mass = 1e-7", &roughness)).unwrap();
     let scene = Scene::load(&source).unwrap();
     assert_eq!(scene.files, ["road.x3p.line-1.csv", "road.x3p.line-3.csv"].map(Path::new));
     // Any file serves as the library here.
