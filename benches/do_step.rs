@@ -22,7 +22,7 @@ mod common;
     unsafe_code,
     reason = "shared with the tests: a master calls through C's interface"
 )]
-#[path = "../tests/fmu/fmi_interface/master.rs"]
+#[path = "../tests/common/master.rs"]
 mod master;
 
 use std::fs;

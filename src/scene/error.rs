@@ -123,8 +123,9 @@ impl ContentError {
         Self { line, key: key.into(), problem: problem.into() }
     }
 
-    /// The error of a value that is not what was `expected`.
+    /// The error of a value that is not what was `expected`. Texts of the file are shown on one line.
     pub(super) fn value(line: Option<usize>, key: &str, given: &str, expected: &str) -> Self {
+        let [key, given] = [key, given].map(|text| text.replace(['\n', '\r'], " "));
         Self::new(line, key, Problem::value(given, expected))
     }
 

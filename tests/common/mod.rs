@@ -1,4 +1,9 @@
-//! What the tests of the program and of the FMU share: the commands, the environment of Python, result files.
+//! What the suites share: the commands, the environment of Python, and the kit in the files beside this one.
+
+pub mod random;
+pub mod runs;
+pub mod scenes;
+pub mod table;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,6 +13,8 @@ use std::sync::OnceLock;
 use asperity::outputs::variables;
 use asperity::scene::{self, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
+
+pub use table::Table;
 
 /// The repository.
 pub fn root() -> &'static Path {
@@ -40,37 +47,23 @@ pub fn target() -> &'static Path {
     Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap()
 }
 
-/// A Python with the packages of tests/python/requirements.txt, the same that build-fmu.sh uses.
-pub fn python() -> &'static Path {
-    static PYTHON: OnceLock<PathBuf> = OnceLock::new();
-    PYTHON.get_or_init(|| environment("venv", "requirements.txt"))
+/// Pythons with the packages of a list, made once.
+macro_rules! pythons {
+    ($($(#[$doc:meta])* $name:ident: $folder:literal, $packages:literal;)*) => { $(
+        $(#[$doc])*
+        pub fn $name() -> &'static Path {
+            static PYTHON: OnceLock<PathBuf> = OnceLock::new();
+            PYTHON.get_or_init(|| environment($folder, root().join($packages).to_str().unwrap()))
+        }
+    )* };
 }
-
-/// A Python with the packages of tests/python/masters.txt.
-pub fn masters_python() -> &'static Path {
-    static PYTHON: OnceLock<PathBuf> = OnceLock::new();
-    PYTHON.get_or_init(|| environment("venv-masters", "masters.txt"))
-}
-
-/// A Python with the packages of scenes/coupled/requirements.txt.
-pub fn coupled_python() -> &'static Path {
-    static PYTHON: OnceLock<PathBuf> = OnceLock::new();
-    let packages = root().join("scenes/coupled/requirements.txt");
-    PYTHON.get_or_init(|| environment("venv-coupled", packages.to_str().unwrap()))
-}
-
-/// A Python with the packages of scenes/patch-mujoco/requirements.txt.
-pub fn mujoco_python() -> &'static Path {
-    static PYTHON: OnceLock<PathBuf> = OnceLock::new();
-    let packages = root().join("scenes/patch-mujoco/requirements.txt");
-    PYTHON.get_or_init(|| environment("venv-mujoco", packages.to_str().unwrap()))
-}
-
-/// A Python with the packages of scenes/sweep/requirements.txt.
-pub fn sweep_python() -> &'static Path {
-    static PYTHON: OnceLock<PathBuf> = OnceLock::new();
-    let packages = root().join("scenes/sweep/requirements.txt");
-    PYTHON.get_or_init(|| environment("venv-sweep", packages.to_str().unwrap()))
+pythons! {
+    /// The one that build-fmu.sh uses.
+    python: "venv", "tests/python/requirements.txt";
+    masters_python: "venv-masters", "tests/python/masters.txt";
+    coupled_python: "venv-coupled", "scenes/coupled/requirements.txt";
+    mujoco_python: "venv-mujoco", "scenes/patch-mujoco/requirements.txt";
+    sweep_python: "venv-sweep", "scenes/sweep/requirements.txt";
 }
 
 fn environment(folder: &str, packages: &str) -> PathBuf {
@@ -112,11 +105,7 @@ pub fn simulate(scene: &Path, folder: &Path, options: &[&str]) -> Table {
 
 /// Drives an FMU in fmpy along the columns time, u and w of `motion`, rates given; `parameters` as NAME=VALUE.
 pub fn drive(fmu: &Path, motion: &Path, parameters: &[&str]) -> Table {
-    let output = fmu.with_extension("driven.csv");
-    let mut command = Command::new(python());
-    command.arg(root().join("tests/python/drive.py")).args([fmu, motion]).arg("-o").arg(&output);
-    run(command.args(parameters.iter().flat_map(|parameter| ["--set", parameter])));
-    Table::read(&output)
+    drive_with_jumps(fmu, motion, parameters, &[])
 }
 
 /// As [`drive`], with inputs that jump: each as `TIME:NAME=VALUE`.
@@ -147,59 +136,7 @@ pub fn library_along(scene: &Scene, motion: &Table) -> Table {
         simulation.evaluate(&variables, &mut row);
         rows.push(row);
     }
-    Table { names: variables.into_iter().map(|variable| variable.name).collect(), rows }
-}
-
-/// A result file.
-#[derive(Debug)]
-pub struct Table {
-    names: Vec<String>,
-    rows: Vec<Vec<f64>>,
-}
-
-impl Table {
-    /// Reads a file that has a line of names and then numbers.
-    pub fn read(path: &Path) -> Self {
-        let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-        let mut lines = text.lines();
-        let names = lines.next().unwrap().split(',').map(|name| name.trim_matches('"').to_owned()).collect();
-        let rows = lines.map(|line| line.split(',').map(|field| field.parse().unwrap()).collect()).collect();
-        Self { names, rows }
-    }
-
-    /// The table with these rows.
-    pub fn new(names: &[&str], rows: Vec<Vec<f64>>) -> Self {
-        Self { names: names.iter().map(|&name| name.to_owned()).collect(), rows }
-    }
-
-    /// Writes it as a file, zero as 0.0: some readers take 0 for a column of integers.
-    pub fn write(&self, path: &Path) {
-        let line = |row: &Vec<f64>| row.iter().map(|value| format!("{value:?}")).collect::<Vec<_>>().join(",");
-        let lines: Vec<String> = [self.names.join(",")].into_iter().chain(self.rows.iter().map(line)).collect();
-        fs::write(path, lines.join("\n") + "\n").unwrap();
-    }
-
-    /// The names of the columns.
-    pub fn names(&self) -> &[String] {
-        &self.names
-    }
-
-    /// The values of a column; `None` where there is no such column.
-    pub fn get(&self, name: &str) -> Option<Vec<f64>> {
-        let index = self.names.iter().position(|other| other == name)?;
-        Some(self.rows.iter().map(|row| row[index]).collect())
-    }
-
-    /// The values of a column that has to be there.
-    pub fn column(&self, name: &str) -> Vec<f64> {
-        self.get(name).unwrap_or_else(|| panic!("no column {name} in {:?}", self.names))
-    }
-
-    /// Every `step`th row.
-    pub fn every(mut self, step: usize) -> Self {
-        self.rows = self.rows.into_iter().step_by(step).collect();
-        self
-    }
+    Table::new(variables.into_iter().map(|variable| variable.name), rows)
 }
 
 /// What lies at `time` on the straight lines between `values` at `times`.
@@ -209,14 +146,13 @@ pub fn interpolate(times: &[f64], values: &[f64], time: f64) -> f64 {
     values[after - 1] + part * (values[after] - values[after - 1])
 }
 
-/// The largest absolute value.
+/// The largest absolute value; NaN counts as infinite.
 pub fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |largest, value| largest.max(value.abs()))
+    values.iter().fold(0.0, |largest, value| if value.is_nan() { f64::INFINITY } else { largest.max(value.abs()) })
 }
 
 /// The largest difference; NaN counts as infinite.
 pub fn difference(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len(), "as many rows");
-    let distance = |(a, b): (&f64, &f64)| if (a - b).is_nan() { f64::INFINITY } else { (a - b).abs() };
-    a.iter().zip(b).map(distance).fold(0.0, f64::max)
+    largest(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>())
 }

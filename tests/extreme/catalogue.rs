@@ -7,6 +7,7 @@
 use std::fs;
 use std::path::Path;
 
+use asperity::math::SplitMix64;
 use asperity::robustness::{Perturbation, ScaledQuantity};
 use asperity::simulation::Start;
 use toml::{Table, Value};
@@ -338,12 +339,9 @@ fn profile(make: &str, rule: &Table) -> Table {
     ])
 }
 
-/// Between 0 and 1, the same for the same index: Steele's splitmix64.
+/// Between 0 and 1, the same for the same index.
 fn noise(seed: u64, index: usize) -> f64 {
-    let mut x = (seed << 32).wrapping_add(index as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    ((x ^ (x >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    SplitMix64::new(((seed << 32).wrapping_add(index as u64)).wrapping_mul(0x9e37_79b9_7f4a_7c15)).unit()
 }
 
 /// A table as one line of TOML, the scene file of a case line by line.

@@ -12,7 +12,7 @@ mod fmu;
 mod html;
 mod judge;
 #[allow(dead_code, reason = "shared by several tests")]
-#[path = "../fmu/fmi_interface/master.rs"]
+#[path = "../common/master.rs"]
 mod master;
 mod report;
 mod rules;

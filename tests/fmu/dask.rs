@@ -1,10 +1,9 @@
 //! The example scenes/sweep: an FMU swept in fmpy, its points on the workers of Dask's distributed scheduler.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::common::{asperity, pack, root, run, scratch, sweep_python};
+use crate::common::{Table, asperity, pack, root, run, scratch, sweep_python};
 
 fn example() -> PathBuf {
     root().join("scenes/sweep")
@@ -15,23 +14,6 @@ fn sweep(fmu: &Path, table: &Path) -> String {
     let mut command = Command::new(sweep_python());
     command.arg(example().join("sweep.py")).arg(fmu).arg("-o").arg(table);
     run(command.args(["--speeds", "0.1..1/2", "--pressures", "1e5,2e5", "--workers", "2"]))
-}
-
-/// The rows of a table by the names of its columns, units left out; empty fields are NaN.
-fn rows(path: &Path) -> Vec<Vec<(String, f64)>> {
-    let text = fs::read_to_string(path).unwrap();
-    let mut lines = text.lines().filter(|line| !line.starts_with('#'));
-    let names: Vec<&str> = lines.next().unwrap().split(',').map(|name| name.split(' ').next().unwrap()).collect();
-    let row = |line: &str| {
-        assert!(line.contains(",steady,"), "{line}");
-        let numbers = line.split(',').map(|field| field.parse().unwrap_or(f64::NAN));
-        names.iter().map(ToString::to_string).zip(numbers).collect()
-    };
-    lines.map(row).collect()
-}
-
-fn value(row: &[(String, f64)], name: &str) -> f64 {
-    row.iter().find(|(other, _)| other == name).unwrap_or_else(|| panic!("no column {name}")).1
 }
 
 /// Each within a share of what `asperity sweep` finds on the same scene.
@@ -51,12 +33,12 @@ fn a_sweep_over_fmus_is_the_programs() {
         "-o",
     ]);
     run(command.arg(&program));
-    let (found, wanted) = (rows(&table), rows(&program));
-    assert_eq!(found.len(), wanted.len());
-    for (found, wanted) in found.iter().zip(&wanted) {
-        assert!(found.iter().map(|(name, _)| name).eq(wanted.iter().map(|(name, _)| name)));
+    let (found, wanted) = (Table::read(&table), Table::read(&program));
+    assert_eq!((found.len(), found.names()), (wanted.len(), wanted.names()));
+    assert!([&found, &wanted].iter().all(|table| table.texts("status").iter().all(|status| *status == "steady")));
+    for row in 0..found.len() {
         for name in ["speed", "pressure", "temperature"] {
-            assert_eq!(value(found, name), value(wanted, name));
+            assert_eq!(found.number(row, name), wanted.number(row, name));
         }
         // The pressure is met within 1e-3 by both, means are known to 1 % at the worst, here to 1e-4; hysteresis, a
         // twentieth of the whole, and contacts are sampled at 161 places; the separation is a small difference of w and the
@@ -74,12 +56,12 @@ fn a_sweep_over_fmus_is_the_programs() {
             ("tangential_stiffness", 1e-3),
         ];
         for (name, bound) in bounds {
-            let (a, b) = (value(found, name), value(wanted, name));
+            let (a, b) = (found.number(row, name), wanted.number(row, name));
             assert!((a / b - 1.0).abs() < bound, "{name}: {a} by Dask, {b} by the program");
         }
-        let parts = value(found, "friction_hysteresis") + value(found, "friction_adhesion");
-        assert!((parts / value(found, "friction") - 1.0).abs() < 1e-12);
-        assert!((value(found, "mean_pressure") / value(found, "pressure") - 1.0).abs() <= 1e-3);
+        let parts = found.number(row, "friction_hysteresis") + found.number(row, "friction_adhesion");
+        assert!((parts / found.number(row, "friction") - 1.0).abs() < 1e-12);
+        assert!((found.number(row, "mean_pressure") / found.number(row, "pressure") - 1.0).abs() <= 1e-3);
     }
     assert!(sweep(&fmu, &table).is_empty(), "points done are not computed again");
 }

@@ -69,7 +69,7 @@ impl Case {
 fn even_times(motion: &Table) -> Table {
     let [times, u, w] = ["time", "u", "w"].map(|name| motion.column(name));
     let row = |time| vec![time, interpolate(&times, &u, time), interpolate(&times, &w, time)];
-    Table::new(&["time", "u", "w"], (0..=STEPS).map(|i| row(i as f64 * STEP)).collect())
+    Table::new(["time", "u", "w"], (0..=STEPS).map(|i| row(i as f64 * STEP)))
 }
 
 /// Where the FMU takes the carrier, given values alone.
@@ -77,7 +77,7 @@ fn extrapolated(values: &Table) -> Table {
     let [time, u, w] = ["time", "u", "w"].map(|name| values.column(name));
     let target = |values: &[f64], i: usize| if i < 2 { values[0] } else { 2.0 * values[i - 1] - values[i - 2] };
     let row = |i| vec![time[i], target(&u, i), target(&w, i)];
-    Table::new(&["time", "u", "w"], (0..time.len()).map(row).collect())
+    Table::new(["time", "u", "w"], (0..time.len()).map(row))
 }
 
 /// Runs a script of tests/python on an FMU and a motion; its result lies beside the motion.
@@ -113,9 +113,9 @@ impl Rolling {
         let own = wheel_along(&patch, &inputs);
         let names: Vec<_> = ["time"].into_iter().chain(COORDINATES).chain(["transport.speed"]).collect();
         let time = |i: usize| i as f64 * ROLLING_STEP;
-        let rows = inputs.iter().enumerate().map(|(i, inputs)| [&[time(i)], &inputs[..]].concat()).collect();
+        let rows = inputs.iter().enumerate().map(|(i, inputs)| [&[time(i)], &inputs[..]].concat());
         let motion = folder.join("motion.csv");
-        Table::new(&names, rows).write(&motion);
+        Table::new(names, rows).write(&motion);
         Self { fmu, motion, own }
     }
 
@@ -153,9 +153,9 @@ fn wheel_along(patch: &Patch, inputs: &[[f64; 7]]) -> Table {
         wheel.evaluate(&variables, &mut values);
         values
     };
-    let rows = (1..inputs.len()).map(row).collect();
+    let rows = (1..inputs.len()).map(row);
     let names: Vec<_> = variables.iter().map(|variable| variable.name.as_str()).collect();
-    Table::new(&names, rows)
+    Table::new(names, rows)
 }
 
 #[test]

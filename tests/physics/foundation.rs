@@ -116,18 +116,13 @@ fn slides(name: &str, speeds: &str) {
         .args(["--speeds", speeds, "--pressures", &asked.join(",")])
         .arg("-o")
         .arg(&table));
-    let found = fs::read_to_string(&table).unwrap();
-    let mut lines = found.lines().filter(|line| !line.starts_with('#'));
-    let names: Vec<&str> = lines.next().unwrap().split(',').collect();
-    for line in lines {
-        let fields: Vec<&str> = line.split(',').collect();
-        let value =
-            |name: &str| -> f64 { fields[names.iter().position(|other| *other == name).unwrap()].parse().unwrap() };
-        let same = |i: &usize| pressures[*i] == value("pressure [Pa]") && of_speeds[*i] == value("speed [m/s]");
-        let i = (0..pressures.len()).find(same).unwrap();
-        let what = |quantity: &str| format!("{quantity} of {name} at {:e} Pa, {:e} m/s", pressures[i], of_speeds[i]);
-        near(&what("friction"), value("friction [1]"), frictions[i], 0.13);
-        near(&what("area"), value("contact_ratio [1]"), areas[i], 0.17);
+    let found = Table::read(&table);
+    for row in 0..found.len() {
+        let [pressure, speed] = ["pressure", "speed"].map(|name| found.number(row, name));
+        let i = (0..pressures.len()).find(|&i| pressures[i] == pressure && of_speeds[i] == speed).unwrap();
+        let what = |quantity: &str| format!("{quantity} of {name} at {pressure:e} Pa, {speed:e} m/s");
+        near(&what("friction"), found.number(row, "friction"), frictions[i], 0.13);
+        near(&what("area"), found.number(row, "contact_ratio"), areas[i], 0.17);
     }
 }
 

@@ -1,12 +1,13 @@
 //! The methods `step` and `auto`: accuracy on the reference cases, what holds at the ends of steps, extremes, and that
 //! a run goes on bit for bit wherever it is taken up.
 
-use std::path::Path as FilePath;
-
-use crate::common::{Table, difference, largest, root};
-use asperity::outputs::{Snapshot, variables};
+use asperity::outputs::Snapshot;
 use asperity::scene::{OutputGroup, Path, Phase, Scene};
-use asperity::simulation::{Motion, Simulation, Start};
+use asperity::simulation::{Simulation, Start};
+
+use crate::common::runs::{along_excitation, bits, straight, value, values};
+use crate::common::scenes::SceneText;
+use crate::common::{Table, difference, largest, root};
 
 /// The cases of tests/reference.
 const CASES: [&str; 9] = [
@@ -29,52 +30,22 @@ fn reference(name: &str, method: &str, tolerance: &str) -> (Scene, Table) {
     (scene, Table::read(&file("csv")))
 }
 
-/// The values of an output at the start and at 50 even intervals of each phase, as the reference files have them.
-struct Run {
-    names: Vec<String>,
-    rows: Vec<Vec<f64>>,
+/// The outputs in the rows that the reference files have.
+fn run(scene: &Scene) -> Table {
+    along_excitation(scene, 50)
 }
 
-impl Run {
-    fn of(scene: &Scene) -> Self {
-        let first = &scene.excitation[0];
-        let start = Start { u_rate: first.u.at(0.0).speed, w_rate: first.w.at(0.0).speed, ..Start::default() };
-        let mut simulation = Simulation::new(scene, &start).unwrap();
-        let variables = variables(scene);
-        let values = |snapshot: &Snapshot<'_>| {
-            let mut values = vec![0.0; variables.len()];
-            snapshot.evaluate(&variables, &mut values);
-            values
-        };
-        let mut rows = vec![values(&simulation.snapshot())];
-        for phase in &scene.excitation {
-            let motion = Motion { duration: phase.duration, u: phase.u, w: phase.w, ..Motion::default() };
-            let times: Vec<f64> = (1..=50).map(|i| phase.duration * f64::from(i) / 50.0).collect();
-            simulation.advance_observed(&motion, None, &times, |_, now| rows.push(values(now))).unwrap();
-        }
-        Self { names: variables.iter().map(|variable| variable.name.clone()).collect(), rows }
-    }
-
-    fn column(&self, name: &str) -> Vec<f64> {
-        let at = self.names.iter().position(|other| other == name).unwrap();
-        self.rows.iter().map(|row| row[at]).collect()
-    }
-
-    fn last(&self, name: &str) -> f64 {
-        *self.column(name).last().unwrap()
-    }
-
-    /// The largest difference to the reference over its largest value, of F_x, F_z and E_diss, and the residual of the
-    /// energy balance over the largest energy.
-    fn errors(&self, wanted: &Table) -> [f64; 4] {
-        let error = |name: &str| {
-            let (found, wanted) = (self.column(name), wanted.column(name));
-            difference(&found, &wanted) / largest(&wanted).max(f64::MIN_POSITIVE)
-        };
-        let energies = ["E_diss", "energy.input", "energy.kinetic", "energy.elastic"];
-        let scale = energies.iter().map(|name| largest(&self.column(name))).fold(0.0, f64::max);
-        [error("F_x"), error("F_z"), error("E_diss"), largest(&self.column("energy.residual")) / scale]
-    }
+/// The largest difference to the reference over its largest value, of F_x, F_z and E_diss, and the residual of the
+/// energy balance over the largest energy.
+fn errors(scene: &Scene, wanted: &Table) -> [f64; 4] {
+    let run = run(scene);
+    let error = |name: &str| {
+        let wanted = wanted.column(name);
+        difference(&run.column(name), &wanted) / largest(&wanted).max(f64::MIN_POSITIVE)
+    };
+    let energies = ["E_diss", "energy.input", "energy.kinetic", "energy.elastic"];
+    let scale = energies.iter().map(|name| largest(&run.column(name))).fold(0.0, f64::max);
+    [error("F_x"), error("F_z"), error("E_diss"), largest(&run.column("energy.residual")) / scale]
 }
 
 /// The errors follow the tolerance: forces within five, energies within two times it, the balance as the energies.
@@ -85,7 +56,7 @@ fn errors_on_the_reference_cases_follow_the_tolerance() {
     for name in CASES {
         for tolerance in ["1e-2", "1e-3", "1e-4", "1e-5", "1e-6"] {
             let (scene, wanted) = reference(name, "step", tolerance);
-            let [f_x, f_z, losses, residual] = Run::of(&scene).errors(&wanted);
+            let [f_x, f_z, losses, residual] = errors(&scene, &wanted);
             let allowed: f64 = tolerance.parse().unwrap();
             let errors = format!("{name} at {tolerance}: F_x {f_x:.1e} F_z {f_z:.1e} E {losses:.1e} {residual:.1e}");
             // The reference of this case is itself only good to some 4e-6.
@@ -104,14 +75,13 @@ fn rows_show_touches_before_the_end_of_their_step() {
     let x: Vec<f64> = (-10..=190).map(|i| 1e-4 * f64::from(i)).collect();
     // Ten points from the edge to the nearest mass the spline's ripples are 2e-6 of the edge.
     let z: Vec<f64> = x.iter().map(|&x| if x < 1.5e-2 { 0.0 } else { -low }).collect();
-    let text = format!(
-        "name = 'edge'
-        layer = {{ masses = 10, spacing = 2e-3, mass = 1e-7, vertical = {{ stiffness = {c}, damping = {d} }} }}
-        surface = {{ kind = 'points', x = {x:?}, z = {z:?} }}
-        solver = {{ method = 'step', relative_tolerance = 0.1, absolute_tolerance = 1e-6 }}
-        fmu = {{ outputs = ['forces', 'solver'] }}"
-    );
-    let scene = Scene::parse(&text, FilePath::new("edge.toml")).unwrap();
+    let scene = SceneText::new(10, 2e-3, 1e-7)
+        .vertical((c, d))
+        .points(&x, &z, false)
+        .method("step")
+        .tolerances(0.1, 1e-6)
+        .outputs(&["forces", "solver"])
+        .scene();
     let mut simulation = Simulation::new(&scene, &Start { w_rate: -v, ..Start::default() }).unwrap();
     let (touch, times) = (low / v, (1..300).map(|i| 1e-6 * (f64::from(i) + 0.5)).collect::<Vec<f64>>());
     let mut rows = Vec::new();
@@ -154,7 +124,7 @@ fn rows_of_a_rough_slide_are_as_good_as_the_ends_of_steps() {
 fn a_percent_takes_few_steps() {
     for name in ["rough-coulomb", "rough-shear", "figure-7-low", "figure-7-middle", "figure-7-high", "stuck-pair"] {
         let (scene, _) = reference(name, "step", "1e-2");
-        let run = Run::of(&scene);
+        let run = run(&scene);
         let steps = run.last("solver.steps") + run.last("solver.rejected");
         assert!(steps < 250.0, "{name}: {steps}");
     }
@@ -172,7 +142,7 @@ fn slow_slide(method: &str, tolerance: &str) -> (f64, f64) {
         Phase { duration, u: path(u), w: path(w), until_force: None, until_pressure: None, ..Phase::default() }
     };
     scene.excitation = vec![phase(2e-3, 0.0, -0.05), phase(0.025, 0.01, 0.0), phase(0.025, 0.01, 0.0)];
-    let run = Run::of(&scene);
+    let run = run(&scene);
     let mean = |name: &str| run.column(name).iter().rev().take(50).sum::<f64>();
     (-mean("F_x") / mean("F_z"), run.last("solver.events"))
 }
@@ -194,9 +164,9 @@ fn auto_agrees_with_event() {
     for name in CASES {
         for tolerance in ["1e-4", "1e-6"] {
             let (scene, wanted) = reference(name, "auto", tolerance);
-            let found = Run::of(&scene).errors(&wanted);
+            let found = errors(&scene, &wanted);
             let (scene, wanted) = reference(name, "event", tolerance);
-            let event = Run::of(&scene).errors(&wanted);
+            let event = errors(&scene, &wanted);
             let allowed: f64 = tolerance.parse().unwrap();
             for (found, event) in found.into_iter().zip(event) {
                 assert!(found <= 1.5 * event + 7.0 * allowed, "{name} at {tolerance}: {found:e}, event {event:e}");
@@ -212,37 +182,18 @@ fn rough(masses: usize, method: &str, more: &str) -> Scene {
     let mut z: Vec<f64> =
         x.iter().enumerate().map(|(i, x)| 2e-6 * (x * 9e3).sin() + 1e-6 * ((7 * i * i % 31) as f64 / 31.0)).collect();
     z[points as usize] = z[0];
-    let text = format!(
-        "name = 'rough'
-        [layer]
-        masses = {masses}
-        spacing = 5e-5
-        mass = 1e-7
-        vertical = {{ stiffness = 2e3, damping = 8e-3, maxwell = [{{ stiffness = 3e3, relaxation_time = 1e-6 }}] }}
-        horizontal = {{ stiffness = 1e3, damping = 6e-3, maxwell = [{{ stiffness = 8e2, relaxation_time = 1e-4 }}] }}
-        lateral_x = {{ stiffness = 5e2, damping = 4e-3, maxwell = [{{ stiffness = 2e2, relaxation_time = 1e-5 }}] }}
-        lateral_z = {{ stiffness = 3e2, damping = 3e-3 }}
-        [surface]
-        kind = 'points'
-        x = {x:?}
-        z = {z:?}
-        periodic = true
-        [friction]
-        coulomb = 0.3
-        shear_force = 1e-4
-        [solver]
-        method = '{method}'
-        relative_tolerance = 1e-2
-        {more}
-        [fmu]
-        outputs = ['forces', 'dissipation', 'friction', 'contact', 'energy', 'solver', 'elements', 'tangent']"
-    );
-    Scene::parse(&text, FilePath::new("rough.toml")).unwrap()
-}
-
-fn straight(duration: f64, u: f64, w: f64) -> Motion {
-    let path = |rate| Path { rate, ..Path::default() };
-    Motion { duration, u: path(u), w: path(w), ..Motion::default() }
+    SceneText::new(masses, 5e-5, 1e-7)
+        .vertical((2e3, 8e-3, [(3e3, 1e-6)]))
+        .horizontal((1e3, 6e-3, [(8e2, 1e-4)]))
+        .lateral_x((5e2, 4e-3, [(2e2, 1e-5)]))
+        .lateral_z((3e2, 3e-3))
+        .points(&x, &z, true)
+        .with("friction = { coulomb = 0.3, shear_force = 1e-4 }")
+        .method(method)
+        .relative(1e-2)
+        .with(more)
+        .outputs(&["forces", "dissipation", "friction", "contact", "energy", "solver", "elements", "tangent"])
+        .scene()
 }
 
 const PRESS: (f64, f64, f64) = (2e-4, 0.0, -0.01);
@@ -253,23 +204,11 @@ fn pressed(scene: &Scene) -> Simulation {
     simulation
 }
 
-fn values(scene: &Scene, snapshot: &Snapshot<'_>) -> Vec<(String, f64)> {
-    let variables = variables(scene);
-    let mut values = vec![0.0; variables.len()];
-    snapshot.evaluate(&variables, &mut values);
-    let named = variables.into_iter().map(|variable| variable.name).zip(values);
-    named.filter(|(name, _)| name != "solver.run_time").collect()
-}
-
-fn value(scene: &Scene, snapshot: &Snapshot<'_>, name: &str) -> f64 {
-    values(scene, snapshot).into_iter().find(|(other, _)| other == name).unwrap().1
-}
-
 /// Many more mode changes than steps, and each step has its end in order: every mass in contact pressed on the profile,
 /// every friction force within its limit, every free mass above the profile but for the tolerance.
 #[test]
 fn the_end_of_every_step_is_consistent_however_many_modes_change() {
-    let scene = rough(300, "step", "absolute_tolerance = 1e-6");
+    let scene = rough(300, "step", "solver.absolute_tolerance = 1e-6");
     let profile = scene.surface.spline();
     let mut simulation = pressed(&scene);
     // Steps as long as the motions: their ends are those of steps.
@@ -313,14 +252,9 @@ fn a_run_goes_on_bit_for_bit_wherever_it_is_taken_up() {
             for simulation in [&mut first, &mut clone, &mut restored] {
                 simulation.advance(&motion).unwrap();
             }
-            let bits = |snapshot: &Snapshot<'_>| -> Vec<u64> {
-                values(&scene, snapshot).into_iter().map(|(_, value)| value.to_bits()).collect()
-            };
-            let expected = bits(&first.snapshot());
-            assert!(
-                bits(&clone.snapshot()) == expected && bits(&restored.snapshot()) == expected,
-                "{method}, motion {i}"
-            );
+            let expected = bits(&scene, &first.snapshot());
+            let same = [&mut clone, &mut restored].map(|run| bits(&scene, &run.snapshot()) == expected);
+            assert_eq!(same, [true; 2], "{method}, motion {i}");
             assert_eq!(clone.state(), first.state());
             assert_eq!(restored.force_rates(), first.force_rates());
             to_time_stepping |= first.is_time_stepping();
@@ -332,7 +266,7 @@ fn a_run_goes_on_bit_for_bit_wherever_it_is_taken_up() {
 /// What an observer asks within a motion does not change the run; and a motion that fails leaves no trace.
 #[test]
 fn neither_rows_nor_failures_leave_a_trace() {
-    let scene = rough(40, "step", "max_steps = 300");
+    let scene = rough(40, "step", "solver.max_steps = 300");
     let mut plain = pressed(&scene);
     let mut observed = plain.clone();
     let motion = straight(1e-4, 1.0, 0.0);
@@ -360,7 +294,7 @@ fn neither_rows_nor_failures_leave_a_trace() {
 #[test]
 fn a_motion_ends_where_the_force_is_reached() {
     let reached = ["step", "auto", "event"].map(|method| {
-        let scene = rough(40, method, "absolute_tolerance = 1e-9");
+        let scene = rough(40, method, "solver.absolute_tolerance = 1e-9");
         let mut simulation = Simulation::new(&scene, &Start::default()).unwrap();
         let time =
             simulation.advance_observed(&straight(1e-3, 0.0, -0.01), Some(0.2), &[], |_, _| ()).unwrap().unwrap();
@@ -405,7 +339,7 @@ fn auto_hands_over_where_mode_changes_crowd_and_back() {
 /// ∂F/∂u and ∂F/∂w at the end of a motion against a difference quotient by rollback; no mode changes on the way.
 #[test]
 fn tangents_are_those_of_a_difference_quotient() {
-    let mut scene = rough(6, "step", "absolute_tolerance = 1e-12");
+    let mut scene = rough(6, "step", "solver.absolute_tolerance = 1e-12");
     scene.solver.relative_tolerance = 3e-5;
     let start = Simulation::new(&scene, &Start { w: -8e-6, u_rate: 0.5, ..Start::default() }).unwrap();
     let after = |u: f64, w: f64| {
@@ -433,12 +367,13 @@ fn tangents_are_those_of_a_difference_quotient() {
 /// end of the step the bend is counted once.
 #[test]
 fn a_mass_that_touches_on_a_bend_keeps_its_speed() {
-    let text = "name = 'bend'
-        layer = { masses = 1, spacing = 1e-4, mass = 1e-7, vertical = { stiffness = 10.0 } }
-        surface = { kind = 'sinusoid', amplitude = 4e-6, wavelength = 4e-5 }
-        solver = { method = 'step', relative_tolerance = 1e-4 }
-        fmu = { outputs = ['energy', 'dissipation', 'contact', 'solver'] }";
-    let scene = Scene::parse(text, FilePath::new("bend.toml")).unwrap();
+    let scene = SceneText::new(1, 1e-4, 1e-7)
+        .vertical(10.0)
+        .sinusoid(4e-6, 4e-5)
+        .method("step")
+        .relative(1e-4)
+        .outputs(&["energy", "dissipation", "contact", "solver"])
+        .scene();
     for i in 0..10 {
         // Nothing holds the mass along x, so it flies at the speed that it started with.
         let start = Start { u: 4e-6 * f64::from(i), w: 6e-6, u_rate: 5.0, w_rate: -1.0, ..Start::default() };
@@ -463,15 +398,17 @@ fn extremes_are_stepped_over() {
         ("damping = 0.0", "stiffness = 1e3, damping = 0.0"),
     ];
     for (vertical, horizontal) in extremes {
-        let text = format!(
-            "name = 'stiff'\n[layer]\nmasses = 5\nspacing = 1e-4\nmass = 1e-7\nclearance = 1e-6
-            vertical = {{ stiffness = 2e3, {vertical} }}\nhorizontal = {{ {horizontal} }}
-            lateral_z = {{ stiffness = 3e2, damping = 3e-3 }}
-            [surface]\nkind = 'sinusoid'\namplitude = 2e-6\nwavelength = 2.3e-4
-            [friction]\ncoulomb = 0.3\n[solver]\nmethod = 'step'\nrelative_tolerance = 1e-2\nmax_steps = 100000
-            [fmu]\noutputs = ['forces', 'dissipation', 'energy', 'solver']"
-        );
-        let scene = Scene::parse(&text, FilePath::new("stiff.toml")).unwrap();
+        let scene = SceneText::new(5, 1e-4, 1e-7)
+            .set("layer.clearance", 1e-6)
+            .with(&format!("layer.vertical = {{ stiffness = 2e3, {vertical} }}\nlayer.horizontal = {{ {horizontal} }}"))
+            .lateral_z((3e2, 3e-3))
+            .sinusoid(2e-6, 2.3e-4)
+            .coulomb(0.3)
+            .method("step")
+            .relative(1e-2)
+            .set("solver.max_steps", 100_000)
+            .outputs(&["forces", "dissipation", "energy", "solver"])
+            .scene();
         let mut simulation = Simulation::new(&scene, &Start::default()).unwrap();
         for motion in [straight(4e-4, 0.0, -0.02), straight(1e-3, 0.3, 0.0), straight(1e-3, -0.3, 0.0)] {
             simulation.advance(&motion).unwrap_or_else(|error| panic!("{vertical}, {horizontal}: {error}"));

@@ -1,52 +1,26 @@
 //! The group `tangent`: the change of the forces at the end of a motion with the carrier's target in that motion,
 //! against a difference quotient by rollback.
 
-use std::path::Path as FilePath;
-
 use asperity::outputs::{Variable, variables};
 use asperity::scene::{Force, Path, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
 
+use crate::common::runs::straight;
+use crate::common::scenes::SceneText;
+
 /// Six masses, rough on rough, Maxwell elements in all links.
 fn scene(friction: &str) -> Scene {
-    let text = format!(
-        "name = 'tangent'
-        [layer]
-        masses = 6
-        spacing = 1e-4
-        mass = 1e-7
-        roughness = {{ kind = 'points', z = [1e-6, -2e-6, 5e-7, 2e-6, -1e-6, 0.0] }}
-        [layer.vertical]
-        stiffness = 2e3
-        damping = 8e-3
-        maxwell = [{{ stiffness = 1e3, relaxation_time = 1e-4 }}, {{ stiffness = 5e2, relaxation_time = 1e-6 }}]
-        [layer.horizontal]
-        stiffness = 1e3
-        damping = 5e-3
-        maxwell = [{{ stiffness = 6e2, relaxation_time = 1e-4 }}]
-        [layer.lateral_x]
-        stiffness = 5e2
-        damping = 2e-3
-        maxwell = [{{ stiffness = 2e2, relaxation_time = 1e-5 }}]
-        [layer.lateral_z]
-        stiffness = 3e2
-        damping = 2e-3
-        [surface]
-        kind = 'sinusoid'
-        amplitude = 3e-6
-        wavelength = 3.3e-4
-        {friction}
-        [solver]
-        relative_tolerance = 1e-10
-        [fmu]
-        outputs = ['forces', 'contact', 'tangent', 'solver']"
-    );
-    Scene::parse(&text, FilePath::new("scene.toml")).unwrap()
-}
-
-fn straight(duration: f64, u: f64, w: f64) -> Motion {
-    let path = |rate| Path { rate, ..Path::default() };
-    Motion { duration, u: path(u), w: path(w), ..Motion::default() }
+    SceneText::new(6, 1e-4, 1e-7)
+        .roughness(&[1e-6, -2e-6, 5e-7, 2e-6, -1e-6, 0.0])
+        .vertical((2e3, 8e-3, [(1e3, 1e-4), (5e2, 1e-6)]))
+        .horizontal((1e3, 5e-3, [(6e2, 1e-4)]))
+        .lateral_x((5e2, 2e-3, [(2e2, 1e-5)]))
+        .lateral_z((3e2, 2e-3))
+        .sinusoid(3e-6, 3.3e-4)
+        .with(friction)
+        .relative(1e-10)
+        .outputs(&["forces", "contact", "tangent", "solver"])
+        .scene()
 }
 
 struct Run {
@@ -96,12 +70,12 @@ impl Run {
     }
 }
 
-const COULOMB: &str = "[friction]\ncoulomb = 0.3";
-const BOTH: &str = "[friction]\ncoulomb = 0.2\nshear_force = 1e-3";
+const COULOMB: &str = "friction.coulomb = 0.3";
+const BOTH: &str = "friction = { coulomb = 0.2, shear_force = 1e-3 }";
 /// Masses that slip at 0.3 m/s do so where the shear strength falls with the speed, or where it rises.
 const FALLING: &str =
-    "[friction]\ncoulomb = 0.2\nrate_shear = { force = 4e-3, reference_speed = 6e-2, sharpness = 1.0 }";
-const RISING: &str = "[friction]\nrate_shear = { force = 4e-3, reference_speed = 10.0, sharpness = 0.4 }";
+    "friction.coulomb = 0.2\nfriction.rate_shear = { force = 4e-3, reference_speed = 6e-2, sharpness = 1.0 }";
+const RISING: &str = "friction.rate_shear = { force = 4e-3, reference_speed = 10.0, sharpness = 0.4 }";
 
 #[test]
 fn without_contact() {
@@ -156,18 +130,18 @@ fn a_short_motion_meets_the_glassy_stiffness_and_the_damper_over_the_step() {
 /// The same for a carrier that is a body along both axes: by every input, of the forces and of its own motion.
 #[test]
 fn by_every_input_of_a_body() {
-    let text = "name = 'bodies'
-        layer = { masses = 5, spacing = 1e-4, mass = 1e-7,
-                  vertical = { stiffness = 2e3, damping = 8e-3, maxwell = [{ stiffness = 1e3, relaxation_time = 1e-4 }] },
-                  horizontal = { stiffness = 1e3, damping = 5e-3 }, lateral_x = { stiffness = 5e2, damping = 2e-3 },
-                  lateral_z = { stiffness = 3e2 } }
-        surface = { kind = 'sinusoid', amplitude = 2e-6, wavelength = 3.3e-4 }
-        friction = { coulomb = 0.3 }
-        carrier.x = { mass = 1e-4, stiffness = 800.0, damping = 0.02 }
-        carrier.z = { mass = 2e-4, stiffness = 300.0, damping = 0.2, load = 0.05, initial = 'equilibrium' }
-        solver.relative_tolerance = 1e-10
-        fmu.outputs = ['forces', 'carrier', 'tangent', 'solver']";
-    let scene = Scene::parse(text, FilePath::new("scene.toml")).unwrap();
+    let scene = SceneText::new(5, 1e-4, 1e-7)
+        .vertical((2e3, 8e-3, [(1e3, 1e-4)]))
+        .horizontal((1e3, 5e-3))
+        .lateral_x((5e2, 2e-3))
+        .lateral_z(3e2)
+        .sinusoid(2e-6, 3.3e-4)
+        .coulomb(0.3)
+        .with("carrier.x = { mass = 1e-4, stiffness = 800.0, damping = 0.02 }")
+        .with("carrier.z = { mass = 2e-4, stiffness = 300.0, damping = 0.2, load = 0.05, initial = 'equilibrium' }")
+        .relative(1e-10)
+        .outputs(&["forces", "carrier", "tangent", "solver"])
+        .scene();
     let force = |rate| Force { start: None, change: Path { rate, ..Path::default() } };
     let names = ["F_x", "F_z", "carrier.u", "carrier.u_rate", "carrier.w", "carrier.w_rate", "solver.events"];
     let tangents = |by: &str| {

@@ -4,45 +4,32 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-use crate::common::{asperity, scratch};
+use crate::common::scenes::SceneText;
+use crate::common::{Table, asperity, scratch};
 
 /// Two waves of a sine under 32 masses.
-const SINE: &str = r#"
-name = "sine"
-[layer]
-masses = 32
-spacing = 6.25e-5
-foundation = "half_space"
-width = 1e-2
-[material]
-density = 1100.0
-poisson_ratio = 0.5
-equilibrium_modulus = 1e6
-prony = [ { modulus = 1e6, relaxation_time = 1.6e-3 } ]
-[surface]
-kind = "sinusoid"
-amplitude = 2e-5
-wavelength = 1e-3
-[solver]
-method = "step"
-relative_tolerance = 1e-3
-"#;
+fn sine() -> SceneText {
+    SceneText::rubber(32, 6.25e-5, 0.0, 1e-2)
+        .without("layer.thickness")
+        .with("layer.foundation = 'half_space'\nmaterial.poisson_ratio = 0.5\nmaterial.equilibrium_modulus = 1e6")
+        .prony(&[(1e6, 1.6e-3)])
+        .sinusoid(2e-5, 1e-3)
+        .method("step")
+        .relative(1e-3)
+}
 
 /// Above Westergaard's pressure of full contact, M q a/2 = 84 kPa at rest and twice that of the glass.
 const FULL: [&str; 4] = ["--pressure", "2e5", "--speed", "0.1"];
 
-fn rough() -> String {
-    let surface = "[surface]\nkind = \"self_affine\"\nlength = 2e-3\npoints = 128\nhurst = 0.8\nrms = 5e-6\n\
-                   roll_off_wavelength = 1e-3\ncut_off_wavelength = 2e-4\nseed = 5\n";
-    let (start, end) = SINE.split_once("[surface]").unwrap();
-    let end = end.split_once("[solver]").unwrap().1;
-    format!("{start}{surface}[solver]{end}")
+fn rough() -> SceneText {
+    sine().without("surface").with(
+        "surface = { kind = 'self_affine', length = 2e-3, points = 128, hurst = 0.8, rms = 5e-6, \
+         roll_off_wavelength = 1e-3, cut_off_wavelength = 2e-4, seed = 5 }",
+    )
 }
 
-fn write(folder: &Path, text: &str) -> (PathBuf, PathBuf) {
-    let path = folder.join("scene.toml");
-    fs::write(&path, text).unwrap();
-    (path, folder.join("table.csv"))
+fn write(folder: &Path, scene: &SceneText) -> (PathBuf, PathBuf) {
+    (scene.write(folder), folder.join("table.csv"))
 }
 
 fn converge(scene: &Path, table: &Path, options: &[&str]) -> Output {
@@ -67,47 +54,36 @@ fn refused(scene: &Path, table: &Path, options: &[&str], status: i32) -> String 
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// The values of a column, by its name without the unit.
-fn column(table: &str, name: &str) -> Vec<String> {
-    let mut lines = table.lines().filter(|line| !line.starts_with('#'));
-    let mut names = lines.next().unwrap().split(',').map(|name| name.split(" [").next().unwrap());
-    let index = names.position(|other| other == name).unwrap_or_else(|| panic!("no column {name}"));
-    lines.map(|line| line.split(',').nth(index).unwrap().to_owned()).collect()
-}
-
-fn numbers(table: &str, name: &str) -> Vec<f64> {
-    column(table, name).iter().map(|value| value.parse().unwrap()).collect()
-}
-
 /// In full contact all is exact: the area is 1, μ = (qa)² Im M(qv)/(4p), and one halving is enough.
 #[test]
 fn full_contact_of_a_sine_converges_at_once() {
     let folder = scratch("converge-sine");
-    let (scene, path) = write(&folder, SINE);
+    let (scene, path) = write(&folder, &sine());
     let text = study(&scene, &path, &FULL, 0);
     assert!(text.contains("\nVerdict     converged: "), "{text}");
-    let table = fs::read_to_string(&path).unwrap();
-    assert!(table.contains("\n# verdict = converged: "));
-    assert_eq!(column(&table, "masses"), ["32", "64", "128"]);
-    assert_eq!(numbers(&table, "spacing"), [6.25e-5, 3.125e-5, 3.125e-5]);
-    assert_eq!(numbers(&table, "length"), [2e-3, 2e-3, 4e-3]);
-    assert_eq!(numbers(&table, "area"), [1.0; 3]);
-    assert_eq!((column(&table, "seed")[0].as_str(), column(&table, "friction_change")[0].as_str()), ("", ""));
+    let file = fs::read_to_string(&path).unwrap();
+    assert!(file.contains("\n# verdict = converged: "));
+    let table = Table::parse(&file);
+    assert_eq!(table.texts("masses"), ["32", "64", "128"]);
+    assert_eq!(table.column("spacing"), [6.25e-5, 3.125e-5, 3.125e-5]);
+    assert_eq!(table.column("length"), [2e-3, 2e-3, 4e-3]);
+    assert_eq!(table.column("area"), [1.0; 3]);
+    assert_eq!((table.text(0, "seed"), table.text(0, "friction_change")), ("", ""));
     // Im M = x/(1 + x²) E_1/(1 - ν²), x = q v τ = 1.005; q a = 0.1257.
     let exact = 0.1257_f64.powi(2) * 0.5 * 1e6 / 0.75 / (4.0 * 2e5);
-    let friction = numbers(&table, "friction");
+    let friction = table.column("friction");
     // What the fit misses at one wave, (1 + (2p/M)²) of tilted pressures and the open ends of the chain.
     assert!(friction.iter().all(|friction| (friction / exact - 1.0).abs() < 0.15), "{friction:?}, exact {exact}");
-    let change: f64 = column(&table, "friction_change")[1].parse().unwrap();
+    let change = table.number(1, "friction_change");
     assert!((change - (friction[1] - friction[0]) / friction[1]).abs() < 1e-12);
-    assert!(table.lines().count() == 11 && path.with_extension("svg").exists());
+    assert!(file.lines().count() == 11 && path.with_extension("svg").exists());
 }
 
 /// A tenth of M, 0.133 MPa, is passed by the pressure of the study alone: the scene has no phases.
 #[test]
 fn a_pressure_beyond_the_links_is_warned_of_once() {
     let folder = scratch("converge-hard");
-    let (scene, path) = write(&folder, SINE);
+    let (scene, path) = write(&folder, &sine());
     let warnings = |output: &Output| String::from_utf8_lossy(&output.stderr).matches("pressed too hard").count();
     let study = converge(&scene, &path, &["--pressure", "2e5", "--speed", "0.1", "--error", "0.5"]);
     assert_eq!(warnings(&study), 1, "{study:?}");
@@ -131,14 +107,14 @@ fn a_rough_surface_stays_open_with_few_masses() {
     let text = study(&scene, &path, &[&options[..], &["--plot", picture.to_str().unwrap()]].concat(), 3);
     assert!(text.contains("\nVerdict     not converged: "), "{text}");
     assert!(text.contains("standard deviation over 3 seeds") && text.contains("Persson     area 0."), "{text}");
-    let table = fs::read_to_string(&path).unwrap();
-    assert_eq!(column(&table, "masses"), ["32", "64", "128", "64", "64"]);
-    assert_eq!(column(&table, "seed"), ["5", "5", "5", "6", "7"]);
-    assert!(column(&table, "status").iter().all(|status| status == "steady"));
+    let table = Table::read(&path);
+    assert_eq!(table.texts("masses"), ["32", "64", "128", "64", "64"]);
+    assert_eq!(table.texts("seed"), ["5", "5", "5", "6", "7"]);
+    assert!(table.texts("status").iter().all(|status| *status == "steady"));
     // Another seed is another surface, and so is one of twice the length.
-    let friction = numbers(&table, "friction");
+    let friction = table.column("friction");
     assert!((0..5).all(|i| (0..i).all(|j| friction[i] != friction[j])), "{friction:?}");
-    assert!(numbers(&table, "persson_area_2d").iter().all(|area| (0.0..1.0).contains(area)));
+    assert!(table.column("persson_area_2d").iter().all(|area| (0.0..1.0).contains(area)));
     assert!(picture.exists());
 }
 
@@ -146,7 +122,7 @@ fn a_rough_surface_stays_open_with_few_masses() {
 #[test]
 fn a_table_cut_off_is_completed() {
     let folder = scratch("converge-resume");
-    let (scene, path) = write(&folder, &SINE.replace("masses = 32", "masses = 16"));
+    let (scene, path) = write(&folder, &sine().set("layer.masses", 16));
     let text = study(&scene, &path, &FULL, 0);
     let whole = fs::read_to_string(&path).unwrap();
     let without_times = |table: &str| {
@@ -176,23 +152,21 @@ fn a_table_cut_off_is_completed() {
 #[test]
 fn runs_that_are_not_steady_are_rows() {
     let folder = scratch("converge-unsteady");
-    let (scene, path) = write(&folder, SINE);
+    let (scene, path) = write(&folder, &sine());
     let text = study(&scene, &path, &[&FULL[..], &["--set", "solver.max_steps=3"]].concat(), 3);
     assert!(text.contains("gave up at t = "), "{text}");
     assert!(text.contains("Verdict     not converged: what "), "{text}");
-    assert_eq!(column(&fs::read_to_string(&path).unwrap(), "masses"), ["32", "64"]);
+    assert_eq!(Table::read(&path).texts("masses"), ["32", "64"]);
 }
 
 #[test]
 fn invalid_studies_are_refused() {
     let folder = scratch("converge-refused");
-    let (scene, path) = write(&folder, SINE);
-    let direct = "name = 'd'\nlayer = { masses = 4, spacing = 1e-4, mass = 1e-7, vertical = { stiffness = 1e3 } }\n\
-                  surface = { kind = 'flat' }";
-    fs::write(folder.join("direct.toml"), direct).unwrap();
+    let (scene, path) = write(&folder, &sine());
+    fs::write(folder.join("direct.toml"), SceneText::new(4, 1e-4, 1e-7).vertical(1e3).text()).unwrap();
     assert!(refused(&folder.join("direct.toml"), &path, &FULL, 1).contains("direct form"));
-    let heights = SINE.replace("masses = 32", "masses = 2\nroughness = { kind = \"points\", z = [0.0, 1e-6] }");
-    fs::write(folder.join("heights.toml"), heights).unwrap();
+    let heights = sine().set("layer.masses", 2).roughness(&[0.0, 1e-6]);
+    fs::write(folder.join("heights.toml"), heights.text()).unwrap();
     assert!(refused(&folder.join("heights.toml"), &path, &FULL, 1).contains("one height for each mass"));
     let asked = |options: &[&str], status: i32| refused(&scene, &path, &[&FULL[..], options].concat(), status);
     assert!(asked(&["--most-masses", "63"], 1).contains("expected at least 64"));

@@ -5,6 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::common::scenes::SceneText;
 use crate::common::{Table, asperity, drive, fmpy, largest, library, python, run, scratch};
 use crate::sweeps::{Grid, REST, WARM, separation};
 use asperity::element::{Element, PointContact, Table as Sweep};
@@ -61,7 +62,7 @@ fn driven_in_fmpy_it_gives_what_the_library_gives() {
         let at = |a: f64, b: f64, i: u32| a + (b - a) * f64::from(i) / 40.0;
         rows.extend((0..40).map(|i| vec![at(a.0, b.0, i), at(a.1, b.1, i), start + at(a.2, b.2, i)]));
     }
-    let motion = Table::new(&["time", "u", "w"], rows);
+    let motion = Table::new(["time", "u", "w"], rows);
     motion.write(&folder.join("motion.csv"));
     let driven = drive(&fmu, &folder.join("motion.csv"), &[]);
     let contact = PointContact::new(Sweep::load(&path).unwrap());
@@ -100,35 +101,22 @@ fn an_incomplete_table_is_refused() {
 }
 
 /// Three masses on a wave that stick and slip.
-pub const SCENE: &str = r#"
-name = "wave"
-[layer]
-masses = 3
-spacing = 3.0e-5
-mass = 1.0e-7
-[layer.vertical]
-stiffness = 2.0e3
-damping = 2.0e-2
-maxwell = [ { stiffness = 1.0e3, relaxation_time = 1.0e-4 } ]
-[layer.horizontal]
-stiffness = 4.0e3
-damping = 2.0e-2
-[surface]
-kind = "sinusoid"
-amplitude = 1.0e-6
-wavelength = 9.0e-5
-[friction]
-coulomb = 0.4
-[solver]
-relative_tolerance = 1.0e-4
-"#;
+pub fn waves() -> SceneText {
+    SceneText::new(3, 3.0e-5, 1.0e-7)
+        .set("name", "wave")
+        .vertical((2.0e3, 2.0e-2, [(1.0e3, 1.0e-4)]))
+        .horizontal((4.0e3, 2.0e-2))
+        .sinusoid(1.0e-6, 9.0e-5)
+        .coulomb(0.4)
+        .relative(1.0e-4)
+}
 
 /// Sweep, pack, check. In the middle of the cells of so coarse a table the element is within some per cent.
 #[test]
 fn swept_packed_and_checked_it_is_near_the_layer() {
     let folder = scratch("element-check");
     let (scene, path) = (folder.join("wave.toml"), folder.join("wave.csv"));
-    fs::write(&scene, SCENE).unwrap();
+    fs::write(&scene, waves().text()).unwrap();
     let sweep = ["--speeds", "0.02..0.5/4", "--forces", "0.01,0.02,0.04", "-o"];
     run(asperity().arg("sweep").arg(&scene).args(sweep).arg(&path));
     let (fmu, text) = pack(&path, &["--check", scene.to_str().unwrap(), "--points", "6"]);
@@ -137,13 +125,10 @@ fn swept_packed_and_checked_it_is_near_the_layer() {
     for file in ["points.csv", "errors.svg", "loop-layer.csv", "loop-element.csv", "loop.svg"] {
         assert!(checked.join(file).is_file(), "{file}");
     }
-    let points = fs::read_to_string(checked.join("points.csv")).unwrap();
-    let errors = |column: usize| {
-        let fields = points.lines().skip(1).map(|line| line.split(',').nth(column).unwrap().parse::<f64>().unwrap());
-        fields.fold(0.0_f64, |largest, error| largest.max(error.abs()))
-    };
-    // F_x, F_z and P_diss.
-    assert!([7, 10, 13].into_iter().all(|column| errors(column) < 0.05), "{points}");
+    let points = Table::read(&checked.join("points.csv"));
+    for name in ["F_x error", "F_z error", "P_diss error"] {
+        assert!(largest(&points.column(name)) < 0.05, "{name}: {points:?}");
+    }
     let index = "import sys, zipfile; print(zipfile.ZipFile(sys.argv[1]).read('documentation/index.html').decode())";
     let page = run(Command::new(python()).args(["-c", index]).arg(&fmu));
     assert!(page.contains("6 of 6 points between") && page.contains("to and fro by"), "{page}");

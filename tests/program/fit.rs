@@ -5,8 +5,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-use crate::common::{asperity, root, run, scratch};
-use asperity::scene::{LinkKind, Material, PronyTerm, Scene};
+use crate::common::random::Random;
+use crate::common::scenes::SceneText;
+use crate::common::{Table, asperity, root, run, scratch};
+use asperity::scene::{Material, PronyTerm, Scene};
 
 /// A tread-like rubber, one term a decade from 1e-13 s on.
 const SIXTEEN: [f64; 16] =
@@ -42,17 +44,10 @@ fn write_moduli(path: &Path, compound: &Material, frequencies: &[f64], mut facto
     fs::write(path, text).unwrap();
 }
 
-/// 1 + sigma times a normal deviate, the same each time: G. Marsaglia's xorshift, G. Box's and M. Muller's
-/// transformation.
+/// 1 + sigma times a normal deviate, the same each time: G. Box's and M. Muller's transformation.
 fn noise(sigma: f64) -> impl FnMut() -> f64 {
-    let mut state: u64 = 88_172_645_463_325_252;
-    let mut uniform = move || {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        ((state >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
-    };
-    move || 1.0 + sigma * (-2.0 * uniform().ln()).sqrt() * (TAU * uniform()).cos()
+    let mut random = Random::new(1);
+    move || 1.0 + sigma * (-2.0 * (1.0 - random.unit()).ln()).sqrt() * (TAU * random.unit()).cos()
 }
 
 fn fit(data: &Path, options: &[&str]) -> (PathBuf, Output) {
@@ -72,8 +67,8 @@ fn fitted(data: &Path, options: &[&str]) -> (PathBuf, String) {
 fn scene_of(folder: &Path, printed: &str) -> PathBuf {
     let (_, material) = printed.split_once("[material]").unwrap();
     let scene = folder.join("fitted.toml");
-    let layer = "name = \"fitted\"\n[layer]\nmasses = 1\nspacing = 1e-4\nthickness = 1e-3\nwidth = 1e-2\n";
-    let text = format!("{layer}[surface]\nkind = \"flat\"\n[material]\ndensity = 1100\npoisson_ratio = 0.49{material}");
+    let layer = SceneText::new(1, 1e-4, 0.0).without("layer.mass").with("layer.thickness = 1e-3\nlayer.width = 1e-2");
+    let text = format!("{}[material]\ndensity = 1100\npoisson_ratio = 0.49{material}", layer.text());
     fs::write(&scene, text).unwrap();
     scene
 }
@@ -265,23 +260,20 @@ fn links_have_stiffnesses_instead() {
         |options: &[&str]| asperity().arg("material").arg(&scene).arg("-o").arg(&table).args(options).output().unwrap();
     let printed = String::from_utf8(material(&["--frequencies", "10..1000"]).stdout).unwrap();
     let known = Scene::load(&scene).unwrap();
-    let link = known.layer.links[LinkKind::Vertical].as_ref().unwrap();
+    let link = known.layer.links[asperity::scene::LinkKind::Vertical].as_ref().unwrap();
     assert!(printed.contains("vertical") && printed.contains("equilibrium K"), "{printed}");
-    let text = fs::read_to_string(&table).unwrap();
-    let mut lines = text.lines().filter(|line| !line.starts_with('#'));
-    let names: Vec<&str> = lines.next().unwrap().split(',').collect();
-    let storage = names.iter().position(|name| *name == "vertical K' [N/m]").unwrap();
-    let row: Vec<f64> = lines.next().unwrap().split(',').map(|field| field.parse().unwrap()).collect();
+    let table = Table::read(&table);
+    let [frequency, storage, loss] = ["omega", "vertical K'", "vertical K''"].map(|name| table.number(0, name));
     let of = |j: &asperity::scene::MaxwellElement| {
-        let x = row[0] * j.relaxation_time;
+        let x = frequency * j.relaxation_time;
         (j.stiffness * x * x / (1.0 + x * x), j.stiffness * x / (1.0 + x * x))
     };
     let (real, imaginary) = link.maxwell.iter().map(of).fold((0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1));
     let real = real + link.stiffness.unwrap_or(0.0);
-    let imaginary = imaginary + row[0] * link.damping.unwrap_or(0.0);
+    let imaginary = imaginary + frequency * link.damping.unwrap_or(0.0);
     // The same sums in another order of rounding.
-    assert!((row[0] - 10.0).abs() < 1e-14 && (row[storage] / real - 1.0).abs() < 1e-14);
-    assert!((row[storage + 1] / imaginary - 1.0).abs() < 1e-13);
+    assert!((frequency - 10.0).abs() < 1e-14 && (storage / real - 1.0).abs() < 1e-14);
+    assert!((loss / imaginary - 1.0).abs() < 1e-13);
     let refused = material(&["--temperature", "300"]);
     let message = String::from_utf8(refused.stderr).unwrap();
     assert!(message.contains("the scene has no material.wlf"), "{message}");

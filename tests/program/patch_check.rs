@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use crate::common::{Table, asperity, largest, library, python, run, scratch};
-use crate::element::SCENE;
+use crate::element::waves;
 
 /// Speeds of the table, m/s.
 const SPEEDS: &str = "0.02..0.5/4";
@@ -17,7 +17,7 @@ const FLAT: &str = "shape = 'flat'\nlength = 4e-4\nwidth = 2e-4\nnx = 8\nny = 5"
 /// A folder with the scene, its table and a patch.
 fn example(name: &str, face: &str) -> PathBuf {
     let folder = scratch(name);
-    fs::write(folder.join("wave.toml"), SCENE).unwrap();
+    fs::write(folder.join("wave.toml"), waves().text()).unwrap();
     let sweep = ["--speeds", SPEEDS, "--forces", "0.01,0.02,0.04", "-o"];
     run(asperity().arg("sweep").arg(folder.join("wave.toml")).args(sweep).arg(folder.join("wave.csv")));
     let patch = format!("name = 'pad'\n[table]\npath = 'wave.csv'\nnominal_area = 1e-8\n[patch]\n{face}\n");
@@ -151,10 +151,10 @@ fn too_many_elements_are_not_doubled() {
 fn another_scene_is_refused() {
     let folder = example("patch-check-refused", FLAT);
     let scene = |text: String| fs::write(folder.join("wave.toml"), text).unwrap();
-    scene(SCENE.replace("\"wave\"", "\"other\""));
+    scene(waves().set("name", "other").text());
     let text = refused(&folder, &[]);
     assert!(text.contains("the table was swept of \"wave\", the scene is \"other\""), "{text}");
-    scene(SCENE.replace("masses = 3", "masses = 3\nclearance = 1e-6"));
+    scene(waves().set("layer.clearance", 1e-6).text());
     let text = refused(&folder, &[]);
     assert!(text.contains("the separation at w = 0 is") && text.contains("in the table"), "{text}");
     let text = refused(&folder, &["--points", "0"]);

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::common::scenes::SceneText;
 use crate::common::{Table, asperity, root, run, scratch, simulate};
 
 fn reference(name: &str) -> PathBuf {
@@ -285,52 +286,36 @@ fn a_scene_as_json_is_all_of_it() {
 }
 
 /// Two masses of rubber, A = 1e-6 m², pressed at 20 mm/s; at 400 K times are a tenth of those at 300 K.
-const RUBBER: &str = "name = 'rubber'
-[layer]
-masses = 2
-spacing = 1e-4
-thickness = 1e-3
-width = 1e-2
-[material]
-density = 1000
-poisson_ratio = 0.25
-equilibrium_modulus = 2e6
-viscosity = 10
-prony = 'compound.csv'
-wlf = { c1 = 2, c2 = 100, reference_temperature = 300, temperature = 400 }
-[surface]
-kind = 'flat'
-[friction]
-shear_strength = 1e4
-[[excitation]]
-duration = 1e-3
-w_rate = -0.02
-until_pressure = 1e4
-";
-
-fn rubber(folder: &Path, text: &str) -> PathBuf {
+fn rubber(folder: &Path, until_pressure: f64) -> PathBuf {
     fs::write(folder.join("compound.csv"), "relaxation_time,modulus\n1e-3,5e6\n").unwrap();
-    let scene = folder.join("rubber.toml");
-    fs::write(&scene, text).unwrap();
-    scene
+    let scene = SceneText::rubber(2, 1e-4, 1e-3, 1e-2)
+        .set("name", "rubber")
+        .with("material.density = 1000\nmaterial.poisson_ratio = 0.25\nmaterial.equilibrium_modulus = 2e6")
+        .with("material.viscosity = 10\nmaterial.prony = 'compound.csv'")
+        .wlf([2.0, 100.0, 300.0], 400.0)
+        .set("friction.shear_strength", 1e4)
+        .phase(&format!("duration = 1e-3, w_rate = -0.02, until_pressure = {until_pressure:?}"));
+    let path = folder.join("rubber.toml");
+    fs::write(&path, scene.text()).unwrap();
+    path
 }
 
 #[test]
 fn a_phase_ends_at_a_pressure_on_the_whole_layer() {
     let folder = scratch("program-pressure");
-    let scene = rubber(&folder, RUBBER);
+    let scene = rubber(&folder, 1e4);
     let table = simulate(&scene, &folder, &["--points", "10"]);
     let force = table.column("F_z")[10];
     assert!((force / (2.0 * 1e-6) - 1e4).abs() < 0.1, "{force}");
     assert!(table.column("time")[10] < 1e-3);
-    let text = warnings(&rubber(&folder, &RUBBER.replace("until_pressure = 1e4", "until_pressure = 1e9")), &folder);
+    let text = warnings(&rubber(&folder, 1e9), &folder);
     assert!(text.contains("warning: phase 1") && text.contains("until_pressure = 1000000000 Pa"), "{text}");
 }
 
 #[test]
 fn a_description_of_a_material_has_the_derived_links_and_the_shift() {
     let folder = scratch("program-rubber");
-    let scene = rubber(&folder, RUBBER);
+    let scene = rubber(&folder, 1e4);
     let text = run(asperity().arg("describe").arg(&scene));
     for part in [
         "2 masses of 1e-6 kg",
@@ -361,7 +346,7 @@ fn a_description_of_a_material_has_the_derived_links_and_the_shift() {
 #[test]
 fn parameters_that_do_not_go_together_are_refused_once_all_are_set() {
     let folder = scratch("program-cold");
-    let scene = rubber(&folder, RUBBER);
+    let scene = rubber(&folder, 1e4);
     let output = folder.join("out.csv");
     let arguments = ["simulate", scene.to_str().unwrap(), "-o", output.to_str().unwrap()];
     let cold = ["--set", "material.wlf.temperature=190"];
@@ -374,7 +359,7 @@ fn parameters_that_do_not_go_together_are_refused_once_all_are_set() {
 #[test]
 fn the_archive_holds_the_compound() {
     let folder = scratch("program-compound");
-    let (scene, library, fmu) = (rubber(&folder, RUBBER), folder.join("any.so"), folder.join("rubber.fmu"));
+    let (scene, library, fmu) = (rubber(&folder, 1e4), folder.join("any.so"), folder.join("rubber.fmu"));
     fs::write(&library, "a library").unwrap();
     run(asperity().arg("pack").arg(&scene).arg("-o").arg(&fmu).arg("--library").arg(&library));
     let bytes = fs::read(&fmu).unwrap();

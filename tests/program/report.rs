@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::common::scenes::SceneText;
 use crate::common::{asperity, root, run, scratch};
 
 /// A row of a table by the names of its columns.
@@ -340,8 +341,7 @@ fn a_phase_that_a_force_ends_is_the_same_in_all_runs() {
 #[test]
 fn where_runs_part_means_are_compared() {
     let folder = scratch("report-sensitive");
-    let scene = folder.join("hopping.toml");
-    fs::write(&scene, HOPPING).unwrap();
+    let scene = hopping().write(&folder);
     report(&scene, &folder, &["--repeat", "1", "--tolerances", "1e-4..1e-7"]);
     let page = fs::read_to_string(folder.join("index.html")).unwrap();
     assert!(page.contains("The motion is sensitive") && page.contains("1e-12 m"), "{page}");
@@ -356,32 +356,20 @@ fn where_runs_part_means_are_compared() {
     assert!(!page.contains("The motion is sensitive") && page.contains("compared row by row"));
 }
 
-const HOPPING: &str = "
-name = 'hopping'
-[layer]
-masses = 6
-spacing = 1.37e-4
-mass = 2e-7
-[layer.vertical]
-stiffness = 10.0
-[layer.horizontal]
-stiffness = 10.0
-[layer.lateral_x]
-stiffness = 3e4
-[layer.lateral_z]
-stiffness = 3e4
-[surface]
-kind = 'points'
-x = [0.0, 1.1e-4, 2.3e-4, 3.2e-4, 4.5e-4, 5.3e-4, 6.4e-4]
-z = [0.0, -6e-6, 5e-6, -9e-6, 1e-6, -4e-6, 0.0]
-periodic = true
-[[excitation]]
-duration = 5e-4
-w_rate = -0.02
-[[excitation]]
-duration = 1e-2
-u_rate = 1.0
-";
+fn hopping() -> SceneText {
+    SceneText::new(6, 1.37e-4, 2e-7)
+        .vertical(10.0)
+        .horizontal(10.0)
+        .lateral_x(3e4)
+        .lateral_z(3e4)
+        .points(
+            &[0.0, 1.1e-4, 2.3e-4, 3.2e-4, 4.5e-4, 5.3e-4, 6.4e-4],
+            &[0.0, -6e-6, 5e-6, -9e-6, 1e-6, -4e-6, 0.0],
+            true,
+        )
+        .phase("duration = 5e-4, w_rate = -0.02")
+        .phase("duration = 1e-2, u_rate = 1.0")
+}
 
 /// The reference leaves no Maxwell element out: what `solver.reduce` costs is in the errors, whatever the tolerance.
 #[test]
@@ -404,10 +392,7 @@ fn what_a_reduced_scene_is_wrong_by_shows() {
 #[test]
 fn what_a_scene_does_not_have_has_no_error() {
     let folder = scratch("report-absent");
-    let scene = folder.join("flat.toml");
-    let text = "name = 'flat'\n[layer]\nmasses = 2\nspacing = 1e-4\nmass = 1e-7\n[layer.vertical]\nstiffness = 1e3\n\
-                [surface]\nkind = 'flat'\n[[excitation]]\nduration = 1e-3\nw_rate = -0.01\n";
-    fs::write(&scene, text).unwrap();
+    let scene = SceneText::new(2, 1e-4, 1e-7).vertical(1e3).phase("duration = 1e-3, w_rate = -0.01").write(&folder);
     report(&scene, &folder, &["--repeat", "1", "--tolerances", "1e-4..1e-6"]);
     let rows = errors(&folder);
     // By time-stepping a tolerance may be left out: the event-driven reference takes six steps.

@@ -67,9 +67,9 @@ fn sums(elements: &[Element], part: impl Fn(&Element, usize) -> f64) -> Vec<f64>
 
 /// The table's friction coefficients at the speeds about 2π 20 mm/s.
 fn friction() -> RangeInclusive<f64> {
-    let text = fs::read_to_string(example().join("seal.table.csv")).unwrap();
-    let rows = text.lines().filter(|line| line.starts_with("0.1,") || line.starts_with("0.316228,"));
-    let values: Vec<f64> = rows.map(|line| line.split(',').nth(4).unwrap().parse().unwrap()).collect();
+    let table = Table::read(&example().join("seal.table.csv"));
+    let rows = table.column("speed").into_iter().zip(table.column("friction"));
+    let values: Vec<f64> = rows.filter(|(speed, _)| [0.1, 0.316228].contains(speed)).map(|(_, value)| value).collect();
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     least..=largest(&values)
 }

@@ -5,6 +5,7 @@ use std::fs;
 use std::io::{Cursor, Read as _, Write as _};
 use std::path::Path;
 
+use crate::common::scenes::SceneText;
 use crate::common::{asperity, run, scratch};
 use asperity::fmi::{Catalogue, Sources, guid};
 use asperity::scene::Scene;
@@ -19,17 +20,15 @@ const CUT_OFF: f64 = 1e-4;
 
 /// A scene on the surface whose keys are given.
 fn scene(surface: &str) -> String {
-    format!(
-        "name = 's'\n[layer]\nmasses = 2\nspacing = 1e-4\nmass = 1e-7\n[layer.vertical]\nstiffness = 1e3\n\
-         [surface]\n{surface}\n[[excitation]]\nduration = 1e-5\n"
-    )
+    let layer = SceneText::new(2, 1e-4, 1e-7).vertical(1e3).phase("duration = 1e-5");
+    layer.with(&format!("surface = {{ {surface} }}")).text()
 }
 
 /// A self-affine one with `points` points.
 fn rough(hurst: f64, points: usize) -> String {
     scene(&format!(
-        "kind = 'self_affine'\nlength = {LENGTH}\npoints = {points}\nhurst = {hurst}\nrms = {RMS}\n\
-         roll_off_wavelength = {ROLL_OFF}\ncut_off_wavelength = {CUT_OFF}\nseed = 3\n"
+        "kind = 'self_affine', length = {LENGTH}, points = {points}, hurst = {hurst}, rms = {RMS}, \
+         roll_off_wavelength = {ROLL_OFF}, cut_off_wavelength = {CUT_OFF}, seed = 3"
     ))
 }
 
@@ -87,7 +86,7 @@ fn a_measured_surface_is_found_as_it_was_made() {
     fs::write(&source, rough(0.8, 8000)).unwrap();
     run(asperity().arg("surface").arg(&source).arg("--write").arg(&written));
     let surface = Scene::load(&source).unwrap().surface;
-    fs::write(&source, scene("kind = 'file'\npath = 'plain.csv'\nperiodic = true")).unwrap();
+    fs::write(&source, scene("kind = 'file', path = 'plain.csv', periodic = true")).unwrap();
     let read = Scene::load(&source).unwrap().surface;
     assert_eq!((read.x(), read.z()), (surface.x(), surface.z()), "what is written is the same to the last bit");
 
@@ -138,7 +137,7 @@ fn the_analysis_is_printed_and_plotted() {
 fn what_cannot_be_analysed_is_refused() {
     let folder = scratch("surface-refused");
     let [source, profile] = ["scene.toml", "profile.csv"].map(|name| folder.join(name));
-    fs::write(&source, scene("kind = 'file'\npath = 'profile.csv'")).unwrap();
+    fs::write(&source, scene("kind = 'file', path = 'profile.csv'")).unwrap();
     fs::write(&profile, "0 1\n1 2\n2 1\n").unwrap();
     let [source, profile] = [&source, &profile].map(|path| path.to_str().unwrap());
     assert!(failure(&["surface", source, "--unit", "mm"]).contains("a scene defines how its surface is read"));
@@ -174,9 +173,9 @@ fn lines_of_an_areal_measurement_go_into_the_archive_as_text() {
     let [source, fmu, unpacked] = ["scene.toml", "scene.fmu", "unpacked"].map(|name| folder.join(name));
     fs::write(folder.join("road.x3p"), x3p()).unwrap();
     let file = "kind = 'file', path = 'road.x3p'";
-    let text = scene("kind = 'file'\npath = 'road.x3p'\nline = 3\nmissing = 'fill'\ntilt = 'remove'");
-    let roughness = format!("mass = 1e-7\nroughness = {{ {file}, line = 1, unit = 'mm' }}");
-    fs::write(&source, text.replace("mass = 1e-7", &roughness)).unwrap();
+    let text = scene("kind = 'file', path = 'road.x3p', line = 3, missing = 'fill', tilt = 'remove'");
+    let roughness = format!("layer.mass = 1e-7\nlayer.roughness = {{ {file}, line = 1, unit = 'mm' }}");
+    fs::write(&source, text.replace("layer.mass = 1e-7", &roughness)).unwrap();
     let scene = Scene::load(&source).unwrap();
     assert_eq!(scene.files, ["road.x3p.line-1.csv", "road.x3p.line-3.csv"].map(Path::new));
     // Any file serves as the library here.

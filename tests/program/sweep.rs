@@ -4,37 +4,23 @@ use std::f64::consts::TAU;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::common::{asperity, run, scratch};
+use crate::common::scenes::SceneText;
+use crate::common::{Table, asperity, run, scratch};
 
 /// Four masses on a plane: full slip after some tenths of a millimetre.
-const FLAT: &str = r#"
-name = "plane"
-[layer]
-masses = 4
-spacing = 1e-4
-mass = 1e-7
-[layer.vertical]
-stiffness = 2e3
-damping = 3e-2
-maxwell = [ { stiffness = 4e3, relaxation_time = 50.0 } ]
-[layer.horizontal]
-stiffness = 5e3
-damping = 3e-2
-[surface]
-kind = "flat"
-[friction]
-coulomb = 0.3
-shear_force = 1e-3
-[solver]
-method = "step"
-relative_tolerance = 1e-4
-"#;
+fn flat() -> SceneText {
+    SceneText::new(4, 1e-4, 1e-7)
+        .set("name", "plane")
+        .vertical((2e3, 3e-2, [(4e3, 50.0)]))
+        .horizontal((5e3, 3e-2))
+        .with("friction = { coulomb = 0.3, shear_force = 1e-3 }")
+        .method("step")
+        .relative(1e-4)
+}
 
 /// Writes a scene and returns its path and that of its table.
-fn scene(folder: &Path, text: &str) -> (PathBuf, PathBuf) {
-    let path = folder.join("scene.toml");
-    fs::write(&path, text).unwrap();
-    (path, folder.join("table.csv"))
+fn scene(folder: &Path, scene: &SceneText) -> (PathBuf, PathBuf) {
+    (scene.write(folder), folder.join("table.csv"))
 }
 
 fn sweep(scene: &Path, table: &Path, options: &[&str]) {
@@ -48,39 +34,14 @@ fn refused(arguments: &[&Path], options: &[&str]) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// Rows of a table by their columns' names, without units.
-struct Rows {
-    names: Vec<String>,
-    rows: Vec<Vec<String>>,
-}
-
-impl Rows {
-    fn read(path: &Path) -> Self {
-        let text = fs::read_to_string(path).unwrap();
-        let lines: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).collect();
-        let names = lines[0].split(',').map(|name| name.split(" [").next().unwrap().to_owned()).collect();
-        let rows = lines[1..].iter().map(|line| line.split(',').map(str::to_owned).collect()).collect();
-        Self { names, rows }
-    }
-
-    fn text(&self, row: usize, name: &str) -> &str {
-        let column = self.names.iter().position(|other| other == name).unwrap_or_else(|| panic!("no column {name}"));
-        &self.rows[row][column]
-    }
-
-    fn number(&self, row: usize, name: &str) -> f64 {
-        self.text(row, name).parse().unwrap_or_else(|_| panic!("{name}: {:?}", self.rows[row]))
-    }
-}
-
 /// On a plane at full slip |F_x| = μ F_z + k A τ_0, all of it adhesion, lost as friction; and at rest, all masses
 /// stuck, a motion of the carrier stretches the horizontal springs and dampers alone.
 #[test]
 fn full_slip_on_a_plane() {
     let folder = scratch("sweep-plane");
-    let (scene, table) = scene(&folder, FLAT);
+    let (scene, table) = scene(&folder, &flat());
     sweep(&scene, &table, &["--speeds", "0.01,1", "--forces", "0.5,2"]);
-    let rows = Rows::read(&table);
+    let rows = Table::read(&table);
     for row in 0..4 {
         assert_eq!(rows.text(row, "status"), "steady");
         let [speed, force, friction] = ["speed", "mean_force", "friction"].map(|name| rows.number(row, name));
@@ -111,18 +72,17 @@ fn hysteresis_on_a_sinusoid() {
     let (c, c_1, tau_1) = (2e3, 1.5e3, 1e-4);
     let (amplitude, wavelength): (f64, f64) = (1e-5, 1e-3);
     let q = TAU / wavelength;
-    let text = format!(
-        "name = 'mass'\n[layer]\nmasses = 1\nspacing = 1e-4\nmass = 1e-9\n[layer.vertical]\nstiffness = {c}\n\
-         maxwell = [ {{ stiffness = {c_1}, relaxation_time = {tau_1} }}, {{ stiffness = 3e3, relaxation_time = 500.0 }} ]\n\
-         [layer.horizontal]\nstiffness = 2e7\ndamping = 0.28\n\
-         [surface]\nkind = 'sinusoid'\namplitude = {amplitude}\nwavelength = {wavelength}\npoints_per_wavelength = 256\n"
-    );
+    let text = SceneText::new(1, 1e-4, 1e-9)
+        .vertical((c, 0.0, [(c_1, tau_1), (3e3, 500.0)]))
+        .horizontal((2e7, 0.28))
+        .sinusoid(amplitude, wavelength)
+        .set("surface.points_per_wavelength", 256);
     let folder = scratch("sweep-sinusoid");
     let (scene, table) = scene(&folder, &text);
     let best = 1.0 / (q * tau_1);
     let speeds = [0.1 * best, best, 10.0 * best].map(|speed| format!("{speed:e}")).join(",");
     sweep(&scene, &table, &["--speeds", &speeds, "--forces", "0.2"]);
-    let rows = Rows::read(&table);
+    let rows = Table::read(&table);
     for row in 0..3 {
         let x = rows.number(row, "speed") * q * tau_1;
         let slow = 3e3 / (rows.number(row, "speed") * q * 500.0);
@@ -145,25 +105,26 @@ const POINTS: [&str; 4] = ["--speeds", "0.1..1/3", "--forces", "0.5,2"];
 /// search, and the same friction at the same w, within the errors that the tables give. Dashpots of minutes come to rest too.
 #[test]
 fn a_load_held_is_that_of_a_displacement_found() {
-    let text = "name = 'held'
-        layer = { masses = 50, spacing = 1e-4, thickness = 1e-3, width = 1e-2 }
-        material = { density = 1100, poisson_ratio = 0.49, equilibrium_modulus = 2e6,
-                     prony = [{ modulus = 5e6, relaxation_time = 1e-4 }, { modulus = 1e6, relaxation_time = 60.0 }] }
-        surface = { kind = 'self_affine', length = 5e-3, points = 512, hurst = 0.8, rms = 2e-5, seed = 3,
-                    roll_off_wavelength = 2e-3, cut_off_wavelength = 4e-4 }
-        friction = { coulomb = 0.2 }
-        solver = { method = 'step', relative_tolerance = 1e-3 }
-        ";
+    let layer = SceneText::rubber(50, 1e-4, 1e-3, 1e-2)
+        .set("material.equilibrium_modulus", 2e6)
+        .prony(&[(5e6, 1e-4), (1e6, 60.0)])
+        .with(
+            "surface = { kind = 'self_affine', length = 5e-3, points = 512, hurst = 0.8, rms = 2e-5, seed = 3, \
+             roll_off_wavelength = 2e-3, cut_off_wavelength = 4e-4 }",
+        )
+        .coulomb(0.2)
+        .method("step")
+        .relative(1e-3);
     let options = ["--speeds", "0.03,0.1", "--pressures", "3e5"];
     let tables =
         [("displacement", ""), ("load", "carrier.z = { mass = 1e-2, damping = 20.0 }")].map(|(held, carrier)| {
-            let (scene, table) = scene(&scratch(&format!("sweep-held-{held}")), &format!("{text}{carrier}\n"));
+            let (scene, table) = scene(&scratch(&format!("sweep-held-{held}")), &layer.clone().with(carrier));
             sweep(&scene, &table, &options);
             assert_eq!(
                 fs::read_to_string(&table).unwrap().contains("# held = load, on a carrier of 0.01 kg"),
                 held == "load"
             );
-            Rows::read(&table)
+            Table::read(&table)
         });
     let [searched, held] = &tables;
     for row in 0..2 {
@@ -175,14 +136,14 @@ fn a_load_held_is_that_of_a_displacement_found() {
         let [a, b] = of("w");
         assert!((a - b).abs() < 5e-3 * a.abs(), "w {a} {b}");
     }
-    let (scene, _) = scene(&scratch("sweep-held-x"), &format!("{text}carrier.x = {{ mass = 1.0 }}\n"));
+    let (scene, _) = scene(&scratch("sweep-held-x"), &layer.with("carrier.x = { mass = 1.0 }"));
     assert!(refused(&[&scene], &options).contains("[carrier.x]"));
 }
 
 #[test]
 fn a_table_cut_off_anywhere_is_completed() {
     let folder = scratch("sweep-resume");
-    let (scene, table) = scene(&folder, FLAT);
+    let (scene, table) = scene(&folder, &flat());
     sweep(&scene, &table, &POINTS);
     let whole = fs::read(&table).unwrap();
     for cut in (0..whole.len()).step_by(131).chain([whole.len() - 1]) {
@@ -203,7 +164,7 @@ fn a_table_cut_off_anywhere_is_completed() {
     sweep(&scene, &table, &["--speeds", "0.1..1/3", "--forces", "0.5,2", "--force"]);
     assert!(fs::read(&table).unwrap() == whole);
     sweep(&scene, &table, &["--speeds", "0.1..1/3,2", "--forces", "0.5,2"]);
-    assert_eq!(Rows::read(&table).rows.len(), 8);
+    assert_eq!(Table::read(&table).len(), 8);
     assert!(table.with_extension("svg").exists());
 }
 
@@ -212,7 +173,7 @@ fn a_table_cut_off_anywhere_is_completed() {
 #[test]
 fn the_low_end_is_named() {
     let folder = scratch("sweep-low-end");
-    let (scene, table) = scene(&folder, FLAT);
+    let (scene, table) = scene(&folder, &flat());
     let mut sweep = asperity();
     sweep.arg("sweep").arg(&scene).arg("-o").arg(&table).args(["--speeds", "0.1,1", "--forces", "0.5,1,2"]);
     let printed = run(&mut sweep);
@@ -249,7 +210,7 @@ fn the_low_end_is_named() {
 #[test]
 fn merged_shards_are_the_whole() {
     let folder = scratch("sweep-shards");
-    let (scene, table) = scene(&folder, FLAT);
+    let (scene, table) = scene(&folder, &flat());
     sweep(&scene, &table, &POINTS);
     let shards = ["1/3", "2/3", "3/3"].map(|shard| {
         let path = folder.join(format!("shard-{}.csv", &shard[..1]));
@@ -279,7 +240,7 @@ fn merged_shards_are_the_whole() {
 #[test]
 fn invalid_commands_are_refused() {
     let folder = scratch("sweep-refused");
-    let (scene, table) = scene(&folder, FLAT);
+    let (scene, table) = scene(&folder, &flat());
     let asked = |options: &[&str]| refused(&[&scene, Path::new("-o"), &table], options);
     assert!(asked(&["--speeds", "1", "--pressures", "1e5"]).contains("give --forces"));
     assert!(asked(&["--speeds", "1"]).contains("expected --pressures or --forces"));
@@ -309,7 +270,7 @@ fn invalid_commands_are_refused() {
 #[test]
 fn points_that_fail_are_rows() {
     let folder = scratch("sweep-failed");
-    let (scene, table) = scene(&folder, FLAT);
+    let (scene, table) = scene(&folder, &flat());
     let path = [&scene, Path::new("-o"), &table];
     let message = refused(&path, &["--speeds", "1", "--forces", "1", "--set", "solver.max_steps=3"]);
     assert!(message.contains("1 of 1 points"), "{message}");
@@ -318,11 +279,11 @@ fn points_that_fail_are_rows() {
     // Too short a way for three blocks.
     let message = refused(&path, &["--speeds", "1", "--forces", "1", "--distance", "5e-4", "--force"]);
     assert!(message.contains("1 of 1 points"), "{message}");
-    let status = Rows::read(&table).text(0, "status").to_owned();
+    let status = Table::read(&table).text(0, "status").to_owned();
     assert!(status.contains("no room for 3 blocks"), "{status}");
 }
 
-/// The scene of the README: adhesion's maximum at low speed, hysteresis' at high speed, and both move with the
+/// The scene two-maxima: adhesion's maximum at low speed, hysteresis' at high speed, and both move with the
 /// temperature as the shift says, μ(v, T) = μ(a_T v, T_ref), the shear strength and the real area included. Between 1 mm/s and
 /// 0.2 m/s the adhesion falls so steeply that masses stick and slip, which does not shift, for the inertia stays: points
 /// on both sides of it are compared.
@@ -346,7 +307,7 @@ fn two_maxima_move_with_the_temperature() {
             "0.5",
         ];
         sweep(&scene, &table, &options);
-        let rows = Rows::read(&table);
+        let rows = Table::read(&table);
         let parts = ["friction", "friction_hysteresis", "friction_adhesion"];
         (0..speeds.len()).map(|row| parts.map(|name| rows.number(row, name))).collect::<Vec<_>>()
     };

@@ -3,37 +3,23 @@
 
 use asperity::fmi::Entry;
 
+use crate::common::scenes::SceneText;
 use crate::fmi_interface::master::{ERROR, Fmu, OK};
 
 /// Bodies along both axes, pulled by a spring along x, pressed by a load along z.
-const BODIES: &str = r#"
-name = "bodies"
-[layer]
-masses = 4
-spacing = 1e-4
-mass = 1e-7
-vertical = { stiffness = 2e3, damping = 8e-3, maxwell = [{ stiffness = 1e3, relaxation_time = 1e-4 }] }
-horizontal = { stiffness = 1e3, damping = 8e-3 }
-[surface]
-kind = "sinusoid"
-amplitude = 1e-6
-wavelength = 2.3e-4
-[friction]
-coulomb = 0.3
-[carrier.x]
-mass = 1e-4
-stiffness = 500.0
-damping = 0.02
-[carrier.z]
-mass = 1e-4
-damping = 0.2
-load = 0.04
-initial = "equilibrium"
-[solver]
-relative_tolerance = 1e-8
-[fmu]
-outputs = ["forces", "carrier", "energy", "dissipation", "tangent", "elements"]
-"#;
+fn bodies() -> SceneText {
+    SceneText::new(4, 1e-4, 1e-7)
+        .vertical((2e3, 8e-3, [(1e3, 1e-4)]))
+        .horizontal((1e3, 8e-3))
+        .sinusoid(1e-6, 2.3e-4)
+        .coulomb(0.3)
+        .with("carrier.x = { mass = 1e-4, stiffness = 500.0, damping = 0.02 }")
+        .with(
+            "carrier.z.mass = 1e-4\ncarrier.z.damping = 0.2\ncarrier.z.load = 0.04\ncarrier.z.initial = 'equilibrium'",
+        )
+        .relative(1e-8)
+        .outputs(&["forces", "carrier", "energy", "dissipation", "tangent", "elements"])
+}
 
 fn names(fmu: &Fmu, is: fn(&Entry<'_>) -> bool) -> Vec<String> {
     fmu.catalogue.entries().filter(|(_, entry)| is(entry)).map(|(_, entry)| entry.name()).collect()
@@ -50,22 +36,21 @@ fn pull(fmu: &Fmu, from: &mut f64, count: u32, h: f64) {
 
 #[test]
 fn inputs_are_those_that_act_in_their_order() {
-    let of = |scene: &str| names(&Fmu::of(scene, false), |entry| matches!(entry, Entry::Input(_)));
+    let of = |scene: SceneText| names(&Fmu::of(&scene.text(), false), |entry| matches!(entry, Entry::Input(_)));
     // A damper is a drive; without one w is no input.
-    assert_eq!(of(BODIES), ["u", "w", "load", "pull"]);
-    assert_eq!(of(&BODIES.replace("damping = 0.2\n", "")), ["u", "load", "pull"]);
-    let alone = BODIES.replace("[carrier.x]\nmass = 1e-4\nstiffness = 500.0\ndamping = 0.02\n", "");
-    assert_eq!(of(&alone), ["u", "w", "load"]);
+    assert_eq!(of(bodies()), ["u", "w", "load", "pull"]);
+    assert_eq!(of(bodies().without("carrier.z.damping")), ["u", "load", "pull"]);
+    assert_eq!(of(bodies().without("carrier.x")), ["u", "w", "load"]);
 }
 
 #[test]
 fn parameters_are_the_numbers_given() {
-    let fmu = Fmu::of(BODIES, false);
+    let fmu = Fmu::of(&bodies().text(), false);
     let of_carrier = names(&fmu, |entry| matches!(entry, Entry::Parameter(..)));
     let of_carrier: Vec<_> = of_carrier.into_iter().filter(|name| name.starts_with("carrier.")).collect();
     let expected = ["x.mass", "x.stiffness", "x.damping", "z.mass", "z.damping", "z.load", "z.initial"];
     assert_eq!(of_carrier, expected.map(|name| format!("carrier.{name}")));
-    let fmu = Fmu::initialising_with(BODIES);
+    let fmu = Fmu::initialising_with(&bodies().text());
     assert_eq!((fmu.set_real("carrier.z.load", 0.08), fmu.exit()), (OK, OK));
     assert!((fmu.real("F_z") - 0.08).abs() < 1e-4, "{}", fmu.real("F_z"));
 }
@@ -73,7 +58,7 @@ fn parameters_are_the_numbers_given() {
 /// At rest F_z is the load; a force that is set acts from the next step on, without delay.
 #[test]
 fn a_load_acts_from_its_step_on() {
-    let fmu = Fmu::running_with(BODIES);
+    let fmu = Fmu::running_with(&bodies().text());
     let mut time = 0.0;
     pull(&fmu, &mut time, 20, 5e-5);
     let before = fmu.real("F_z");
@@ -91,7 +76,7 @@ fn a_load_acts_from_its_step_on() {
 
 #[test]
 fn a_state_is_restored_bit_for_bit() {
-    let fmu = Fmu::running_with(BODIES);
+    let fmu = Fmu::running_with(&bodies().text());
     let mut time = 0.0;
     pull(&fmu, &mut time, 30, 5e-5);
     assert_eq!((fmu.set_real("load", 0.01), fmu.set_real("pull", 0.002)), (OK, OK));
@@ -99,7 +84,7 @@ fn a_state_is_restored_bit_for_bit() {
     let (bytes, from) = (fmu.frozen(), time);
     pull(&fmu, &mut time, 10, 5e-5);
     let expected = fmu.bits();
-    let other = Fmu::running_with(BODIES);
+    let other = Fmu::running_with(&bodies().text());
     for fmu in [&fmu, &other] {
         fmu.thaw(&bytes);
         let mut time = from;
@@ -107,7 +92,7 @@ fn a_state_is_restored_bit_for_bit() {
         assert_eq!(fmu.bits(), expected);
     }
     // Not into a scene whose carrier is prescribed.
-    let unlike = Fmu::running_with(&BODIES.replace("name = \"bodies\"", "name = \"other\""));
+    let unlike = Fmu::running_with(&bodies().set("name", "other").text());
     let mut state = std::ptr::null_mut();
     assert_eq!(unlike.deserialise(&bytes, &mut state), ERROR);
 }
@@ -115,7 +100,7 @@ fn a_state_is_restored_bit_for_bit() {
 /// The states, u and w among them, held: the drive's spring alone follows the drive.
 #[test]
 fn directional_derivatives_are_those_of_the_drive() {
-    let fmu = Fmu::running_with(BODIES);
+    let fmu = Fmu::running_with(&bodies().text());
     let mut time = 0.0;
     pull(&fmu, &mut time, 30, 5e-5);
     let by = |unknown: &str, known: &str| {
@@ -136,7 +121,7 @@ fn directional_derivatives_are_those_of_the_drive() {
 /// Speeds, accelerations by the equation of motion, and the drive's rate.
 #[test]
 fn output_derivatives_are_those_of_the_motion() {
-    let fmu = Fmu::running_with(BODIES);
+    let fmu = Fmu::running_with(&bodies().text());
     let mut time = 0.0;
     pull(&fmu, &mut time, 37, 5e-5);
     let rate = |name: &str| {
@@ -161,7 +146,7 @@ fn output_derivatives_are_those_of_the_motion() {
 fn impossible_forces_are_refused() {
     for bad in [f64::NAN, f64::INFINITY, 1e31] {
         for force in ["load", "pull"] {
-            let fmu = Fmu::running_with(BODIES);
+            let fmu = Fmu::running_with(&bodies().text());
             assert_eq!(fmu.set_real(force, bad), OK);
             let before = fmu.bits();
             assert_ne!(fmu.step(0.0, 1e-5), OK);
@@ -170,27 +155,24 @@ fn impossible_forces_are_refused() {
         }
     }
     // A load so large that the carrier leaves all range.
-    let fmu = Fmu::running_with(&BODIES.replace("load = 0.04\ninitial = \"equilibrium\"", "load = -1e30\nstart = 1.0"));
+    let flung = bodies().without("carrier.z.initial").set("carrier.z.load", -1e30).set("carrier.z.start", 1.0);
+    let fmu = Fmu::running_with(&flung.text());
     assert_eq!(fmu.step(0.0, 1e-3), ERROR, "{:?}", fmu.messages());
 }
 
 /// A thermal model's temperature: what a parameter would have been, from the start on or later.
 #[test]
 fn a_temperature_is_an_input() {
-    let scene = |input: &str, kelvin: f64| {
-        format!(
-            "name = 'warm'
-            layer = {{ masses = 3, spacing = 1e-4, thickness = 1e-3, width = 1e-2 }}
-            material = {{ density = 1100, poisson_ratio = 0.49, equilibrium_modulus = 2e6, viscosity = 10,
-                          prony = [{{ modulus = 5e6, relaxation_time = 1e-4 }}],
-                          wlf = {{ c1 = 7.52, c2 = 119.75, reference_temperature = 293.15, temperature = {kelvin:?} }} }}
-            surface = {{ kind = 'sinusoid', amplitude = 1e-6, wavelength = 2.3e-4 }}
-            friction = {{ coulomb = 0.3 }}
-            {input}
-            fmu.outputs = ['forces', 'dissipation', 'energy']"
-        )
+    let scene = |kelvin: f64| {
+        SceneText::rubber(3, 1e-4, 1e-3, 1e-2)
+            .with("material.equilibrium_modulus = 2e6\nmaterial.viscosity = 10")
+            .prony(&[(5e6, 1e-4)])
+            .wlf([7.52, 119.75, 293.15], kelvin)
+            .sinusoid(1e-6, 2.3e-4)
+            .coulomb(0.3)
+            .outputs(&["forces", "dissipation", "energy"])
     };
-    let with = |kelvin: f64| scene("input.temperature = true", kelvin);
+    let with = |kelvin: f64| scene(kelvin).set("input.temperature", true).text();
     let press = |fmu: &Fmu, from: u32, to: u32| {
         for i in from..to {
             let (w, u) = (-1e-7 * f64::from(i), 2e-6 * f64::from(i));
@@ -204,11 +186,11 @@ fn a_temperature_is_an_input() {
     assert_eq!(fmu.catalogue.inputs().last().map(|input| input.name()), Some("temperature"));
     assert_eq!(fmu.real("temperature"), 293.15);
     let cold = press(&fmu, 0, 20);
-    assert_eq!(cold, press(&Fmu::running_with(&scene("", 293.15)), 0, 20), "as if it were no input");
+    assert_eq!(cold, press(&Fmu::running_with(&scene(293.15).text()), 0, 20), "as if it were no input");
     let warm = Fmu::initialising_with(&with(293.15));
     assert_eq!((warm.set_real("temperature", 320.0), warm.exit()), (OK, OK));
     let warm_bits = press(&warm, 0, 20);
-    assert_eq!(warm_bits, press(&Fmu::running_with(&scene("", 320.0)), 0, 20), "set before the start");
+    assert_eq!(warm_bits, press(&Fmu::running_with(&scene(320.0).text()), 0, 20), "set before the start");
     // Later: other forces, and a ledger that closes.
     assert_eq!(fmu.set_real("temperature", 320.0), OK);
     let bytes = fmu.frozen();

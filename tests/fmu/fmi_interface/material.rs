@@ -5,36 +5,21 @@ use std::fs;
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::common::scenes::SceneText;
 use crate::fmi_interface::master::*;
 
-/// Two masses over the wave; the temperature stands where `KELVIN` does.
-const SCENE: &str = r#"
-name = "rubber"
-[layer]
-masses = 2
-spacing = 1.0e-4
-thickness = 1.0e-3
-width = 1.0e-2
-[material]
-density = 1100.0
-poisson_ratio = 0.49
-equilibrium_modulus = 2.0e6
-viscosity = 10.0
-prony = [{ modulus = 5.0e6, relaxation_time = 1.0e-4 }]
-wlf = { c1 = 7.52, c2 = 119.75, reference_temperature = 293.15, temperature = KELVIN }
-[surface]
-kind = "file"
-path = "profile.csv"
-periodic = true
-[friction]
-coulomb = 0.3
-shear_strength = 1e4
-[fmu]
-outputs = ["forces", "dissipation", "contact", "elements"]
-"#;
+/// Two masses over the wave.
+fn rubber() -> SceneText {
+    SceneText::rubber(2, 1.0e-4, 1.0e-3, 1.0e-2)
+        .with("material.equilibrium_modulus = 2e6\nmaterial.viscosity = 10.0")
+        .prony(&[(5.0e6, 1.0e-4)])
+        .with("surface = { kind = 'file', path = 'profile.csv', periodic = true }")
+        .with("friction = { coulomb = 0.3, shear_strength = 1e4 }")
+        .outputs(&["forces", "dissipation", "contact", "elements"])
+}
 
-fn scene(temperature: &str) -> String {
-    SCENE.replace("KELVIN", temperature)
+fn scene(temperature: f64) -> String {
+    rubber().wlf([7.52, 119.75, 293.15], temperature).text()
 }
 
 /// Presses and slides for some steps and returns all outputs after each.
@@ -52,23 +37,23 @@ fn slide(fmu: &Fmu) -> Vec<Vec<u64>> {
 
 #[test]
 fn a_temperature_set_is_the_same_as_one_in_the_scene() {
-    let given = slide(&Fmu::running_with(&scene("330.0")));
-    let fmu = Fmu::initialising_with(&scene("293.15"));
+    let given = slide(&Fmu::running_with(&scene(330.0)));
+    let fmu = Fmu::initialising_with(&scene(293.15));
     let cold = fmu.real("material.wlf.temperature");
     assert_eq!((fmu.set_real("material.wlf.temperature", 330.0), fmu.exit()), (OK, OK));
     assert_eq!((cold, fmu.real("material.wlf.temperature")), (293.15, 330.0));
     assert_eq!(slide(&fmu), given);
-    assert_ne!(slide(&Fmu::running_with(&scene("293.15"))), given);
+    assert_ne!(slide(&Fmu::running_with(&scene(293.15))), given);
     assert_eq!(fmu.set_real("material.wlf.temperature", 300.0), ERROR);
     // The run saved is that of the temperature set, in an instance that starts from the scene's.
-    let other = Fmu::initialising_with(&scene("293.15"));
+    let other = Fmu::initialising_with(&scene(293.15));
     other.thaw(&fmu.frozen());
     assert_eq!((other.bits(), other.real("material.wlf.temperature")), (fmu.bits(), 330.0));
 }
 
 #[test]
 fn a_temperature_without_a_shift_is_an_error_at_the_end_of_the_initialisation() {
-    let fmu = Fmu::initialising_with(&scene("293.15"));
+    let fmu = Fmu::initialising_with(&scene(293.15));
     assert_eq!(fmu.set_real("material.wlf.temperature", 170.0), OK);
     assert_eq!(fmu.exit(), ERROR);
     let message = fmu.message();
@@ -84,7 +69,7 @@ fn a_temperature_without_a_shift_is_an_error_at_the_end_of_the_initialisation() 
 
 #[test]
 fn the_links_of_a_material_are_no_parameters() {
-    let fmu = Fmu::of(&scene("293.15"), false);
+    let fmu = Fmu::of(&scene(293.15), false);
     let names: Vec<String> = fmu.catalogue.entries().map(|(_, entry)| entry.name()).collect();
     let is_there = |name: &str| names.iter().any(|other| other == name);
     assert!(["layer.mass", "layer.vertical.stiffness", "friction.shear_force"].iter().all(|name| !is_there(name)));
@@ -93,7 +78,7 @@ fn the_links_of_a_material_are_no_parameters() {
 
 #[test]
 fn another_compound_beside_the_scene_is_another_fmu() {
-    let text = scene("293.15").replace("[{ modulus = 5.0e6, relaxation_time = 1.0e-4 }]", "\"compound.csv\"");
+    let text = rubber().wlf([7.52, 119.75, 293.15], 293.15).set("material.prony", "compound.csv").text();
     let folder = Folder::with_scene("compound", &text);
     let guid = |compound: &str| {
         fs::write(folder.path().join("compound.csv"), compound).unwrap();
@@ -118,14 +103,14 @@ const EQUILIBRIUM: f64 = 4.44e6;
 
 /// Every mass sticks on a flat profile: no force along x, and friction.
 fn clamped(terms: &[(f64, f64)]) -> String {
-    let term = |(tau, modulus): &(f64, f64)| format!("{{ modulus = {modulus:?}, relaxation_time = {tau:?} }}");
-    let terms: Vec<String> = terms.iter().map(term).collect();
-    format!(
-        "name = 'clamped'\n[layer]\nmasses = {MASSES}\nspacing = 1e-4\nthickness = 1e-3\nwidth = 1e-2\n\
-         [material]\ndensity = 1100\npoisson_ratio = 0.49\nequilibrium_modulus = {EQUILIBRIUM:?}\nprony = [{}]\n\
-         [surface]\nkind = 'flat'\n[friction]\ncoulomb = 0.5\n[solver]\nrelative_tolerance = 1e-8\n[fmu]\noutputs = ['forces', 'contact']",
-        terms.join(", ")
-    )
+    let terms: Vec<_> = terms.iter().map(|&(tau, modulus)| (modulus, tau)).collect();
+    SceneText::rubber(MASSES, 1e-4, 1e-3, 1e-2)
+        .set("material.equilibrium_modulus", EQUILIBRIUM)
+        .prony(&terms)
+        .coulomb(0.5)
+        .relative(1e-8)
+        .outputs(&["forces", "contact"])
+        .text()
 }
 
 /// Steps a period. A straight line between them instead of the sine leaves at the points 2 Σ_m (1/(N m))² [K*(mNω) -

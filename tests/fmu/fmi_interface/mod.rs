@@ -8,6 +8,8 @@ mod instantiation;
 mod lifecycle;
 mod logging;
 mod many;
+#[path = "../../common/master.rs"]
+#[allow(dead_code, reason = "shared by several tests")]
 mod master;
 mod material;
 mod patch;

@@ -210,7 +210,7 @@ fn every_method_agrees_with_the_library() {
     }
 }
 
-/// A pseudorandom number from 0 to 1 (Marsaglia, Xorshift RNGs, 2003).
+/// A number from 0 to 1 by the generator whose sequences the seeds below were chosen of (Marsaglia, Xorshift RNGs, 2003).
 fn random(state: &mut u64) -> f64 {
     *state ^= *state << 13;
     *state ^= *state >> 7;

@@ -2,7 +2,7 @@
 #![no_main]
 #![allow(dead_code, reason = "each target is one of those")]
 
-#[path = "../../fuzzed/targets/mod.rs"]
+#[path = "../../malformed_inputs/targets/mod.rs"]
 mod targets;
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| targets::scene::run(bytes));

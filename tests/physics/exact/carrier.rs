@@ -1,19 +1,15 @@
 //! The carrier as a body: creep, free vibration, Coulomb's oscillator, free fall, a carrier that is hung on its drive.
 
-use asperity::scene::{Force, Path};
+use asperity::scene::Force;
 use asperity::simulation::{Motion, Start};
 use nalgebra::{DMatrix, DVector};
 
-use super::run::{Run, solver};
-
-const FLAT: &str = "surface = { kind = \"flat\" }";
+use super::run::{Run, rate};
+use crate::common::runs::even_times;
+use crate::common::scenes::SceneText;
 
 fn load(value: f64) -> Force {
     Force { start: Some(value), ..Force::default() }
-}
-
-fn times(end: f64, count: usize) -> Vec<f64> {
-    (1..=count).map(|i| end * i as f64 / count as f64).collect()
 }
 
 /// Masses on a flat profile, the load jumps to N: M ẅ + D ẇ + K w + k (c w + d ẇ + Σ c_j (w - y_j)) = -N, ẏ_j = (w - y_j)/τ_j,
@@ -22,21 +18,10 @@ fn times(end: f64, count: usize) -> Vec<f64> {
 fn creep_under_a_load_that_jumps() {
     let (mass, stiffness, damping, count, c, d) = (2e-3, 300.0, 0.4, 5.0, 2e3, 0.02);
     let elements = [(1e3, 2e-3), (4e2, 3e-2)];
-    let maxwell = elements.map(|(c, tau)| format!("{{ stiffness = {c:?}, relaxation_time = {tau:?} }}")).join(", ");
-    let text = format!(
-        "{FLAT}
-        [layer]
-        masses = 5
-        spacing = 1e-4
-        mass = 1e-7
-        vertical = {{ stiffness = {c:?}, damping = {d:?}, maxwell = [{maxwell}] }}
-        [carrier.z]
-        mass = {mass:?}
-        stiffness = {stiffness:?}
-        damping = {damping:?}
-        {}",
-        solver(1e-9, 1e-16)
-    );
+    let text = SceneText::new(5, 1e-4, 1e-7)
+        .vertical((c, d, elements))
+        .with(&format!("carrier.z = {{ mass = {mass:?}, stiffness = {stiffness:?}, damping = {damping:?} }}"))
+        .tolerances(1e-9, 1e-16);
     let force = 0.05;
     let states = 4;
     let mut a = DMatrix::zeros(states, states);
@@ -52,7 +37,7 @@ fn creep_under_a_load_that_jumps() {
     let rest = a.clone().lu().solve(&-driven).unwrap();
     let mut run = Run::new(&text, Start::default());
     let (end, count_of_rows) = (0.1, 40);
-    let rows = times(end, count_of_rows);
+    let rows = even_times(end, count_of_rows);
     let motion = Motion { duration: end, load: load(force), ..Motion::REST };
     let found = run.sample(&motion, &rows, &["carrier.w", "carrier.w_rate", "F_z"]);
     let (way, speed) = (rest[0].abs(), rest[0].abs() * (glassy / mass).sqrt());
@@ -77,36 +62,19 @@ fn creep_under_a_load_that_jumps() {
 fn free_vibration_along_both_axes() {
     let (mass, stiffness, count, c) = (1e-3, 2e3, 4.0_f64, 5e2);
     for method in ["event", "step", "auto"] {
-        let text = format!(
-            "{FLAT}
-            [layer]
-            masses = 4
-            spacing = 1e-4
-            mass = 1e-8
-            vertical = {{ stiffness = {c:?} }}
-            horizontal = {{ stiffness = {c:?} }}
-            [friction]
-            coulomb = 100.0
-            [carrier.x]
-            mass = {mass:?}
-            stiffness = {stiffness:?}
-            start_rate = 1e-3
-            [carrier.z]
-            mass = {mass:?}
-            stiffness = {stiffness:?}
-            load = 0.1
-            start_rate = 1e-3
-            initial = \"equilibrium\"
-            [solver]
-            method = \"{method}\"
-            relative_tolerance = 1e-6
-            absolute_tolerance = 1e-13"
-        );
+        let body = format!("mass = {mass:?}, stiffness = {stiffness:?}, start_rate = 1e-3");
+        let text = SceneText::new(4, 1e-4, 1e-8)
+            .vertical(c)
+            .horizontal(c)
+            .coulomb(100.0)
+            .with(&format!("carrier.x = {{ {body} }}\ncarrier.z = {{ {body}, load = 0.1, initial = 'equilibrium' }}"))
+            .method(method)
+            .tolerances(1e-6, 1e-13);
         let omega = ((count * c + stiffness) / mass).sqrt();
         let mut run = Run::new(&text, Start::default());
         let w = run.get("carrier.w");
         let (end, amplitude) = (20.0 / omega, 1e-3 / omega);
-        let rows = times(end, 50);
+        let rows = even_times(end, 50);
         let found = run.sample(&Motion { duration: end, ..Motion::REST }, &rows, &["carrier.u", "carrier.w"]);
         // Twenty radians add up the local errors, which are some tolerances each.
         let bound = 1e-4 * amplitude;
@@ -125,28 +93,13 @@ fn coulombs_oscillator_loses_a_step_each_swing() {
     let (mass, stiffness, normal, mu) = (1e-3, 1e3_f64, 1.0, 0.2);
     let (count, c, m) = (4.0, 2e5, 1e-7);
     // k c_h/K = 800, k m/M = 4e-4; d damps a mass on its link within a small part of a swing.
-    let text = format!(
-        "{FLAT}
-        [layer]
-        masses = 4
-        spacing = 1e-4
-        mass = {m:?}
-        vertical = {{ stiffness = 1e5, damping = 0.05 }}
-        horizontal = {{ stiffness = {c:?}, damping = 0.1 }}
-        [friction]
-        coulomb = {mu:?}
-        [carrier.x]
-        mass = {mass:?}
-        stiffness = {stiffness:?}
-        start = 4e-3
-        [carrier.z]
-        mass = 1e-3
-        damping = 5.0
-        load = {normal:?}
-        initial = \"equilibrium\"
-        {}",
-        solver(1e-8, 1e-14)
-    );
+    let text = SceneText::new(4, 1e-4, m)
+        .vertical((1e5, 0.05))
+        .horizontal((c, 0.1))
+        .coulomb(mu)
+        .with(&format!("carrier.x = {{ mass = {mass:?}, stiffness = {stiffness:?}, start = 4e-3 }}"))
+        .with(&format!("carrier.z = {{ mass = 1e-3, damping = 5.0, load = {normal:?}, initial = 'equilibrium' }}"))
+        .tolerances(1e-8, 1e-14);
     let (limit, stuck) = (mu * normal, mu * normal / (count * c));
     // b from ½ K (a² - b²) = μN (a + b - share · 2 x_s).
     let next = |a: f64, share: f64| {
@@ -155,7 +108,7 @@ fn coulombs_oscillator_loses_a_step_each_swing() {
     };
     let mut run = Run::new(&text, Start { u: 0.0, ..Start::default() });
     let half = std::f64::consts::PI * (mass / stiffness).sqrt();
-    let rows = times(6.0 * half, 60_000);
+    let rows = even_times(6.0 * half, 60_000);
     let found = run.sample(&Motion { duration: 6.0 * half, ..Motion::REST }, &rows, &["carrier.u"]);
     let (mut expected, step) = (4e-3, 4.0 * limit / stiffness);
     for swing in 0..5 {
@@ -172,21 +125,12 @@ fn coulombs_oscillator_loses_a_step_each_swing() {
 #[test]
 fn a_carrier_in_flight_follows_its_load() {
     for method in ["event", "step"] {
-        let text = format!(
-            "{FLAT}
-            [layer]
-            masses = 3
-            spacing = 1e-4
-            mass = 1e-7
-            clearance = 1.0
-            vertical = {{ stiffness = 1e3 }}
-            [carrier.z]
-            mass = 1e-3
-            load = -2e-3
-            [solver]
-            method = \"{method}\"
-            relative_tolerance = 1e-9"
-        );
+        let text = SceneText::new(3, 1e-4, 1e-7)
+            .set("layer.clearance", 1.0)
+            .vertical(1e3)
+            .with("carrier.z = { mass = 1e-3, load = -2e-3 }")
+            .method(method)
+            .relative(1e-9);
         let mut run = Run::new(&text, Start::default());
         run.follow(&Motion { duration: 5e-3, ..Motion::REST });
         // The masses are pulled along: N/(M + k m), with their vibration about it, of the share k m/M of w and less.
@@ -202,41 +146,25 @@ fn a_carrier_in_flight_follows_its_load() {
 /// drive as the drive.
 #[test]
 fn a_heavy_body_and_one_on_a_stiff_drive_move_as_prescribed() {
-    let layer = "
-        surface = { kind = \"sinusoid\", amplitude = 2e-6, wavelength = 3e-4, points_per_wavelength = 32 }
-        friction = { coulomb = 0.3 }
-        [layer]
-        masses = 6
-        spacing = 1e-4
-        mass = 1e-7
-        vertical = { stiffness = 2e3, damping = 0.01 }
-        horizontal = { stiffness = 1e3, damping = 0.01 }";
-    let tolerance = solver(1e-8, 1e-15);
-    let rate = |rate: f64| Path { rate, ..Path::default() };
+    let layer = SceneText::new(6, 1e-4, 1e-7)
+        .vertical((2e3, 0.01))
+        .horizontal((1e3, 0.01))
+        .sinusoid(2e-6, 3e-4)
+        .set("surface.points_per_wavelength", 32)
+        .coulomb(0.3)
+        .tolerances(1e-8, 1e-15);
     let motion = Motion { duration: 1e-3, u: rate(0.1), w: rate(-2e-3), ..Motion::REST };
     let start = Start { w: -1e-6, u_rate: 0.1, w_rate: -2e-3, ..Start::default() };
-    let forces = |run: &mut Run, motion: &Motion| run.sample(motion, &times(1e-3, 20), &["F_x", "F_z"]);
-    let prescribed = forces(&mut Run::new(&format!("{layer}\n{tolerance}"), start), &motion);
-    let heavy = "
-        [carrier.x]
-        mass = 1e7
-        start_rate = 0.1
-        [carrier.z]
-        mass = 1e7
-        start = -1e-6
-        start_rate = -2e-3";
-    let on_drive = "
-        [carrier.x]
-        mass = 1e-3
-        stiffness = 1e12
-        start_rate = 0.1
-        [carrier.z]
-        mass = 1e-3
-        stiffness = 1e12
-        start = -1e-6
-        start_rate = -2e-3";
+    let forces = |run: &mut Run, motion: &Motion| run.sample(motion, &even_times(1e-3, 20), &["F_x", "F_z"]);
+    let prescribed = forces(&mut Run::new(&layer, start), &motion);
+    let bodies = |keys: &str| {
+        format!(
+            "carrier.x = {{ {keys}, start_rate = 0.1 }}\ncarrier.z = {{ {keys}, start = -1e-6, start_rate = -2e-3 }}"
+        )
+    };
+    let (heavy, on_drive) = (bodies("mass = 1e7"), bodies("mass = 1e-3, stiffness = 1e12"));
     for (body, motion, bound) in [(heavy, Motion { duration: 1e-3, ..Motion::REST }, 1e-7), (on_drive, motion, 1e-6)] {
-        let found = forces(&mut Run::new(&format!("{layer}\n{body}\n{tolerance}"), start), &motion);
+        let found = forces(&mut Run::new(&layer.clone().with(&body), start), &motion);
         for (found, wanted) in found.iter().zip(&prescribed) {
             let largest = wanted.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
             for (found, wanted) in found.iter().zip(wanted) {

@@ -3,29 +3,32 @@
 
 use asperity::simulation::{Motion, Start};
 
-use crate::exact::run::{Law, Random, Run, largest, link, rate, sine, solver, steps};
+use crate::common::largest;
+use crate::common::random::Random;
+use crate::common::scenes::SceneText;
+use crate::exact::run::{Run, rate, sine, steps};
 
 const CHANNELS: [&str; 5] =
     ["energy.residual", "energy.input", "E_diss", "dissipation.E_friction", "dissipation.E_impact"];
 
 /// Six coupled masses over a random periodic profile of 2 µm a point, itself rough.
-fn scene(friction: &str, relative: f64) -> String {
-    let mut random = Random(7);
+fn scene(friction: &str, relative: f64) -> SceneText {
+    let mut random = Random::new(7);
     let points = 32;
     let x: Vec<f64> = (0..=points).map(|i| f64::from(i) * 2.0e-5).collect();
     let mut z: Vec<f64> = (0..=points).map(|_| random.between(-2.0e-6, 2.0e-6)).collect();
     z[points as usize] = z[0];
     let roughness: Vec<f64> = (0..6).map(|_| random.between(-1.0e-6, 1.0e-6)).collect();
-    let links = link("vertical", &Law::with_maxwell(2.0e3, 4.0e-3, &[(1.0e3, 1.0e-4), (500.0, 5.0e-6)]))
-        + &link("horizontal", &Law::with_maxwell(1.0e3, 4.0e-3, &[(600.0, 2.0e-5)]))
-        + &link("lateral_x", &Law::new(500.0, 2.0e-3))
-        + &link("lateral_z", &Law::with_maxwell(300.0, 1.0e-3, &[(200.0, 3.0e-5)]));
-    let solver = solver(relative, relative * 6.0e-6);
-    format!(
-        "[layer]\nmasses = 6\nspacing = 7e-5\nmass = 1e-7\nclearance = 1e-6\n\
-         roughness = {{ kind = \"points\", z = {roughness:?} }}\n{links}\
-         [surface]\nkind = \"points\"\nperiodic = true\nx = {x:?}\nz = {z:?}\n{friction}\n{solver}"
-    )
+    SceneText::new(6, 7e-5, 1e-7)
+        .set("layer.clearance", 1e-6)
+        .roughness(&roughness)
+        .vertical((2.0e3, 4.0e-3, [(1.0e3, 1.0e-4), (500.0, 5.0e-6)]))
+        .horizontal((1.0e3, 4.0e-3, [(600.0, 2.0e-5)]))
+        .lateral_x((500.0, 2.0e-3))
+        .lateral_z((300.0, 1.0e-3, [(200.0, 3.0e-5)]))
+        .points(&x, &z, true)
+        .with(friction)
+        .tolerances(relative, relative * 6.0e-6)
 }
 
 /// Presses, slides and vibrates; what the balance misses at worst over the largest energy, and the last values of the
@@ -68,17 +71,17 @@ fn without_friction() {
 
 #[test]
 fn with_coulomb_friction() {
-    balances("[friction]\ncoulomb = 0.4");
+    balances("friction.coulomb = 0.4");
 }
 
 #[test]
 fn with_adhesive_shear() {
-    balances("[friction]\nshear_force = 2e-3");
+    balances("friction.shear_force = 2e-3");
 }
 
 #[test]
 fn with_both() {
-    balances("[friction]\ncoulomb = 0.2\nshear_force = 1e-3");
+    balances("friction = { coulomb = 0.2, shear_force = 1e-3 }");
 }
 
 /// An element that starts undeformed has the energy ½ c_j e² and loses it in some τ_j, of which a step sees nothing if
@@ -87,13 +90,11 @@ fn with_both() {
 fn what_a_fast_element_loses_within_a_step_is_counted() {
     let (c, e, relative) = (1.0e3, 1.0e-5, 1.0e-4);
     for tau in [1.0e-10, 1.0e-8, 3.0e-8, 1.0e-7, 1.0e-6] {
-        let vertical = link("vertical", &Law::with_maxwell(2.0e4, 1.0e-3, &[(c, tau)]));
-        let solver = solver(relative, 1.0e-6 * relative);
-        let text = format!(
-            "[layer]\nmasses = 1\nspacing = 1e-4\nmass = 1e-7\ninitial = \"undeformed\"\n{vertical}\
-             [surface]\nkind = \"flat\"\n{solver}"
-        );
-        let mut run = Run::new(&text, Start { w: -e, ..Start::default() });
+        let scene = SceneText::new(1, 1e-4, 1e-7)
+            .set("layer.initial", "undeformed")
+            .vertical((2.0e4, 1.0e-3, [(c, tau)]))
+            .tolerances(relative, 1.0e-6 * relative);
+        let mut run = Run::new(&scene, Start { w: -e, ..Start::default() });
         run.drive(1.0e-4, rate(0.0), rate(0.0));
         let (lost, stored) = (run.get("dissipation.E_maxwell"), 0.5 * c * e * e);
         // The force is good to the tolerance of the whole spring's, twenty-one times the element's: so is what it lost.
@@ -105,15 +106,16 @@ fn what_a_fast_element_loses_within_a_step_is_counted() {
 /// `lateral_z` (N s/m): the residual is at most ten times the relative tolerance of the largest energy, and no energy
 /// lost comes back.
 fn check_extreme(method: &str, friction: &str, horizontal: f64, lateral_z: f64, surface: &str, speed: f64) {
-    let links = link("vertical", &Law::with_maxwell(2.0e3, 8.0e-3, &[(1.0e3, 1.0e-4)]))
-        + &link("horizontal", &Law::new(1.0e3, horizontal))
-        + &link("lateral_x", &Law::new(500.0, 2.0e-3))
-        + &link("lateral_z", &Law::new(500.0, lateral_z));
-    let text = format!(
-        "[layer]\nmasses = 8\nspacing = 1e-4\nmass = 1e-7\n{links}[surface]\n{surface}\n[friction]\n{friction}\n\
-         [solver]\nmethod = '{method}'\nrelative_tolerance = 1e-6\n"
-    );
-    let mut run = Run::new(&text, Start { w_rate: -0.1, ..Start::default() });
+    let scene = SceneText::new(8, 1e-4, 1e-7)
+        .vertical((2.0e3, 8.0e-3, [(1.0e3, 1.0e-4)]))
+        .horizontal((1.0e3, horizontal))
+        .lateral_x((500.0, 2.0e-3))
+        .lateral_z((500.0, lateral_z))
+        .with(surface)
+        .with(friction)
+        .method(method)
+        .relative(1e-6);
+    let mut run = Run::new(&scene, Start { w_rate: -0.1, ..Start::default() });
     let (mut worst, mut size, mut falls) = (0.0_f64, 0.0_f64, 0.0_f64);
     for (duration, u, w) in [(2.0e-4, rate(0.0), rate(-0.1)), (6.0e-5 / speed, rate(speed), rate(0.0))] {
         let columns =
@@ -128,14 +130,14 @@ fn check_extreme(method: &str, friction: &str, horizontal: f64, lateral_z: f64, 
     assert!(falls <= 1e-6 * size, "{case}: {falls:e} J of {size:e} J come back");
 }
 
-const WAVES: &str = "kind = 'sinusoid'\namplitude = 5e-6\nwavelength = 2.3e-4";
+const WAVES: &str = "surface = { kind = 'sinusoid', amplitude = 5e-6, wavelength = 2.3e-4 }";
 
 /// The friction stops a mass within a ten-millionth of a step.
 #[test]
 fn with_a_friction_beyond_all_other_forces() {
     for method in ["step", "event"] {
-        for friction in ["shear_force = 1e3", "shear_force = 1e9", "coulomb = 10.0\nshear_force = 1e3"] {
-            check_extreme(method, friction, 8.0e-3, 2.0e-3, WAVES, 0.2);
+        for friction in ["shear_force = 1e3", "shear_force = 1e9", "coulomb = 10.0, shear_force = 1e3"] {
+            check_extreme(method, &format!("friction = {{ {friction} }}"), 8.0e-3, 2.0e-3, WAVES, 0.2);
         }
     }
 }
@@ -143,15 +145,15 @@ fn with_a_friction_beyond_all_other_forces() {
 /// Dampers a million times critical bring masses together within a hundred-thousandth of a step.
 #[test]
 fn with_dampers_far_beyond_critical() {
-    check_extreme("step", "coulomb = 0.3", 3.0e4, 2.0e-3, WAVES, 0.2);
-    check_extreme("step", "coulomb = 0.3", 8.0e-3, 3.0e4, WAVES, 0.2);
+    check_extreme("step", "friction.coulomb = 0.3", 3.0e4, 2.0e-3, WAVES, 0.2);
+    check_extreme("step", "friction.coulomb = 0.3", 8.0e-3, 3.0e4, WAVES, 0.2);
 }
 
 /// The profile bends far between a touch and the end of its step.
 #[test]
 fn where_a_mass_strikes_a_bend() {
-    let spike = "kind = 'points'\nx = [0.0, 1e-4, 1.9e-4, 2e-4, 2.1e-4, 3e-4, 5e-4, 1e-3]\n\
-                 z = [0.0, 0.0, 0.0, 2e-5, 0.0, 0.0, 0.0, 0.0]";
-    check_extreme("step", "coulomb = 0.3", 8.0e-3, 2.0e-3, spike, 0.2);
-    check_extreme("step", "coulomb = 0.3", 8.0e-3, 2.0e-3, WAVES, 100.0);
+    let spike = "surface = { kind = 'points', x = [0.0, 1e-4, 1.9e-4, 2e-4, 2.1e-4, 3e-4, 5e-4, 1e-3], \
+                 z = [0.0, 0.0, 0.0, 2e-5, 0.0, 0.0, 0.0, 0.0] }";
+    check_extreme("step", "friction.coulomb = 0.3", 8.0e-3, 2.0e-3, spike, 0.2);
+    check_extreme("step", "friction.coulomb = 0.3", 8.0e-3, 2.0e-3, WAVES, 100.0);
 }

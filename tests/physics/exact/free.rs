@@ -6,12 +6,16 @@ use asperity::scene::Path;
 use asperity::simulation::{Motion, Start};
 use nalgebra::{DMatrix, DVector};
 
-use crate::exact::run::{Law, Random, Run, difference, largest, link, solver};
+use crate::common::random::Random;
+use crate::common::runs::even_times;
+use crate::common::scenes::{Law, SceneText};
+use crate::common::{difference, largest};
+use crate::exact::run::Run;
 
 const MASS: f64 = 1.0e-7;
 const SPACING: f64 = 1.0e-4;
 const DURATION: f64 = 4.0e-4;
-const ROWS: usize = 40;
+const ROWS: u32 = 40;
 /// High above the profile.
 const CLEARANCE: f64 = 1.0e-2;
 
@@ -38,7 +42,7 @@ fn random_path(random: &mut Random) -> Path {
 impl Chain {
     /// `elements`: how many Maxwell elements the vertical, horizontal, lateral x and lateral z links have.
     fn random(seed: u64, masses: usize, elements: [usize; 4]) -> Self {
-        let mut random = Random(seed);
+        let mut random = Random::new(seed);
         let [vertical, horizontal, lateral_x, lateral_z] = elements.map(|n| random_law(&mut random, n));
         let links = Links { vertical, horizontal, lateral_x, lateral_z };
         let motions = [(); 2].map(|()| (random_path(&mut random), random_path(&mut random)));
@@ -50,22 +54,24 @@ impl Chain {
     /// The columns of a run: F_x, F_z, then x and z of every mass.
     fn run(&self, tolerance: f64) -> Vec<Vec<f64>> {
         let Links { vertical, horizontal, lateral_x, lateral_z } = &self.links;
-        let links = [("vertical", vertical), ("horizontal", horizontal), ("lateral_x", lateral_x)];
-        let mut tables: String = links.iter().map(|(kind, law)| link(kind, law)).collect();
-        tables += &link("lateral_z", lateral_z);
-        let (k, solver) = (self.masses, solver(tolerance, tolerance * 1e-5));
-        let text = format!(
-            "[layer]\nmasses = {k}\nspacing = {SPACING:?}\nmass = {MASS:?}\nclearance = {CLEARANCE:?}\n{tables}\
-             [surface]\nkind = \"flat\"\n{solver}"
-        );
-        let mut run = Run::new(&text, self.start);
+        let k = self.masses;
+        let scene = SceneText::new(k, SPACING, MASS)
+            .set("layer.clearance", CLEARANCE)
+            .vertical(vertical)
+            .horizontal(horizontal)
+            .lateral_x(lateral_x)
+            .lateral_z(lateral_z)
+            .tolerances(tolerance, tolerance * 1e-5);
+        let mut run = Run::new(&scene, self.start);
         let element = |axis: &'static str| (1..=k).map(move |i| format!("element[{i}].{axis}"));
         let mut names: Vec<String> = vec!["F_x".into(), "F_z".into()];
         names.extend(element("x").chain(element("z")));
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        // Within a motion, without its start: there the run still shows the rates before the kink.
+        let times = even_times(DURATION, ROWS);
         let pieces = self
             .motions
-            .map(|(u, w)| run.sample(&Motion { duration: DURATION, u, w, ..Motion::default() }, &times(), &names));
+            .map(|(u, w)| run.sample(&Motion { duration: DURATION, u, w, ..Motion::default() }, &times, &names));
         let [first, second] = pieces;
         first.into_iter().zip(second).map(|(first, second)| [first, second].concat()).collect()
     }
@@ -90,7 +96,7 @@ impl Chain {
         for Path { rate, amplitude, frequency } in paths {
             let omega = TAU * frequency;
             let direction = Direction { masses, mass, to_carrier, lateral, rate, amplitude, omega, unit };
-            let step = exponential(&(direction.matrix() * (DURATION / ROWS as f64 / unit)));
+            let step = exponential(&(direction.matrix() * (DURATION / f64::from(ROWS) / unit)));
             let force = direction.on_carrier();
             let last = states.last().map(|last| direction.taken_over(last));
             let mut state = last.unwrap_or_else(|| direction.start(velocity));
@@ -116,12 +122,6 @@ impl Chain {
 
 /// How far the masses go, about: 0.1 m/s for 0.4 ms.
 const WAY: f64 = 4.0e-5;
-
-/// Within a motion, without its start: there the run still shows the rates before the kink.
-fn times() -> Vec<f64> {
-    // The last is the duration itself, whatever rounding says.
-    (1..=ROWS).map(|row| if row == ROWS { DURATION } else { DURATION * row as f64 / ROWS as f64 }).collect()
-}
 
 /// x and z of every mass and F_x and F_z on the carrier, against the exact solution: some dozens to hundreds of steps
 /// with an error of the tolerance each stay below a hundred tolerances, and a thousandth of the tolerance takes at

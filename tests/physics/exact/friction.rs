@@ -4,7 +4,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use asperity::simulation::{ModeChange, Start};
 
-use crate::exact::run::{Law, REST, Run, assert_near, link, rate, sine, solver};
+use crate::common::scenes::{Law, SceneText};
+use crate::exact::run::{REST, Run, assert_near, rate, sine, uneven_layer};
 
 const MASS: f64 = 1.0e-7;
 const STIFFNESS: f64 = 2.0e3;
@@ -21,28 +22,22 @@ const TIME: f64 = 1.0e-12;
 /// Of energies and positions: ten times the relative tolerance.
 const SHARE: f64 = 1.0e-8;
 
+fn one_mass(horizontal: &Law) -> SceneText {
+    SceneText::new(1, 1e-4, MASS).vertical(STIFFNESS).horizontal(horizontal).coulomb(COULOMB)
+}
+
 /// A mass pressed on the flat, under a link to the carrier along x.
 fn pressed(horizontal: &Law, u_rate: f64) -> Run {
-    let links = link("vertical", &Law::new(STIFFNESS, 0.0)) + &link("horizontal", horizontal);
-    let solver = solver(1e-9, 1e-14);
-    let text = format!(
-        "[layer]\nmasses = 1\nspacing = 1e-4\nmass = {MASS:?}\n{links}[surface]\nkind = \"flat\"\n\
-         [friction]\ncoulomb = {COULOMB:?}\nshear_force = {SHEAR:?}\n{solver}"
-    );
-    Run::new(&text, Start { w: -PRESSED, u_rate, ..Start::default() })
+    let scene = one_mass(horizontal).set("friction.shear_force", SHEAR).tolerances(1e-9, 1e-14);
+    Run::new(&scene, Start { w: -PRESSED, u_rate, ..Start::default() })
 }
 
 /// Pulled slowly by a spring, a mass breaks loose at T whatever force the tolerance of its position is: here 2 mN.
 #[test]
 fn a_coarse_tolerance_of_positions_holds_no_mass() {
-    let links = link("vertical", &Law::new(STIFFNESS, 0.0)) + &link("horizontal", &Law::new(STIFFNESS, 0.0));
     let relative = 1e-3;
-    let text = format!(
-        "[layer]\nmasses = 1\nspacing = 1e-4\nmass = {MASS:?}\n{links}[surface]\nkind = \"flat\"\n\
-         [friction]\ncoulomb = {COULOMB:?}\n{}",
-        solver(relative, 1e-5)
-    );
-    let mut run = Run::new(&text, Start { w: -PRESSED, ..Start::default() });
+    let scene = one_mass(&STIFFNESS.into()).tolerances(relative, 1e-5);
+    let mut run = Run::new(&scene, Start { w: -PRESSED, ..Start::default() });
     let (limit, speed) = (COULOMB * STIFFNESS * PRESSED, 1e-3);
     run.drive(2.0 * limit / (STIFFNESS * speed), rate(speed), REST);
     let broke = run.events()[0].time * speed * STIFFNESS;
@@ -187,18 +182,8 @@ const MASSES: f64 = 5.0;
 /// A τ_0 of its masses.
 const LAYER_SHEAR: f64 = 1.0e-3;
 
-/// Five masses of different heights, so pressed with different forces, all links with damping.
-fn layer() -> String {
-    let links = link("vertical", &Law::with_maxwell(2.0e3, 4.0e-3, &[(1.0e3, 1.0e-4)]))
-        + &link("horizontal", &Law::with_maxwell(1.0e3, 8.0e-3, &[(600.0, 2.0e-5)]))
-        + &link("lateral_x", &Law::with_maxwell(500.0, 2.0e-3, &[(400.0, 3.0e-5)]))
-        + &link("lateral_z", &Law::new(300.0, 1.0e-3));
-    let solver = solver(1e-9, 1e-14);
-    format!(
-        "[layer]\nmasses = 5\nspacing = 1e-4\nmass = 1e-7\n\
-         roughness = {{ kind = \"points\", z = [0.0, -2e-6, 1e-6, 3e-6, -4e-6] }}\n{links}\
-         [surface]\nkind = \"flat\"\n[friction]\ncoulomb = {COULOMB:?}\nshear_force = {LAYER_SHEAR:?}\n{solver}"
-    )
+fn layer() -> SceneText {
+    uneven_layer().coulomb(COULOMB).set("friction.shear_force", LAYER_SHEAR).tolerances(1e-9, 1e-14)
 }
 
 /// At a steady speed all masses slip at it, no damper moves and no dashpot yields: each mass is dragged by μ F_N + A

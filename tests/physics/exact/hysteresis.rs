@@ -4,7 +4,8 @@ use std::f64::consts::TAU;
 
 use asperity::simulation::{Motion, Start};
 
-use crate::exact::run::{Law, REST, Run, assert_near, link, mean, rate, solver, steps};
+use crate::common::scenes::{Law, SceneText};
+use crate::exact::run::{REST, Run, assert_near, mean, rate, steps};
 
 const WAVELENGTH: f64 = 1.0e-3;
 const AMPLITUDE: f64 = 1.0e-5;
@@ -39,17 +40,15 @@ impl Chain {
     }
 
     /// c_x = 1e4 c, critically damped so that it comes to rest.
-    fn scene(&self) -> String {
+    fn scene(&self) -> SceneText {
         let stiffness: f64 = 1e4 * self.vertical.stiffness;
-        let horizontal = link("horizontal", &Law::new(stiffness, 2.0 * (stiffness * MASS).sqrt()));
-        let vertical = link("vertical", &self.vertical);
-        let lateral_z = link("lateral_z", &self.lateral_z);
-        let (k, spacing, solver) = (self.masses, self.spacing, solver(1e-8, 1e-17));
-        format!(
-            "[layer]\nmasses = {k}\nspacing = {spacing:?}\nmass = {MASS:?}\n{vertical}{horizontal}{lateral_z}\
-             [surface]\nkind = \"sinusoid\"\namplitude = {AMPLITUDE:?}\nwavelength = {WAVELENGTH:?}\n\
-             points_per_wavelength = 256\n{solver}"
-        )
+        SceneText::new(self.masses, self.spacing, MASS)
+            .vertical(&self.vertical)
+            .horizontal((stiffness, 2.0 * (stiffness * MASS).sqrt()))
+            .lateral_z(&self.lateral_z)
+            .sinusoid(AMPLITUDE, WAVELENGTH)
+            .set("surface.points_per_wavelength", 256)
+            .tolerances(1e-8, 1e-17)
     }
 
     /// Mean F_x over one wavelength at the speed `v`: of samples, and as the carrier's work over the way.

@@ -5,61 +5,36 @@ use std::f64::consts::TAU;
 use asperity::scene::{Link, LinkKind, Material, MaxwellElement, Scene};
 use asperity::simulation::{Motion, Start};
 
-use crate::exact::run::{Law, REST, Run, assert_near, difference, largest, mean, rate, solver, steps};
+use crate::common::scenes::{Law, SceneText};
+use crate::common::{difference, largest};
+use crate::exact::run::{REST, Run, assert_near, mean, rate, steps};
 
-/// H = 5 mm, B = 10 mm, Δx = 0.1 mm: A/H = 2e-4 m and H B/Δx = 0.5 m; G = E/2.5. At 400 K log10 a_T = -2·100/200 = -1.
-const RUBBER: &str = "
-    [layer]
-    masses = 5
-    spacing = 1e-4
-    thickness = 5e-3
-    width = 1e-2
-    [material]
-    density = 1100
-    poisson_ratio = 0.25
-    equilibrium_modulus = 2e6
-    viscosity = 100
-    prony = [{ modulus = 5e6, relaxation_time = 1e-3 }, { modulus = 3e6, relaxation_time = 1e-5 }]
-    wlf = { c1 = 2, c2 = 100, reference_temperature = 300, temperature = 400 }
-";
+/// The reference temperature is 300 K; at 400 K log10 a_T = -2·100/200 = -1.
+const WLF: [f64; 3] = [2.0, 100.0, 300.0];
 
-/// The same by hand.
-const SPRINGS: &str = "
-    [layer]
-    masses = 5
-    spacing = 1e-4
-    mass = 5.5e-6
-    [layer.vertical]
-    stiffness = 400
-    damping = 2e-3
-    maxwell = [{ stiffness = 1000, relaxation_time = 1e-4 }, { stiffness = 600, relaxation_time = 1e-6 }]
-    [layer.horizontal]
-    stiffness = 160
-    damping = 8e-4
-    maxwell = [{ stiffness = 400, relaxation_time = 1e-4 }, { stiffness = 240, relaxation_time = 1e-6 }]
-    [layer.lateral_x]
-    stiffness = 1e6
-    damping = 5
-    maxwell = [{ stiffness = 2.5e6, relaxation_time = 1e-4 }, { stiffness = 1.5e6, relaxation_time = 1e-6 }]
-    [layer.lateral_z]
-    stiffness = 4e5
-    damping = 2
-    maxwell = [{ stiffness = 1e6, relaxation_time = 1e-4 }, { stiffness = 6e5, relaxation_time = 1e-6 }]
-";
+fn waves(layer: SceneText) -> SceneText {
+    layer.sinusoid(5e-6, 1e-3).coulomb(0.3).outputs(&["forces", "contact", "energy"])
+}
 
-const WAVE: &str = "[surface]\nkind = 'sinusoid'\namplitude = 5e-6\nwavelength = 1e-3\n";
-
-fn parse(text: &str) -> Scene {
-    let text = format!("name = 'material'\n{text}\n[fmu]\noutputs = ['forces', 'contact', 'energy']");
-    Scene::parse(&text, "material.toml".as_ref()).unwrap_or_else(|error| panic!("{error}\n{text}"))
+/// H = 5 mm, B = 10 mm, Δx = 0.1 mm: A/H = 2e-4 m and H B/Δx = 0.5 m; G = E/2.5.
+fn elastic() -> SceneText {
+    let layer = waves(SceneText::rubber(5, 1e-4, 5e-3, 1e-2)).set("material.poisson_ratio", 0.25);
+    layer.set("material.equilibrium_modulus", 2e6).prony(&[(5e6, 1e-3), (3e6, 1e-5)])
 }
 
 fn rubber() -> Scene {
-    parse(&format!("{RUBBER}{WAVE}[friction]\ncoulomb = 0.3\nshear_strength = 1e4"))
+    let warm = elastic().set("material.viscosity", 100.0).wlf(WLF, 400.0);
+    warm.set("friction.shear_strength", 1e4).scene()
 }
 
+/// The same by hand.
 fn springs() -> Scene {
-    parse(&format!("{SPRINGS}{WAVE}[friction]\ncoulomb = 0.3\nshear_force = 1e-2"))
+    let layer = SceneText::new(5, 1e-4, 5.5e-6)
+        .vertical((400.0, 2e-3, [(1000.0, 1e-4), (600.0, 1e-6)]))
+        .horizontal((160.0, 8e-4, [(400.0, 1e-4), (240.0, 1e-6)]))
+        .lateral_x((1e6, 5.0, [(2.5e6, 1e-4), (1.5e6, 1e-6)]))
+        .lateral_z((4e5, 2.0, [(1e6, 1e-4), (6e5, 1e-6)]));
+    waves(layer).set("friction.shear_force", 1e-2).scene()
 }
 
 /// All numbers of a link.
@@ -89,12 +64,7 @@ fn links_follow_from_the_material() {
 /// Without a viscosity there are no dampers, without a temperature no shift.
 #[test]
 fn what_a_material_does_not_name_is_not_there() {
-    let elastic = RUBBER
-        .replace("viscosity = 100\n", "")
-        .lines()
-        .filter(|line| !line.contains("wlf"))
-        .fold(String::new(), |text, line| text + line + "\n");
-    let link = parse(&format!("{elastic}{WAVE}")).link(LinkKind::Vertical).unwrap();
+    let link = elastic().scene().link(LinkKind::Vertical).unwrap();
     assert_eq!((link.damping, link.maxwell[0].relaxation_time), (None, 1e-3));
 }
 
@@ -150,16 +120,15 @@ const TIME: f64 = 1e-4;
 
 /// A frictionless layer of one term, by its links, so stiff along x as section 8 case 2 has it: 1e4 c.
 fn chain(masses: usize, spacing: f64) -> Scene {
-    let mut scene = parse(&format!(
-        "[layer]\nmasses = {masses}\nspacing = {spacing:?}\nthickness = 1e-3\nwidth = 1e-2\n\
-         [material]\ndensity = 0.1\npoisson_ratio = 0.25\nequilibrium_modulus = 2e6\n\
-         prony = [{{ modulus = 1.5e6, relaxation_time = 1e-3 }}]\n\
-         wlf = {{ c1 = 2, c2 = 100, reference_temperature = 300, temperature = 400 }}\n\
-         [surface]\nkind = 'sinusoid'\namplitude = {AMPLITUDE:?}\nwavelength = {WAVELENGTH:?}\n\
-         points_per_wavelength = 256\n{}",
-        solver(1e-7, 1e-15)
-    ))
-    .direct_form();
+    let text = SceneText::rubber(masses, spacing, 1e-3, 1e-2)
+        .with("material.density = 0.1\nmaterial.poisson_ratio = 0.25\nmaterial.equilibrium_modulus = 2e6")
+        .prony(&[(1.5e6, 1e-3)])
+        .wlf(WLF, 400.0)
+        .sinusoid(AMPLITUDE, WAVELENGTH)
+        .set("surface.points_per_wavelength", 256)
+        .tolerances(1e-7, 1e-15)
+        .outputs(&["forces", "contact", "energy"]);
+    let mut scene = text.scene().direct_form();
     let stiffness = 1e4 * scene.layer.links[LinkKind::Vertical].as_ref().and_then(|link| link.stiffness).unwrap();
     // Critically damped, so that it comes to rest.
     let damping = 2.0 * (stiffness * scene.mass()).sqrt();
@@ -228,15 +197,13 @@ fn hysteresis_is_largest_at_the_shifted_relaxation_time() {
 /// these parts of the friction law. Inertia is negligible: the stiffest frequency is far above that of the passage, and
 /// damped.
 fn friction(law: &str, temperature: f64, v: f64) -> f64 {
-    let scene = parse(&format!(
-        "[layer]\nmasses = 20\nspacing = 5e-5\nthickness = 2e-4\nwidth = 1e-2\n\
-         [material]\ndensity = 1\npoisson_ratio = 0.49\nequilibrium_modulus = 2e6\nviscosity = 10\n\
-         prony = [{{ modulus = 3e6, relaxation_time = 1e-3 }}, {{ modulus = 2e6, relaxation_time = 1e-4 }}]\n\
-         wlf = {{ c1 = 2, c2 = 100, reference_temperature = 300, temperature = {temperature:?} }}\n\
-         [surface]\nkind = 'sinusoid'\namplitude = 2e-5\nwavelength = 1e-3\n\
-         [friction]\n{law}"
-    ));
-    let mut run = Run::of(&scene, Start { w: -2e-5, u_rate: v, ..Start::default() });
+    let scene = SceneText::rubber(20, 5e-5, 2e-4, 1e-2)
+        .with("material.density = 1\nmaterial.equilibrium_modulus = 2e6\nmaterial.viscosity = 10")
+        .prony(&[(3e6, 1e-3), (2e6, 1e-4)])
+        .wlf(WLF, temperature)
+        .sinusoid(2e-5, 1e-3)
+        .with(law);
+    let mut run = Run::new(&scene, Start { w: -2e-5, u_rate: v, ..Start::default() });
     let times = steps((3.0 * WAVELENGTH / v, 4.0 * WAVELENGTH / v), 64);
     let motion = Motion { duration: 4.0 * WAVELENGTH / v, u: rate(v), w: REST, ..Motion::default() };
     let columns = run.sample(&motion, &times, &["F_x", "F_z", "contact.ratio"]);
@@ -262,7 +229,8 @@ fn assert_shifted(law: &str, temperature: f64, v: f64) -> f64 {
 #[test]
 fn friction_at_a_temperature_is_that_at_the_shifted_speed() {
     let cases = [(400.0, 0.3), (400.0, 3.0), (350.0, 0.5), (280.0, 0.05)];
-    let seen = cases.map(|(temperature, v)| assert_shifted("coulomb = 0.2\nshear_strength = 2e4", temperature, v));
+    let seen = cases
+        .map(|(temperature, v)| assert_shifted("friction = { coulomb = 0.2, shear_strength = 2e4 }", temperature, v));
     // The shift is seen at all: μ is not the same at all speeds.
     assert!(largest(&seen) > 1.02 * seen.iter().copied().fold(f64::INFINITY, f64::min), "{seen:?}");
 }
@@ -271,7 +239,8 @@ fn friction_at_a_temperature_is_that_at_the_shifted_speed() {
 /// rises and no contact creeps and leaps.
 #[test]
 fn friction_that_depends_on_the_speed_shifts_too() {
-    let law = "coulomb = 0.1\nrate_shear = { strength = 1e5, reference_speed = 10.0, sharpness = 0.3 }";
+    let law =
+        "friction.coulomb = 0.1\nfriction.rate_shear = { strength = 1e5, reference_speed = 10.0, sharpness = 0.3 }";
     let hot = assert_shifted(law, 350.0, 0.5);
     let unshifted = friction(law, 300.0, 0.5);
     // Five times what is allowed above: the shift is seen.

@@ -1,9 +1,11 @@
 //! Mode changes at the roots of known functions: touch, impact and lift of one mass, and changes of several masses at one
 //! instant.
 
+use asperity::scene::LinkKind;
 use asperity::simulation::{ModeChange, Start};
 
-use crate::exact::run::{Law, REST, Run, assert_near, link, rate, root, solver};
+use crate::common::scenes::{Law, SceneText};
+use crate::exact::run::{REST, Run, assert_near, rate, root};
 
 const MASS: f64 = 1.0e-7;
 /// c of the vertical spring.
@@ -36,14 +38,14 @@ impl Default for One {
 
 impl One {
     fn start(&self, start: Start) -> Run {
-        let links = link("vertical", &self.vertical) + &link("horizontal", &self.horizontal);
-        let (clearance, end, friction, solver) = (self.clearance, self.slope, self.friction, solver(1e-9, 1e-14));
-        let text = format!(
-            "[layer]\nmasses = 1\nspacing = 1e-4\nmass = {MASS:?}\nclearance = {clearance:?}\n{links}\
-             [surface]\nkind = \"points\"\nx = [-1.0, 1.0]\nz = [{:?}, {end:?}]\n{friction}{solver}",
-            -end
-        );
-        Run::new(&text, start)
+        let scene = SceneText::new(1, 1e-4, MASS)
+            .set("layer.clearance", self.clearance)
+            .vertical(&self.vertical)
+            .horizontal(&self.horizontal)
+            .points(&[-1.0, 1.0], &[-self.slope, self.slope], false)
+            .with(self.friction)
+            .tolerances(1e-9, 1e-14);
+        Run::new(&scene, start)
     }
 }
 
@@ -63,7 +65,7 @@ fn square(x: f64) -> f64 {
 /// v_n = -(V + sU)/q is lost, v_t = (U - sV)/q falls by μ |v_n| towards 0, and ½ m (v_n² + v_t² - v_t⁺²) is gone.
 fn strikes(slope: f64, u_rate: f64, w_rate: f64, mode: i8) {
     let (height, q) = (1.0e-6, slope.hypot(1.0));
-    let one = One { clearance: height, slope, friction: "[friction]\ncoulomb = 0.3\n", ..One::default() };
+    let one = One { clearance: height, slope, friction: "friction.coulomb = 0.3", ..One::default() };
     let mut run = one.start(Start { u_rate, w_rate, ..Start::default() });
     let touch = height / (slope * u_rate - w_rate);
     run.drive(touch + 1e-10, rate(u_rate), rate(w_rate));
@@ -189,14 +191,10 @@ fn a_flat_layer_touches_as_one() {
     const MASSES: usize = 9;
     let (height, v, u) = (1.0e-6, 0.05, 0.03);
     let law = Law::with_maxwell(STIFFNESS, 2.0e-3, &[(1.0e3, 1.0e-4)]);
-    let links: String =
-        ["vertical", "horizontal", "lateral_x", "lateral_z"].iter().map(|kind| link(kind, &law)).collect();
-    let solver = solver(1e-9, 1e-14);
-    let text = format!(
-        "[layer]\nmasses = {MASSES}\nspacing = 1e-4\nmass = {MASS:?}\nclearance = {height:?}\n{links}\
-         [surface]\nkind = \"flat\"\n[friction]\ncoulomb = {FRICTION:?}\n{solver}"
-    );
-    let mut run = Run::new(&text, Start { u_rate: u, w_rate: -v, ..Start::default() });
+    let scene =
+        LinkKind::ALL.into_iter().fold(SceneText::new(MASSES, 1e-4, MASS), |scene, kind| scene.link(kind, &law));
+    let scene = scene.set("layer.clearance", height).coulomb(FRICTION).tolerances(1e-9, 1e-14);
+    let mut run = Run::new(&scene, Start { u_rate: u, w_rate: -v, ..Start::default() });
     run.drive(height / v + 1e-10, rate(u), rate(-v));
     let events = run.events();
     assert_eq!(events.len(), MASSES);
@@ -237,16 +235,14 @@ impl Pair {
         root(gap, (0.0, 4.0 * (self.height - self.pressed) / self.speed))
     }
 
-    fn scene(&self, stiffness_x: f64) -> String {
-        let links = link("vertical", &Law::new(STIFFNESS, 0.0))
-            + &link("horizontal", &Law::new(stiffness_x, 0.0))
-            + &link("lateral_z", &Law::new(0.0, self.damping));
-        let (height, solver) = (self.height, solver(1e-9, 1e-14));
-        format!(
-            "[layer]\nmasses = 2\nspacing = 1e-4\nmass = {MASS:?}\n\
-             roughness = {{ kind = \"points\", z = [0.0, {height:?}] }}\n{links}\
-             [surface]\nkind = \"flat\"\n[friction]\ncoulomb = {FRICTION:?}\n{solver}"
-        )
+    fn scene(&self, stiffness_x: f64) -> SceneText {
+        SceneText::new(2, 1e-4, MASS)
+            .roughness(&[0.0, self.height])
+            .vertical(STIFFNESS)
+            .horizontal(stiffness_x)
+            .lateral_z((0.0, self.damping))
+            .coulomb(FRICTION)
+            .tolerances(1e-9, 1e-14)
     }
 }
 
@@ -283,13 +279,9 @@ fn the_impact_of_a_neighbour_breaks_a_stick() {
 #[test]
 fn a_kink_lifts_a_mass() {
     let (pressed, damping, kink) = (1.0e-5, 2.0e-2, 1.0e-5);
-    let vertical = link("vertical", &Law::new(STIFFNESS, damping));
+    let scene = SceneText::new(1, 1e-4, MASS).vertical((STIFFNESS, damping)).coulomb(0.3);
     for (share, lifted) in [(1.001, true), (0.99, false)] {
-        let text = format!(
-            "[layer]\nmasses = 1\nspacing = 1e-4\nmass = {MASS:?}\n{vertical}[surface]\nkind = \"flat\"\n\
-             [friction]\ncoulomb = 0.3\n"
-        );
-        let mut run = Run::new(&text, Start { w: -pressed, ..Start::default() });
+        let mut run = Run::new(&scene, Start { w: -pressed, ..Start::default() });
         run.drive(kink, REST, REST);
         run.drive(1e-9, REST, rate(share * STIFFNESS * pressed / damping));
         let events = run.events();

@@ -5,7 +5,8 @@ use std::f64::consts::{PI, TAU};
 use asperity::simulation::{Motion, Start};
 use nalgebra::{Matrix3, Vector3};
 
-use crate::exact::run::{Law, REST, Run, assert_near, link, sine, solver, steps};
+use crate::common::scenes::{Law, SceneText};
+use crate::exact::run::{REST, Run, assert_near, sine, steps};
 
 const MASSES: usize = 3;
 const PRESSED: f64 = 2.0e-5;
@@ -17,13 +18,9 @@ fn law() -> Law {
 }
 
 /// μ > 0 without any force along x: every mass sticks for ever.
-fn scene(relative: f64) -> String {
-    let vertical = link("vertical", &law());
-    let solver = solver(relative, relative * PRESSED);
-    format!(
-        "[layer]\nmasses = {MASSES}\nspacing = 1e-4\nmass = 1e-7\n{vertical}[surface]\nkind = \"flat\"\n\
-         [friction]\ncoulomb = 0.5\n{solver}"
-    )
+fn scene(relative: f64) -> SceneText {
+    let layer = SceneText::new(MASSES, 1e-4, 1e-7).vertical(law());
+    layer.coulomb(0.5).tolerances(relative, relative * PRESSED)
 }
 
 /// Least squares of `values` over a + b sin φ + c cos φ.
@@ -112,9 +109,9 @@ fn at_10_khz() {
 fn a_spring_and_a_damper_alone() {
     const FREQUENCY: f64 = 1.0e3;
     let law = Law::new(2.0e3, 2.0e-3);
-    let text = scene(1e-9).replace(&link("vertical", &self::law()), &link("vertical", &law));
     let (omega, duration) = (TAU * FREQUENCY, 100.0 / FREQUENCY);
-    let mut run = Run::new(&text, Start { w: -PRESSED, w_rate: omega * SWING, ..Start::default() });
+    let mut run =
+        Run::new(&scene(1e-9).vertical(&law), Start { w: -PRESSED, w_rate: omega * SWING, ..Start::default() });
     let times = [0.013_37, 0.05, 0.071_23, duration];
     let motion = Motion { duration, u: REST, w: sine(SWING, FREQUENCY), ..Motion::default() };
     let columns = run.sample(&motion, &times, &["F_z", "E_diss"]);

@@ -5,7 +5,10 @@ use std::path::Path as FilePath;
 use asperity::scene::{Method, OutputGroup, Path, Scene};
 use asperity::simulation::{Motion, Start};
 
-use crate::exact::run::{Law, REST, Run, assert_near, difference, largest, link, rate, solver, steps};
+use crate::common::runs::even_times;
+use crate::common::scenes::{Law, SceneText};
+use crate::common::{difference, largest};
+use crate::exact::run::{REST, Run, assert_near, rate, steps, uneven_layer};
 
 const MASS: f64 = 1.0e-7;
 const STIFFNESS: f64 = 2.0e3;
@@ -38,51 +41,33 @@ impl Strength {
         COULOMB * STIFFNESS * PRESSED + SHEAR + self.at(speed)
     }
 
-    fn text(&self) -> String {
-        let Self { force, reference, sharpness, creep } = self;
-        format!(
-            "[friction]\ncoulomb = {COULOMB:?}\nshear_force = {SHEAR:?}\nrate_shear = {{ force = {force:?}, \
-             reference_speed = {reference:?}, sharpness = {sharpness:?}, creep_speed = {creep:?} }}\n"
-        )
+    /// A scene with this law, Coulomb friction and a constant shear.
+    fn on(&self, scene: SceneText) -> SceneText {
+        let Self { force, reference, sharpness, creep } = *self;
+        scene
+            .coulomb(COULOMB)
+            .set("friction.shear_force", SHEAR)
+            .set("friction.rate_shear.force", force)
+            .set("friction.rate_shear.reference_speed", reference)
+            .set("friction.rate_shear.sharpness", sharpness)
+            .set("friction.rate_shear.creep_speed", creep)
     }
 }
 
 /// A mass pressed on the flat, under a link to the carrier along x.
 fn pressed(strength: &Strength, horizontal: &Law, u_rate: f64) -> Run {
-    let links = link("vertical", &Law::new(STIFFNESS, 0.0)) + &link("horizontal", horizontal);
-    let text = format!(
-        "[layer]\nmasses = 1\nspacing = 1e-4\nmass = {MASS:?}\n{links}[surface]\nkind = \"flat\"\n{}{}",
-        strength.text(),
-        solver(1e-9, 1e-14)
-    );
-    Run::new(&text, Start { w: -PRESSED, u_rate, ..Start::default() })
-}
-
-/// Masses of different heights, so pressed with different forces, under links of all kinds.
-fn chain(surface: &str, strength: &Strength, settings: &str) -> String {
-    let links = link("vertical", &Law::with_maxwell(2.0e3, 4.0e-3, &[(1.0e3, 1.0e-4)]))
-        + &link("horizontal", &Law::with_maxwell(1.0e3, 8.0e-3, &[(600.0, 2.0e-5)]))
-        + &link("lateral_x", &Law::with_maxwell(500.0, 2.0e-3, &[(400.0, 3.0e-5)]))
-        + &link("lateral_z", &Law::new(300.0, 1.0e-3));
-    format!(
-        "[layer]\nmasses = 5\nspacing = 1e-4\nmass = {MASS:?}\n\
-         roughness = {{ kind = \"points\", z = [0.0, -2e-6, 1e-6, 3e-6, -4e-6] }}\n{links}\
-         [surface]\n{surface}\n{}{settings}",
-        strength.text()
-    )
+    let mass = SceneText::new(1, 1e-4, MASS).vertical(STIFFNESS).horizontal(horizontal).tolerances(1e-9, 1e-14);
+    Run::new(&strength.on(mass), Start { w: -PRESSED, u_rate, ..Start::default() })
 }
 
 /// At a steady speed all masses slip at it, whatever it is: |F_x| = μ F_z + k A τ_0 + k A τ_f(v), over twelve decades.
 fn slides(method: &str) {
     let strength = Strength { creep: 1.0e-11, ..RUBBER };
-    let settings = solver(1e-6, 1e-11) + &format!("method = \"{method}\"\n");
+    let scene = strength.on(uneven_layer()).tolerances(1e-6, 1e-11).method(method);
     for decade in -8..=4 {
         for direction in [1.0, -1.0] {
             let v = direction * strength.reference * 10.0_f64.powi(decade);
-            let mut run = Run::new(
-                &chain("kind = \"flat\"", &strength, &settings),
-                Start { w: -2.0e-5, u_rate: v, ..Start::default() },
-            );
+            let mut run = Run::new(&scene, Start { w: -2.0e-5, u_rate: v, ..Start::default() });
             // Ten times the longest relaxation time, and three times the way on which springs of 1000 N/m come to the
             // friction.
             run.drive(1e-3_f64.max(2e-4 / v.abs()), rate(v), REST);
@@ -178,7 +163,7 @@ fn sticks_and_slips_as_an_explicit_method_has_it() {
     let mut run = pressed(&BLUNT, &horizontal, 0.0);
     let explicit = Explicit { law: BLUNT, horizontal: horizontal.clone(), speed };
     let motion = Motion { duration, u: rate(speed), w: Path::default(), ..Motion::default() };
-    let times: Vec<f64> = (1..=40).map(|i| duration * f64::from(i) / 40.0).collect();
+    let times = even_times(duration, 40);
     let found = run.sample(&motion, &times, &["element[1].x", "F_x", "dissipation.E_friction"]);
     let (expected, changes) = explicit.run(&times);
     let events = run.events();
@@ -270,9 +255,10 @@ impl Explicit {
 /// same.
 #[test]
 fn energies_close_on_a_wave_and_both_drivers_agree() {
-    let surface = "kind = \"sinusoid\"\namplitude = 3e-6\nwavelength = 2.3e-4";
-    let run = |settings: &str| {
-        let mut run = Run::new(&chain(surface, &RUBBER, settings), Start { w: -6.0e-6, ..Start::default() });
+    let scene = RUBBER.on(uneven_layer()).sinusoid(3e-6, 2.3e-4);
+    let run = |method: &str, tolerance: f64| {
+        let mut run =
+            Run::new(&scene.clone().method(method).relative(tolerance), Start { w: -6.0e-6, ..Start::default() });
         let mut columns = [const { Vec::new() }; 3];
         let wave = Path { rate: 0.0, amplitude: 2.0e-5, frequency: 1000.0 };
         for (duration, u, w) in
@@ -285,32 +271,29 @@ fn energies_close_on_a_wave_and_both_drivers_agree() {
         let (energy, residual) = (run.get("E_diss"), run.get("energy.residual"));
         (columns, residual.abs() / energy)
     };
-    let (exact, residual) = run("[solver]\nrelative_tolerance = 1e-9\n");
+    let (exact, residual) = run("event", 1e-9);
     assert!(residual < 1e-8, "{residual:e}");
-    for (settings, forces, energies) in [
-        ("relative_tolerance = 1e-6\n", 1e-4, 1e-5),
-        ("method = \"step\"\nrelative_tolerance = 1e-4\n", 1e-3, 1e-4),
-        ("method = \"auto\"\nrelative_tolerance = 1e-4\n", 1e-2, 1e-3),
-    ] {
-        let (found, residual) = run(&format!("[solver]\n{settings}"));
-        assert!(residual < energies, "{settings}: {residual:e}");
+    let cases = [("event", 1e-6, 1e-4, 1e-5), ("step", 1e-4, 1e-3, 1e-4), ("auto", 1e-4, 1e-2, 1e-3)];
+    for (method, tolerance, forces, energies) in cases {
+        let (found, residual) = run(method, tolerance);
+        assert!(residual < energies, "{method}: {residual:e}");
         for (found, exact) in found.iter().zip(&exact) {
             let error = difference(found, exact) / largest(exact);
-            assert!(error < forces, "{settings}: {error:e}");
+            assert!(error < forces, "{method}: {error:e}");
         }
     }
 }
 
 /// A layer of rubber on the flat at a temperature (K): its friction at a speed (m/s), N.
 fn drag_of_rubber(temperature: f64, speed: f64) -> f64 {
-    let text = format!(
-        "[layer]\nmasses = 3\nspacing = 1e-4\nthickness = 1e-3\nwidth = 1e-2\n\
-         [material]\ndensity = 1100.0\npoisson_ratio = 0.49\nequilibrium_modulus = 2e6\nviscosity = 1e2\nprony = []\n\
-         wlf = {{ c1 = 7.52, c2 = 119.75, reference_temperature = 293.15, temperature = {temperature:?} }}\n\
-         [surface]\nkind = \"flat\"\n[friction]\ncoulomb = 0.2\n\
-         rate_shear = {{ strength = {STRENGTH:?}, reference_speed = 6e-3, sharpness = 0.1 }}\n"
-    );
-    let mut run = Run::new(&text, Start { w: -1.0e-5, u_rate: speed, ..Start::default() });
+    let scene = SceneText::rubber(3, 1e-4, 1e-3, 1e-2)
+        .with("material.equilibrium_modulus = 2e6\nmaterial.viscosity = 1e2")
+        .prony(&[])
+        .wlf([7.52, 119.75, 293.15], temperature)
+        .coulomb(0.2)
+        .set("friction.rate_shear.strength", STRENGTH)
+        .with("friction.rate_shear.reference_speed = 6e-3\nfriction.rate_shear.sharpness = 0.1");
+    let mut run = Run::new(&scene, Start { w: -1.0e-5, u_rate: speed, ..Start::default() });
     run.drive(2e-2 / speed, rate(speed), REST);
     assert_eq!(run.get("contact.count"), 3.0);
     -run.get("F_x") - 0.2 * run.get("F_z")

@@ -2,6 +2,7 @@
 
 use asperity::simulation::Start;
 
+use crate::common::scenes::SceneText;
 use crate::exact::run::{REST, Run, assert_near, rate};
 
 const MASSES: f64 = 4.0;
@@ -19,26 +20,30 @@ const RUBBER: (f64, f64, f64) = (3e6, 2e7, 1e-4);
 /// Pa s: enough for no swings to grow where friction falls with the speed.
 const VISCOSITY: f64 = 2e3;
 
-fn scene(friction: &str, temperature: &str, method: &str) -> String {
+/// The layer with the law of the whole area and what `lines` add.
+fn scene(lines: &str, method: &str) -> SceneText {
     let (rest, modulus, time) = RUBBER;
-    format!(
-        "[layer]\nmasses = 4\nspacing = 1e-4\nfoundation = \"half_space\"\nwidth = 1e-2\n[surface]\nkind = \"flat\"\n\
-         [material]\ndensity = 1100\npoisson_ratio = 0.5\nequilibrium_modulus = {rest:?}\n\
-         viscosity = {VISCOSITY:?}\nprony = [{{ modulus = {modulus:?}, relaxation_time = {time:?} }}]\n{temperature}\n\
-         [friction]\n{friction}\n[solver]\nmethod = \"{method}\"\nrelative_tolerance = 1e-7\n"
-    )
-}
-
-fn law(real_area: &str) -> String {
     let (strength, reference, sharpness, creep) = RATE;
-    format!(
-        "coulomb = {COULOMB:?}\nshear_strength = {SHEAR:?}\nrate_shear = {{ strength = {strength:?}, reference_speed = \
-         {reference:?}, sharpness = {sharpness:?}, creep_speed = {creep:?} }}\n{real_area}"
-    )
+    SceneText::rubber(4, 1e-4, 0.0, 1e-2)
+        .without("layer.thickness")
+        .set("layer.foundation", "half_space")
+        .set("material.poisson_ratio", 0.5)
+        .set("material.equilibrium_modulus", rest)
+        .set("material.viscosity", VISCOSITY)
+        .prony(&[(modulus, time)])
+        .coulomb(COULOMB)
+        .set("friction.shear_strength", SHEAR)
+        .set("friction.rate_shear.strength", strength)
+        .set("friction.rate_shear.reference_speed", reference)
+        .set("friction.rate_shear.sharpness", sharpness)
+        .set("friction.rate_shear.creep_speed", creep)
+        .method(method)
+        .relative(1e-7)
+        .with(lines)
 }
 
 fn band() -> String {
-    format!("real_area = {{ rms_slope = {SLOPE:?}, wavelength = {WAVELENGTH:?} }}")
+    format!("friction.real_area = {{ rms_slope = {SLOPE:?}, wavelength = {WAVELENGTH:?} }}")
 }
 
 /// τ_0 + τ_f(v), Pa.
@@ -59,9 +64,8 @@ fn share(normal: f64, speed: f64) -> f64 {
 }
 
 /// The layer pressed into the flat and drawn along it until all is steady.
-fn slid(friction: &str, temperature: &str, method: &str, depth: f64, speed: f64) -> Run {
-    let mut run =
-        Run::new(&scene(friction, temperature, method), Start { w: -depth, u_rate: speed, ..Start::default() });
+fn slide(scene: &SceneText, depth: f64, speed: f64) -> Run {
+    let mut run = Run::new(scene, Start { w: -depth, u_rate: speed, ..Start::default() });
     // Ten times the relaxation time, and several times the way on which the links come to the friction.
     run.drive(2e-2_f64.max(1e-3 / speed), rate(speed), REST);
     run
@@ -72,7 +76,7 @@ fn steady_slip_has_the_shear_of_the_area_that_touches() {
     for method in ["event", "step"] {
         for depth in [1e-6, 3e-5] {
             for speed in [1e-5, 1e-3, 0.1, 10.0] {
-                let mut run = slid(&law(&band()), "", method, depth, speed);
+                let mut run = slide(&scene(&band(), method), depth, speed);
                 let normal = run.get("F_z") / MASSES;
                 let shear = AREA * share(normal, speed) * strength(speed);
                 let drag = MASSES * (COULOMB * normal + shear);
@@ -101,8 +105,7 @@ fn steady_slip_has_the_shear_of_the_area_that_touches() {
 /// A layer drawn so slowly that it sticks: it breaks at T(F_N, v_c), and not before.
 #[test]
 fn a_stuck_layer_breaks_at_the_limit_of_the_creep_speed() {
-    let text = scene(&law(&band()), "", "event");
-    let mut run = Run::new(&text, Start { w: -1e-5, ..Start::default() });
+    let mut run = Run::new(&scene(&band(), "event"), Start { w: -1e-5, ..Start::default() });
     let normal = run.get("F_z") / MASSES;
     let limit = COULOMB * normal + AREA * share(normal, 0.0) * strength(0.0);
     let mut largest: f64 = 0.0;
@@ -119,8 +122,8 @@ fn a_stuck_layer_breaks_at_the_limit_of_the_creep_speed() {
 #[test]
 fn without_slopes_below_the_profile_it_is_the_law_of_the_whole_area() {
     for speed in [1e-5, 1e-4] {
-        let [whole, flat] = ["", "real_area = { rms_slope = 1e-9, wavelength = 1e-5 }"]
-            .map(|real_area| slid(&law(real_area), "", "event", 1e-5, speed).get("F_x"));
+        let [whole, flat] = ["", "friction.real_area = { rms_slope = 1e-9, wavelength = 1e-5 }"]
+            .map(|real_area| slide(&scene(real_area, "event"), 1e-5, speed).get("F_x"));
         assert_near("F_x", flat, whole, 1e-9 * whole.abs());
     }
 }
@@ -128,15 +131,14 @@ fn without_slopes_below_the_profile_it_is_the_law_of_the_whole_area() {
 /// μ(v, T) = μ(a_T v, T_ref).
 #[test]
 fn temperature_shifts_the_speeds() {
-    let wlf = |temperature: f64| {
-        format!("wlf = {{ c1 = 8.0, c2 = 120.0, reference_temperature = 293.15, temperature = {temperature:?} }}")
+    let at = |temperature: f64, speed: f64| {
+        let scene = scene(&band(), "event").wlf([8.0, 120.0, 293.15], temperature);
+        slide(&scene, 1e-5, speed).get("friction.coefficient")
     };
     let shift = 10.0_f64.powf(-8.0 * 10.0 / 130.0);
     for speed in [1e-3, 0.3] {
-        let mut warm = slid(&law(&band()), &wlf(303.15), "event", 1e-5, speed);
-        let mut cold = slid(&law(&band()), &wlf(293.15), "event", 1e-5, shift * speed);
-        let friction = cold.get("friction.coefficient");
+        let friction = at(293.15, shift * speed);
         // Both tables have their entries elsewhere.
-        assert_near("μ", warm.get("friction.coefficient"), friction, 5e-5 * friction);
+        assert_near("μ", at(303.15, speed), friction, 5e-5 * friction);
     }
 }

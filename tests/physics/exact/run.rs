@@ -1,14 +1,14 @@
-//! A run of a scene given as text, read by the variables' names.
-
-use std::path::Path as FilePath;
+//! A run of a scene, read by the variables' names.
 
 use asperity::outputs::{self, Snapshot, Variable};
 use asperity::scene::{Path, Scene};
 use asperity::simulation::{ModeChange, Motion, Simulation, Start};
 
+use crate::common::scenes::SceneText;
+
 /// Those of a carrier that is a body, too.
-const WITH_CARRIER: &str = r#"outputs = ["forces", "carrier", "dissipation", "energy", "solver"]"#;
-const OUTPUTS: &str = r#"outputs = ["forces", "dissipation", "friction", "contact", "energy", "solver", "elements"]"#;
+const WITH_CARRIER: [&str; 5] = ["forces", "carrier", "dissipation", "energy", "solver"];
+const OUTPUTS: [&str; 7] = ["forces", "dissipation", "friction", "contact", "energy", "solver", "elements"];
 
 /// A run that records its mode changes.
 #[derive(Clone)]
@@ -19,12 +19,10 @@ pub(crate) struct Run {
 }
 
 impl Run {
-    /// Starts the scene whose tables, but for name and outputs, are `text`.
-    pub(crate) fn new(text: &str, start: Start) -> Self {
-        let outputs = if text.contains("[carrier.") { WITH_CARRIER } else { OUTPUTS };
-        let text = format!("name = \"exact\"\n{text}\n[fmu]\n{outputs}\n");
-        let scene = Scene::parse(&text, FilePath::new("exact.toml")).unwrap_or_else(|error| panic!("{error}\n{text}"));
-        Self::of(&scene, start)
+    /// Starts a scene, with its outputs added.
+    pub(crate) fn new(scene: &SceneText, start: Start) -> Self {
+        let outputs = if scene.has("carrier") { &WITH_CARRIER[..] } else { &OUTPUTS };
+        Self::of(&scene.clone().outputs(outputs).scene(), start)
     }
 
     /// Starts a scene.
@@ -84,47 +82,14 @@ impl Run {
     }
 }
 
-/// The table `[solver]` with these tolerances, relative and absolute (m).
-pub(crate) fn solver(relative: f64, absolute: f64) -> String {
-    format!("[solver]\nrelative_tolerance = {relative:?}\nabsolute_tolerance = {absolute:?}\n")
-}
-
-/// A link's table: stiffness c, damping d, Maxwell elements (c_j, τ_j).
-pub(crate) fn link(kind: &str, law: &Law) -> String {
-    let element = |(c, tau): &(f64, f64)| format!("{{ stiffness = {c:?}, relaxation_time = {tau:?} }}");
-    let maxwell: Vec<String> = law.maxwell.iter().map(element).collect();
-    let (c, d) = (law.stiffness, law.damping);
-    format!("[layer.{kind}]\nstiffness = {c:?}\ndamping = {d:?}\nmaxwell = [{}]\n", maxwell.join(", "))
-}
-
-/// The constants of a link.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Law {
-    pub(crate) stiffness: f64,
-    pub(crate) damping: f64,
-    pub(crate) maxwell: Vec<(f64, f64)>,
-}
-
-impl Law {
-    /// A spring and a damper.
-    pub(crate) fn new(stiffness: f64, damping: f64) -> Self {
-        Self { stiffness, damping, maxwell: Vec::new() }
-    }
-
-    /// With Maxwell elements (c_j, τ_j).
-    pub(crate) fn with_maxwell(stiffness: f64, damping: f64, maxwell: &[(f64, f64)]) -> Self {
-        Self { stiffness, damping, maxwell: maxwell.to_vec() }
-    }
-
-    /// K*(ω) = c + iωd + Σ_j c_j iωτ_j/(1 + iωτ_j): its real and its imaginary part.
-    pub(crate) fn complex_stiffness(&self, omega: f64) -> (f64, f64) {
-        let element = |&(c, tau): &(f64, f64)| {
-            let x = omega * tau;
-            (c * x * x / (1.0 + x * x), c * x / (1.0 + x * x))
-        };
-        let add = |sum: (f64, f64), part: (f64, f64)| (sum.0 + part.0, sum.1 + part.1);
-        self.maxwell.iter().map(element).fold((self.stiffness, omega * self.damping), add)
-    }
+/// Five masses of different heights, so pressed with different forces, all links with damping.
+pub(crate) fn uneven_layer() -> SceneText {
+    SceneText::new(5, 1e-4, 1e-7)
+        .roughness(&[0.0, -2e-6, 1e-6, 3e-6, -4e-6])
+        .vertical((2.0e3, 4.0e-3, [(1.0e3, 1.0e-4)]))
+        .horizontal((1.0e3, 8.0e-3, [(600.0, 2.0e-5)]))
+        .lateral_x((500.0, 2.0e-3, [(400.0, 3.0e-5)]))
+        .lateral_z((300.0, 1.0e-3))
 }
 
 /// A constant rate, m/s.
@@ -150,17 +115,6 @@ pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// The largest absolute value; NaN counts as infinite.
-pub(crate) fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |largest, value| if value.is_nan() { f64::INFINITY } else { largest.max(value.abs()) })
-}
-
-/// The largest difference of two columns of equal length.
-pub(crate) fn difference(a: &[f64], b: &[f64]) -> f64 {
-    assert_eq!(a.len(), b.len(), "as many values");
-    largest(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>())
-}
-
 /// Fails where `found` is not within `tolerance` times `scale` of `expected`.
 #[track_caller]
 pub(crate) fn assert_near(what: &str, found: f64, expected: f64, allowed: f64) {
@@ -181,19 +135,4 @@ pub(crate) fn root(f: impl Fn(f64) -> f64, (mut a, mut b): (f64, f64)) -> f64 {
         }
     }
     0.5 * (a + b)
-}
-
-/// Numbers in [0, 1) that are the same in every run: Knuth's linear congruential generator.
-pub(crate) struct Random(pub(crate) u64);
-
-impl Random {
-    pub(crate) fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    /// Between `low` and `high`.
-    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
 }

@@ -5,28 +5,20 @@ use std::f64::consts::{FRAC_1_PI, TAU};
 
 use asperity::simulation::Start;
 
-use crate::exact::run::{Law, REST, Run, assert_near, link, rate, solver};
+use crate::common::scenes::{Law, SceneText};
+use crate::exact::run::{REST, Run, assert_near, rate};
 
 const MASS: f64 = 1.0e-7;
 const STIFFNESS: f64 = 2.0e3;
 
-/// One mass under a vertical link over `surface`, the keys of that table.
-fn one(surface: &str, clearance: f64, vertical: &Law, extra: &str) -> String {
-    let (vertical, solver) = (link("vertical", vertical), solver(1e-9, 1e-15));
-    format!(
-        "[layer]\nmasses = 1\nspacing = 1e-4\nmass = {MASS:?}\nclearance = {clearance:?}\n{vertical}\
-         [surface]\n{surface}\n{extra}\n{solver}"
-    )
+/// One mass under a vertical link over the flat.
+fn one(vertical: impl Into<Law>) -> SceneText {
+    SceneText::new(1, 1e-4, MASS).vertical(vertical).tolerances(1e-9, 1e-15)
 }
 
-fn line(slope: f64) -> String {
-    format!("kind = \"points\"\nx = [-1e-2, 1e-2]\nz = [{:?}, {:?}]", -1e-2 * slope, 1e-2 * slope)
-}
-
-const FLAT: &str = "kind = \"flat\"";
-
-fn spring() -> Law {
-    Law::new(STIFFNESS, 0.0)
+/// One on a spring over a straight slope.
+fn on_slope(slope: f64) -> SceneText {
+    one(STIFFNESS).points(&[-1e-2, 1e-2], &[-1e-2 * slope, 1e-2 * slope], false)
 }
 
 /// A mass under the profile is lifted vertically onto it and keeps v_t = (U + sW)/q along t; what it had along n counts
@@ -34,8 +26,8 @@ fn spring() -> Law {
 #[test]
 fn a_lifted_mass_keeps_its_tangential_velocity() {
     for (slope, u_rate, w_rate) in [(0.0, 0.03, -0.05), (0.5, 0.03, -0.05), (0.5, -0.03, -0.05), (-0.8, 0.1, 0.02)] {
-        let text = one(&line(slope), 0.0, &spring(), "[friction]\ncoulomb = 0.3");
-        let mut run = Run::new(&text, Start { u: 1e-3, w: 1e-3 * slope - 1e-5, u_rate, w_rate, ..Start::default() });
+        let scene = on_slope(slope).coulomb(0.3);
+        let mut run = Run::new(&scene, Start { u: 1e-3, w: 1e-3 * slope - 1e-5, u_rate, w_rate, ..Start::default() });
         let v_t = (u_rate + slope * w_rate) / slope.hypot(1.0);
         let energy = 0.5 * MASS * v_t * v_t;
         assert_near("T", run.get("energy.kinetic"), energy, 1e-14 * energy);
@@ -53,10 +45,9 @@ fn a_lifted_mass_keeps_its_tangential_velocity() {
 fn at_rest_the_slope_decides_between_stick_and_slip() {
     for slope in [0.5, -0.5_f64] {
         for (friction, mode) in [(0.5 + 1e-9, 2.0), (0.5 - 1e-9, -slope.signum())] {
-            let text = one(&line(slope), 0.0, &spring(), &format!("[friction]\ncoulomb = {friction:?}"));
             // Rates along n: U = -sW leaves v_t = 0.
             let start = Start { w: -1e-5, u_rate: 0.04 * slope, w_rate: -0.04, ..Start::default() };
-            let mut run = Run::new(&text, start);
+            let mut run = Run::new(&on_slope(slope).coulomb(friction), start);
             assert_eq!(run.mode(1), mode, "μ = {friction}, s = {slope}");
             assert_eq!(run.get("energy.kinetic"), 0.0);
         }
@@ -69,8 +60,8 @@ fn at_rest_adhesion_holds_on_a_steep_slope() {
     let (slope, force) = (0.8_f64, STIFFNESS * 1e-5);
     let needed = (slope - 0.3) * force / slope.hypot(1.0);
     for (share, mode) in [(1.0 + 1e-9, 2.0), (1.0 - 1e-9, -1.0)] {
-        let friction = format!("[friction]\ncoulomb = 0.3\nshear_force = {:?}", share * needed);
-        let mut run = Run::new(&one(&line(slope), 0.0, &spring(), &friction), Start { w: -1e-5, ..Start::default() });
+        let scene = on_slope(slope).coulomb(0.3).set("friction.shear_force", share * needed);
+        let mut run = Run::new(&scene, Start { w: -1e-5, ..Start::default() });
         assert_eq!(run.mode(1), mode);
     }
 }
@@ -78,7 +69,7 @@ fn at_rest_adhesion_holds_on_a_steep_slope() {
 /// With no friction in the scene there is no stick: a contact at v_t = 0 just goes on.
 #[test]
 fn without_friction_nothing_sticks() {
-    let mut run = Run::new(&one(FLAT, 0.0, &spring(), ""), Start { w: -1e-5, ..Start::default() });
+    let mut run = Run::new(&one(STIFFNESS), Start { w: -1e-5, ..Start::default() });
     assert_eq!([run.get("contact.count"), run.get("contact.sticking")], [1.0, 0.0]);
     run.drive(1e-5, REST, REST);
     assert_eq!([run.get("contact.count"), run.get("contact.sticking")], [1.0, 0.0]);
@@ -92,7 +83,7 @@ fn a_lifted_mass_that_its_damper_draws_up_is_free() {
     let limit = STIFFNESS * 1e-5 / damping;
     for (share, count) in [(1.0 + 1e-9, 0.0), (1.0 - 1e-9, 1.0)] {
         let start = Start { w: -1e-5, u_rate: 0.03, w_rate: share * limit, ..Start::default() };
-        let mut run = Run::new(&one(FLAT, 0.0, &Law::new(STIFFNESS, damping), ""), start);
+        let mut run = Run::new(&one((STIFFNESS, damping)), start);
         assert_eq!(run.get("contact.count"), count);
         assert_near("T", run.get("energy.kinetic"), 0.5 * MASS * 0.03 * 0.03, 1e-20);
         assert_eq!(run.get("element[1].z"), 0.0);
@@ -103,7 +94,7 @@ fn a_lifted_mass_that_its_damper_draws_up_is_free() {
 #[test]
 fn a_mass_on_the_profile_that_nothing_presses_is_free() {
     for w_rate in [0.05, 0.0] {
-        let mut run = Run::new(&one(FLAT, 0.0, &spring(), ""), Start { w_rate, u_rate: 0.02, ..Start::default() });
+        let mut run = Run::new(&one(STIFFNESS), Start { w_rate, u_rate: 0.02, ..Start::default() });
         assert_eq!(run.get("contact.count"), 0.0, "ẇ = {w_rate}");
         run.drive(1e-5, rate(0.02), rate(w_rate));
         assert_eq!([run.get("contact.count"), run.get("dissipation.E_impact")], [0.0, 0.0]);
@@ -117,8 +108,8 @@ fn a_mass_on_the_profile_that_nothing_presses_is_free() {
 fn a_mass_gliding_through_a_trough_is_in_contact() {
     let (h, b, speed) = (2.0_f64.powi(-10), 2.0_f64.powi(-20), 0.5);
     for (sign, count) in [(1.0, 1.0), (-1.0, 0.0)] {
-        let surface = format!("kind = \"points\"\nx = [{:?}, 0.0, {h:?}]\nz = [{1:?}, 0.0, {1:?}]", -h, sign * b);
-        let mut run = Run::new(&one(&surface, 0.0, &spring(), ""), Start { u_rate: speed, ..Start::default() });
+        let scene = one(STIFFNESS).points(&[-h, 0.0, h], &[sign * b, 0.0, sign * b], false);
+        let mut run = Run::new(&scene, Start { u_rate: speed, ..Start::default() });
         assert_eq!(run.get("contact.count"), count);
         let force = count * MASS * 3.0 * b / (h * h) * speed * speed;
         assert_near("F_N", run.get("element[1].F_N"), force, 1e-14 * force);
@@ -130,8 +121,8 @@ fn a_mass_gliding_through_a_trough_is_in_contact() {
 #[test]
 fn the_impact_of_a_mass_on_the_profile_comes_just_after_the_start() {
     let (u_rate, w_rate) = (0.03, -0.05);
-    let text = one(FLAT, 0.0, &spring(), "[friction]\ncoulomb = 0.3");
-    let mut run = Run::new(&text, Start { time: 2.0, u_rate, w_rate, ..Start::default() });
+    let scene = one(STIFFNESS).coulomb(0.3);
+    let mut run = Run::new(&scene, Start { time: 2.0, u_rate, w_rate, ..Start::default() });
     let before = 0.5 * MASS * (u_rate * u_rate + w_rate * w_rate);
     let after = 0.5 * MASS * (0.03_f64 - 0.3 * 0.05).powi(2);
     assert_eq!([run.mode(1), run.get("E_diss"), run.get("F_z")], [0.0, 0.0, 0.0]);
@@ -147,7 +138,7 @@ fn the_impact_of_a_mass_on_the_profile_comes_just_after_the_start() {
 /// A mass that rests on the profile and is then pressed down comes into contact without an impact: F_z = c V t.
 #[test]
 fn a_resting_mass_is_pressed_down_without_an_impact() {
-    let mut run = Run::new(&one(FLAT, 0.0, &spring(), "[friction]\ncoulomb = 0.3"), Start::default());
+    let mut run = Run::new(&one(STIFFNESS).coulomb(0.3), Start::default());
     run.drive(1e-5, REST, REST);
     run.drive(1e-5, REST, rate(-0.05));
     assert_near("F_z", run.get("F_z"), STIFFNESS * 0.05 * 1e-5, 1e-9 * STIFFNESS * 0.05 * 1e-5);
@@ -163,8 +154,8 @@ fn dashpots_start_relaxed_or_undeformed() {
     let (pressed, elements, time) = (1.0e-5, [(800.0, 1.0e-4), (500.0, 1.0e-5)], 2.0e-5);
     let vertical = Law::with_maxwell(STIFFNESS, 0.0, &elements);
     for (initial, share) in [("relaxed", 0.0), ("undeformed", 1.0)] {
-        let text = one(FLAT, 0.0, &vertical, "").replace("[layer]", &format!("[layer]\ninitial = \"{initial}\""));
-        let mut run = Run::new(&text, Start { w: -pressed, ..Start::default() });
+        let mut run =
+            Run::new(&one(&vertical).set("layer.initial", initial), Start { w: -pressed, ..Start::default() });
         let force = |t: f64| {
             let held: f64 = elements.iter().map(|(c, tau)| share * c * (-t / tau).exp()).sum();
             (STIFFNESS + held) * pressed
@@ -181,14 +172,11 @@ fn dashpots_start_relaxed_or_undeformed() {
 /// undeformed.
 #[test]
 fn lateral_dashpots_start_relaxed_or_undeformed() {
-    let lateral = Law::with_maxwell(300.0, 0.0, &[(200.0, 1.0e-4)]);
-    let links = link("vertical", &spring()) + &link("lateral_z", &lateral);
+    let layer = SceneText::new(2, 1e-4, MASS).roughness(&[0.0, -2e-6]).vertical(STIFFNESS);
+    let layer = layer.lateral_z((300.0, 0.0, [(200.0, 1.0e-4)]));
     for (initial, stiffness) in [("relaxed", 300.0), ("undeformed", 500.0)] {
-        let text = format!(
-            "[layer]\nmasses = 2\nspacing = 1e-4\nmass = {MASS:?}\ninitial = \"{initial}\"\n\
-             roughness = {{ kind = \"points\", z = [0.0, -2e-6] }}\n{links}[surface]\n{FLAT}\n"
-        );
-        let mut run = Run::new(&text, Start { w: -1e-5, ..Start::default() });
+        let scene = layer.clone().set("layer.initial", initial);
+        let mut run = Run::new(&scene, Start { w: -1e-5, ..Start::default() });
         // Lifted by 10 µm and 12 µm: the second is pulled down by the first, which is pulled up.
         let (first, second) = (STIFFNESS * 1e-5 - stiffness * 2e-6, STIFFNESS * 1.2e-5 + stiffness * 2e-6);
         assert_near("F_N of the first", run.get("element[1].F_N"), first, 1e-12 * first);
@@ -201,18 +189,18 @@ const AMPLITUDE: f64 = 1.0e-5;
 
 /// Contact ratio and mean force a mass over cA, for `k` masses even over a period, pressed by δ from the crest.
 fn lay(k: usize, depth: f64) -> [f64; 2] {
-    let vertical = link("vertical", &Law::with_maxwell(STIFFNESS, 1.0e-3, &[(900.0, 1.0e-4)]));
     // A cosine is a sine a quarter of a wavelength further; between the crests the first mass keeps half a spacing.
     let spacing = WAVELENGTH / k as f64;
     let origin = 0.25 * WAVELENGTH + 0.5 * spacing;
     // μ above the largest slope 2πA/λ = 0.063: every mass sticks where it is put.
-    let text = format!(
-        "[layer]\nmasses = {k}\nspacing = {spacing:?}\norigin = {origin:?}\nmass = 1e-7\n{vertical}\
-         [surface]\nkind = \"sinusoid\"\namplitude = {AMPLITUDE:?}\nwavelength = {WAVELENGTH:?}\n\
-         points_per_wavelength = 512\n[friction]\ncoulomb = 0.1\n"
-    );
+    let scene = SceneText::new(k, spacing, 1e-7)
+        .set("layer.origin", origin)
+        .vertical((STIFFNESS, 1.0e-3, [(900.0, 1.0e-4)]))
+        .sinusoid(AMPLITUDE, WAVELENGTH)
+        .set("surface.points_per_wavelength", 512)
+        .coulomb(0.1);
     let w = AMPLITUDE * (1.0 - depth);
-    let mut run = Run::new(&text, Start { w, ..Start::default() });
+    let mut run = Run::new(&scene, Start { w, ..Start::default() });
     assert_eq!(run.get("contact.sticking"), run.get("contact.count"), "all masses in contact stick");
     assert_near("contact.F_z", run.get("contact.F_z"), run.get("F_z"), 1e-12 * run.get("F_z"));
     [run.get("contact.ratio"), run.get("F_z") / (k as f64 * STIFFNESS * AMPLITUDE)]

@@ -3,7 +3,11 @@
 use asperity::scene::Path;
 use asperity::simulation::{Motion, Start};
 
-use crate::exact::run::{Law, REST, Random, Run, difference, largest, link, mean, rate, sine, solver, steps};
+use crate::common::random::Random;
+use crate::common::runs::even_times;
+use crate::common::scenes::SceneText;
+use crate::common::{difference, largest};
+use crate::exact::run::{REST, Run, mean, rate, sine, steps};
 
 const MASSES: usize = 4;
 const SPACING: f64 = 1.0 / 8192.0;
@@ -13,8 +17,8 @@ const POINTS: usize = 32;
 
 /// A rough profile of one period, and a layer that is pressed on it by 10 µm. `mirrored`: seen from behind, x → -x, in
 /// which the period from 0 to -L becomes one from 0 to L again.
-fn scene(mirrored: bool, relative: f64) -> String {
-    let mut random = Random(11);
+fn scene(mirrored: bool, relative: f64) -> SceneText {
+    let mut random = Random::new(11);
     let x: Vec<f64> = (0..=POINTS).map(|i| PERIOD * i as f64 / POINTS as f64).collect();
     let mut z: Vec<f64> = (0..=POINTS).map(|_| random.between(-1.0e-6, 1.0e-6)).collect();
     z[POINTS] = z[0];
@@ -25,17 +29,17 @@ fn scene(mirrored: bool, relative: f64) -> String {
         roughness.reverse();
         origin = -SPACING * (MASSES - 1) as f64;
     }
-    let links = link("vertical", &Law::with_maxwell(2.0e3, 4.0e-3, &[(1.0e3, 1.0e-4)]))
-        + &link("horizontal", &Law::with_maxwell(2.0e3, 4.0e-3, &[(600.0, 2.0e-5)]))
-        + &link("lateral_x", &Law::new(500.0, 2.0e-3))
-        + &link("lateral_z", &Law::with_maxwell(300.0, 1.0e-3, &[(200.0, 3.0e-5)]));
-    let solver = solver(relative, relative * 1e-6);
-    format!(
-        "[layer]\nmasses = {MASSES}\nspacing = {SPACING:?}\norigin = {origin:?}\nmass = 1e-7\n\
-         roughness = {{ kind = \"points\", z = {roughness:?} }}\n{links}\
-         [surface]\nkind = \"points\"\nperiodic = true\nx = {x:?}\nz = {z:?}\n\
-         [friction]\ncoulomb = 0.1\nshear_force = 5e-4\n{solver}"
-    )
+    SceneText::new(MASSES, SPACING, 1e-7)
+        .set("layer.origin", origin)
+        .roughness(&roughness)
+        .vertical((2.0e3, 4.0e-3, [(1.0e3, 1.0e-4)]))
+        .horizontal((2.0e3, 4.0e-3, [(600.0, 2.0e-5)]))
+        .lateral_x((500.0, 2.0e-3))
+        .lateral_z((300.0, 1.0e-3, [(200.0, 3.0e-5)]))
+        .points(&x, &z, true)
+        .coulomb(0.1)
+        .set("friction.shear_force", 5e-4)
+        .tolerances(relative, relative * 1e-6)
 }
 
 const NAMES: [&str; 8] = [
@@ -56,8 +60,7 @@ fn travel(mirrored: bool, from: f64, motions: &[(f64, Path, Path)]) -> Vec<Vec<f
     let mut columns = vec![Vec::new(); NAMES.len()];
     for (duration, u, w) in motions {
         let u = Path { rate: sign * u.rate, amplitude: sign * u.amplitude, ..*u };
-        let times: Vec<f64> =
-            (1..=40).map(|i| if i == 40 { *duration } else { duration * f64::from(i) / 40.0 }).collect();
+        let times = even_times(*duration, 40);
         let motion = Motion { duration: *duration, u, w: *w, ..Motion::default() };
         for (column, more) in columns.iter_mut().zip(run.sample(&motion, &times, &NAMES)) {
             column.extend(more);
@@ -107,16 +110,17 @@ fn the_contact_force_is_hysteresis_and_adhesion() {
 /// are those on the carrier, along x and along z.
 #[test]
 fn contact_forces_are_the_carriers_on_the_mean() {
-    let links = link("vertical", &Law::with_maxwell(2.0e3, 4.0e-3, &[(1.0e3, 2.0e-5)]))
-        + &link("horizontal", &Law::new(2.0e3, 8.0e-3))
-        + &link("lateral_z", &Law::new(300.0, 1.0e-3));
-    let solver = solver(1e-9, 1e-15);
-    let text = format!(
-        "[layer]\nmasses = 2\nspacing = 1.3e-4\nmass = 1e-7\n{links}[surface]\nkind = \"sinusoid\"\namplitude = 2e-6\n\
-         wavelength = 4e-4\npoints_per_wavelength = 256\n[friction]\ncoulomb = 0.1\nshear_force = 1e-3\n{solver}"
-    );
+    let scene = SceneText::new(2, 1.3e-4, 1e-7)
+        .vertical((2.0e3, 4.0e-3, [(1.0e3, 2.0e-5)]))
+        .horizontal((2.0e3, 8.0e-3))
+        .lateral_z((300.0, 1.0e-3))
+        .sinusoid(2e-6, 4e-4)
+        .set("surface.points_per_wavelength", 256)
+        .coulomb(0.1)
+        .set("friction.shear_force", 1e-3)
+        .tolerances(1e-9, 1e-15);
     let (v, period) = (0.5, 8.0e-4);
-    let mut run = Run::new(&text, Start { w: -1.0e-5, u_rate: v, ..Start::default() });
+    let mut run = Run::new(&scene, Start { w: -1.0e-5, u_rate: v, ..Start::default() });
     let motion = Motion { duration: 6.0 * period, u: rate(v), w: REST, ..Motion::default() };
     let times = steps((4.0 * period, 5.0 * period), 512);
     let columns = run.sample(&motion, &times, &NAMES);

@@ -6,6 +6,7 @@ use std::path::Path as FilePath;
 use asperity::scene::{Path, Scene};
 use asperity::simulation::{Motion, Simulation, SimulationError, Start};
 
+use crate::common::scenes::SceneText;
 use crate::exact::run::{REST, Run, assert_near, rate};
 
 const MASS: f64 = 1.0e-7;
@@ -19,14 +20,15 @@ const ASIDE: f64 = 1.0e-11;
 
 /// One frictionless mass almost on a crest, pressed down by DEPTH below the mean line.
 fn on_a_crest(method: &str) -> Run {
-    let text = format!(
-        "[layer]\nmasses = 1\nspacing = 1e-4\nmass = {MASS:?}\norigin = {:?}\n\
-         vertical = {{ stiffness = {STIFFNESS:?} }}\nhorizontal = {{ stiffness = {ACROSS:?} }}\n\
-         [surface]\nkind = \"sinusoid\"\namplitude = {AMPLITUDE:?}\nwavelength = {WAVELENGTH:?}\n\
-         points_per_wavelength = 1024\n[solver]\nmethod = \"{method}\"\nrelative_tolerance = 1e-4\n",
-        WAVELENGTH / 4.0 + ASIDE
-    );
-    Run::new(&text, Start { w: -DEPTH, ..Start::default() })
+    let scene = SceneText::new(1, 1e-4, MASS)
+        .set("layer.origin", WAVELENGTH / 4.0 + ASIDE)
+        .vertical(STIFFNESS)
+        .horizontal(ACROSS)
+        .sinusoid(AMPLITUDE, WAVELENGTH)
+        .set("surface.points_per_wavelength", 1024)
+        .method(method)
+        .relative(1e-4);
+    Run::new(&scene, Start { w: -DEPTH, ..Start::default() })
 }
 
 /// Near the crest, z = a (1 - ½ q² y²): m ÿ = (a q² F - c_x) y + c_x y_0 with F = c (a + DEPTH), so
@@ -56,15 +58,16 @@ fn a_mass_leaves_a_crest_where_events_are_located() {
 #[test]
 fn rows_are_good_in_a_slow_slide() {
     let rows = |method: &str, tolerance: f64| {
-        let text = format!(
-            "[layer]\nmasses = 8\nspacing = 1e-4\nmass = 1e-7\n\
-             vertical = {{ stiffness = 2e3, damping = 8e-3, maxwell = [{{ stiffness = 1e3, relaxation_time = 1e-4 }}] }}\n\
-             horizontal = {{ stiffness = 1e3, damping = 8e-3 }}\nlateral_x = {{ stiffness = 5e2, damping = 2e-3 }}\n\
-             lateral_z = {{ stiffness = 5e2, damping = 2e-3 }}\n\
-             [surface]\nkind = \"sinusoid\"\namplitude = 5e-6\nwavelength = 2.3e-4\n[friction]\ncoulomb = 0.3\n\
-             [solver]\nmethod = \"{method}\"\nrelative_tolerance = {tolerance:?}\n"
-        );
-        let mut run = Run::new(&text, Start { w_rate: -0.1, ..Start::default() });
+        let scene = SceneText::new(8, 1e-4, 1e-7)
+            .vertical((2e3, 8e-3, [(1e3, 1e-4)]))
+            .horizontal((1e3, 8e-3))
+            .lateral_x((5e2, 2e-3))
+            .lateral_z((5e2, 2e-3))
+            .sinusoid(5e-6, 2.3e-4)
+            .coulomb(0.3)
+            .method(method)
+            .relative(tolerance);
+        let mut run = Run::new(&scene, Start { w_rate: -0.1, ..Start::default() });
         run.drive(2e-4, REST, rate(-0.1));
         let motion = Motion { duration: 10.0, u: rate(1e-6), w: Path::default(), ..Motion::REST };
         let times: Vec<f64> = (0..=24).map(|i| f64::from(i) * 10.0 / 24.0).collect();

@@ -1,11 +1,13 @@
 //! A scene with a start and a motion of the carrier; it is written as TOML where it fails.
 
 use std::fmt;
-use std::path::Path as FilePath;
 
 use asperity::outputs::{Output, Snapshot, Variable, variables};
-use asperity::scene::{Axis, Force, Friction, LinkKind, OutputGroup, Path, RateShear, Scene};
+use asperity::scene::{Axis, Force, Friction, Link, LinkKind, OutputGroup, Path, RateShear, Scene};
 use asperity::simulation::{Motion, Simulation, SimulationError, Start};
+
+use crate::common::largest;
+use crate::common::scenes::SceneText;
 
 /// What runs: a scene, how the carrier starts, and its motions one after another.
 #[derive(Clone, PartialEq)]
@@ -17,8 +19,8 @@ pub(crate) struct Case {
 
 impl Case {
     /// The case whose scene is `text`; the motions are its excitation.
-    pub(crate) fn from_text(text: &str, start: Start) -> Self {
-        let scene = Scene::parse(text, FilePath::new("case.toml")).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    pub(crate) fn from_text(text: &SceneText, start: Start) -> Self {
+        let scene = text.scene();
         let motion = |phase: &asperity::scene::Phase| Motion {
             duration: phase.duration,
             u: phase.u,
@@ -83,113 +85,80 @@ impl Case {
     }
 
     /// The scene as a file has it, its excitation the motions.
-    pub(crate) fn text(&self) -> String {
-        let tables = self.tables();
-        tables.into_iter().flatten().collect()
-    }
-
-    /// The tables of the file: the four links' apart, for their order is free.
-    pub(crate) fn tables(&self) -> [Vec<String>; 3] {
-        let Scene { name, layer, solver, outputs, .. } = &self.scene;
-        let words: Vec<String> = outputs.iter().map(|group| format!("{:?}", group.name())).collect();
-        let absolute = self.scene.absolute_tolerance();
-        let (method, relative) = (solver.method, solver.relative_tolerance);
-        let head = format!(
-            "name = {name:?}\n[layer]\nmasses = {}\nspacing = {:?}\norigin = {:?}\nclearance = {:?}\nmass = {:?}\n\
-             initial = \"{}\"\n{}",
-            layer.masses,
-            layer.spacing,
-            layer.origin,
-            layer.clearance,
-            self.scene.mass(),
-            format!("{:?}", layer.initial).to_lowercase(),
-            roughness(&layer.roughness),
-        );
-        let surface = &self.scene.surface;
-        let tail = vec![
-            format!("[surface]\nkind = \"points\"\nperiodic = {}\n", surface.is_periodic()),
-            format!("x = {:?}\nz = {:?}\n", surface.x(), surface.z()),
-            self.scene.friction.as_ref().map_or(String::new(), friction),
-            Axis::ALL.into_iter().map(|axis| carrier(&self.scene, axis)).collect(),
-            format!("[solver]\nmethod = \"{}\"\n", format!("{method:?}").to_lowercase()),
-            format!("relative_tolerance = {relative:?}\nabsolute_tolerance = {absolute:?}\n"),
-            format!("max_steps = {}\n[fmu]\noutputs = [{}]\n", solver.max_steps, words.join(", ")),
-            self.motions.iter().map(phase).collect(),
-        ];
-        [vec![head], self.links(), tail]
-    }
-
-    fn links(&self) -> Vec<String> {
-        let link = |kind: LinkKind| {
-            let link = self.scene.layer.links[kind].as_ref()?;
-            let name = kind.name();
-            let element = |c: f64, tau: f64| format!("{{ stiffness = {c:?}, relaxation_time = {tau:?} }}");
-            let maxwell: Vec<String> =
-                link.maxwell.iter().map(|one| element(one.stiffness, one.relaxation_time)).collect();
-            Some(format!(
-                "[layer.{name}]\n{}{}maxwell = [{}]\n",
-                number("stiffness", link.stiffness),
-                number("damping", link.damping),
-                maxwell.join(", ")
-            ))
-        };
-        LinkKind::ALL.into_iter().filter_map(link).collect()
+    pub(crate) fn text(&self) -> SceneText {
+        let Scene { layer, surface, solver, .. } = &self.scene;
+        let word = |value: &dyn fmt::Debug| format!("{value:?}").to_lowercase();
+        let text = SceneText::new(layer.masses, layer.spacing, self.scene.mass())
+            .set("name", self.scene.name.as_str())
+            .set("layer.origin", layer.origin)
+            .set("layer.clearance", layer.clearance)
+            .set("layer.initial", word(&layer.initial))
+            .points(surface.x(), surface.z(), surface.is_periodic())
+            .method(&word(&solver.method))
+            .tolerances(solver.relative_tolerance, self.scene.absolute_tolerance())
+            .set("solver.max_steps", solver.max_steps as usize)
+            .outputs(&self.scene.outputs.iter().map(|group| group.name()).collect::<Vec<_>>());
+        let text = if layer.roughness.is_empty() { text } else { text.roughness(&layer.roughness) };
+        let text = LinkKind::ALL.into_iter().fold(text, |text, kind| link(text, kind, layer.links[kind].as_ref()));
+        let text = self.scene.friction.iter().fold(text, friction);
+        let text = Axis::ALL.into_iter().fold(text, |text, axis| carrier(text, &self.scene, axis));
+        self.motions.iter().fold(text, |text, motion| text.phase(&phase(motion)))
     }
 }
 
-fn number(key: &str, value: Option<f64>) -> String {
-    value.map_or(String::new(), |value| format!("{key} = {value:?}\n"))
+fn link(text: SceneText, kind: LinkKind, link: Option<&Link>) -> SceneText {
+    let Some(link) = link else { return text };
+    let maxwell: Vec<_> = link.maxwell.iter().map(|one| (one.stiffness, one.relaxation_time)).collect();
+    let table = format!("layer.{}", kind.name());
+    text.numbers(&table, &[("stiffness", link.stiffness), ("damping", link.damping)]).maxwell(kind, &maxwell)
 }
 
-fn roughness(heights: &[f64]) -> String {
-    if heights.is_empty() { String::new() } else { format!("roughness = {{ kind = \"points\", z = {heights:?} }}\n") }
-}
-
-fn carrier(scene: &Scene, axis: Axis) -> String {
-    let Some(body) = &scene.carrier[axis] else { return String::new() };
+fn carrier(text: SceneText, scene: &Scene, axis: Axis) -> SceneText {
+    let Some(body) = scene.carrier[axis].as_ref() else { return text };
     let numbers = [
-        number("mass", Some(body.mass)),
-        number("stiffness", body.stiffness),
-        number("damping", body.damping),
-        number("load", body.load),
-        number("pull", body.pull),
-        number("start", body.start),
-        number("start_rate", body.start_rate),
+        ("mass", Some(body.mass)),
+        ("stiffness", body.stiffness),
+        ("damping", body.damping),
+        ("load", body.load),
+        ("pull", body.pull),
+        ("start", body.start),
+        ("start_rate", body.start_rate),
     ];
-    format!("[carrier.{}]\n{}", axis.name(), numbers.concat())
+    text.numbers(&format!("carrier.{}", axis.name()), &numbers)
 }
 
-fn friction(friction: &Friction) -> String {
+fn friction(text: SceneText, friction: &Friction) -> SceneText {
     let Friction { coulomb, shear_force, shear_strength: _, rate_shear, real_area: _ } = friction;
-    let rate_shear = rate_shear.map_or(String::new(), |law| {
-        let RateShear { force, strength: _, reference_speed, sharpness, creep_speed } = law;
-        let numbers = [
-            number("force", force),
-            number("reference_speed", Some(reference_speed)),
-            number("sharpness", Some(sharpness)),
-            number("creep_speed", creep_speed),
-        ];
-        format!("[friction.rate_shear]\n{}", numbers.concat())
-    });
-    format!("[friction]\n{}{}{rate_shear}", number("coulomb", *coulomb), number("shear_force", *shear_force))
+    let text = text.numbers("friction", &[("coulomb", *coulomb), ("shear_force", *shear_force)]);
+    let Some(RateShear { force, strength: _, reference_speed, sharpness, creep_speed }) = *rate_shear else {
+        return text;
+    };
+    let numbers = [
+        ("force", force),
+        ("reference_speed", Some(reference_speed)),
+        ("sharpness", Some(sharpness)),
+        ("creep_speed", creep_speed),
+    ];
+    text.numbers("friction.rate_shear", &numbers)
 }
 
 fn phase(motion: &Motion) -> String {
     let path = |name: &str, path: &Path| {
         let Path { rate, amplitude, frequency } = *path;
-        let sine = format!("{name}_sine = {{ amplitude = {amplitude:?}, frequency = {frequency:?} }}\n");
-        format!("{name}_rate = {rate:?}\n{}", if amplitude == 0.0 { "" } else { &sine })
+        let sine = format!(", {name}_sine = {{ amplitude = {amplitude:?}, frequency = {frequency:?} }}");
+        format!(", {name}_rate = {rate:?}{}", if amplitude == 0.0 { "" } else { &sine })
     };
     let force = |name: &str, force: &Force| {
-        if *force == Force::default() { String::new() } else { number(name, force.start) + &path(name, &force.change) }
+        let start = force.start.map_or(String::new(), |start| format!(", {name} = {start:?}"));
+        if *force == Force::default() { String::new() } else { start + &path(name, &force.change) }
     };
     let (forces, along_u) = (force("load", &motion.load) + &force("pull", &motion.pull), path("u", &motion.u));
-    format!("[[excitation]]\nduration = {:?}\n{along_u}{}{forces}", motion.duration, path("w", &motion.w))
+    format!("duration = {:?}{along_u}{}{forces}", motion.duration, path("w", &motion.w))
 }
 
 impl fmt::Debug for Case {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "# {:?}\n{}", self.start, self.text())
+        write!(f, "# {:?}\n{}", self.start, self.text().text())
     }
 }
 
@@ -245,9 +214,4 @@ impl Record {
     pub(crate) fn largest(&self, output: Output) -> f64 {
         self.get(output).map_or(0.0, |column| largest(&column))
     }
-}
-
-/// The largest absolute value; NaN counts as infinite.
-pub(crate) fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |largest, value| if value.is_nan() { f64::INFINITY } else { largest.max(value.abs()) })
 }

@@ -3,7 +3,7 @@
 //! PROPTEST_CASES sets how many cases each property is tested with, PROPTEST_RNG_SEED which ones.
 
 mod case;
-mod check;
+pub(crate) mod check;
 mod contact;
 mod energy;
 mod found;

@@ -13,7 +13,8 @@ use asperity::scene::Path;
 use asperity::simulation::SimulationError;
 use proptest::test_runner::{TestCaseError, TestCaseResult};
 
-use crate::invariants::case::{Case, Record, largest};
+use crate::common::largest;
+use crate::invariants::case::{Case, Record};
 
 /// By how many units two runs of the same motion may differ: errors of single steps, of the tolerance each, add up.
 const AGREE: f64 = 30.0;

@@ -4,16 +4,16 @@ use asperity::model::{Mode, Model, State};
 use asperity::scene::{Path, RateShear};
 use nalgebra::{DMatrix, DVector, Vector2};
 
-use crate::kernels::layer::{Layer, Link, Method, SEVEN_STAGES, Stepper, at_rate, last_order, points};
+use crate::kernels::layer::{Layer, Method, SEVEN_STAGES, Stepper, at_rate, last_order, link, points};
 use crate::kernels::matrices::Matrices;
 
 /// Three masses far above the surface, a different number of Maxwell elements on every kind of link.
 pub fn chain() -> Layer {
     let links = [
-        Link::new(30.0, 0.4, &[(20.0, 0.3), (10.0, 0.05)]),
-        Link::new(20.0, 0.2, &[(15.0, 0.1)]),
-        Link::new(25.0, 0.1, &[]),
-        Link::new(10.0, 0.3, &[(5.0, 1.0), (8.0, 0.2), (4.0, 0.02)]),
+        link(30.0, 0.4, &[(20.0, 0.3), (10.0, 0.05)]),
+        link(20.0, 0.2, &[(15.0, 0.1)]),
+        link(25.0, 0.1, &[]),
+        link(10.0, 0.3, &[(5.0, 1.0), (8.0, 0.2), (4.0, 0.02)]),
     ];
     Layer { masses: 3, mass: 0.5, clearance: 10.0, links, ..Layer::default() }
 }
@@ -155,7 +155,7 @@ fn a_free_chain_converges_with_order_three() {
 
 /// One mass pressed onto one polynomial of a spline, so that nothing along its way is less than smooth.
 pub fn slider() -> Layer {
-    let links = [Link::new(40.0, 0.5, &[(30.0, 0.2)]), Link::new(20.0, 0.3, &[(10.0, 0.1), (5.0, 0.5)]), None, None];
+    let links = [link(40.0, 0.5, &[(30.0, 0.2)]), link(20.0, 0.3, &[(10.0, 0.1), (5.0, 0.5)]), None, None];
     let surface = points(&[-4.0, -1.0, 3.0, 6.0], &[0.0, 0.5, -0.2, 0.6], false);
     Layer { mass: 0.5, clearance: 0.3, links, surface, friction: Some((0.4, 0.5)), ..Layer::default() }
 }

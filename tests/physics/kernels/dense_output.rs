@@ -4,9 +4,10 @@ use asperity::integrator::{DenseWorkspace, LayerStep, LayerSums, Motions, StepSp
 use asperity::model::{Forces, State};
 use nalgebra::Vector2;
 
+use crate::common::random::Random;
 use crate::kernels::convergence::{Exact, PATHS, chain, differences, displaced, slider, sliding};
 use crate::kernels::equations::{random_layer, random_state};
-use crate::kernels::layer::{Layer, Link, Method, Random, SEVEN_STAGES, Stepper, at_rate, last_order};
+use crate::kernels::layer::{Layer, Method, SEVEN_STAGES, Stepper, at_rate, last_order, link};
 
 const THETAS: [f64; 6] = [0.0, 0.13, 0.37, 0.5, 0.81, 1.0];
 
@@ -95,7 +96,7 @@ fn a_stiff_element_is_followed_after_a_jump_of_the_velocity() {
     for exponent in 3..=11 {
         let tau = 10.0_f64.powi(-exponent);
         // So weak a link leaves the velocity as it is, 1 m/s, but for 1e-12 of it.
-        let link = Link::new(1e-6, 0.0, &[(1e-6, tau)]);
+        let link = link(1e-6, 0.0, &[(1e-6, tau)]);
         let layer = Layer { links: [link, None, None, None], clearance: 10.0, ..Layer::default() };
         let mut state = State::new(1, 1);
         state.velocity_z[0] = 1.0;
@@ -115,7 +116,7 @@ fn a_stiff_element_is_followed_after_a_jump_of_the_velocity() {
 /// F_N and f·t of one mass within a step are those of the whole state there, whatever the modes of its neighbours.
 #[test]
 fn one_contact_within_a_step_is_that_of_the_whole_state() {
-    let mut random = Random(7);
+    let mut random = Random::new(7);
     for case in 0..200 {
         let layer = random_layer(&mut random, 1 + case % 5);
         let model = layer.model();
@@ -141,7 +142,7 @@ fn one_contact_within_a_step_is_that_of_the_whole_state() {
 /// on the profile one by one.
 #[test]
 fn forces_on_the_carrier_by_sums_are_those_of_the_whole_state() {
-    let mut random = Random(8);
+    let mut random = Random::new(8);
     for case in 0..200 {
         let layer = random_layer(&mut random, 1 + case % 11);
         let model = layer.model();
@@ -185,7 +186,7 @@ fn the_interpolated_heights_of_contacts_have_the_order_of_the_method() {
 /// The states, forces and energies of two parts make those of the layer, whose masses are joined to the carrier alone.
 #[test]
 fn parts_of_a_step_make_the_whole() {
-    let (mut random, mut compared) = (Random(9), 0);
+    let (mut random, mut compared) = (Random::new(9), 0);
     for case in 0..100 {
         let layer = random_layer(&mut random, 2 + case % 10);
         let [vertical, horizontal, ..] = layer.links;

@@ -3,16 +3,17 @@
 use asperity::scene::{Path, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
 
-use crate::kernels::layer::{Layer, Link, at_rate, output};
+use crate::common::runs::value;
+use crate::kernels::layer::{Layer, at_rate, link};
 
-const SINE: &str = "kind = \"sinusoid\"\namplitude = 0.02\nwavelength = 0.5";
+const SINE: &str = "surface = { kind = 'sinusoid', amplitude = 0.02, wavelength = 0.5 }";
 
 fn rubber(surface: &str, friction: (f64, f64)) -> Layer {
     let links = [
-        Link::new(100.0, 1.0, &[(50.0, 0.1)]),
-        Link::new(50.0, 1.0, &[(20.0, 0.05)]),
-        Link::new(10.0, 0.1, &[]),
-        Link::new(10.0, 0.1, &[]),
+        link(100.0, 1.0, &[(50.0, 0.1)]),
+        link(50.0, 1.0, &[(20.0, 0.05)]),
+        link(10.0, 0.1, &[]),
+        link(10.0, 0.1, &[]),
     ];
     Layer {
         masses: 3,
@@ -44,14 +45,14 @@ fn slipping_masses_stay_on_the_profile() {
         if i % 1000 == 999 {
             for mass in 1..=3 {
                 let of = |field: &str| format!("element[{mass}].{field}");
-                let x = output(&scene, &simulation.snapshot(), &of("x"));
-                let z = output(&scene, &simulation.snapshot(), &of("z"));
-                assert_eq!(output(&scene, &simulation.snapshot(), &of("mode")), 1.0);
+                let x = value(&scene, &simulation.snapshot(), &of("x"));
+                let z = value(&scene, &simulation.snapshot(), &of("z"));
+                assert_eq!(value(&scene, &simulation.snapshot(), &of("mode")), 1.0);
                 worst = worst.max((z - profile.evaluate(x).0).abs() / (0.25 * x * f64::EPSILON + 1e-17));
             }
         }
     }
-    let steps = output(&scene, &simulation.snapshot(), "solver.steps");
+    let steps = value(&scene, &simulation.snapshot(), "solver.steps");
     assert!(steps >= 1e5, "{steps}");
     // x near 50 m is rounded to ε x/2, and the profile is as steep as 0.25; z is put together from parts of 0.1 m.
     assert!(worst < 1.0, "{worst}");
@@ -66,7 +67,7 @@ fn sticking_masses_do_not_move() {
     let mut simulation = pressed(&scene, 0.0);
     let positions = |simulation: &mut Simulation| -> Vec<f64> {
         let names = (1..=3).flat_map(|mass| ["x", "z"].map(|field| format!("element[{mass}].{field}")));
-        names.map(|name| output(&scene, &simulation.snapshot(), &name)).collect()
+        names.map(|name| value(&scene, &simulation.snapshot(), &name)).collect()
     };
     let first = positions(&mut simulation);
     let mut worst = 0.0_f64;
@@ -83,8 +84,8 @@ fn sticking_masses_do_not_move() {
             worst = now.iter().zip(&first).map(|(a, b)| (a - b).abs()).fold(worst, f64::max);
         }
     }
-    assert_eq!(output(&scene, &simulation.snapshot(), "contact.sticking"), 3.0);
-    assert_eq!(output(&scene, &simulation.snapshot(), "solver.events"), 0.0);
+    assert_eq!(value(&scene, &simulation.snapshot(), "contact.sticking"), 3.0);
+    assert_eq!(value(&scene, &simulation.snapshot(), "solver.events"), 0.0);
     // x_i = X_i + (u + e): roundings of numbers of size 0.1 m.
     assert!(worst < 1e-15, "{worst:e}");
 }
@@ -102,7 +103,7 @@ fn sticking_masses_stay_behind() {
             .advance(&Motion { duration: 1e-4, u: at_rate(rate), w: Path::default(), ..Motion::default() })
             .unwrap();
     }
-    let moved = output(&scene, &simulation.snapshot(), "element[1].x").abs();
+    let moved = value(&scene, &simulation.snapshot(), "element[1].x").abs();
     // x_i = X_i + (u + e): u and -e, 2.8 m each, are added up from the same parts and rounded alike, or nearly so.
     assert!(moved < 1e-13, "{moved:e}");
 }

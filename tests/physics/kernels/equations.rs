@@ -6,7 +6,9 @@ use asperity::model::{CarrierPoint, Forces, LinkKind, Mode, Model, State};
 use asperity::scene::{Path, RateShear};
 use nalgebra::{DVector, Vector2};
 
-use crate::kernels::layer::{Layer, Link, Random, Stepper, largest, points};
+use crate::common::largest;
+use crate::common::random::Random;
+use crate::kernels::layer::{Layer, Stepper, link, points};
 use crate::kernels::matrices::Matrices;
 
 /// A layer with every kind of link or some, each with its own number of Maxwell elements, over a curved profile.
@@ -14,7 +16,7 @@ pub fn random_layer(random: &mut Random, masses: usize) -> Layer {
     let mut link = || {
         let element = |random: &mut Random| (random.between(10.0, 300.0), 10.0_f64.powf(random.between(-3.0, 0.0)));
         let maxwell: Vec<_> = (0..random.below(4)).map(|_| element(random)).collect();
-        let link = Link::new(random.between(10.0, 300.0), random.between(0.0, 2.0), &maxwell);
+        let link = link(random.between(10.0, 300.0), random.between(0.0, 2.0), &maxwell);
         if random.below(6) == 0 { None } else { link }
     };
     let links = [link(), link(), link(), link()];
@@ -107,7 +109,7 @@ fn difference(
             _ => NO_LIMIT,
         };
         let misses = [rates.normal[i] - normal, rates.margin[i] - margin];
-        worst = worst.max(largest(misses) / f.amax().max(normal.abs()).max(1.0));
+        worst = worst.max(largest(&misses) / f.amax().max(normal.abs()).max(1.0));
     }
     worst
 }
@@ -123,7 +125,7 @@ fn random_motion(random: &mut Random) -> CarrierMotion {
 /// and margins of the dense equations (10)-(15).
 #[test]
 fn rates_agree_with_the_dense_matrices() {
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     let mut modes = [0; 4];
     for case in 0..2000 {
         let layer = random_layer(&mut random, 1 + case % 5);
@@ -146,7 +148,7 @@ fn rates_agree_with_the_dense_matrices() {
 /// The rows of Maxwell elements stand in the order that the dense assembly has.
 #[test]
 fn the_layout_is_the_paper_s_count() {
-    let link = |n: usize| Link::new(1.0, 1.0, &vec![(1.0, 1.0); n]);
+    let link = |n: usize| link(1.0, 1.0, &vec![(1.0, 1.0); n]);
     let layer = Layer { masses: 5, links: [link(3), link(3), link(3), link(3)], ..Layer::default() };
     let model = layer.model();
     // 4kn - 2n.
@@ -160,7 +162,7 @@ fn the_layout_is_the_paper_s_count() {
 /// that the explicit rates, and the dense equations, give in the stage's state.
 #[test]
 fn a_solved_stage_satisfies_the_equations_of_motion() {
-    let mut random = Random(2);
+    let mut random = Random::new(2);
     for case in 0..500 {
         let layer = random_layer(&mut random, 1 + case % 5);
         let (model, matrices) = (layer.model(), Matrices::new(&layer));

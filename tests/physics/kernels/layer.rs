@@ -1,27 +1,17 @@
 //! Shared by the tests: layers given in a few words, fixed steps, random numbers.
 
-use std::path::Path as FilePath;
-
 use asperity::integrator::{
     ContactModes, DenseOutput, DenseWorkspace, ErrorEstimate, Integrator, LayerState, Scheme, StepSpan, Tolerance,
     Tracked,
 };
-use asperity::model::{Axis, ByAxis, Carrier, Forces, LinkKind, Model, State};
-use asperity::outputs::Snapshot;
+use asperity::model::{Carrier, Forces, LinkKind, Model, State};
 use asperity::scene::{Path, RateShear, Scene};
 
-/// A spring, a damper and Maxwell elements (c_j, τ_j).
-#[derive(Clone, Debug, Default)]
-pub struct Link {
-    pub stiffness: f64,
-    pub damping: f64,
-    pub maxwell: Vec<(f64, f64)>,
-}
+use crate::common::scenes::{Law, SceneText};
 
-impl Link {
-    pub fn new(stiffness: f64, damping: f64, maxwell: &[(f64, f64)]) -> Option<Self> {
-        Some(Self { stiffness, damping, maxwell: maxwell.to_vec() })
-    }
+/// A spring, a damper and Maxwell elements (c_j, τ_j).
+pub fn link(stiffness: f64, damping: f64, maxwell: &[(f64, f64)]) -> Option<Law> {
+    Some(Law::with_maxwell(stiffness, damping, maxwell))
 }
 
 /// A scene in a few words.
@@ -32,17 +22,15 @@ pub struct Layer {
     pub spacing: f64,
     pub clearance: f64,
     /// In the order of [`LinkKind::ALL`].
-    pub links: [Option<Link>; 4],
-    /// The lines of `[surface]`.
+    pub links: [Option<Law>; 4],
+    /// The key `surface`, or nothing.
     pub surface: String,
     /// μ and A τ_0.
     pub friction: Option<(f64, f64)>,
     pub rate_shear: Option<RateShear>,
-    /// The lines of `[solver]`.
+    /// The key `solver`, or nothing.
     pub solver: String,
 }
-
-pub const FLAT: &str = "kind = \"flat\"";
 
 impl Default for Layer {
     /// One mass without links, 1 m above a flat surface.
@@ -53,7 +41,7 @@ impl Default for Layer {
             spacing: 1.0,
             clearance: 1.0,
             links: [None, None, None, None],
-            surface: FLAT.into(),
+            surface: String::new(),
             friction: None,
             rate_shear: None,
             solver: String::new(),
@@ -63,37 +51,21 @@ impl Default for Layer {
 
 impl Layer {
     pub fn scene(&self) -> Scene {
-        let Self { masses, mass, spacing, clearance, .. } = self;
-        let mut text = format!(
-            "name = \"test\"\n[layer]\nmasses = {masses}\nmass = {mass:e}\nspacing = {spacing:e}\n\
-             clearance = {clearance:e}\n"
-        );
-        for (kind, link) in LinkKind::ALL.iter().zip(&self.links) {
-            if let Some(Link { stiffness, damping, maxwell }) = link {
-                let element = |(c, tau): &(f64, f64)| format!("{{ stiffness = {c:e}, relaxation_time = {tau:e} }}");
-                let maxwell: Vec<String> = maxwell.iter().map(element).collect();
-                text += &format!("[layer.{}]\nstiffness = {stiffness:e}\ndamping = {damping:e}\n", kind.name());
-                text += &format!("maxwell = [{}]\n", maxwell.join(", "));
-            }
-        }
-        text += &format!("[surface]\n{}\n", self.surface);
-        if self.friction.is_some() || self.rate_shear.is_some() {
-            text += "[friction]\n";
+        let mut text = SceneText::new(self.masses, self.spacing, self.mass).set("layer.clearance", self.clearance);
+        for (kind, law) in LinkKind::ALL.into_iter().zip(&self.links) {
+            text = law.iter().fold(text, |text, law| text.link(kind, law));
         }
         if let Some((coulomb, shear)) = self.friction {
-            text += &format!("coulomb = {coulomb:e}\nshear_force = {shear:e}\n");
+            text = text.coulomb(coulomb).set("friction.shear_force", shear);
         }
         if let Some(law) = &self.rate_shear {
-            let RateShear { force, reference_speed, sharpness, .. } = law;
-            let force = force.unwrap_or_default();
-            text += &format!(
-                "rate_shear = {{ force = {force:e}, reference_speed = {reference_speed:e}, sharpness = {sharpness:e}, \
-                 creep_speed = {:e} }}\n",
-                law.creep_speed()
-            );
+            text = text
+                .set("friction.rate_shear.force", law.force.unwrap_or_default())
+                .set("friction.rate_shear.reference_speed", law.reference_speed)
+                .set("friction.rate_shear.sharpness", law.sharpness)
+                .set("friction.rate_shear.creep_speed", law.creep_speed());
         }
-        text += &format!("[solver]\n{}\n[fmu]\noutputs = {OUTPUTS}\n", self.solver);
-        Scene::parse(&text, FilePath::new("test.toml")).unwrap_or_else(|error| panic!("{error}\n{text}"))
+        text.with(&self.surface).with(&self.solver).outputs(&OUTPUTS).scene()
     }
 
     pub fn model(&self) -> Model {
@@ -101,11 +73,11 @@ impl Layer {
     }
 }
 
-const OUTPUTS: &str = r#"["forces", "dissipation", "friction", "contact", "energy", "solver", "elements"]"#;
+const OUTPUTS: [&str; 7] = ["forces", "dissipation", "friction", "contact", "energy", "solver", "elements"];
 
-/// `[surface]` of the natural or periodic spline through points.
+/// The surface through points, natural or periodic.
 pub fn points(x: &[f64], z: &[f64], periodic: bool) -> String {
-    format!("kind = \"points\"\nx = {x:?}\nz = {z:?}\nperiodic = {periodic}")
+    format!("surface = {{ kind = 'points', x = {x:?}, z = {z:?}, periodic = {periodic} }}")
 }
 
 /// Steps of lengths that the test chooses.
@@ -223,47 +195,4 @@ pub fn at_rate(rate: f64) -> Path {
 pub fn last_order(errors: &[f64]) -> f64 {
     let [.., coarse, fine] = errors else { panic!("two errors at least") };
     (coarse / fine).log2()
-}
-
-/// The largest absolute value.
-pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
-    values.into_iter().fold(0.0, |largest, value: f64| if value.is_nan() { f64::NAN } else { value.abs().max(largest) })
-}
-
-/// Every output of a run but the processor time, as bits.
-pub fn outputs(scene: &Scene, snapshot: &Snapshot<'_>) -> Vec<(String, u64)> {
-    let variables = asperity::outputs::variables(scene);
-    let mut values = vec![0.0; variables.len()];
-    snapshot.evaluate(&variables, &mut values);
-    let named = variables.into_iter().zip(values);
-    named.filter(|(v, _)| v.name != "solver.run_time").map(|(v, value)| (v.name, value.to_bits())).collect()
-}
-
-/// The value of one output.
-pub fn output(scene: &Scene, snapshot: &Snapshot<'_>, name: &str) -> f64 {
-    let outputs = outputs(scene, snapshot);
-    f64::from_bits(outputs.iter().find(|(other, _)| other == name).unwrap_or_else(|| panic!("no {name}")).1)
-}
-
-/// Numbers that are the same in every run: splitmix64 of S. Vigna.
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    /// Evenly from `low` to `high`.
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.next() >> 11) as f64 * 2.0_f64.powi(-53)
-    }
-
-    /// One of 0 … `count` - 1.
-    pub fn below(&mut self, count: usize) -> usize {
-        (self.next() % count as u64) as usize
-    }
 }

@@ -12,7 +12,8 @@ use asperity::model::{Mode, SurfacePoint};
 use asperity::scene::RateShear;
 use nalgebra::{DMatrix, DVector, Vector2};
 
-use crate::kernels::layer::{Layer, Link, strength};
+use crate::common::scenes::Law;
+use crate::kernels::layer::{Layer, strength};
 
 /// M = m 1 and the other matrices.
 #[derive(Clone, Debug)]
@@ -80,7 +81,7 @@ impl Matrices {
         matrices
     }
 
-    fn add(&mut self, link: &Link, ends: &[Ends]) {
+    fn add(&mut self, link: &Law, ends: &[Ends]) {
         let vectors: Vec<_> = ends.iter().map(|ends| self.vectors(ends)).collect();
         let glassy = link.stiffness + link.maxwell.iter().map(|element| element.0).sum::<f64>();
         for (g, carrier) in &vectors {

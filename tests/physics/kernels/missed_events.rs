@@ -4,7 +4,8 @@ use asperity::outputs::Snapshot;
 use asperity::scene::{Path, Scene};
 use asperity::simulation::{Motion, Simulation, Start};
 
-use crate::kernels::layer::{FLAT, Layer, Link, at_rate, output, points};
+use crate::common::runs::value;
+use crate::kernels::layer::{Layer, at_rate, link, points};
 
 const NANOMETRE: f64 = 1e-9;
 
@@ -15,14 +16,15 @@ fn fly(layer: &Layer, u_rate: f64) -> (f64, f64, usize) {
     let mut simulation = Simulation::new(&scene, &start).unwrap();
     simulation.record_mode_changes(true);
     simulation.advance(&Motion { duration: 2.0, u: at_rate(u_rate), w: Path::default(), ..Motion::default() }).unwrap();
-    let steps = output(&scene, &simulation.snapshot(), "solver.steps");
+    let steps = value(&scene, &simulation.snapshot(), "solver.steps");
     let changes = simulation.take_mode_changes().len();
-    (output(&scene, &simulation.snapshot(), "dissipation.E_impact"), 2.0 / steps, changes)
+    (value(&scene, &simulation.snapshot(), "dissipation.E_impact"), 2.0 / steps, changes)
 }
 
 /// A free mass without links flies straight at 1 m/s through the crest of `surface` at a height above it, m.
 fn over(surface: &str, height: f64) -> Layer {
-    let flat = Layer { surface: surface.into(), solver: "absolute_tolerance = 1e-12".into(), ..Layer::default() };
+    let flat =
+        Layer { surface: surface.into(), solver: "solver.absolute_tolerance = 1e-12".into(), ..Layer::default() };
     let crest = flat.model().profile.local_bounds(0.0, 2.0).z_max;
     Layer { clearance: crest + height, ..flat }
 }
@@ -59,7 +61,7 @@ fn a_dip_into_a_smooth_crest_is_found() {
 fn fine_tolerances_see_shallower_dips() {
     let surface = points(&[0.0, 1.0, 2.0], &[0.0, 0.01, 0.0], false);
     let hits = |depth: f64, relative: &str| {
-        let solver = format!("absolute_tolerance = 3e-9\nrelative_tolerance = {relative}");
+        let solver = format!("solver = {{ absolute_tolerance = 3e-9, relative_tolerance = {relative} }}");
         let (lost, ..) = fly(&Layer { solver, ..over(&surface, -depth) }, 1.0);
         lost > 0.0
     };
@@ -72,15 +74,15 @@ fn fine_tolerances_see_shallower_dips() {
 #[test]
 fn no_dip_is_so_shallow_that_roundings_make_it() {
     let steps = |relative: &str| {
-        let vertical = Link::new(1e3, 2e-3, &[(5e2, 1e-4)]);
+        let vertical = link(1e3, 2e-3, &[(5e2, 1e-4)]);
         let layer = Layer {
             mass: 2e-7,
             spacing: 1e-4,
             clearance: 1e-6,
-            links: [vertical, Link::new(2e3, 8e-3, &[]), None, None],
-            surface: "kind = \"sinusoid\"\namplitude = 1e-5\nwavelength = 5e-4".into(),
+            links: [vertical, link(2e3, 8e-3, &[]), None, None],
+            surface: "surface = { kind = 'sinusoid', amplitude = 1e-5, wavelength = 5e-4 }".into(),
             friction: Some((0.2, 0.0)),
-            solver: format!("relative_tolerance = {relative}\nmax_steps = 100000"),
+            solver: format!("solver = {{ relative_tolerance = {relative}, max_steps = 100000 }}"),
             ..Layer::default()
         };
         let scene = layer.scene();
@@ -88,7 +90,7 @@ fn no_dip_is_so_shallow_that_roundings_make_it() {
         for (duration, u, w) in [(2e-4, 0.0, -0.04), (2e-3, 4.0, 0.0)] {
             simulation.advance(&Motion { duration, u: at_rate(u), w: at_rate(w), ..Motion::default() }).unwrap();
         }
-        output(&scene, &simulation.snapshot(), "solver.steps")
+        value(&scene, &simulation.snapshot(), "solver.steps")
     };
     let (coarse, fine) = (steps("1e-10"), steps("1e-12"));
     assert!(coarse > 1000.0 && fine < 4.0 * coarse, "{coarse} and {fine}");
@@ -97,9 +99,9 @@ fn no_dip_is_so_shallow_that_roundings_make_it() {
 /// A mass on a weak spring, thrown down with the carrier and brought back by the spring: a sine whose lowest part dips
 /// below a flat surface.
 fn thrown(clearance: f64) -> Layer {
-    let links = [Link::new(1.0, 0.0, &[]), None, None, None];
-    let solver = "relative_tolerance = 2e-6\nabsolute_tolerance = 1e-10".into();
-    Layer { clearance, links, surface: FLAT.into(), solver, ..Layer::default() }
+    let links = [link(1.0, 0.0, &[]), None, None, None];
+    let solver = "solver = { relative_tolerance = 2e-6, absolute_tolerance = 1e-10 }".into();
+    Layer { clearance, links, solver, ..Layer::default() }
 }
 
 /// Throws the mass at 0.1 m/s down and follows it for 3 s, near its lowest position, π/2 s, in steps of 2e-5 s: the energy
@@ -112,12 +114,12 @@ fn throw(scene: &Scene) -> (f64, f64, f64, usize) {
     let times: Vec<f64> = (0..5000).map(|i| 1.52 + 2e-5 * f64::from(i)).collect();
     let mut lowest = f64::INFINITY;
     let observe = |_: f64, snapshot: &Snapshot<'_>| {
-        lowest = lowest.min(output(scene, snapshot, "element[1].z"));
+        lowest = lowest.min(value(scene, snapshot, "element[1].z"));
     };
     simulation.advance_observed(&motion, None, &times, observe).unwrap();
-    let steps = output(scene, &simulation.snapshot(), "solver.steps");
+    let steps = value(scene, &simulation.snapshot(), "solver.steps");
     let changes = simulation.take_mode_changes().len();
-    (output(scene, &simulation.snapshot(), "dissipation.E_impact"), lowest, steps, changes)
+    (value(scene, &simulation.snapshot(), "dissipation.E_impact"), lowest, steps, changes)
 }
 
 /// A throw that ends a nanometre below a flat surface, for 3e-4 s: the touch is found in steps of a third of a second.

@@ -5,21 +5,21 @@ use asperity::outputs::variables;
 use asperity::scene::Scene;
 use asperity::simulation::{Motion, Simulation, SimulationError, Start};
 
+use crate::common::scenes::SceneText;
+
 /// Eight masses pressed onto waves and drawn over them; `changes` are lines of the scene's links.
 fn scene(changes: &[(&str, &str)]) -> Scene {
-    let text = "name = 'rods'
-        layer = { masses = 8, spacing = 1e-4, mass = 1e-7,
-                  vertical = { stiffness = 2000.0, damping = 0.008,
-                               maxwell = [{ stiffness = 1000.0, relaxation_time = 1e-4 }] },
-                  horizontal = { stiffness = 1000.0, damping = 0.008 },
-                  lateral_x = { stiffness = 500.0, damping = 0.002 },
-                  lateral_z = { stiffness = 500.0, damping = 0.002 } }
-        surface = { kind = 'sinusoid', amplitude = 5e-6, wavelength = 2.3e-4 }
-        friction = { coulomb = 0.3 }
-        excitation = [{ duration = 2e-4, w_rate = -0.1 }, { duration = 3e-4, u_rate = 0.2 }]
-        solver = { relative_tolerance = 1e-6 }
-        fmu = { outputs = ['forces', 'energy', 'solver', 'elements'] }";
-    let mut scene = Scene::parse(text, "rods.toml".as_ref()).unwrap();
+    let mut scene = SceneText::new(8, 1e-4, 1e-7)
+        .vertical((2e3, 8e-3, [(1e3, 1e-4)]))
+        .horizontal((1e3, 8e-3))
+        .lateral_x((5e2, 2e-3))
+        .lateral_z((5e2, 2e-3))
+        .sinusoid(5e-6, 2.3e-4)
+        .coulomb(0.3)
+        .phase("duration = 2e-4, w_rate = -0.1")
+        .phase("duration = 3e-4, u_rate = 0.2")
+        .outputs(&["forces", "energy", "solver", "elements"])
+        .scene();
     for (name, value) in changes {
         scene.set_by_name(name, value).unwrap();
     }

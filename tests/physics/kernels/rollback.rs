@@ -3,15 +3,16 @@
 use asperity::scene::{Path, Scene};
 use asperity::simulation::{ModeChange, Motion, Simulation, SimulationError, Start};
 
-use crate::kernels::layer::{Layer, Link, at_rate, outputs};
+use crate::common::runs::bits;
+use crate::kernels::layer::{Layer, at_rate, link};
 
 /// Two masses that rattle over a sinusoid: impacts, lifts, stops and breaks in milliseconds.
 fn rattling(max_steps: u32) -> Scene {
     let links = [
-        Link::new(1000.0, 0.002, &[(500.0, 1e-4)]),
-        Link::new(2000.0, 0.008, &[(300.0, 1e-3), (200.0, 1e-5)]),
-        Link::new(300.0, 0.001, &[]),
-        Link::new(200.0, 0.001, &[(50.0, 1e-4)]),
+        link(1000.0, 0.002, &[(500.0, 1e-4)]),
+        link(2000.0, 0.008, &[(300.0, 1e-3), (200.0, 1e-5)]),
+        link(300.0, 0.001, &[]),
+        link(200.0, 0.001, &[(50.0, 1e-4)]),
     ];
     let layer = Layer {
         masses: 2,
@@ -19,10 +20,10 @@ fn rattling(max_steps: u32) -> Scene {
         spacing: 1.7e-4,
         clearance: 1e-6,
         links,
-        surface: "kind = \"sinusoid\"\namplitude = 1e-5\nwavelength = 5e-4".into(),
+        surface: "surface = { kind = 'sinusoid', amplitude = 1e-5, wavelength = 5e-4 }".into(),
         friction: Some((0.2, 1e-4)),
         rate_shear: None,
-        solver: format!("max_steps = {max_steps}"),
+        solver: format!("solver.max_steps = {max_steps}"),
     };
     layer.scene()
 }
@@ -47,12 +48,12 @@ const DRAG: Motion = Motion {
 };
 
 /// Everything that shows from outside, at the ends of `count` motions and within them.
-fn evolution(scene: &Scene, simulation: &mut Simulation, count: usize) -> (Vec<Vec<(String, u64)>>, Vec<ModeChange>) {
+fn evolution(scene: &Scene, simulation: &mut Simulation, count: usize) -> (Vec<Vec<u64>>, Vec<ModeChange>) {
     let mut rows = Vec::new();
     for _ in 0..count {
         let times = [0.0, 3.3e-5, 7.7e-5];
-        simulation.advance_observed(&DRAG, None, &times, |_, now| rows.push(outputs(scene, now))).unwrap();
-        rows.push(outputs(scene, &simulation.snapshot()));
+        simulation.advance_observed(&DRAG, None, &times, |_, now| rows.push(bits(scene, now))).unwrap();
+        rows.push(bits(scene, &simulation.snapshot()));
     }
     (rows, simulation.take_mode_changes())
 }
@@ -75,10 +76,10 @@ fn a_clone_goes_on_bit_for_bit() {
 fn check_untouched(scene: &Scene, mut simulation: Simulation, mut before: Simulation, motion: &Motion) {
     assert_eq!(simulation.time().to_bits(), before.time().to_bits());
     assert_eq!(simulation.carrier(), before.carrier());
-    assert_eq!(outputs(scene, &simulation.snapshot()), outputs(scene, &before.snapshot()));
+    assert_eq!(bits(scene, &simulation.snapshot()), bits(scene, &before.snapshot()));
     for _ in 0..50 {
         assert_eq!(simulation.advance(motion), before.advance(motion));
-        assert_eq!(outputs(scene, &simulation.snapshot()), outputs(scene, &before.snapshot()));
+        assert_eq!(bits(scene, &simulation.snapshot()), bits(scene, &before.snapshot()));
     }
     assert_eq!(simulation.take_mode_changes(), before.take_mode_changes());
 }

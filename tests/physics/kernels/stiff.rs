@@ -3,11 +3,11 @@
 use asperity::model::{State, elastic_energy, kinetic_energy};
 
 use crate::kernels::convergence::{Exact, PATHS, differences, slider, sliding};
-use crate::kernels::layer::{Layer, Link, Method, SEVEN_STAGES, Stepper, at_rate};
+use crate::kernels::layer::{Layer, Method, SEVEN_STAGES, Stepper, at_rate, link};
 
 /// One mass with a spring and one Maxwell element along either axis.
 pub fn oscillator(relaxation_time: f64) -> Layer {
-    let link = || Link::new(100.0, 0.5, &[(100.0, relaxation_time)]);
+    let link = || link(100.0, 0.5, &[(100.0, relaxation_time)]);
     Layer { links: [link(), link(), None, None], clearance: 10.0, ..Layer::default() }
 }
 
@@ -27,8 +27,7 @@ pub fn on_slow_manifold(relaxation_time: f64) -> State {
 #[test]
 fn the_error_of_a_step_does_not_depend_on_short_relaxation_times() {
     let h = 0.05;
-    let plain =
-        Layer { links: [Link::new(100.0, 0.5, &[]), Link::new(100.0, 0.5, &[]), None, None], ..oscillator(1.0) };
+    let plain = Layer { links: [link(100.0, 0.5, &[]), link(100.0, 0.5, &[]), None, None], ..oscillator(1.0) };
     let error = |layer: &Layer, start: &State, reference: &State| {
         let mut stepper = Stepper::new(layer.model(), PATHS, start.clone(), 1e-12);
         stepper.step(h);
@@ -97,7 +96,7 @@ pub fn stops_within_a_step(method: Method, most: f64, rounding: impl Fn(f64, f64
     let h = 0.01;
     for exponent in 5..=15 {
         let damping = 10.0_f64.powi(exponent);
-        let link = || Link::new(100.0, damping, &[(100.0, 0.1)]);
+        let link = || link(100.0, damping, &[(100.0, 0.1)]);
         let links = [link(), link(), None, None];
         let free = Layer { links: links.clone(), ..oscillator(1.0) };
         let slipping = Layer { links, ..slider() };
@@ -124,7 +123,7 @@ fn an_undamped_oscillator_never_gains_energy() {
 
 pub fn never_gains_energy(method: Method) {
     for phase in [1e-3, 0.03, 0.3, 1.0, 3.0, 30.0, 1e4] {
-        let link = || Link::new(100.0, 0.0, &[]);
+        let link = || link(100.0, 0.0, &[]);
         let layer = Layer { links: [link(), link(), None, None], ..Layer::default() };
         let mut state = State::new(1, 0);
         (state.elongation_x[0], state.velocity_z[0]) = (0.1, 1.0);

@@ -1,4 +1,6 @@
-//! The contact patch: exact results, given cases.
+//! The contact patch: exact results, given cases, what must hold of random patches, and extreme ones.
 
 mod exact;
+mod extreme;
+mod invariants;
 mod reference;

@@ -1,98 +1,15 @@
 //! Points and files that are no profile.
 
-use crate::scene_errors::{Folder, PATH, assert_refusals, with_line};
+use crate::scene_errors::{BASE, Folder, PATH, assert_refusals, with_line};
 
 #[test]
 fn points_that_are_no_profile() {
-    assert_refusals(
-        "points",
-        &[
-            (
-                15,
-                "kind = 'points'\nx = [0]\nz = [0]",
-                16,
-                "surface.x = [1 numbers]: expected at least 2 points for a profile",
-            ),
-            (
-                15,
-                "kind = 'points'\nx = [0, 1]\nz = [0]",
-                17,
-                "surface.z = [1 numbers]: expected 2 heights, as many as numbers in x",
-            ),
-            (
-                15,
-                "kind = 'points'\nx = [0, 2, 1]\nz = [0, 1, 2]",
-                16,
-                "surface.x[3] = 1: expected a number > 2.0, the x of the point before, for x must rise",
-            ),
-            (
-                15,
-                "kind = 'points'\nx = [0, 2, 2]\nz = [0, 1, 2]",
-                16,
-                "surface.x[3] = 2: expected each x once, but the point before has x = 2.0 too",
-            ),
-            (
-                15,
-                "kind = 'points'\nx = [0, 1]\nz = [0, 0]\nperiodic = true",
-                16,
-                "surface.x = [2 numbers]: expected at least 3 points for a periodic profile",
-            ),
-            (
-                15,
-                "kind = 'points'\nx = [0, 1, 2]\nz = [0.5, 1, 0.6]\nperiodic = true",
-                17,
-                "surface.z[3] = 0.6: expected 0.5, the first height, for a periodic profile \
-                 ends at the height it starts from",
-            ),
-            (
-                15,
-                "kind = 'points'\nx = [0, 1e-320, 1]\nz = [0, 1, 0]",
-                14,
-                "surface = [surface]: expected points with a spline of slopes up to 1e12 and curvatures up to 1e30 1/m",
-            ),
-            (
-                15,
-                "kind = 'points'\nx = [0, 1e-20, 1]\nz = [0, 1, 0]",
-                14,
-                "surface = [surface]: expected points with a spline of slopes up to 1e12 and curvatures up to 1e30 1/m",
-            ),
-        ],
-    );
+    assert_refusals("points that are no profile", &BASE);
 }
 
 #[test]
 fn roughness_that_does_not_fit_the_masses() {
-    assert_refusals(
-        "roughness",
-        &[
-            (
-                7,
-                "roughness = { kind = 'points', z = [0, 1] }",
-                7,
-                "layer.roughness.z = [2 numbers]: expected 3 heights, one for each mass (layer.masses)",
-            ),
-            (
-                7,
-                "roughness = { kind = 'points' }",
-                7,
-                "layer.roughness.z: missing; expected 3 heights, one for each mass (layer.masses)",
-            ),
-            (
-                7,
-                "roughness = { kind = 'points', z = [0, nan, 1] }",
-                7,
-                "layer.roughness.z[2] = nan: expected a number from -1e30 to 1e30",
-            ),
-            (
-                7,
-                "roughness = { kind = 'points', z = [0, 1, 0], periodic = true }",
-                7,
-                "layer.roughness.periodic = true: expected no such key for heights at the masses, which have no x",
-            ),
-            (7, "roughness = [0, 1, 2]", 7, "layer.roughness = [0, 1, 2]: expected a table"),
-            (7, "roughness = { kind = 'flat', z = [] }", 7, "layer.roughness.z: unknown; allowed: kind"),
-        ],
-    );
+    assert_refusals("roughness that does not fit", &BASE);
 }
 
 fn with_profile(path: &str, periodic: bool) -> String {

@@ -68,8 +68,7 @@ impl<'a> Archive<'a> {
 }
 
 pub(super) fn unreadable(what: &str, error: &dyn std::error::Error) -> ContentError {
-    let reason = error.to_string().replace(['\n', '\r'], " ");
-    ContentError::value(None, what, &reason, "an archive that can be unpacked")
+    ContentError::value(None, what, &error.to_string(), "an archive that can be unpacked")
 }
 
 /// A path with forward slashes, from the archive's root.
@@ -101,9 +100,7 @@ const LONGEST_TEXT: usize = 4096;
 
 impl Document {
     pub(super) fn parse(text: &str) -> Result<Self, ContentError> {
-        let wrong = |reason: &str| {
-            ContentError::value(None, "main.xml", &reason.replace(['\n', '\r'], " "), "XML of an X3P file")
-        };
+        let wrong = |reason: &str| ContentError::value(None, "main.xml", reason, "XML of an X3P file");
         let mut reader = Reader::from_str(text);
         let mut walk = Walk::default();
         loop {

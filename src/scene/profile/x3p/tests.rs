@@ -213,6 +213,10 @@ fn files_that_contradict_themselves_are_refused() {
             File { inline: Some("<DataLink><PointDataLink>a</PointDataLink></DataLink>".into()), ..file() },
             "PointDataLink = a:",
         ),
+        (
+            File { inline: Some("<DataLink><PointDataLink>a\nb</PointDataLink></DataLink>".into()), ..file() },
+            "PointDataLink = a b: expected the name of a file of the archive",
+        ),
         (File { inline: Some("<a>".repeat(40)), ..file() }, "main.xml = elements too deep in each other"),
         (File { inline: Some("<a></b>".into()), ..file() }, "main.xml = "),
     ];

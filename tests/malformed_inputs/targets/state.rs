@@ -70,7 +70,7 @@ fn run_on(bases: &'static LocalKey<OnceCell<&'static Bases>>, sites: fn() -> &'s
 
 impl Bases {
     fn new(sites: &'static [Site]) -> Self {
-        let fmus: Vec<Fmu> = sites.iter().map(|site| Fmu { c: site.instantiate(false), site }).collect();
+        let fmus: Vec<Fmu> = sites.iter().map(|site| Fmu::new(site, site.instantiate(false))).collect();
         let mut states = Vec::new();
         for (i, fmu) in fmus.iter().enumerate() {
             let mut keep = || states.push((i, fmu.frozen().unwrap()));

@@ -287,7 +287,7 @@ impl Master {
         let kind = fmi2Type::from(kind & 1);
         // SAFETY: strings that live or NULL, callbacks that live or NULL.
         let c = unsafe { fmi2Instantiate(pointer(&name), kind, guid, location, functions, 0, logging.into()) };
-        (self.slots[slot], self.uses[slot]) = ((!c.is_null()).then_some(Fmu { c, site }), 0);
+        (self.slots[slot], self.uses[slot]) = ((!c.is_null()).then_some(Fmu::new(site, c)), 0);
     }
 
     fn call_on_states(&mut self, slot: usize, fmu: Fmu, call: &Call) {

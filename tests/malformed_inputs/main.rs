@@ -8,34 +8,19 @@
 )]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stderr, reason = "tests may fail")]
 
+#[path = "../common/random.rs"]
+#[allow(dead_code, reason = "shared by several tests")]
+mod random;
 mod targets;
 
 use std::fs;
 use std::path::Path;
 
-/// Random numbers (Marsaglia, Xorshift RNGs, 2003).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0
-    }
-
-    fn below(&mut self, end: usize) -> usize {
-        usize::try_from(self.next() % end as u64).unwrap()
-    }
-
-    fn bytes(&mut self, count: usize) -> Vec<u8> {
-        (0..count).map(|_| self.next() as u8).collect()
-    }
-}
+use random::Random;
 
 /// The files in `seeds` for a target, in the order of their names.
 fn seeds(target: &str) -> Vec<Vec<u8>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzzed/seeds").join(target);
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/malformed_inputs/seeds").join(target);
     let mut files: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.sort();
     assert!(!files.is_empty());
@@ -44,7 +29,7 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
 
 /// Runs a target on its seeds and on `count` changes of each: other bytes in a few places.
 fn run(target: &str, body: fn(&[u8]), count: usize) {
-    let mut random = Random(20_260_101);
+    let mut random = Random::new(20_260_101);
     for seed in seeds(target) {
         body(&seed);
         for _ in 0..count {
@@ -77,14 +62,14 @@ fn tables() {
 #[test]
 fn states() {
     run("state", targets::state::run, 100);
-    let mut random = Random(7);
+    let mut random = Random::new(7);
     (0..3_000).for_each(|length| targets::state::run(&random.bytes(length % 200)));
 }
 
 #[test]
 fn calls() {
     run("fmi_calls", targets::fmi_calls::run, 100);
-    let mut random = Random(8);
+    let mut random = Random::new(8);
     (0..3_000).for_each(|length| targets::fmi_calls::run(&random.bytes(length % 300)));
 }
 
@@ -96,20 +81,20 @@ fn patches() {
 #[test]
 fn motions_of_patches() {
     run("patch_motion", targets::patch_motion::run, 100);
-    let mut random = Random(9);
+    let mut random = Random::new(9);
     (0..3_000).for_each(|length| targets::patch_motion::run(&random.bytes(length % 400)));
 }
 
 #[test]
 fn states_of_patches() {
     run("patch_state", targets::state::run_on_patches, 100);
-    let mut random = Random(10);
+    let mut random = Random::new(10);
     (0..3_000).for_each(|length| targets::state::run_on_patches(&random.bytes(length % 200)));
 }
 
 #[test]
 fn calls_of_patches() {
     run("patch_calls", targets::fmi_calls::run_on_patches, 100);
-    let mut random = Random(11);
+    let mut random = Random::new(11);
     (0..3_000).for_each(|length| targets::fmi_calls::run_on_patches(&random.bytes(length % 300)));
 }

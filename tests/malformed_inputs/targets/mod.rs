@@ -9,5 +9,8 @@ pub mod state;
 pub mod table;
 
 mod fmu;
+#[path = "../../common/master.rs"]
+#[allow(dead_code, reason = "shared by several tests")]
+mod master;
 mod number;
 mod patches;

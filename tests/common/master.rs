@@ -1,6 +1,7 @@
 //! A small master: a scene in a folder, an instance of it, and every function as a method.
 
 use std::ffi::{CStr, CString, c_char, c_void};
+use std::ops::Deref;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -112,17 +113,22 @@ impl Folder {
 
     /// The GUID and the variables of the scene, the table or the patch in it.
     pub fn description(&self) -> (String, Catalogue) {
-        let (table, patch) = (self.0.join(TABLE_FILE), self.0.join(PATCH_FILE));
-        let (definition, file): (Definition, _) = if patch.is_file() {
-            (Patch::load(&patch).unwrap().into(), patch)
-        } else if table.is_file() {
-            (PointContact::new(Table::load(&table).unwrap()).into(), table)
-        } else {
-            (Scene::load(&self.scene_file()).unwrap().into(), self.scene_file())
-        };
-        let catalogue = Catalogue::of(&definition);
-        (fmi::guid(&Sources::of(&file, &definition).unwrap(), &catalogue), catalogue)
+        let files = [PATCH_FILE, TABLE_FILE, SCENE_FILE].map(|file| self.0.join(file));
+        describe(files.iter().find(|file| file.is_file()).unwrap())
     }
+}
+
+/// The GUID and the variables of a scene, a table or a patch, which the file's name tells.
+pub fn describe(file: &Path) -> (String, Catalogue) {
+    let definition: Definition = if file.ends_with(PATCH_FILE) {
+        Patch::load(file).unwrap().into()
+    } else if file.ends_with(TABLE_FILE) {
+        PointContact::new(Table::load(file).unwrap()).into()
+    } else {
+        Scene::load(file).unwrap().into()
+    };
+    let catalogue = Catalogue::of(&definition);
+    (fmi::guid(&Sources::of(file, &definition).unwrap(), &catalogue), catalogue)
 }
 
 impl Drop for Folder {
@@ -157,9 +163,16 @@ unsafe extern "C" fn receive(
     }
 }
 
-/// Callbacks that collect messages; memory functions and stepFinished are NULL, so that a call of them would crash.
+/// Callbacks that collect messages.
 pub fn callbacks(messages: &Messages) -> fmi2CallbackFunctions {
-    type Receive = unsafe extern "C" fn(*mut c_void, *const c_char, fmi2Status, *const c_char, *const c_char);
+    callbacks_with(receive, ptr::from_ref(messages).cast_mut().cast())
+}
+
+pub type Receive = unsafe extern "C" fn(*mut c_void, *const c_char, fmi2Status, *const c_char, *const c_char);
+
+/// Callbacks of which `receive` gets the messages; memory functions and stepFinished are NULL, so that a call of them would
+/// crash.
+pub fn callbacks_with(receive: Receive, environment: *mut c_void) -> fmi2CallbackFunctions {
     type Logger = unsafe extern "C" fn(*mut c_void, *const c_char, fmi2Status, *const c_char, *const c_char, ...);
     // SAFETY: Rust cannot define a variadic function; one that ignores the variadic part is called in the same way.
     let logger = unsafe { mem::transmute::<Receive, Logger>(receive) };
@@ -168,7 +181,7 @@ pub fn callbacks(messages: &Messages) -> fmi2CallbackFunctions {
         allocateMemory: None,
         freeMemory: None,
         stepFinished: None,
-        componentEnvironment: ptr::from_ref(messages).cast_mut().cast(),
+        componentEnvironment: environment,
     }
 }
 
@@ -195,7 +208,7 @@ impl Request {
 
 /// An instance and its messages.
 pub struct Fmu {
-    pub c: fmi2Component,
+    instance: Instance,
     pub catalogue: Catalogue,
     messages: Box<Messages>,
     _folder: Folder,
@@ -236,7 +249,7 @@ impl Fmu {
         };
         let c = request.send();
         assert!(!c.is_null(), "{:?}", messages.lock());
-        Self { c, catalogue, messages, _folder: folder }
+        Self { instance: Instance { c }, catalogue, messages, _folder: folder }
     }
 
     /// An instance of [`SCENE`] in the initialisation mode.
@@ -264,6 +277,13 @@ impl Fmu {
     /// The messages since the last call.
     pub fn messages(&self) -> Vec<Message> {
         mem::take(&mut self.messages.lock().unwrap())
+    }
+
+    /// Goes on from a byte string.
+    pub fn thaw(&self, bytes: &[u8]) {
+        let mut state = ptr::null_mut();
+        assert_eq!(self.deserialise(bytes, &mut state), OK, "{:?}", self.messages());
+        assert_eq!((self.set_state(state), self.free_state(&mut state)), (OK, OK));
     }
 
     /// The text of the one message since the last call.
@@ -315,8 +335,22 @@ impl Fmu {
     }
 }
 
+impl Deref for Fmu {
+    type Target = Instance;
+
+    fn deref(&self) -> &Instance {
+        &self.instance
+    }
+}
+
+/// A component that lives as long as this is used.
+#[derive(Clone, Copy)]
+pub struct Instance {
+    pub c: fmi2Component,
+}
+
 /// The functions, safe here because the instance lives and the slices have the lengths given.
-impl Fmu {
+impl Instance {
     pub fn setup_all(&self, tolerance: Option<f64>, start: f64, stop: Option<f64>) -> fmi2Status {
         let (given, tolerance) = (tolerance.is_some().into(), tolerance.unwrap_or_default());
         // SAFETY: see above.
@@ -343,6 +377,11 @@ impl Fmu {
     pub fn terminate(&self) -> fmi2Status {
         // SAFETY: see above.
         unsafe { fmi::fmi2Terminate(self.c) }
+    }
+
+    pub fn free(self) {
+        // SAFETY: from fmi2Instantiate, and used no more.
+        unsafe { fmi::fmi2FreeInstance(self.c) }
     }
 
     pub fn reset(&self) -> fmi2Status {
@@ -434,13 +473,6 @@ impl Fmu {
         bytes
     }
 
-    /// Goes on from a byte string.
-    pub fn thaw(&self, bytes: &[u8]) {
-        let mut state = ptr::null_mut();
-        assert_eq!(self.deserialise(bytes, &mut state), OK, "{:?}", self.messages());
-        assert_eq!((self.set_state(state), self.free_state(&mut state)), (OK, OK));
-    }
-
     pub fn serialise(&self, state: fmi2FMUstate, bytes: &mut [u8]) -> fmi2Status {
         // SAFETY: see above.
         unsafe { fmi::fmi2SerializeFMUstate(self.c, state, bytes.as_mut_ptr().cast(), bytes.len()) }
@@ -487,7 +519,6 @@ impl Fmu {
 
 impl Drop for Fmu {
     fn drop(&mut self) {
-        // SAFETY: from fmi2Instantiate, and freed once.
-        unsafe { fmi::fmi2FreeInstance(self.c) }
+        self.instance.free();
     }
 }

@@ -1,19 +1,18 @@
 //! Small FMUs to fuzz, layers and an element, with the checks of every call.
 
 use std::ffi::{CStr, CString, c_char, c_void};
+use std::ops::Deref;
 use std::sync::{Mutex, OnceLock};
-use std::{env, fmt, fs, mem, process, ptr};
+use std::{env, fmt, fs, process, ptr};
 
-use asperity::element::{PointContact, Table};
 use asperity::fmi::bindings::*;
-use asperity::fmi::{self, Catalogue, Definition, Entry, Kind, PATCH_FILE, SCENE_FILE, Sources, TABLE_FILE};
-use asperity::patch::Patch;
-use asperity::scene::{OutputGroup, Scene};
+use asperity::fmi::{self, Entry, Kind, PATCH_FILE, SCENE_FILE, TABLE_FILE};
+use asperity::scene::OutputGroup;
 
+use super::master::{self, Instance};
 use super::patches::{self, PATCHES};
 
-pub const OK: fmi2Status = fmi2Status_fmi2OK;
-pub const DISCARD: fmi2Status = fmi2Status_fmi2Discard;
+pub use super::master::{DISCARD, OK};
 
 /// The largest `solver.max_steps`.
 pub const MAX_STEPS: i32 = 40;
@@ -151,16 +150,10 @@ impl Site {
         fs::create_dir_all(&folder).unwrap();
         let file = folder.join(file);
         fs::write(&file, text).unwrap();
-        let definition: Definition = if file.ends_with(TABLE_FILE) {
-            PointContact::new(Table::load(&file).unwrap()).into()
-        } else if file.ends_with(PATCH_FILE) {
+        if file.ends_with(PATCH_FILE) {
             patches::write_files(&folder, patches::POINTS);
-            Patch::load(&file).unwrap().into()
-        } else {
-            Scene::load(&file).unwrap().into()
-        };
-        let catalogue = Catalogue::of(&definition);
-        let guid = fmi::guid(&Sources::of(&file, &definition).unwrap(), &catalogue);
+        }
+        let (guid, catalogue) = master::describe(&file);
         let of = |take: &dyn Fn(&Entry<'_>) -> bool| {
             catalogue.entries().filter(|(_, entry)| take(entry)).map(|(reference, _)| reference).collect::<Vec<_>>()
         };
@@ -190,10 +183,9 @@ impl Site {
     }
 
     fn fresh_bytes(&self) -> Vec<u8> {
-        let c = self.instantiate(false);
-        let bytes = frozen(c);
-        // SAFETY: from fmi2Instantiate, and freed once.
-        unsafe { fmi::fmi2FreeInstance(c) };
+        let instance = Instance { c: self.instantiate(false) };
+        let bytes = frozen(instance);
+        instance.free();
         bytes.unwrap()
     }
 
@@ -201,21 +193,15 @@ impl Site {
     pub fn take(&'static self) -> (Fmu, usize) {
         let (c, uses) =
             self.pool.lock().unwrap().pop().unwrap_or_else(|| (self.instantiate(false).expose_provenance(), 0));
-        (Fmu { c: ptr::with_exposed_provenance_mut(c), site: self }, uses)
+        (Fmu::new(self, ptr::with_exposed_provenance_mut(c)), uses)
     }
 
     /// Keeps an instance for another case, or frees it.
     pub fn give_back(&self, fmu: Fmu, uses: usize) {
-        // SAFETY: an instance that lives, and is freed once.
-        unsafe {
-            if uses < MAX_USES
-                && fmi::fmi2Reset(fmu.c) == OK
-                && fmi::fmi2SetDebugLogging(fmu.c, 0, 0, ptr::null()) == OK
-            {
-                self.pool.lock().unwrap().push((fmu.c.expose_provenance(), uses + 1));
-            } else {
-                fmi::fmi2FreeInstance(fmu.c);
-            }
+        if uses < MAX_USES && fmu.reset() == OK && fmu.set_debug_logging(false, &[]) == OK {
+            self.pool.lock().unwrap().push((fmu.c.expose_provenance(), uses + 1));
+        } else {
+            fmu.free();
         }
     }
 
@@ -250,19 +236,8 @@ fn fail(message: &str) {
     process::abort();
 }
 
-/// Callbacks whose memory functions are NULL, so that a call of them would crash.
 pub fn callbacks() -> fmi2CallbackFunctions {
-    type Receive = unsafe extern "C" fn(*mut c_void, *const c_char, fmi2Status, *const c_char, *const c_char);
-    type Logger = unsafe extern "C" fn(*mut c_void, *const c_char, fmi2Status, *const c_char, *const c_char, ...);
-    // SAFETY: Rust cannot define a variadic function; one that ignores the variadic part is called in the same way.
-    let logger = unsafe { mem::transmute::<Receive, Logger>(receive) };
-    fmi2CallbackFunctions {
-        logger: Some(logger),
-        allocateMemory: None,
-        freeMemory: None,
-        stepFinished: None,
-        componentEnvironment: ptr::null_mut(),
-    }
+    master::callbacks_with(receive, ptr::null_mut())
 }
 
 /// Prints a case if FUZZ_SHOW is set.
@@ -282,25 +257,32 @@ pub fn checked(status: fmi2Status) -> fmi2Status {
 /// An instance and its site; not freed on drop.
 #[derive(Clone, Copy)]
 pub struct Fmu {
-    pub c: fmi2Component,
+    instance: Instance,
     pub site: &'static Site,
+}
+
+impl Deref for Fmu {
+    type Target = Instance;
+
+    fn deref(&self) -> &Instance {
+        &self.instance
+    }
 }
 
 /// The bits of all outputs except the processor time.
 pub type Outputs = Vec<u64>;
 
 impl Fmu {
+    /// The instance `c` of a site.
+    pub fn new(site: &'static Site, c: fmi2Component) -> Self {
+        Self { instance: Instance { c }, site }
+    }
+
     /// The outputs; `None` where they cannot be read.
     pub fn outputs(&self) -> Option<Outputs> {
         let (reals, integers) = (&self.site.reals, &self.site.integers);
         let (mut values, mut counts) = (vec![f64::NAN; reals.len()], vec![-9; integers.len()]);
-        // SAFETY: an instance that lives, slices of the lengths given.
-        let (first, second) = unsafe {
-            (
-                fmi::fmi2GetReal(self.c, reals.as_ptr(), reals.len(), values.as_mut_ptr()),
-                fmi::fmi2GetInteger(self.c, integers.as_ptr(), integers.len(), counts.as_mut_ptr()),
-            )
-        };
+        let (first, second) = (self.get_reals(reals, &mut values), self.get_integers(integers, &mut counts));
         let (first, second) = (checked(first), checked(second));
         if first != OK {
             assert!(values.iter().all(|value| value.is_nan()), "written though refused");
@@ -312,11 +294,10 @@ impl Fmu {
 
     /// The outputs after a successful step, all of which must be readable.
     pub fn outputs_of_step(&self) -> Outputs {
-        if let Some(reference) = &self.site.time {
-            let mut time = f64::NAN;
-            // SAFETY: as above.
-            assert_eq!(unsafe { fmi::fmi2GetReal(self.c, reference, 1, &mut time) }, OK);
-            assert!(time >= 0.0);
+        if let Some(reference) = self.site.time {
+            let mut time = [f64::NAN];
+            assert_eq!(self.get_reals(&[reference], &mut time), OK);
+            assert!(time[0] >= 0.0);
         }
         self.outputs().expect("outputs after a step")
     }
@@ -331,54 +312,45 @@ impl Fmu {
 
     /// A new FMU state; NULL where that is not allowed.
     pub fn keep(&self) -> fmi2FMUstate {
-        keep(self.c)
+        keep(self.instance)
     }
 
     pub fn forget(&self, state: fmi2FMUstate) {
-        forget(self.c, state);
+        forget(self.instance, state);
     }
 
     /// A state as a byte string.
     pub fn serialised(&self, state: fmi2FMUstate) -> Option<Vec<u8>> {
-        serialised(self.c, state)
+        serialised(self.instance, state)
     }
 
     /// The state of the instance as a byte string.
     pub fn frozen(&self) -> Option<Vec<u8>> {
-        frozen(self.c)
+        frozen(self.instance)
     }
 
     /// `solver.max_steps`; 0 for an element.
     pub fn max_steps(&self) -> i32 {
-        let Some(reference) = &self.site.max_steps else { return 0 };
-        let mut steps = 0;
-        // SAFETY: as above.
-        let status = unsafe { fmi::fmi2GetInteger(self.c, reference, 1, &mut steps) };
-        if checked(status) == OK { steps } else { 0 }
+        let Some(reference) = self.site.max_steps else { return 0 };
+        let mut steps = [0];
+        if checked(self.get_integers(&[reference], &mut steps)) == OK { steps[0] } else { 0 }
     }
 
     /// Initialises a new instance; whether that succeeded.
     pub fn start(&self, [u, w, u_rate, w_rate]: [f64; 4]) -> bool {
-        // SAFETY: as above.
-        unsafe {
-            checked(fmi::fmi2SetupExperiment(self.c, 0, 0.0, 0.0, 0, 0.0)) == OK
-                && checked(fmi::fmi2EnterInitializationMode(self.c)) == OK
-                && checked(fmi::fmi2SetReal(self.c, self.site.inputs.as_ptr(), 2, [u, w].as_ptr())) == OK
-                && self.set_rates([u_rate, w_rate]) == OK
-                && checked(fmi::fmi2ExitInitializationMode(self.c)) == OK
-        }
+        checked(self.setup_all(None, 0.0, None)) == OK
+            && checked(self.enter()) == OK
+            && checked(self.set_reals(&self.site.inputs, &[u, w])) == OK
+            && self.set_rates([u_rate, w_rate]) == OK
+            && checked(self.exit()) == OK
     }
 
     pub fn set_rates(&self, rates: [f64; 2]) -> fmi2Status {
-        // SAFETY: as above.
-        checked(unsafe {
-            fmi::fmi2SetRealInputDerivatives(self.c, self.site.inputs.as_ptr(), 2, [1, 1].as_ptr(), rates.as_ptr())
-        })
+        checked(self.instance.set_rates(&self.site.inputs, &[1, 1], &rates))
     }
 
     pub fn step(&self, point: f64, h: f64) -> fmi2Status {
-        // SAFETY: as above.
-        checked(unsafe { fmi::fmi2DoStep(self.c, point, h, 1) })
+        checked(self.instance.step(point, h))
     }
 
     /// A step with its checks: finite outputs where it was done, no change where it was refused.
@@ -391,7 +363,7 @@ impl Fmu {
         }
         if status == OK {
             self.outputs_of_step();
-            assert_eq!(self.last_status(), OK);
+            assert_eq!(self.last_step(), (OK, OK));
             let (before, after) = (time.expect("time before a step"), self.time().expect("time after a step"));
             assert!(after == point + h || (after == before && before + h == before), "{before} + {h}: {after}");
             return status;
@@ -407,65 +379,47 @@ impl Fmu {
         status
     }
 
-    fn last_status(&self) -> fmi2Status {
-        let mut status = fmi2Status_fmi2Pending;
-        // SAFETY: as above.
-        assert_eq!(unsafe { fmi::fmi2GetStatus(self.c, fmi2StatusKind_fmi2DoStepStatus, &mut status) }, OK);
-        status
-    }
-
     /// Checks that derivatives of all outputs by the inputs and of the forces by time are finite or refused.
     pub fn check_derivatives(&self, direction: [f64; 2]) {
         let (reals, mut values) = (&self.site.reals, vec![0.0; self.site.reals.len()]);
-        // SAFETY: an instance that lives, slices of the lengths given.
-        let (first, second) = unsafe {
-            let (knowns, unknowns, direction, place) =
-                (self.site.inputs, reals.as_ptr(), direction.as_ptr(), values.as_mut_ptr());
-            let first =
-                fmi::fmi2GetDirectionalDerivative(self.c, unknowns, reals.len(), knowns.as_ptr(), 2, direction, place);
-            assert!(values.iter().all(|value| value.is_finite()), "{values:?}");
-            // F_x and F_z are the first, of a patch force.x and force.y.
-            let orders = [1, 1];
-            (first, fmi::fmi2GetRealOutputDerivatives(self.c, unknowns, 2, orders.as_ptr(), values.as_mut_ptr()))
-        };
+        let first = self.get_derivatives(reals, &self.site.inputs, &direction, &mut values);
+        assert!(values.iter().all(|value| value.is_finite()), "{values:?}");
+        // F_x and F_z are the first, of a patch force.x and force.y.
+        let second = self.get_rates(&reals[..2], &[1, 1], &mut values);
         assert!(values.iter().all(|value| value.is_finite()), "{values:?}");
         checked(first);
         checked(second);
     }
 }
 
-fn keep(c: fmi2Component) -> fmi2FMUstate {
+fn keep(instance: Instance) -> fmi2FMUstate {
     let mut state = ptr::null_mut();
-    // SAFETY: an instance that lives.
-    let status = unsafe { fmi::fmi2GetFMUstate(c, &mut state) };
-    assert_eq!(checked(status) == OK, !state.is_null());
+    assert_eq!(checked(instance.get_state(&mut state)) == OK, !state.is_null());
     state
 }
 
-fn forget(c: fmi2Component, mut state: fmi2FMUstate) {
-    // SAFETY: an instance that lives.
-    assert_eq!(unsafe { fmi::fmi2FreeFMUstate(c, &mut state) }, OK);
+fn forget(instance: Instance, mut state: fmi2FMUstate) {
+    assert_eq!(instance.free_state(&mut state), OK);
     assert!(state.is_null());
 }
 
-fn serialised(c: fmi2Component, state: fmi2FMUstate) -> Option<Vec<u8>> {
+fn serialised(instance: Instance, state: fmi2FMUstate) -> Option<Vec<u8>> {
     let mut size = 0;
     // SAFETY: an instance that lives, any handle.
-    let status = unsafe { fmi::fmi2SerializedFMUstateSize(c, state, &mut size) };
+    let status = unsafe { fmi::fmi2SerializedFMUstateSize(instance.c, state, &mut size) };
     if checked(status) != OK {
         return None;
     }
     let mut bytes = vec![0_u8; size];
-    // SAFETY: as above, a slice of the length given.
-    assert_eq!(unsafe { fmi::fmi2SerializeFMUstate(c, state, bytes.as_mut_ptr().cast(), size) }, OK);
+    assert_eq!(instance.serialise(state, &mut bytes), OK);
     Some(bytes)
 }
 
-fn frozen(c: fmi2Component) -> Option<Vec<u8>> {
-    let state = keep(c);
-    let bytes = serialised(c, state);
+fn frozen(instance: Instance) -> Option<Vec<u8>> {
+    let state = keep(instance);
+    let bytes = serialised(instance, state);
     if !state.is_null() {
-        forget(c, state);
+        forget(instance, state);
     }
     bytes
 }

@@ -9,8 +9,8 @@ use proptest::collection::vec;
 use proptest::option;
 use proptest::prelude::*;
 
-use crate::check::check;
 use crate::common::{root, scratch};
+use crate::invariants::check::check;
 
 /// Points of a random patch: x, y, z (m) and area (m²).
 type Points = Vec<[f64; 4]>;
