@@ -4,7 +4,7 @@ use asperity::integrator::{
     ContactModes, DenseOutput, DenseWorkspace, ErrorEstimate, Integrator, LayerState, Scheme, StepSpan, Tolerance,
     Tracked,
 };
-use asperity::model::{Carrier, Forces, LinkKind, Model, State};
+use asperity::model::{Axis, ByAxis, Carrier, Forces, LinkKind, Model, State};
 use asperity::scene::{Path, RateShear, Scene};
 
 use crate::common::scenes::{Law, SceneText};
