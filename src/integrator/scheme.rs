@@ -37,6 +37,7 @@ pub(super) enum ContactHeights {
 }
 
 /// How the velocities from which Newton's iterations of a stage start are guessed.
+#[expect(clippy::large_enum_variant, reason = "one a scheme, made once and never moved")]
 #[derive(Clone, Copy, Debug)]
 pub(super) enum InitialGuess {
     /// The accelerations of slipping masses are extrapolated from the earlier stages with these weights, by stage. Free
