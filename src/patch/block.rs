@@ -3,9 +3,17 @@
 use super::contact_times::{Endpoint, advance_in_segments, half_turn, size};
 use super::face::{Face, TreadColumn};
 use super::motion::{BodyKinematics, BodyMotion, Substep, Substeps, TreadMotion};
-use super::state::ElementMode;
 use crate::element::{ResampledLaw, Segment, SpeedCell, SpringLaw, advance, apply_jump};
 use crate::math::Number;
+
+/// What an element does; in states, as a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub(super) enum ElementMode {
+    Free = 0,
+    Slipping = 1,
+    Sticking = 2,
+}
 
 /// Elements of a block.
 pub(super) const BLOCK: usize = 64;

@@ -3,12 +3,13 @@
 //! The spring of an element that sticks follows the face, and where its stiffness falls, loses its share; one that slips
 //! stays at its limit. The pressure follows the approach, arms turn with the body.
 
+use super::block::ElementMode;
 use super::contact_times::size;
 use super::definition::ElementSite;
 use super::face::Face;
 use super::motion::{BodyKinematics, BodyMotion};
 use super::run::PatchRun;
-use super::state::{ElementMode, Totals};
+use super::state::Totals;
 use super::variables::{PatchOutput, PatchVariable};
 use crate::math::{Dual, Number};
 

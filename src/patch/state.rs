@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use super::block::{Block, Sums};
+use super::block::{Block, ElementMode, Sums};
 use super::definition::Patch;
 use super::motion::BodyMotion;
 use crate::math::{Number, not_finite};
@@ -144,15 +144,6 @@ pub enum RestoreError {
         /// In the patch.
         expected: usize,
     },
-}
-
-/// What an element does; in states, as a number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub(super) enum ElementMode {
-    Free = 0,
-    Slipping = 1,
-    Sticking = 2,
 }
 
 /// The springs of all elements.
