@@ -90,7 +90,8 @@ impl LocalRegions {
         let most_masses = model.masses() / OF_MASSES;
         let levels = least.into_iter().flat_map(|least| levels(least, most_masses));
         let regions: Vec<_> = levels
-            .flat_map(|(width, count)| std::iter::repeat_n(LocalRegion::new(model, width, settings), count))
+            // Each has a model of its own: one that they share would be copied when they first open.
+            .flat_map(|(width, count)| (0..count).map(move |_| LocalRegion::new(model, width, settings)))
             .collect();
         let stages =
             if regions.is_empty() { 0 } else { Scheme::event_driven_at(model, tolerance.relative).tableau().stages };
