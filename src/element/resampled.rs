@@ -191,6 +191,20 @@ impl ResampledLaw {
         }
     }
 
+    /// Memory in bytes that the law of `table` takes.
+    pub fn memory(table: &Table) -> usize {
+        let speeds: Vec<f64> = table.grid.speeds.iter().map(|speed| speed.ln()).collect();
+        let intervals: usize = Stretch::new(&speeds).iter().map(|stretch| stretch.count).sum();
+        let pressures = table.grid.loads.len();
+        let piece = size_of::<Piece>() + size_of::<Shares>();
+        intervals * (pressures * piece + beginnings_of(pressures) * size_of::<Beginnings>() + size_of::<u64>())
+    }
+
+    /// As [`earliest_touch`](Self::earliest_touch), of `table` at `temperature` (K).
+    pub fn earliest_touch_of(table: &Table, temperature: f64) -> f64 {
+        Law::new(table, temperature).earliest_touch()
+    }
+
     /// The temperature, K.
     pub fn temperature(&self) -> f64 {
         self.temperature

@@ -7,8 +7,8 @@ use super::face::{Arc as Section, Face, Points, Tread};
 use super::motion::Run;
 use crate::element::{Load, ResampledLaw, Table, TableError};
 use crate::scene::{
-    Extrapolation, FaceShape, Grid, NotDoubled, Parameter, ParameterError, PatchFile, PatchGroup, Problem, SceneError,
-    TableExtrapolation, Value,
+    Extrapolation, FaceShape, FmuOptions, Grid, NotDoubled, Parameter, ParameterError, PatchFile, PatchGroup, Problem,
+    SceneError, TableExtrapolation, Value,
 };
 
 /// Why a patch is refused.
@@ -130,6 +130,11 @@ impl Patch {
         &self.file.outputs
     }
 
+    /// What its FMU's description says for simple importers.
+    pub fn fmu_options(&self) -> FmuOptions {
+        self.file.fmu
+    }
+
     /// The area that a layer of the table stands for, m².
     pub fn nominal_area(&self) -> f64 {
         self.nominal_area
@@ -193,15 +198,15 @@ impl Patch {
 
     /// A height (m) at which nothing touches when the body is level.
     pub fn clear_height(&self) -> f64 {
-        let law = self.law();
+        let touch = ResampledLaw::earliest_touch_of(&self.table, self.temperature);
         let lowest = match &*self.face {
             Face::Points(points) => points.z.iter().copied().fold(f64::INFINITY, f64::min),
             Face::Tread(tread) => tread.arc.at(0.0).0[1] + tread.offset[2],
         };
-        let step = law.earliest_touch().abs().max(1e-6);
+        let step = touch.abs().max(1e-6);
         // A round number, a little higher, is easier to read.
         let digits = 10.0_f64.powf(step.log10().floor() - 1.0);
-        (((-law.earliest_touch() - lowest) / digits).floor() + 1.0) * digits
+        (((-touch - lowest) / digits).floor() + 1.0) * digits
     }
 
     pub(super) fn law(&self) -> ResampledLaw {

@@ -43,11 +43,16 @@ struct Batch<'a, T> {
     sums: &'a mut Sums<T>,
 }
 
+/// How many threads do steps of so many elements times parts.
+pub(super) fn threads(elements_and_parts: f64) -> usize {
+    let threads = thread::available_parallelism().map_or(1, NonZero::get);
+    threads.min((elements_and_parts / WORTH_A_THREAD) as usize)
+}
+
 impl<T: Number + Send + Sync> WorkerPool<T> {
     /// For steps of so many elements times parts or more: as many as the processor serves at once and the steps are worth.
     pub(super) fn new(elements_and_parts: f64, law: &ResampledLaw) -> Self {
-        let threads = thread::available_parallelism().map_or(1, NonZero::get);
-        Self::with_threads(threads.min((elements_and_parts / WORTH_A_THREAD) as usize), law)
+        Self::with_threads(threads(elements_and_parts), law)
     }
 
     /// One, or `threads` of them.

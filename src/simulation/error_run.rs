@@ -39,7 +39,7 @@ const MIN_WORK: u64 = 10_000;
 /// A more accurate run that follows another one: never behind it when it is compared.
 #[derive(Clone, Debug)]
 pub(super) struct ErrorRun {
-    pub(super) run: Run,
+    pub(super) run: Box<Run>,
     /// The duration of the motion under way, s.
     duration: f64,
     work: WorkLimit,

@@ -44,7 +44,7 @@ pub use state::{RestoreError, SimulationState};
 /// A clone goes on exactly as the original, bit for bit.
 #[derive(Clone, Debug)]
 pub struct Simulation {
-    run: Run,
+    run: Box<Run>,
     /// A more accurate run beside it, where its error is asked for.
     error_run: Option<ErrorRun>,
     /// The scene where its temperature is an input.

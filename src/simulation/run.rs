@@ -235,8 +235,13 @@ pub(super) struct Workspace {
 }
 
 impl Run {
-    /// A run with the layer placed under the carrier at `start`.
-    pub(super) fn new(model: Arc<Model>, settings: Settings, start: &Start, bodies: &[Option<BodyStart>; 2]) -> Self {
+    /// A run with the layer placed under the carrier at `start`; on the heap, since threads of hosts may have small stacks.
+    pub(super) fn new(
+        model: Arc<Model>,
+        settings: Settings,
+        start: &Start,
+        bodies: &[Option<BodyStart>; 2],
+    ) -> Box<Self> {
         let state = RunState::new(&model, start, bodies, settings.method == Method::Step);
         let windows = Windows::new(&model, &settings);
         let workspace = Workspace {
@@ -253,7 +258,7 @@ impl Run {
             checkpoint: (!settings.is_of_window).then(|| Box::new(state.clone())),
             recorded: [0; 2],
         };
-        let mut run = Self { model, settings, state, workspace, mode_changes: None, method_switches: None };
+        let mut run = Box::new(Self { model, settings, state, workspace, mode_changes: None, method_switches: None });
         run.keep_link_forces();
         run.place_layer();
         run

@@ -231,7 +231,7 @@ mod tests {
     /// The same run with the carrier moved and every state held.
     fn moved(simulation: &Simulation, (du, dw): (f64, f64)) -> Simulation {
         let mut simulation = simulation.clone();
-        let Run { model, state, .. } = &mut simulation.run;
+        let Run { model, state, .. } = &mut *simulation.run;
         (state.carrier.u, state.carrier.w) = (state.carrier.u + du, state.carrier.w + dw);
         let layer = &mut state.layer.state;
         layer.elongation_x.iter_mut().for_each(|e| *e -= du);

@@ -15,7 +15,7 @@ use crate::outputs::{Counters, Energies};
 #[derive(Clone, Debug)]
 pub(super) struct Window {
     /// The run of these masses alone, under the forces that the whole layer's step has in the links to the others.
-    pub(super) run: Run,
+    pub(super) run: Box<Run>,
     /// Whether it runs within the step under way.
     pub(super) open: bool,
     /// The step that its run has tried, and its end, s after the start of the carrier's piece.
@@ -87,7 +87,7 @@ impl Window {
         self.whole.begin(step, &self.run.model, first);
         let ends = self.end_forces(step, nodes);
         let Self { whole, run: own, .. } = self;
-        let Run { state, workspace, .. } = own;
+        let Run { state, workspace, .. } = &mut **own;
         state.carrier = run.state.carrier;
         state.carrier.ends = Some(ends);
         let theta = step.theta(s);
@@ -127,7 +127,7 @@ impl Window {
     /// Whether the whole layer's `step` resolves the motion of its masses where it was opened: whether the defect of the dense
     /// output there is at most `largest` in the tolerance's norm.
     pub(super) fn is_resolved(&mut self, step: &mut LayerStep<'_>, largest: f64) -> bool {
-        let Run { model, state, workspace, settings, .. } = &mut self.run;
+        let Run { model, state, workspace, settings, .. } = &mut *self.run;
         let theta = step.theta(state.s);
         workspace.forces.evaluate(model, &state.layer.state, &state.carrier.at(state.s));
         let (dense, weights) = step.dense(&self.whole.masses);
@@ -195,7 +195,7 @@ impl Window {
     /// `step`.
     pub(super) fn mismatch(&self, step: &mut LayerStep<'_>) -> f64 {
         let (theta, ends) = (step.theta(self.reached()), self.ends(step.model.masses()));
-        let Run { model, state, .. } = &self.run;
+        let Run { model, state, .. } = &*self.run;
         let masses = self.masses();
         let (dense, weights) = step.dense(&masses);
         let layer = &state.layer.state;

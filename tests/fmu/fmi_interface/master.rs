@@ -8,7 +8,7 @@ use std::{fs, mem, process, ptr};
 
 use asperity::element::{PointContact, Table};
 use asperity::fmi::bindings::*;
-use asperity::fmi::{self, Catalogue, Definition, PATCH_FILE, SCENE_FILE, Sources, TABLE_FILE};
+use asperity::fmi::{self, Definition, PATCH_FILE, SCENE_FILE, Sources, TABLE_FILE, VariableTable};
 use asperity::patch::Patch;
 use asperity::scene::Scene;
 
@@ -111,7 +111,7 @@ impl Folder {
     }
 
     /// The GUID and the variables of the scene, the table or the patch in it.
-    pub fn description(&self) -> (String, Catalogue) {
+    pub fn description(&self) -> (String, VariableTable) {
         let (table, patch) = (self.0.join(TABLE_FILE), self.0.join(PATCH_FILE));
         let (definition, file): (Definition, _) = if patch.is_file() {
             (Patch::load(&patch).unwrap().into(), patch)
@@ -120,8 +120,8 @@ impl Folder {
         } else {
             (Scene::load(&self.scene_file()).unwrap().into(), self.scene_file())
         };
-        let catalogue = Catalogue::of(&definition);
-        (fmi::guid(&Sources::of(&file, &definition).unwrap(), &catalogue), catalogue)
+        let variables = definition.variables();
+        (fmi::guid(&Sources::of(&file, &*definition).unwrap(), &variables), variables)
     }
 }
 
@@ -196,7 +196,7 @@ impl Request {
 /// An instance and its messages.
 pub struct Fmu {
     pub c: fmi2Component,
-    pub catalogue: Catalogue,
+    pub variables: VariableTable,
     messages: Box<Messages>,
     _folder: Folder,
 }
@@ -222,7 +222,7 @@ impl Fmu {
     }
 
     fn in_folder(folder: Folder, logging: bool) -> Self {
-        let (guid, catalogue) = folder.description();
+        let (guid, variables) = folder.description();
         let messages = Box::new(Messages::default());
         let functions = callbacks(&messages);
         let location = format!("file://{}", folder.text());
@@ -236,7 +236,7 @@ impl Fmu {
         };
         let c = request.send();
         assert!(!c.is_null(), "{:?}", messages.lock());
-        Self { c, catalogue, messages, _folder: folder }
+        Self { c, variables, messages, _folder: folder }
     }
 
     /// An instance of [`SCENE`] in the initialisation mode.
@@ -275,7 +275,7 @@ impl Fmu {
 
     /// The value reference of the variable `name`.
     pub fn reference(&self, name: &str) -> u32 {
-        self.catalogue.entries().find(|(_, entry)| entry.name() == name).unwrap().0
+        self.variables.entries().find(|(_, entry)| entry.name == name).unwrap().0
     }
 
     pub fn setup(&self, start: f64) -> fmi2Status {
@@ -284,13 +284,10 @@ impl Fmu {
 
     /// All outputs but the processor time, bit by bit.
     pub fn bits(&self) -> Vec<u64> {
-        let is_time = |entry: &fmi::Entry<'_>| entry.name() == "solver.run_time";
-        let outputs = self
-            .catalogue
-            .entries()
-            .filter(|(_, entry)| matches!(entry, fmi::Entry::Output(..) | fmi::Entry::PatchOutput(..)));
-        let bits = |(reference, entry): (u32, fmi::Entry<'_>)| match entry.kind() {
-            fmi::Kind::Real => self.real(&entry.name()).to_bits(),
+        let is_time = |entry: &fmi::VariableRef| entry.name == "solver.run_time";
+        let outputs = self.variables.entries().filter(|(_, entry)| entry.is_calculated());
+        let bits = |(reference, entry): (u32, &fmi::VariableRef)| match entry.kind {
+            fmi::Kind::Real => self.real(&entry.name).to_bits(),
             _ => {
                 let mut value = [0];
                 assert_eq!(self.get_integers(&[reference], &mut value), OK);

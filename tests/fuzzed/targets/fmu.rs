@@ -6,7 +6,7 @@ use std::{env, fmt, fs, mem, process, ptr};
 
 use asperity::element::{PointContact, Table};
 use asperity::fmi::bindings::*;
-use asperity::fmi::{self, Catalogue, Definition, Entry, Kind, PATCH_FILE, SCENE_FILE, Sources, TABLE_FILE};
+use asperity::fmi::{self, Definition, Kind, PATCH_FILE, Role, SCENE_FILE, Sources, TABLE_FILE, VariableRef};
 use asperity::patch::Patch;
 use asperity::scene::{OutputGroup, Scene};
 
@@ -159,27 +159,25 @@ impl Site {
         } else {
             Scene::load(&file).unwrap().into()
         };
-        let catalogue = Catalogue::of(&definition);
-        let guid = fmi::guid(&Sources::of(&file, &definition).unwrap(), &catalogue);
-        let of = |take: &dyn Fn(&Entry<'_>) -> bool| {
-            catalogue.entries().filter(|(_, entry)| take(entry)).map(|(reference, _)| reference).collect::<Vec<_>>()
+        let variables = definition.variables();
+        let guid = fmi::guid(&Sources::of(&file, &*definition).unwrap(), &variables);
+        let of = |take: &dyn Fn(&VariableRef) -> bool| {
+            variables.entries().filter(|(_, entry)| take(entry)).map(|(reference, _)| reference).collect::<Vec<_>>()
         };
-        let is_output = |entry: &Entry<'_>| {
-            matches!(entry, Entry::Output(..) | Entry::PatchOutput(..)) && entry.name() != "solver.run_time"
-        };
-        let named = |name: &str| of(&|entry| entry.name() == name).first().copied();
+        let is_output = |entry: &VariableRef| entry.is_calculated() && entry.name != "solver.run_time";
+        let named = |name: &str| of(&|entry| entry.name == name).first().copied();
         let mut site = Self {
             guid: CString::new(guid).unwrap(),
             location: CString::new(folder.to_str().unwrap()).unwrap(),
-            reals: of(&|entry| is_output(entry) && entry.kind() == Kind::Real),
-            integers: of(&|entry| is_output(entry) && entry.kind() == Kind::Integer),
+            reals: of(&|entry| is_output(entry) && entry.kind == Kind::Real),
+            integers: of(&|entry| is_output(entry) && entry.kind == Kind::Integer),
             inputs: [0, if named("u").is_some() { 1 } else { 2 }],
-            numbers: of(&|entry| match entry {
-                Entry::Parameter(_, Kind::Real) => true,
-                Entry::PatchInput(input) => !["x", "z"].contains(&input.name()),
+            numbers: of(&|entry| match entry.role {
+                Role::Parameter(_) => entry.kind == Kind::Real,
+                Role::Input(_) => named("u").is_none() && !["x", "z"].contains(&entry.name.as_str()),
                 _ => false,
             }),
-            texts: of(&|entry| entry.kind() == Kind::Text),
+            texts: of(&|entry| entry.kind == Kind::Text),
             max_steps: named("solver.max_steps"),
             time: named("solver.run_time"),
             fresh: Vec::new(),
