@@ -7,7 +7,7 @@ use std::sync::Mutex;
 
 use asperity::scene::{EXCITATION, ParameterError, Scene, SceneError};
 
-use super::terminal::warn;
+use super::terminal::{note, warn};
 
 /// A file cannot be read or written, or its scene is invalid.
 #[derive(Debug, thiserror::Error)]
@@ -41,10 +41,11 @@ fn reason(path: &Path, source: &io::Error) -> String {
     folder.map_or_else(|| source.to_string(), |folder| format!("there is no folder {}", folder.display()))
 }
 
-/// Reads a scene and prints its warnings.
+/// Reads a scene and prints its warnings, and what was assumed in reading its tables.
 pub(crate) fn load(path: &Path) -> Result<Scene, FileError> {
     let scene = Scene::load(path)?;
     scene.warnings.iter().for_each(|warning| warn(warning));
+    scene.notes.iter().filter(|read| read.assumed).for_each(|read| note(&read.text));
     Ok(scene)
 }
 

@@ -16,6 +16,7 @@ mod material;
 mod parameters;
 mod patch_file;
 mod profile;
+mod prony_file;
 mod reader;
 mod spectrum;
 mod surface;
@@ -41,7 +42,9 @@ pub use foundation::{Body, Foundation, FoundationKind, Quality, Stiffness, Wave,
 pub use material::{Material, PronyTerm, Wlf, complex_stiffness};
 pub use parameters::{Parameter, Value};
 pub use patch_file::{FaceShape, Grid, NotDoubled, PatchFile, PatchGroup, TableExtrapolation};
-pub use profile::{Extract, LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt, UnknownWord};
+pub use profile::{
+    Extract, LengthUnit, LoadedProfile, Missing, ProfileOptions, ReadingNote, ThirdColumn, Tilt, UnknownWord,
+};
 pub use spectrum::{Band, PowerLaw, Spectrum};
 pub use surface::{MeanLine, SelfAffine, Surface};
 pub use values::{LARGEST, SMALLEST, Unit, is_possible};
@@ -85,6 +88,9 @@ pub struct Scene {
     /// Warnings: what is probably not meant though the scene is valid.
     #[serde(skip)]
     pub warnings: Vec<String>,
+    /// How the tables were read that the scene names: columns and units, found or assumed.
+    #[serde(skip)]
+    pub notes: Vec<ReadingNote>,
 }
 
 /// The elastic layer: k point masses and their links.

@@ -5,7 +5,7 @@ use asperity::scene::Scene;
 use crate::scene_errors::{PATH, assert_refusals};
 
 const FILE_KEYS: &str = "surface.x: unknown; allowed: kind, path, periodic, unit, x_unit, z_unit, missing, tilt, \
-                         third_column, line";
+                         third_column, columns, spacing, line";
 
 #[test]
 fn unknown_keys() {
