@@ -1,10 +1,10 @@
 //! The table of a sweep as an element needs it: every point of the grid is there and steady.
 
-use std::fs;
 use std::path::Path;
 
 use super::grid::{Load, OperatingPoint, SweepGrid};
 use super::table_format::{Basis, Quantity, STEADY, TableError, TableRow, TableText};
+use crate::scene::read_text;
 
 /// A table, checked: every point of the grid has a row and was steady.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,7 +64,7 @@ impl Table {
     /// [`TableError`] where the file is not the table of a sweep or its grid is not full.
     pub fn load(path: &Path) -> Result<Self, TableError> {
         let unreadable = |error: std::io::Error| TableError::new(path, None, format!("cannot be read: {error}"));
-        Self::parse(&fs::read_to_string(path).map_err(unreadable)?, path)
+        Self::parse(&read_text(path).map_err(unreadable)?, path)
     }
 
     /// Reads a table from its text; `path` is where it came from.

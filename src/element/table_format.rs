@@ -4,7 +4,7 @@
 //! The columns of numbers are those of [`Quantity`]; one is added there. Readers find columns by their names.
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::grid::{Load, OperatingPoint, SweepGrid};
@@ -304,34 +304,75 @@ impl TableText {
     /// # Errors
     /// [`TableError`] where it is not the table of a sweep, or a row has more or fewer fields than there are columns.
     pub fn parse(text: &str, file: &Path) -> Result<Self, TableError> {
+        let table = Self::divided(text, file)?;
+        (0..table.lines.len()).try_for_each(|row| table.check_fields(row))?;
+        Ok(table)
+    }
+
+    /// [`parse`](Self::parse) without the rows that no sweep has written so, which are returned as errors.
+    ///
+    /// # Errors
+    /// [`TableError`] where it is not the table of a sweep, or its header is not as a sweep writes it.
+    pub fn parse_sound(text: &str, file: &Path) -> Result<(Self, Vec<TableError>), TableError> {
+        let mut table = Self::divided(text, file)?;
+        let TableHeader { load, grid, .. } = table.header()?;
+        let (mut corrupt, mut found) = (Vec::new(), BTreeSet::new());
+        for row in 0..table.lines.len() {
+            let index = table.check_row(row, load, &grid);
+            let repeated = || table.error_in(row, "the same point as in a row above".into());
+            let new = index.and_then(|index| if found.insert(index) { Ok(()) } else { Err(repeated()) });
+            corrupt.extend(new.err());
+        }
+        let is_sound = |line: &TableLine| !corrupt.iter().any(|error| error.line == Some(line.number));
+        table.lines.retain(is_sound);
+        Ok((table, corrupt))
+    }
+
+    fn divided(text: &str, file: &Path) -> Result<Self, TableError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let header = text_table::comments(text).filter_map(|(_, comment)| key_and_value(comment)).collect();
         let mut lines = text.lines().zip(1..).filter(|(line, _)| !line.starts_with('#') && !line.trim().is_empty());
         let columns = lines.next().map_or_else(Vec::new, |(line, _)| fields(line));
         let lines = lines.map(|(line, number)| TableLine { number, text: line.to_owned(), fields: fields(line) });
         let table = Self { file: file.to_owned(), header, columns, lines: lines.collect() };
-        table.check()?;
-        Ok(table)
-    }
-
-    fn check(&self) -> Result<(), TableError> {
         // Key and value of `FORMAT`.
-        match self.header.get("asperity sweep").map(String::as_str) {
-            Some("1") => (),
+        match table.header.get("asperity sweep").map(String::as_str) {
+            Some("1") => Ok(table),
             found => {
                 let found = found.unwrap_or("none");
-                return Err(
-                    self.error(format!("not the table of a sweep: expected the line `{FORMAT}`, found {found}"))
-                );
+                Err(table.error(format!("not the table of a sweep: expected the line `{FORMAT}`, found {found}")))
             }
         }
-        let expected = self.columns.len();
-        match self.lines.iter().position(|line| line.fields.len() != expected) {
-            Some(row) => {
-                Err(self.error_in(row, format!("{} fields, expected {expected}", self.lines[row].fields.len())))
+    }
+
+    fn check_fields(&self, row: usize) -> Result<(), TableError> {
+        match (self.lines[row].fields.len(), self.columns.len()) {
+            (found, expected) if found != expected => {
+                Err(self.error_in(row, format!("{found} fields, expected {expected}")))
             }
-            None => Ok(()),
+            _ => Ok(()),
         }
+    }
+
+    /// Checks that a sweep could have written a row: its fields, its point, which is one of the `grid`, and its values. Returns
+    /// the index of the point.
+    fn check_row(&self, row: usize, load: Load, grid: &SweepGrid) -> Result<usize, TableError> {
+        self.check_fields(row)?;
+        let index = grid.index(&self.point(row, load)?);
+        let index = index.ok_or_else(|| self.error_in(row, "a point that the header does not have".into()))?;
+        let fields = &self.lines[row].fields;
+        let is_steady = fields[self.column(POINT_COLUMNS[3])?] == STEADY;
+        for quantity in Quantity::ALL {
+            let column = self.column(&quantity.name(load))?;
+            let allowed = match fields[column].as_str() {
+                "" => !(is_steady && quantity == Quantity::Friction),
+                text => text.parse().is_ok_and(is_possible),
+            };
+            if !allowed {
+                return Err(self.field_error(row, column, "a number"));
+            }
+        }
+        Ok(index)
     }
 
     pub(super) fn error(&self, problem: String) -> TableError {
@@ -426,25 +467,26 @@ impl TableText {
         Ok(self.lines.iter().zip(points).map(row).collect())
     }
 
-    fn points(&self, load: Load) -> Result<Vec<OperatingPoint>, TableError> {
-        let names = POINT_COLUMNS.map(|name| column_name(name, load));
-        let (speed, pressed) = (self.column(&names[0])?, self.column(&names[1])?);
-        let temperature = self.column(&names[2])?;
-        let point = |(row, line): (usize, &TableLine)| {
-            let positive = |column: usize| {
-                let number = line.fields[column].parse().ok();
-                let number = number.filter(|&number: &f64| number >= SMALLEST && is_possible(number));
-                number.ok_or_else(|| self.field_error(row, column, "a number above 0"))
-            };
-            let has_temperature = !line.fields[temperature].is_empty();
-            Ok(OperatingPoint {
-                speed: positive(speed)?,
-                load: positive(pressed)?,
-                temperature: if has_temperature { Some(positive(temperature)?) } else { None },
-            })
+    /// The point of a row.
+    fn point(&self, row: usize, load: Load) -> Result<OperatingPoint, TableError> {
+        let fields = &self.lines[row].fields;
+        let column = |i: usize| self.column(&column_name(POINT_COLUMNS[i], load));
+        let positive = |column: usize| {
+            let number = fields[column].parse().ok();
+            let number = number.filter(|&number: &f64| number >= SMALLEST && is_possible(number));
+            number.ok_or_else(|| self.field_error(row, column, "a number above 0"))
         };
-        let points: Vec<OperatingPoint> =
-            self.lines.iter().enumerate().map(point).collect::<Result<_, TableError>>()?;
+        let temperature = column(2)?;
+        Ok(OperatingPoint {
+            speed: positive(column(0)?)?,
+            load: positive(column(1)?)?,
+            temperature: if fields[temperature].is_empty() { None } else { Some(positive(temperature)?) },
+        })
+    }
+
+    fn points(&self, load: Load) -> Result<Vec<OperatingPoint>, TableError> {
+        let points = (0..self.lines.len()).map(|row| self.point(row, load)).collect::<Result<Vec<_>, _>>()?;
+        let temperature = self.column(POINT_COLUMNS[2])?;
         match points.iter().position(|point| point.temperature.is_none()) {
             Some(row) if points.iter().any(|point| point.temperature.is_some()) => {
                 Err(self.field_error(row, temperature, "a number, as in other rows"))

@@ -34,7 +34,7 @@ pub(crate) enum DescribeError {
 const LEFT_OUT: &str = "left out";
 
 pub(crate) fn describe(command: &Describe, path: &std::path::Path) -> Result<(), DescribeError> {
-    let scene = load(path)?;
+    let scene = load(path, &command.set)?;
     if let Some(output) = &command.plot {
         let picture = foundation::picture(&scene).ok_or(DescribeError::NothingToPlot)?;
         check_outputs([output], sources(path, &scene))?;

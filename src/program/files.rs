@@ -1,12 +1,13 @@
 //! Scenes and other files that commands read and write.
 
-use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
 
-use asperity::scene::{EXCITATION, ParameterError, Scene, SceneError};
+use asperity::patch::{Patch, PatchError};
+use asperity::scene::{Scene, SceneError, read_file, read_text};
 
+use super::draft::Draft;
+use super::overrides::{self, OverrideError, Refusal, Setting};
 use super::terminal::warn;
 
 /// A file cannot be read or written, or its scene is invalid.
@@ -14,12 +15,16 @@ use super::terminal::warn;
 pub(crate) enum FileError {
     #[error(transparent)]
     Scene(#[from] SceneError),
+    #[error(transparent)]
+    Patch(#[from] PatchError),
     #[error("--set: {0}")]
-    Parameter(#[from] ParameterError),
-    #[error("cannot {action} {}: {}", .path.display(), reason(.path, .source))]
+    Set(#[from] OverrideError),
+    #[error("cannot {action} {}: {}", named(.path), reason(.path, .source))]
     Io { action: &'static str, path: PathBuf, source: io::Error },
-    #[error("will not write {}: it is read or written here already", .path.display())]
+    #[error("will not write {}: it is read or written here already", named(.path))]
     Overwrites { path: PathBuf },
+    #[error("cannot write {}: {holder} writes it; wait for that, or name another -o", .path.display())]
+    Locked { path: PathBuf, holder: String },
     #[error("cannot draw {}: {message}", .path.display())]
     Picture { path: PathBuf, message: String },
 }
@@ -36,25 +41,62 @@ impl FileError {
     }
 }
 
+impl<E: Into<FileError>> From<Refusal<E>> for FileError {
+    fn from(refusal: Refusal<E>) -> Self {
+        match refusal {
+            Refusal::Own(error) => error.into(),
+            Refusal::Set(error) => error.into(),
+        }
+    }
+}
+
 fn reason(path: &Path, source: &io::Error) -> String {
     let folder = path.parent().filter(|folder| *folder != Path::new("") && !folder.exists());
     folder.map_or_else(|| source.to_string(), |folder| format!("there is no folder {}", folder.display()))
 }
 
-/// Reads a scene and prints its warnings.
-pub(crate) fn load(path: &Path) -> Result<Scene, FileError> {
-    let scene = Scene::load(path)?;
+/// What stands for standard output as the name of an output.
+const STANDARD_OUTPUT: &str = "-";
+
+/// Whether an output goes to standard output.
+pub(crate) fn is_standard_output(path: &Path) -> bool {
+    path == Path::new(STANDARD_OUTPUT)
+}
+
+/// An output's name in messages.
+pub(crate) fn named(path: &Path) -> String {
+    if is_standard_output(path) { "standard output".into() } else { path.display().to_string() }
+}
+
+/// The picture beside a table: the one named, else one with the table's name; none of a table on standard output.
+pub(crate) fn picture_beside(table: &Path, named: Option<&PathBuf>) -> Option<PathBuf> {
+    named.cloned().or_else(|| (!is_standard_output(table)).then(|| table.with_extension("svg")))
+}
+
+/// Reads a scene, its keys overridden by `--set`, and prints its warnings.
+pub(crate) fn load(path: &Path, set: &[Setting]) -> Result<Scene, FileError> {
+    let scene = read_scene(path, set)?;
     scene.warnings.iter().for_each(|warning| warn(warning));
     Ok(scene)
 }
 
-/// Overrides parameters as `--set` gives them, then checks the scene as a whole.
-pub(crate) fn set_parameters(scene: &mut Scene, set: &[(String, String)]) -> Result<(), FileError> {
-    set.iter().try_for_each(|(key, value)| match key.starts_with(EXCITATION) {
-        true => scene.set_excitation(key, value),
-        false => scene.set_by_name(key, value),
-    })?;
-    Ok(scene.check()?)
+/// Reads a scene whose excitation is not used: [`load`] without the warning about it.
+pub(crate) fn load_without_excitation(path: &Path, set: &[Setting]) -> Result<Scene, FileError> {
+    let scene = read_scene(path, set)?;
+    let of_excitation = scene.short_profile();
+    scene.warnings.iter().filter(|warning| Some(*warning) != of_excitation.as_ref()).for_each(|text| warn(text));
+    Ok(scene)
+}
+
+fn read_scene(path: &Path, set: &[Setting]) -> Result<Scene, FileError> {
+    let text = read_text(path).map_err(FileError::io("read", path))?;
+    Ok(overrides::scene(&text, path, set)?)
+}
+
+/// Reads a patch, its keys overridden by `--set`.
+pub(crate) fn load_patch(path: &Path, set: &[Setting]) -> Result<Patch, FileError> {
+    let text = read_text(path).map_err(FileError::io("read", path))?;
+    Ok(overrides::patch(&text, path, set)?)
 }
 
 /// The files that a scene is read from.
@@ -64,73 +106,56 @@ pub(crate) fn sources(path: &Path, scene: &Scene) -> Vec<PathBuf> {
     std::iter::once(path.to_owned()).chain(files.map(|file| folder.join(file))).collect()
 }
 
-/// Refuses an output that would overwrite one of `others`. A file that does not exist yet overwrites none.
+/// Refuses an output that would overwrite one of `others`, by whatever name.
 pub(crate) fn check_output(output: &Path, others: &[PathBuf]) -> Result<(), FileError> {
-    let resolved = |path: &Path| path.canonicalize().ok();
-    let same = |other: &PathBuf| other == output || (resolved(output).is_some() && resolved(other) == resolved(output));
+    let same = |other: &PathBuf| {
+        let is_there = || same_file::is_same_file(output, other).unwrap_or(false);
+        other == output || is_there() || (place(output).is_some() && place(output) == place(other))
+    };
     if others.iter().any(same) { Err(FileError::Overwrites { path: output.to_owned() }) } else { Ok(()) }
 }
 
-/// Refuses outputs that would overwrite one of `taken` or one another.
+/// Where a file is, or will be, by the one name of its folder; `None` where that is not there.
+fn place(path: &Path) -> Option<PathBuf> {
+    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    Some(folder.canonicalize().ok()?.join(path.file_name()?))
+}
+
+/// Refuses outputs that would overwrite one of `taken` or one another, and those that cannot be written: before anything is
+/// computed.
 pub(crate) fn check_outputs<'a>(
     outputs: impl IntoIterator<Item = &'a PathBuf>,
     mut taken: Vec<PathBuf>,
 ) -> Result<(), FileError> {
     outputs.into_iter().try_for_each(|output| {
         check_output(output, &taken)?;
+        Draft::check(output)?;
         taken.push(output.clone());
         Ok(())
     })
 }
 
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
-    fs::read(path).map_err(FileError::io("read", path))
-}
-
-pub(crate) fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), FileError> {
-    fs::write(path, content).map_err(FileError::io("write", path))
+    read_file(path).map_err(FileError::io("read", path))
 }
 
 /// Writes a file at once: what is at `path` is the one before or this one, whole.
-pub(crate) fn replace(path: &Path, text: &str) -> Result<(), FileError> {
-    let mut part = path.as_os_str().to_owned();
-    part.push(".part");
-    let part = PathBuf::from(part);
-    let write = || {
-        let mut file = File::create(&part)?;
-        file.write_all(text.as_bytes())?;
-        file.sync_all()?;
-        fs::rename(&part, path)
-    };
-    write().map_err(FileError::io("write", path))
-}
-
-/// A file to which lines are added, from any thread.
-#[derive(Debug)]
-pub(crate) struct LineFile {
-    path: PathBuf,
-    /// A line is written at once, so that one that is cut off has no end.
-    file: Mutex<File>,
-}
-
-impl LineFile {
-    /// A file that begins with `text`, in the place of what was at `path`.
-    pub(crate) fn create(path: &Path, text: &str) -> Result<Self, FileError> {
-        replace(path, text)?;
-        let file = OpenOptions::new().append(true).open(path).map_err(FileError::io("write", path))?;
-        Ok(Self { path: path.to_owned(), file: Mutex::new(file) })
-    }
-
-    /// Adds a line, its end included; it is in the file when this returns.
-    pub(crate) fn add(&self, line: &str) -> Result<(), FileError> {
-        let mut file = self.file.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        let written = file.write_all(line.as_bytes()).and_then(|()| file.sync_data());
-        written.map_err(FileError::io("write", &self.path))
-    }
+pub(crate) fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), FileError> {
+    let mut draft = Draft::create(path)?;
+    draft.write_all(content.as_ref()).map_err(FileError::io("write", path))?;
+    draft.finish()
 }
 
 pub(crate) fn print(text: &str) -> Result<(), FileError> {
-    io::stdout().write_all(text.as_bytes()).map_err(FileError::io("write", Path::new("standard output")))
+    write(Path::new(STANDARD_OUTPUT), text)
+}
+
+/// Prints what is said of `outputs`: to standard error where one of them has standard output for itself.
+pub(crate) fn print_beside<'a>(outputs: impl IntoIterator<Item = &'a PathBuf>, text: &str) -> Result<(), FileError> {
+    if outputs.into_iter().any(|output| is_standard_output(output)) {
+        return io::stderr().write_all(text.as_bytes()).map_err(FileError::io("write", Path::new("standard error")));
+    }
+    print(text)
 }
 
 /// Whether the file has the extension `ending`, in either case.

@@ -8,7 +8,9 @@ use asperity::scene::{Link, LinkKind, MaxwellElement, ParameterError, Scene};
 
 use super::cli::Material;
 use super::figure::{Curve, Figure as _, Panel, Stacked, Stroke};
-use super::files::{self, FileError, check_outputs, ends_in, load, print, set_parameters, sources};
+use super::files::{
+    self, FileError, check_outputs, ends_in, is_standard_output, load_without_excitation, named, print_beside, sources,
+};
 use super::terminal::{LabelledLine, decimal, lines, rounded};
 
 /// `asperity material` failed.
@@ -26,8 +28,7 @@ pub(crate) enum MaterialError {
 
 /// Prints a summary and a table; writes the outputs or, if none is given, a plot.
 pub(crate) fn material(command: &Material) -> Result<(), MaterialError> {
-    let mut scene = load(&command.scene)?;
-    set_parameters(&mut scene, &command.set)?;
+    let mut scene = load_without_excitation(&command.scene, &command.set)?;
     if let Some(temperature) = command.temperature {
         set_temperature(&mut scene, temperature)?;
     }
@@ -35,14 +36,14 @@ pub(crate) fn material(command: &Material) -> Result<(), MaterialError> {
     check_outputs(&outputs, sources(&command.scene, &scene))?;
     let responses = Responses::new(&scene, command.frequencies.map(|range| range.0))?;
     for output in &outputs {
-        if ends_in(output, "csv") {
+        if ends_in(output, "csv") || is_standard_output(output) {
             files::write(output, responses.file())?;
         } else {
             responses.picture().write(output)?;
         }
     }
-    let names: Vec<String> = outputs.iter().map(|output| output.display().to_string()).collect();
-    Ok(print(&format!("{}Written     {}\n", responses.text(), names.join(", ")))?)
+    let names: Vec<String> = outputs.iter().map(|output| named(output)).collect();
+    Ok(print_beside(&outputs, &format!("{}Written     {}\n", responses.text(), names.join(", ")))?)
 }
 
 /// In the working directory, named after the scene file.

@@ -3,12 +3,16 @@
 mod cli;
 mod converge;
 mod describe;
+mod draft;
 mod figure;
 mod files;
 mod fit;
 mod foundation;
 mod html;
+mod interrupt;
+mod lock;
 mod material;
+mod overrides;
 mod pack;
 mod patch;
 mod persson;
@@ -58,7 +62,7 @@ fn run_simulate(command: &cli::Simulate) -> Result<(), Box<dyn Error>> {
 fn run_describe(command: &cli::Describe) -> Result<(), Box<dyn Error>> {
     match (&command.scene, &command.patch) {
         (Some(scene), _) => describe::describe(command, scene)?,
-        (None, Some(patch)) => patch::describe(patch)?,
+        (None, Some(patch)) => patch::describe(patch, &command.set)?,
         // The command line has one of them.
         (None, None) => (),
     }

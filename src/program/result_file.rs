@@ -2,14 +2,14 @@
 
 use std::borrow::Cow;
 use std::fmt::{self, Display, Formatter};
-use std::fs::File;
-use std::io::{BufWriter, Write as _};
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use asperity::outputs::{Kind, Variable};
 use asperity::scene::Input;
 use asperity::scene::text_table::{self, Row};
 
+use super::draft::Draft;
 use super::files::{FileError, read};
 use super::runner::CarrierSample;
 use super::terminal::file_decimal;
@@ -31,14 +31,13 @@ pub(crate) enum ResultFileError {
 #[derive(Debug)]
 pub(crate) struct CsvWriter {
     path: PathBuf,
-    file: BufWriter<File>,
+    file: Draft,
 }
 
 impl CsvWriter {
-    /// Creates the file at `path` and writes its header.
+    /// Begins the file for `path` and writes its header.
     pub(crate) fn create<'a>(path: &Path, head: impl IntoIterator<Item = &'a str>) -> Result<Self, FileError> {
-        let file = File::create(path).map_err(FileError::io("write", path))?;
-        let mut writer = Self { path: path.to_owned(), file: BufWriter::new(file) };
+        let mut writer = Self { path: path.to_owned(), file: Draft::create(path)? };
         writer.write(head)?;
         Ok(writer)
     }
@@ -60,9 +59,9 @@ impl CsvWriter {
         write().map_err(FileError::io("write", &self.path))
     }
 
-    /// Flushes the file.
-    pub(crate) fn finish(mut self) -> Result<(), FileError> {
-        self.file.flush().map_err(FileError::io("write", &self.path))
+    /// Puts the file in its place.
+    pub(crate) fn finish(self) -> Result<(), FileError> {
+        self.file.finish()
     }
 }
 
@@ -75,7 +74,7 @@ pub(crate) struct ResultWriter {
 }
 
 impl ResultWriter {
-    /// Creates the file at `path` and writes its header.
+    /// Begins the file for `path` and writes its header.
     pub(crate) fn create(path: &Path, inputs: &[Input], variables: &[Variable]) -> Result<Self, FileError> {
         let names = std::iter::once("time").chain(inputs.iter().map(|input| input.name()));
         let names = names.chain(variables.iter().map(|variable| variable.name.as_str()));
@@ -90,7 +89,7 @@ impl ResultWriter {
         self.file.write_values(std::iter::once(real(carrier.time)).chain(inputs).chain(variables))
     }
 
-    /// Flushes the file.
+    /// Puts the file in its place.
     pub(crate) fn finish(self) -> Result<(), FileError> {
         self.file.finish()
     }
@@ -149,9 +148,12 @@ impl CsvFile {
         Ok(Self { path: path.to_owned(), names, records })
     }
 
-    /// Index of the column `name`.
+    /// Index of the column `name`; the unit of a header such as `speed [m/s]` may be left out.
     pub(crate) fn column(&self, name: &str) -> Result<usize, ResultFileError> {
-        self.names.iter().position(|other| other == name).ok_or_else(|| ResultFileError::NoColumn {
+        let without_unit = |header: &str| header.split_once(" [").is_some_and(|(start, _)| start == name);
+        let named = self.names.iter().position(|other| other == name);
+        let named = named.or_else(|| self.names.iter().position(|other| without_unit(other)));
+        named.ok_or_else(|| ResultFileError::NoColumn {
             path: self.path.clone(),
             name: name.to_owned(),
             columns: self.names.clone(),
@@ -175,32 +177,6 @@ impl CsvFile {
     /// The error `message` about a record, with its line.
     pub(crate) fn error(&self, record: &Record, message: String) -> ResultFileError {
         ResultFileError::Line { path: self.path.clone(), line: record.line, message }
-    }
-
-    fn number(&self, record: &Record, text: &str) -> Result<f64, ResultFileError> {
-        text.parse().map_err(|_| self.error(record, format!("expected a number, found {text:?}")))
-    }
-}
-
-/// The columns of a result file.
-#[derive(Debug)]
-pub(crate) struct ResultFile {
-    file: CsvFile,
-    rows: Vec<Vec<f64>>,
-}
-
-impl ResultFile {
-    pub(crate) fn read(path: &Path) -> Result<Self, ResultFileError> {
-        let file = CsvFile::read(path)?;
-        let numbers = |record: &Record| record.fields.iter().map(|text| file.number(record, text)).collect();
-        let rows: Vec<_> = file.records.iter().map(numbers).collect::<Result<_, _>>()?;
-        if rows.is_empty() { Err(ResultFileError::NoRows { path: path.to_owned() }) } else { Ok(Self { file, rows }) }
-    }
-
-    /// The values of the column `name`, row by row.
-    pub(crate) fn column(&self, name: &str) -> Result<Vec<f64>, ResultFileError> {
-        let index = self.file.column(name)?;
-        Ok(self.rows.iter().map(|row| row[index]).collect())
     }
 }
 

@@ -9,7 +9,8 @@ use indicatif::ProgressBar;
 
 use super::cli::Simulate;
 use super::figure::{Figure as _, History};
-use super::files::{FileError, check_outputs, load, set_parameters, sources};
+use super::files::{FileError, check_outputs, load, named, sources};
+use super::interrupt::fail;
 use super::result_file::ResultWriter;
 use super::runner::{CarrierSample, Rows, Runner};
 use super::terminal::{bar, note, warn};
@@ -21,20 +22,22 @@ pub(crate) enum SimulateError {
     File(#[from] FileError),
     #[error("the run cannot start: {0}")]
     Start(SimulationError),
-    #[error("{source}; the rows so far, up to t = {time} s, are in {}", .output.display())]
+    #[error("{source}; the rows so far, up to t = {time} s, are in {}", named(.output))]
     Run { source: SimulationError, time: f64, output: PathBuf },
 }
 
 /// Runs the scene, writes the rows and draws the plot.
 pub(crate) fn simulate(command: &Simulate, path: &Path) -> Result<(), SimulateError> {
-    let mut scene = load(path)?;
-    set_parameters(&mut scene, &command.set)?;
+    let scene = load(path, &command.set)?;
     check_outputs([&command.output].into_iter().chain(&command.plot), sources(path, &scene))?;
     if scene.excitation.is_empty() {
         warn("the scene has no [[excitation]]: the carrier rests, and the result file has the initial row only");
     }
     let mut recorder = Recorder::new(&scene, command)?;
     let result = run(&scene, command, &mut recorder);
+    if let Err(error @ SimulateError::Start(_)) = result {
+        return Err(error);
+    }
     let history = recorder.finish()?;
     result?;
     match (&command.plot, history) {
@@ -76,8 +79,6 @@ struct Recorder {
     progress: ProgressBar,
     duration: f64,
     time: f64,
-    /// The first failure to write; an observer cannot stop the run.
-    failure: Option<FileError>,
 }
 
 const PROGRESS_LENGTH: f64 = 1000.0;
@@ -93,16 +94,15 @@ impl Recorder {
             progress: bar(PROGRESS_LENGTH as u64),
             duration: scene.duration(),
             time: 0.0,
-            failure: None,
         })
     }
 
     fn row(&mut self, carrier: CarrierSample, snapshot: &Snapshot<'_>) {
-        if self.failure.is_some() {
-            return;
-        }
         snapshot.evaluate(&self.variables, &mut self.values);
-        self.failure = self.writer.write(carrier, &self.values).err();
+        if let Err(error) = self.writer.write(carrier, &self.values) {
+            // An observer cannot stop the run, which may take hours.
+            fail(&error);
+        }
         if let Some(history) = &mut self.history {
             history.add(carrier.time, snapshot);
         }
@@ -116,6 +116,6 @@ impl Recorder {
     fn finish(self) -> Result<Option<History>, FileError> {
         self.progress.finish_and_clear();
         self.writer.finish()?;
-        self.failure.map_or(Ok(self.history), Err)
+        Ok(self.history)
     }
 }

@@ -116,6 +116,11 @@ impl SceneError {
     pub fn problem(&self) -> &Problem {
         &self.0.problem
     }
+
+    /// The error without file and line: of a key that was given elsewhere.
+    pub fn without_place(&self) -> String {
+        self.0.problem.about(&self.0.key)
+    }
 }
 
 impl ContentError {

@@ -4,8 +4,7 @@ use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
-use super::error::{ParameterError, Problem};
-use super::{Axis, Scene, keys};
+use super::Axis;
 use crate::math::Jet;
 
 /// One phase of the carrier's motion.
@@ -54,68 +53,6 @@ impl Phase {
         self.until_force.or_else(|| Some(self.until_pressure? * area?))
     }
 }
-
-impl Phase {
-    /// The number behind a key such as `u_rate` or `pull_sine.frequency`; `None` for an unknown key, and for one that the
-    /// phase does not give where it has no default.
-    fn number_mut(&mut self, key: &str) -> Option<&mut f64> {
-        match key {
-            "duration" => return Some(&mut self.duration),
-            "until_force" => return self.until_force.as_mut(),
-            "until_pressure" => return self.until_pressure.as_mut(),
-            "temperature" => return self.temperature.as_mut(),
-            "load" => return self.load.as_mut()?.start.as_mut(),
-            "pull" => return self.pull.as_mut()?.start.as_mut(),
-            "pressure" => return self.pressure.as_mut()?.start.as_mut(),
-            _ => (),
-        }
-        let (name, part) = key.split_once('_')?;
-        let path = match name {
-            "u" => &mut self.u,
-            "w" => &mut self.w,
-            "load" => &mut self.load.as_mut()?.change,
-            "pull" => &mut self.pull.as_mut()?.change,
-            "pressure" => &mut self.pressure.as_mut()?.change,
-            _ => return None,
-        };
-        let number = match part {
-            "rate" => &mut path.rate,
-            "sine.amplitude" => &mut path.amplitude,
-            "sine.frequency" => &mut path.frequency,
-            _ => return None,
-        };
-        (*number != 0.0).then_some(number)
-    }
-}
-
-impl Scene {
-    /// Gives a number of the excitation, by a path such as `excitation[1].pull_sine.frequency`, the value that `text` writes.
-    ///
-    /// # Errors
-    /// [`ParameterError`] where the scene does not give this number, or the value is out of range.
-    pub fn set_excitation(&mut self, path: &str, text: &str) -> Result<(), ParameterError> {
-        let range = keys::at(path).and_then(keys::Key::range).unwrap_or(super::values::POSITIVE);
-        let value = text.trim().parse().ok().filter(|&value| range.holds(value));
-        let value = value.ok_or_else(|| ParameterError::new(path, Problem::value(text, range)))?;
-        match self.phase_mut(path).and_then(|(phase, key)| phase.number_mut(key)) {
-            Some(number) => *number = value,
-            None => {
-                let expected = "a number other than 0 that [[excitation]] gives, as excitation[1].duration";
-                return Err(ParameterError::new(path, Problem::value(text, expected)));
-            }
-        }
-        self.check_equilibrium(self.first_load())
-    }
-
-    fn phase_mut<'a>(&mut self, path: &'a str) -> Option<(&mut Phase, &'a str)> {
-        let (number, key) = path.strip_prefix(EXCITATION)?.split_once("].")?;
-        let index = number.parse::<usize>().ok()?.checked_sub(1)?;
-        Some((self.excitation.get_mut(index)?, key))
-    }
-}
-
-/// What the paths of the excitation's numbers begin with.
-pub const EXCITATION: &str = "excitation[";
 
 /// The carrier's motion over a time, from where the carrier stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -217,33 +154,6 @@ impl Path {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_of_the_excitation_are_set_by_their_paths() {
-        let text = "name = 'a'\nlayer = { masses = 1, spacing = 1, mass = 1 }\nsurface = { kind = 'flat' }
-            carrier.x = { mass = 1.0 }
-            [[excitation]]\nduration = 1.0
-            [[excitation]]\nduration = 2.0\npull = 3.0\npull_sine = { amplitude = 0.2, frequency = 600.0 }";
-        let mut scene = Scene::parse(text, "a.toml".as_ref()).unwrap();
-        scene.set_excitation("excitation[2].pull_sine.frequency", "620").unwrap();
-        scene.set_excitation("excitation[1].duration", " 0.5 ").unwrap();
-        scene.set_excitation("excitation[2].pull", "-1").unwrap();
-        let phases = &scene.excitation;
-        assert_eq!(
-            (phases[0].duration, phases[1].pull().change.frequency, phases[1].pull().start),
-            (0.5, 620.0, Some(-1.0))
-        );
-        for (path, value) in [
-            ("excitation[3].duration", "1"),
-            ("excitation[1].duration", "-1"),
-            ("excitation[1].duration", "soon"),
-            ("excitation[1].pull", "1"),
-            ("excitation[1].speed", "1"),
-        ] {
-            let error = scene.set_excitation(path, value).unwrap_err().to_string();
-            assert!(error.starts_with(&format!("{path} = {value}: expected ")), "{error}");
-        }
-    }
 
     #[test]
     fn a_path_has_the_rates_of_its_displacement() {

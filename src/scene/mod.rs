@@ -19,6 +19,7 @@ mod parameters;
 mod patch_file;
 mod profile;
 mod reader;
+mod regular_file;
 mod spectrum;
 mod surface;
 pub mod text_table;
@@ -28,8 +29,8 @@ mod warnings;
 #[cfg(test)]
 mod tests;
 
+use std::io;
 use std::path::{Path as FilePath, PathBuf};
-use std::{fs, io};
 
 use serde::Serialize;
 
@@ -38,14 +39,16 @@ use values::Word;
 pub use axis::{Axis, ByAxis};
 pub use carrier::{CarrierBodies, CarrierBody, CarrierInitial, Input};
 pub use error::{ParameterError, Problem, SceneError};
-pub use excitation::{EXCITATION, Force, Motion, Path, Phase};
+pub use excitation::{Force, Motion, Path, Phase};
 pub use fine_roughness::FineRoughness;
 pub use foundation::{Body, Foundation, FoundationKind, Quality, Stiffness, Wave, Waves};
+pub use keys::similar_keys;
 pub use link_kind::{ByLink, LinkKind};
 pub use material::{Material, PronyTerm, Wlf, complex_stiffness};
 pub use parameters::{Parameter, Value};
 pub use patch_file::{FaceShape, Grid, NotDoubled, PatchFile, PatchGroup, TableExtrapolation};
 pub use profile::{Extract, LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt, UnknownWord};
+pub use regular_file::{read_file, read_text};
 pub use spectrum::{Band, PowerLaw, Spectrum};
 pub use surface::{MeanLine, SelfAffine, Surface};
 pub use values::{LARGEST, SMALLEST, Unit, is_possible};
@@ -363,7 +366,7 @@ impl Scene {
     pub fn carried(&self, folder: &FilePath, file: &FilePath) -> io::Result<Vec<u8>> {
         match self.extracts.iter().find(|extract| extract.name == file) {
             Some(extract) => Ok(extract.text.clone().into_bytes()),
-            None => fs::read(folder.join(file)),
+            None => read_file(&folder.join(file)),
         }
     }
 

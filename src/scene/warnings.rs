@@ -14,18 +14,18 @@ struct Reach {
     high: f64,
 }
 
-/// A natural profile that ends below the layer on its travel.
-pub(super) fn short_profile(layer: &Layer, surface: &Surface, excitation: &[Phase]) -> Option<String> {
-    let travel = layer.reach().plus(carrier_reach(excitation));
-    surface
-        .too_short_for(travel)
-        .then(|| format!("the profile reaches {}, but the layer moves {travel}: {PROFILE_ENDS}", surface.reach()))
-}
-
 const PROFILE_ENDS: &str = "beyond its ends the profile goes on straight, along its end tangents";
 const ROUGHNESS_ENDS: &str = "beyond its ends the roughness goes on straight, along its end tangents";
 
 impl Scene {
+    /// The warning where a natural profile ends below the layer on its travel along the excitation.
+    pub fn short_profile(&self) -> Option<String> {
+        let (surface, travel) = (&self.surface, self.layer.reach().plus(carrier_reach(&self.excitation)));
+        surface
+            .too_short_for(travel)
+            .then(|| format!("the profile reaches {}, but the layer moves {travel}: {PROFILE_ENDS}", surface.reach()))
+    }
+
     /// The warning where the carrier, moved by `u` (m), has brought the layer over the end of a natural profile.
     pub fn off_profile(&self, u: f64) -> Option<String> {
         let Reach { low, high } = self.layer.reach().plus(Reach { low: u, high: u });

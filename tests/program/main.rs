@@ -17,6 +17,8 @@ mod converge;
 mod damper;
 mod element;
 mod fit;
+mod lost;
+mod options;
 mod patch_check;
 mod patch_maps;
 mod patch_simulate;

@@ -218,3 +218,26 @@ fn a_profile_is_smoothed() {
     near(&findings(&written, &["--periodic"])["rms_slope"], slope(0.5, 0.5_f64.powi(16)), 1e-4);
     assert!(failure(&["surface", source.to_str().unwrap(), "--smooth", "0"]).contains("--smooth"));
 }
+
+/// A profile that ends, made periodic: by its mirror image, of twice the length, or by a taper, of nine tenths. A scene takes
+/// what is written.
+#[test]
+fn a_profile_is_made_periodic() {
+    let folder = scratch("surface-periodic");
+    let [road, written, source] = ["road.csv", "periodic.csv", "scene.toml"].map(|name| folder.join(name));
+    let rows = (0..=400)
+        .map(|i| format!("{},{}\n", f64::from(i) * 2.5e-6, 1e-6 * (0.1 * f64::from(i)).sin() + 1e-8 * f64::from(i)));
+    fs::write(&road, format!("x [m],z [m]\n{}", rows.collect::<String>())).unwrap();
+    fs::write(&source, scene("kind = 'file'\npath = 'periodic.csv'\nperiodic = true")).unwrap();
+    for (option, points, length) in [("--mirror", 801, 2e-3), ("--taper", 361, 0.9e-3)] {
+        let found = findings(&road, &[option, "--write", written.to_str().unwrap()]);
+        assert_eq!((&found["points"], &found["periodic"]), (&points.into(), &true.into()), "{option}");
+        near(&found["length"], length, 1e-9);
+        assert!(Scene::load(&source).unwrap().surface.is_periodic());
+        // The heights of before: the taper mixes a tenth of them, of which none is changed by more than the ramp of 3.6 µm.
+        let (z, before) =
+            (crate::common::Table::read(&written).column("z [m]"), crate::common::Table::read(&road).column("z [m]"));
+        let same = (0..=360).filter(|&i| z[i] == before[i]).count();
+        assert!(same >= 320, "{option}: {same}");
+    }
+}

@@ -222,6 +222,7 @@ fn merged_shards_are_the_whole() {
         |paths: &[&PathBuf]| asperity().args(["sweep", "--merge"]).args(paths).arg("-o").arg(&joined).output().unwrap();
     assert!(join(&shards.each_ref()).status.success());
     assert!(fs::read(&joined).unwrap() == fs::read(&table).unwrap());
+    fs::remove_file(&joined).unwrap();
     let output = join(&[&shards[0], &shards[2]]);
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(message.contains("2 of 6 points are missing: 0.316228 m/s, 0.5 N; 0.316228 m/s, 2 N"), "{message}");
@@ -328,4 +329,19 @@ fn two_maxima_move_with_the_temperature() {
         let there = reference[i];
         assert!((here[0] - there[0]).abs() <= bound * there[0], "{} m/s: {here:?}, {there:?}", speeds[i]);
     }
+}
+
+/// A profile that ends before steady sliding could be judged is refused with what to do, and nothing is said of an excitation
+/// that is not used.
+#[test]
+fn a_profile_that_ends_is_to_be_made_periodic() {
+    let folder = scratch("sweep-ends");
+    let text = flat().points(&[0.0, 5e-4, 1e-3], &[0.0, 1e-6, 0.0], false).phase("duration = 1.0\nu_rate = 1.0\n");
+    let (scene, table) = scene(&folder, &text);
+    let message = refused(&[&scene, Path::new("-o"), &table], &["--speeds", "1", "--forces", "1"]);
+    assert!(message.contains("make it periodic, as `asperity surface --mirror --write` does"), "{message}");
+    assert!(message.lines().count() == 1 && !table.exists(), "{message}");
+    let periodic = fs::read_to_string(&scene).unwrap().replace("z = [", "periodic = true\nz = [");
+    fs::write(&scene, periodic).unwrap();
+    sweep(&scene, &table, &["--speeds", "1", "--forces", "1"]);
 }

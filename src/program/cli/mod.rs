@@ -3,18 +3,19 @@
 mod values;
 
 use std::ffi::OsString;
-use std::ops::RangeInclusive;
+use std::ops::{Deref, RangeInclusive};
 use std::path::PathBuf;
 
 use asperity::scene::{LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt};
 use clap::{ArgGroup, Args, Parser, Subcommand};
 
+use super::overrides::Setting;
 use super::sweep::values::{Shard, Values};
+pub(crate) use values::{Condition, PlotAxis, WlfConstants, tenth};
 use values::{
     Frequencies, Tolerances, count, fit_error, key_and_value, picture, picture_or_table, positive, powers, seconds,
     seeds, share, temperature, wavelengths,
 };
-pub(crate) use values::{WlfConstants, tenth};
 
 /// Simulates rubber on a rough surface and packs the simulation as an FMU.
 #[derive(Debug, Parser)]
@@ -29,7 +30,7 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Simulates a scene along its excitation and writes a result file.
     Simulate(Simulate),
-    /// Plots columns of result files.
+    /// Plots columns of result files and tables.
     Plot(Plot),
     /// Summarises a scene: what it contains, what it leaves out, and the constants derived from it.
     Describe(Describe),
@@ -61,33 +62,59 @@ pub(crate) struct Simulate {
     pub(crate) patch: Option<PathBuf>,
     /// The motion of the patch: columns time, x, y, z, roll, pitch, yaw, with a tread transport.speed, and temperature;
     /// one step from row to row.
-    #[arg(long, value_name = "MOTION.csv", requires = "patch")]
+    #[arg(long, value_name = "MOTION.csv", requires = "patch", conflicts_with = "scene")]
     pub(crate) motion: Option<PathBuf>,
-    /// The result file to write.
+    /// The result file to write; - for standard output.
     #[arg(short, long, value_name = "OUT.csv")]
     pub(crate) output: PathBuf,
     /// Number of result rows for each phase of the excitation.
     #[arg(long, value_name = "N", default_value_t = 50, value_parser = count, conflicts_with = "patch")]
     pub(crate) points: u32,
-    /// Overrides a parameter of the scene, such as solver.relative_tolerance=1e-9. May be repeated.
-    #[arg(long, value_name = "KEY=VALUE", value_parser = key_and_value)]
-    pub(crate) set: Vec<(String, String)>,
+    #[command(flatten)]
+    pub(crate) set: Set,
     /// Plots forces, contacts and dissipation over time, as SVG or PNG according to the file name.
     #[arg(long, value_name = "OUT.svg", value_parser = picture())]
     pub(crate) plot: Option<PathBuf>,
 }
 
+// Not a doc comment: that would be the description of the commands that have it.
+#[derive(Debug, Args)]
+pub(crate) struct Set {
+    /// Overrides a key of the scene or patch file: solver.relative_tolerance=1e-9, layer.vertical.maxwell[1].stiffness=0,
+    /// friction.coulomb=0.5, surface="{ kind = 'flat' }". What the file does not have is added. May be repeated.
+    #[arg(long, value_name = "KEY=VALUE", value_parser = key_and_value)]
+    set: Vec<Setting>,
+}
+
+impl Deref for Set {
+    type Target = [Setting];
+
+    fn deref(&self) -> &Self::Target {
+        &self.set
+    }
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct Plot {
-    /// The result files; each gives one curve for every --y.
+    /// Result files, or tables of asperity sweep or converge; each gives one curve for every --y.
     #[arg(value_name = "FILE.csv", required = true)]
     pub(crate) files: Vec<PathBuf>,
-    /// The column for the horizontal axis.
+    /// The column for the horizontal axis. Units in a header are not a part of a column's name.
     #[arg(long, value_name = "COLUMN", default_value = "time")]
     pub(crate) x: String,
-    /// A column for the vertical axis. May be repeated.
+    /// A column for the vertical axis. May be repeated; columns of another unit have a chart of their own below.
     #[arg(long, value_name = "COLUMN", required = true)]
     pub(crate) y: Vec<String>,
+    /// Draws the rows alone in which a column has this value, a number or a text: pressure=2e5, status=steady. May be
+    /// repeated.
+    #[arg(long = "where", value_name = "COLUMN=VALUE", value_parser = Condition::parse)]
+    pub(crate) conditions: Vec<Condition>,
+    /// Logarithmic axes: x, y or both.
+    #[arg(long, value_name = "x,y", value_delimiter = ',')]
+    pub(crate) log: Vec<PlotAxis>,
+    /// Marks the rows, which curves of a few rows are anyway.
+    #[arg(long)]
+    pub(crate) markers: bool,
     /// The plot to write, as SVG or PNG according to the file name.
     #[arg(short, long, value_name = "OUT.svg", value_parser = picture())]
     pub(crate) output: PathBuf,
@@ -114,6 +141,8 @@ pub(crate) struct Describe {
     /// A patch file: summarises a contact patch instead.
     #[arg(long, value_name = "PATCH.toml", conflicts_with_all = ["json", "plot"])]
     pub(crate) patch: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) set: Set,
     /// Prints the whole scene as one JSON object in SI units: links as constants, the profile as data points. Absent
     /// entries are null or empty.
     #[arg(long)]
@@ -142,7 +171,8 @@ pub(crate) struct Pack {
     #[arg(long, value_name = "SCENE.toml", conflicts_with = "scene")]
     pub(crate) check: Option<PathBuf>,
     /// Maximum number of points, or of elements of a patch, that --check compares with the layer.
-    #[arg(long, value_name = "N", default_value_t = 12, value_parser = count)]
+    #[arg(long, value_name = "N", default_value_t = 12, value_parser = count, requires = "check")]
+    #[arg(conflicts_with = "scene")]
     pub(crate) points: u32,
     /// The FMU to write.
     #[arg(short, long, value_name = "OUT.fmu")]
@@ -159,7 +189,7 @@ pub(crate) struct Fit {
     /// names quantities and units; the separator is comma, semicolon or tab.
     #[arg(value_name = "DMA.csv")]
     pub(crate) data: PathBuf,
-    /// The file of Prony terms to write, in the format that a scene reads.
+    /// The file of Prony terms to write, in the format that a scene reads; - for standard output.
     #[arg(short, long, value_name = "OUT.csv")]
     pub(crate) output: PathBuf,
     /// The admissible error of the fit: the root mean square of the relative errors of E' and E'' at all points.
@@ -185,8 +215,8 @@ pub(crate) struct Material {
     /// The scene file.
     #[arg(value_name = "SCENE.toml")]
     pub(crate) scene: PathBuf,
-    /// A file to write: a table as CSV, or a plot as SVG or PNG, according to its name. May be repeated. Default: a
-    /// plot SCENE-material.svg.
+    /// A file to write: a table as CSV, or a plot as SVG or PNG, according to its name; - for a table on standard output.
+    /// May be repeated. Default: a plot SCENE-material.svg.
     #[arg(short, long, value_name = "OUT", value_parser = picture_or_table())]
     pub(crate) output: Vec<PathBuf>,
     /// The range of the angular frequency in rad/s, or of the frequency if Hz is appended. Default: derived from the
@@ -196,9 +226,8 @@ pub(crate) struct Material {
     /// The compound's temperature in K, in place of the scene's.
     #[arg(long, value_name = "T", value_parser = temperature, allow_negative_numbers = true)]
     pub(crate) temperature: Option<f64>,
-    /// Overrides a parameter of the scene, such as material.poisson_ratio=0.48. May be repeated.
-    #[arg(long, value_name = "KEY=VALUE", value_parser = key_and_value)]
-    pub(crate) set: Vec<(String, String)>,
+    #[command(flatten)]
+    pub(crate) set: Set,
 }
 
 #[derive(Debug, Args)]
@@ -229,9 +258,8 @@ pub(crate) struct Report {
     /// Results of other programs, in the format written by benches/peers/run.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) peers: Option<PathBuf>,
-    /// Overrides a parameter of the scene, such as friction.coulomb=0.5. May be repeated.
-    #[arg(long, value_name = "KEY=VALUE", value_parser = key_and_value)]
-    pub(crate) set: Vec<(String, String)>,
+    #[command(flatten)]
+    pub(crate) set: Set,
 }
 
 #[derive(Debug, Args)]
@@ -246,7 +274,16 @@ pub(crate) struct Surface {
     /// ones.
     #[arg(long, value_name = "WAVELENGTH", value_parser = positive)]
     pub(crate) smooth: Option<f64>,
-    /// Writes the profile as read, and smoothed, as two columns in m that a scene can use.
+    /// Makes the profile periodic: its mirror image follows it, after smoothing. Heights and slopes stay; the period is twice
+    /// the length.
+    #[arg(long, conflicts_with_all = ["taper", "periodic"])]
+    pub(crate) mirror: bool,
+    /// Makes the profile periodic without the kinks of a mirror image: over a tenth of the length its end goes over into its
+    /// beginning, by a cosine, after smoothing. The period is nine tenths of the length.
+    #[arg(long, conflicts_with = "periodic")]
+    pub(crate) taper: bool,
+    /// Writes the profile as read, and smoothed or made periodic, as two columns in m that a scene can use; - for standard
+    /// output.
     #[arg(long, value_name = "OUT.csv")]
     pub(crate) write: Option<PathBuf>,
     /// Prints one JSON object in SI units, including the bands of the spectrum.
@@ -259,7 +296,7 @@ pub(crate) struct Surface {
     pub(crate) reading: Reading,
 }
 
-/// How a profile is read: the keys of a surface of kind "file".
+// How a profile is read: the keys of a surface of kind "file". Not a doc comment: that would be the description of the command.
 #[derive(Debug, PartialEq, Default, Args)]
 pub(crate) struct Reading {
     /// Unit of x and z: m, mm, um or nm. Default: the unit named in the file, otherwise m.
@@ -304,7 +341,7 @@ impl Reading {
 
 /// Options of a sweep that --merge does not take.
 const OF_A_SCENE: [&str; 9] =
-    ["speeds", "pressures", "forces", "temperatures", "distance", "shard", "converged", "force", "set"];
+    ["speeds", "pressures", "forces", "temperatures", "error", "distance", "shard", "converged", "set"];
 
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("input").required(true)))]
@@ -324,12 +361,12 @@ pub(crate) struct Sweep {
     /// Temperatures in K: a..b/n for n evenly spaced values. Default: the scene's temperature.
     #[arg(long, value_name = "VALUES", value_parser = Values::in_value)]
     pub(crate) temperatures: Option<Values>,
-    /// The table to write; an existing table of the same sweep is continued. Default: the scene's file name with
-    /// .sweep.csv.
+    /// The table to write, - for standard output; an existing table of the same sweep is continued. Default: the scene's
+    /// file name with .sweep.csv.
     #[arg(short, long, value_name = "TABLE.csv")]
     pub(crate) output: Option<PathBuf>,
     /// The plot to write, as SVG or PNG according to the file name. Default: the table's name with .svg.
-    #[arg(long, value_name = "OUT.svg", value_parser = picture())]
+    #[arg(long, value_name = "OUT.svg", value_parser = picture(), conflicts_with = "shard")]
     pub(crate) plot: Option<PathBuf>,
     /// Admissible standard error of the friction coefficient, relative to it.
     #[arg(long, value_name = "SHARE", default_value_t = 5e-3, value_parser = share)]
@@ -341,7 +378,7 @@ pub(crate) struct Sweep {
     /// Computes only share I of N of the points, I from 1 to N.
     #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
     pub(crate) shard: Option<Shard>,
-    /// Merges the tables of shards into one.
+    /// Merges the tables of shards, and the one at --output if it is of the same sweep.
     #[arg(long, value_name = "TABLE.csv", num_args = 1.., group = "input", requires = "output")]
     #[arg(conflicts_with_all = OF_A_SCENE)]
     pub(crate) merge: Vec<PathBuf>,
@@ -352,9 +389,8 @@ pub(crate) struct Sweep {
     /// Replaces an existing table instead of continuing it.
     #[arg(long)]
     pub(crate) force: bool,
-    /// Overrides a parameter of the scene, such as friction.coulomb=0.5. May be repeated.
-    #[arg(long, value_name = "KEY=VALUE", value_parser = key_and_value)]
-    pub(crate) set: Vec<(String, String)>,
+    #[command(flatten)]
+    pub(crate) set: Set,
 }
 
 #[derive(Debug, Args)]
@@ -372,14 +408,14 @@ pub(crate) struct Converge {
     /// seed.
     #[arg(long, value_name = "SHARE", default_value_t = 0.05, value_parser = share)]
     pub(crate) error: f64,
-    /// Number of seeds of a self-affine surface or roughness, the scene's own included.
-    #[arg(long, value_name = "N", default_value_t = 4, value_parser = seeds)]
-    pub(crate) seeds: u32,
+    /// Number of seeds of a self-affine surface or roughness, the scene's own included. Default: 4.
+    #[arg(long, value_name = "N", value_parser = seeds)]
+    pub(crate) seeds: Option<u32>,
     /// Most masses that the halved spacing may come to; with twice the length there are twice as many.
     #[arg(long, value_name = "N", default_value_t = 4096, value_parser = count)]
     pub(crate) most_masses: u32,
-    /// The table to write; an existing table of the same study is continued. Default: the scene's file name with
-    /// .converge.csv.
+    /// The table to write, - for standard output; an existing table of the same study is continued. Default: the scene's
+    /// file name with .converge.csv.
     #[arg(short, long, value_name = "TABLE.csv")]
     pub(crate) output: Option<PathBuf>,
     /// The plot to write, as SVG or PNG according to the file name. Default: the table's name with .svg.
@@ -392,9 +428,8 @@ pub(crate) struct Converge {
     /// Replaces an existing table instead of continuing it.
     #[arg(long)]
     pub(crate) force: bool,
-    /// Overrides a parameter of the scene, such as friction.coulomb=0.5. May be repeated.
-    #[arg(long, value_name = "KEY=VALUE", value_parser = key_and_value)]
-    pub(crate) set: Vec<(String, String)>,
+    #[command(flatten)]
+    pub(crate) set: Set,
 }
 
 #[cfg(test)]

@@ -1,13 +1,14 @@
 //! Values of command line options, parsed and checked. An error says what was expected.
 
 use std::f64::consts::TAU;
+use std::fmt::{self, Display, Formatter};
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use asperity::scene::Wlf;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 
-use crate::program::files::ends_in;
+use crate::program::files::{ends_in, is_standard_output};
 
 /// The key and the value of `--set`.
 pub(super) fn key_and_value(text: &str) -> Result<(String, String), String> {
@@ -15,6 +16,48 @@ pub(super) fn key_and_value(text: &str) -> Result<(String, String), String> {
         Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().into(), value.trim().into())),
         _ => Err("expected KEY=VALUE, such as solver.relative_tolerance=1e-9".into()),
     }
+}
+
+/// Which rows `--where` chooses.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Condition {
+    pub(crate) column: String,
+    value: String,
+}
+
+impl Condition {
+    pub(super) fn parse(text: &str) -> Result<Self, String> {
+        match text.split_once('=') {
+            Some((column, value)) if !column.trim().is_empty() => {
+                Ok(Self { column: column.trim().into(), value: value.trim().into() })
+            }
+            _ => Err("expected COLUMN=VALUE, such as pressure=2e5".into()),
+        }
+    }
+
+    /// Whether a field is the value: the same text, or the same number however it is written.
+    pub(crate) fn holds_for(&self, field: &str) -> bool {
+        /// Relative difference of numbers that count as the same: values are rounded in tables.
+        const ROUNDING: f64 = 1e-9;
+        let (field, value) = (field.trim(), self.value.as_str());
+        let numbers = || Some((field.parse::<f64>().ok()?, value.parse::<f64>().ok()?));
+        field == value || numbers().is_some_and(|(a, b)| (a - b).abs() <= ROUNDING * b.abs())
+    }
+}
+
+impl Display for Condition {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "{} = {}", self.column, self.value)
+    }
+}
+
+/// An axis of a plot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum PlotAxis {
+    /// The horizontal one.
+    X,
+    /// The vertical ones.
+    Y,
 }
 
 pub(super) fn count(text: &str) -> Result<u32, String> {
@@ -74,14 +117,19 @@ pub(super) fn picture() -> impl TypedValueParser<Value = PathBuf> {
     ending_in(&["svg", "png"], "a name that ends in .svg or .png")
 }
 
-/// A file for a plot or a table.
+/// A file for a plot or a table; a table on standard output.
 pub(super) fn picture_or_table() -> impl TypedValueParser<Value = PathBuf> {
-    ending_in(&["svg", "png", "csv"], "a name that ends in .svg, .png or .csv")
+    ending_in(&["svg", "png", "csv"], "a name that ends in .svg, .png or .csv, or -")
 }
 
 fn ending_in(endings: &'static [&str], expected: &'static str) -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(move |path| {
-        if endings.iter().any(|ending| ends_in(&path, ending)) { Ok(path) } else { Err(format!("expected {expected}")) }
+        let is_table_for_stdout = endings.contains(&"csv") && is_standard_output(&path);
+        if is_table_for_stdout || endings.iter().any(|ending| ends_in(&path, ending)) {
+            Ok(path)
+        } else {
+            Err(format!("expected {expected}"))
+        }
     })
 }
 
@@ -178,6 +226,17 @@ mod tests {
         assert_eq!(key_and_value("a.b = 1=2"), Ok(("a.b".into(), "1=2".into())));
         assert!(key_and_value("a.b").is_err());
         assert!(key_and_value("=1").is_err());
+    }
+
+    #[test]
+    fn a_condition_holds_for_a_text_and_for_a_number_however_it_is_written() {
+        let pressure = Condition::parse("pressure = 2e5").unwrap();
+        assert_eq!(
+            ["200000", "2e5", "2.0e5", "2e4", "steady", ""].map(|field| pressure.holds_for(field)),
+            [true, true, true, false, false, false]
+        );
+        assert!(Condition::parse("status=steady").unwrap().holds_for("steady"));
+        assert!(Condition::parse("pressure").is_err() && Condition::parse("=1").is_err());
     }
 
     #[test]

@@ -18,9 +18,11 @@ use indicatif::ProgressBar;
 use rayon::prelude::*;
 
 use super::cli::Converge;
+use super::draft::TablePlace;
 use super::figure::Figure as _;
-use super::files::{FileError, check_outputs, print, sources};
-use super::sweep::{Bounds, relevant, steady_sliding, table_fingerprint};
+use super::files::{FileError, check_outputs, picture_beside, print_beside, sources};
+use super::interrupt::Farewell;
+use super::sweep::{Bounds, ProfileEnds, check_profile, relevant, steady_sliding, table_fingerprint};
 use super::terminal::{self, warn};
 use crate::program::persson::{Dimension, Theory};
 use plan::{Next, Plan};
@@ -47,8 +49,12 @@ pub(crate) enum ConvergeError {
         .path.display()
     )]
     HeightsAtMasses { path: PathBuf },
+    #[error(transparent)]
+    ProfileEnds(#[from] ProfileEnds),
     #[error("{}: expected numbers for layer.masses and layer.spacing", .path.display())]
     Unclear { path: PathBuf },
+    #[error("--seeds: neither the scene's surface nor its roughness is self_affine, so nothing depends on a seed")]
+    NoSeed,
     #[error(
         "--most-masses: expected at least {least}: the scene has {masses} masses, and its spacing is halved at least once"
     )]
@@ -76,18 +82,24 @@ pub(crate) fn converge(command: &Converge) -> Result<ExitCode, ConvergeError> {
         warn(&warning);
     }
     let output = command.output.clone().unwrap_or_else(|| default_output(&command.scene));
-    let picture = command.plot.clone().unwrap_or_else(|| output.with_extension("svg"));
-    check_outputs([&output, &picture], sources(&command.scene, &scene))?;
-    let (table, runs) = Table::open(&output, header(command, &scene)?, command.force)?;
-    let (study, mut runs) = Work { command, template: &template, plan, table: &table }.finish(runs)?;
+    let picture = picture_beside(&output, command.plot.as_ref());
+    check_outputs([&output].into_iter().chain(&picture), sources(&command.scene, &scene))?;
+    check_profile(&scene)?;
+    let place = TablePlace::new(&output)?;
+    let (table, runs) = Table::open(&place.path, header(command, &scene)?, command.force)?;
+    let (study, mut runs) = Work { command, template: &template, plan, table: &table, output: &output }.finish(runs)?;
     runs.sort_by_key(|run| run.variant.place());
     let verdict = Verdict::new(&study, command.error);
     let rows: Vec<(&Run, Option<Pair>)> = runs.iter().map(|run| (run, change(run, &runs))).collect();
     table.finish(&summary::sentence(&verdict, command.error), &rows)?;
     let ladder: Vec<&Run> = runs.iter().filter(|run| run.variant.is_of_ladder()).take(study.ladder.len()).collect();
     let judgement = summary::judgement(&ladder, &verdict, command.error, plan.seeds);
-    print(&format!("{}\n{judgement}", summary::table(&rows)))?;
-    plot::picture(&scene.name, &runs).write(&picture)?;
+    print_beside([&output], &format!("{}\n{judgement}", summary::table(&rows)))?;
+    drop(table);
+    place.finish()?;
+    if let Some(picture) = &picture {
+        plot::picture(&scene.name, &runs).write(picture)?;
+    }
     Ok(if verdict.is_converged() { ExitCode::SUCCESS } else { ExitCode::from(OPEN) })
 }
 
@@ -96,13 +108,20 @@ fn default_output(scene: &Path) -> PathBuf {
     PathBuf::from(stem).with_extension("converge.csv")
 }
 
+/// Seeds where none are asked for.
+const SEEDS: u32 = 4;
+
 fn plan(command: &Converge, template: &Template) -> Result<Plan, ConvergeError> {
     let (masses, most) = (template.masses(), u64::from(command.most_masses));
     let most_halvings = (most / masses).checked_ilog2().unwrap_or_default();
     if most_halvings == 0 {
         return Err(ConvergeError::FewMasses { masses, least: 2 * masses });
     }
-    Ok(Plan { error: command.error, most_halvings, seeds: template.has_seed().then_some(command.seeds) })
+    if command.seeds.is_some() && !template.has_seed() {
+        return Err(ConvergeError::NoSeed);
+    }
+    let seeds = template.has_seed().then_some(command.seeds.unwrap_or(SEEDS));
+    Ok(Plan { error: command.error, most_halvings, seeds })
 }
 
 fn header(command: &Converge, scene: &Scene) -> Result<Header, ConvergeError> {
@@ -126,6 +145,7 @@ struct Work<'a> {
     template: &'a Template,
     plan: Plan,
     table: &'a Table,
+    output: &'a Path,
 }
 
 impl Work<'_> {
@@ -133,6 +153,12 @@ impl Work<'_> {
     fn finish(&self, mut runs: Vec<Run>) -> Result<(Study, Vec<Run>), FileError> {
         let bar = terminal::bar(0);
         bar.enable_steady_tick(Duration::from_secs(1));
+        let done = bar.clone();
+        let _farewell = Farewell::new(self.output, move || {
+            let runs = done.position();
+            done.finish_and_clear();
+            format!("{runs} runs are done")
+        });
         loop {
             let outcome = |variant| runs.iter().find(|run| run.variant == variant).map(Run::mean);
             let missing = match self.plan.next(outcome) {
@@ -183,6 +209,7 @@ impl Work<'_> {
         Ok(Measured {
             mean: Pair { friction: sliding.friction(), area: sliding.contact_ratio },
             error: Pair { friction: sliding.friction_error, area: sliding.contact_error },
+            hysteresis: sliding.hysteresis(),
         })
     }
 }

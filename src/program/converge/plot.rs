@@ -9,9 +9,9 @@ use crate::program::persson::Theory;
 type TheoryCurve = (&'static str, usize, fn(&Theory) -> f64);
 
 const FRICTIONS: [TheoryCurve; 4] = [
-    ("Persson, ridges", 0, |theory| theory.friction),
+    ("Persson's hysteresis, ridges", 0, |theory| theory.friction),
     ("reduced", 0, |theory| theory.friction_reduced),
-    ("Persson, isotropic", 1, |theory| theory.friction),
+    ("Persson's hysteresis, isotropic", 1, |theory| theory.friction),
     ("reduced", 1, |theory| theory.friction_reduced),
 ];
 const AREAS: [TheoryCurve; 2] =
@@ -19,15 +19,16 @@ const AREAS: [TheoryCurve; 2] =
 
 /// The runs of the study `title`, those with another length or seed as circles.
 pub(super) fn picture(title: &str, runs: &[Run]) -> Stacked {
-    let panel = |title: &str, value: fn(&Pair) -> f64, theories: &[TheoryCurve]| {
+    let panel = |title: &str, value: fn(&Pair) -> f64, parts: Vec<Curve>, theories: &[TheoryCurve]| {
         let mut curves = measured(runs, value).to_vec();
+        curves.extend(parts);
         curves.extend(theories.iter().map(|theory| of_theory(runs, *theory)));
         curves.retain(|curve| !curve.points.is_empty());
         Panel { title: title.into(), curves }
     };
     let panels = vec![
-        panel("friction coefficient", |pair| pair.friction, &FRICTIONS),
-        panel("area in contact over the whole", |pair| pair.area, &AREAS),
+        panel("friction coefficient", |pair| pair.friction, vec![hysteresis(runs)], &FRICTIONS),
+        panel("area in contact over the whole", |pair| pair.area, Vec::new(), &AREAS),
     ];
     Stacked { title: title.to_owned(), x_title: "spacing in m".into(), panels }
 }
@@ -43,6 +44,20 @@ fn measured(runs: &[Run], value: fn(&Pair) -> f64) -> [Curve; 3] {
         curve("twice the length", 1, Stroke::Rings, |run| run.variant.doubled),
         curve("other seeds", 2, Stroke::Rings, |run| run.variant.seed_shift > 0),
     ]
+}
+
+/// The part of the friction that the theory is of; no points where that is all of it.
+fn hysteresis(runs: &[Run]) -> Curve {
+    /// Share of the friction coefficient below which two curves look like one.
+    const SEEN: f64 = 0.01;
+    let of = |run: &Run| {
+        let measured = run.outcome.as_ref().ok()?;
+        Some((run.dimensions.spacing, measured.hysteresis, measured.mean.friction))
+    };
+    let ladder: Vec<_> = runs.iter().filter(|run| run.variant.is_of_ladder()).filter_map(of).collect();
+    let differs = ladder.iter().any(|(_, part, whole)| (whole - part).abs() > SEEN * whole.abs());
+    let points = ladder.iter().filter(|_| differs).map(|&(spacing, part, _)| (spacing, part)).collect();
+    Curve { name: "its hysteresis".into(), look: 3, stroke: Stroke::Line, points }
 }
 
 fn of_theory(runs: &[Run], (name, surface, value): TheoryCurve) -> Curve {

@@ -79,6 +79,7 @@ fn percent(share: f64) -> String {
 /// the scene's length and seed.
 pub(super) fn judgement(ladder: &[&Run], verdict: &Verdict, error: f64, seeds: Option<u32>) -> String {
     let mut all: Vec<LabelledLine> = Vec::new();
+    all.extend(ladder.last().and_then(|run| hysteresis(run)).map(|line| ("Hysteresis", line)));
     all.extend(labelled("Persson", ladder.last().iter().flat_map(|run| theories(&run.theories))));
     all.extend(labelled("Open", verdict.open.iter().map(|open| open_line(open, seeds))));
     all.extend(labelled("Coarsest", coarsest(ladder, verdict, error)));
@@ -86,10 +87,17 @@ pub(super) fn judgement(ladder: &[&Run], verdict: &Verdict, error: f64, seeds: O
     lines(&all)
 }
 
+/// The part of a run's friction that Persson's theory is of.
+fn hysteresis(run: &Run) -> Option<String> {
+    let measured = run.outcome.as_ref().ok()?;
+    let (part, whole) = (number(measured.hysteresis), number(measured.mean.friction));
+    Some(format!("{part} of the friction of {whole} at the finest spacing: the part that Persson's theory is of"))
+}
+
 fn theories(theories: &[Theory; 2]) -> [String; 2] {
     let line = |theory: &Theory, surface: &str| {
         let [area, friction, reduced] = theory.values().map(number);
-        format!("area {area}, friction {reduced} to {friction}: {surface}, an orientation")
+        format!("area {area}, hysteresis {reduced} to {friction}: {surface}, an orientation")
     };
     [line(&theories[0], "ridges across the motion"), line(&theories[1], "an isotropic surface of this profile")]
 }

@@ -1,22 +1,23 @@
 //! The table of a study: rows are added as their runs are done and not computed again.
 
-use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use asperity::scene::text_table;
+use asperity::scene::{read_file, text_table};
 
 use super::ConvergeError;
 use super::variants::{Dimensions, Variant};
 use super::verdict::Pair;
-use crate::program::files::{FileError, LineFile, replace};
+use crate::program::draft::LineFile;
+use crate::program::files::{FileError, write};
+use crate::program::lock::TableLock;
 use crate::program::persson::Theory;
-use crate::program::terminal::real;
+use crate::program::terminal::{real, warn};
 
 /// The first line of a table; its number grows when readers have to know of a change.
-const FORMAT: &str = "# asperity converge = 1";
+const FORMAT: &str = "# asperity converge = 2";
 
-const COLUMNS: [&str; 22] = [
+const COLUMNS: [&str; 23] = [
     "halvings [1]",
     "length_factor [1]",
     "seed_shift [1]",
@@ -29,6 +30,7 @@ const COLUMNS: [&str; 22] = [
     "friction [1]",
     "friction_standard_error [1]",
     "friction_change [1]",
+    "hysteresis [1]",
     "area [1]",
     "area_standard_error [1]",
     "area_change [1]",
@@ -48,6 +50,8 @@ const STEADY: &str = "steady";
 pub(super) struct Measured {
     pub(super) mean: Pair,
     pub(super) error: Pair,
+    /// Part of the friction coefficient that is hysteresis, 1: what Persson's theory gives.
+    pub(super) hysteresis: f64,
 }
 
 /// A run that was made.
@@ -96,7 +100,8 @@ impl Run {
             text_table::quoted(status),
             real(self.fit_rms),
         ];
-        let values = [of(|pair| pair.friction), of(|pair| pair.area)].concat();
+        let [friction, area] = [of(|pair| pair.friction), of(|pair| pair.area)];
+        let values = [&friction[..], &[measured.map(|run| run.hysteresis)], &area].concat();
         let theories = self.theories.iter().flat_map(|theory| theory.values().map(Some));
         let numbers = values.into_iter().chain(theories).chain([Some(self.run_time)]).map(text);
         dimensions.into_iter().chain(numbers).collect::<Vec<_>>().join(",") + "\n"
@@ -104,6 +109,9 @@ impl Run {
 
     /// The run of a row; `None` where a field is not what it should be.
     fn from_fields(fields: &[impl AsRef<str>]) -> Option<Self> {
+        if fields.len() != COLUMNS.len() {
+            return None;
+        }
         let text = |i: usize| fields.get(i).map(AsRef::as_ref).unwrap_or_default();
         let number = |i: usize| text(i).parse::<f64>().ok().filter(|number| number.is_finite());
         let theory =
@@ -113,7 +121,7 @@ impl Run {
         let seed = if text(6).is_empty() { None } else { Some(whole(6)?) };
         let pair = |friction: usize, area: usize| Some(Pair { friction: number(friction)?, area: number(area)? });
         let outcome = match text(7) {
-            STEADY => Ok(Measured { mean: pair(9, 12)?, error: pair(10, 13)? }),
+            STEADY => Ok(Measured { mean: pair(9, 13)?, error: pair(10, 14)?, hysteresis: number(12)? }),
             status => Err(status.to_owned()),
         };
         Some(Self {
@@ -121,8 +129,8 @@ impl Run {
             dimensions: Dimensions { masses: whole(3)?, spacing: number(4)?, seed },
             fit_rms: number(8)?,
             outcome,
-            theories: [theory(15)?, theory(18)?],
-            run_time: number(21)?,
+            theories: [theory(16)?, theory(19)?],
+            run_time: number(22)?,
         })
     }
 }
@@ -164,15 +172,17 @@ pub(super) struct Table {
     path: PathBuf,
     header: Header,
     file: LineFile,
+    _lock: TableLock,
 }
 
 impl Table {
     /// Begins a table or, unless it is to be replaced, continues the one that is there. Returns the runs that it has.
     pub(super) fn open(path: &Path, header: Header, force: bool) -> Result<(Self, Vec<Run>), ConvergeError> {
+        let lock = TableLock::take(path)?;
         let runs = if force { Vec::new() } else { runs_done(path, &header)? };
         let rows = runs.iter().map(|run| run.line(None));
         let file = LineFile::create(path, &(header.text(None) + &rows.collect::<String>()))?;
-        Ok((Self { path: path.to_owned(), header, file }, runs))
+        Ok((Self { path: path.to_owned(), header, file, _lock: lock }, runs))
     }
 
     /// Adds a row; it is in the file when this returns.
@@ -183,13 +193,14 @@ impl Table {
     /// Writes the whole table with the changes of the values, which rows that were added do not have.
     pub(super) fn finish(&self, verdict: &str, rows: &[(&Run, Option<Pair>)]) -> Result<(), FileError> {
         let rows: String = rows.iter().map(|(run, change)| run.line(*change)).collect();
-        replace(&self.path, &(self.header.text(Some(verdict)) + &rows))
+        write(&self.path, self.header.text(Some(verdict)) + &rows)
     }
 }
 
-/// The runs of the table at `path`; none where there is no file, or only the beginning of a header.
+/// The runs of the table at `path`, without the corrupt rows, which are named; none where there is no file, or only the
+/// beginning of a header.
 fn runs_done(path: &Path, header: &Header) -> Result<Vec<Run>, ConvergeError> {
-    let text = match fs::read(path) {
+    let text = match read_file(path) {
         Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
         Err(error) => return Err(FileError::io("read", path)(error).into()),
@@ -208,8 +219,14 @@ fn runs_done(path: &Path, header: &Header) -> Result<Vec<Run>, ConvergeError> {
     if !whole.lines().any(|line| line == key) {
         return Err(ConvergeError::OtherStudy { path: path.to_owned() });
     }
-    rows.map(|row| Run::from_fields(&row.fields).ok_or_else(|| not_a_table(format!("line {} is no row", row.line))))
-        .collect()
+    let mut runs: Vec<Run> = Vec::new();
+    for row in rows {
+        match Run::from_fields(&row.fields).filter(|run| runs.iter().all(|other| other.variant != run.variant)) {
+            Some(run) => runs.push(run),
+            None => warn(&format!("{}:{}: not a row of this study; the run is made again", path.display(), row.line)),
+        }
+    }
+    Ok(runs)
 }
 
 #[cfg(test)]
@@ -226,7 +243,8 @@ mod tests {
     #[test]
     fn rows_read_back_as_they_were_written() {
         let pair = |friction: f64, area: f64| Pair { friction, area };
-        let steady = run(Ok(Measured { mean: pair(0.1 + 0.2, 0.125), error: pair(1e-9, 0.0) }));
+        let (mean, error) = (pair(0.1 + 0.2, 0.125), pair(1e-9, 0.0));
+        let steady = run(Ok(Measured { mean, error, hysteresis: 0.1 }));
         let failed = run(Err("not steady after 0.5 m, at all: \"never\"".into()));
         let seedless = Dimensions { seed: None, ..steady.dimensions };
         for run in [steady.clone(), failed, Run { dimensions: seedless, ..steady }] {

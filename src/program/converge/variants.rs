@@ -9,7 +9,8 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::ConvergeError;
-use crate::program::files::{self, FileError, set_parameters};
+use crate::program::files::{self, FileError};
+use crate::program::overrides::{self, Overridden, Setting};
 
 /// What a run differs in from the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -91,7 +92,8 @@ struct SelfAffine {
 pub(super) struct Template {
     path: PathBuf,
     text: String,
-    set: Vec<(String, String)>,
+    /// What is set in files that the scene names.
+    in_named_files: Vec<Setting>,
     masses: Number,
     spacing: Number,
     /// The surface, then the roughness of the layer.
@@ -102,20 +104,18 @@ pub(super) struct Template {
 
 impl Template {
     /// The scene at `path`, its parameters overridden by `set`, and what variants of it are made of.
-    pub(super) fn read(path: &Path, set: &[(String, String)]) -> Result<(Self, Scene), ConvergeError> {
-        let scene = files::load(path)?;
+    pub(super) fn read(path: &Path, set: &[Setting]) -> Result<(Self, Scene), ConvergeError> {
+        let scene = files::load_without_excitation(path, set)?;
         if scene.material.is_none() {
             return Err(ConvergeError::DirectForm { path: path.to_owned() });
         }
         let bytes = files::read(path)?;
-        let text = String::from_utf8_lossy(&bytes);
-        let text = text.strip_prefix('\u{feff}').unwrap_or(&text).to_owned();
-        let template = Self::new(path, text, set)?;
-        let scene = template.scene(Variant::default())?;
-        Ok((template, scene))
+        let overridden = overrides::overridden(&String::from_utf8_lossy(&bytes), set).map_err(FileError::from)?;
+        Ok((Self::new(path, overridden)?, scene))
     }
 
-    fn new(path: &Path, text: String, set: &[(String, String)]) -> Result<Self, ConvergeError> {
+    fn new(path: &Path, overridden: Overridden) -> Result<Self, ConvergeError> {
+        let Overridden { text, in_named_files } = overridden;
         let unclear = || ConvergeError::Unclear { path: path.to_owned() };
         let document = DeTable::parse(&text).map_err(|_| unclear())?;
         let document = document.get_ref();
@@ -129,8 +129,7 @@ impl Template {
         let (masses, spacing) = masses.zip(spacing).ok_or_else(unclear)?;
         let seed = self_affine.first().map(|surface| surface.seed.value.whole());
         let own = Dimensions { masses: masses.value.whole(), spacing: spacing.value.real(), seed };
-        let (path, set) = (path.to_owned(), set.to_vec());
-        Ok(Self { path, text, set, masses, spacing, self_affine, own })
+        Ok(Self { path: path.to_owned(), text, in_named_files, masses, spacing, self_affine, own })
     }
 
     /// Whether there are other seeds.
@@ -154,7 +153,7 @@ impl Template {
     /// The scene of a variant.
     pub(super) fn scene(&self, variant: Variant) -> Result<Scene, FileError> {
         let mut scene = Scene::parse(&self.text_of(variant), &self.path)?;
-        set_parameters(&mut scene, &self.set)?;
+        overrides::set_in_named_files(&mut scene, &self.in_named_files)?;
         Ok(scene)
     }
 
@@ -248,7 +247,7 @@ mod tests {
         roll_off_wavelength = 1e-3\ncut_off_wavelength = 2e-4\nseed = 5\n[solver]\nabsolute_tolerance = 1e-4\n";
 
     fn template(text: &str) -> Result<Template, ConvergeError> {
-        Template::new("scene.toml".as_ref(), text.into(), &[])
+        Template::new("scene.toml".as_ref(), overrides::overridden(text, &[]).unwrap())
     }
 
     #[test]

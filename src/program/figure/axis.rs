@@ -182,7 +182,8 @@ fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
 
 /// The largest prefix that leaves `largest` at 1 or more, and its factor.
 fn prefix(largest: f64, unit: &str) -> (&'static str, f64) {
-    if unit.is_empty() || largest == 0.0 {
+    // A prefix before m² would be one of m.
+    if unit.is_empty() || unit.contains(['²', '³']) || unit == "kg" || largest == 0.0 {
         return ("", 1.0);
     }
     PREFIXES.into_iter().find(|(_, factor)| largest >= 0.999 * factor).unwrap_or(("f", 1e-15))

@@ -37,6 +37,8 @@ pub(crate) enum Stroke {
     Dotted,
     /// A circle at every point, and no line.
     Rings,
+    /// A line with a marker at every point.
+    Marked,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -76,7 +78,9 @@ impl Chart {
         draw_axes(&mut context, &self.x, &self.y)?;
         self.curves.iter().try_for_each(|curve| {
             let drawn = |point: &(f64, f64)| Some((self.x.coordinate(point.0)?, self.y.coordinate(point.1)?));
-            draw_line(&mut context, curve.points.iter().filter_map(drawn).collect(), curve.stroke, curve.look)
+            let points: Vec<_> = curve.points.iter().filter_map(drawn).collect();
+            draw_line(&mut context, points.clone(), curve.stroke, curve.look)?;
+            if curve.stroke == Stroke::Marked { draw_markers(canvas, &context, &points, curve.look) } else { Ok(()) }
         })
     }
 }
@@ -132,6 +136,18 @@ pub(super) fn draw_line<B: Backend>(
     Ok(())
 }
 
+/// Draws the marker of a curve at each of its drawn values.
+fn draw_markers<B: Backend>(
+    canvas: &Canvas<B>,
+    context: &Context<'_, B>,
+    points: &[(f64, f64)],
+    look: usize,
+) -> DrawResult {
+    let (left, top) = canvas.get_base_pixel();
+    let places = points.iter().map(|point| context.backend_coord(point));
+    places.into_iter().try_for_each(|(x, y)| draw_marker(canvas, (x - left, y - top), look, false))
+}
+
 /// A line through many circles is seen behind them.
 fn translucent(colour: RGBColor) -> ShapeStyle {
     colour.mix(0.5).stroke_width(LINE_WIDTH)
@@ -143,7 +159,7 @@ impl Stroke {
         match self {
             Self::Dashed => Some((6 * FINE, 4 * FINE)),
             Self::Dotted => Some((2 * FINE, 4 * FINE)),
-            Self::Line | Self::Rings => None,
+            Self::Line | Self::Rings | Self::Marked => None,
         }
     }
 }
@@ -238,7 +254,10 @@ impl Item {
 
 impl Symbol {
     pub(super) fn for_curve(curve: &Curve) -> Self {
-        Self::Line(curve.stroke, colour(curve.look))
+        match curve.stroke {
+            Stroke::Marked => Self::Marker { look: curve.look, dashed: false },
+            stroke => Self::Line(stroke, colour(curve.look)),
+        }
     }
 
     /// That of a stroke in any colour.

@@ -1,4 +1,4 @@
-//! `asperity plot`: columns of result files in one chart.
+//! `asperity plot`: columns of result files and tables over another one, a chart for each unit.
 
 use std::path::Path;
 
@@ -7,9 +7,9 @@ use asperity::outputs::unit_of;
 use super::axis::{Axis, Fit};
 use super::chart::{Chart, Curve, Stroke};
 use super::{Backend, Canvas, DrawResult, Figure};
-use crate::program::cli::Plot;
-use crate::program::files::{FileError, check_output};
-use crate::program::result_file::{ResultFile, ResultFileError};
+use crate::program::cli::{Condition, Plot, PlotAxis};
+use crate::program::files::{FileError, check_outputs};
+use crate::program::result_file::{CsvFile, Record, ResultFileError};
 use crate::program::terminal::warn;
 
 /// `asperity plot` failed.
@@ -21,18 +21,30 @@ pub(crate) enum PlotError {
     ResultFile(#[from] ResultFileError),
     #[error("--labels: expected {files}, one name for each file, found {labels}")]
     Labels { labels: usize, files: usize },
+    #[error("--where: {file} has no row with {condition}; its {column} has the values {values}")]
+    NoSuchRow { file: String, condition: String, column: String, values: String },
+    #[error("--where: {file} has no row with all of {conditions}")]
+    NoRow { file: String, conditions: String },
 }
 
-/// A chart with a title above.
+/// Curves of up to so many rows have their markers without being asked for.
+const FEW_ROWS: usize = 40;
+/// Width of the figure and height of one chart, and of each of several, pixels.
+const WIDTH: u32 = 1000;
+const HEIGHT: u32 = 620;
+const HEIGHT_OF_SEVERAL: u32 = 380;
+
+/// Charts below each other over the same horizontal axis, with a title above.
 #[derive(Debug)]
-struct TitledChart {
+struct Charts {
     title: String,
-    chart: Chart,
+    charts: Vec<Chart>,
 }
 
-impl Figure for TitledChart {
+impl Figure for Charts {
     fn size(&self) -> (u32, u32) {
-        (1000, 620)
+        let height = if let [_] = self.charts[..] { HEIGHT } else { HEIGHT_OF_SEVERAL * self.charts.len() as u32 };
+        (WIDTH, height)
     }
 
     fn title(&self) -> &str {
@@ -40,40 +52,134 @@ impl Figure for TitledChart {
     }
 
     fn draw<B: Backend>(&self, canvas: &Canvas<B>) -> DrawResult {
-        self.chart.draw_with_legend(canvas)
+        let canvases = canvas.split_evenly((self.charts.len(), 1));
+        self.charts.iter().zip(&canvases).try_for_each(|(chart, canvas)| chart.draw_with_legend(canvas))
     }
 }
 
-/// Draws one line for each file and y.
+/// The columns of one unit, with the points of each file.
+#[derive(Debug)]
+struct Panel<'a> {
+    unit: String,
+    columns: Vec<&'a str>,
+    curves: Vec<Curve>,
+}
+
+/// Draws one line for each file and y, and a chart for each unit.
 pub(crate) fn plot_files(command: &Plot) -> Result<(), PlotError> {
     if !command.labels.is_empty() && command.labels.len() != command.files.len() {
         return Err(PlotError::Labels { labels: command.labels.len(), files: command.files.len() });
     }
-    check_output(&command.output, &command.files)?;
-    let mut curves = Vec::new();
-    for (i, path) in command.files.iter().enumerate() {
-        add_curves(&mut curves, command, i, path)?;
+    check_outputs([&command.output], command.files.clone())?;
+    let files = command.files.iter().map(|path| Selection::read(path, command)).collect::<Result<Vec<_>, _>>()?;
+    let x_unit = files[0].unit(&command.x)?;
+    let mut panels: Vec<Panel<'_>> = Vec::new();
+    for column in &command.y {
+        let unit = files[0].unit(column)?;
+        match panels.iter_mut().find(|panel| panel.unit == unit) {
+            Some(panel) => panel.columns.push(column),
+            None => panels.push(Panel { unit, columns: vec![column], curves: Vec::new() }),
+        }
+    }
+    for panel in &mut panels {
+        for (i, file) in files.iter().enumerate() {
+            for column in &panel.columns {
+                let (name, look) = (curve_name(command, i, file.path, column, &panel.columns), panel.curves.len());
+                panel.curves.push(file.curve(command, column, name, look)?);
+            }
+        }
     }
     let title = command.title.clone().unwrap_or_default();
-    TitledChart { title, chart: chart(command, curves) }.write(&command.output)?;
+    Charts { title, charts: charts(command, &x_unit, panels) }.write(&command.output)?;
     Ok(())
 }
 
-fn add_curves(curves: &mut Vec<Curve>, command: &Plot, index: usize, path: &Path) -> Result<(), PlotError> {
-    let file = ResultFile::read(path)?;
-    let x = file.column(&command.x)?;
-    let first = if command.from_motion { last_before_motion(&x) } else { 0 };
-    let sign = if command.negate { -1.0 } else { 1.0 };
-    for column in &command.y {
-        let y = file.column(column)?;
-        let points: Vec<_> = x.iter().zip(&y).skip(first).map(|(&x, &y)| (x, sign * y)).collect();
-        let name = curve_name(command, index, path, column);
-        if !points.iter().any(|(x, y)| x.is_finite() && y.is_finite()) {
-            warn(&format!("{}: nothing to draw of {column}: it has no finite numbers", path.display()));
+/// The rows of a file that are drawn.
+#[derive(Debug)]
+struct Selection<'a> {
+    path: &'a Path,
+    file: CsvFile,
+    rows: Vec<usize>,
+}
+
+impl<'a> Selection<'a> {
+    fn read(path: &'a Path, command: &Plot) -> Result<Self, PlotError> {
+        let file = CsvFile::read(path)?;
+        let mut rows: Vec<usize> = (0..file.records().len()).collect();
+        if rows.is_empty() {
+            return Err(ResultFileError::NoRows { path: path.to_owned() }.into());
         }
-        curves.push(Curve { name, look: curves.len(), stroke: Stroke::Line, points });
+        for condition in &command.conditions {
+            let column = file.column(&condition.column)?;
+            let holds = |row: usize| condition.holds_for(&file.records()[row].fields[column]);
+            if !(0..file.records().len()).any(holds) {
+                return Err(no_such_row(&file, path, condition, column));
+            }
+            rows.retain(|&row| holds(row));
+        }
+        if rows.is_empty() {
+            let conditions = command.conditions.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+            return Err(PlotError::NoRow { file: path.display().to_string(), conditions });
+        }
+        Ok(Self { path, file, rows })
     }
-    Ok(())
+
+    /// The unit of a column, from its header or by its name; empty for a plain number or an unknown column.
+    fn unit(&self, column: &str) -> Result<String, PlotError> {
+        let header = &self.file.names()[self.file.column(column)?];
+        let unit = match header.rsplit_once('[').and_then(|(name, rest)| Some((name, rest.strip_suffix(']')?))) {
+            Some((name, unit)) if name.ends_with(' ') => unit,
+            _ => unit_of_name(header),
+        };
+        Ok(if unit == "1" { String::new() } else { unit.to_owned() })
+    }
+
+    /// The numbers of a column; where a field is empty, none is.
+    fn numbers(&self, column: &str) -> Result<Vec<f64>, PlotError> {
+        let index = self.file.column(column)?;
+        let number = |record: &Record| match record.fields[index].trim() {
+            "" => Ok(f64::NAN),
+            text => text.parse().map_err(|_| {
+                let expected =
+                    format!("{column} = {text:?}: expected a number; rows are chosen by --where {column}={text}");
+                self.file.error(record, expected).into()
+            }),
+        };
+        self.rows.iter().map(|&row| number(&self.file.records()[row])).collect()
+    }
+
+    fn curve(&self, command: &Plot, column: &str, name: String, look: usize) -> Result<Curve, PlotError> {
+        let (x, y) = (self.numbers(&command.x)?, self.numbers(column)?);
+        let first = if command.from_motion { last_before_motion(&x) } else { 0 };
+        let sign = if command.negate { -1.0 } else { 1.0 };
+        let points: Vec<_> = x.iter().zip(&y).skip(first).map(|(&x, &y)| (x, sign * y)).collect();
+        let is_drawn = |value: f64, axis| value.is_finite() && (value > 0.0 || !command.log.contains(&axis));
+        if !points.iter().any(|&(x, y)| is_drawn(x, PlotAxis::X) && is_drawn(y, PlotAxis::Y)) {
+            let path = self.path.display();
+            warn(&format!("{path}: nothing to draw of {column}: it has no finite numbers that its axes can show"));
+        }
+        let is_marked = command.markers || points.len() <= FEW_ROWS;
+        Ok(Curve { name, look, stroke: if is_marked { Stroke::Marked } else { Stroke::Line }, points })
+    }
+}
+
+fn no_such_row(file: &CsvFile, path: &Path, condition: &Condition, column: usize) -> PlotError {
+    const SHOWN: usize = 12;
+    let mut values: Vec<&str> = Vec::new();
+    for record in file.records() {
+        let value = record.fields[column].as_str();
+        if !values.contains(&value) {
+            values.push(value);
+        }
+    }
+    let more = if values.len() > SHOWN { ", ..." } else { "" };
+    values.truncate(SHOWN);
+    PlotError::NoSuchRow {
+        file: path.display().to_string(),
+        condition: condition.to_string(),
+        column: condition.column.clone(),
+        values: values.join(", ") + more,
+    }
 }
 
 /// The last row before x changes for the first time.
@@ -81,35 +187,51 @@ fn last_before_motion(x: &[f64]) -> usize {
     x.iter().position(|value| *value != x[0]).map_or(0, |moved| moved - 1)
 }
 
-fn curve_name(command: &Plot, index: usize, path: &Path, column: &str) -> String {
+/// The name of a curve among those of the `columns` of its chart.
+fn curve_name(command: &Plot, index: usize, path: &Path, column: &str, columns: &[&str]) -> String {
     let stem = || path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     let file = command.labels.get(index).cloned().unwrap_or_else(stem);
-    match (command.y.len(), command.files.len()) {
+    match (columns.len(), command.files.len()) {
+        (_, 1) if command.y.len() > 1 => column.to_owned(),
         (1, _) => file,
-        (_, 1) => column.to_owned(),
         _ => format!("{file}: {column}"),
     }
 }
 
-fn chart(command: &Plot, curves: Vec<Curve>) -> Chart {
-    let points = || curves.iter().flat_map(|curve| &curve.points);
-    let quantity = format!("{}{}", if command.negate { "-" } else { "" }, command.y.join(", "));
-    Chart {
-        title: String::new(),
-        x: Axis::linear(&command.x, unit(&command.x), points().map(|point| point.0), Fit::Tight),
-        y: Axis::linear(&quantity, unit(&command.y[0]), points().map(|point| point.1), Fit::Round),
-        curves,
-    }
+fn charts(command: &Plot, x_unit: &str, panels: Vec<Panel<'_>>) -> Vec<Chart> {
+    let x = panels.iter().flat_map(|panel| &panel.curves).flat_map(|curve| &curve.points).map(|point| point.0);
+    let x = axis(command, PlotAxis::X, &command.x, x_unit, x);
+    let chart = |panel: Panel<'_>| {
+        let quantity = format!("{}{}", if command.negate { "-" } else { "" }, panel.columns.join(", "));
+        let y = panel.curves.iter().flat_map(|curve| &curve.points).map(|point| point.1);
+        let y = axis(command, PlotAxis::Y, &quantity, &panel.unit, y);
+        Chart { title: String::new(), x: x.clone(), y, curves: panel.curves }
+    };
+    panels.into_iter().map(chart).collect()
 }
 
-/// The unit of a column; empty for a plain number or an unknown column.
-fn unit(column: &str) -> &'static str {
-    match column {
+fn axis(command: &Plot, which: PlotAxis, quantity: &str, unit: &str, values: impl Iterator<Item = f64>) -> Axis {
+    if command.log.contains(&which) {
+        let title = if unit.is_empty() { quantity.to_owned() } else { format!("{quantity} in {unit}") };
+        return Axis::logarithmic(&title, values);
+    }
+    Axis::linear(quantity, unit, values, if which == PlotAxis::X { Fit::Tight } else { Fit::Round })
+}
+
+/// The unit of a column of a result file by its name; empty for a plain number or an unknown column.
+fn unit_of_name(column: &str) -> &'static str {
+    match column.rsplit('.').next().unwrap_or_default() {
         "time" => "s",
-        "u" | "w" => "m",
-        "load" | "pull" => "N",
+        "roll" | "pitch" | "yaw" => "rad",
         "temperature" => "K",
-        _ => unit_of(column).map(|unit| unit.name()).filter(|&name| name != "1").unwrap_or_default(),
+        "pressure" => "Pa",
+        "speed" => "m/s",
+        "area" | "nominal_area" => "m²",
+        _ if column.starts_with("moment.") => "N m",
+        _ if column.starts_with("force.") || matches!(column, "load" | "pull" | "transport.force") => "N",
+        _ if column.contains("].traction.") => "Pa",
+        _ if matches!(column, "u" | "w" | "x" | "y" | "z") => "m",
+        _ => unit_of(column).map(|unit| unit.name()).unwrap_or_default(),
     }
 }
 
@@ -126,9 +248,8 @@ mod tests {
 
     #[test]
     fn columns_have_the_units_of_their_variables() {
-        assert_eq!(
-            [unit("u"), unit("F_x"), unit("element[12].z"), unit("contact.count"), unit("?")],
-            ["m", "N", "m", "", ""]
-        );
+        let names =
+            ["u", "F_x", "element[12].z", "contact.count", "?", "moment.z", "element[3].traction.x", "transport.speed"];
+        assert_eq!(names.map(unit_of_name), ["m", "N", "m", "1", "", "N m", "Pa", "m/s"]);
     }
 }

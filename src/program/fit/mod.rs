@@ -12,7 +12,7 @@ use asperity::scene::PronyTerm;
 
 use super::cli::{Fit, WlfConstants};
 use super::figure::{Curve, Figure as _, Panel, Stacked, Stroke};
-use super::files::{self, FileError, check_outputs, name_of, print};
+use super::files::{self, FileError, check_outputs, name_of, named, picture_beside, print_beside};
 use super::terminal::{decimal, lines, note, rounded};
 use measured::{MeasuredModuli, ModuliError};
 use search::{Compound, FitErrors, RelativeError, Sample, Target, search};
@@ -38,8 +38,8 @@ const POINTS_PER_DECADE: f64 = 20.0;
 /// Reads the moduli, fits, writes the terms and the plot, and prints a summary. Where the requested error cannot be
 /// reached, the best fit is written, but the command fails: a script must not take it for the requested one.
 pub(crate) fn fit(command: &Fit) -> Result<(), FitError> {
-    let picture = command.plot.clone().unwrap_or_else(|| command.output.with_extension("svg"));
-    check_outputs([&command.output, &picture], vec![command.data.clone()])?;
+    let picture = picture_beside(&command.output, command.plot.as_ref());
+    check_outputs([&command.output].into_iter().chain(&picture), vec![command.data.clone()])?;
     let bytes = files::read(&command.data)?;
     let in_file = |error: ModuliError| FitError::Moduli { path: command.data.clone(), error };
     let measured = MeasuredModuli::parse(&bytes, &command.ignore).map_err(in_file)?;
@@ -47,8 +47,10 @@ pub(crate) fn fit(command: &Fit) -> Result<(), FitError> {
     let samples = measured.at_reference(command.wlf).map_err(in_file)?;
     let result = FitResult::new(command, &measured, samples);
     files::write(&command.output, result.file())?;
-    result.picture().write(&picture)?;
-    print(&result.text(&picture))?;
+    if let Some(picture) = &picture {
+        result.picture().write(picture)?;
+    }
+    print_beside([&command.output], &result.text(picture.as_deref()))?;
     let reached = result.errors.both.rms;
     if reached > command.error {
         let (wanted, reached) = (percent(command.error), percent(reached));
@@ -136,7 +138,7 @@ impl<'a> FitResult<'a> {
     }
 
     /// The printed summary, and the lines for a scene.
-    fn text(&self, picture: &Path) -> String {
+    fn text(&self, picture: Option<&Path>) -> String {
         let (compound, errors) = (&self.compound, &self.errors);
         let mut rows = vec![("Data", self.data()), ("E_inf", format!("{} Pa", written(compound.equilibrium_modulus)))];
         if self.command.viscosity {
@@ -153,7 +155,8 @@ impl<'a> FitResult<'a> {
             ("", format!("{name:<11}{rms:<11}{largest:<11}{}", self.frequency(error.at)))
         };
         rows.extend([row("E'", &errors.storage), row("E''", &errors.loss), row("tan delta", &errors.loss_tangent)]);
-        rows.push(("Written", format!("{}, {}", self.command.output.display(), picture.display())));
+        let written = [Some(self.command.output.as_path()), picture].into_iter().flatten().map(named);
+        rows.push(("Written", written.collect::<Vec<_>>().join(", ")));
         let figures = lines(&rows);
         format!("{figures}\nFor a scene in the folder of {}:\n\n{}", name_of(&self.command.output), self.scene())
     }

@@ -84,6 +84,11 @@ const HOST: Platform = if cfg!(target_os = "windows") {
     LINUX
 };
 
+/// The files of the shared libraries.
+pub(super) fn libraries(arguments: &[OsString]) -> Vec<PathBuf> {
+    if arguments.is_empty() { vec![default_library()] } else { arguments.iter().map(|one| library(one).1).collect() }
+}
+
 /// The entries of the shared libraries that `--library` names; by default of the one beside this program.
 pub(super) fn binaries(identifier: &str, arguments: &[OsString]) -> Result<Vec<ArchiveEntry>, ArchiveError> {
     let mut libraries: Vec<_> = arguments.iter().map(library).collect();

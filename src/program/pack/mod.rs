@@ -11,11 +11,10 @@ use std::path::{Component, Path, PathBuf};
 
 use asperity::element::{Basis, PointContact, Table, TableError};
 use asperity::fmi::{Catalogue, Definition, Sources, guid};
-use asperity::patch::{Patch, PatchError};
 
 use super::cli::Pack;
 use super::describe;
-use super::files::{self, FileError, check_output, print, read, write};
+use super::files::{self, FileError, check_outputs, print, read, write};
 use super::patch;
 use super::terminal::{LabelledLine, lines, warn};
 use archive::{ArchiveEntry, ArchiveError};
@@ -29,8 +28,6 @@ pub(crate) enum PackError {
     #[error(transparent)]
     Table(#[from] TableError),
     #[error(transparent)]
-    Patch(#[from] PatchError),
-    #[error(transparent)]
     Check(#[from] CheckError),
     #[error(transparent)]
     Archive(#[from] ArchiveError),
@@ -43,7 +40,9 @@ pub(crate) enum PackError {
 /// Writes the FMU; of an element or a patch, prints its table and errors.
 pub(crate) fn pack(command: &Pack) -> Result<(), PackError> {
     let (definition, path) = load(command)?;
-    check_output(&command.output, &definition.sources(&path))?;
+    let taken =
+        [definition.sources(&path), archive::libraries(&command.library), command.check.iter().cloned().collect()];
+    check_outputs([&command.output], taken.concat())?;
     let mut entries = archive::binaries(&definition.model_identifier(), &command.library)?;
     entries.extend(resources(&definition, &path)?);
     let summary = summary(command, &definition)?;
@@ -57,7 +56,7 @@ pub(crate) fn pack(command: &Pack) -> Result<(), PackError> {
 fn load(command: &Pack) -> Result<(Definition, PathBuf), PackError> {
     match (&command.patch, &command.table) {
         (Some(path), _) => {
-            let patch = Patch::load(path)?;
+            let patch = files::load_patch(path, &[])?;
             warn_of(&patch.table().basis);
             Ok((patch.into(), path.clone()))
         }
@@ -68,7 +67,7 @@ fn load(command: &Pack) -> Result<(Definition, PathBuf), PackError> {
         }
         (None, None) => {
             let path = command.scene.clone().unwrap_or_default();
-            Ok((files::load(&path)?.into(), path))
+            Ok((files::load(&path, &[])?.into(), path))
         }
     }
 }

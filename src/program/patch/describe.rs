@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
-use asperity::patch::{MotionError, Patch, PatchError, PatchRun, PatchStart, Pose};
+use asperity::patch::{MotionError, Patch, PatchRun, PatchStart, Pose};
 use asperity::scene::{Parameter, ParameterError, TableExtrapolation, Value};
 
-use crate::program::files::{FileError, print};
+use crate::program::files::{FileError, load_patch, print};
+use crate::program::overrides::Setting;
 use crate::program::terminal::{LabelledLine, lines, rounded};
 
 /// `asperity describe --patch` failed.
@@ -13,8 +14,6 @@ use crate::program::terminal::{LabelledLine, lines, rounded};
 pub(crate) enum PatchDescribeError {
     #[error(transparent)]
     File(#[from] FileError),
-    #[error(transparent)]
-    Patch(#[from] PatchError),
 }
 
 /// How much of the load lies below the table could not be found.
@@ -30,8 +29,8 @@ enum LowEndError {
 const HALVINGS: u32 = 50;
 
 /// Prints the summary.
-pub(crate) fn describe(path: &Path) -> Result<(), PatchDescribeError> {
-    let patch = Patch::load(path)?;
+pub(crate) fn describe(path: &Path, set: &[Setting]) -> Result<(), PatchDescribeError> {
+    let patch = load_patch(path, set)?;
     let title = ("Name", patch.name().to_owned());
     Ok(print(&lines(&[vec![title], rows(&patch)].concat()))?)
 }

@@ -3,14 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use asperity::outputs::Kind;
-use asperity::patch::{MotionError, Patch, PatchError, PatchRun, PatchVariable};
-use asperity::scene::ParameterError;
+use asperity::patch::{MotionError, Patch, PatchRun, PatchVariable};
 
 use super::motion::MotionFile;
 use super::sources;
 use crate::program::cli::Simulate;
 use crate::program::figure::{Figure as _, PatchHistory};
-use crate::program::files::{FileError, check_outputs};
+use crate::program::files::{FileError, check_outputs, load_patch, named};
 use crate::program::result_file::{CsvWriter, Field, ResultFileError};
 use crate::program::terminal::warn;
 
@@ -20,21 +19,16 @@ pub(crate) enum PatchSimulateError {
     #[error(transparent)]
     File(#[from] FileError),
     #[error(transparent)]
-    Patch(#[from] PatchError),
-    #[error("--set: {0}")]
-    Parameter(#[from] ParameterError),
-    #[error(transparent)]
     Motion(#[from] ResultFileError),
     #[error("the run cannot start: {0}")]
     Start(MotionError),
-    #[error("{source}; the rows so far, up to t = {time} s, are in {}", .output.display())]
+    #[error("{source}; the rows so far, up to t = {time} s, are in {}", named(.output))]
     Run { source: MotionError, time: f64, output: PathBuf },
 }
 
 /// Moves the patch, writes the rows and draws the plot.
 pub(crate) fn simulate(command: &Simulate, patch_file: &Path, motion_file: &Path) -> Result<(), PatchSimulateError> {
-    let mut patch = Patch::load(patch_file)?;
-    command.set.iter().try_for_each(|(key, value)| patch.set_by_name(key, value))?;
+    let patch = load_patch(patch_file, &command.set)?;
     let mut taken = sources(patch_file, &patch);
     taken.push(motion_file.to_owned());
     check_outputs([&command.output].into_iter().chain(&command.plot), taken)?;

@@ -13,7 +13,7 @@ use super::run::{self, Progress};
 use super::tables::{self, Peers};
 use super::{ReportError, page, stem, write_judgements};
 use crate::program::cli::Report;
-use crate::program::files::{FileError, load, set_parameters, sources};
+use crate::program::files::{FileError, load, sources};
 use crate::program::terminal::warn;
 
 /// A scene that can be run, its folder and its peers.
@@ -29,8 +29,7 @@ pub(super) struct SceneReport<'a> {
 impl<'a> SceneReport<'a> {
     /// Reads what is needed and checks it, before anything is run or written.
     pub(super) fn prepare(command: &'a Report, path: &'a Path, folder: &Path) -> Result<Self, ReportError> {
-        let mut scene = load(path)?;
-        set_parameters(&mut scene, &command.set)?;
+        let scene = load(path, &command.set)?;
         if scene.excitation.is_empty() {
             let why = "has no [[excitation]]: the carrier rests, and there is no run to report on";
             return Err(ReportError::NoRun { scene: path.to_owned(), why });

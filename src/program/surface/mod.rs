@@ -1,5 +1,7 @@
 //! `asperity surface`: analyses a profile.
 
+mod periodic;
+
 use std::path::{Path, PathBuf};
 
 use asperity::scene::{self, Band, PowerLaw, Spectrum};
@@ -7,7 +9,9 @@ use serde::Serialize;
 
 use super::cli::{Reading, Surface};
 use super::figure::{Figure as _, ProfilePicture};
-use super::files::{self, FileError, check_outputs, ends_in, load, name_of, print, sources};
+use super::files::{
+    self, FileError, check_outputs, ends_in, load_without_excitation, name_of, named, print_beside, sources,
+};
 use super::terminal::{lines, note, real, warn};
 
 /// `asperity surface` failed.
@@ -17,6 +21,8 @@ pub(crate) enum SurfaceError {
     File(#[from] FileError),
     #[error("{}: a scene defines how its surface is read; these options are for profiles only", .path.display())]
     SceneHasOptions { path: PathBuf },
+    #[error("{}: --mirror and --taper make a profile periodic, and it is", .path.display())]
+    AlreadyPeriodic { path: PathBuf },
     #[error("cannot be written as JSON: {0}")]
     Json(#[from] serde_json::Error),
 }
@@ -25,17 +31,26 @@ pub(crate) enum SurfaceError {
 pub(crate) fn surface(command: &Surface) -> Result<(), SurfaceError> {
     let (read, files) = read(command)?;
     check_outputs(command.output.iter().chain(&command.write), files)?;
-    let surface = command.smooth.map_or_else(|| read.clone(), |cut_off| read.smoothed(cut_off));
-    let removed = command.smooth.map(|cut_off| Removed::of(&read, &surface, cut_off));
+    if (command.mirror || command.taper) && read.is_periodic() {
+        return Err(SurfaceError::AlreadyPeriodic { path: command.file.clone() });
+    }
+    let smooth = command.smooth.map_or_else(|| read.clone(), |cut_off| read.smoothed(cut_off));
+    let removed = command.smooth.map(|cut_off| Removed::of(&read, &smooth, cut_off));
+    let surface = match (command.mirror, command.taper) {
+        (true, _) => periodic::mirrored(&smooth),
+        (_, true) => periodic::tapered(&smooth),
+        _ => smooth,
+    };
     let analysis = Analysis { removed, ..Analysis::of(&surface, command) };
     let text = if command.json { serde_json::to_string(&analysis)? + "\n" } else { analysis.text() };
-    print(&text)?;
+    print_beside(&command.write, &text)?;
     if let Some(path) = &command.output {
         picture(&surface, &analysis, &command.file).write(path)?;
     }
     if let Some(path) = &command.write {
         files::write(path, columns(&surface))?;
-        note(&format!("{} holds the profile in m, for path = of a scene's surface", path.display()));
+        let periodic = if surface.is_periodic() { " with periodic = true" } else { "" };
+        note(&format!("{} holds the profile in m, for path = of a scene's surface{periodic}", named(path)));
     }
     Ok(())
 }
@@ -47,7 +62,7 @@ fn read(command: &Surface) -> Result<(scene::Surface, Vec<PathBuf>), SurfaceErro
         if command.reading != Reading::default() {
             return Err(SurfaceError::SceneHasOptions { path: path.clone() });
         }
-        let scene = load(path)?;
+        let scene = load_without_excitation(path, &[])?;
         let files = sources(path, &scene);
         return Ok((scene.surface, files));
     }

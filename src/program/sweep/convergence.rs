@@ -7,15 +7,19 @@ use asperity::scene::text_table;
 use super::SweepError;
 use crate::program::files::read;
 
-/// The verdict of the study named, or of the one that `asperity converge` would have written for the scene; `None`
-/// without one.
-pub(super) fn found(named: Option<&PathBuf>, scene_file: &Path, scene: &str) -> Result<Option<String>, SweepError> {
+/// The table of the study named, or of the one that `asperity converge` has written for the scene; `None` without one.
+pub(super) fn file(named: Option<&PathBuf>, scene_file: &Path) -> Option<PathBuf> {
     let usual = PathBuf::from(scene_file.file_stem().unwrap_or(scene_file.as_os_str())).with_extension("converge.csv");
-    let Some(path) = named.or(Some(&usual).filter(|usual| usual.exists())) else { return Ok(None) };
+    named.cloned().or(Some(usual).filter(|usual| usual.exists()))
+}
+
+/// The verdict of the study at `path` on `scene`.
+pub(super) fn found(path: Option<&Path>, scene: &str) -> Result<Option<String>, SweepError> {
+    let Some(path) = path else { return Ok(None) };
     let text = String::from_utf8_lossy(&read(path)?).into_owned();
     match verdict(&text, scene) {
         Ok(verdict) => Ok(Some(verdict)),
-        Err(problem) => Err(SweepError::NotAStudy { path: path.clone(), problem }),
+        Err(problem) => Err(SweepError::NotAStudy { path: path.to_owned(), problem }),
     }
 }
 
@@ -41,7 +45,7 @@ fn verdict(text: &str, scene: &str) -> Result<String, String> {
 mod tests {
     use super::*;
 
-    const STUDY: &str = "# asperity converge = 1\n# scene = block\n# pressure = 100000 Pa\n# speed = 0.1 m/s\n\
+    const STUDY: &str = "# asperity converge = 2\n# scene = block\n# pressure = 100000 Pa\n# speed = 0.1 m/s\n\
                          # verdict = converged: spacing leaves most open\nmasses\n";
 
     #[test]

@@ -18,11 +18,14 @@ use asperity::scene::{Initial, OutputGroup, ParameterError, Path as Displacement
 use rayon::prelude::*;
 
 use super::cli::Sweep;
-use super::files::{FileError, check_output, load, print, set_parameters, sources};
+use super::draft::TablePlace;
+use super::files::{FileError, check_outputs, load_without_excitation, named, picture_beside, print_beside, sources};
+use super::interrupt::Farewell;
 use super::terminal::{self, lines, warn};
 use load_search::{heights, rest_separation};
-use point::PointResult;
 pub(crate) use point::{Bounds, SMALL as SMALL_FRICTION, SteadySliding};
+use point::{MIN_BLOCKS, PointResult};
+use slide::Blocks;
 pub(crate) use table_file::fingerprint as table_fingerprint;
 use table_file::{SweepTable, TableFile, TableFileError};
 use values::Values;
@@ -51,8 +54,32 @@ pub(crate) enum SweepError {
     Temperature(ParameterError),
     #[error("{}: not a study of this scene's convergence: {problem}", .path.display())]
     NotAStudy { path: PathBuf, problem: String },
-    #[error("{failed} of {total} points are not steady or failed: the column status in {} says why", .path.display())]
+    #[error(transparent)]
+    ProfileEnds(#[from] ProfileEnds),
+    #[error("{failed} of {total} points are not steady or failed: the column status in {} says why", named(.path))]
     NotSteady { failed: usize, total: usize, path: PathBuf },
+}
+
+/// The profile is too short to slide on until the means are steady.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "the profile ends {longest:.4e} m from where the layer starts, and steady sliding takes {needed:.4e} m or more: make it \
+     periodic, as `asperity surface --mirror --write` does, or --taper, and give periodic = true in [surface]"
+)]
+pub(crate) struct ProfileEnds {
+    /// m
+    longest: f64,
+    /// m
+    needed: f64,
+}
+
+/// Refuses a profile that ends before any point could become steady.
+pub(crate) fn check_profile(scene: &Scene) -> Result<(), ProfileEnds> {
+    let blocks = Blocks::new(scene, 1.0);
+    if blocks.has_room(MIN_BLOCKS) {
+        return Ok(());
+    }
+    Err(ProfileEnds { longest: blocks.longest, needed: MIN_BLOCKS * blocks.length })
 }
 
 /// Computes a table or merges several.
@@ -65,15 +92,17 @@ pub(crate) fn sweep(command: &Sweep) -> Result<(), SweepError> {
     }
 }
 
-fn merge(command: &Sweep, output: &Path) -> Result<(), SweepError> {
-    check_output(output, &command.merge)?;
-    let table = SweepTable::merge(&command.merge, output)?;
-    finish(command, output, &table)
+fn merge(command: &Sweep, output: &PathBuf) -> Result<(), SweepError> {
+    let picture = picture(command, output);
+    check_outputs([output].into_iter().chain(&picture), command.merge.clone())?;
+    let place = TablePlace::new(output)?;
+    let table = SweepTable::merge(&command.merge, &place.path, command.force)?;
+    place.finish()?;
+    finish(output, picture.as_deref(), &table)
 }
 
 fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepError> {
-    let mut scene = load(path)?;
-    set_parameters(&mut scene, &command.set)?;
+    let scene = load_without_excitation(path, &command.set)?;
     if scene.carrier.x.is_some() {
         return Err(SweepError::BodyAlongX);
     }
@@ -83,24 +112,31 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepErr
     }
     let grid = SweepGrid { speeds: speeds.0.clone(), loads, temperatures: temperatures(command, &scene)? };
     let output = command.output.clone().unwrap_or_else(|| default_output(path));
-    check_output(&output, &sources(path, &scene))?;
+    let picture = picture(command, &output);
+    let study = convergence::file(command.converged.as_ref(), path);
+    let taken = sources(path, &scene).into_iter().chain(study.clone()).collect();
+    check_outputs([&output].into_iter().chain(&picture), taken)?;
+    check_profile(&scene)?;
     let scene = relevant(scene);
     let header = TableHeader {
         fingerprint: fingerprint(&scene, command, load)?,
         scene: scene.name.clone(),
         load,
         rest_separation: separation_at_rest(&scene),
-        basis: basis(&scene, convergence::found(command.converged.as_ref(), path, &scene.name)?),
+        basis: basis(&scene, convergence::found(study.as_deref(), &scene.name)?),
         grid,
         low_end: None,
     };
-    let file = TableFile::open(&output, &header, command.force)?;
-    run(command, &scene, &header, &file)?;
-    let mut table = SweepTable { header, ..SweepTable::read(&output)? };
+    let place = TablePlace::new(&output)?;
+    let file = TableFile::open(&place.path, &header, command.force)?;
+    run(command, &scene, &header, &file, &output)?;
+    let mut table = SweepTable { header, ..SweepTable::read(&place.path)? };
     table.sort();
     table.find_low_end(&output);
-    table.write(&output)?;
-    finish(command, &output, &table)
+    table.write(&place.path)?;
+    drop(file);
+    place.finish()?;
+    finish(&output, picture.as_deref(), &table)
 }
 
 /// What the table rests on, for those who use it.
@@ -112,7 +148,7 @@ fn basis(scene: &Scene, convergence: Option<String>) -> Basis {
 }
 
 /// Computes the points that are not done yet, on all cores.
-fn run(command: &Sweep, scene: &Scene, header: &TableHeader, file: &TableFile) -> Result<(), FileError> {
+fn run(command: &Sweep, scene: &Scene, header: &TableHeader, file: &TableFile, output: &Path) -> Result<(), FileError> {
     let in_shard = |index: usize| command.shard.is_none_or(|shard| shard.has(index));
     let points = header.grid.points().enumerate().filter(|(index, _)| in_shard(*index)).map(|(_, point)| point);
     let points: Vec<OperatingPoint> = points.collect();
@@ -124,6 +160,12 @@ fn run(command: &Sweep, scene: &Scene, header: &TableHeader, file: &TableFile) -
     bar.set_message(format!("of {} points", points.len()));
     bar.enable_steady_tick(std::time::Duration::from_secs(1));
     let bounds = Bounds { error: command.error, distance: command.distance };
+    let done = bar.clone();
+    let _farewell = Farewell::new(output, move || {
+        let (points, all) = (done.position(), done.length().unwrap_or_default());
+        done.finish_and_clear();
+        format!("{points} of {all} points are done")
+    });
     let work = left.par_iter().with_max_len(1).try_for_each(|point| {
         let result = point::find(&scene_at(scene, point), point.speed, header.load.force(point.load), bounds);
         file.add(&result.row(*point, header))?;
@@ -134,15 +176,18 @@ fn run(command: &Sweep, scene: &Scene, header: &TableHeader, file: &TableFile) -
     work
 }
 
+/// The picture to draw; none of a shard.
+fn picture(command: &Sweep, output: &Path) -> Option<PathBuf> {
+    if command.shard.is_some() { None } else { picture_beside(output, command.plot.as_ref()) }
+}
+
 /// Draws the plot, says what lies at the low end and counts the points that are not steady.
-fn finish(command: &Sweep, output: &Path, table: &SweepTable) -> Result<(), SweepError> {
-    if command.shard.is_none() {
-        let picture = command.plot.clone().unwrap_or_else(|| output.with_extension("svg"));
-        check_output(&picture, &[vec![output.to_owned()], command.merge.clone()].concat())?;
-        plot::draw(&picture, table)?;
+fn finish(output: &PathBuf, picture: Option<&Path>, table: &SweepTable) -> Result<(), SweepError> {
+    if let Some(picture) = picture {
+        plot::draw(picture, table)?;
     }
     if let Some(low_end) = &table.header.low_end {
-        print(&lines(&[("Low end", low_end.clone())]))?;
+        print_beside([output], &lines(&[("Low end", low_end.clone())]))?;
     }
     let (failed, total) = (table.rows.iter().filter(|stored| !stored.row.is_steady()).count(), table.rows.len());
     if failed == 0 { Ok(()) } else { Err(SweepError::NotSteady { failed, total, path: output.to_owned() }) }

@@ -37,6 +37,8 @@ const SEARCHES: usize = 12;
 /// Fraction of a block over which w is changed, and fraction over which the effect of that decays.
 const RAMP: f64 = 0.125;
 const CALM: f64 = 0.125;
+/// Blocks of the shortest slide on which means can be judged: pressed, then averaged.
+pub(super) const MIN_BLOCKS: f64 = RAMP + CALM + FEWEST as f64;
 /// A window of so many blocks whose load has a trend is abandoned: the dashpots are not yet at rest.
 const ABANDONED: usize = 6;
 /// The relative error of a friction coefficient smaller than this is taken relative to this.
@@ -80,6 +82,11 @@ impl SteadySliding {
     /// Friction coefficient, 1.
     pub(crate) fn friction(&self) -> f64 {
         self.friction.whole
+    }
+
+    /// The part of the friction coefficient that is hysteresis, 1.
+    pub(crate) fn hysteresis(&self) -> f64 {
+        self.friction.hysteresis
     }
 
     /// Mean force against the motion, N.
@@ -282,11 +289,13 @@ impl<'a> Search<'a> {
         let mut first = self.press()?;
         loop {
             let Some(average) = self.average(first.take())? else {
-                let status = format!("not steady: no room for {FEWEST} blocks of {} m", self.blocks.length);
+                let Blocks { length, .. } = self.blocks;
+                let status =
+                    format!("not steady: no room for {FEWEST} blocks of {length} m within {} m", self.distance);
                 return Ok(PointResult::failed(status));
             };
             let pressed = average.steady && self.deviation(&average.means).abs() <= LOAD;
-            if pressed || !self.has_room(RAMP + CALM + FEWEST as f64) {
+            if pressed || !self.has_room(MIN_BLOCKS) {
                 return Ok(self.result(&average));
             }
             let maxwell = if average.drifts { self.relax(&average.means) } else { 0.0 };
@@ -334,7 +343,7 @@ impl<'a> Search<'a> {
         let searched = self.held == Held::Searched;
         let change = if searched { self.load.change(force, maxwell) } else { 0.0 };
         self.runs += u32::from(searched);
-        if !self.slide.has_room(RAMP + CALM + FEWEST as f64) {
+        if !self.slide.has_room(MIN_BLOCKS) {
             return self.restart();
         }
         self.slide.press(RAMP, change)?;

@@ -83,7 +83,7 @@ pub(super) struct Blocks {
     /// u at the start, m.
     start: f64,
     /// Longest distance from there, m; infinite on a periodic profile.
-    longest: f64,
+    pub(super) longest: f64,
 }
 
 impl Blocks {
@@ -102,6 +102,13 @@ impl Blocks {
         }
         let longest = (period - layer + scene.layer.spacing).max(0.0);
         Self { speed, length: block, samples, start: first - scene.layer.origin, longest }
+    }
+}
+
+impl Blocks {
+    /// Whether the profile is long enough for so many of them.
+    pub(super) fn has_room(&self, blocks: f64) -> bool {
+        blocks * self.length <= self.longest
     }
 }
 
@@ -148,7 +155,7 @@ impl Slide {
 
     /// Whether the profile is long enough for so many more blocks.
     pub(super) fn has_room(&self, blocks: f64) -> bool {
-        (self.slid + blocks) * self.blocks.length <= self.blocks.longest
+        self.blocks.has_room(self.slid + blocks)
     }
 
     /// Slides over a fraction of a block while w changes by `dw` (m).

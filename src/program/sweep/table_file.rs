@@ -1,14 +1,16 @@
 //! The file of a sweep: points are added as they are done and not computed again; shards are merged into one.
 
-use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use asperity::element::{FORMAT, OperatingPoint, Table, TableError, TableHeader, TableRow, TableText};
-use asperity::scene::Scene;
+use asperity::scene::{Scene, read_file, read_text};
 
 use super::low_end::low_end;
-use crate::program::files::{FileError, LineFile, replace};
+use crate::program::draft::LineFile;
+use crate::program::files::{FileError, write};
+use crate::program::lock::TableLock;
+use crate::program::terminal::warn;
 
 /// A table cannot be read, continued or merged.
 #[derive(Debug, thiserror::Error)]
@@ -68,18 +70,20 @@ pub(super) struct SweepTable {
 
 impl SweepTable {
     pub(super) fn read(path: &Path) -> Result<Self, TableFileError> {
-        let text = fs::read_to_string(path).map_err(FileError::io("read", path))?;
-        Ok(Self::parse(&text, path)?)
+        let text = read_text(path).map_err(FileError::io("read", path))?;
+        let (table, corrupt) = Self::parse(&text, path)?;
+        corrupt.into_iter().next().map_or(Ok(table), |error| Err(error.into()))
     }
 
-    fn parse(text: &str, path: &Path) -> Result<Self, TableError> {
+    /// The table without its corrupt rows, and what is wrong with those.
+    fn parse(text: &str, path: &Path) -> Result<(Self, Vec<TableError>), TableError> {
         // A last line without an end was cut off as its writer was stopped.
         let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
-        let text = TableText::parse(whole, path)?;
+        let (text, corrupt) = TableText::parse_sound(whole, path)?;
         let header = text.header()?;
         let rows = text.rows(header.load)?.into_iter().zip(&text.lines);
         let rows = rows.map(|(row, line)| StoredRow { row, text: format!("{}\n", line.text) }).collect();
-        Ok(Self { header, rows })
+        Ok((Self { header, rows }, corrupt))
     }
 
     /// Sorts the rows in the order of the points.
@@ -99,12 +103,14 @@ impl SweepTable {
 
     /// Writes the table at once: what is at `path` is the one before or this one, whole.
     pub(super) fn write(&self, path: &Path) -> Result<(), FileError> {
-        replace(path, &self.text())
+        write(path, self.text())
     }
 
-    /// Merges the tables at `paths` and writes the result at `output`.
-    pub(super) fn merge(paths: &[PathBuf], output: &Path) -> Result<Self, TableFileError> {
-        let tables: Vec<Self> = paths.iter().map(|path| Self::read(path)).collect::<Result<_, _>>()?;
+    /// Merges the tables at `paths` with the one of the same sweep at `output`, unless that is to be replaced, and writes the
+    /// result there.
+    pub(super) fn merge(paths: &[PathBuf], output: &Path, replace: bool) -> Result<Self, TableFileError> {
+        let _lock = TableLock::take(output)?;
+        let mut tables: Vec<Self> = paths.iter().map(|path| Self::read(path)).collect::<Result<_, _>>()?;
         let header = tables[0].header.clone();
         for (path, table) in paths.iter().zip(&tables) {
             if let Some(difference) = difference(&header, &table.header) {
@@ -112,9 +118,14 @@ impl SweepTable {
                 return Err(TableFileError::Different { first, other, difference });
             }
         }
+        let mut paths = paths.to_vec();
+        if !replace {
+            tables.push(Self { header: header.clone(), rows: rows_done(output, &header)? });
+            paths.push(output.to_owned());
+        }
         let (mut rows, mut missing) = (Vec::new(), Vec::new());
         for point in header.grid.points() {
-            match row_of(&tables, paths, &point)? {
+            match row_of(&tables, &paths, &point)? {
                 Some(stored) => rows.push(stored.clone()),
                 None => missing.push(point.describe(header.load)),
             }
@@ -159,6 +170,7 @@ fn difference(first: &TableHeader, other: &TableHeader) -> Option<String> {
 #[derive(Debug)]
 pub(super) struct TableFile {
     file: LineFile,
+    _lock: TableLock,
     /// The rows that were there.
     pub(super) done: Vec<StoredRow>,
 }
@@ -166,9 +178,10 @@ pub(super) struct TableFile {
 impl TableFile {
     /// Begins a table or, unless it is to be replaced, continues the one that is there.
     pub(super) fn open(path: &Path, header: &TableHeader, replace: bool) -> Result<Self, TableFileError> {
+        let lock = TableLock::take(path)?;
         let done = if replace { Vec::new() } else { rows_done(path, header)? };
         let table = SweepTable { header: header.clone(), rows: done };
-        Ok(Self { file: LineFile::create(path, &table.text())?, done: table.rows })
+        Ok(Self { file: LineFile::create(path, &table.text())?, _lock: lock, done: table.rows })
     }
 
     /// Adds a row; it is in the file when this returns.
@@ -177,9 +190,10 @@ impl TableFile {
     }
 }
 
-/// The rows of the table at `path`; none where there is no file, or only the beginning of a header.
+/// The rows of the table at `path`, without the corrupt ones, which are named; none where there is no file, or only the
+/// beginning of a header.
 fn rows_done(path: &Path, header: &TableHeader) -> Result<Vec<StoredRow>, TableFileError> {
-    let text = match fs::read(path) {
+    let text = match read_file(path) {
         Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
         Err(error) => return Err(FileError::io("read", path)(error).into()),
@@ -187,11 +201,12 @@ fn rows_done(path: &Path, header: &TableHeader) -> Result<Vec<StoredRow>, TableF
     if is_begun(&text, &header.text()) {
         return Ok(Vec::new());
     }
-    let table = SweepTable::parse(&text, path).map_err(TableFileError::NotATable)?;
+    let (table, corrupt) = SweepTable::parse(&text, path).map_err(TableFileError::NotATable)?;
     if table.header.fingerprint != header.fingerprint {
         let (found, expected) = (table.header.fingerprint, header.fingerprint.clone());
         return Err(TableFileError::OtherSweep { path: path.to_owned(), found, expected });
     }
+    corrupt.iter().for_each(|error| warn(&format!("{error}; the point is computed again")));
     match table.rows.iter().find(|stored| header.grid.index(&stored.row.point).is_none()) {
         Some(stored) => {
             let point = stored.row.point.describe(header.load);

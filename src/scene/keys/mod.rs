@@ -5,6 +5,7 @@ mod patch;
 
 use std::fmt;
 
+use super::parameters::is_similar;
 use super::values::{ANY, NOT_NEGATIVE, NumberRange, POSITIVE, WholeRange, Word, words};
 use super::{
     CarrierInitial, Extrapolation, FoundationKind, Initial, LengthUnit, Method, Missing, OutputGroup, ThirdColumn,
@@ -407,6 +408,33 @@ pub(super) fn at(path: &str) -> Option<&'static Key> {
         (keys, found) = (key.keys(), Some(key));
     }
     found
+}
+
+/// The paths of other keys of a scene and of a patch that look like `given`, or end with it; elements of lists as `[1]`.
+pub fn similar_keys(given: &str) -> Vec<String> {
+    let faces = ShapeKind::WORDS.iter().flat_map(|(_, kind)| paths("patch.", kind.keys()));
+    let all = paths("", ROOT).into_iter().chain(paths("", PATCH_ROOT)).chain(faces);
+    let mut similar: Vec<String> = all.filter(|path| path != given && is_similar(given, path)).collect();
+    similar.sort_unstable();
+    similar.dedup();
+    similar
+}
+
+/// The paths of `keys` and of those below them.
+fn paths(start: &str, keys: &[Key]) -> Vec<String> {
+    let below = |key: &Key| {
+        let path = format!("{start}{}", key.name);
+        let paths = match key.allowed {
+            Allowed::Table(keys) => paths(&format!("{path}."), keys),
+            Allowed::Tables(keys, _) => paths(&format!("{path}[1]."), keys),
+            Allowed::Surface => {
+                SurfaceKind::WORDS.iter().flat_map(|(_, kind)| paths(&format!("{path}."), kind.keys())).collect()
+            }
+            _ => Vec::new(),
+        };
+        std::iter::once(path).chain(paths)
+    };
+    keys.iter().flat_map(below).collect()
 }
 
 /// The range of the number at a path; positive numbers where there is none.

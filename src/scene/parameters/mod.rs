@@ -412,7 +412,7 @@ impl Scene {
 }
 
 /// Whether a few letters differ, or only the end of the path is given.
-fn is_similar(given: &str, name: &str) -> bool {
+pub(super) fn is_similar(given: &str, name: &str) -> bool {
     let end_of_path = name.strip_suffix(given).is_some_and(|start| start.ends_with('.'));
     end_of_path || edits(given, name) <= 1 + given.chars().count() / 8
 }

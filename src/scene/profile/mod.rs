@@ -11,12 +11,13 @@ mod x3p;
 #[cfg(test)]
 mod tests;
 
+use std::io;
 use std::path::{Path, PathBuf};
-use std::{fs, io};
 
 pub use options::{LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt, UnknownWord};
 
 use super::error::{ContentError, SceneError};
+use super::regular_file::read_file;
 use super::surface::{Coordinate, Surface, check_points, remove_tilt};
 use super::text_table::decode;
 use options::MeasuredPoints;
@@ -55,7 +56,7 @@ impl Surface {
     /// # Errors
     /// [`SceneError`] with the file, the line, the column, what was given and what is allowed.
     pub fn load(path: &Path, options: &ProfileOptions) -> Result<(Self, Vec<String>), SceneError> {
-        let bytes = fs::read(path).map_err(|error| SceneError::unreadable(path, &error))?;
+        let bytes = read_file(path).map_err(|error| SceneError::unreadable(path, &error))?;
         let parsed = parse(&bytes, options, false).map_err(|error| error.in_file(path.to_owned()))?;
         Ok((parsed.surface, parsed.warnings))
     }
@@ -63,11 +64,11 @@ impl Surface {
 
 /// Reads the profile at `path`, which is relative to `folder`. Where that file is not there, its extract may be.
 pub(super) fn read(folder: &Path, path: &Path, options: &ProfileOptions) -> Result<Profile, ReadFailure> {
-    let (file, bytes) = match fs::read(folder.join(path)) {
+    let (file, bytes) = match read_file(&folder.join(path)) {
         Ok(bytes) => (path.to_owned(), bytes),
         Err(error) => {
             let extract = extract_name(path, options);
-            let bytes = fs::read(folder.join(&extract)).map_err(|_| ReadFailure::Unreadable(error))?;
+            let bytes = read_file(&folder.join(&extract)).map_err(|_| ReadFailure::Unreadable(error))?;
             (extract, bytes)
         }
     };

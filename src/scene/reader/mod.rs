@@ -5,14 +5,13 @@ mod patch;
 mod surface;
 mod table;
 
-use std::fs;
 use std::path::Path as FilePath;
 
 use super::keys::Form;
 use super::values::Word;
 use super::{
     ByLink, CarrierBodies, Extrapolation, Foundation, FoundationKind, Friction, Initial, Layer, Link, LinkKind,
-    Material, MaxwellElement, OutputGroup, PronyTerm, RateShear, RealArea, Scene, SceneError, Solver, Surface, Wlf,
+    Material, MaxwellElement, OutputGroup, PronyTerm, RateShear, RealArea, Scene, SceneError, Solver, Surface, Wlf, read_file, read_text,
     warnings,
 };
 use surface::Found;
@@ -27,7 +26,7 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] with the file, the line, the key, what was given and what is allowed.
     pub fn load(path: &FilePath) -> Result<Self> {
-        let text = fs::read_to_string(path).map_err(|error| SceneError::unreadable(path, &error))?;
+        let text = read_text(path).map_err(|error| SceneError::unreadable(path, &error))?;
         Self::parse(&text, path)
     }
 
@@ -69,9 +68,7 @@ fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
     let excitation =
         root.tables("excitation", |table| carrier::read_phase(table, &carrier, wlf.filter(|_| temperature_input)))?;
     root.finish()?;
-    let Found { files, extracts, mut warnings } = found;
-    warnings.extend(warnings::short_profile(&layer, &surface, &excitation));
-    warnings.extend(material.as_ref().and_then(warnings::cold_temperatures));
+    let Found { files, extracts, warnings } = found;
     let foundation = material.as_ref().and_then(|material| Foundation::new(&layer, material, &surface));
     let mut scene = Scene {
         name,
@@ -91,7 +88,9 @@ fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
         extracts,
         warnings,
     };
-    let warnings = scene.foundation_warnings();
+    let cold = scene.material.as_ref().and_then(warnings::cold_temperatures);
+    let warnings: Vec<String> =
+        scene.short_profile().into_iter().chain(cold).chain(scene.foundation_warnings()).collect();
     scene.warnings.extend(warnings);
     if let (Err(error), Some(entry)) = (scene.check_equilibrium(scene.first_load()), carrier_entry) {
         return Err(SceneError::new(entry.location(), error.name(), error.problem().clone()));
@@ -187,7 +186,7 @@ fn read_prony(entry: &Entry<'_>, found: &mut Found) -> Result<Vec<PronyTerm>> {
     }
     let path = surface::read_path(entry)?;
     let file = entry.source().folder().join(&path);
-    let bytes = fs::read(&file).map_err(|error| entry.unreadable(&error))?;
+    let bytes = read_file(&file).map_err(|error| entry.unreadable(&error))?;
     let terms =
         PronyTerm::parse(&bytes).map_err(|error| error.in_file(file).named_by(entry.location(), entry.path()))?;
     found.add_file(path);

@@ -1,16 +1,15 @@
 //! From TOML text to a [`PatchFile`].
 
 use std::f64::consts::PI;
-use std::fs;
 use std::path::Path as FilePath;
 
 use super::table::{Entry, Result, Source, TableReader};
 use super::{read_input, read_name, surface};
-use crate::scene::SceneError;
 use crate::scene::error::ContentError;
 use crate::scene::keys::{AREA, COORDINATE, Form, Key, PATCH_ROOT, ShapeKind};
 use crate::scene::patch_file::{FaceShape, Grid, MAX_ELEMENTS, PatchFile, PatchGroup, TableExtrapolation};
 use crate::scene::text_table::{self, Row, decode};
+use crate::scene::{SceneError, read_file, read_text};
 
 /// The columns of a file of points.
 const COLUMNS: [&str; 4] = ["x", "y", "z", "area"];
@@ -21,7 +20,7 @@ impl PatchFile {
     /// # Errors
     /// [`SceneError`] with the file, the line, the key, what was given and what is allowed.
     pub fn load(path: &FilePath) -> Result<Self> {
-        let text = fs::read_to_string(path).map_err(|error| SceneError::unreadable(path, &error))?;
+        let text = read_text(path).map_err(|error| SceneError::unreadable(path, &error))?;
         Self::parse(&text, path)
     }
 
@@ -114,7 +113,7 @@ fn read_offset(entry: &Entry<'_>) -> Result<[f64; 3]> {
 fn read_points(entry: &Entry<'_>) -> Result<FaceShape> {
     let path = surface::read_path(entry)?;
     let file = entry.source().folder().join(&path);
-    let bytes = fs::read(&file).map_err(|error| entry.unreadable(&error))?;
+    let bytes = read_file(&file).map_err(|error| entry.unreadable(&error))?;
     let points = parse_points(&bytes);
     let points = points.map_err(|error| error.in_file(file).named_by(entry.location(), entry.path()))?;
     Ok(FaceShape::Points { path, points })

@@ -208,6 +208,9 @@ fn to_and_fro(
     rows.write(&files[0], &variables, &rows.layer)?;
     rows.write(&files[1], &variables, &rows.element)?;
     plot_files(&Plot {
+        conditions: Vec::new(),
+        log: Vec::new(),
+        markers: false,
         files: files.to_vec(),
         x: "u".into(),
         y: vec!["F_x".into()],

@@ -1,0 +1,178 @@
+//! Outputs as they are being written: beside their places, which they take whole.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, Stdout, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use tempfile::{Builder, NamedTempFile, TempDir};
+
+use super::files::{FileError, is_standard_output, print, read, write};
+use super::interrupt::Leftover;
+
+/// An output as it is being written. It takes its place when it is [finished](Self::finish); where the run ends before,
+/// whatever was there is still there.
+#[derive(Debug)]
+pub(crate) struct Draft {
+    path: PathBuf,
+    file: BufWriter<Target>,
+}
+
+#[derive(Debug)]
+enum Target {
+    /// A file beside its place, and that place.
+    Beside {
+        file: NamedTempFile,
+        place: PathBuf,
+        leftover: Leftover,
+    },
+    /// A pipe or a device.
+    Stream(File),
+    Standard(Stdout),
+}
+
+impl Draft {
+    /// Begins the output at `path`.
+    ///
+    /// # Errors
+    /// Where it could not be written: there is no such folder, no permission, or a folder has the name.
+    pub(crate) fn create(path: &Path) -> Result<Self, FileError> {
+        let target = Target::new(path).map_err(FileError::io("write", path))?;
+        Ok(Self { path: path.to_owned(), file: BufWriter::new(target) })
+    }
+
+    /// Checks that the output at `path` can be written; a pipe is not opened, for its reader would see it end.
+    pub(crate) fn check(path: &Path) -> Result<(), FileError> {
+        let is_stream = fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir());
+        if is_stream { Ok(()) } else { Self::create(path).map(drop) }
+    }
+
+    /// Puts the output in its place.
+    pub(crate) fn finish(self) -> Result<(), FileError> {
+        let target = self.file.into_inner().map_err(io::IntoInnerError::into_error);
+        target.and_then(Target::finish).map_err(FileError::io("write", &self.path))
+    }
+}
+
+impl Write for Draft {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Target {
+    fn new(path: &Path) -> io::Result<Self> {
+        if is_standard_output(path) {
+            return Ok(Self::Standard(io::stdout()));
+        }
+        // A link stays, and what it leads to is replaced.
+        let place = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let before = fs::metadata(&place).ok();
+        if before.is_some() {
+            // Where it may not be written it is not replaced either.
+            let file = OpenOptions::new().write(true).open(&place)?;
+            if !before.as_ref().is_some_and(fs::Metadata::is_file) {
+                return Ok(Self::Stream(file));
+            }
+        }
+        let folder = place.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+        let mut prefix = std::ffi::OsString::from(".");
+        prefix.push(place.file_name().unwrap_or_default());
+        prefix.push(".");
+        let mut builder = Builder::new();
+        builder.prefix(&prefix).suffix(".part");
+        #[cfg(unix)]
+        builder.permissions(permissions(before.as_ref()));
+        let file = builder.tempfile_in(folder)?;
+        let leftover = Leftover::new(file.path());
+        Ok(Self::Beside { file, place, leftover })
+    }
+
+    fn finish(self) -> io::Result<()> {
+        match self {
+            Self::Beside { file, place, leftover } => {
+                file.as_file().sync_all()?;
+                leftover.keep_while(|| file.persist(&place))?;
+                Ok(())
+            }
+            Self::Stream(_) => Ok(()),
+            Self::Standard(mut stdout) => stdout.flush(),
+        }
+    }
+
+    fn stream(&mut self) -> &mut dyn Write {
+        match self {
+            Self::Beside { file, .. } => file.as_file_mut(),
+            Self::Stream(file) => file,
+            Self::Standard(stdout) => stdout,
+        }
+    }
+}
+
+impl Write for Target {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.stream().write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.stream().flush()
+    }
+}
+
+/// Those of the file that was there, else those of any new file.
+#[cfg(unix)]
+fn permissions(before: Option<&fs::Metadata>) -> fs::Permissions {
+    use std::os::unix::fs::PermissionsExt as _;
+    before.map_or_else(|| fs::Permissions::from_mode(0o666), fs::Metadata::permissions)
+}
+
+/// Where a table is that is continued: in its place or, for standard output, in a folder of its own until it is whole.
+#[derive(Debug)]
+pub(crate) struct TablePlace {
+    pub(crate) path: PathBuf,
+    folder: Option<(TempDir, Leftover)>,
+}
+
+impl TablePlace {
+    pub(crate) fn new(output: &Path) -> Result<Self, FileError> {
+        if !is_standard_output(output) {
+            return Ok(Self { path: output.to_owned(), folder: None });
+        }
+        let folder = tempfile::tempdir().map_err(FileError::io("write", &std::env::temp_dir()))?;
+        let leftover = Leftover::new(folder.path());
+        Ok(Self { path: folder.path().join("table.csv"), folder: Some((folder, leftover)) })
+    }
+
+    /// Prints the whole table where it is for standard output.
+    pub(crate) fn finish(self) -> Result<(), FileError> {
+        if self.folder.is_some() { print(&String::from_utf8_lossy(&read(&self.path)?)) } else { Ok(()) }
+    }
+}
+
+/// A file to which lines are added, from any thread.
+#[derive(Debug)]
+pub(crate) struct LineFile {
+    path: PathBuf,
+    /// A line is written at once, so that one that is cut off has no end.
+    file: Mutex<File>,
+}
+
+impl LineFile {
+    /// A file that begins with `text`, in the place of what was at `path`.
+    pub(crate) fn create(path: &Path, text: &str) -> Result<Self, FileError> {
+        write(path, text)?;
+        let file = OpenOptions::new().append(true).open(path).map_err(FileError::io("write", path))?;
+        Ok(Self { path: path.to_owned(), file: Mutex::new(file) })
+    }
+
+    /// Adds a line, its end included; it is in the file when this returns.
+    pub(crate) fn add(&self, line: &str) -> Result<(), FileError> {
+        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        let written = file.write_all(line.as_bytes()).and_then(|()| file.sync_data());
+        written.map_err(FileError::io("write", &self.path))
+    }
+}

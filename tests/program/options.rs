@@ -1,0 +1,232 @@
+//! Options of the commands: which go together, `--set`, standard output, `plot`.
+
+use std::fs;
+use std::path::Path;
+
+use crate::common::{Table, asperity, root, run, scratch};
+
+fn sinusoid() -> String {
+    root().join("tests/reference/sinusoid.toml").to_str().unwrap().to_owned()
+}
+
+/// The message of a command line that is refused.
+fn refused(arguments: &[&str]) -> String {
+    let output = asperity().args(arguments).output().unwrap();
+    assert!(!output.status.success() && output.stdout.is_empty(), "{arguments:?}");
+    String::from_utf8(output.stderr).unwrap()
+}
+
+/// Options that would be ignored are refused, also where what they name is not there.
+#[test]
+fn options_that_do_not_go_together_are_refused() {
+    let lines = [
+        "simulate a.toml -o x.csv --motion none.csv",
+        "simulate a.toml -o x.csv --patch p.toml --motion m.csv",
+        "simulate --patch p.toml --motion m.csv -o x.csv --points 3",
+        "describe a.toml --patch p.toml",
+        "describe --patch p.toml --json",
+        "describe --patch p.toml --plot x.svg",
+        "pack a.toml -o x.fmu --points 3",
+        "pack a.toml -o x.fmu --table t.csv",
+        "pack a.toml -o x.fmu --check a.toml",
+        "surface a.csv --mirror --taper",
+        "surface a.csv --mirror --periodic",
+        "surface a.csv --taper --periodic",
+        "sweep a.toml --speeds 1 --forces 1 --pressures 1",
+        "sweep a.toml --speeds 1 --forces 1 --shard 1/2 --plot x.svg",
+        "sweep --merge a.csv -o x.csv --error 0.1",
+        "sweep --merge a.csv -o x.csv --set a=1",
+        "sweep --merge a.csv -o x.csv --speeds 1",
+        "sweep --merge a.csv -o x.csv --temperatures 300",
+        "sweep --merge a.csv -o x.csv --distance 1",
+        "sweep a.toml --merge a.csv -o x.csv --speeds 1",
+    ];
+    for line in lines {
+        let message = refused(&line.split(' ').collect::<Vec<_>>());
+        assert!(message.contains("cannot be used with"), "{line}: {message}");
+    }
+    for line in ["simulate --patch p.toml -o x.csv", "pack --table t.csv -o x.fmu --points 3", "sweep --merge a.csv"] {
+        let message = refused(&line.split(' ').collect::<Vec<_>>());
+        assert!(message.contains("required arguments were not provided"), "{line}: {message}");
+    }
+    let message = refused(&["surface", &sinusoid(), "--mirror"]);
+    assert!(message.contains("make a profile periodic, and it is"), "{message}");
+}
+
+/// The first line of a command's help says what the command does, not what its options share.
+#[test]
+fn help_begins_with_what_the_command_does() {
+    let help = run(asperity().arg("--help"));
+    let commands = help.lines().filter_map(|line| line.strip_prefix("  ")?.split_once("  "));
+    let commands: Vec<_> = commands.filter(|(name, _)| !name.starts_with(['-', ' ']) && *name != "help").collect();
+    assert_eq!(commands.len(), 10, "{help}");
+    for (name, summary) in commands {
+        let first = run(asperity().args([name, "--help"]));
+        let first = first.lines().next().unwrap();
+        assert!(summary.trim().starts_with(first) || first.starts_with(summary.trim()), "{name}: {first}, {summary}");
+    }
+}
+
+/// All keys of a scene can be set, words without quotation marks, lists whole or by their elements; a run is that of the
+/// file so changed.
+#[test]
+fn every_key_can_be_set() {
+    let folder = scratch("options-set");
+    let out = folder.join("out.csv");
+    let run_with = |scene: &str, settings: &[&str]| {
+        let settings = settings.iter().flat_map(|setting| ["--set", setting]);
+        run(asperity().args(["simulate", scene, "--points", "3", "-o"]).arg(&out).args(settings));
+        fs::read_to_string(&out).unwrap()
+    };
+    let text = fs::read_to_string(sinusoid()).unwrap();
+    let changes = [
+        ("masses = 1", "masses = 2", "layer.masses=2"),
+        ("amplitude = ", "amplitude = 2e-6 # ", "surface.amplitude=2e-6"),
+        ("u_rate = 0.5", "u_rate = 0.25", "excitation[2].u_rate=0.25"),
+        ("outputs = [", "outputs = [\"contact\"] # ", "fmu.outputs=['contact']"),
+    ];
+    let mut changed = text.clone();
+    for (from, to, _) in changes {
+        assert!(changed.contains(from), "{from}");
+        changed = changed.replacen(from, to, 1);
+    }
+    let scene = folder.join("changed.toml");
+    fs::write(&scene, changed).unwrap();
+    let by_file = run_with(scene.to_str().unwrap(), &[]);
+    assert_eq!(run_with(&sinusoid(), &changes.map(|(_, _, setting)| setting)), by_file);
+    assert!(by_file.starts_with("time,u,w,contact"), "{by_file}");
+    // What the file does not have is added.
+    let flat =
+        run_with(&sinusoid(), &["surface={ kind = 'flat' }", "excitation=[{ duration = 1e-3, w_rate = -0.12 }]"]);
+    assert_eq!(flat.lines().count(), 5);
+    assert!(run_with(&sinusoid(), &["friction.coulomb=0.5", "fmu.outputs=['dissipation']"]).contains("E_friction"));
+}
+
+/// A key that is refused is told in one line with the keys that there are.
+#[test]
+fn a_setting_that_is_refused_says_which_keys_there_are() {
+    let refused = |setting: &str| refused(&["simulate", &sinusoid(), "-o", "x.csv", "--set", setting]);
+    for (setting, wanted) in [
+        ("layer.massses=2", "--set: layer.massses: unknown; allowed: masses, spacing,"),
+        ("relative_tolerance=1e-3", "did you mean solver.relative_tolerance?"),
+        ("fmu.outputs=['force']", "--set: fmu.outputs[1] = 'force': expected one of \"forces\""),
+        ("solver.method=steps", "--set: solver.method = \"steps\": expected one of"),
+        ("layer.masses=1.5", "--set: layer.masses = 1.5: expected a whole number"),
+        ("excitation[9].duration=1", "--set: excitation[9].duration: excitation has 2 elements, counted from 1"),
+        ("surface.kind=flat", "--set: surface.amplitude: unknown; allowed: kind"),
+    ] {
+        let message = refused(setting);
+        assert!(message.contains(wanted) && message.lines().count() == 1, "{setting}: {message}");
+    }
+}
+
+/// A patch is set like a scene.
+#[test]
+fn a_patch_is_set_by_its_keys() {
+    let folder = scratch("options-patch");
+    let patch = root().join("tests/reference/patch/block.toml");
+    let [motion, out] = ["motion.csv", "out.csv"].map(|name| folder.join(name));
+    fs::write(&motion, "time,x,y,z,roll,pitch,yaw\n0,0,0,0,0,0,0\n1e-3,0,0,0,0,0,0\n").unwrap();
+    let simulate = |settings: &[&str]| {
+        let mut command = asperity();
+        command.args(["simulate", "--patch"]).arg(&patch).arg("--motion").arg(&motion).arg("-o").arg(&out);
+        command.args(settings.iter().flat_map(|setting| ["--set", setting]));
+        command
+    };
+    run(&mut simulate(&["solver.refine=4", "fmu.outputs=[\"contact\"]", "patch.offset=[0.0, 0.0, 1.0]"]));
+    let table = Table::read(&out);
+    // A metre above the ground nothing bears.
+    assert!(table.names().contains(&"contact.count".to_owned()));
+    assert!(table.column("contact.count").iter().all(|&count| count == 0.0));
+    let refused = simulate(&["patch.radiuss=1"]).output().unwrap();
+    let message = String::from_utf8(refused.stderr).unwrap();
+    assert!(message.contains("--set: patch.radiuss: unknown; allowed: shape"), "{message}");
+}
+
+/// `-o -` writes what the file would hold, and the summary goes elsewhere.
+#[test]
+fn tables_go_to_standard_output() {
+    let folder = scratch("options-stdout");
+    let out = folder.join("out.csv");
+    let rubber = folder.join("rubber.toml");
+    fs::write(
+        &rubber,
+        "name = 'rubber'\nlayer = { masses = 8, spacing = 2.5e-5, thickness = 1e-3, width = 1e-2 }\n\
+         material = { density = 1100, poisson_ratio = 0.49, equilibrium_modulus = 2e6, prony = [] }\n\
+         surface = { kind = 'sinusoid', amplitude = 1e-6, wavelength = 2e-4 }\nfriction = { coulomb = 0.2 }\n\
+         solver = { method = 'step', relative_tolerance = 1e-3 }\n",
+    )
+    .unwrap();
+    let moduli = folder.join("dma.csv");
+    fs::write(&moduli, "frequency [Hz],E' [Pa],E'' [Pa]\n0.1,1.1e6,2e5\n1,1.3e6,3e5\n10,1.6e6,4e5\n").unwrap();
+    let profile = folder.join("road.csv");
+    fs::write(&profile, "x [m],z [m]\n0,0\n1e-4,1e-5\n2e-4,0\n3e-4,-1e-5\n4e-4,1e-5\n").unwrap();
+    let [rubber, moduli, profile] = [&rubber, &moduli, &profile].map(|path| path.to_str().unwrap());
+    let scene = sinusoid();
+    for (arguments, option) in [
+        (&["simulate", &scene, "--points", "3", "--set", "fmu.outputs=['forces']"][..], "-o"),
+        (&["material", rubber], "-o"),
+        (&["sweep", rubber, "--speeds", "0.1,1", "--pressures", "1e4"], "-o"),
+        (&["fit", moduli, "--error", "0.2", "--plot", "fit.svg"], "-o"),
+        (&["surface", profile], "--write"),
+        (&["surface", profile, "--mirror"], "--write"),
+    ] {
+        let command = |output: &Path| {
+            let mut command = asperity();
+            command.args(arguments).arg(option).arg(output).current_dir(&folder);
+            command
+        };
+        run(&mut command(&out));
+        assert_eq!(run(&mut command(Path::new("-"))), fs::read_to_string(&out).unwrap(), "{arguments:?}");
+        fs::remove_file(&out).unwrap();
+    }
+    assert!(!folder.join("-").exists() && !folder.join("-.svg").exists());
+    // Of a study all but the run times is the same.
+    let study = ["converge", rubber, "--pressure", "1e4", "--speed", "0.1", "--error", "1", "--most-masses", "16"];
+    let output = asperity().args(study).args(["-o", "-"]).output().unwrap();
+    assert!(output.stdout.starts_with(b"# asperity converge = 2\n") && output.stdout.ends_with(b"\n"));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("Verdict"));
+}
+
+/// The table of a sweep: units in its header, a text for its status, points that are not steady.
+const SWEPT: &str = "# asperity sweep = 1\nspeed [m/s],pressure [Pa],temperature [K],status,friction [1],P_friction [W],w [m]\n\
+                     0.1,100000,,steady,0.3,1e-3,-1e-5\n1,100000,,steady,0.4,1e-2,-2e-5\n10,100000,,\"not steady, yet\",,,\n\
+                     0.1,200000,,steady,0.5,2e-3,-3e-5\n1,200000,,steady,0.6,3e-2,-4e-5\n";
+
+#[test]
+fn a_plot_has_a_chart_a_unit_and_draws_the_rows_asked_for() {
+    let folder = scratch("options-plot");
+    let [table, picture] = ["swept.csv", "out.svg"].map(|name| folder.join(name));
+    fs::write(&table, SWEPT).unwrap();
+    let plot = |options: &[&str]| {
+        let mut command = asperity();
+        command.arg("plot").arg(&table).args(["--x", "speed"]).args(options).arg("-o").arg(&picture);
+        command
+    };
+    let drawn = |options: &[&str]| {
+        run(&mut plot(options));
+        fs::read_to_string(&picture).unwrap()
+    };
+    let markers = |text: &str| text.matches("<circle").count();
+    let text = drawn(&["--y", "friction", "--y", "P_friction [W]", "--log", "x", "--where", "pressure=1e5"]);
+    // Each quantity at its own axis: a coefficient has no unit, and none of the other's.
+    for title in ["friction\n", "P_friction [W] in mW\n", "speed in m/s\n"] {
+        assert!(text.contains(title), "{title}: {text}");
+    }
+    assert!(text.contains("height=\"760\""), "two charts");
+    // A disc and its edge for each of two rows in two charts, and in two legends.
+    assert_eq!(markers(&text), 2 * (2 * 2 + 2));
+    assert_eq!(markers(&drawn(&["--y", "friction", "--where", "status=steady", "--where", "pressure=200000"])), 2 * 3);
+    assert_eq!(markers(&drawn(&["--y", "friction", "--log", "x,y"])), 2 * 5);
+    let refused = |options: &[&str]| String::from_utf8(plot(options).output().unwrap().stderr).unwrap();
+    let message = refused(&["--y", "friction", "--where", "pressure=3e5"]);
+    assert!(message.contains("no row with pressure = 3e5; its pressure has the values 100000, 200000"), "{message}");
+    let message = refused(&["--y", "status"]);
+    assert!(
+        message.contains("line 3: status = \"steady\": expected a number; rows are chosen by --where"),
+        "{message}"
+    );
+    assert!(refused(&["--y", "friction", "--log", "z"]).contains("[possible values: x, y]"));
+    let message = refused(&["--y", "friction", "--where", "pressure=1e5", "--where", "speed=5"]);
+    assert!(message.contains("no row with speed = 5"), "{message}");
+}
