@@ -157,16 +157,24 @@ fn tables_go_to_standard_output() {
          solver = { method = 'step', relative_tolerance = 1e-3 }\n",
     )
     .unwrap();
+    let flat = folder.join("flat.toml");
+    let layer = "layer = { masses = 4, spacing = 1e-4, mass = 1e-7, vertical = { stiffness = 2e3, damping = 3e-2 }, \
+                 horizontal = { stiffness = 5e3, damping = 3e-2 } }";
+    fs::write(
+        &flat,
+        format!("name = 'flat'\n{layer}\nsurface = {{ kind = 'flat' }}\nfriction = {{ coulomb = 0.3 }}\n"),
+    )
+    .unwrap();
     let moduli = folder.join("dma.csv");
     fs::write(&moduli, "frequency [Hz],E' [Pa],E'' [Pa]\n0.1,1.1e6,2e5\n1,1.3e6,3e5\n10,1.6e6,4e5\n").unwrap();
     let profile = folder.join("road.csv");
     fs::write(&profile, "x [m],z [m]\n0,0\n1e-4,1e-5\n2e-4,0\n3e-4,-1e-5\n4e-4,1e-5\n").unwrap();
-    let [rubber, moduli, profile] = [&rubber, &moduli, &profile].map(|path| path.to_str().unwrap());
+    let [rubber, flat, moduli, profile] = [&rubber, &flat, &moduli, &profile].map(|path| path.to_str().unwrap());
     let scene = sinusoid();
     for (arguments, option) in [
         (&["simulate", &scene, "--points", "3", "--set", "fmu.outputs=['forces']"][..], "-o"),
         (&["material", rubber], "-o"),
-        (&["sweep", rubber, "--speeds", "0.1,1", "--pressures", "1e4"], "-o"),
+        (&["sweep", flat, "--speeds", "0.1,1", "--forces", "0.5,1"], "-o"),
         (&["fit", moduli, "--error", "0.2", "--plot", "fit.svg"], "-o"),
         (&["surface", profile], "--write"),
         (&["surface", profile, "--mirror"], "--write"),
