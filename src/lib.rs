@@ -41,7 +41,7 @@
 //! | how long steps are, when they are cut | `simulation/controller.rs`; `simulation/event_driven.rs` or `time_stepping.rs` |
 //! | what an FMU state holds | `FmuState` in `fmi/state.rs`, `RunState` in `simulation/state.rs` |
 //! | what acts on a carrier that is a body | `scene/carrier.rs` (keys in `scene/reader/carrier.rs`), `Body` and `Outside` in `model/carrier.rs`; its equation in `integrator/stage/border.rs`, its sensitivity in `integrator/sensitivity.rs` |
-//! | an input of the FMU | [`scene::Input`], `Motion` in `scene/excitation.rs`, `Inputs` in `fmi/inputs.rs`, `CarrierSample` in `program/runner.rs` |
+//! | an input of the FMU | [`scene::Input`], `Inputs` in `fmi/inputs.rs`, `layer_motion` in `fmi/layer.rs`, `Motion` in `scene/excitation.rs`, `CarrierSample` in `program/runner.rs` |
 //!
 //! ```
 //! use asperity::outputs::variables;

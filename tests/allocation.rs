@@ -5,6 +5,8 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::path::Path as FilePath;
 
+use asperity::element::{PointContact, Table};
+use asperity::fmi::{Definition, Inputs};
 use asperity::outputs::{Snapshot, Variable, variables};
 use asperity::patch::{Patch, PatchMotion, PatchRun, PatchStart, Pose};
 use asperity::scene::{Force, Path, Scene};
@@ -12,6 +14,8 @@ use asperity::simulation::{Motion, Simulation, Start};
 
 thread_local! {
     static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
+    /// Bytes that are allocated, and the most that were.
+    static BYTES: Cell<(usize, usize)> = const { Cell::new((0, 0)) };
 }
 
 /// The system's allocator, counting allocations per thread.
@@ -20,26 +24,35 @@ struct Counting;
 #[global_allocator]
 static COUNTING: Counting = Counting;
 
-fn count() {
+/// Counts an allocation of `size` bytes in the place of one of `before`.
+fn count(before: usize, size: usize) {
     ALLOCATIONS.set(ALLOCATIONS.get() + 1);
+    resize(before, size);
+}
+
+fn resize(before: usize, size: usize) {
+    let (now, most) = BYTES.get();
+    let now = now.saturating_sub(before) + size;
+    BYTES.set((now, most.max(now)));
 }
 
 #[allow(unsafe_code, reason = "an allocator cannot be written without; it hands every call on to the system's")]
 // SAFETY: every call goes unchanged to `System`, which keeps the contract; counting neither allocates nor unwinds.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count();
+        count(0, layout.size());
         // SAFETY: the caller keeps the contract of `GlobalAlloc::alloc`, the same one.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        count();
+        count(layout.size(), size);
         // SAFETY: `pointer` came from `alloc` above, so from `System`.
         unsafe { System.realloc(pointer, layout, size) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        resize(layout.size(), 0);
         // SAFETY: `pointer` came from `alloc` above, so from `System`.
         unsafe { System.dealloc(pointer, layout) }
     }
@@ -50,6 +63,14 @@ fn allocations(work: impl FnOnce()) -> usize {
     let before = ALLOCATIONS.get();
     work();
     ALLOCATIONS.get() - before
+}
+
+/// The most bytes that `work` has allocated on this thread at once.
+fn peak<T>(work: impl FnOnce() -> T) -> usize {
+    let (before, _) = BYTES.get();
+    BYTES.set((before, before));
+    drop(work());
+    BYTES.get().1 - before
 }
 
 /// Maxwell elements on every kind of link, stick and slip, impacts, all outputs.
@@ -149,6 +170,60 @@ fn bodies_allocate_nothing() {
         assert_eq!(count, 0, "{method}");
         assert!(value(&variables, &values, "solver.events") > 50.0, "a lively run");
     }
+}
+
+/// What an instance of an FMU reckons before it allocates is no less than it takes, and within a factor: some scenes need
+/// less than the worst, whose figures are used.
+#[test]
+fn memory_reckoned_is_memory_taken() {
+    const FACTOR: usize = 8;
+    let few = RATTLE.replace("\"solver\", \"elements\"", "\"contact\"").replace("\"contact\", \"energy\", ", "");
+    let plain = few.split("horizontal =").next().unwrap().to_owned() + "\n[surface]\nkind = \"flat\"";
+    let tangents = RATTLE.replace("\"solver\"", "\"tangent\", \"solver\"");
+    for text in [RATTLE, &few, &plain, &tangents] {
+        let text = text.replace("masses = 20", "masses = 3000");
+        for method in ["event", "step", "auto"] {
+            let text = format!("{text}\n[solver]\nmethod = \"{method}\"\nrelative_tolerance = 1e-3");
+            let model = Definition::from(Scene::parse(&text, FilePath::new("rattle.toml")).unwrap());
+            let taken = peak(|| (model.variables(), model.start(&Inputs::default(), 0.0).unwrap()));
+            let reckoned = model.memory();
+            assert!((taken..FACTOR * taken).contains(&reckoned), "{taken} of {reckoned} bytes: {text}");
+            let run = model.start(&Inputs::default(), 0.0).unwrap();
+            let (taken, reckoned) = (peak(|| run.save()), model.state_memory());
+            assert!((taken..FACTOR * taken).contains(&reckoned), "{taken} of {reckoned} bytes for a state: {text}");
+        }
+    }
+}
+
+#[test]
+fn memory_reckoned_of_a_patch_is_memory_taken() {
+    const FACTOR: usize = 8;
+    let folder = FilePath::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/patch");
+    for outputs in ["forces", "elements", "tangent"] {
+        let text = format!(
+            "name = 'pad'\ntable = {{ path = 'block.table.csv' }}\n[patch]\nshape = 'flat'\nlength = 0.01\nwidth = 0.01\n\
+             nx = 200\nny = 200\n[fmu]\noutputs = ['{outputs}']"
+        );
+        let model = Definition::from(Patch::parse(&text, &folder.join("patch.toml")).unwrap());
+        let inputs = Inputs::default();
+        let taken = peak(|| (model.variables(), model.start(&inputs, 0.0).unwrap()));
+        let reckoned = model.memory();
+        assert!((taken..FACTOR * taken).contains(&reckoned), "{taken} of {reckoned} bytes: {outputs}");
+        let run = model.start(&inputs, 0.0).unwrap();
+        let (taken, reckoned) = (peak(|| run.save()), model.state_memory());
+        assert!((taken..FACTOR * taken).contains(&reckoned), "{taken} of {reckoned} bytes for a state: {outputs}");
+    }
+}
+
+#[test]
+fn memory_reckoned_of_an_element_is_memory_taken() {
+    let path = FilePath::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/patch/block.table.csv");
+    let model = Definition::from(PointContact::new(Table::load(&path).unwrap()));
+    let inputs = Inputs::default();
+    let taken = peak(|| (model.variables(), model.start(&inputs, 0.0).unwrap()));
+    assert!(taken < model.memory(), "{taken} of {} bytes", model.memory());
+    let run = model.start(&inputs, 0.0).unwrap();
+    assert!(peak(|| run.save()) < model.state_memory());
 }
 
 /// Checks the counter itself.

@@ -200,6 +200,21 @@ impl ResampledLaw {
         }
     }
 
+    /// Memory in bytes that the law of `table` takes.
+    pub fn memory(table: &Table) -> usize {
+        let speeds: Vec<f64> = table.grid.speeds.iter().map(|speed| speed.ln()).collect();
+        let cells: usize = SpeedSpan::new(&speeds).iter().map(|span| span.count).sum();
+        let pressures = table.grid.loads.len();
+        let at_pressure = size_of::<Coefficients>() + size_of::<ShareCoefficients>();
+        let starts = starts_of(pressures) * size_of::<IntervalStarts>();
+        cells * (pressures * at_pressure + starts + size_of::<u64>())
+    }
+
+    /// As [`earliest_touch`](Self::earliest_touch), of `table` at `temperature` (K).
+    pub fn earliest_touch_of(table: &Table, temperature: f64) -> f64 {
+        Law::new(table, temperature).earliest_touch()
+    }
+
     /// The temperature, K.
     pub fn temperature(&self) -> f64 {
         self.temperature

@@ -17,7 +17,7 @@ use super::lifecycle::{Function, LifecycleState};
 
 /// The status that a function returns; fmi2Pending never occurs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) enum Status {
+pub enum Status {
     /// fmi2OK
     Ok,
     /// fmi2Warning
@@ -31,7 +31,7 @@ pub(super) enum Status {
 }
 
 #[derive(Debug, thiserror::Error)]
-pub(super) enum Error {
+pub enum Error {
     #[error("not allowed in the state {0}")]
     NotAllowed(LifecycleState),
     #[error("not allowed in the state {0}: no step is asynchronous, so none is ever in progress")]
@@ -43,7 +43,7 @@ pub(super) enum Error {
     #[error("no variable has the value reference {0}")]
     UnknownReference(u32),
     #[error("{name} (value reference {reference}) is of type {actual}, not {asked}")]
-    WrongType { reference: u32, name: String, actual: &'static str, asked: &'static str },
+    WrongType { reference: u32, name: String, actual: String, asked: String },
     #[error("{0} is an output and cannot be set")]
     OutputSet(String),
     #[error("{0} is not an input and takes no derivative")]
@@ -76,6 +76,10 @@ pub(super) enum Error {
     BeyondStop { end: f64, stop: f64 },
     #[error(transparent)]
     Input(#[from] InputOutOfRange),
+    #[error(
+        "the input {name} goes to {value:?} m, where rounding is coarser than the profile; expected up to ±{farthest:?} m"
+    )]
+    TooFar { name: &'static str, value: f64, farthest: f64 },
     #[error(transparent)]
     Simulation(#[from] SimulationError),
     #[error("no values: the initialisation failed")]
@@ -90,12 +94,8 @@ pub(super) enum Error {
     NoSuchStatus,
     #[error("the kind of the FMU is not co-simulation, the only one there is")]
     NotCoSimulation,
-    #[error("the instance has no name")]
-    NoName,
     #[error("the GUID is \"{given}\", but this FMU's is \"{own}\": model description, resources and binary differ")]
     Guid { given: String, own: String },
-    #[error("fmuResourceLocation is NULL, expected the URI of the FMU's folder \"resources\"")]
-    NoLocation,
     #[error("no file {} in the resources at \"{location}\"; looked in {}", .files.join(" or "), list(.tried))]
     NoResource { location: String, files: &'static [&'static str], tried: Vec<PathBuf> },
     #[error(transparent)]
@@ -110,6 +110,8 @@ pub(super) enum Error {
     Motion(#[from] MotionError),
     #[error("cannot read {path}: {source}", path = .path.display())]
     Unreadable { path: PathBuf, source: std::io::Error },
+    #[error("{what} needs {mebibytes} MiB of memory, more than the system has for it")]
+    Memory { what: &'static str, mebibytes: usize },
     #[error("internal error, the instance is lost: {0}")]
     Panic(String),
 }
@@ -130,7 +132,7 @@ impl Error {
             Self::Motion(MotionError::TooManySubsteps { .. } | MotionError::BeyondTable { within: true, .. }) => {
                 Status::Discard
             }
-            Self::NoSuchStatus => Status::Discard,
+            Self::TooFar { .. } | Self::NoSuchStatus => Status::Discard,
             Self::Panic(_) => Status::Fatal,
             _ => Status::Error,
         }
@@ -139,7 +141,7 @@ impl Error {
 
 /// Why a byte string cannot be restored as an FMU state.
 #[derive(Debug, thiserror::Error)]
-pub(super) enum RestoreError {
+pub enum RestoreError {
     #[error("it does not begin like one, or is cut short")]
     Mark,
     #[error("its format is {found}, expected {expected}")]
@@ -162,6 +164,11 @@ pub(super) enum RestoreError {
     Patch(#[from] patch::RestoreError),
     #[error("{0}")]
     Invalid(&'static str),
+}
+
+impl RestoreError {
+    /// The state is of a run of another kind of model.
+    pub(super) const OTHER_MODEL: Self = Self::Invalid("its run is of something else");
 }
 
 /// An input is not a number or larger than [`LARGEST`], or its derivative leads to such a value.

@@ -13,7 +13,7 @@ use std::{ptr, slice};
 use crate::scene::Value;
 
 use super::bindings::*;
-use super::callbacks::Callbacks;
+use super::callbacks::{Callbacks, DefaultFloatingPoint, library_file};
 use super::error::{Error, catch_panic};
 use super::instance::Instance;
 use super::lifecycle::Function;
@@ -25,8 +25,8 @@ struct Component {
     callbacks: Callbacks,
 }
 
-/// Common part of all functions that take an instance: checks for NULL, the life cycle, panics. Messages are delivered at
-/// the end, when the instance is no longer borrowed.
+/// Common part of all functions that take an instance: checks for NULL, the life cycle, panics, the default floating-point
+/// environment. Messages are delivered at the end, when the instance is no longer borrowed and the host's environment is back.
 unsafe fn call(
     component: fmi2Component,
     function: Function,
@@ -37,6 +37,7 @@ unsafe fn call(
         return fmi2Status_fmi2Error;
     }
     let (status, messages) = {
+        let _environment = DefaultFloatingPoint::enter();
         // SAFETY: not NULL, so a component that lives and that no other thread uses, by the contract.
         let instance = unsafe { &mut (*component).instance };
         (instance.call(function, body), instance.take_messages())
@@ -139,9 +140,9 @@ pub unsafe extern "C" fn fmi2Instantiate(
 ) -> fmi2Component {
     // SAFETY: the contract of this module.
     let (callbacks, instance) = unsafe {
-        let name = text("instanceName", instanceName).unwrap_or_default();
-        let instance = catch_panic(|| instantiate(name, fmuType, fmuGUID, fmuResourceLocation, loggingOn != 0));
-        (Callbacks::new(functions, name), instance)
+        let _environment = DefaultFloatingPoint::enter();
+        let instance = catch_panic(|| instantiate(fmuType, fmuGUID, fmuResourceLocation, loggingOn != 0));
+        (Callbacks::new(functions, instanceName), instance)
     };
     match instance.unwrap_or_else(|panic| Err(Error::Panic(panic))) {
         Ok(mut instance) => {
@@ -158,23 +159,20 @@ pub unsafe extern "C" fn fmi2Instantiate(
 const _: fmi2InstantiateTYPE = Some(fmi2Instantiate);
 
 unsafe fn instantiate(
-    name: &str,
     kind: fmi2Type,
     guid: fmi2String,
     location: fmi2String,
     logging: bool,
 ) -> Result<Instance, Error> {
-    if name.is_empty() {
-        return Err(Error::NoName);
-    }
     if kind != fmi2Type_fmi2CoSimulation {
         return Err(Error::NotCoSimulation);
     }
-    if location.is_null() {
-        return Err(Error::NoLocation);
-    }
     // SAFETY: the contract of this module.
-    unsafe { Instance::new(text("fmuGUID", guid)?, text("fmuResourceLocation", location)?, logging) }
+    let (guid, location) = unsafe {
+        let location = if location.is_null() { "" } else { text("fmuResourceLocation", location)? };
+        (text("fmuGUID", guid)?, location)
+    };
+    Instance::new(guid, location, library_file().as_deref(), logging)
 }
 
 /// Frees an instance and all FMU states it has handed out; NULL is ignored.
@@ -185,6 +183,7 @@ pub unsafe extern "C" fn fmi2FreeInstance(c: fmi2Component) {
     }
     // SAFETY: not NULL, so from Box::into_raw in fmi2Instantiate and not freed, by the contract.
     let component = unsafe { Box::from_raw(c.cast::<Component>()) };
+    let _environment = DefaultFloatingPoint::enter();
     // There is no instance left to report a panic.
     let _ = catch_panic(|| drop(component));
 }
@@ -627,7 +626,7 @@ mod tests {
     #[test]
     fn a_panic_stops_at_the_interface() {
         // SAFETY: no callbacks.
-        let callbacks = unsafe { Callbacks::new(ptr::null(), "lost") };
+        let callbacks = unsafe { Callbacks::new(ptr::null(), c"lost".as_ptr()) };
         let component = Component { instance: instance::tests::instance(), callbacks };
         let c: fmi2Component = Box::into_raw(Box::new(component)).cast();
         // SAFETY: the component lives until it is freed, once.

@@ -7,43 +7,46 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use serde::{Deserialize, Serialize};
 use uuid::Uuid;
 
-use super::definition::{Catalogue, Parameters};
+use super::definition::Parameters;
 use super::error::{Error, RestoreError, Status};
 use super::inputs::Inputs;
 use super::lifecycle::LifecycleState;
-use super::model::{InstanceModel, ModelState};
-use super::patch_inputs::PatchInputs;
+use super::model::{FmuRun, RunState};
 use super::state::{Clock, FmuState};
+use super::variables::VariableTable;
 use crate::scene::Value;
 
-/// FMU states by handle. The handle is the state's address, which is unique among all that exist. It is looked up and
-/// never dereferenced, so an invalid one is refused.
+/// FMU states by handle. A handle is a number that no other state of the process has or had; it is looked up and never
+/// dereferenced, so that of a state that was freed is refused, as are those of other instances.
 #[derive(Debug, Default)]
 pub(super) struct FmuStates {
-    states: BTreeMap<usize, Box<FmuState>>,
+    states: BTreeMap<usize, FmuState>,
 }
+
+/// The next handle. The first is far from small numbers and from addresses, which a master might pass by mistake.
+static NEXT_HANDLE: AtomicUsize = AtomicUsize::new(usize::MAX / 3);
 
 impl FmuStates {
     /// The state `handle`, to be written over.
     pub(super) fn recall_mut(&mut self, handle: usize) -> Result<&mut FmuState, Error> {
-        self.states.get_mut(&handle).map(|state| &mut **state).ok_or(Error::UnknownState("what FMUstate points to"))
+        self.states.get_mut(&handle).ok_or(Error::UnknownState("what FMUstate points to"))
     }
 
     /// Keeps `state` under a new handle, which it returns.
     pub(super) fn keep_new(&mut self, state: FmuState) -> usize {
-        let state = Box::new(state);
-        let handle = (&raw const *state).addr();
+        let handle = NEXT_HANDLE.fetch_add(1, Ordering::Relaxed);
         self.states.insert(handle, state);
         handle
     }
 
     /// The state `handle`.
     pub(super) fn recall(&self, handle: usize) -> Result<&FmuState, Error> {
-        self.states.get(&handle).map(|state| &**state).ok_or(Error::UnknownState("FMUstate"))
+        self.states.get(&handle).ok_or(Error::UnknownState("FMUstate"))
     }
 
     /// Frees the state `handle`; 0 stands for no state.
@@ -59,7 +62,7 @@ impl FmuStates {
 const MARK: [u8; 8] = *b"asperity";
 
 /// The version of the format, to be raised with each change of what is written.
-const FORMAT: u32 = 9;
+const FORMAT: u32 = 10;
 
 const CHECKSUM: usize = 16;
 
@@ -71,7 +74,7 @@ struct WrittenState {
     inputs: Inputs,
     clock: Clock,
     last_step: Status,
-    model: Option<ModelState>,
+    run: Option<RunState>,
 }
 
 /// The same as it is written: a patch may be large.
@@ -82,22 +85,21 @@ struct BorrowedState<'a> {
     inputs: Inputs,
     clock: Clock,
     last_step: Status,
-    model: &'a Option<ModelState>,
+    run: &'a Option<RunState>,
 }
 
 impl<'a> BorrowedState<'a> {
     fn new(state: &'a FmuState) -> Self {
-        let FmuState { lifecycle, parameters, inputs, clock, last_step, model, .. } = state;
+        let FmuState { lifecycle, parameters, inputs, clock, last_step, run } = state;
         let parameters = parameters.values_set();
-        Self { lifecycle: *lifecycle, parameters, inputs: *inputs, clock: *clock, last_step: *last_step, model }
+        Self { lifecycle: *lifecycle, parameters, inputs: *inputs, clock: *clock, last_step: *last_step, run }
     }
 }
 
 /// The number of bytes of `state` of the FMU with this GUID.
 pub(super) fn size(state: &FmuState, guid: &str) -> Result<usize, RestoreError> {
     let own = postcard::experimental::serialized_size(&BorrowedState::new(state))?;
-    let inputs = state.patch_inputs.as_ref().map_or(Ok(0), postcard::experimental::serialized_size)?;
-    Ok(head(guid).len() + own + inputs + CHECKSUM)
+    Ok(head(guid).len() + own + CHECKSUM)
 }
 
 /// `state` of the FMU with this GUID as a byte string.
@@ -105,48 +107,34 @@ pub(super) fn write(state: &FmuState, guid: &str) -> Result<Vec<u8>, RestoreErro
     let mut bytes = Vec::with_capacity(size(state, guid)?);
     bytes.extend(head(guid));
     bytes = postcard::to_extend(&BorrowedState::new(state), bytes)?;
-    if let Some(inputs) = &state.patch_inputs {
-        bytes = postcard::to_extend(inputs, bytes)?;
-    }
     bytes.extend(checksum(&bytes));
     Ok(bytes)
 }
 
-/// Reads a state of the FMU with this GUID, whose parameters were `original` before any was set. Its outputs, those of
-/// `catalogue`, must be finite: those of a forged state need not be.
+/// Reads a state of the FMU with this GUID, whose parameters were `original` before any was set. Its calculated variables
+/// must be finite: those of a forged state need not be.
 pub(super) fn read(
     bytes: &[u8],
     guid: &str,
     original: &Arc<Parameters>,
-    catalogue: &Catalogue,
+    variables: &VariableTable,
 ) -> Result<FmuState, RestoreError> {
     let (written, rest) = postcard::take_from_bytes::<WrittenState>(body(bytes, guid)?)?;
-    let (patch_inputs, rest) = patch_inputs(original, rest)?;
     if !rest.is_empty() {
         return Err(RestoreError::Invalid("something follows its end"));
     }
     written.check()?;
-    let WrittenState { lifecycle, parameters: set, inputs, clock, last_step, model } = written;
+    let WrittenState { lifecycle, parameters: set, inputs, clock, last_step, run } = written;
     let parameters = parameters(original, set)?;
-    if let Some(model) = &model {
-        check_outputs(InstanceModel::restore(parameters.definition(), model)?, catalogue)?;
+    if let Some(state) = &run {
+        check_outputs(parameters.definition().restore(state)?.as_mut(), variables)?;
     }
-    Ok(FmuState { lifecycle, parameters, inputs, patch_inputs, clock, last_step, model })
+    Ok(FmuState { lifecycle, parameters, inputs, clock, last_step, run })
 }
 
-/// The inputs of a patch, which follow the rest; and what follows them.
-fn patch_inputs<'a>(original: &Parameters, bytes: &'a [u8]) -> Result<(Option<PatchInputs>, &'a [u8]), RestoreError> {
-    if original.definition().patch().is_none() {
-        return Ok((None, bytes));
-    }
-    let (inputs, rest) = postcard::take_from_bytes::<PatchInputs>(bytes)?;
-    let valid = inputs.is_valid();
-    if valid { Ok((Some(inputs), rest)) } else { Err(RestoreError::Invalid("its past inputs are no numbers")) }
-}
-
-fn check_outputs(mut model: InstanceModel, catalogue: &Catalogue) -> Result<(), RestoreError> {
-    let mut values = vec![0.0; catalogue.output_count()];
-    model.evaluate(catalogue, &mut values);
+fn check_outputs(run: &mut dyn FmuRun, variables: &VariableTable) -> Result<(), RestoreError> {
+    let mut values = vec![0.0; variables.calculated()];
+    run.evaluate(&mut values);
     let finite = values.iter().all(|value| value.is_finite());
     if finite { Ok(()) } else { Err(RestoreError::Invalid("its outputs are no finite numbers")) }
 }
@@ -154,9 +142,9 @@ fn check_outputs(mut model: InstanceModel, catalogue: &Catalogue) -> Result<(), 
 impl WrittenState {
     fn check(&self) -> Result<(), RestoreError> {
         let has_run = match self.lifecycle {
-            LifecycleState::Instantiated | LifecycleState::InitializationMode => self.model.is_none(),
+            LifecycleState::Instantiated | LifecycleState::InitializationMode => self.run.is_none(),
             LifecycleState::StepComplete | LifecycleState::StepFailed | LifecycleState::Terminated => {
-                self.model.is_some()
+                self.run.is_some()
             }
             // After a failed step or a failed initialisation.
             LifecycleState::Error => true,
@@ -173,7 +161,7 @@ impl WrittenState {
 fn parameters(original: &Arc<Parameters>, set: BTreeMap<String, Value>) -> Result<Arc<Parameters>, RestoreError> {
     let mut parameters = Arc::clone(original);
     for (name, value) in set {
-        match original.definition().parameter_named(&name) {
+        match original.named(&name) {
             Some(parameter) => Arc::make_mut(&mut parameters).set(parameter, value)?,
             None => return Err(RestoreError::NoParameter(name)),
         }
@@ -209,14 +197,16 @@ mod tests {
     use super::super::instance::Instance;
     use super::super::instance::tests::instance_of;
     use super::super::lifecycle::Function;
+    use super::super::variables::VariableRef;
     use super::*;
-    use crate::fmi::{Entry, Input, Kind};
+    use crate::fmi::Kind;
+    use crate::scene::Input;
 
     /// A run in contact with a low limit of its work, which holds for a forged one, too.
     fn lively() -> Instance {
         let mut instance = instance_of(&crate::simulation::tests::TEXT.replace("1e-11", "1e-6\nmax_steps = 40"));
-        instance.state.inputs.set_input(Input::W, -2e-6);
-        instance.state.inputs.set_rate(Input::U, 0.1);
+        instance.state.inputs.set(Input::W as usize, -2e-6);
+        instance.state.inputs.set_rate(Input::U as usize, 0.1);
         assert_eq!(instance.call(Function::EnterInitializationMode, Instance::enter_initialization_mode), Status::Ok);
         assert_eq!(instance.call(Function::ExitInitializationMode, Instance::exit_initialization_mode), Status::Ok);
         assert_eq!(instance.call(Function::DoStep, |instance| instance.do_step(0.0, 1e-6)), Status::Ok);
@@ -254,11 +244,9 @@ mod tests {
 
     /// Reads every Real of the instance, one call each.
     fn check_reals(instance: &mut Instance) {
-        let real = |(reference, entry): (u32, Entry<'_>)| {
-            let is_output = matches!(entry, Entry::Output(..)) && entry.kind() == Kind::Real;
-            is_output.then_some(reference)
-        };
-        let references: Vec<u32> = instance.catalogue.entries().filter_map(real).collect();
+        let is_real = |entry: &VariableRef| entry.is_calculated() && entry.kind == Kind::Real;
+        let reals = instance.variables.entries().filter(|(_, entry)| is_real(entry));
+        let references: Vec<u32> = reals.map(|(reference, _)| reference).collect();
         for reference in references {
             for call in [Function::GetReal, Function::GetDirectionalDerivative, Function::GetRealOutputDerivatives] {
                 let mut value = [0.0];

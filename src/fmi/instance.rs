@@ -1,30 +1,33 @@
 //! An instance of the FMU, in safe Rust: the exports call its methods.
 
 use std::ffi::CString;
+use std::path::Path;
 use std::sync::Arc;
 
-use crate::outputs::{self, Output};
-use crate::scene::{Parameter, Value};
-use crate::simulation::{MethodSwitch, ModeChange};
+use crate::scene::{LOOSEST_TOLERANCE, Parameter, Value};
 
-use super::definition::{Catalogue, Definition, Parameters, Sources, guid};
+use super::definition::{Definition, Parameters, Sources, guid};
 use super::error::{Error, Status, catch_panic};
 use super::fmu_states::{self, FmuStates};
 use super::lifecycle::{Function, LifecycleState};
-use super::log::{Category, Log, Message, RunWarnings};
-use super::model::InstanceModel;
+use super::log::{Category, Log, Message};
+use super::memory;
 use super::state::{Clock, InstanceState, OutputCache};
+use super::variables::VariableTable;
 
 #[derive(Debug)]
 pub(super) struct Instance {
-    pub(super) catalogue: Catalogue,
+    pub(super) variables: VariableTable,
     pub(super) state: InstanceState,
     pub(super) outputs: OutputCache,
     /// The strings that the last fmi2GetString returned.
     pub(super) texts: Vec<CString>,
+    /// Whether it has warned of derivatives of inputs that it does not use.
+    pub(super) warned_of_orders: bool,
+    /// Values looked up by a call that is under way.
+    pub(super) found: Vec<Value>,
     fmu_states: FmuStates,
     log: Log,
-    warnings: RunWarnings,
     guid: String,
     /// The parameters before any was set.
     original: Arc<Parameters>,
@@ -32,31 +35,34 @@ pub(super) struct Instance {
 }
 
 impl Instance {
-    /// Reads the resources at `location` and checks them against the GUID that the master passes.
-    pub(super) fn new(given_guid: &str, location: &str, logging: bool) -> Result<Self, Error> {
-        let (definition, path) = Definition::find(location)?;
-        let catalogue = Catalogue::of(&definition);
-        let own = guid(&Sources::read_from(&path, &definition)?, &catalogue);
-        if given_guid != own {
+    /// Reads the resources at `location`, or beside the `library`, and checks them against the GUID that the master passes.
+    pub(super) fn new(given_guid: &str, location: &str, library: Option<&Path>, logging: bool) -> Result<Self, Error> {
+        let (definition, found) = Definition::find(location, library)?;
+        memory::check("an instance", definition.memory())?;
+        let variables = definition.variables();
+        let own = guid(&Sources::read_from(&found.path, &*definition)?, &variables);
+        if bare(given_guid) != bare(&own) {
             return Err(Error::Guid { given: given_guid.into(), own });
         }
-        Ok(Self::of(definition, catalogue, own, logging))
+        let spelling = (given_guid != own).then(|| format!("the GUID is \"{given_guid}\": took it for \"{own}\""));
+        let mut instance = Self::of(definition, variables, own, logging);
+        found.warning.into_iter().chain(spelling).for_each(|text| instance.warn(text));
+        Ok(instance)
     }
 
-    fn of(definition: Definition, catalogue: Catalogue, guid: String, logging: bool) -> Self {
+    fn of(definition: Definition, variables: VariableTable, guid: String, logging: bool) -> Self {
         let mut log = Log::new(logging);
-        for warning in definition.warnings() {
-            log.add(Message::from_status(Status::Warning, warning.clone()));
-        }
+        log.extend(definition.warnings().iter().map(|text| Message::from_status(Status::Warning, text.clone())));
         let original = Arc::new(Parameters::new(definition));
         Self {
-            catalogue,
-            state: InstanceState::new(Arc::clone(&original)),
+            state: InstanceState::new(Arc::clone(&original), &variables),
+            variables,
             outputs: OutputCache::default(),
             texts: Vec::new(),
+            warned_of_orders: false,
+            found: Vec::new(),
             fmu_states: FmuStates::default(),
             log,
-            warnings: RunWarnings::default(),
             guid,
             original,
             logging,
@@ -80,6 +86,11 @@ impl Instance {
         error.status()
     }
 
+    /// Keeps a warning for the end of the call.
+    pub(super) fn warn(&mut self, text: String) {
+        self.log.add(Message::from_status(Status::Warning, text));
+    }
+
     /// The messages of the last call.
     pub(super) fn take_messages(&mut self) -> Vec<Message> {
         self.log.take()
@@ -92,8 +103,8 @@ impl Instance {
         Ok(())
     }
 
-    /// fmi2SetupExperiment: the tolerance is the parameter `solver.relative_tolerance`, as if set now. An element has
-    /// none, and no error in time to keep to it.
+    /// fmi2SetupExperiment: the tolerance is the parameter `solver.relative_tolerance`, as if set now. Elements and patches
+    /// have none, and no error in time to keep to it.
     pub(super) fn setup_experiment(
         &mut self,
         tolerance: Option<f64>,
@@ -102,7 +113,7 @@ impl Instance {
     ) -> Result<(), Error> {
         let clock = Clock::new(start, stop)?;
         let has_tolerance = self.state.parameters.definition().parameters().contains(&Parameter::RelativeTolerance);
-        if let Some(tolerance) = tolerance.filter(|_| has_tolerance) {
+        if let Some(tolerance) = tolerance.filter(|_| has_tolerance).and_then(|given| self.usable_tolerance(given)) {
             let parameters = Arc::make_mut(&mut self.state.parameters);
             parameters.set(Parameter::RelativeTolerance, Value::Real(tolerance))?;
         }
@@ -111,17 +122,29 @@ impl Instance {
         Ok(())
     }
 
+    /// Masters pass 0 where they have no tolerance, and looser ones than a run can take.
+    fn usable_tolerance(&mut self, given: f64) -> Option<f64> {
+        if given == 0.0 {
+            self.warn("the tolerance is 0: took it as not defined".into());
+            None
+        } else if given.is_finite() && given > LOOSEST_TOLERANCE {
+            self.warn(format!("the tolerance is {given:?}: took {LOOSEST_TOLERANCE:?}, the loosest"));
+            Some(LOOSEST_TOLERANCE)
+        } else {
+            Some(given)
+        }
+    }
+
     /// fmi2EnterInitializationMode
     pub(super) fn enter_initialization_mode(&mut self) -> Result<(), Error> {
         self.state.lifecycle = LifecycleState::InitializationMode;
         Ok(())
     }
 
-    /// fmi2ExitInitializationMode: the layer or the element is placed under the carrier.
+    /// fmi2ExitInitializationMode: the run begins.
     pub(super) fn exit_initialization_mode(&mut self) -> Result<(), Error> {
         self.state.start()?;
-        self.log_patch_warning();
-        self.warnings.start = Some(self.state.clock.time);
+        self.log_warnings();
         self.record_events();
         Ok(())
     }
@@ -129,38 +152,37 @@ impl Instance {
     /// fmi2DoStep
     pub(super) fn do_step(&mut self, point: f64, h: f64) -> Result<(), Error> {
         let result = self.state.step(point, h);
-        let (events, switches) = self.take_records();
-        // Events of a discarded step are dropped.
+        let time = self.state.clock.time;
+        let records = self.state.run().map(|run| run.take_records(time)).unwrap_or_default();
+        // Records of a discarded step are dropped.
         result?;
         self.outputs.invalidate();
-        self.log_events(&events);
-        self.log_work(&switches);
+        self.log.extend(records);
         self.log_warnings();
-        self.log_patch_warning();
         Ok(())
     }
 
     /// fmi2Terminate
     pub(super) fn terminate(&mut self) -> Result<(), Error> {
         self.state.lifecycle = LifecycleState::Terminated;
-        if let Some(divergence) = self.state.model.as_ref().and_then(InstanceModel::divergence) {
-            self.log.add(Message::from_status(Status::Warning, divergence.to_string()));
-        }
+        let warning = self.state.run.as_ref().and_then(|run| run.final_warning());
+        warning.into_iter().for_each(|text| self.warn(text));
         Ok(())
     }
 
     /// fmi2Reset: back to the state after fmi2Instantiate. The FMU states handed out remain until the master frees them.
     pub(super) fn reset(&mut self) -> Result<(), Error> {
-        self.state = InstanceState::new(Arc::clone(&self.original));
+        self.state = InstanceState::new(Arc::clone(&self.original), &self.variables);
         self.outputs.invalidate();
         self.texts.clear();
+        self.warned_of_orders = false;
         self.log = Log::new(self.logging);
-        self.warnings = RunWarnings::default();
         Ok(())
     }
 
     /// fmi2GetFMUstate: takes and returns the state's handle, 0 for a new one.
     pub(super) fn get_state(&mut self, handle: usize) -> Result<usize, Error> {
+        memory::check("an FMU state", self.state.parameters.definition().state_memory())?;
         if handle == 0 {
             return Ok(self.fmu_states.keep_new(self.state.save()));
         }
@@ -188,12 +210,16 @@ impl Instance {
 
     /// fmi2SerializeFMUstate: the state `handle` as a byte string.
     pub(super) fn serialise_state(&self, handle: usize) -> Result<Vec<u8>, Error> {
+        memory::check("an FMU state", self.serialised_size(handle)?)?;
         Ok(fmu_states::write(self.fmu_states.recall(handle)?, &self.guid)?)
     }
 
     /// fmi2DeSerializeFMUstate: keeps the state in `bytes` and returns its handle.
     pub(super) fn deserialise_state(&mut self, bytes: &[u8]) -> Result<usize, Error> {
-        let state = fmu_states::read(bytes, &self.guid, &self.original, &self.catalogue)?;
+        let definition = self.state.parameters.definition();
+        // A run tells whether the state is one.
+        memory::check("an FMU state", definition.memory().saturating_add(definition.state_memory()))?;
+        let state = fmu_states::read(bytes, &self.guid, &self.original, &self.variables)?;
         Ok(self.fmu_states.keep_new(state))
     }
 
@@ -207,69 +233,24 @@ impl Instance {
         self.state.clock.time
     }
 
-    /// Mode changes and switches are recorded only while they are logged.
+    /// Events and the solver's work are recorded only while they are logged.
     fn record_events(&mut self) {
         let (events, solver) = (self.log.includes(Category::Events), self.log.includes(Category::Solver));
-        if let (false, Ok(model)) = (self.state.lifecycle.before_run(), self.state.model()) {
-            model.record(events, solver);
-        }
-    }
-
-    fn take_records(&mut self) -> (Vec<ModeChange>, Vec<MethodSwitch>) {
-        self.state.model().map(InstanceModel::take_records).unwrap_or_default()
-    }
-
-    fn log_events(&mut self, events: &[ModeChange]) {
-        let is_layer = matches!(self.state.parameters.definition(), Definition::Layer(_));
-        for change in events {
-            let text = event(change, is_layer);
-            self.log.add(Message { status: Status::Ok, category: Category::Events, text });
+        if let (false, Ok(run)) = (self.state.lifecycle.before_run(), self.state.run()) {
+            run.record(events, solver);
         }
     }
 
     fn log_warnings(&mut self) {
-        let Some(model) = &self.state.model else { return };
-        for text in self.warnings.new_ones(self.state.parameters.definition(), model, self.state.clock.time) {
-            self.log.add(Message::from_status(Status::Warning, text));
-        }
-    }
-
-    /// An element beyond the table is told of once a run.
-    fn log_patch_warning(&mut self) {
-        let warning = self.state.model.as_mut().and_then(InstanceModel::patch).and_then(|run| run.take_warning());
-        self.log.extend(warning.map(|text| Message::from_status(Status::Warning, text)));
-    }
-
-    fn log_work(&mut self, switches: &[MethodSwitch]) {
-        for text in switches.iter().map(ToString::to_string) {
-            self.log.add(Message { status: Status::Ok, category: Category::Solver, text });
-        }
-        let (true, Ok(model)) = (self.log.includes(Category::Solver), self.state.model()) else { return };
-        let Some(simulation) = model.simulation() else { return };
-        let mut values = [0.0; 3];
-        let counts = [Output::Steps, Output::Rejected, Output::Events].into_iter().filter_map(outputs::variable);
-        simulation.evaluate(&counts.collect::<Vec<_>>(), &mut values);
-        let [steps, rejected, events] = values;
         let time = self.state.clock.time;
-        let text = format!("t = {time} s: {steps} steps, {rejected} rejected, {events} mode changes since the start");
-        self.log.add(Message { status: Status::Ok, category: Category::Solver, text });
+        let warnings = self.state.run.as_mut().map(|run| run.take_warnings(time)).unwrap_or_default();
+        warnings.into_iter().for_each(|text| self.warn(text));
     }
 }
 
-/// An element has no masses: its contact is one.
-fn event(change: &ModeChange, is_layer: bool) -> String {
-    let ModeChange { time, mass, from, to } = change;
-    let what = if is_layer { format!("mass {}", mass + 1) } else { "the contact".into() };
-    format!("t = {time} s: {what} from {} to {}", mode(*from), mode(*to))
-}
-
-fn mode(number: i8) -> &'static str {
-    match number {
-        0 => "free",
-        1 => "slipping forwards",
-        -1 => "slipping backwards",
-        _ => "sticking",
-    }
+/// A GUID without the braces, which some masters leave out, in small letters.
+fn bare(guid: &str) -> String {
+    guid.trim().trim_start_matches('{').trim_end_matches('}').to_ascii_lowercase()
 }
 
 #[cfg(test)]
@@ -288,8 +269,9 @@ pub(super) mod tests {
     /// An instance of a scene that reads no files.
     pub(in super::super) fn instance_of(text: &str) -> Instance {
         let scene = Scene::parse(text, Path::new("scene.toml")).unwrap();
-        let catalogue = Catalogue::new(&scene);
-        Instance::of(scene.into(), catalogue, "{}".into(), false)
+        let definition = Definition::from(scene);
+        let variables = definition.variables();
+        Instance::of(definition, variables, "{}".into(), false)
     }
 
     #[test]
@@ -304,12 +286,5 @@ pub(super) mod tests {
         assert_eq!(instance.take_messages(), [logged]);
         assert_eq!(instance.call(Function::Reset, Instance::reset), Status::Error);
         assert_eq!(instance.take_messages()[0].text, "fmi2Reset: not allowed in the state fatal");
-    }
-
-    #[test]
-    fn mode_changes_are_logged_in_words() {
-        let change = ModeChange { time: 0.5, mass: 2, from: 0, to: -1 };
-        assert_eq!(event(&change, true), "t = 0.5 s: mass 3 from free to slipping backwards");
-        assert_eq!(event(&change, false), "t = 0.5 s: the contact from free to slipping backwards");
     }
 }

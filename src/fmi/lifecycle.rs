@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// The states of a co-simulation slave that this FMU can be in. Steps never run asynchronously, so the standard's
 /// stepInProgress and stepCanceled are never reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) enum LifecycleState {
+pub enum LifecycleState {
     /// After fmi2Instantiate and fmi2Reset.
     Instantiated,
     /// Between fmi2EnterInitializationMode and fmi2ExitInitializationMode.

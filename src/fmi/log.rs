@@ -1,11 +1,7 @@
-//! Messages to the master: by category, collected during a call and delivered at its end; warnings of runs that the scene
-//! does not cover.
+//! Messages to the master: by category, collected during a call and delivered at its end.
 
-use super::definition::Definition;
 use super::error::{Error, Status};
-use super::model::InstanceModel;
-use crate::model::{Reduction, Replacement};
-use crate::scene::Scene;
+use crate::simulation::ModeChange;
 
 /// The categories of messages, as the model description lists them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,7 +55,7 @@ impl Category {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Message {
+pub struct Message {
     pub(super) status: Status,
     pub(super) category: Category,
     pub(super) text: String,
@@ -70,7 +66,30 @@ impl Message {
     pub(super) fn from_status(status: Status, text: String) -> Self {
         Self { status, category: Category::new(status), text }
     }
+
+    /// A record of a call that succeeds.
+    pub(super) fn of(category: Category, text: String) -> Self {
+        Self { status: Status::Ok, category, text }
+    }
+
+    /// A mode change of `what`.
+    pub(super) fn of_event(change: &ModeChange, what: &str) -> Self {
+        let (time, from, to) = (change.time, mode(change.from), mode(change.to));
+        Self::of(Category::Events, format!("t = {time} s: {what} from {from} to {to}"))
+    }
 }
+
+fn mode(number: i8) -> &'static str {
+    match number {
+        0 => "free",
+        1 => "slipping forwards",
+        -1 => "slipping backwards",
+        _ => "sticking",
+    }
+}
+
+/// The name that the standard has for all categories.
+const ALL: &str = "logAll";
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct Log {
@@ -85,13 +104,15 @@ impl Log {
         Self { events: everything, solver: everything, waiting: Vec::new() }
     }
 
-    /// Switches on the categories named (all where none is) and off all others, except those that are always on.
+    /// Switches on the categories named (all where none is, or by the name `logAll`) and off all others, except those that
+    /// are always on.
     pub(super) fn select(&mut self, on: bool, names: &[&str]) -> Result<(), Error> {
-        let known = |name: &str| Category::ALL.iter().any(|category| category.name() == name);
+        let known = |name: &str| name == ALL || Category::ALL.iter().any(|category| category.name() == name);
         if let Some(&name) = names.iter().find(|name| !known(name)) {
             return Err(Error::UnknownCategory(name.into()));
         }
-        let asked = |category: Category| on && (names.is_empty() || names.contains(&category.name()));
+        let all = names.is_empty() || names.contains(&ALL);
+        let asked = |category: Category| on && (all || names.contains(&category.name()));
         self.events = asked(Category::Events);
         self.solver = asked(Category::Solver);
         Ok(())
@@ -121,59 +142,17 @@ impl Log {
     }
 }
 
-/// Warnings that the forces do not show, each given once per run: the layer has left its profile; the run is longer than
-/// the reduction of links assumes.
-#[derive(Clone, Debug, Default)]
-pub(super) struct RunWarnings {
-    /// The time at which the run began, s; `None` where it is not known.
-    pub(super) start: Option<f64>,
-    left_profile: bool,
-    exceeded_reduction: bool,
-}
-
-impl RunWarnings {
-    /// New warnings of a run of `definition` that has reached `time` (s).
-    pub(super) fn new_ones(&mut self, definition: &Definition, model: &InstanceModel, time: f64) -> Vec<String> {
-        let Definition::Layer(scene) = definition else { return Vec::new() };
-        let texts = [self.profile(scene, model.carrier().0), self.reduction(scene, time)];
-        texts.into_iter().flatten().map(|text| format!("t = {time} s: {text}")).collect()
-    }
-
-    fn profile(&mut self, scene: &Scene, u: f64) -> Option<String> {
-        let text = if self.left_profile { None } else { scene.off_profile(u) };
-        self.left_profile |= text.is_some();
-        text
-    }
-
-    /// `solver.reduce` replaces slow elements by springs by the duration of the excitation.
-    fn reduction(&mut self, scene: &Scene, time: f64) -> Option<String> {
-        /// Relative rounding of times.
-        const ROUNDING: f64 = 1e-9;
-        if self.exceeded_reduction || scene.solver.reduce == 0.0 {
-            return None;
-        }
-        let duration = scene.duration();
-        if time - self.start? <= duration * (1.0 + ROUNDING) {
-            return None;
-        }
-        self.exceeded_reduction = true;
-        let springs = Reduction::new(scene)?.replaced.into_iter().any(|one| one.by == Replacement::Spring);
-        springs.then(|| {
-            let bound = scene.solver.reduce;
-            format!(
-                "longer than the scene's excitation of {duration} s: solver.reduce = {bound} takes elements for springs that \
-                 relax in longer runs, and its bound grows with time"
-            )
-        })
-    }
-}
-
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use crate::fmi::instance::Instance;
-    use crate::fmi::instance::tests::instance_of;
+
+    #[test]
+    fn mode_changes_are_logged_in_words() {
+        let change = ModeChange { time: 0.5, mass: 2, from: 0, to: -1 };
+        let message = Message::of_event(&change, "mass 3");
+        assert_eq!(message.text, "t = 0.5 s: mass 3 from free to slipping backwards");
+    }
 
     #[test]
     fn errors_warnings_and_discards_are_always_on() {
@@ -187,78 +166,19 @@ mod tests {
         let mut log = Log::new(false);
         log.select(true, &["logSolver"]).unwrap();
         assert!(log.includes(Category::Solver) && !log.includes(Category::Events));
-        log.select(true, &[]).unwrap();
-        assert!(log.includes(Category::Solver) && log.includes(Category::Events));
-        log.select(false, &[]).unwrap();
+        for names in [&[][..], &["logAll"], &["logSolver", "logAll"]] {
+            log.select(true, names).unwrap();
+            assert!(log.includes(Category::Solver) && log.includes(Category::Events));
+        }
+        log.select(false, &["logAll"]).unwrap();
         assert!(!log.includes(Category::Solver) && !log.includes(Category::Events));
     }
 
     #[test]
     fn an_unknown_category_is_refused_and_changes_nothing() {
         let mut log = Log::new(true);
-        let error = log.select(false, &["logEvents", "logAll"]).unwrap_err();
-        assert_eq!(error.to_string(), "unknown log category \"logAll\"");
+        let error = log.select(false, &["logEvents", "logNone"]).unwrap_err();
+        assert_eq!(error.to_string(), "unknown log category \"logNone\"");
         assert!(log.includes(Category::Events));
-    }
-
-    /// One mass, moved at 1 m/s in steps of 0.25 s: the warnings.
-    fn warnings(surface: &str, rest: &str) -> Vec<String> {
-        let text = format!(
-            "name = 'a'\nlayer = {{ masses = 1, spacing = 1.0, mass = 1.0, clearance = 9.0, vertical = {{ stiffness = 1.0, \
-             maxwell = [{{ stiffness = 1.0, relaxation_time = 1e6 }}] }} }}\nsurface = {{ {surface} }}\n{rest}"
-        );
-        let mut instance = instance_of(&text);
-        instance.take_messages();
-        instance.enter_initialization_mode().unwrap();
-        instance.exit_initialization_mode().unwrap();
-        (0..8).for_each(|i| step(&mut instance, 0.25 * f64::from(i)));
-        instance.take_messages().into_iter().map(|message| message.text).collect()
-    }
-
-    fn step(instance: &mut Instance, time: f64) {
-        instance.state.inputs.set_input(crate::fmi::Input::U, time);
-        instance.do_step(time, 0.25).unwrap();
-    }
-
-    #[test]
-    fn a_layer_that_leaves_its_profile_is_warned_of_once() {
-        // Values without rates run on as they came, from the second step on: at 1.25 s the carrier has come beyond 1 m.
-        let text = "t = 1.25 s: the profile reaches from -1.0 m to 1.0 m, but the layer has come to 1.25 m: \
-                    beyond its ends the profile goes on straight, along its end tangents";
-        assert_eq!(warnings("kind = 'points', x = [-1, 1], z = [0, 1]", ""), [text]);
-        assert!(warnings("kind = 'flat'", "").is_empty());
-    }
-
-    #[test]
-    fn a_run_longer_than_its_reduction_is_warned_of_once() {
-        let solver = |reduce: f64, duration: f64| {
-            format!("solver = {{ reduce = {reduce} }}\nexcitation = [{{ duration = {duration} }}]")
-        };
-        let warned = |reduce, duration| warnings("kind = 'flat'", &solver(reduce, duration));
-        let text = warned(1e-3, 1.0);
-        assert!(
-            text.len() == 1 && text[0].starts_with("t = 1.25 s: longer than the scene's excitation of 1 s"),
-            "{text:?}"
-        );
-        assert!(warned(1e-3, 2.0).is_empty());
-        assert!(warned(0.0, 1.0).is_empty());
-        // Nothing is replaced: the bound is too tight.
-        assert!(warned(1e-9, 1.0).is_empty());
-    }
-
-    #[test]
-    fn a_run_that_does_not_converge_is_warned_of_at_its_end() {
-        let mut instance = instance_of(crate::simulation::tests::STICK_SLIP);
-        instance.enter_initialization_mode().unwrap();
-        instance.exit_initialization_mode().unwrap();
-        let h = 1e-3;
-        for i in 0..30 {
-            instance.state.inputs.set_input(crate::fmi::Input::U, 0.02 * h * f64::from(i));
-            instance.do_step(h * f64::from(i), h).unwrap();
-        }
-        assert!(instance.take_messages().is_empty());
-        instance.terminate().unwrap();
-        let messages = instance.take_messages();
-        assert!(messages.len() == 1 && messages[0].text.contains("do not converge"), "{messages:?}");
     }
 }

@@ -9,14 +9,16 @@
 //! | `bindings` | C types, generated from the standard's headers |
 //! | `lifecycle` | states of an instance and the functions allowed in each |
 //! | `error` | errors with the status that each returns; panics |
-//! | `resources` | the file of the scene or table in the FMU's resources |
-//! | `definition` | what the FMU simulates, its parameters, variables by value reference, GUID |
-//! | `inputs` | inputs and the carrier's motion between communication points |
-//! | `patch_inputs` | the same of a patch |
-//! | `model` | the instance's model: a simulation of the layer, an element or a patch |
+//! | `memory` | memory that the system would refuse |
+//! | `resources` | the file of the scene, table or patch in the FMU's resources |
+//! | `inputs` | inputs as a master sets them, and where they go in a communication step |
+//! | `variables` | the table of variables by value reference |
+//! | `log` | messages by category |
+//! | `model` | what all layers below ask of a model and of its run |
+//! | `layer`, `element`, `patch` | the three models |
+//! | `definition` | what an FMU simulates: one of them, its parameters, its GUID |
 //! | `state` | the state of an instance, its copy in an FMU state, its clock |
 //! | `fmu_states` | FMU states handed out, and as byte strings |
-//! | `log` | messages by category, warnings of runs that the scene does not cover |
 //! | `instance` | an instance: its functions |
 //! | `values` | functions that get and set variables, and derivatives |
 //! | `callbacks` | the master's logger (unsafe code) |
@@ -24,30 +26,36 @@
 
 mod callbacks;
 mod definition;
+mod element;
 mod error;
 mod exports;
 mod fmu_states;
 mod inputs;
 mod instance;
+mod layer;
 mod lifecycle;
 mod log;
+mod memory;
 mod model;
-mod patch_inputs;
+mod patch;
 mod resources;
 mod state;
 mod values;
+mod variables;
 
 #[cfg_attr(feature = "verify-bindings", path = "verify.rs")]
 #[rustfmt::skip]
 pub mod bindings;
 
-pub use definition::{Catalogue, Definition, Entry, Input, Kind, Sources, guid};
+pub use definition::{Definition, Sources, guid};
 pub use error::InputOutOfRange;
 pub use exports::*;
-pub use inputs::Inputs;
+pub use inputs::{CommunicationStep, Inputs};
+pub use layer::{layer_motion, layer_start};
 pub use log::Category;
-pub use patch_inputs::PatchInput;
+pub use model::{Experiment, FmuModel};
 pub use resources::{PATCH_FILE, SCENE_FILE, TABLE_FILE};
+pub use variables::{Kind, Role, VariableRef, VariableTable};
 
 /// The capabilities that the model description claims, as attributes of its element `CoSimulation`; those left out are
 /// false.

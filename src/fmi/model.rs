@@ -1,193 +1,197 @@
-//! The model of an instance: a run of a layer, of an element or of a patch.
+//! What an FMU's model is: everything that the layers above ask of it, whatever it is. [`FmuModel`] is the definition with
+//! its parameters, [`FmuRun`] a run of it.
+
+use std::fmt::Debug;
+use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 use serde::{Deserialize, Serialize};
 
-use super::definition::{Catalogue, Definition};
 use super::error::{Error, RestoreError};
-use crate::element::{self, Element};
-use crate::outputs::{Output, Variable};
-use crate::patch::{PatchRun, PatchStart, PatchState};
-use crate::simulation::{self, Divergence, MethodSwitch, ModeChange, Motion, Simulation, Start};
+use super::inputs::{CommunicationStep, Inputs, MAX_INPUTS};
+use super::log::Message;
+use super::variables::{Kind, VariableRef, VariableTable};
+use crate::element::ElementState;
+use crate::patch::PatchState;
+use crate::scene::{self, Extrapolation, FmuOptions, IntegerType, Parameter, ParameterError, Value};
+use crate::simulation::SimulationState;
 
-/// A run of a layer, of an element or of a patch.
-#[derive(Clone, Debug)]
-pub(super) enum InstanceModel {
-    Layer(Box<Simulation>),
-    Element(Box<Element>),
-    Patch(Box<PatchRun>),
+/// What an FMU simulates, with its parameters as they are set.
+pub trait FmuModel: Debug {
+    /// The model's name.
+    fn name(&self) -> String;
+
+    /// The name as a C identifier.
+    fn identifier(&self) -> String {
+        scene::identifier(&self.name())
+    }
+
+    /// A description in a sentence; may be empty.
+    fn description(&self) -> String;
+
+    /// The name of its own file in the resources.
+    fn file_name(&self) -> &'static str;
+
+    /// Paths of the files that it reads besides its own, relative to that one's folder.
+    fn files(&self) -> &[PathBuf] {
+        &[]
+    }
+
+    /// The content of one of its [`files`](Self::files) as it is packed into an FMU; `folder` is that of its own file.
+    ///
+    /// # Errors
+    /// Where the file cannot be read.
+    fn carried(&self, folder: &Path, file: &Path) -> io::Result<Vec<u8>> {
+        fs::read(folder.join(file))
+    }
+
+    /// Paths of all files that it was read from; `path` is that of its own.
+    fn sources(&self, path: &Path) -> Vec<PathBuf> {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        std::iter::once(path.to_owned()).chain(self.files().iter().map(|file| folder.join(file))).collect()
+    }
+
+    /// Warnings about the definition.
+    fn warnings(&self) -> &[String] {
+        &[]
+    }
+
+    /// The inputs.
+    fn inputs(&self) -> Vec<VariableRef>;
+
+    /// The calculated variables.
+    fn calculated(&self) -> Vec<VariableRef>;
+
+    /// The parameters.
+    fn parameters(&self) -> Vec<Parameter>;
+
+    /// The value of a parameter.
+    fn parameter(&self, parameter: Parameter) -> Value;
+
+    /// Gives a parameter a value.
+    ///
+    /// # Errors
+    /// [`ParameterError`] where the value is none of those allowed; the model is then as it was.
+    fn set_parameter(&mut self, parameter: Parameter, value: Value) -> Result<(), ParameterError>;
+
+    /// All variables by value reference.
+    fn variables(&self) -> VariableTable {
+        let parameter = |parameter| VariableRef::parameter(parameter, self.parameter(parameter));
+        let parameters = self.parameters().into_iter().map(parameter);
+        let mut calculated = self.calculated();
+        if self.options().integers == IntegerType::Real {
+            calculated.iter_mut().for_each(|variable| variable.kind = Kind::Real);
+        }
+        VariableTable::new(self.inputs().into_iter().chain(calculated).chain(parameters).collect())
+    }
+
+    /// How inputs are extrapolated where the master gives no derivatives.
+    fn extrapolation(&self) -> Extrapolation;
+
+    /// Memory in bytes that an instance takes, its variables and a run. It is an upper bound that tests hold against what
+    /// runs allocate.
+    fn memory(&self) -> usize;
+
+    /// Memory in bytes that an FMU state takes, likewise.
+    fn state_memory(&self) -> usize;
+
+    /// What its description says for simple importers.
+    fn options(&self) -> FmuOptions {
+        FmuOptions::default()
+    }
+
+    /// How it is simulated where nothing else is said; `None` where there is no default.
+    fn default_experiment(&self) -> Option<Experiment>;
+
+    /// A run that starts from `inputs` at `time` (s).
+    #[doc(hidden)]
+    fn start(&self, inputs: &Inputs, time: f64) -> Result<Box<dyn FmuRun>, Error>;
+
+    /// A run that continues from `state`.
+    #[doc(hidden)]
+    fn restore(&self, state: &RunState) -> Result<Box<dyn FmuRun>, RestoreError>;
 }
 
-/// The state of an [`InstanceModel`], as an FMU state keeps it.
+/// A default experiment, which starts at 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Experiment {
+    /// Its end, s; `None` where that is the master's to say.
+    pub stop: Option<f64>,
+    /// The relative tolerance; `None` where there is none.
+    pub tolerance: Option<f64>,
+    /// The communication step, s, not rounded yet.
+    pub step: f64,
+}
+
+/// A run of a model.
+pub trait FmuRun: Debug {
+    /// Follows the inputs over a communication step; the run is as it was where that fails.
+    fn advance(&mut self, inputs: &Inputs, step: &CommunicationStep) -> Result<(), Error>;
+
+    /// Writes the values of the calculated variables into `values`, in their order.
+    fn evaluate(&mut self, values: &mut [f64]);
+
+    /// Writes the derivatives of the calculated variables `outputs` as the inputs change by `direction`, all states held.
+    fn directional_derivatives(&mut self, outputs: &[usize], direction: &[f64; MAX_INPUTS], values: &mut [f64]);
+
+    /// The first derivative of a calculated variable, in its unit over s; `None` where it has none.
+    fn output_rate(&mut self, output: usize) -> Option<f64>;
+
+    /// A copy of its state.
+    fn save(&self) -> RunState;
+
+    /// As [`save`](Self::save), into one that there is.
+    fn save_into(&self, saved: &mut RunState) {
+        *saved = self.save();
+    }
+
+    /// Continues from `state`, which was checked where it was read, of a run of the same model.
+    fn set_state(&mut self, state: &RunState) -> Result<(), RestoreError>;
+
+    /// What it has done that is no part of its state.
+    fn history(&self) -> History {
+        History::default()
+    }
+
+    /// Takes over the history of the run that it continues.
+    fn set_history(&mut self, _history: History) {}
+
+    /// Starts or stops recording events and the solver's work.
+    fn record(&mut self, _events: bool, _solver: bool) {}
+
+    /// The records since the last call, at the time (s) reached.
+    fn take_records(&mut self, _time: f64) -> Vec<Message> {
+        Vec::new()
+    }
+
+    /// The warnings that have become due at the time (s) reached.
+    fn take_warnings(&mut self, _time: f64) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// A warning that is given at the end of a run.
+    fn final_warning(&self) -> Option<String> {
+        None
+    }
+}
+
+/// The state of a run, as an FMU state keeps it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) enum ModelState {
-    Layer(Box<simulation::SimulationState>),
-    Element(element::ElementState),
+pub enum RunState {
+    Layer(Box<SimulationState>),
+    Element(ElementState),
     Patch(Box<PatchState>),
 }
 
-impl InstanceModel {
-    pub(super) fn start(definition: &Definition, start: &Start) -> Result<Self, Error> {
-        Ok(match definition {
-            Definition::Layer(scene) => Self::Layer(Box::new(Simulation::new(scene, start)?)),
-            Definition::Element(contact) => Self::Element(Box::new(Element::new(contact, start)?)),
-            // It has a start of its own.
-            Definition::Patch(_) => return Err(Error::NoRun),
-        })
-    }
-
-    pub(super) fn start_patch(definition: &Definition, start: &PatchStart) -> Result<Self, Error> {
-        match definition {
-            Definition::Patch(patch) => Ok(Self::Patch(Box::new(PatchRun::new(patch, start)?))),
-            _ => Err(Error::NoRun),
-        }
-    }
-
-    /// A run that continues from `state`.
-    pub(super) fn restore(definition: &Definition, state: &ModelState) -> Result<Self, RestoreError> {
-        Ok(match (definition, state) {
-            (Definition::Layer(scene), ModelState::Layer(state)) => {
-                Self::Layer(Box::new(Simulation::restore(scene, state)?))
-            }
-            (Definition::Element(contact), ModelState::Element(state)) => {
-                Self::Element(Box::new(Element::restore(contact, state)?))
-            }
-            (Definition::Patch(patch), ModelState::Patch(state)) => {
-                Self::Patch(Box::new(PatchRun::restore(patch, state)?))
-            }
-            _ => return Err(RestoreError::Invalid("its run is of something else")),
-        })
-    }
-
-    /// Puts the model in `state`, of the same definition; that of a patch was checked where it was read. The processor
-    /// time spent remains.
-    pub(super) fn set_state(&mut self, definition: &Definition, state: &ModelState) -> Result<(), RestoreError> {
-        match (&mut *self, state) {
-            (Self::Layer(simulation), ModelState::Layer(state)) => simulation.set_state(state)?,
-            (Self::Patch(run), ModelState::Patch(state)) => run.continue_from(state),
-            _ => *self = Self::restore(definition, state)?,
-        }
-        Ok(())
-    }
-
-    /// The displacements u and w of the carrier, m.
-    pub(super) fn carrier(&self) -> (f64, f64) {
-        match self {
-            Self::Layer(simulation) => simulation.carrier(),
-            Self::Element(element) => element.carrier(),
-            Self::Patch(_) => (0.0, 0.0),
-        }
-    }
-
-    /// The displacements û and ŵ that follow the inputs: of the carrier, or of a body's drive, m.
-    pub(super) fn driven(&self) -> (f64, f64) {
-        match self {
-            Self::Layer(simulation) => simulation.driven(),
-            Self::Element(element) => element.carrier(),
-            Self::Patch(_) => (0.0, 0.0),
-        }
-    }
-
-    /// Advances to the end of `motion`, which is straight.
-    pub(super) fn advance(&mut self, motion: &Motion) -> Result<(), Error> {
-        match self {
-            Self::Layer(simulation) => simulation.advance(motion)?,
-            Self::Element(element) => element.advance(motion.duration, motion.u.rate, motion.w.rate)?,
-            // It has a motion of its own.
-            Self::Patch(_) => return Err(Error::NoRun),
-        }
-        Ok(())
-    }
-
-    /// Writes the values of all outputs into `values`, in their order.
-    pub(super) fn evaluate(&mut self, catalogue: &Catalogue, values: &mut [f64]) {
-        match self {
-            Self::Layer(simulation) => simulation.evaluate(catalogue.outputs(), values),
-            Self::Element(element) => element.evaluate(catalogue.outputs(), values),
-            Self::Patch(run) => run.evaluate(catalogue.patch_outputs(), values),
-        }
-    }
-
-    /// Writes the derivatives of `variables` along a displacement `direction` of the carrier (m), at constant states.
-    pub(super) fn directional_derivative(&mut self, variables: &[Variable], direction: (f64, f64), values: &mut [f64]) {
-        match self {
-            Self::Layer(simulation) => simulation.directional_derivative(variables, direction, values),
-            Self::Element(element) => element.directional_derivative(variables, direction, values),
-            Self::Patch(_) => values.fill(0.0),
-        }
-    }
-
-    /// The first derivative of F_x, F_z or a variable of the carrier's motion, in its unit over s; 0 for other outputs.
-    pub(super) fn output_rate(&mut self, output: Output) -> f64 {
-        match (self, output) {
-            (Self::Layer(simulation), _) => simulation.output_rate(output),
-            (Self::Element(element), Output::ForceX) => element.force_rates().0,
-            (Self::Element(element), Output::ForceZ) => element.force_rates().1,
-            (Self::Element(_) | Self::Patch(_), _) => 0.0,
-        }
-    }
-
-    pub(super) fn state(&self) -> ModelState {
-        match self {
-            Self::Layer(simulation) => ModelState::Layer(Box::new(simulation.state())),
-            Self::Element(element) => ModelState::Element(element.save()),
-            Self::Patch(run) => ModelState::Patch(Box::new(run.save())),
-        }
-    }
-
-    /// As [`state`](Self::state), into one that there is.
-    pub(super) fn save_into(&self, saved: &mut ModelState) {
-        match (self, &mut *saved) {
-            (Self::Patch(run), ModelState::Patch(saved)) => run.save_into(saved),
-            _ => *saved = self.state(),
-        }
-    }
-
-    /// Takes over the processor time that `other` has spent, which is not part of the state; an element counts none.
-    pub(super) fn take_over_run_time(&mut self, other: &Self) {
-        if let (Self::Layer(simulation), Self::Layer(other)) = (self, other) {
-            simulation.set_run_time(other.run_time());
-        }
-    }
-
-    /// Why the run does not converge, if it shows; elements have no steps.
-    pub(super) fn divergence(&self) -> Option<Divergence> {
-        match self {
-            Self::Layer(simulation) => simulation.divergence(),
-            Self::Element(_) | Self::Patch(_) => None,
-        }
-    }
-
-    /// Starts or stops recording mode changes and switches.
-    pub(super) fn record(&mut self, events: bool, switches: bool) {
-        match self {
-            Self::Layer(simulation) => {
-                simulation.record_mode_changes(events);
-                simulation.record_method_switches(switches);
-            }
-            Self::Element(element) => element.record_mode_changes(events),
-            Self::Patch(_) => (),
-        }
-    }
-
-    /// The records since the last call.
-    pub(super) fn take_records(&mut self) -> (Vec<ModeChange>, Vec<MethodSwitch>) {
-        match self {
-            Self::Layer(simulation) => (simulation.take_mode_changes(), simulation.take_method_switches()),
-            Self::Element(element) => (element.take_mode_changes(), Vec::new()),
-            Self::Patch(_) => (Vec::new(), Vec::new()),
-        }
-    }
-
-    /// The run of a patch.
-    pub(super) fn patch(&mut self) -> Option<&mut PatchRun> {
-        if let Self::Patch(run) = self { Some(run) } else { None }
-    }
-
-    /// The simulation of a layer, which counts its work.
-    pub(super) fn simulation(&mut self) -> Option<&mut Simulation> {
-        match self {
-            Self::Layer(simulation) => Some(simulation),
-            Self::Element(_) | Self::Patch(_) => None,
-        }
-    }
+/// What a run has done that is no part of its state: a step that is repeated spends its time again but does not warn again.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct History {
+    /// Processor time spent, s.
+    pub run_time: f64,
+    /// The time at which the run began, s; `None` where it is not known.
+    pub start: Option<f64>,
+    /// Whether it has warned that the layer left its profile.
+    pub left_profile: bool,
+    /// Whether it has warned that it is longer than the reduction of links assumes.
+    pub exceeded_reduction: bool,
 }

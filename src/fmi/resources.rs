@@ -1,6 +1,6 @@
 //! From the URI of the resources to the scene file or the table, in all the spellings that masters use.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use percent_encoding::percent_decode_str;
 
@@ -15,23 +15,50 @@ pub const TABLE_FILE: &str = "table.csv";
 /// The name there of a patch.
 pub const PATCH_FILE: &str = "patch.toml";
 
-/// The first of `files` that is in the resources at `location`.
+/// A file of the resources.
+#[derive(Debug)]
+pub(super) struct Found {
+    pub(super) path: PathBuf,
+    /// Where `location` does not name the folder that it is in.
+    pub(super) warning: Option<String>,
+}
+
+/// The first of `files` that is in the resources at `location`; else in those of the FMU's folder, as which some masters
+/// pass it; else in those beside the folder of the `library`.
 ///
 /// # Errors
 /// [`Error::NoResource`] with the folders looked in.
-pub(super) fn find(location: &str, files: &'static [&'static str]) -> Result<PathBuf, Error> {
-    let tried: Vec<_> = folders(location).into_iter().map(PathBuf::from).collect();
-    let mut paths = tried.iter().flat_map(|folder| files.iter().map(|file| folder.join(file)));
-    match paths.find(|path| path.is_file()) {
-        Some(path) => Ok(path),
-        None => Err(Error::NoResource { location: location.into(), files, tried }),
-    }
+pub(super) fn find(location: &str, library: Option<&Path>, files: &'static [&'static str]) -> Result<Found, Error> {
+    let named: Vec<_> = folders(location).into_iter().map(PathBuf::from).collect();
+    let guessed = named.iter().map(|folder| folder.join(RESOURCES)).chain(library.and_then(beside));
+    let tried: Vec<_> = named.iter().cloned().chain(guessed).collect();
+    let in_folder = |folder: &PathBuf| files.iter().map(|file| folder.join(file)).find(|path| path.is_file());
+    let found = tried.iter().enumerate().find_map(|(i, folder)| Some((i, folder, in_folder(folder)?)));
+    let Some((i, folder, path)) = found else {
+        return Err(Error::NoResource { location: location.into(), files, tried });
+    };
+    let warning = (i >= named.len()).then(|| {
+        let folder = folder.display();
+        format!("fmuResourceLocation is \"{location}\", not the FMU's folder {RESOURCES}: took that at \"{folder}\"")
+    });
+    Ok(Found { path, warning })
+}
+
+/// The folder in an FMU.
+const RESOURCES: &str = "resources";
+
+/// The resources of the FMU in whose folder `binaries/PLATFORM` the library lies.
+fn beside(library: &Path) -> Option<PathBuf> {
+    Some(library.parent()?.parent()?.parent()?.join(RESOURCES))
 }
 
 /// The folders that `location` may mean, the likeliest first: a URI decoded, a plain path as it is, then the other way
 /// round.
 fn folders(location: &str) -> Vec<String> {
     let mut folders = Vec::new();
+    if location.is_empty() {
+        return folders;
+    }
     let mut add = |folder: &str| {
         if !folders.iter().any(|known| known == folder) {
             folders.push(folder.to_owned());
@@ -122,10 +149,26 @@ mod tests {
 
     #[test]
     fn a_missing_file_is_reported_with_the_folders_tried() {
-        let message = find("file:///no/such%20place", &[SCENE_FILE, TABLE_FILE]).unwrap_err().to_string();
+        let message = find("file:///no/such%20place", None, &[SCENE_FILE, TABLE_FILE]).unwrap_err().to_string();
         for part in ["no file scene.toml or table.csv", "file:///no/such%20place", "/no/such place", "/no/such%20place"]
         {
             assert!(message.contains(part), "{message}");
         }
+    }
+
+    #[test]
+    fn the_fmus_folder_and_none_are_taken_for_its_resources_with_a_warning() {
+        let fmu = std::env::temp_dir().join(format!("asperity-resources-{}", std::process::id()));
+        let (resources, library) = (fmu.join(RESOURCES), fmu.join("binaries/linux64/a.so"));
+        std::fs::create_dir_all(&resources).unwrap();
+        std::fs::write(resources.join(SCENE_FILE), "").unwrap();
+        let found = |location: &str| find(location, Some(&library), &[SCENE_FILE]).unwrap();
+        assert!(found(resources.to_str().unwrap()).warning.is_none());
+        for location in [fmu.to_str().unwrap(), "", "file:///elsewhere"] {
+            let Found { path, warning } = found(location);
+            assert_eq!(path, resources.join(SCENE_FILE), "{location}");
+            assert!(warning.unwrap().contains("resources"), "{location}");
+        }
+        std::fs::remove_dir_all(fmu).unwrap();
     }
 }

@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::definition::{Catalogue, Parameters};
-use super::error::{Error, RestoreError, Status};
-use super::inputs::Inputs;
+use super::definition::Parameters;
+use super::error::{Error, Status};
+use super::inputs::{CommunicationStep, Inputs};
 use super::lifecycle::LifecycleState;
-use super::model::{InstanceModel, ModelState};
-use super::patch_inputs::PatchInputs;
+use super::memory;
+use super::model::{FmuRun, RunState};
+use super::variables::VariableTable;
 use crate::scene::{SMALLEST, is_possible};
 
 #[derive(Debug)]
@@ -19,64 +20,57 @@ pub(super) struct InstanceState {
     /// What is simulated, with the parameters set.
     pub(super) parameters: Arc<Parameters>,
     pub(super) inputs: Inputs,
-    /// Of a patch, in their place.
-    pub(super) patch_inputs: Option<PatchInputs>,
     pub(super) clock: Clock,
     /// What the last step returned.
     pub(super) last_step: Status,
-    /// The model. Before the run, one that would start from the parameters and inputs set, once outputs were asked for.
-    pub(super) model: Option<InstanceModel>,
+    /// The run. Before it begins, one that would start from the parameters and inputs set, once outputs were asked for.
+    pub(super) run: Option<Box<dyn FmuRun>>,
 }
 
-/// An FMU state: a copy of an instance's state without the workspace of its model.
+/// An FMU state: a copy of an instance's state without the workspace of its run.
 #[derive(Clone, Debug)]
 pub(super) struct FmuState {
     pub(super) lifecycle: LifecycleState,
     pub(super) parameters: Arc<Parameters>,
     pub(super) inputs: Inputs,
-    pub(super) patch_inputs: Option<PatchInputs>,
     pub(super) clock: Clock,
     pub(super) last_step: Status,
-    /// `None` before the run: the model follows from the rest then.
-    pub(super) model: Option<ModelState>,
+    /// `None` before the run: it follows from the rest then.
+    pub(super) run: Option<RunState>,
 }
 
 impl InstanceState {
-    /// The state after fmi2Instantiate.
-    pub(super) fn new(parameters: Arc<Parameters>) -> Self {
-        let inputs = Inputs::new(parameters.definition().temperature());
+    /// The state after fmi2Instantiate of a model with these variables.
+    pub(super) fn new(parameters: Arc<Parameters>, variables: &VariableTable) -> Self {
         Self {
             lifecycle: LifecycleState::Instantiated,
-            patch_inputs: parameters.definition().patch().map(PatchInputs::new),
             parameters,
-            inputs,
+            inputs: variables.start_inputs(),
             clock: Clock::default(),
             last_step: Status::Ok,
-            model: None,
+            run: None,
         }
     }
 
-    /// Drops the model that would have started, since something that it starts from has changed.
+    /// Drops the run that would have started, since something that it starts from has changed.
     pub(super) fn discard_start(&mut self) {
         if self.lifecycle.before_run() {
-            self.model = None;
+            self.run = None;
         }
     }
 
-    /// The model. Before the run, outputs are those of a run that starts from the parameters and inputs set.
-    pub(super) fn model(&mut self) -> Result<&mut InstanceModel, Error> {
-        if self.model.is_none() && self.lifecycle.before_run() {
-            let (definition, time) = (self.parameters.definition(), self.clock.time);
-            self.model = Some(match &self.patch_inputs {
-                Some(inputs) => InstanceModel::start_patch(definition, &inputs.start(time))?,
-                None => InstanceModel::start(definition, &self.inputs.start(time))?,
-            });
+    /// The run. Before it begins, outputs are those of a run that starts from the parameters and inputs set.
+    pub(super) fn run(&mut self) -> Result<&mut dyn FmuRun, Error> {
+        if self.run.is_none() && self.lifecycle.before_run() {
+            let definition = self.parameters.definition();
+            memory::check("a run", definition.memory())?;
+            self.run = Some(definition.start(&self.inputs, self.clock.time)?);
         }
-        self.model.as_mut().ok_or(Error::NoRun)
+        Ok(self.run.as_mut().ok_or(Error::NoRun)?.as_mut())
     }
 
     pub(super) fn start(&mut self) -> Result<(), Error> {
-        let result = self.model().map(|_| ());
+        let result = self.run().map(|_| ());
         self.lifecycle = if result.is_ok() { LifecycleState::StepComplete } else { LifecycleState::Error };
         result
     }
@@ -98,64 +92,65 @@ impl InstanceState {
     }
 
     fn advance(&mut self, clock: Clock, h: f64) -> Result<(), Error> {
-        let (inputs, time, rule) = (self.inputs, self.clock.time, self.parameters.definition().extrapolation());
-        let patch_inputs = self.patch_inputs;
-        match (self.model()?, &patch_inputs) {
-            (InstanceModel::Patch(run), Some(inputs)) => run.advance(&inputs.motion(run, h, rule)?)?,
-            (model, _) => model.advance(&inputs.motion(model.driven(), time, h, rule)?)?,
-        }
+        let extrapolation = self.parameters.definition().extrapolation();
+        let (inputs, step) = (self.inputs, CommunicationStep { time: self.clock.time, h, extrapolation });
+        self.run()?.advance(&inputs, &step)?;
         self.inputs.complete_step(h);
-        self.patch_inputs.iter_mut().for_each(|inputs| inputs.complete_step(h));
         self.clock = clock;
         Ok(())
     }
 
+    /// The run, unless it has not begun.
+    fn begun(&self) -> Option<&dyn FmuRun> {
+        self.run.as_deref().filter(|_| !self.lifecycle.before_run())
+    }
+
     /// A copy for an FMU state.
     pub(super) fn save(&self) -> FmuState {
-        let model = self.model.as_ref().filter(|_| !self.lifecycle.before_run());
-        FmuState { model: model.map(InstanceModel::state), ..self.without_model() }
+        FmuState { run: self.begun().map(|run| run.save()), ..self.without_run() }
     }
 
     /// As [`save`](Self::save), into an FMU state that there is: the arrays of a large patch stay where they are.
     pub(super) fn save_into(&self, saved: &mut FmuState) {
-        let mut kept = saved.model.take();
-        match (self.model.as_ref().filter(|_| !self.lifecycle.before_run()), &mut kept) {
-            (Some(model), Some(kept)) => model.save_into(kept),
-            (model, kept) => *kept = model.map(InstanceModel::state),
+        let mut kept = saved.run.take();
+        match (self.begun(), &mut kept) {
+            (Some(run), Some(kept)) => run.save_into(kept),
+            (run, kept) => *kept = run.map(|run| run.save()),
         }
-        *saved = FmuState { model: kept, ..self.without_model() };
+        *saved = FmuState { run: kept, ..self.without_run() };
     }
 
-    fn without_model(&self) -> FmuState {
+    fn without_run(&self) -> FmuState {
         FmuState {
             lifecycle: self.lifecycle,
             parameters: Arc::clone(&self.parameters),
             inputs: self.inputs,
-            patch_inputs: self.patch_inputs,
             clock: self.clock,
             last_step: self.last_step,
-            model: None,
+            run: None,
         }
     }
 
-    /// Continues from `state`. The processor time spent is not part of it and continues from its current value.
-    pub(super) fn restore(&mut self, state: &FmuState) -> Result<(), RestoreError> {
-        let definition = state.parameters.definition();
+    /// Continues from `state`. What a run has done that is no part of it, such as the processor time, continues from its
+    /// current value.
+    pub(super) fn restore(&mut self, state: &FmuState) -> Result<(), Error> {
         let same = Arc::ptr_eq(&self.parameters, &state.parameters);
-        match (&state.model, &mut self.model) {
-            (Some(state), Some(model)) if same => model.set_state(definition, state)?,
-            (Some(state), model) => {
-                let mut restored = InstanceModel::restore(definition, state)?;
-                if let Some(before) = model {
-                    restored.take_over_run_time(before);
+        match (&state.run, &mut self.run) {
+            (Some(state), Some(run)) if same => run.set_state(state)?,
+            (Some(saved), run) => {
+                let definition = state.parameters.definition();
+                memory::check("a run", definition.memory())?;
+                let mut restored = definition.restore(saved)?;
+                if let Some(before) = run {
+                    restored.set_history(before.history());
                 }
-                *model = Some(restored);
+                *run = Some(restored);
             }
-            (None, model) => *model = None,
+            (None, run) => *run = None,
         }
         self.lifecycle = state.lifecycle;
         self.parameters = Arc::clone(&state.parameters);
-        (self.inputs, self.patch_inputs) = (state.inputs, state.patch_inputs);
+        self.inputs = state.inputs;
         (self.clock, self.last_step) = (state.clock, state.last_step);
         Ok(())
     }
@@ -176,12 +171,12 @@ impl OutputCache {
         }
     }
 
-    /// The values of all outputs, in the order of their value references.
-    pub(super) fn get(&mut self, state: &mut InstanceState, catalogue: &Catalogue) -> Result<&[f64], Error> {
+    /// The values of all `count` calculated variables, in their order.
+    pub(super) fn get(&mut self, state: &mut InstanceState, count: usize) -> Result<&[f64], Error> {
         if self.values.is_none() {
             let mut values = std::mem::take(&mut self.spare);
-            values.resize(catalogue.output_count(), 0.0);
-            state.model()?.evaluate(catalogue, &mut values);
+            values.resize(count, 0.0);
+            state.run()?.evaluate(&mut values);
             self.values = Some(values);
         }
         Ok(self.values.as_deref().unwrap_or_default())
@@ -190,6 +185,10 @@ impl OutputCache {
 
 /// Differences of times below this share of the larger of time and step size are rounding.
 const ROUNDING: f64 = 1e-10;
+
+/// So are those below this share of the step size, and those by which a clock in single precision is off, up to a larger one.
+const PART_OF_STEP: f64 = 1e-6;
+const MAX_PART_OF_STEP: f64 = 1e-3;
 
 /// The time of the FMU and the stop time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -233,7 +232,8 @@ impl Clock {
         if !(is_possible(h) && h >= 0.0) {
             return Err(Error::StepSize(h));
         }
-        let slack = ROUNDING * self.time.abs().max(h);
+        let single = (f64::from(f32::EPSILON) * self.time.abs()).min(MAX_PART_OF_STEP * h);
+        let slack = (ROUNDING * self.time.abs().max(h)).max(PART_OF_STEP * h).max(single);
         let difference = (point - self.time).abs();
         let changes = self.time + h != self.time;
         // The stiffness of a damper over so short a step would overflow.

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use super::face::{Face, Points, Section, Tread};
 use crate::element::{Load, ResampledLaw, Table, TableError};
 use crate::scene::{
-    Extrapolation, FaceShape, Grid, NotDoubled, Parameter, ParameterError, PatchFile, PatchGroup, Problem, SceneError,
-    TableExtrapolation, Value,
+    Extrapolation, FaceShape, FmuOptions, Grid, NotDoubled, Parameter, ParameterError, PatchFile, PatchGroup, Problem,
+    SceneError, TableExtrapolation, Value,
 };
 
 /// Why a patch is refused.
@@ -145,6 +145,11 @@ impl Patch {
         &self.file.outputs
     }
 
+    /// What its FMU's description says for simple importers.
+    pub fn fmu_options(&self) -> FmuOptions {
+        self.file.fmu
+    }
+
     /// The area that a layer of the table stands for, m².
     pub fn nominal_area(&self) -> f64 {
         self.nominal_area
@@ -208,15 +213,15 @@ impl Patch {
 
     /// A height (m) at which nothing touches when the body is level.
     pub fn clear_height(&self) -> f64 {
-        let law = self.law();
+        let touch = ResampledLaw::earliest_touch_of(&self.table, self.temperature);
         let lowest = match &*self.face {
             Face::Points(points) => points.z.iter().copied().fold(f64::INFINITY, f64::min),
             Face::Tread(tread) => tread.section.at(0.0).0[1] + tread.offset[2],
         };
-        let step = law.earliest_touch().abs().max(1e-6);
+        let step = touch.abs().max(1e-6);
         // A round number, a little higher, is easier to read.
         let digits = 10.0_f64.powf(step.log10().floor() - 1.0);
-        (((-law.earliest_touch() - lowest) / digits).floor() + 1.0) * digits
+        (((-touch - lowest) / digits).floor() + 1.0) * digits
     }
 
     pub(super) fn law(&self) -> ResampledLaw {

@@ -7,7 +7,7 @@ use super::motion::{BodyMotion, Substeps, TreadMotion};
 use super::state::{
     MotionError, PatchMotion, PatchStart, PatchState, Pose, RestoreError, Springs, Totals, check_duration, max_substeps,
 };
-use super::worker_pool::WorkerPool;
+use super::worker_pool::{WorkerPool, threads};
 use crate::element::ResampledLaw;
 use crate::math::Dual;
 use crate::scene::TableExtrapolation;
@@ -48,6 +48,23 @@ enum Workers {
     Tangent(WorkerPool<Dual<6>>),
 }
 
+impl Patch {
+    /// Memory in bytes that a run takes at most: its law, one more for each thread that helps, and springs.
+    pub fn run_memory(&self) -> usize {
+        /// Two springs.
+        const ELEMENT: usize = 64;
+        /// Of a thread's block, and of all sums.
+        const BLOCK: usize = 1 << 17;
+        let laws = threads(self.work()).max(1);
+        BLOCK + laws * (BLOCK + ResampledLaw::memory(self.table())) + ELEMENT * self.count()
+    }
+
+    /// Elements times parts of a step, at least.
+    fn work(&self) -> f64 {
+        self.count() as f64 * f64::from(self.refine)
+    }
+}
+
 impl PatchRun {
     /// A patch at its start, its springs relaxed.
     ///
@@ -76,7 +93,7 @@ impl PatchRun {
         if let Some(held) = patch.held_temperature(temperature) {
             law.set_temperature(held);
         }
-        let work = patch.count() as f64 * f64::from(patch.refine);
+        let work = patch.work();
         let workers = if tangents {
             Workers::Tangent(WorkerPool::new(work, &law))
         } else {

@@ -43,11 +43,16 @@ struct Batch<'a, T> {
     sums: &'a mut Sums<T>,
 }
 
+/// How many threads do steps of so many elements times substeps.
+pub(super) fn threads(work: f64) -> usize {
+    let threads = thread::available_parallelism().map_or(1, NonZero::get);
+    threads.min((work / WORTH_A_THREAD) as usize)
+}
+
 impl<T: Number + Send + Sync> WorkerPool<T> {
     /// For steps of so many elements times substeps or more: as many as the processor serves at once and the steps are worth.
     pub(super) fn new(work: f64, law: &ResampledLaw) -> Self {
-        let threads = thread::available_parallelism().map_or(1, NonZero::get);
-        Self::with_threads(threads.min((work / WORTH_A_THREAD) as usize), law)
+        Self::with_threads(threads(work), law)
     }
 
     /// One, or `threads` of them.

@@ -11,6 +11,7 @@ mod carrier;
 mod error;
 mod excitation;
 mod fine_roughness;
+mod fmu;
 mod foundation;
 mod keys;
 mod link_kind;
@@ -41,6 +42,7 @@ pub use carrier::{CarrierBodies, CarrierBody, CarrierInitial, Input};
 pub use error::{ParameterError, Problem, SceneError};
 pub use excitation::{Force, Motion, Path, Phase};
 pub use fine_roughness::FineRoughness;
+pub use fmu::{DependencyList, FmuOptions, IntegerType};
 pub use foundation::{Body, Foundation, FoundationKind, Quality, Stiffness, Wave, Waves};
 pub use keys::similar_keys;
 pub use link_kind::{ByLink, LinkKind};
@@ -51,7 +53,7 @@ pub use profile::{Extract, LengthUnit, Missing, ProfileOptions, ThirdColumn, Til
 pub use regular_file::{read_file, read_text};
 pub use spectrum::{Band, PowerLaw, Spectrum};
 pub use surface::{MeanLine, SelfAffine, Surface};
-pub use values::{LARGEST, SMALLEST, Unit, is_possible};
+pub use values::{LARGEST, LOOSEST_TOLERANCE, SMALLEST, Unit, is_possible};
 
 /// A whole scene, checked. Serialised, it is every number of it: what the scene does not name is null or empty.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -80,6 +82,9 @@ pub struct Scene {
     pub temperature_input: bool,
     /// The output groups, in the order of [`OutputGroup::ALL`], each once.
     pub outputs: Vec<OutputGroup>,
+    /// What its FMU's description says for simple importers.
+    #[serde(skip)]
+    pub fmu: FmuOptions,
     /// The motion of the carrier in runs without a master.
     pub excitation: Vec<Phase>,
     /// The files that the scene reads and an FMU carries: relative to its folder, as the scene names them; a line of an

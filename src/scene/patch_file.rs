@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use super::Extrapolation;
 use super::error::{Location, Problem, SceneError};
 use super::values::Word;
+use super::{Extrapolation, FmuOptions};
 
 /// The most elements of a patch.
 pub(super) const MAX_ELEMENTS: i64 = 1_000_000;
@@ -34,6 +34,8 @@ pub struct PatchFile {
     pub refine: u32,
     /// Groups of outputs, in the order of the variables.
     pub outputs: Vec<PatchGroup>,
+    /// What its FMU's description says for simple importers.
+    pub fmu: FmuOptions,
     /// Where the keys are that only the table can judge: `temperature` and `nominal_area`, or the table.
     pub(super) places: [Location; 2],
 }

@@ -93,6 +93,9 @@ impl fmt::Display for WholeRange {
     }
 }
 
+/// The largest relative tolerance.
+pub const LOOSEST_TOLERANCE: f64 = 0.1;
+
 /// An SI unit of a variable or a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Unit {

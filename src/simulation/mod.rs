@@ -48,7 +48,7 @@ pub use state::{RestoreError, SimulationState};
 /// A clone goes on exactly as the original, bit for bit.
 #[derive(Clone, Debug)]
 pub struct Simulation {
-    run: Run,
+    run: Box<Run>,
     /// A more accurate one, where its error is asked for.
     reference_run: Option<ReferenceRun>,
     /// The scene where its temperature is an input.
@@ -137,11 +137,11 @@ impl Simulation {
 
     /// The run, and the reference run where there is one.
     fn runs(&self) -> impl Iterator<Item = &Run> {
-        std::iter::once(&self.run).chain(self.reference_run.as_ref().map(|reference| &reference.run))
+        std::iter::once(&*self.run).chain(self.reference_run.as_ref().map(|reference| &*reference.run))
     }
 
     fn runs_mut(&mut self) -> impl Iterator<Item = &mut Run> {
-        std::iter::once(&mut self.run).chain(self.reference_run.as_mut().map(|reference| &mut reference.run))
+        std::iter::once(&mut *self.run).chain(self.reference_run.as_mut().map(|reference| &mut *reference.run))
     }
 
     /// Makes the model that of a run that started at these u and w, m.

@@ -41,7 +41,7 @@ const MIN_WORK: u64 = 10_000;
 /// A more accurate run that follows the one whose error is estimated: never behind it when it is compared.
 #[derive(Clone, Debug)]
 pub(super) struct ReferenceRun {
-    pub(super) run: Run,
+    pub(super) run: Box<Run>,
     /// The duration of the motion under way, s.
     duration: f64,
     work: WorkLimit,

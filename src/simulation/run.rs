@@ -65,21 +65,28 @@ pub(super) struct Run {
 }
 
 impl Run {
-    /// A run with the layer placed under the carrier at `start`.
+    /// A run with the layer placed under the carrier at `start`; on the heap, since threads of hosts may have small stacks.
     pub(super) fn new(
         model: Arc<Model>,
         settings: Settings,
         start: &Start,
         bodies: &ByAxis<Option<BodyStart>>,
-    ) -> Self {
+    ) -> Box<Self> {
         let local_regions = LocalRegions::new(&model, &settings);
         let event_driven = EventDriven::new(&model, !local_regions.is_empty());
         let time_stepping = TimeStepping::new(&model, settings.method != Method::Event);
         let context = Context::new(model, settings, start, bodies);
         let checkpoint = Box::new(context.state.clone());
         let (recorded, method_switches) = ([0; 2], None);
-        let mut run =
-            Self { context, event_driven, time_stepping, local_regions, checkpoint, recorded, method_switches };
+        let mut run = Box::new(Self {
+            context,
+            event_driven,
+            time_stepping,
+            local_regions,
+            checkpoint,
+            recorded,
+            method_switches,
+        });
         run.keep_link_forces();
         run
     }

@@ -9,7 +9,7 @@ use std::{fs, mem, process, ptr};
 
 use asperity::element::{PointContact, Table};
 use asperity::fmi::bindings::*;
-use asperity::fmi::{self, Catalogue, Definition, PATCH_FILE, SCENE_FILE, Sources, TABLE_FILE};
+use asperity::fmi::{self, Definition, PATCH_FILE, SCENE_FILE, Sources, TABLE_FILE, VariableTable};
 use asperity::patch::Patch;
 use asperity::scene::Scene;
 
@@ -112,14 +112,14 @@ impl Folder {
     }
 
     /// The GUID and the variables of the scene, the table or the patch in it.
-    pub fn description(&self) -> (String, Catalogue) {
+    pub fn description(&self) -> (String, VariableTable) {
         let files = [PATCH_FILE, TABLE_FILE, SCENE_FILE].map(|file| self.0.join(file));
         describe(files.iter().find(|file| file.is_file()).unwrap())
     }
 }
 
 /// The GUID and the variables of a scene, a table or a patch, which the file's name tells.
-pub fn describe(file: &Path) -> (String, Catalogue) {
+pub fn describe(file: &Path) -> (String, VariableTable) {
     let definition: Definition = if file.ends_with(PATCH_FILE) {
         Patch::load(file).unwrap().into()
     } else if file.ends_with(TABLE_FILE) {
@@ -127,8 +127,8 @@ pub fn describe(file: &Path) -> (String, Catalogue) {
     } else {
         Scene::load(file).unwrap().into()
     };
-    let catalogue = Catalogue::of(&definition);
-    (fmi::guid(&Sources::of(file, &definition).unwrap(), &catalogue), catalogue)
+    let variables = definition.variables();
+    (fmi::guid(&Sources::of(file, &*definition).unwrap(), &variables), variables)
 }
 
 impl Drop for Folder {
@@ -209,7 +209,7 @@ impl Request {
 /// An instance and its messages.
 pub struct Fmu {
     instance: Instance,
-    pub catalogue: Catalogue,
+    pub variables: VariableTable,
     messages: Box<Messages>,
     _folder: Folder,
 }
@@ -235,7 +235,7 @@ impl Fmu {
     }
 
     fn in_folder(folder: Folder, logging: bool) -> Self {
-        let (guid, catalogue) = folder.description();
+        let (guid, variables) = folder.description();
         let messages = Box::new(Messages::default());
         let functions = callbacks(&messages);
         let location = format!("file://{}", folder.text());
@@ -249,7 +249,7 @@ impl Fmu {
         };
         let c = request.send();
         assert!(!c.is_null(), "{:?}", messages.lock());
-        Self { instance: Instance { c }, catalogue, messages, _folder: folder }
+        Self { instance: Instance { c }, variables, messages, _folder: folder }
     }
 
     /// An instance of [`SCENE`] in the initialisation mode.
@@ -295,7 +295,7 @@ impl Fmu {
 
     /// The value reference of the variable `name`.
     pub fn reference(&self, name: &str) -> u32 {
-        self.catalogue.entries().find(|(_, entry)| entry.name() == name).unwrap().0
+        self.variables.entries().find(|(_, entry)| entry.name == name).unwrap().0
     }
 
     pub fn setup(&self, start: f64) -> fmi2Status {
@@ -304,13 +304,10 @@ impl Fmu {
 
     /// All outputs but the processor time, bit by bit.
     pub fn bits(&self) -> Vec<u64> {
-        let is_time = |entry: &fmi::Entry<'_>| entry.name() == "solver.run_time";
-        let outputs = self
-            .catalogue
-            .entries()
-            .filter(|(_, entry)| matches!(entry, fmi::Entry::Output(..) | fmi::Entry::PatchOutput(..)));
-        let bits = |(reference, entry): (u32, fmi::Entry<'_>)| match entry.kind() {
-            fmi::Kind::Real => self.real(&entry.name()).to_bits(),
+        let is_time = |entry: &fmi::VariableRef| entry.name == "solver.run_time";
+        let outputs = self.variables.entries().filter(|(_, entry)| entry.is_calculated());
+        let bits = |(reference, entry): (u32, &fmi::VariableRef)| match entry.kind {
+            fmi::Kind::Real => self.real(&entry.name).to_bits(),
             _ => {
                 let mut value = [0];
                 assert_eq!(self.get_integers(&[reference], &mut value), OK);

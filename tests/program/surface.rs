@@ -7,7 +7,7 @@ use std::path::Path;
 
 use crate::common::scenes::SceneText;
 use crate::common::{asperity, run, scratch};
-use asperity::fmi::{Catalogue, Sources, guid};
+use asperity::fmi::{Definition, Sources, guid};
 use asperity::scene::Scene;
 use serde_json::Value;
 use zip::write::SimpleFileOptions;
@@ -189,8 +189,9 @@ fn lines_of_an_areal_measurement_go_into_the_archive_as_text() {
     assert_eq!(carried, expected);
     let mut description = String::new();
     archive.by_name("modelDescription.xml").unwrap().read_to_string(&mut description).unwrap();
-    let sources = Sources::read(&unpacked.join("resources/scene.toml"), &carried).unwrap();
-    assert!(description.contains(&guid(&sources, &Catalogue::new(&carried))));
+    let carried = Definition::from(carried);
+    let sources = Sources::of(&unpacked.join("resources/scene.toml"), &*carried).unwrap();
+    assert!(description.contains(&guid(&sources, &carried.variables())));
 
     let without_line = failure(&["surface", folder.join("road.x3p").to_str().unwrap()]);
     assert!(without_line.contains("line = not given: expected a whole number from 1 to 3"), "{without_line}");

@@ -5,6 +5,9 @@ use std::ffi::OsString;
 use std::io::{Cursor, Write as _};
 use std::path::{Path, PathBuf};
 
+use object::Endianness;
+use object::elf::FileHeader64;
+use object::read::elf::FileHeader as _;
 use zip::result::{ZipError, ZipResult};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
@@ -99,6 +102,32 @@ pub(super) fn binaries(identifier: &str, arguments: &[OsString]) -> Result<Vec<A
     libraries.iter().map(|(platform, path)| binary(identifier, platform, path)).collect()
 }
 
+/// The platform of a shared library in an FMU, and the version of glibc that it asks for, as in "linux64: glibc 2.17".
+pub(super) fn needs(entry: &ArchiveEntry) -> Option<String> {
+    let platform = entry.name.strip_prefix("binaries/")?.split('/').next()?;
+    let version = newest_glibc(&entry.bytes)?.iter().map(u32::to_string).collect::<Vec<_>>().join(".");
+    Some(format!("{platform}: glibc {version} or later"))
+}
+
+/// The newest version of glibc among those that an ELF file's symbols are of.
+fn newest_glibc(elf: &[u8]) -> Option<Vec<u32>> {
+    let header = FileHeader64::<Endianness>::parse(elf).ok()?;
+    let endian = header.endian().ok()?;
+    let sections = header.sections(endian, elf).ok()?;
+    let (mut files, strings) = sections.gnu_verneed(endian, elf).ok()??;
+    let strings = sections.strings(endian, elf, strings).ok()?;
+    let mut newest = None;
+    while let Some((_, mut versions)) = files.next().ok()? {
+        while let Some(version) = versions.next().ok()? {
+            let name = std::str::from_utf8(version.name(endian, strings).ok()?).ok()?;
+            // Private symbols have no number.
+            let numbers = name.strip_prefix("GLIBC_").map(|name| name.split('.').map(str::parse).collect());
+            newest = newest.max(numbers.and_then(Result::ok));
+        }
+    }
+    newest
+}
+
 /// `PLATFORM=PATH`, or a path alone for this program's platform.
 fn library(argument: &OsString) -> (Platform, PathBuf) {
     let named = argument.to_str().and_then(|text| text.split_once('=')).and_then(|(name, path)| {
@@ -168,6 +197,17 @@ mod tests {
         assert_eq!(library("a/b.so"), (HOST, "a/b.so".into()));
         assert_eq!(library("win64=a/b.dll"), (WINDOWS, "a/b.dll".into()));
         assert_eq!(library("a=b/c.so"), (HOST, "a=b/c.so".into()));
+    }
+
+    /// The program itself is linked against one.
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
+    #[test]
+    fn the_newest_glibc_is_read_from_the_file() {
+        let own = std::fs::read(std::env::current_exe().unwrap()).unwrap();
+        let version = newest_glibc(&own).unwrap();
+        assert!(version >= vec![2, 17] && version < vec![3], "{version:?}");
+        assert_eq!(newest_glibc(b"MZ"), None);
+        assert_eq!(newest_glibc(&own[..100]), None);
     }
 
     #[test]

@@ -3,9 +3,8 @@
 use std::collections::BTreeSet;
 use std::io;
 
-use asperity::fmi::{CAPABILITIES, Catalogue, Category, Definition, Entry, Input, Kind};
-use asperity::outputs::Dependencies;
-use asperity::scene::{Unit, Value};
+use asperity::fmi::{CAPABILITIES, Category, Experiment, FmuModel, Kind, Role, VariableRef, VariableTable};
+use asperity::scene::{DependencyList, Unit, Value};
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 
@@ -13,24 +12,21 @@ use crate::program::terminal::decimal;
 
 type Xml = Writer<Vec<u8>>;
 
-/// Communication steps that the default experiment takes, roughly.
-const DEFAULT_STEPS: f64 = 500.0;
-
-/// Writes the description of a layer or an element, whose variables are in `catalogue`.
-pub(super) fn write(definition: &Definition, catalogue: &Catalogue, guid: &str) -> io::Result<Vec<u8>> {
+/// Writes the description of a model with these variables.
+pub(super) fn write(model: &dyn FmuModel, variables: &VariableTable, guid: &str) -> io::Result<Vec<u8>> {
     let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
     xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
-    let description = clean(&definition.description());
+    let description = clean(&model.description());
     let root = xml
         .create_element("fmiModelDescription")
         .with_attribute(("fmiVersion", "2.0"))
-        .with_attribute(("modelName", clean(&definition.name()).as_str()))
+        .with_attribute(("modelName", clean(&model.name()).as_str()))
         .with_attribute(("guid", guid))
         .with_attributes(Some(("description", description.as_str())).filter(|_| !description.is_empty()))
         .with_attribute(("generationTool", concat!("asperity ", env!("CARGO_PKG_VERSION"))))
         .with_attribute(("variableNamingConvention", "structured"))
         .with_attribute(("numberOfEventIndicators", "0"));
-    root.write_inner_content(|xml| content(xml, definition, catalogue))?;
+    root.write_inner_content(|xml| content(xml, model, variables))?;
     let mut bytes = xml.into_inner();
     bytes.push(b'\n');
     Ok(bytes)
@@ -41,19 +37,24 @@ pub(super) fn clean(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
-fn content(xml: &mut Xml, definition: &Definition, catalogue: &Catalogue) -> io::Result<()> {
-    co_simulation(xml, definition)?;
-    unit_definitions(xml, catalogue)?;
+fn content(xml: &mut Xml, model: &dyn FmuModel, variables: &VariableTable) -> io::Result<()> {
+    co_simulation(xml, model)?;
+    unit_definitions(xml, variables)?;
     log_categories(xml)?;
-    default_experiment(xml, definition)?;
-    model_variables(xml, definition, catalogue)?;
-    model_structure(xml, definition, catalogue)
+    default_experiment(xml, model)?;
+    model_variables(xml, variables)?;
+    model_structure(xml, variables, lists_dependencies(model))
 }
 
-fn co_simulation(xml: &mut Xml, definition: &Definition) -> io::Result<()> {
+fn lists_dependencies(model: &dyn FmuModel) -> bool {
+    model.options().dependencies == DependencyList::Direct
+}
+
+fn co_simulation(xml: &mut Xml, model: &dyn FmuModel) -> io::Result<()> {
+    let without = if lists_dependencies(model) { "" } else { "providesDirectionalDerivative" };
     xml.create_element("CoSimulation")
-        .with_attribute(("modelIdentifier", definition.model_identifier().as_str()))
-        .with_attributes(CAPABILITIES)
+        .with_attribute(("modelIdentifier", model.identifier().as_str()))
+        .with_attributes(CAPABILITIES.into_iter().filter(|(name, _)| *name != without))
         .write_empty()?;
     Ok(())
 }
@@ -68,25 +69,17 @@ fn log_categories(xml: &mut Xml) -> io::Result<()> {
     Ok(())
 }
 
-/// The excitation's duration as the time to simulate; a scene without one, and an element, have no default.
-fn default_experiment(xml: &mut Xml, definition: &Definition) -> io::Result<()> {
-    let Definition::Layer(scene) = definition else { return Ok(()) };
-    let stop = as_written(scene.duration());
-    if stop <= 0.0 {
-        return Ok(());
-    }
-    xml.create_element("DefaultExperiment")
-        .with_attribute(("startTime", "0"))
-        .with_attribute(("stopTime", real(stop).as_str()))
-        .with_attribute(("tolerance", real(scene.solver.relative_tolerance).as_str()))
-        .with_attribute(("stepSize", real(round_down(stop / DEFAULT_STEPS)).as_str()))
-        .write_empty()?;
-    Ok(())
-}
-
-/// A sum of decimals without its rounding error: 0.014 for 0.01 + 0.001 + 0.003, which is 0.013999999999999999.
-fn as_written(sum: f64) -> f64 {
-    format!("{sum:.14e}").parse().unwrap_or(sum)
+fn default_experiment(xml: &mut Xml, model: &dyn FmuModel) -> io::Result<()> {
+    let Some(Experiment { stop, tolerance, step }) = model.default_experiment() else { return Ok(()) };
+    let start = stop.map(|_| "0".to_owned());
+    let numbers = [
+        ("startTime", start),
+        ("stopTime", stop.map(real)),
+        ("tolerance", tolerance.map(real)),
+        ("stepSize", Some(real(round_down(step)))),
+    ];
+    let given = numbers.iter().filter_map(|(name, number)| Some((*name, number.as_deref()?)));
+    xml.create_element("DefaultExperiment").with_attributes(given).write_empty().map(drop)
 }
 
 /// The largest of 1, 2 and 5 times a power of ten that is at most `step`.
@@ -104,22 +97,12 @@ fn real(value: f64) -> String {
 }
 
 /// Writes `UnitDefinitions`: the units of the variables, by their exponents of SI base units.
-fn unit_definitions(xml: &mut Xml, catalogue: &Catalogue) -> io::Result<()> {
-    let reals = catalogue.entries().map(|(_, entry)| entry).filter(|entry| entry.kind() == Kind::Real);
-    let used: BTreeSet<Unit> = reals.map(|entry| unit(&entry)).collect();
+fn unit_definitions(xml: &mut Xml, variables: &VariableTable) -> io::Result<()> {
+    let reals = variables.entries().filter(|(_, variable)| variable.kind == Kind::Real);
+    let used: BTreeSet<Unit> = reals.map(|(_, variable)| variable.unit).collect();
     xml.create_element("UnitDefinitions")
         .write_inner_content(|xml| used.into_iter().try_for_each(|unit| unit_definition(xml, unit)))?;
     Ok(())
-}
-
-pub(super) fn unit(entry: &Entry<'_>) -> Unit {
-    match entry {
-        Entry::Input(input) => input.unit(),
-        Entry::Output(_, variable) => variable.unit,
-        Entry::PatchInput(input) => input.unit(),
-        Entry::PatchOutput(_, variable) => variable.unit,
-        Entry::Parameter(parameter, _) => parameter.unit(),
-    }
 }
 
 fn unit_definition(xml: &mut Xml, unit: Unit) -> io::Result<()> {
@@ -135,155 +118,122 @@ fn unit_definition(xml: &mut Xml, unit: Unit) -> io::Result<()> {
     Ok(())
 }
 
-fn input_description(definition: &Definition, input: Input) -> &'static str {
-    let has_body = |axis| matches!(definition, Definition::Layer(scene) if scene.carrier[axis].as_ref().is_some());
-    match (input, input.axis().is_some_and(has_body)) {
-        (Input::U, false) => "Displacement of the carrier along x",
-        (Input::W, false) => "Displacement of the carrier along z, negative presses",
-        (Input::U, true) => "Displacement along x of the drive of the carrier",
-        (Input::W, true) => "Displacement along z of the drive of the carrier",
-        (Input::Load, _) => "Normal load on the carrier, without its constant part; positive presses",
-        (Input::Temperature, _) => "Bulk temperature of the layer, held over each communication step",
-        (Input::Pull, _) => "Tangential force on the carrier along x, without its constant part",
-    }
-}
-
-pub(super) fn description(definition: &Definition, entry: &Entry<'_>) -> String {
-    match entry {
-        Entry::Input(input) => input_description(definition, *input).into(),
-        Entry::Output(_, variable) => variable.description.clone(),
-        Entry::PatchInput(input) => input.description().into(),
-        Entry::PatchOutput(_, variable) => variable.description.clone(),
-        Entry::Parameter(parameter, _) => parameter.description(),
-    }
-}
-
 /// The causality as the standard calls it.
-pub(super) fn causality(entry: &Entry<'_>) -> &'static str {
-    match entry {
-        Entry::Input(_) | Entry::PatchInput(_) => "input",
-        Entry::Output(_, variable) if variable.is_output() => "output",
-        Entry::PatchOutput(_, variable) if variable.is_output() => "output",
-        Entry::Output(..) | Entry::PatchOutput(..) => "local",
-        Entry::Parameter(..) => "parameter",
+pub(super) fn causality(variable: &VariableRef) -> &'static str {
+    match variable.role {
+        Role::Input(_) => "input",
+        Role::Output { .. } => "output",
+        Role::Local(_) => "local",
+        Role::Parameter(_) => "parameter",
     }
 }
 
 /// The start value; calculated variables have none.
-pub(super) fn start(definition: &Definition, entry: &Entry<'_>) -> Option<String> {
-    match entry {
-        Entry::Input(input) => Some(real(definition.input_start(*input))),
-        Entry::PatchInput(input) => {
-            let Definition::Patch(patch) = definition else { return None };
-            Some(real(input.start(patch)))
-        }
-        Entry::Output(..) | Entry::PatchOutput(..) => None,
-        Entry::Parameter(parameter, _) => Some(match definition.parameter(*parameter) {
-            Value::Real(value) => real(value),
-            Value::Integer(value) => value.to_string(),
-            Value::Text(value) => value,
-        }),
-    }
+pub(super) fn start(variable: &VariableRef) -> Option<String> {
+    variable.start.as_ref().map(|value| match value {
+        Value::Real(value) => real(*value),
+        Value::Integer(value) => value.to_string(),
+        Value::Text(value) => value.clone(),
+    })
 }
 
 /// Writes `ModelVariables`: inputs, outputs and parameters in the order of their value references.
-fn model_variables(xml: &mut Xml, definition: &Definition, catalogue: &Catalogue) -> io::Result<()> {
+fn model_variables(xml: &mut Xml, variables: &VariableTable) -> io::Result<()> {
     xml.create_element("ModelVariables").write_inner_content(|xml| {
-        catalogue.entries().try_for_each(|(reference, entry)| scalar_variable(xml, definition, reference, &entry))
+        variables.entries().try_for_each(|(reference, variable)| scalar_variable(xml, reference, variable))
     })?;
     Ok(())
 }
 
-fn scalar_variable(xml: &mut Xml, definition: &Definition, reference: u32, entry: &Entry<'_>) -> io::Result<()> {
+fn scalar_variable(xml: &mut Xml, reference: u32, variable: &VariableRef) -> io::Result<()> {
     xml.create_element("ScalarVariable")
-        .with_attribute(("name", entry.name().as_str()))
+        .with_attribute(("name", variable.name.as_str()))
         .with_attribute(("valueReference", reference.to_string().as_str()))
-        .with_attribute(("description", clean(&description(definition, entry)).as_str()))
-        .with_attribute(("causality", causality(entry)))
-        .with_attribute(("variability", variability(entry)))
-        .with_attributes(initial(entry).map(|initial| ("initial", initial)))
-        .write_inner_content(|xml| typed(xml, entry, start(definition, entry)))?;
+        .with_attribute(("description", clean(&variable.description).as_str()))
+        .with_attribute(("causality", causality(variable)))
+        .with_attribute(("variability", variability(variable)))
+        .with_attributes(initial(variable).map(|initial| ("initial", initial)))
+        .write_inner_content(|xml| typed(xml, variable))?;
     Ok(())
 }
 
-fn variability(entry: &Entry<'_>) -> &'static str {
-    match entry {
-        Entry::Parameter(..) => "fixed",
-        _ if entry.kind() == Kind::Real => "continuous",
+fn variability(variable: &VariableRef) -> &'static str {
+    match variable.role {
+        Role::Parameter(_) => "fixed",
+        _ if variable.kind == Kind::Real => "continuous",
         _ => "discrete",
     }
 }
 
 /// Inputs must not have it.
-fn initial(entry: &Entry<'_>) -> Option<&'static str> {
-    match entry {
-        Entry::Input(_) | Entry::PatchInput(_) => None,
-        Entry::Output(..) | Entry::PatchOutput(..) => Some("calculated"),
-        Entry::Parameter(..) => Some("exact"),
+fn initial(variable: &VariableRef) -> Option<&'static str> {
+    match variable.role {
+        Role::Input(_) => None,
+        Role::Output { .. } | Role::Local(_) => Some("calculated"),
+        Role::Parameter(_) => Some("exact"),
     }
 }
 
-fn typed(xml: &mut Xml, entry: &Entry<'_>, start: Option<String>) -> io::Result<()> {
-    let unit = Some(unit(entry)).filter(|_| entry.kind() == Kind::Real).map(Unit::name);
-    xml.create_element(entry.kind().to_string())
+fn typed(xml: &mut Xml, variable: &VariableRef) -> io::Result<()> {
+    let unit = Some(variable.unit.name()).filter(|_| variable.kind == Kind::Real);
+    xml.create_element(variable.kind.to_string())
         .with_attributes(unit.map(|unit| ("unit", unit)))
-        .with_attributes(start.as_deref().map(|start| ("start", start)))
+        .with_attributes(start(variable).as_deref().map(|start| ("start", start)))
         .write_empty()
         .map(drop)
 }
 
-fn model_structure(xml: &mut Xml, definition: &Definition, catalogue: &Catalogue) -> io::Result<()> {
-    let outputs = |(reference, entry)| match entry {
-        Entry::Output(_, variable) if variable.is_output() => {
-            Some((reference, dependencies(catalogue, definition.dependencies(variable.output))))
-        }
-        Entry::PatchOutput(_, variable) if variable.is_output() => {
-            // On the six coordinates of the pose, which come first.
-            Some((reference, if variable.output.follows_pose() { "1 2 3 4 5 6" } else { "" }.to_owned()))
-        }
-        _ => None,
-    };
-    let unknowns = || catalogue.entries().filter_map(outputs);
+/// An output without dependencies depends on nothing, which the standard has an empty list for.
+fn model_structure(xml: &mut Xml, variables: &VariableTable, lists_dependencies: bool) -> io::Result<()> {
+    let unknowns: Vec<_> = variables
+        .entries()
+        .filter_map(|(reference, variable)| match &variable.role {
+            Role::Output { dependencies, .. } => {
+                Some((reference, indices(variables, if lists_dependencies { dependencies } else { &[] })))
+            }
+            _ => None,
+        })
+        .collect();
     let structure = xml.create_element("ModelStructure");
-    if unknowns().next().is_none() {
+    if unknowns.is_empty() {
         return structure.write_empty().map(drop);
     }
     structure.write_inner_content(|xml| {
         xml.create_element("Outputs").write_inner_content(|xml| {
-            unknowns().try_for_each(|(reference, names)| unknown(xml, reference, Some(&names)))
+            unknowns.iter().try_for_each(|(reference, inputs)| unknown(xml, *reference, Some(inputs.as_str())))
         })?;
         // Without dependencies: at the start everything may depend on all inputs and parameters.
         xml.create_element("InitialUnknowns")
-            .write_inner_content(|xml| unknowns().try_for_each(|(reference, _)| unknown(xml, reference, None)))?;
+            .write_inner_content(|xml| unknowns.iter().try_for_each(|(reference, _)| unknown(xml, *reference, None)))?;
         Ok(())
     })?;
     Ok(())
 }
 
-/// The inputs that an output depends on, counted from 1.
-fn dependencies(catalogue: &Catalogue, dependencies: Dependencies) -> String {
-    let depends = |input: Input| match input {
-        Input::U => dependencies.on_u,
-        Input::W => dependencies.on_w,
-        Input::Load | Input::Pull | Input::Temperature => false,
-    };
-    let inputs = catalogue.inputs().iter().enumerate().filter(|(_, input)| depends(**input));
-    let names: Vec<_> = inputs.map(|(index, _)| (index + 1).to_string()).collect();
-    names.join(" ")
+/// The indices of the inputs in these slots.
+fn indices(variables: &VariableTable, slots: &[usize]) -> String {
+    let is_among = |variable: &VariableRef| matches!(variable.role, Role::Input(slot) if slots.contains(&slot));
+    let inputs = variables.entries().filter(|(_, variable)| is_among(variable));
+    inputs.map(|(reference, _)| index(reference)).collect::<Vec<_>>().join(" ")
 }
 
 /// The standard counts the variables from 1 here; value references count them from 0.
+fn index(reference: u32) -> String {
+    (reference + 1).to_string()
+}
+
 fn unknown(xml: &mut Xml, reference: u32, dependencies: Option<&str>) -> io::Result<()> {
-    let index = reference + 1;
-    let unknown = xml.create_element("Unknown").with_attribute(("index", index.to_string().as_str()));
-    unknown.with_attributes(dependencies.map(|names| ("dependencies", names))).write_empty().map(drop)
+    let unknown = xml.create_element("Unknown").with_attribute(("index", index(reference).as_str()));
+    unknown.with_attributes(dependencies.map(|inputs| ("dependencies", inputs))).write_empty().map(drop)
 }
 
 #[cfg(test)]
 mod tests {
     use std::path::Path;
 
-    use asperity::fmi::{Sources, guid};
+    use asperity::element::{PointContact, Table};
+    use asperity::fmi::{Definition, Sources, guid};
+    use asperity::patch::Patch;
     use asperity::scene::Scene;
 
     use super::*;
@@ -294,15 +244,43 @@ mod tests {
     fn the_default_scene_has_the_golden_description() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         let path = root.join("scenes/tread-block/tread-block.toml");
-        let scene = Scene::load(&path).unwrap();
-        let catalogue = Catalogue::new(&scene);
-        let guid = guid(&Sources::read(&path, &scene).unwrap(), &catalogue);
-        let written = String::from_utf8(write(&scene.into(), &catalogue, &guid).unwrap()).unwrap();
+        let model = Definition::from(Scene::load(&path).unwrap());
+        let variables = model.variables();
+        let guid = guid(&Sources::of(&path, &*model).unwrap(), &variables);
+        let written = String::from_utf8(write(&*model, &variables, &guid).unwrap()).unwrap();
         let golden = root.join("modelDescription/modelDescription.xml");
         if std::env::var_os("BLESS").is_some() {
             std::fs::write(&golden, &written).unwrap();
         }
         assert!(written == std::fs::read_to_string(&golden).unwrap(), "BLESS=1 accepts the new description");
+    }
+
+    fn description_of(model: &Definition) -> String {
+        String::from_utf8(write(&**model, &model.variables(), "{}").unwrap()).unwrap()
+    }
+
+    #[test]
+    fn dependencies_are_left_out_on_request() {
+        let scene = "name = 'a'\nlayer = { masses = 1, spacing = 1.0, mass = 1.0, vertical = { stiffness = 1.0 } }\n\
+                     surface = { kind = 'flat' }\n[fmu]\n";
+        let of = |fmu: &str| {
+            description_of(&Scene::parse(&format!("{scene}{fmu}"), Path::new("scene.toml")).unwrap().into())
+        };
+        let (listed, none) = (of(""), of("dependencies = 'none'"));
+        assert!(listed.contains("dependencies=\"2\"") && listed.contains("providesDirectionalDerivative"));
+        assert!(!none.contains("dependencies=\"2\"") && !none.contains("providesDirectionalDerivative"));
+        assert_eq!(none.matches("dependencies=\"\"").count(), listed.matches("dependencies=").count());
+    }
+
+    #[test]
+    fn elements_and_patches_have_a_default_step() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/patch");
+        let table = Table::load(&folder.join("block.table.csv")).unwrap();
+        assert!(description_of(&PointContact::new(table).into()).contains("<DefaultExperiment stepSize=\""));
+        let text = "name = 'pad'\ntable = { path = 'block.table.csv' }\n[patch]\nshape = 'flat'\nlength = 0.01\n\
+                    width = 0.01\nnx = 1\nny = 1";
+        let patch = Patch::parse(text, &folder.join("patch.toml")).unwrap();
+        assert!(description_of(&patch.into()).contains("<DefaultExperiment stepSize=\""));
     }
 
     #[test]
@@ -313,7 +291,9 @@ mod tests {
 
     #[test]
     fn a_sum_of_decimals_is_written_without_its_roundings() {
-        assert_eq!(real(as_written(1e-2 + 1e-3 + 3e-3)), "0.014");
-        assert_eq!([as_written(0.0), as_written(1e30 + 1e-30)], [0.0, 1e30]);
+        let scene = "name = 'sum'\nlayer = { masses = 1, spacing = 1.0, mass = 1.0 }\nsurface = { kind = 'flat' }\n\
+                     excitation = [{ duration = 1e-2 }, { duration = 1e-3 }, { duration = 3e-3 }]";
+        let model = Definition::from(Scene::parse(scene, Path::new("scene.toml")).unwrap());
+        assert_eq!(model.default_experiment().unwrap().stop.map(real).as_deref(), Some("0.014"));
     }
 }

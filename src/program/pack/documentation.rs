@@ -3,7 +3,7 @@
 use std::io;
 
 use asperity::element::{LeftOut, Load, OperatingPoint, Table, left_out};
-use asperity::fmi::{Catalogue, Definition, Entry, Kind};
+use asperity::fmi::{Definition, Kind, Role, VariableRef, VariableTable};
 use quick_xml::escape::escape;
 
 use super::description;
@@ -31,33 +31,37 @@ pub(super) const FILES: [(&str, &str); 5] = [
 ];
 
 /// index.html: a summary of the scene or the table, the variables, the parameters, the equations.
-pub(super) fn write(definition: &Definition, catalogue: &Catalogue, summary: &[LabelledLine]) -> io::Result<Vec<u8>> {
+pub(super) fn write(
+    definition: &Definition,
+    variables: &VariableTable,
+    summary: &[LabelledLine],
+) -> io::Result<Vec<u8>> {
     let page = match definition {
         Definition::Layer(_) => LAYER_PAGE,
         Definition::Element(_) => ELEMENT_PAGE,
         Definition::Patch(_) => PATCH_PAGE,
     };
     let summary: Vec<_> = summary.iter().map(|(name, text)| [(*name).into(), description::clean(text)]).collect();
-    let is_parameter = |entry: &Entry<'_>| matches!(entry, Entry::Parameter(..));
-    let (parameters, variables): (Vec<_>, Vec<_>) = catalogue.entries().map(|(_, entry)| entry).partition(is_parameter);
-    let variables: Vec<_> =
-        variables.iter().map(|entry| row(definition, entry, description::causality(entry).into())).collect();
-    let start = |entry| description::start(definition, entry).unwrap_or_default();
-    let parameters: Vec<_> = parameters.iter().map(|entry| row(definition, entry, start(entry))).collect();
+    let is_parameter = |variable: &&VariableRef| matches!(variable.role, Role::Parameter(_));
+    let (parameters, others): (Vec<_>, Vec<_>) =
+        variables.entries().map(|(_, variable)| variable).partition(is_parameter);
+    let others: Vec<_> = others.iter().map(|variable| row(variable, description::causality(variable).into())).collect();
+    let start = |variable| description::start(variable).unwrap_or_default();
+    let parameters: Vec<_> = parameters.iter().map(|variable| row(variable, start(variable))).collect();
     let fields = [
         ("name", escape(description::clean(&definition.name())).into_owned()),
         ("description", escape(description::clean(&definition.description())).into_owned()),
         ("version", env!("CARGO_PKG_VERSION").to_owned()),
         ("scene", table(["", "What is there"], &summary)?),
-        ("variables", table(["Name", "Causality", "Unit", "Description"], &variables)?),
+        ("variables", table(["Name", "Causality", "Unit", "Description"], &others)?),
         ("parameters", table(["Name", "Start", "Unit", "Description"], &parameters)?),
     ];
     Ok(html::fill(page, &fields).into_bytes())
 }
 
-fn row(definition: &Definition, entry: &Entry<'_>, second: String) -> [String; 4] {
-    let unit = if entry.kind() == Kind::Real { description::unit(entry).name() } else { "" };
-    [entry.name(), second, unit.into(), description::description(definition, entry)]
+fn row(variable: &VariableRef, second: String) -> [String; 4] {
+    let unit = if variable.kind == Kind::Real { variable.unit.name() } else { "" };
+    [variable.name.clone(), second, unit.into(), variable.description.clone()]
 }
 
 fn table<const N: usize>(head: [&str; N], rows: &[[String; N]]) -> io::Result<String> {

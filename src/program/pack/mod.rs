@@ -10,13 +10,13 @@ use std::io;
 use std::path::{Component, Path, PathBuf};
 
 use asperity::element::{Basis, PointContact, Table, TableError};
-use asperity::fmi::{Catalogue, Definition, Sources, guid};
+use asperity::fmi::{Definition, Sources, guid};
 
 use super::cli::Pack;
 use super::describe;
 use super::files::{self, FileError, check_outputs, print, read, write};
 use super::patch;
-use super::terminal::{LabelledLine, lines, warn};
+use super::terminal::{LabelledLine, labelled, lines, warn};
 use archive::{ArchiveEntry, ArchiveError};
 use check::CheckError;
 
@@ -37,19 +37,21 @@ pub(crate) enum PackError {
     Document { document: &'static str, source: io::Error },
 }
 
-/// Writes the FMU; of an element or a patch, prints its table and errors.
+/// Writes the FMU; prints what its libraries need and, of an element or a patch, its table and errors.
 pub(crate) fn pack(command: &Pack) -> Result<(), PackError> {
     let (definition, path) = load(command)?;
     let taken =
         [definition.sources(&path), archive::libraries(&command.library), command.check.iter().cloned().collect()];
     check_outputs([&command.output], taken.concat())?;
-    let mut entries = archive::binaries(&definition.model_identifier(), &command.library)?;
+    let mut entries = archive::binaries(&definition.identifier(), &command.library)?;
+    let needs = labelled("Needs", entries.iter().filter_map(archive::needs));
     entries.extend(resources(&definition, &path)?);
     let summary = summary(command, &definition)?;
     entries.extend(documents(&definition, &path, &summary)?);
     let bytes = archive::zip(entries).map_err(ArchiveError::from)?;
     write(&command.output, bytes)?;
-    if matches!(definition, Definition::Layer(_)) { Ok(()) } else { Ok(print(&lines(&summary))?) }
+    let shown = if matches!(definition, Definition::Layer(_)) { needs } else { [summary, needs].concat() };
+    Ok(print(&lines(&shown))?)
 }
 
 /// What is packed, and the file that it is read from.
@@ -117,11 +119,11 @@ fn archive_path(file: &Path) -> Result<String, PackError> {
 
 fn documents(definition: &Definition, path: &Path, summary: &[LabelledLine]) -> Result<Vec<ArchiveEntry>, PackError> {
     let document = |document, source| PackError::Document { document, source };
-    let catalogue = Catalogue::of(definition);
-    let guid = guid(&Sources::of(path, definition).map_err(FileError::io("read", path))?, &catalogue);
-    let description = description::write(definition, &catalogue, &guid);
+    let variables = definition.variables();
+    let guid = guid(&Sources::of(path, &**definition).map_err(FileError::io("read", path))?, &variables);
+    let description = description::write(&**definition, &variables, &guid);
     let description = description.map_err(|error| document("modelDescription.xml", error))?;
-    let index = documentation::write(definition, &catalogue, summary);
+    let index = documentation::write(definition, &variables, summary);
     let index = index.map_err(|error| document("documentation/index.html", error))?;
     let picture = match definition {
         Definition::Layer(scene) => picture::layer_png(scene),

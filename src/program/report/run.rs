@@ -2,10 +2,10 @@
 
 use std::cell::Cell;
 
-use asperity::fmi::{Input, InputOutOfRange, Inputs};
+use asperity::fmi::{CommunicationStep, InputOutOfRange, Inputs, layer_motion, layer_start};
 use asperity::outputs::{Output, Snapshot, Variable, variables};
 use asperity::robustness::{Budget, RunFailure};
-use asperity::scene::{OutputGroup, Phase, Scene};
+use asperity::scene::{Input, OutputGroup, Phase, Scene};
 use asperity::simulation::{Motion, Simulation, SimulationError};
 use cpu_time::ThreadTime;
 use indicatif::ProgressBar;
@@ -229,15 +229,15 @@ struct Master<'a> {
 
 impl<'a> Master<'a> {
     fn new(scene: &'a Scene, given: MasterInputs, u: f64) -> Result<Self, SimulationError> {
-        let temperature = scene.temperature_input.then(|| scene.input_start(Input::Temperature));
-        let mut inputs = Inputs::new(temperature);
-        inputs.set_input(Input::U, u);
-        inputs.set_input(Input::Load, scene.first_load());
-        inputs.set_input(Input::Pull, scene.first_pull());
+        let mut inputs = Inputs::default();
+        inputs.set(Input::Temperature as usize, scene.input_start(Input::Temperature));
+        inputs.set(Input::U as usize, u);
+        inputs.set(Input::Load as usize, scene.first_load());
+        inputs.set(Input::Pull as usize, scene.first_pull());
         if let Some(phase) = scene.excitation.first().filter(|_| given == MasterInputs::Rates) {
             set_rates(&mut inputs, &phase.motion(scene.layer.area()), 0.0);
         }
-        let mut simulation = Simulation::new(scene, &inputs.start(0.0))?;
+        let mut simulation = Simulation::new(scene, &layer_start(scene, &inputs, 0.0))?;
         let mut recorder = TraceRecorder::new(scene);
         recorder.row(&simulation.snapshot());
         let carrier = CarrierSample { u, ..CarrierSample::default() };
@@ -249,15 +249,14 @@ impl<'a> Master<'a> {
         // A force jumps at the start of a phase.
         let at_start = if from == 0.0 { start.after(motion, 0.0) } else { self.carrier };
         for input in Input::MECHANICAL {
-            self.inputs.set_input(input, at_start.input(input));
+            self.inputs.set(input as usize, at_start.input(input));
         }
         if self.given == MasterInputs::Rates {
             set_rates(&mut self.inputs, motion, from);
         }
-        let (stands, h) = (self.simulation.driven(), to - from);
-        let step = self.inputs.motion(stands, self.carrier.time, h, self.scene.extrapolation)?;
-        self.simulation.advance(&step)?;
-        self.inputs.complete_step(h);
+        let step = CommunicationStep { time: self.carrier.time, h: to - from, extrapolation: self.scene.extrapolation };
+        self.simulation.advance(&layer_motion(self.scene, &self.inputs, self.simulation.driven(), &step)?)?;
+        self.inputs.complete_step(step.h);
         self.recorder.row(&self.simulation.snapshot());
         self.carrier = start.after(motion, to);
         Ok(())
@@ -265,10 +264,10 @@ impl<'a> Master<'a> {
 }
 
 fn set_rates(inputs: &mut Inputs, motion: &Motion, s: f64) {
-    inputs.set_rate(Input::U, motion.u.at(s).speed);
-    inputs.set_rate(Input::W, motion.w.at(s).speed);
-    inputs.set_rate(Input::Load, motion.load.change.at(s).speed);
-    inputs.set_rate(Input::Pull, motion.pull.change.at(s).speed);
+    inputs.set_rate(Input::U as usize, motion.u.at(s).speed);
+    inputs.set_rate(Input::W as usize, motion.w.at(s).speed);
+    inputs.set_rate(Input::Load as usize, motion.load.change.at(s).speed);
+    inputs.set_rate(Input::Pull as usize, motion.pull.change.at(s).speed);
 }
 
 /// What is read at every row, in this order.

@@ -5,11 +5,10 @@ mod patch;
 
 use std::fmt;
 
-use super::parameters::is_similar;
-use super::values::{ANY, NOT_NEGATIVE, NumberRange, POSITIVE, WholeRange, Word, words};
+use super::values::{ANY, LOOSEST_TOLERANCE, NOT_NEGATIVE, NumberRange, POSITIVE, WholeRange, Word, words};
 use super::{
-    CarrierInitial, Extrapolation, FoundationKind, Initial, LengthUnit, Method, Missing, OutputGroup, ThirdColumn,
-    Tilt, Unit,
+    CarrierInitial, DependencyList, Extrapolation, FoundationKind, Initial, IntegerType, LengthUnit, Method, Missing,
+    OutputGroup, ThirdColumn, Tilt, Unit,
 };
 
 pub(super) use patch::{AREA, COORDINATE, PATCH_ROOT, REFINE, ShapeKind};
@@ -334,7 +333,7 @@ const SOLVER: &[Key] = &[
         "event: locate each mode change; step: correct touches and lifts at the end of each step; auto: switch between \
          the two",
     ),
-    number("relative_tolerance", POSITIVE.up_to(0.1), Unit::One, "Relative tolerance of the local error"),
+    number("relative_tolerance", POSITIVE.up_to(LOOSEST_TOLERANCE), Unit::One, "Relative tolerance of the local error"),
     number(
         "absolute_tolerance",
         POSITIVE,
@@ -351,7 +350,11 @@ const INPUT: &[Key] = &[
     key("temperature", Allowed::Flag, "Whether the layer's temperature is an input").material(),
 ];
 
-const FMU: &[Key] = &[key("outputs", Allowed::Words(words::<OutputGroup>), "Groups of output variables")];
+const FMU: &[Key] =
+    &[key("outputs", Allowed::Words(words::<OutputGroup>), "Groups of output variables"), INTEGERS, DEPENDENCIES];
+
+const INTEGERS: Key = word::<IntegerType>("integers", "Type of the outputs that are whole numbers");
+const DEPENDENCIES: Key = word::<DependencyList>("dependencies", "Dependencies of outputs on inputs that are listed");
 
 const PHASE: &[Key] = &[
     number("duration", POSITIVE, Unit::Second, "Duration"),
@@ -418,6 +421,12 @@ pub fn similar_keys(given: &str) -> Vec<String> {
     similar.sort_unstable();
     similar.dedup();
     similar
+}
+
+/// Whether a few letters differ, or only the end of the path is given.
+pub(super) fn is_similar(given: &str, name: &str) -> bool {
+    let end_of_path = name.strip_suffix(given).is_some_and(|start| start.ends_with('.'));
+    end_of_path || strsim::levenshtein(given, name) <= 1 + given.chars().count() / 8
 }
 
 /// The paths of `keys` and of those below them.

@@ -1,7 +1,7 @@
 //! The keys of a patch file.
 
 use super::{Allowed, POSITIVE, Word, words};
-use super::{INPUT, Key, PATH, key, number, table, whole, word};
+use super::{DEPENDENCIES, INPUT, INTEGERS, Key, PATH, key, number, table, whole, word};
 use crate::scene::patch_file::{MAX_ELEMENTS, PatchGroup, TableExtrapolation};
 use crate::scene::{Unit, values::ANY};
 
@@ -66,7 +66,8 @@ pub(in crate::scene) const REFINE: Key =
 
 const SOLVER: &[Key] = &[REFINE];
 
-const FMU: &[Key] = &[key("outputs", Allowed::Words(words::<PatchGroup>), "Groups of output variables")];
+const FMU: &[Key] =
+    &[key("outputs", Allowed::Words(words::<PatchGroup>), "Groups of output variables"), INTEGERS, DEPENDENCIES];
 
 /// The range of a coordinate of a point and of its area.
 pub(in crate::scene) const COORDINATE: Key = number("", ANY, Unit::Meter, "");

@@ -405,29 +405,8 @@ impl Scene {
 
     fn unknown(&self, name: &str) -> ParameterError {
         let names: Vec<String> = self.parameters().into_iter().map(Parameter::name).collect();
-        let similar: Vec<String> = names.iter().filter(|other| is_similar(name, other)).cloned().collect();
+        let similar: Vec<String> = names.iter().filter(|other| keys::is_similar(name, other)).cloned().collect();
         let allowed = if similar.is_empty() { names } else { similar };
         ParameterError::new(name, Problem::Unknown { allowed })
     }
-}
-
-/// Whether a few letters differ, or only the end of the path is given.
-pub(super) fn is_similar(given: &str, name: &str) -> bool {
-    let end_of_path = name.strip_suffix(given).is_some_and(|start| start.ends_with('.'));
-    end_of_path || edits(given, name) <= 1 + given.chars().count() / 8
-}
-
-/// Letters to insert, leave out or change (Levenshtein).
-fn edits(from: &str, to: &str) -> usize {
-    let to: Vec<char> = to.chars().collect();
-    let mut row: Vec<usize> = (0..=to.len()).collect();
-    for (i, letter) in from.chars().enumerate() {
-        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
-        for j in 0..to.len() {
-            let changed = diagonal + usize::from(letter != to[j]);
-            diagonal = row[j + 1];
-            row[j + 1] = changed.min(row[j] + 1).min(diagonal + 1);
-        }
-    }
-    row[to.len()]
 }

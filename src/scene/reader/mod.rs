@@ -10,9 +10,9 @@ use std::path::Path as FilePath;
 use super::keys::Form;
 use super::values::Word;
 use super::{
-    ByLink, CarrierBodies, Extrapolation, Foundation, FoundationKind, Friction, Initial, Layer, Link, LinkKind,
-    Material, MaxwellElement, OutputGroup, PronyTerm, RateShear, RealArea, Scene, SceneError, Solver, Surface, Wlf, read_file, read_text,
-    warnings,
+    ByLink, CarrierBodies, Extrapolation, FmuOptions, Foundation, FoundationKind, Friction, Initial, Layer, Link,
+    LinkKind, Material, MaxwellElement, OutputGroup, PronyTerm, RateShear, RealArea, Scene, SceneError, Solver,
+    Surface, Wlf, read_file, read_text, warnings,
 };
 use surface::Found;
 use table::{Entry, Result, Source, TableReader};
@@ -64,7 +64,9 @@ fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
         Ok((read_input(table)?, read_temperature_input(table, wlf.is_some(), solver.reduce)?))
     };
     let (extrapolation, temperature_input) = root.optional_table("input", read_input)?.unwrap_or_default();
-    let outputs = root.optional_table("fmu", |table| read_fmu(table, &carrier))?.unwrap_or_else(default_outputs);
+    let read_fmu = |table: &mut TableReader<'_>| Ok((read_outputs(table, &carrier)?, read_fmu_options(table)?));
+    let fmu = root.optional_table("fmu", read_fmu)?;
+    let (outputs, fmu) = fmu.unwrap_or_else(|| (default_outputs(), FmuOptions::default()));
     let excitation =
         root.tables("excitation", |table| carrier::read_phase(table, &carrier, wlf.filter(|_| temperature_input)))?;
     root.finish()?;
@@ -83,6 +85,7 @@ fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
         extrapolation,
         temperature_input,
         outputs,
+        fmu,
         excitation,
         files,
         extracts,
@@ -280,13 +283,20 @@ fn default_outputs() -> Vec<OutputGroup> {
 }
 
 /// The groups of a layer; that of a carrier that is a body where it is one.
-fn read_fmu(table: &mut TableReader<'_>, carrier: &CarrierBodies) -> Result<Vec<OutputGroup>> {
+fn read_outputs(table: &mut TableReader<'_>, carrier: &CarrierBodies) -> Result<Vec<OutputGroup>> {
     let Some(entry) = table.entry("outputs") else { return Ok(default_outputs()) };
     let groups = read_groups(&entry)?;
     match groups.contains(&OutputGroup::Carrier) && !carrier.any() {
         true => Err(entry.refuse("no group \"carrier\" without [carrier.x] or [carrier.z]: the carrier is no body")),
         false => Ok(groups),
     }
+}
+
+fn read_fmu_options(table: &mut TableReader<'_>) -> Result<FmuOptions> {
+    Ok(FmuOptions {
+        integers: table.optional_choice("integers")?.unwrap_or_default(),
+        dependencies: table.optional_choice("dependencies")?.unwrap_or_default(),
+    })
 }
 
 /// The groups in the order of the variables, whatever their order in the file.

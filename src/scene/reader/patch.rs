@@ -9,7 +9,7 @@ use crate::scene::error::ContentError;
 use crate::scene::keys::{AREA, COORDINATE, Form, Key, PATCH_ROOT, ShapeKind};
 use crate::scene::patch_file::{FaceShape, Grid, MAX_ELEMENTS, PatchFile, PatchGroup, TableExtrapolation};
 use crate::scene::text_table::{self, Row, decode};
-use crate::scene::{SceneError, read_file, read_text};
+use crate::scene::{FmuOptions, SceneError, read_file, read_text};
 
 /// The columns of a file of points.
 const COLUMNS: [&str; 4] = ["x", "y", "z", "area"];
@@ -49,7 +49,8 @@ impl PatchFile {
         let (shape, transport, offset) = read_face(&root.required("patch")?)?;
         let extrapolation = root.optional_table("input", read_input)?.unwrap_or_default();
         let refine = root.optional_table("solver", |table| table.optional_whole("refine"))?.flatten().unwrap_or(1);
-        let outputs = root.optional_table("fmu", read_outputs)?.unwrap_or_else(default_outputs);
+        let fmu = root.optional_table("fmu", |table| Ok((read_outputs(table)?, super::read_fmu_options(table)?)))?;
+        let (outputs, fmu) = fmu.unwrap_or_else(|| (default_outputs(), FmuOptions::default()));
         root.finish()?;
         Ok(Self {
             name,
@@ -63,6 +64,7 @@ impl PatchFile {
             extrapolation,
             refine: u32::try_from(refine).unwrap_or(1),
             outputs,
+            fmu,
             places,
         })
     }

@@ -1,7 +1,7 @@
 //! A carrier that is a body through the FMU: its inputs and their order, forces that jump, derivatives, states, errors; and
 //! the layer's temperature as an input.
 
-use asperity::fmi::Entry;
+use asperity::fmi::{Role, VariableRef};
 
 use crate::common::scenes::SceneText;
 use crate::fmi_interface::master::{ERROR, Fmu, OK};
@@ -21,8 +21,8 @@ fn bodies() -> SceneText {
         .outputs(&["forces", "carrier", "energy", "dissipation", "tangent", "elements"])
 }
 
-fn names(fmu: &Fmu, is: fn(&Entry<'_>) -> bool) -> Vec<String> {
-    fmu.catalogue.entries().filter(|(_, entry)| is(entry)).map(|(_, entry)| entry.name()).collect()
+fn names(fmu: &Fmu, is: fn(&VariableRef) -> bool) -> Vec<String> {
+    fmu.variables.entries().filter(|(_, entry)| is(entry)).map(|(_, entry)| entry.name.clone()).collect()
 }
 
 /// Does `count` steps of `h`, the drive at 20 mm/s.
@@ -36,7 +36,7 @@ fn pull(fmu: &Fmu, from: &mut f64, count: u32, h: f64) {
 
 #[test]
 fn inputs_are_those_that_act_in_their_order() {
-    let of = |scene: SceneText| names(&Fmu::of(&scene.text(), false), |entry| matches!(entry, Entry::Input(_)));
+    let of = |scene: SceneText| names(&Fmu::of(&scene.text(), false), |entry| matches!(entry.role, Role::Input(_)));
     // A damper is a drive; without one w is no input.
     assert_eq!(of(bodies()), ["u", "w", "load", "pull"]);
     assert_eq!(of(bodies().without("carrier.z.damping")), ["u", "load", "pull"]);
@@ -46,7 +46,7 @@ fn inputs_are_those_that_act_in_their_order() {
 #[test]
 fn parameters_are_the_numbers_given() {
     let fmu = Fmu::of(&bodies().text(), false);
-    let of_carrier = names(&fmu, |entry| matches!(entry, Entry::Parameter(..)));
+    let of_carrier = names(&fmu, |entry| matches!(entry.role, Role::Parameter(_)));
     let of_carrier: Vec<_> = of_carrier.into_iter().filter(|name| name.starts_with("carrier.")).collect();
     let expected = ["x.mass", "x.stiffness", "x.damping", "z.mass", "z.damping", "z.load", "z.initial"];
     assert_eq!(of_carrier, expected.map(|name| format!("carrier.{name}")));
@@ -183,7 +183,8 @@ fn a_temperature_is_an_input() {
         fmu.bits()
     };
     let fmu = Fmu::running_with(&with(293.15));
-    assert_eq!(fmu.catalogue.inputs().last().map(|input| input.name()), Some("temperature"));
+    let inputs = names(&fmu, |entry| matches!(entry.role, Role::Input(_)));
+    assert_eq!(inputs.last().map(String::as_str), Some("temperature"));
     assert_eq!(fmu.real("temperature"), 293.15);
     let cold = press(&fmu, 0, 20);
     assert_eq!(cold, press(&Fmu::running_with(&scene(293.15).text()), 0, 20), "as if it were no input");

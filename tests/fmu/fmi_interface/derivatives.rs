@@ -2,7 +2,7 @@
 
 use std::ptr;
 
-use asperity::fmi::{Entry, Kind, fmi2GetDirectionalDerivative, fmi2GetRealOutputDerivatives};
+use asperity::fmi::{Kind, Role, fmi2GetDirectionalDerivative, fmi2GetRealOutputDerivatives};
 
 use crate::fmi_interface::master::{DISCARD, ERROR, EVERYTHING, Fmu, OK};
 
@@ -18,10 +18,8 @@ fn derivative(fmu: &Fmu, unknown: &str, by: (f64, f64)) -> f64 {
 
 /// The Real outputs of the model structure that are not integrated over a step.
 fn unknowns(fmu: &Fmu) -> Vec<(u32, String)> {
-    let entries = fmu.catalogue.entries().filter_map(|(reference, entry)| match entry {
-        Entry::Output(_, variable) if variable.is_output() && entry.kind() == Kind::Real => {
-            Some((reference, entry.name()))
-        }
+    let entries = fmu.variables.entries().filter_map(|(reference, entry)| match entry.role {
+        Role::Output { .. } if entry.kind == Kind::Real => Some((reference, entry.name.clone())),
         _ => None,
     });
     let moves = ["input", "residual", "tangent", "solver", "E_", "kinetic"];

@@ -1,6 +1,6 @@
 //! A point-contact element through the same interface as a layer.
 
-use asperity::fmi::{Entry, Kind};
+use asperity::fmi::Kind;
 
 use crate::fmi_interface::master::{DISCARD, ERROR, Fmu, OK};
 use crate::fmi_interface::states::{self};
@@ -32,7 +32,7 @@ fn close(found: f64, expected: f64, share: f64) {
 #[test]
 fn its_variables_have_the_names_of_a_layers() {
     let fmu = pressed(2e5);
-    let names: Vec<String> = fmu.catalogue.entries().map(|(_, entry)| entry.name()).collect();
+    let names: Vec<String> = fmu.variables.entries().map(|(_, entry)| entry.name.clone()).collect();
     let expected = [
         "u",
         "w",
@@ -175,9 +175,9 @@ fn directional_and_output_derivatives() {
     assert_eq!(derivative("F_x", (1.0, 0.0)), 0.0);
     let (coefficient, stiffness) = (fmu.real("friction.coefficient"), derivative("F_z", (0.0, 1.0)));
     assert!(stiffness < 0.0 && coefficient > 0.0);
-    let outputs = fmu.catalogue.entries().filter(|(_, entry)| matches!(entry, Entry::Output(..)));
-    for (_, entry) in outputs.filter(|(_, entry)| entry.kind() == Kind::Real) {
-        assert!(derivative(&entry.name(), (1.0, 1.0)).is_finite());
+    let outputs = fmu.variables.entries().filter(|(_, entry)| entry.is_calculated());
+    for (_, entry) in outputs.filter(|(_, entry)| entry.kind == Kind::Real) {
+        assert!(derivative(&entry.name, (1.0, 1.0)).is_finite());
     }
 }
 

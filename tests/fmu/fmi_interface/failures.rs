@@ -1,6 +1,6 @@
 //! Steps that fail: the status, the message and the state after it.
 
-use asperity::fmi::{Entry, Kind};
+use asperity::fmi::{Kind, Role, VariableRef};
 
 use crate::fmi_interface::master::{DISCARD, ERROR, EVERYTHING, Fmu, Message, OK};
 
@@ -125,10 +125,10 @@ fn times_and_steps_out_of_range_are_refused_and_change_nothing() {
 /// Every number at both ends of its range, steps of all sizes: done with finite outputs, or refused without a change.
 #[test]
 fn at_the_limits_of_all_ranges_a_step_has_finite_outputs_or_changes_nothing() {
-    let is_real = |entry: &Entry<'_>| matches!(entry, Entry::Parameter(_, Kind::Real));
+    let is_real = |entry: &VariableRef| matches!(entry.role, Role::Parameter(_)) && entry.kind == Kind::Real;
     let fmu = Fmu::of(EVERYTHING, false);
     let parameters: Vec<u32> =
-        fmu.catalogue.entries().filter(|(_, entry)| is_real(entry)).map(|(reference, _)| reference).collect();
+        fmu.variables.entries().filter(|(_, entry)| is_real(entry)).map(|(reference, _)| reference).collect();
     let mut done = 0;
     for (&parameter, end) in parameters.iter().flat_map(|parameter| [1e-30, 1e30].map(|end| (parameter, end))) {
         for value in [0.0, -1e-6, 1e30, -1e30] {

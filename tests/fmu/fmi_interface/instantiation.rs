@@ -52,13 +52,50 @@ fn a_failed_instantiation_returns_null_and_logs_why() {
     };
     refused(|request| request.kind = fmi2Type_fmi2ModelExchange, "co-simulation");
     refused(|request| request.kind = 7, "co-simulation");
-    refused(|request| request.name = None, "name");
-    refused(|request| request.name = Some(String::new()), "name");
     refused(|request| request.guid = None, "fmuGUID is NULL");
     refused(|request| request.guid = Some("{other}".into()), "{other}");
-    refused(|request| request.location = None, "fmuResourceLocation is NULL");
+    refused(|request| request.location = None, "scene.toml");
     refused(|request| request.location = Some("file:///no/such/folder".into()), "/no/such/folder");
     refused(|request| request.location = Some(String::new()), "scene.toml");
+}
+
+/// An instance's name is for messages alone. Where something is guessed, a warning says what.
+#[test]
+fn what_masters_pass_is_understood() {
+    let folder = Folder::with_scene("", SCENE);
+    let guid = folder.description().0;
+    let warnings = |change: &dyn Fn(&mut Request)| {
+        let messages = Messages::default();
+        let functions = callbacks(&messages);
+        let mut request = Request {
+            name: Some("one".into()),
+            kind: fmi2Type_fmi2CoSimulation,
+            guid: Some(guid.clone()),
+            location: Some(folder.text().into()),
+            functions: &functions,
+            logging: false,
+        };
+        change(&mut request);
+        let c = request.send();
+        assert!(!c.is_null(), "{messages:?}");
+        // SAFETY: just made.
+        unsafe { fmi2FreeInstance(c) };
+        messages.into_inner().unwrap().into_iter().map(|message| message.text).collect::<Vec<_>>()
+    };
+    assert!(warnings(&|_| ()).is_empty());
+    assert!(warnings(&|request| request.name = None).is_empty());
+    assert!(warnings(&|request| request.name = Some(String::new())).is_empty());
+    for other in [guid.trim_matches(['{', '}']).to_owned(), guid.to_uppercase()] {
+        let text = warnings(&|request| request.guid = Some(other.clone()));
+        assert!(text.len() == 1 && text[0].contains(&guid), "{text:?}");
+    }
+    let resources = folder.path().join("resources");
+    fs::create_dir_all(&resources).unwrap();
+    for file in ["scene.toml", "profile.csv"] {
+        fs::rename(folder.path().join(file), resources.join(file)).unwrap();
+    }
+    let text = warnings(&|_| ());
+    assert!(text.len() == 1 && text[0].contains("resources"), "{text:?}");
 }
 
 #[test]

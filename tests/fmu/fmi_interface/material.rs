@@ -70,7 +70,7 @@ fn a_temperature_without_a_shift_is_an_error_at_the_end_of_the_initialisation() 
 #[test]
 fn the_links_of_a_material_are_no_parameters() {
     let fmu = Fmu::of(&scene(293.15), false);
-    let names: Vec<String> = fmu.catalogue.entries().map(|(_, entry)| entry.name()).collect();
+    let names: Vec<String> = fmu.variables.entries().map(|(_, entry)| entry.name.clone()).collect();
     let is_there = |name: &str| names.iter().any(|other| other == name);
     assert!(["layer.mass", "layer.vertical.stiffness", "friction.shear_force"].iter().all(|name| !is_there(name)));
     assert!(["material.prony[1].modulus", "friction.shear_strength", "contact.area"].iter().all(|name| is_there(name)));

@@ -4,6 +4,7 @@ mod carrier;
 mod derivatives;
 mod element;
 mod failures;
+mod hosts;
 mod instantiation;
 mod lifecycle;
 mod logging;

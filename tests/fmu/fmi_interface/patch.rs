@@ -95,7 +95,7 @@ fn every_function_in_every_state() {
 
 #[test]
 fn its_variables_stand_in_their_order() {
-    let names: Vec<String> = fmu(WHEEL).catalogue.entries().map(|(_, entry)| entry.name()).collect();
+    let names: Vec<String> = fmu(WHEEL).variables.entries().map(|(_, entry)| entry.name.clone()).collect();
     let start =
         ["x", "y", "z", "roll", "pitch", "yaw", "transport.speed", "temperature", "force.x", "force.y", "force.z"];
     assert_eq!(names[..11], start);

@@ -73,6 +73,23 @@ fn freed_and_foreign_states_are_refused() {
     assert_eq!(fmu.step(0.0, 1e-7), OK);
 }
 
+/// Memory that is free again is used again, handles are not.
+#[test]
+fn the_handle_of_a_freed_state_is_refused_when_others_have_been_made() {
+    let fmu = Fmu::running();
+    let mut freed = Vec::new();
+    for _ in 0..100 {
+        let mut state = fmu.state();
+        freed.push(state);
+        assert_eq!(fmu.free_state(&mut state), OK);
+    }
+    let kept = fmu.state();
+    for state in freed {
+        assert_eq!(fmu.set_state(state), ERROR);
+    }
+    assert_eq!(fmu.set_state(kept), OK);
+}
+
 #[test]
 fn many_states_can_be_kept() {
     let fmu = Fmu::running();

@@ -9,16 +9,16 @@ use crate::fmi_interface::master::{ERROR, Fmu, OK};
 #[test]
 fn value_references_count_inputs_outputs_parameters() {
     let fmu = Fmu::new();
-    let names: Vec<_> = fmu.catalogue.entries().map(|(_, entry)| entry.name()).collect();
+    let names: Vec<_> = fmu.variables.entries().map(|(_, entry)| entry.name.clone()).collect();
     assert_eq!(names[..4], ["u", "w", "F_x", "F_z"]);
-    let references: Vec<_> = fmu.catalogue.entries().map(|(reference, _)| reference).collect();
+    let references: Vec<_> = fmu.variables.entries().map(|(reference, _)| reference).collect();
     assert_eq!(references, (0..names.len() as u32).collect::<Vec<_>>());
-    let first_parameter = fmu.catalogue.outputs().len() + 2;
-    assert!(fmu.catalogue.entries().all(|(reference, entry)| {
-        matches!(entry, Entry::Parameter(..)) == (reference as usize >= first_parameter)
+    let first_parameter = fmu.variables.entries().filter(|(_, entry)| entry.is_calculated()).count() + 2;
+    assert!(fmu.variables.entries().all(|(reference, entry)| {
+        matches!(entry.role, Role::Parameter(_)) == (reference as usize >= first_parameter)
     }));
-    assert_eq!(fmu.catalogue.entry(names.len() as u32), None);
-    assert_eq!(fmu.catalogue.entry(u32::MAX), None);
+    assert_eq!(fmu.variables.entry(names.len() as u32), None);
+    assert_eq!(fmu.variables.entry(u32::MAX), None);
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::sync::{Mutex, OnceLock};
 use std::{env, fmt, fs, process, ptr};
 
 use asperity::fmi::bindings::*;
-use asperity::fmi::{self, Entry, Kind, PATCH_FILE, SCENE_FILE, TABLE_FILE};
+use asperity::fmi::{self, Kind, PATCH_FILE, Role, SCENE_FILE, TABLE_FILE, VariableRef};
 use asperity::scene::OutputGroup;
 
 use super::master::{self, Instance};
@@ -153,26 +153,24 @@ impl Site {
         if file.ends_with(PATCH_FILE) {
             patches::write_files(&folder, patches::POINTS);
         }
-        let (guid, catalogue) = master::describe(&file);
-        let of = |take: &dyn Fn(&Entry<'_>) -> bool| {
-            catalogue.entries().filter(|(_, entry)| take(entry)).map(|(reference, _)| reference).collect::<Vec<_>>()
+        let (guid, variables) = master::describe(&file);
+        let of = |take: &dyn Fn(&VariableRef) -> bool| {
+            variables.entries().filter(|(_, entry)| take(entry)).map(|(reference, _)| reference).collect::<Vec<_>>()
         };
-        let is_output = |entry: &Entry<'_>| {
-            matches!(entry, Entry::Output(..) | Entry::PatchOutput(..)) && entry.name() != "solver.run_time"
-        };
-        let named = |name: &str| of(&|entry| entry.name() == name).first().copied();
+        let is_output = |entry: &VariableRef| entry.is_calculated() && entry.name != "solver.run_time";
+        let named = |name: &str| of(&|entry| entry.name == name).first().copied();
         let mut site = Self {
             guid: CString::new(guid).unwrap(),
             location: CString::new(folder.to_str().unwrap()).unwrap(),
-            reals: of(&|entry| is_output(entry) && entry.kind() == Kind::Real),
-            integers: of(&|entry| is_output(entry) && entry.kind() == Kind::Integer),
+            reals: of(&|entry| is_output(entry) && entry.kind == Kind::Real),
+            integers: of(&|entry| is_output(entry) && entry.kind == Kind::Integer),
             inputs: [0, if named("u").is_some() { 1 } else { 2 }],
-            numbers: of(&|entry| match entry {
-                Entry::Parameter(_, Kind::Real) => true,
-                Entry::PatchInput(input) => !["x", "z"].contains(&input.name()),
+            numbers: of(&|entry| match entry.role {
+                Role::Parameter(_) => entry.kind == Kind::Real,
+                Role::Input(_) => named("u").is_none() && !["x", "z"].contains(&entry.name.as_str()),
                 _ => false,
             }),
-            texts: of(&|entry| entry.kind() == Kind::Text),
+            texts: of(&|entry| entry.kind == Kind::Text),
             max_steps: named("solver.max_steps"),
             time: named("solver.run_time"),
             fresh: Vec::new(),

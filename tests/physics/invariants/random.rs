@@ -7,8 +7,8 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 use asperity::scene::{
-    ByLink, CarrierBodies, CarrierBody, Extrapolation, Force, Friction, Initial, Layer, Link, MaxwellElement, Method,
-    Path, RateShear, Scene, Solver, Surface,
+    ByLink, CarrierBodies, CarrierBody, Extrapolation, FmuOptions, Force, Friction, Initial, Layer, Link,
+    MaxwellElement, Method, Path, RateShear, Scene, Solver, Surface,
 };
 use asperity::simulation::{Motion, Start};
 use proptest::collection::vec;
@@ -132,6 +132,7 @@ fn cases_of(scales: Scales, method: Method) -> impl Strategy<Value = Case> {
                 extrapolation: Extrapolation::Linear,
                 temperature_input: false,
                 outputs: GROUPS.to_vec(),
+                fmu: FmuOptions::default(),
                 excitation: Vec::new(),
                 files: Vec::new(),
                 extracts: Vec::new(),

@@ -5,7 +5,7 @@ mod pairs;
 
 use std::collections::BTreeSet;
 
-use asperity::fmi::Catalogue;
+use asperity::fmi::Definition;
 use asperity::outputs::{Snapshot, Variable, variables};
 use asperity::scene::Scene;
 use pairs::{PIECES, Pair, pairs, piece, started};
@@ -93,7 +93,7 @@ fn a_feature_left_out_takes_no_memory() {
 #[test]
 fn a_feature_left_out_has_no_variables() {
     let names = |scene: &Scene| -> BTreeSet<String> {
-        Catalogue::new(scene).entries().map(|(_, entry)| entry.name().to_string()).collect()
+        Definition::from(scene.clone()).variables().entries().map(|(_, entry)| entry.name.clone()).collect()
     };
     for pair in pairs(MASSES) {
         let (without, with) = (names(&pair.without), names(&pair.with));
