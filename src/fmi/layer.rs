@@ -95,7 +95,7 @@ impl FmuModel for Arc<Scene> {
 
     fn state_memory(&self) -> usize {
         /// Of a mass; of each of its Maxwell elements.
-        const MASS: usize = 128;
+        const MASS: usize = 192;
         const ELEMENT: usize = 8;
         (1 << 14) + runs(self) * self.layer.masses * (MASS + ELEMENT * maxwell_elements(self))
     }

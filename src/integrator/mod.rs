@@ -57,8 +57,8 @@ const STEEP_SLACK: f64 = 0.1;
 /// Attempts and accepts steps: the values at the stages of the last attempted step, and workspace.
 #[derive(Clone, Debug)]
 pub struct Integrator {
-    /// By what becomes of the contact modes.
-    methods: [RungeKutta; 2],
+    /// By what becomes of the contact modes; on the heap, since threads of hosts may have small stacks.
+    methods: Box<[RungeKutta; 2]>,
     /// Which of them has attempted the last step.
     last: ContactModes,
     stages: Stages,
@@ -95,8 +95,9 @@ impl Integrator {
         let inputs = if tracked.tangents { model.inputs() } else { Vec::new() };
         let stages = schemes.iter().map(|scheme| scheme.tableau().stages).max().unwrap_or(0);
         Self {
-            methods: [event_driven, Scheme::Sdirk2]
-                .map(|scheme| RungeKutta::new(scheme, model, schemes.contains(&scheme))),
+            methods: Box::new(
+                [event_driven, Scheme::Sdirk2].map(|scheme| RungeKutta::new(scheme, model, schemes.contains(&scheme))),
+            ),
             last: schemes.first().map_or(ContactModes::Held, |scheme| scheme.contact_modes()),
             stages: Stages::new(model, stages, tracked.energy, inputs),
             sums: LayerSums::new(model, 0),

@@ -229,7 +229,7 @@ fn a_profile_is_made_periodic() {
     let rows = (0..=400)
         .map(|i| format!("{},{}\n", f64::from(i) * 2.5e-6, 1e-6 * (0.1 * f64::from(i)).sin() + 1e-8 * f64::from(i)));
     fs::write(&road, format!("x [m],z [m]\n{}", rows.collect::<String>())).unwrap();
-    fs::write(&source, scene("kind = 'file'\npath = 'periodic.csv'\nperiodic = true")).unwrap();
+    fs::write(&source, scene("kind = 'file', path = 'periodic.csv', periodic = true")).unwrap();
     for (option, points, length) in [("--mirror", 801, 2e-3), ("--taper", 361, 0.9e-3)] {
         let found = findings(&road, &[option, "--write", written.to_str().unwrap()]);
         assert_eq!((&found["points"], &found["periodic"]), (&points.into(), &true.into()), "{option}");

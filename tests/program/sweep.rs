@@ -336,12 +336,14 @@ fn two_maxima_move_with_the_temperature() {
 #[test]
 fn a_profile_that_ends_is_to_be_made_periodic() {
     let folder = scratch("sweep-ends");
-    let text = flat().points(&[0.0, 5e-4, 1e-3], &[0.0, 1e-6, 0.0], false).phase("duration = 1.0\nu_rate = 1.0\n");
-    let (scene, table) = scene(&folder, &text);
-    let message = refused(&[&scene, Path::new("-o"), &table], &["--speeds", "1", "--forces", "1"]);
+    let text = |periodic| {
+        let profile = flat().points(&[0.0, 5e-4, 1e-3], &[0.0, 1e-6, 0.0], periodic);
+        profile.phase("duration = 1.0, u_rate = 1.0")
+    };
+    let (ends, table) = scene(&folder, &text(false));
+    let message = refused(&[&ends, Path::new("-o"), &table], &["--speeds", "1", "--forces", "1"]);
     assert!(message.contains("make it periodic, as `asperity surface --mirror --write` does"), "{message}");
     assert!(message.lines().count() == 1 && !table.exists(), "{message}");
-    let periodic = fs::read_to_string(&scene).unwrap().replace("z = [", "periodic = true\nz = [");
-    fs::write(&scene, periodic).unwrap();
-    sweep(&scene, &table, &["--speeds", "1", "--forces", "1"]);
+    let (periodic, table) = scene(&folder, &text(true));
+    sweep(&periodic, &table, &["--speeds", "1", "--forces", "1"]);
 }
