@@ -125,9 +125,11 @@ impl Error {
     /// The status to return. A step is discarded where a smaller one may succeed.
     pub(super) fn status(&self) -> Status {
         match self {
-            Self::Simulation(SimulationError::TooManySteps { .. } | SimulationError::StepTooSmall { .. }) => {
-                Status::Discard
-            }
+            Self::Simulation(
+                SimulationError::TooManySteps { .. }
+                | SimulationError::TooMuchWork { .. }
+                | SimulationError::StepTooSmall { .. },
+            ) => Status::Discard,
             Self::Element(ElementError::Pressure { within: true, .. }) => Status::Discard,
             Self::Motion(MotionError::TooManySubsteps { .. } | MotionError::BeyondTable { within: true, .. }) => {
                 Status::Discard

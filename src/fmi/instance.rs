@@ -4,7 +4,7 @@ use std::ffi::CString;
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::scene::{LOOSEST_TOLERANCE, Parameter, Value};
+use crate::scene::{Extrapolation, Input, LOOSEST_TOLERANCE, Parameter, Value};
 
 use super::definition::{Definition, Parameters, Sources, guid};
 use super::error::{Error, Status, catch_panic};
@@ -13,7 +13,7 @@ use super::lifecycle::{Function, LifecycleState};
 use super::log::{Category, Log, Message};
 use super::memory;
 use super::state::{Clock, InstanceState, OutputCache};
-use super::variables::VariableTable;
+use super::variables::{Role, VariableTable};
 
 #[derive(Debug)]
 pub(super) struct Instance {
@@ -24,6 +24,8 @@ pub(super) struct Instance {
     pub(super) texts: Vec<CString>,
     /// Whether it has warned of derivatives of inputs that it does not use.
     pub(super) warned_of_orders: bool,
+    /// Whether it has warned of values that a source samples on another grid.
+    warned_of_sampling: bool,
     /// Values looked up by a call that is under way.
     pub(super) found: Vec<Value>,
     fmu_states: FmuStates,
@@ -60,6 +62,7 @@ impl Instance {
             outputs: OutputCache::default(),
             texts: Vec::new(),
             warned_of_orders: false,
+            warned_of_sampling: false,
             found: Vec::new(),
             fmu_states: FmuStates::default(),
             log,
@@ -158,6 +161,7 @@ impl Instance {
         result?;
         self.outputs.invalidate();
         self.log.extend(records);
+        self.warn_of_sampling();
         self.log_warnings();
         Ok(())
     }
@@ -165,7 +169,7 @@ impl Instance {
     /// fmi2Terminate
     pub(super) fn terminate(&mut self) -> Result<(), Error> {
         self.state.lifecycle = LifecycleState::Terminated;
-        let warning = self.state.run.as_ref().and_then(|run| run.final_warning());
+        let warning = self.state.run.as_mut().and_then(|run| run.final_warning());
         warning.into_iter().for_each(|text| self.warn(text));
         Ok(())
     }
@@ -176,6 +180,7 @@ impl Instance {
         self.outputs.invalidate();
         self.texts.clear();
         self.warned_of_orders = false;
+        self.warned_of_sampling = false;
         self.log = Log::new(self.logging);
         Ok(())
     }
@@ -241,11 +246,40 @@ impl Instance {
         }
     }
 
+    /// Warns once of values that are extrapolated though their source samples on another grid.
+    fn warn_of_sampling(&mut self) {
+        if self.warned_of_sampling || self.state.parameters.definition().extrapolation() == Extrapolation::Hold {
+            return;
+        }
+        let warning = self.uneven_input().map(sampling_warning);
+        self.warned_of_sampling = warning.is_some();
+        warning.into_iter().for_each(|text| self.warn(text));
+    }
+
+    /// The name of an input whose source samples on another grid than that of the communication points. A temperature is held.
+    fn uneven_input(&self) -> Option<&str> {
+        // Inputs come first in the table.
+        let inputs = self.variables.entries().map_while(|(_, variable)| match variable.role {
+            Role::Input(slot) => Some((slot, variable.name.as_str())),
+            _ => None,
+        });
+        let mut extrapolated = inputs.filter(|(_, name)| *name != Input::Temperature.name());
+        extrapolated.find(|(slot, _)| self.state.inputs.is_uneven(*slot)).map(|(_, name)| name)
+    }
+
     fn log_warnings(&mut self) {
         let time = self.state.clock.time;
         let warnings = self.state.run.as_mut().map(|run| run.take_warnings(time)).unwrap_or_default();
         warnings.into_iter().for_each(|text| self.warn(text));
     }
+}
+
+fn sampling_warning(name: &str) -> String {
+    format!(
+        "the rate of the input {name} jumps forth and back between communication points, as where its source samples on \
+         another grid: it is extrapolated by the mean rate over two steps. Set the input's derivative, sample it at the \
+         communication points or set input.extrapolation = \"hold\""
+    )
 }
 
 /// A GUID without the braces, which some masters leave out, in small letters.

@@ -14,7 +14,8 @@ use super::variables::VariableRef;
 use crate::model::{Reduction, Replacement};
 use crate::outputs::{self, Output, Variable};
 use crate::scene::{
-    Extrapolation, FmuOptions, Force, Input, LinkKind, OutputGroup, Parameter, ParameterError, Path, Scene, Value,
+    Extrapolation, FmuOptions, Force, Input, LinkKind, OutputGroup, Parameter, ParameterError, Path, Scene, Solver,
+    Value,
 };
 use crate::simulation::{Motion, Simulation, Start};
 
@@ -199,6 +200,10 @@ fn farthest(scene: &Scene) -> f64 {
     SHARE * steps.fold(scene.layer.spacing, f64::min) / f64::EPSILON
 }
 
+/// The work of a communication step where no `solver.max_steps` is given, steps times masses of the run and of the reference run
+/// each: some seconds. The step that a master needs takes a hundredth of it; one that diverges would wait for minutes.
+const MAX_MASS_STEPS: u64 = 500_000;
+
 /// A run of the layer.
 #[derive(Debug)]
 struct LayerRun {
@@ -289,13 +294,16 @@ impl FmuRun for LayerRun {
         texts.into_iter().flatten().map(|text| format!("t = {time} s: {text}")).collect()
     }
 
-    fn final_warning(&self) -> Option<String> {
-        self.simulation.divergence().map(|divergence| divergence.to_string())
+    fn final_warning(&mut self) -> Option<String> {
+        self.simulation.inaccuracy().map(|inaccuracy| inaccuracy.to_string())
     }
 }
 
 impl LayerRun {
-    fn new(scene: &Arc<Scene>, simulation: Simulation, start: Option<f64>) -> Self {
+    fn new(scene: &Arc<Scene>, mut simulation: Simulation, start: Option<f64>) -> Self {
+        if scene.solver.max_steps == Solver::default().max_steps {
+            simulation.limit_work(MAX_MASS_STEPS);
+        }
         Self {
             scene: Arc::clone(scene),
             variables: outputs::variables(scene),

@@ -170,7 +170,7 @@ pub trait FmuRun: Debug {
     }
 
     /// A warning that is given at the end of a run.
-    fn final_warning(&self) -> Option<String> {
+    fn final_warning(&mut self) -> Option<String> {
         None
     }
 }

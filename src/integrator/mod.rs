@@ -58,7 +58,7 @@ const STEEP_SLACK: f64 = 0.1;
 #[derive(Clone, Debug)]
 pub struct Integrator {
     /// By what becomes of the contact modes; on the heap, since threads of hosts may have small stacks.
-    methods: Box<[RungeKutta; 2]>,
+    methods: [Box<RungeKutta>; 2],
     /// Which of them has attempted the last step.
     last: ContactModes,
     stages: Stages,
@@ -95,9 +95,8 @@ impl Integrator {
         let inputs = if tracked.tangents { model.inputs() } else { Vec::new() };
         let stages = schemes.iter().map(|scheme| scheme.tableau().stages).max().unwrap_or(0);
         Self {
-            methods: Box::new(
-                [event_driven, Scheme::Sdirk2].map(|scheme| RungeKutta::new(scheme, model, schemes.contains(&scheme))),
-            ),
+            methods: [event_driven, Scheme::Sdirk2]
+                .map(|scheme| Box::new(RungeKutta::new(scheme, model, schemes.contains(&scheme)))),
             last: schemes.first().map_or(ContactModes::Held, |scheme| scheme.contact_modes()),
             stages: Stages::new(model, stages, tracked.energy, inputs),
             sums: LayerSums::new(model, 0),

@@ -125,6 +125,14 @@ impl<'a, 's> Evaluation<'a, 's> {
 }
 
 impl<'a> Snapshot<'a> {
+    /// The residual of the energy balance over the largest of the energies in it; 0 where there are none.
+    pub fn relative_energy_residual(&self) -> f64 {
+        let now = Evaluation::new(self);
+        let stored = now.kinetic_energy() + now.elastic_energy() + self.body_energy().total();
+        let largest = self.energies.largest().max(self.energies.initial).max(stored);
+        if largest > 0.0 { now.energy_residual().abs() / largest } else { 0.0 }
+    }
+
     /// The layer's state.
     pub fn state(&self) -> &'a State {
         self.layer.get().0

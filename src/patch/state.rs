@@ -12,10 +12,10 @@ use crate::scene::{SMALLEST, is_possible};
 
 /// Most substeps of a step, whatever the number of elements.
 const MAX_SUBSTEPS: f64 = 1e5;
-/// Most substeps of a step times elements: some seconds of work. A master that diverges would wait for minutes otherwise.
-const MAX_ELEMENT_SUBSTEPS: f64 = 2e6;
+/// Most substeps of a step times elements: a second of work. A master that diverges would wait for minutes otherwise.
+const MAX_ELEMENT_SUBSTEPS: f64 = 1e6;
 /// Substeps that a step may always have, however many elements a patch has.
-const MIN_SUBSTEPS_ALLOWED: f64 = 1e3;
+const MIN_SUBSTEPS_ALLOWED: f64 = 200.0;
 
 /// The most substeps that a step of a patch of `elements` may have.
 pub(super) fn max_substeps(elements: usize) -> f64 {

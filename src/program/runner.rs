@@ -116,8 +116,8 @@ impl Runner {
         Ok(Self { simulation, carrier, rows, phases: 0, area: scene.layer.area() })
     }
 
-    pub(crate) fn simulation(&self) -> &Simulation {
-        &self.simulation
+    pub(crate) fn simulation(&mut self) -> &mut Simulation {
+        &mut self.simulation
     }
 
     /// The changes between event-driven and time-stepping driver since the last call; only method *auto* has any.

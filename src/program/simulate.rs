@@ -51,8 +51,8 @@ fn run(scene: &Scene, command: &Simulate, recorder: &mut Recorder) -> Result<(),
     let mut runner = Runner::new(shown, Rows::PerPhase(command.points), 0.0).map_err(SimulateError::Start)?;
     let result = runner.run(&scene.excitation, |carrier, snapshot| recorder.row(carrier, snapshot));
     print_method_switches(&runner.take_method_switches());
-    if let Some(divergence) = runner.simulation().divergence() {
-        warn(&divergence.to_string());
+    if let Some(inaccuracy) = runner.simulation().inaccuracy() {
+        warn(&inaccuracy.to_string());
     }
     match result {
         Ok(_) => Ok(()),

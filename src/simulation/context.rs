@@ -39,15 +39,16 @@ pub(super) struct Context {
 }
 
 impl Context {
-    /// The context of a run with the layer placed under the carrier at `start`.
+    /// The context of a run with the layer placed under the carrier at `start`; on the heap, since threads of hosts may have
+    /// small stacks.
     pub(super) fn new(
         model: Arc<Model>,
         settings: Settings,
         start: &Start,
         bodies: &ByAxis<Option<BodyStart>>,
-    ) -> Self {
+    ) -> Box<Self> {
         let state = RunState::new(&model, &settings, start, bodies);
-        let mut context = Self {
+        let mut context = Box::new(Self {
             integrator: settings.integrator(&model),
             forces: Forces::new(&model),
             interpolated: State::new(model.masses(), model.maxwell_variables()),
@@ -58,7 +59,7 @@ impl Context {
             model,
             settings,
             state,
-        };
+        });
         context.place_layer();
         context
     }

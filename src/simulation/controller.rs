@@ -40,23 +40,28 @@ impl TrialStep {
     }
 }
 
-/// The steps that one motion may try.
+/// The work that one motion may take.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WorkLimit {
+    /// Steps that were tried.
     pub tried: u64,
-    limit: u64,
+    max_steps: u64,
+    /// What is left of it: steps times the masses that take them.
+    mass_steps: u64,
 }
 
 impl WorkLimit {
-    pub(super) fn new(limit: u64) -> Self {
-        Self { tried: 0, limit }
+    pub(super) fn new(max_steps: u64, max_mass_steps: u64) -> Self {
+        Self { tried: 0, max_steps, mass_steps: max_mass_steps }
     }
 
-    /// Counts a step that is tried at `time`, s.
-    pub(super) fn count(&mut self, time: f64) -> Result<(), SimulationError> {
-        if self.tried >= self.limit {
-            return Err(SimulationError::TooManySteps { time, steps: self.limit });
+    /// Counts a step of so many `masses` that is tried at `time`, s.
+    pub(super) fn count(&mut self, time: f64, masses: usize) -> Result<(), SimulationError> {
+        if self.tried >= self.max_steps {
+            return Err(SimulationError::TooManySteps { time, steps: self.max_steps });
         }
+        let left = self.mass_steps.checked_sub(masses as u64);
+        self.mass_steps = left.ok_or(SimulationError::TooMuchWork { time, steps: self.tried })?;
         self.tried += 1;
         Ok(())
     }

@@ -179,7 +179,7 @@ impl Stepper for EventDriven {
         let (mut cuts, mut proposal) = (0, None);
         loop {
             // Try it. The step that an event cuts short says how long the next may be; the shorter ones need no error test.
-            work.count(context.state.time())?;
+            work.count(context.state.time(), context.model.masses())?;
             let test = match proposal {
                 Some(_) if context.shorter_is_no_worse() => ErrorTest::Solved,
                 _ if h > RESOLVED * bounds.shortest => ErrorTest::Full,

@@ -34,7 +34,7 @@ use crate::outputs::{Output, Snapshot, Variable};
 use crate::scene::{Axis, ByAxis, ParameterError, Scene};
 use context::Context;
 use controller::WorkLimit;
-pub use motion::{Divergence, MethodSwitch, ModeChange, Motion, OutOfRange, SimulationError, Start};
+pub use motion::{Inaccuracy, MethodSwitch, ModeChange, Motion, OutOfRange, SimulationError, Start};
 use reference_run::ReferenceRun;
 use run::Run;
 use sampler::Sampler;
@@ -48,7 +48,7 @@ pub use state::{RestoreError, SimulationState};
 /// A clone goes on exactly as the original, bit for bit.
 #[derive(Clone, Debug)]
 pub struct Simulation {
-    run: Box<Run>,
+    run: Run,
     /// A more accurate one, where its error is asked for.
     reference_run: Option<ReferenceRun>,
     /// The scene where its temperature is an input.
@@ -56,6 +56,8 @@ pub struct Simulation {
     /// Processor time since the start, s. It is not part of the run's state: a run restored from another's state keeps
     /// its own.
     run_time: f64,
+    /// Of the run and of the reference run, in each motion: see [`limit_work`](Self::limit_work).
+    max_mass_steps: u64,
 }
 
 impl Simulation {
@@ -92,6 +94,7 @@ impl Simulation {
             reference_run,
             scene: scene.temperature_input.then(|| Arc::new(scene.clone())),
             run_time: 0.0,
+            max_mass_steps: u64::MAX,
         }
     }
 
@@ -129,7 +132,7 @@ impl Simulation {
             self.set_temperature(state.run.temperature)?;
         }
         for (run, state) in self.runs_mut().zip(state.states()) {
-            let Context { model, settings, state: present, .. } = &mut run.context;
+            let Context { model, settings, state: present, .. } = &mut *run.context;
             present.restore(state, model, settings.method);
         }
         Ok(())
@@ -137,11 +140,11 @@ impl Simulation {
 
     /// The run, and the reference run where there is one.
     fn runs(&self) -> impl Iterator<Item = &Run> {
-        std::iter::once(&*self.run).chain(self.reference_run.as_ref().map(|reference| &*reference.run))
+        std::iter::once(&self.run).chain(self.reference_run.as_ref().map(|reference| &reference.run))
     }
 
     fn runs_mut(&mut self) -> impl Iterator<Item = &mut Run> {
-        std::iter::once(&mut *self.run).chain(self.reference_run.as_mut().map(|reference| &mut *reference.run))
+        std::iter::once(&mut self.run).chain(self.reference_run.as_mut().map(|reference| &mut reference.run))
     }
 
     /// Makes the model that of a run that started at these u and w, m.
@@ -267,8 +270,8 @@ impl Simulation {
         }
         self.run.begin(motion);
         self.run.allow_local_regions(until_force.is_none());
-        self.reference_run.iter_mut().for_each(|reference| reference.begin(motion));
-        let mut work = WorkLimit::new(self.run.context.settings.max_steps);
+        self.reference_run.iter_mut().for_each(|reference| reference.begin(motion, self.max_mass_steps));
+        let mut work = WorkLimit::new(self.run.context.settings.max_steps, self.max_mass_steps);
         let mut reached = self.run.has_reached(until_force);
         while self.run.context.state.s < motion.duration && !reached {
             // A good step, which may end where F_z reaches the force.
@@ -383,15 +386,22 @@ impl Simulation {
         self.run_time
     }
 
+    /// Limits the work of each motion, beside `solver.max_steps`: the steps that are tried times the masses that take them.
+    pub fn limit_work(&mut self, max_mass_steps: u64) {
+        self.max_mass_steps = max_mass_steps;
+    }
+
     /// Sets the processor time since the start, s.
     pub fn set_run_time(&mut self, time: f64) {
         self.run_time = time;
     }
 
-    /// Why the run so far does not converge; `None` where nothing shows that, or without the group `solver`. Judged best at
-    /// the end of a run: early in it the largest forces, which errors are measured by, are still to come.
-    pub fn divergence(&self) -> Option<Divergence> {
-        self.reference_run.as_ref().and_then(|reference| reference.divergence(&self.run))
+    /// What shows that the run so far is inaccurate: its forces, with the group `solver`, or its energies where they are
+    /// asked for. Judged best at the end of a run: early in it the largest values, which errors are measured by, are still to
+    /// come.
+    pub fn inaccuracy(&mut self) -> Option<Inaccuracy> {
+        let of_forces = self.reference_run.as_ref().and_then(|reference| reference.inaccuracy(&self.run));
+        of_forces.or_else(|| self.run.energy_inaccuracy())
     }
 
     /// Newton's iterations since the start, those of rejected steps and of motions rolled back included.

@@ -48,6 +48,14 @@ pub enum SimulationError {
         /// The limit.
         steps: u64,
     },
+    /// The steps times masses allowed were used up.
+    #[error("gave up at t = {time} s after {steps} steps: do shorter communication steps or set solver.max_steps")]
+    TooMuchWork {
+        /// The time reached, s.
+        time: f64,
+        /// How many steps were tried.
+        steps: u64,
+    },
     /// The step size fell to the resolution of time.
     #[error("the step size fell to {step} s at t = {time} s")]
     StepTooSmall {
@@ -96,27 +104,52 @@ impl fmt::Display for MethodSwitch {
     }
 }
 
-/// A run and the more accurate one beside it do not converge: they differ by far more than the tolerance, and their
-/// modes changed differently often, as where stick and slip get out of step.
+/// What shows that a run is far less accurate than its tolerance asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Divergence {
-    /// The estimated error of the forces, over their largest values.
-    pub error: f64,
-    /// The relative tolerance.
-    pub tolerance: f64,
-    /// Number of mode changes of the run and of the more accurate one.
-    pub mode_changes: [u64; 2],
+pub enum Inaccuracy {
+    /// It and a more accurate one do not converge: they differ by far more than the tolerance, and their modes changed
+    /// differently often, as where stick and slip get out of step.
+    Divergence {
+        /// The estimated error of the forces, over their largest values.
+        error: f64,
+        /// The relative tolerance.
+        tolerance: f64,
+        /// Number of mode changes of the run and of the more accurate one.
+        mode_changes: [u64; 2],
+    },
+    /// The estimated error of the forces is a large part of them.
+    Forces {
+        /// It, over the largest values of the forces.
+        error: f64,
+    },
+    /// The energy balance does not close.
+    Energy {
+        /// Its residual over the largest of the energies.
+        residual: f64,
+        /// The relative tolerance.
+        tolerance: f64,
+    },
 }
 
-impl fmt::Display for Divergence {
+impl fmt::Display for Inaccuracy {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { error, tolerance, mode_changes: [run, finer] } = self;
-        let times = error / tolerance;
-        write!(
-            f,
-            "solver.error = {error:.1e} is {times:.0} relative tolerances, and a more accurate run has {finer} mode changes, \
-             not {run}: the two do not converge, a lower tolerance need not give a smaller error"
-        )
+        match self {
+            Self::Divergence { error, tolerance, mode_changes: [run, finer] } => write!(
+                f,
+                "solver.error = {error:.1e} is {:.0} relative tolerances, and a more accurate run has {finer} mode changes, \
+                 not {run}: the two do not converge, a lower tolerance need not give a smaller error",
+                error / tolerance
+            ),
+            Self::Forces { error } => {
+                write!(f, "solver.error = {error:.1e}: a more accurate run has other forces; try a lower tolerance")
+            }
+            Self::Energy { residual, tolerance } => write!(
+                f,
+                "the energy balance is off by {residual:.1e} of the largest energy, {:.0} relative tolerances; try a lower \
+                 tolerance or another method",
+                residual / tolerance
+            ),
+        }
     }
 }
 

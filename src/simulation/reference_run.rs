@@ -4,12 +4,12 @@
 //! multiply them, and where a touch was missed there is none to add up. A more accurate run sees all of that.
 //! Where errors fall with the tolerance, the two differ by 1 - [`TIGHTER`] of the less accurate one's error. Where stick and
 //! slip get out of step they do not fall: the two then differ by far more than the tolerance, and in the number of their
-//! mode changes ([`Divergence`]).
+//! mode changes ([`Inaccuracy::Divergence`]).
 
 use std::sync::Arc;
 
 use super::controller::{TrialStep, WorkLimit};
-use super::motion::{Divergence, Motion, SimulationError, Start};
+use super::motion::{Inaccuracy, Motion, SimulationError, Start};
 use super::run::Run;
 use super::settings::Settings;
 use super::state::RunState;
@@ -35,13 +35,15 @@ const MORE_WORK: u64 = 4;
 /// Recommended 30 to 100. Errors of 30 tolerances are more than a run has that keeps to its tolerance, which in most is
 /// within ten. With 10, runs are found too whose error still falls with the tolerance.
 const DIVERGED: f64 = 30.0;
+/// The estimated error above which a run is inaccurate in any case, over the largest forces.
+const LARGE_ERROR: f64 = 0.1;
 /// Number of steps that it may try in any motion, however few the run itself takes.
 const MIN_WORK: u64 = 10_000;
 
 /// A more accurate run that follows the one whose error is estimated: never behind it when it is compared.
 #[derive(Clone, Debug)]
 pub(super) struct ReferenceRun {
-    pub(super) run: Box<Run>,
+    pub(super) run: Run,
     /// The duration of the motion under way, s.
     duration: f64,
     work: WorkLimit,
@@ -62,7 +64,7 @@ impl ReferenceRun {
         bodies: &ByAxis<Option<BodyStart>>,
     ) -> Self {
         let run = Run::new(Arc::clone(model), settings.tighter(model), start, bodies);
-        let work = WorkLimit::new(run.context.settings.max_steps);
+        let work = WorkLimit::new(run.context.settings.max_steps, u64::MAX);
         Self { run, duration: 0.0, work, steps_of_run: 0, pending: None, failed: false }
     }
 
@@ -71,10 +73,10 @@ impl ReferenceRun {
         self.pending = None;
     }
 
-    /// Begins `motion`.
-    pub(super) fn begin(&mut self, motion: &Motion) {
+    /// Begins `motion`, in which it may take so many steps times masses.
+    pub(super) fn begin(&mut self, motion: &Motion, max_mass_steps: u64) {
         (self.duration, self.steps_of_run, self.failed) = (motion.duration, 0, false);
-        self.work = WorkLimit::new(self.run.context.settings.max_steps);
+        self.work = WorkLimit::new(self.run.context.settings.max_steps, max_mass_steps);
         self.run.begin(motion);
     }
 
@@ -136,12 +138,14 @@ impl ReferenceRun {
         Ok(self.run.snapshot().monitored(tracked))
     }
 
-    /// Why `run`, which stands at the same time, does not converge; `None` where nothing shows that.
-    pub(super) fn divergence(&self, run: &Run) -> Option<Divergence> {
+    /// What shows that the forces of `run`, which stands at the same time, are inaccurate.
+    pub(super) fn inaccuracy(&self, run: &Run) -> Option<Inaccuracy> {
         let (counters, tolerance) = (&run.context.state.counters, run.context.settings.tolerance.relative);
         let (error, mode_changes) = (counters.force_error(), [counters.events, self.run.context.state.counters.events]);
-        let diverged = error > DIVERGED * tolerance && mode_changes[0] != mode_changes[1];
-        diverged.then_some(Divergence { error, tolerance, mode_changes })
+        if error > DIVERGED * tolerance && mode_changes[0] != mode_changes[1] {
+            return Some(Inaccuracy::Divergence { error, tolerance, mode_changes });
+        }
+        (error > LARGE_ERROR).then_some(Inaccuracy::Forces { error })
     }
 
     /// Ends the motion where the run stands, in `state`. If the reference could not go on, it continues from there.
@@ -271,16 +275,18 @@ mod tests {
     fn a_large_error_and_other_mode_changes_are_a_divergence() {
         let mut simulation = started(&coarse());
         simulation.advance(&WAVE).unwrap();
-        assert_eq!(simulation.divergence(), None);
+        assert_eq!(simulation.inaccuracy(), None);
         let reference_run = simulation.reference_run.as_mut().unwrap();
         reference_run.run.context.state.counters.events += 1;
-        assert_eq!(simulation.divergence(), None);
+        assert_eq!(simulation.inaccuracy(), None);
         let force = |x| Monitored { forces: [x, 1e9], ways: [0.0; 2], dissipated: None };
         simulation.run.context.state.counters.record_error(&force(0.0), &force(1e9), 1.0);
-        let Divergence { error, tolerance, mode_changes: [run, finer] } = simulation.divergence().unwrap();
-        assert_eq!((error, tolerance, finer), (1.0, 1e-4, run + 1));
+        let events = simulation.run.context.state.counters.events;
+        let mode_changes = [events, events + 1];
+        let expected = Inaccuracy::Divergence { error: 1.0, tolerance: 1e-4, mode_changes };
+        assert_eq!(simulation.inaccuracy(), Some(expected));
         simulation.reference_run.as_mut().unwrap().run.context.state.counters.events -= 1;
-        assert_eq!(simulation.divergence(), None);
+        assert_eq!(simulation.inaccuracy(), None);
     }
 
     #[test]
@@ -299,7 +305,7 @@ mod tests {
                 // Compared at the end of each; at one of them the numbers of mode changes may be the same by chance.
                 let mut diverges_after = |slides: usize| {
                     (0..slides).for_each(|_| simulation.advance(&slide).unwrap());
-                    simulation.divergence().is_some()
+                    matches!(simulation.inaccuracy(), Some(Inaccuracy::Divergence { .. }))
                 };
                 assert!(diverges_after(30) || diverges_after(1), "{method:?}, {tolerance}");
             }

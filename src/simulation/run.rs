@@ -6,7 +6,7 @@ use super::context::Context;
 use super::controller::{TrialStep, WorkLimit};
 use super::event_driven::EventDriven;
 use super::local_regions::LocalRegions;
-use super::motion::{MethodSwitch, Motion, SimulationError, Start};
+use super::motion::{Inaccuracy, MethodSwitch, Motion, SimulationError, Start};
 use super::settings::Settings;
 use super::state::RunState;
 use super::stepper::Stepper;
@@ -51,7 +51,7 @@ const MEMORY: f64 = 8.0;
 /// takes any number of changes. So time-stepping is cheaper from a third of a change per step on.
 #[derive(Clone, Debug)]
 pub(super) struct Run {
-    pub(super) context: Context,
+    pub(super) context: Box<Context>,
     event_driven: EventDriven,
     time_stepping: TimeStepping,
     /// Of event-driven steps.
@@ -65,28 +65,21 @@ pub(super) struct Run {
 }
 
 impl Run {
-    /// A run with the layer placed under the carrier at `start`; on the heap, since threads of hosts may have small stacks.
+    /// A run with the layer placed under the carrier at `start`.
     pub(super) fn new(
         model: Arc<Model>,
         settings: Settings,
         start: &Start,
         bodies: &ByAxis<Option<BodyStart>>,
-    ) -> Box<Self> {
+    ) -> Self {
         let local_regions = LocalRegions::new(&model, &settings);
         let event_driven = EventDriven::new(&model, !local_regions.is_empty());
         let time_stepping = TimeStepping::new(&model, settings.method != Method::Event);
         let context = Context::new(model, settings, start, bodies);
         let checkpoint = Box::new(context.state.clone());
         let (recorded, method_switches) = ([0; 2], None);
-        let mut run = Box::new(Self {
-            context,
-            event_driven,
-            time_stepping,
-            local_regions,
-            checkpoint,
-            recorded,
-            method_switches,
-        });
+        let mut run =
+            Self { context, event_driven, time_stepping, local_regions, checkpoint, recorded, method_switches };
         run.keep_link_forces();
         run
     }
@@ -256,9 +249,18 @@ impl Run {
     /// The run as it stands.
     pub(super) fn snapshot(&mut self) -> Snapshot<'_> {
         self.context.evaluate_forces();
-        let Context { model, state, forces, .. } = &self.context;
+        let Context { model, state, forces, .. } = &*self.context;
         let on_carrier = (forces.on_carrier(Axis::X), forces.on_carrier(Axis::Z));
         snapshot_of((model, state), state.s, LayerView::at(&state.layer.state, forces), on_carrier)
+    }
+
+    /// Whether the energy balance does not close; `None` where energies are not asked for.
+    pub(super) fn energy_inaccuracy(&mut self) -> Option<Inaccuracy> {
+        /// Relative tolerances. Runs that keep to their tolerance are off by less than one.
+        const OPEN_BALANCE: f64 = 10.0;
+        let (tracked, tolerance) = (self.context.settings.accounts.energy, self.context.settings.tolerance.relative);
+        let residual = if tracked { self.snapshot().relative_energy_residual() } else { 0.0 };
+        (residual > OPEN_BALANCE * tolerance).then_some(Inaccuracy::Energy { residual, tolerance })
     }
 
     /// The run at the fraction `theta` of the step of length `h` (s) tried last.

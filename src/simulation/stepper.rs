@@ -62,7 +62,7 @@ pub(super) trait Stepper {
         let test = if context.shorter_is_no_worse() { ErrorTest::Solved } else { ErrorTest::Full };
         let mut length = h;
         while !self.try_shorter(context, length, test) {
-            work.count(context.state.time())?;
+            work.count(context.state.time(), context.model.masses())?;
             if length <= SHORTEST_CUT * h {
                 return Err(context.step_too_small(length));
             }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use asperity::outputs::{self, Snapshot, Variable};
 use asperity::robustness::{ForceHistory, ScaledQuantity};
 use asperity::scene::{ByAxis, Scene};
-use asperity::simulation::{Motion, Simulation, SimulationError, Start};
+use asperity::simulation::{Inaccuracy, Motion, Simulation, SimulationError, Start};
 use toml::{Table, Value};
 
 use crate::catalogue::{self, Case};
@@ -78,7 +78,7 @@ pub struct Stop {
 impl From<SimulationError> for Stop {
     fn from(error: SimulationError) -> Self {
         let name = match error {
-            SimulationError::TooManySteps { .. } => "TooManySteps",
+            SimulationError::TooManySteps { .. } | SimulationError::TooMuchWork { .. } => "TooManySteps",
             SimulationError::StepTooSmall { .. } => "StepTooSmall",
             SimulationError::OutOfRange { .. } => "OutOfRange",
             SimulationError::Scene(_) => "Scene",
@@ -163,7 +163,7 @@ fn follow(case: &Case, scene: &Scene) -> Outcome {
             return watch.end(Some(error.into()));
         }
     }
-    watch.outcome.warns = simulation.divergence().is_some();
+    watch.outcome.warns = matches!(simulation.inaccuracy(), Some(Inaccuracy::Divergence { .. }));
     watch.end(None)
 }
 

@@ -6,7 +6,7 @@ use asperity::fmi::{CommunicationStep, InputOutOfRange, Inputs, layer_motion, la
 use asperity::outputs::{Output, Snapshot, Variable, variables};
 use asperity::robustness::{Budget, RunFailure};
 use asperity::scene::{Input, OutputGroup, Phase, Scene};
-use asperity::simulation::{Motion, Simulation, SimulationError};
+use asperity::simulation::{Inaccuracy, Motion, Simulation, SimulationError};
 use cpu_time::ThreadTime;
 use indicatif::ProgressBar;
 
@@ -205,7 +205,7 @@ pub(super) fn drive(
         master.recorder.end_phase();
     }
     let durations = scene.excitation.iter().map(|phase| phase.duration).collect();
-    Ok(master.recorder.finish(&master.simulation, clock.elapsed().as_secs_f64(), durations))
+    Ok(master.recorder.finish(&mut master.simulation, clock.elapsed().as_secs_f64(), durations))
 }
 
 #[derive(Debug, thiserror::Error)]
@@ -337,10 +337,13 @@ impl TraceRecorder {
         if used_up { Err(RunFailure::OverBudget { time: self.trace.end() }) } else { Ok(()) }
     }
 
-    fn finish(self, simulation: &Simulation, time: f64, durations: Vec<f64>) -> CompletedRun {
+    fn finish(self, simulation: &mut Simulation, time: f64, durations: Vec<f64>) -> CompletedRun {
         let residual = if self.energy > 0.0 { self.residual / self.energy } else { 0.0 };
         let counts = Counts { iterations: simulation.newton_iterations(), residual, ..self.counts };
-        let estimate = Estimate { error: self.estimate, warned: simulation.divergence().is_some() };
+        let estimate = Estimate {
+            error: self.estimate,
+            warned: matches!(simulation.inaccuracy(), Some(Inaccuracy::Divergence { .. })),
+        };
         CompletedRun { trace: self.trace, counts, time, durations, estimate }
     }
 }

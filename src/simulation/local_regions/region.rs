@@ -18,7 +18,7 @@ use crate::simulation::stepper::Stepper;
 #[derive(Clone, Debug)]
 pub(super) struct LocalRegion {
     /// These masses alone, under the forces that the whole layer's step has in the links to the others.
-    pub(super) context: Context,
+    pub(super) context: Box<Context>,
     stepper: EventDriven,
     /// Whether it takes steps within the step under way.
     pub(super) open: bool,
@@ -136,7 +136,7 @@ impl LocalRegion {
     /// output there is at most `largest` in the tolerance's norm.
     pub(super) fn is_resolved(&mut self, step: &mut LayerStep<'_>, largest: f64) -> bool {
         self.context.evaluate_forces();
-        let Context { state, forces, settings, .. } = &self.context;
+        let Context { state, forces, settings, .. } = &*self.context;
         let theta = step.dense.theta(state.s);
         let (dense, weights) = step.of(&self.whole.masses);
         dense.defect(theta, &state.layer.state, forces, weights, &settings.tolerance) <= largest
@@ -145,7 +145,7 @@ impl LocalRegion {
     /// Takes over the masses of `other`, all of which it has, at the time `s` of the whole layer's `step`, and closes it.
     /// Returns the energies in it beyond those of that step, J.
     pub(super) fn absorb(&mut self, other: &mut Self, (step, s): (&DenseOutput<'_>, f64)) -> Energies {
-        let Context { model, state, .. } = &mut self.context;
+        let Context { model, state, .. } = &mut *self.context;
         other.write_state((model, self.whole.masses.start), &mut state.layer.state, s);
         other.open = false;
         other.energies(step, s)
@@ -203,7 +203,7 @@ impl LocalRegion {
     /// `step`.
     pub(super) fn mismatch(&self, step: &mut LayerStep<'_>) -> f64 {
         let (theta, ends) = (step.dense.theta(self.reached()), self.ends(step.dense.model.masses()));
-        let Context { model, state, .. } = &self.context;
+        let Context { model, state, .. } = &*self.context;
         let masses = self.masses();
         let (dense, weights) = step.of(&masses);
         let layer = &state.layer.state;
@@ -253,7 +253,7 @@ impl LocalRegion {
         if let Some(theta) = theta {
             self.context.within((self.trial.h, theta), None).0.interpolate();
         }
-        let Context { model: own, state: at_start, interpolated, .. } = &self.context;
+        let Context { model: own, state: at_start, interpolated, .. } = &*self.context;
         let mine = if theta.is_some() { interpolated } else { &at_start.layer.state };
         mine.write_part((own, model), state, self.whole.masses.start - first);
     }
