@@ -52,7 +52,8 @@ fn text(scene: &Scene) -> Result<String, DescribeError> {
     let simulation = Simulation::new(scene, &start(scene, 0.0))?;
     let title = scene.description.as_ref().map_or_else(|| scene.name.clone(), |text| format!("{}: {text}", scene.name));
     let memory = ("Memory", format!("{} bytes a run", simulation.bytes()));
-    Ok(lines(&[vec![("Scene", title)], rows(scene), vec![memory]].concat()))
+    let tables = labelled("Tables", scene.notes.iter().map(|read| read.text.clone()));
+    Ok(lines(&[vec![("Scene", title)], rows(scene), tables, vec![memory]].concat()))
 }
 
 /// The summary without the scene's name.

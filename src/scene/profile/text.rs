@@ -1,36 +1,53 @@
-//! Profiles as text: two columns x and z, maybe a third that marks points, below a header of any length that may name
-//! the units and the third column.
+//! Profiles as text: columns of x and z, found by their names, below a header of any length; a column of heights alone; and
+//! areal measurements, as columns x, y, z or as a matrix of heights.
 
 use std::fmt::Write as _;
 
-use super::options::{LengthUnit, MeasuredPoints, Missing, ProfileOptions, ThirdColumn};
+use super::areal::Areal;
+use super::options::{LengthUnit, MeasuredPoints, Missing, ProfileOptions, ReadingNote, ThirdColumn};
 use super::plain::PlainLine;
 use crate::scene::error::ContentError;
-use crate::scene::text_table::Columns;
+use crate::scene::text_table::{
+    Block, Dimension, Head, Heading, HeadingUnit, NumberStyle, Separator, Unit, Words, is_missing, number, words,
+};
 use crate::scene::values::ANY;
 
 const EXPECTED_COLUMNS: &str = "two, x and z, separated by comma, semicolon, tab or blanks";
 const ONE_UNIT: &str = "the header names a unit for one of the two columns alone; it is taken for both: x_unit and z_unit \
                         say otherwise";
+const CHOOSE: &str = "columns = [\"x\", \"z\"] (--columns x,z) with the names or the numbers of the columns";
+
+/// What a text holds.
+#[derive(Debug)]
+pub(super) enum Content {
+    Profile(MeasuredPoints),
+    Map(Areal),
+}
 
 /// Reads the points and what the header says of them.
-pub(super) fn read(text: &str, options: &ProfileOptions) -> Result<MeasuredPoints, ContentError> {
-    let numbered =
-        || text.lines().zip(1..).map(|(line, number)| (number, trim(line))).filter(|(_, line)| !line.is_empty());
-    let Some(first) = first_point(numbered()) else { return Err(refuse_all(text, numbered())) };
-    let above: Vec<(usize, &str)> = numbered().take_while(|(number, _)| *number < first).collect();
-    check_header(&above)?;
-    let lines: Vec<&str> = above.iter().map(|(_, line)| *line).collect();
-    let header = Header::read(&lines);
-    let most = text.bytes().filter(|&byte| byte == b'\n').count() + 1;
-    let mut reader = PointsReader::new(header.third_column, options, most);
-    reader.raw.units = header.units;
-    if header.is_one_sided && (options.x_unit.is_none() || options.z_unit.is_none()) {
-        reader.raw.warnings.push(ONE_UNIT.into());
+pub(super) fn read(text: &str, options: &ProfileOptions) -> Result<Content, ContentError> {
+    let blocks = Block::all(text, false);
+    let Some(block) = largest(&blocks)? else { return Err(refuse_all(text)) };
+    check_above(block)?;
+    let column = decimal_column(block);
+    let block = column.as_ref().unwrap_or(block);
+    let header = Header::read(block);
+    if is_matrix(block, &header, options) {
+        return matrix(text, block, &header, options).map(Content::Map);
     }
-    let start = text.split_inclusive('\n').take(first - 1).map(str::len).sum::<usize>();
-    reader.add_lines(&text[start..], first)?;
-    Ok(reader.raw)
+    let roles = Roles::choose(block, &header, options)?;
+    let mut reader = PointsReader::new(block, roles, options);
+    reader.raw.units = header.units(&roles, options, &mut reader.raw)?;
+    reader.add_lines(&text[block.start..], block.first)?;
+    reader.finish(&header, block)
+}
+
+/// One column of numbers with decimal commas, which look like two columns: below a single name that is known.
+fn decimal_column<'a>(block: &Block<'a>) -> Option<Block<'a>> {
+    let (_, name) = block.above.last()?;
+    let is_name = !name.contains(',') && Heading::parse(name, &VOCABULARY).is_some();
+    let two = block.separator == Separator::Letter(',') && block.columns == 2;
+    (is_name && two).then(|| block.as_column())
 }
 
 /// Two columns, x and z in m, that are read again as the same numbers.
@@ -43,207 +60,314 @@ pub(super) fn write(x: &[f64], z: &[f64]) -> String {
     text
 }
 
-/// Without blanks; but a tab at the end may stand before an empty column.
-fn trim(line: &str) -> &str {
-    line.trim_start().trim_end_matches([' ', '\r'])
-}
-
-fn is_comment(line: &str) -> bool {
-    line.starts_with('#')
-}
-
-/// The line of the first point: the next line has numbers too, or there is none.
-fn first_point<'a>(lines: impl Iterator<Item = (usize, &'a str)>) -> Option<usize> {
-    let mut lines = lines.filter(|(_, line)| !is_comment(line)).peekable();
-    while let Some((number, line)) = lines.next() {
-        if !Columns::split(line, false).is_point() {
-            continue;
+/// The block with most rows: what stands above it is a header, however many numbers that has. Of two long ones neither
+/// is a header.
+fn largest<'b, 'a>(blocks: &'b [Block<'a>]) -> Result<Option<&'b Block<'a>>, ContentError> {
+    /// Rows of numbers that a header may have.
+    const HEADER: usize = 20;
+    let most = blocks.iter().map(|block| block.rows).max().unwrap_or(0);
+    let Some(largest) = blocks.iter().find(|block| block.rows == most) else { return Ok(None) };
+    let long = |block: &&Block<'_>| block.rows > HEADER && block.first != largest.first;
+    match blocks.iter().find(long) {
+        Some(other) => {
+            let given = format!("from line {} and from line {}", largest.first, other.first);
+            Err(ContentError::value(Some(other.first), "tables", &given, "one profile: a file for each"))
         }
-        let goes_on = lines.peek().is_none_or(|(_, line)| {
-            let next = Columns::split(line, false);
-            next.count > 1 && next.number(0).is_some()
-        });
-        if goes_on {
-            return Some(number);
-        }
+        None => Ok(Some(largest)),
     }
-    None
 }
 
 /// A single line above the data holds names; a word among numbers there is a mistake. Longer headers may hold
 /// anything.
-fn check_header(above: &[(usize, &str)]) -> Result<(), ContentError> {
-    let mut lines = above.iter().filter(|(_, line)| !is_comment(line));
-    let (Some((number, line)), None) = (lines.next(), lines.next()) else { return Ok(()) };
-    let row = Columns::split(line, false);
-    if row.is_header() { Ok(()) } else { Err(refuse_row(&row, *number, line)) }
+fn check_above(block: &Block<'_>) -> Result<(), ContentError> {
+    let [(number_of_line, line)] = block.above[..] else { return Ok(()) };
+    let fields = block.separator.split(line);
+    let is_number = |field: &str| number(field, block.separator.allows_decimal_comma()).is_some();
+    let mixed = fields.len() == block.columns && block.columns > 1 && fields.iter().any(|field| is_number(field));
+    if !mixed {
+        return Ok(());
+    }
+    let column = fields.iter().position(|field| !is_number(field)).unwrap_or(0);
+    Err(refuse_field(&fields[column], if column == 0 { "x" } else { "z" }, number_of_line))
 }
 
 /// No line of the text is a point.
-fn refuse_all<'a>(text: &str, lines: impl Iterator<Item = (usize, &'a str)>) -> ContentError {
-    let mut lines = lines.filter(|(_, line)| !is_comment(line));
-    match lines.next() {
-        Some((number, line)) if !Columns::split(line, false).is_header() => {
-            refuse_row(&Columns::split(line, false), number, line)
-        }
-        _ => ContentError::value(Some(text.lines().count().max(1)), "points", "0", "at least 2 points for a profile"),
-    }
+fn refuse_all(text: &str) -> ContentError {
+    ContentError::value(Some(text.lines().count().max(1)), "points", "0", "at least 2 points for a profile")
 }
 
-fn refuse_row(row: &Columns<'_>, number: usize, line: &str) -> ContentError {
-    match row.count {
-        2 if row.number(0).is_none_or(|x| !ANY.holds(x)) => refuse_field(row, 0, number),
-        2 => refuse_field(row, 1, number),
-        _ => refuse_count(row, number, line),
-    }
+fn refuse_count(count: usize, number: usize, line: &str, expected: &str) -> ContentError {
+    ContentError::value(Some(number), "columns", &format!("{count} in `{}`", cut(line)), expected)
 }
 
-fn refuse_count(row: &Columns<'_>, number: usize, line: &str) -> ContentError {
-    let given = format!("{} in `{}`", row.count, cut(line));
-    let third = "; third_column says what a third one means";
-    ContentError::value(
-        Some(number),
-        "columns",
-        &given,
-        &format!("{EXPECTED_COLUMNS}{}", if row.count == 3 { third } else { "" }),
-    )
-}
-
-fn refuse_field(row: &Columns<'_>, column: usize, number: usize) -> ContentError {
-    let given = format!("\"{}\"", cut(row.fields[column]));
-    let missing = if column == 1 { ", or missing = \"fill\" where heights are missing" } else { "" };
-    ContentError::value(Some(number), ["x", "z"][column], &given, &format!("{ANY}{missing}"))
+fn refuse_field(field: &str, axis: &str, number: usize) -> ContentError {
+    let given = format!("\"{}\"", cut(field));
+    let missing = if axis == "z" { ", or missing = \"fill\" where heights are missing" } else { "" };
+    ContentError::value(Some(number), axis, &given, &format!("{ANY}{missing}"))
 }
 
 fn cut(text: &str) -> String {
     text.chars().take(60).collect()
 }
 
-/// Collects the points, line by line.
-struct PointsReader {
-    raw: MeasuredPoints,
-    third_column: Option<ThirdColumn>,
-    missing: Missing,
+/// What a column of a profile may be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Axis {
+    X,
+    Y,
+    Z,
 }
 
-impl PointsReader {
-    /// A reader of up to `most` points, with the third column as the header has `named` it.
-    fn new(named: Option<ThirdColumn>, options: &ProfileOptions, most: usize) -> Self {
-        let raw = MeasuredPoints::with_capacity(most);
-        Self { raw, third_column: options.third_column.or(named), missing: options.missing }
-    }
+const fn axis(axis: Axis, key_words: &'static [&'static str], other_words: &'static [&'static str]) -> Words<Axis> {
+    Words { quantity: axis, dimension: Dimension::Length, key_words, other_words }
+}
 
-    /// Adds the points in the lines of `text`, the first of which has the number `first`.
-    fn add_lines(&mut self, text: &str, first: usize) -> Result<(), ContentError> {
-        let mut rest = text;
-        for number in first.. {
-            if rest.is_empty() {
-                break;
-            }
-            if let Some(length) = self.add_plain(number, rest) {
-                rest = &rest[length..];
-                continue;
-            }
-            let (line, behind) = rest.split_once('\n').unwrap_or((rest, ""));
-            let line = trim(line);
-            if !line.is_empty() && !is_comment(line) {
-                self.add(number, line)?;
-            }
-            rest = behind;
+const VOCABULARY: [Words<Axis>; 3] = [
+    axis(
+        Axis::X,
+        &[
+            "x", "distance", "position", "pos", "lateral", "length", "chainage", "station", "abscissa", "place", "weg",
+            "strecke", "abstand", "länge", "laenge", "location", "dist", "xpos", "mileage",
+        ],
+        &[
+            "axis",
+            "coordinate",
+            "coord",
+            "value",
+            "values",
+            "scan",
+            "direction",
+            "profile",
+            "trace",
+            "along",
+            "travel",
+            "travelled",
+            "measured",
+            "horizontal",
+            "achse",
+            "stylus",
+            "x1",
+            "the",
+            "road",
+            "of",
+        ],
+    ),
+    axis(
+        Axis::Z,
+        &[
+            "z",
+            "z2",
+            "z3",
+            "z4",
+            "height",
+            "heights",
+            "elevation",
+            "elev",
+            "depth",
+            "profile",
+            "topography",
+            "altitude",
+            "amplitude",
+            "höhe",
+            "hoehe",
+            "tiefe",
+            "ordinate",
+            "z1",
+            "profil",
+        ],
+        &[
+            "axis",
+            "coordinate",
+            "coord",
+            "value",
+            "values",
+            "roughness",
+            "raw",
+            "primary",
+            "r",
+            "p",
+            "w",
+            "waviness",
+            "surface",
+            "data",
+            "filtered",
+            "leveled",
+            "levelled",
+            "relative",
+            "mean",
+            "measured",
+            "vertical",
+            "corrected",
+            "left",
+            "right",
+            "achse",
+            "road",
+            "of",
+            "the",
+            "center",
+            "centre",
+        ],
+    ),
+    axis(
+        Axis::Y,
+        &["y", "y1", "y2", "y3", "y4"],
+        &["axis", "coordinate", "coord", "position", "pos", "value", "values", "achse"],
+    ),
+];
+
+/// The header of a profile.
+#[derive(Debug)]
+struct Header<'a> {
+    names: Vec<std::borrow::Cow<'a, str>>,
+    line: Option<usize>,
+    /// What the columns are, as far as their names say.
+    headings: Vec<Option<Heading<Axis>>>,
+    /// The units of x and z that lines such as `X-Unit: mm` set.
+    set: [Option<Unit>; 2],
+    /// A line that cannot be parted into names, though it names units.
+    unparted: Option<(usize, &'a str)>,
+}
+
+impl<'a> Header<'a> {
+    fn read(block: &Block<'a>) -> Self {
+        let is_setting = |line: &str| setting(line).is_some();
+        let mut named = block.clone();
+        named.above.retain(|(_, line)| !is_setting(line));
+        let is_known = |name: &str| Heading::parse(name, &VOCABULARY).is_some();
+        let Head { mut names, mut line, units } = named.head(&is_known);
+        // Words above such settings name the file, not its columns.
+        let is_above = |names: usize| block.above.iter().any(|(line, text)| *line > names && is_setting(text));
+        if line.is_some_and(is_above) && !names.iter().any(|name| is_known(name)) {
+            (names, line) = (Vec::new(), None);
         }
-        Ok(())
-    }
-
-    /// Adds the first line of `text` if it is plain and its numbers are possible, and returns its bytes.
-    fn add_plain(&mut self, number: usize, text: &str) -> Option<usize> {
-        if self.third_column.is_some() {
-            return None;
-        }
-        let PlainLine { x, z, length } = PlainLine::read(text).filter(|line| ANY.holds(line.x) && ANY.holds(line.z))?;
-        self.raw.push(number, x, z);
-        Some(length)
-    }
-
-    fn add(&mut self, number: usize, line: &str) -> Result<(), ContentError> {
-        let row = Columns::split(line, self.third_column.is_some());
-        let is_table = match self.third_column {
-            None => row.count == 2,
-            Some(ThirdColumn::Ignore) => row.count >= 2,
-            Some(_) => row.count == 2 || row.count == 3,
+        let heading = |(i, name): (usize, &std::borrow::Cow<'a, str>)| {
+            Heading::with_unit(name, units.get(i).map_or("", |unit| unit), &VOCABULARY)
         };
-        if !is_table {
-            return Err(refuse_count(&row, number, line));
+        let mut headings: Vec<_> = names.iter().enumerate().map(heading).collect();
+        if names.is_empty() && units.len() == block.columns {
+            headings = unnamed(&units);
         }
-        let in_range = |column: usize| row.number(column).filter(|&value| ANY.holds(value));
-        let x = in_range(0).ok_or_else(|| refuse_field(&row, 0, number))?;
-        let z = if self.is_invalid(&row) { None } else { in_range(1) };
-        let z = match z {
-            Some(z) => z,
-            None if self.missing == Missing::Fill && self.is_gap(&row) => f64::NAN,
-            None if self.is_invalid(&row) => return Err(refuse_invalid(&row, number)),
-            None => return Err(refuse_field(&row, 1, number)),
-        };
-        self.raw.push(number, x, z);
-        Ok(())
-    }
-
-    /// Whether the third column marks the height as not valid.
-    fn is_invalid(&self, row: &Columns<'_>) -> bool {
-        match self.third_column {
-            Some(ThirdColumn::Invalid) => row.is_marked(2),
-            Some(ThirdColumn::Valid) => !row.is_marked(2),
-            Some(ThirdColumn::Ignore) | None => false,
-        }
-    }
-
-    fn is_gap(&self, row: &Columns<'_>) -> bool {
-        self.is_invalid(row) || row.is_missing(1) || row.number(1).is_some_and(f64::is_nan)
-    }
-}
-
-fn refuse_invalid(row: &Columns<'_>, number: usize) -> ContentError {
-    let given = format!("\"{}\"", cut(row.fields[2]));
-    ContentError::value(Some(number), "third column", &given, "valid points alone, or missing = \"fill\"")
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Header {
-    units: [Option<LengthUnit>; 2],
-    /// Whether a unit stands beside one of the two columns alone: it is taken for both, which may be wrong.
-    is_one_sided: bool,
-    third_column: Option<ThirdColumn>,
-}
-
-/// Lines above the data that may hold the names of the columns and their units.
-const NEAR: usize = 2;
-
-impl Header {
-    /// Reads the header's `lines`, comments included. Units are looked for in the last two lines, beside or below the names
-    /// of columns, as in `x [mm]; z (µm)`, `X_(microns),y1`, `z / µm`; and in lines of their own, as in `X-Unit: mm`.
-    fn read(lines: &[&str]) -> Self {
-        let lines: Vec<&str> = lines.iter().map(|line| line.trim_start_matches(['#', '%', '!', ' '])).collect();
         let mut set = [None; 2];
-        let settings = lines.iter().filter_map(|line| setting(line));
-        settings.for_each(|(axes, unit)| axes.iter().for_each(|&axis| set[axis] = Some(unit)));
-        let near = || lines.iter().rev().filter(|line| setting(line).is_none()).take(NEAR);
-        let beside = near().map(|line| column_units(line)).find(|units| *units != [None, None]).unwrap_or_default();
-        let (x, z) = (beside[0].or(set[0]), beside[1].or(set[1]));
-        Self {
-            units: [x.or(z), z.or(x)],
-            is_one_sided: x.is_none() != z.is_none(),
-            third_column: near().find_map(|line| third_column(&Columns::split(line, true))),
+        for (axes, unit) in block.above.iter().filter_map(|(_, line)| setting(line)) {
+            axes.iter().for_each(|&axis| set[axis] = Some(unit));
+        }
+        let unparted = named.above.last().copied().filter(|(_, line)| names.is_empty() && names_units(line));
+        Self { names, line, headings, set, unparted }
+    }
+
+    /// Which columns are called so.
+    fn named(&self, axis: Axis) -> Vec<usize> {
+        let is_it = |i: &usize| self.headings[*i].as_ref().is_some_and(|heading| heading.quantity == axis);
+        (0..self.headings.len()).filter(is_it).collect()
+    }
+
+    fn name(&self, column: usize) -> String {
+        match self.names.get(column).map(|name| name.trim()).filter(|name| !name.is_empty()) {
+            Some(name) => format!("column {} ({name})", column + 1),
+            None => format!("column {}", column + 1),
         }
     }
+
+    /// The unit that a column's heading names.
+    fn unit(&self, column: usize, key: &str) -> Result<Option<Unit>, ContentError> {
+        match self.headings.get(column).and_then(Option::as_ref).map(|heading| &heading.unit) {
+            Some(HeadingUnit::Known(unit)) => Ok(Some(*unit)),
+            Some(HeadingUnit::Unknown(unit)) => {
+                let given = format!("\"{}\" of {}", cut(unit), self.name(column));
+                let expected = format!("a unit of length: {}; or {key} in the scene", Dimension::Length.units());
+                Err(ContentError::value(self.line, "unit", &given, &expected))
+            }
+            _ => Ok(None),
+        }
+    }
+
+    /// The units of x and z, and notes on them.
+    fn units(
+        &self,
+        roles: &Roles,
+        options: &ProfileOptions,
+        raw: &mut MeasuredPoints,
+    ) -> Result<[Option<Unit>; 2], ContentError> {
+        let given = [options.x_unit, options.z_unit].map(|unit| unit.map(LengthUnit::unit));
+        if let (Some((line, text)), [None, _] | [_, None]) = (self.unparted, given) {
+            let expected = "names that can be parted into the columns; or x_unit and z_unit";
+            return Err(ContentError::value(Some(line), "units", &format!("`{}`", cut(text)), expected));
+        }
+        let of_column = |axis: usize, column: Option<usize>, key: &str| match (given[axis], column) {
+            (Some(unit), _) => Ok(Some(unit)),
+            (None, Some(column)) => Ok(self.unit(column, key)?.or(self.set[axis])),
+            (None, None) => Ok(self.set[axis]),
+        };
+        let (x, z) = (of_column(0, roles.x, "x_unit")?, of_column(1, Some(roles.z), "z_unit")?);
+        if roles.x.is_none() {
+            raw.notes.push(note(&format!("heights from {}", self.name(roles.z)), z));
+            // The spacing is in m.
+            return Ok([None, z]);
+        }
+        if x.is_none() != z.is_none() {
+            raw.warnings.push(ONE_UNIT.into());
+        }
+        let units = [x.or(z), z.or(x)];
+        let [x, z] = [roles.x.unwrap_or(0), roles.z].map(|column| self.name(column));
+        raw.notes.push(match units {
+            [Some(x_unit), Some(z_unit)] => {
+                let text = format!("x from {x} in {x_unit}, z from {z} in {z_unit}");
+                ReadingNote { text, assumed: false }
+            }
+            _ => {
+                let text = format!("x from {x}, z from {z}, which name no unit: m is assumed");
+                ReadingNote { text, assumed: true }
+            }
+        });
+        if words(self.names.get(roles.z).map_or("", |name| name)).iter().any(|word| word == "depth" || word == "tiefe")
+        {
+            raw.notes.push(ReadingNote { text: "depths are taken as heights, upwards".into(), assumed: true });
+        }
+        Ok(units)
+    }
+}
+
+fn note(what: &str, unit: Option<Unit>) -> ReadingNote {
+    match unit {
+        Some(unit) => ReadingNote { text: format!("{what} in {unit}"), assumed: false },
+        None => ReadingNote { text: format!("{what}, which names no unit: m is assumed"), assumed: true },
+    }
+}
+
+/// Columns that have units but no names: x and z.
+fn unnamed(units: &[std::borrow::Cow<'_, str>]) -> Vec<Option<Heading<Axis>>> {
+    let heading = |(axis, unit): (Axis, &std::borrow::Cow<'_, str>)| {
+        let name = if axis == Axis::X { "x" } else { "z" };
+        Heading::with_unit(name, unit, &VOCABULARY)
+    };
+    if units.len() == 2 { [Axis::X, Axis::Z].into_iter().zip(units).map(heading).collect() } else { Vec::new() }
+}
+
+/// Whether a line has units among its words, as `Distance travelled mm Height um`.
+fn names_units(line: &str) -> bool {
+    let is_unit = |word: &str| {
+        let bare = word.trim_matches(['[', ']', '(', ')', '/', ',', ';']);
+        bare.len() > 1 && bare != "in" && Unit::parse(bare).is_some_and(|unit| unit.dimension == Dimension::Length)
+    };
+    line.split_whitespace().any(is_unit) && !line.contains(char::is_numeric)
 }
 
 /// Of a line such as `X-Unit: mm` or `unit;um`: the axes, 0 for x and 1 for z, and their unit.
-fn setting(line: &str) -> Option<(&'static [usize], LengthUnit)> {
-    let words: Vec<String> = words(line).map(str::to_lowercase).collect();
-    let mut units = words.iter().filter_map(|word| unit_of(word));
+fn setting(line: &str) -> Option<(&'static [usize], Unit)> {
+    let words: Vec<&str> =
+        line.split(|letter: char| !letter.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
+    let name = words.iter().position(|word| {
+        let word = word.to_lowercase();
+        word.ends_with("unit") || word.ends_with("units")
+    })?;
+    let is_length = |word: &&str| Unit::parse(word).filter(|unit| unit.dimension == Dimension::Length);
+    let mut units = words[name + 1..].iter().filter_map(is_length);
     let (unit, None) = (units.next()?, units.next()) else { return None };
-    let name = words.iter().position(|word| word.ends_with("unit") || word.ends_with("units"))?;
     let names = |axis: &[&str]| {
-        let of_axis = |word: &String| axis.iter().any(|name| word == name || *word == format!("{name}unit"));
+        let of_axis = |word: &&str| {
+            let word = word.to_lowercase();
+            axis.iter().any(|name| word == *name || word == format!("{name}unit") || word == format!("{name}units"))
+        };
         words[..=name].iter().any(of_axis)
     };
     Some(match (names(&["x"]), names(&["z", "y", "height"])) {
@@ -253,60 +377,367 @@ fn setting(line: &str) -> Option<(&'static [usize], LengthUnit)> {
     })
 }
 
-/// The units beside the names of two columns, or below them.
-fn column_units(line: &str) -> [Option<LengthUnit>; 2] {
-    if line.contains([';', '\t', ',']) {
-        let row = Columns::split(line, true);
-        return [field_unit(row.fields[0]), field_unit(row.fields[1])];
+/// Which columns hold what, from 0.
+#[derive(Clone, Copy, Debug)]
+struct Roles {
+    /// None where the points have an even spacing.
+    x: Option<usize>,
+    /// Of an areal measurement.
+    y: Option<usize>,
+    z: usize,
+    mark: Option<(usize, ThirdColumn)>,
+}
+
+impl Roles {
+    /// By `columns`, or by the names, or the first two columns of a file that has no others.
+    fn choose(block: &Block<'_>, header: &Header<'_>, options: &ProfileOptions) -> Result<Self, ContentError> {
+        let mark = mark(header, options, block.columns);
+        let roles = match &options.columns[..] {
+            [] => Self::by_names(block, header, options, mark)?,
+            [z] => Self { x: None, y: None, z: column(z, block, header)?, mark },
+            [x, z] => Self { x: Some(column(x, block, header)?), y: None, z: column(z, block, header)?, mark },
+            more => {
+                return Err(ContentError::value(
+                    None,
+                    "columns",
+                    &format!("{} names", more.len()),
+                    "x and z, or z alone",
+                ));
+            }
+        };
+        match (roles.x, &options.spacing[..]) {
+            (None, []) => Err(no_spacing(block, header)),
+            (Some(x), [_, ..]) => {
+                let expected = format!("none, for x is {}", header.name(x));
+                Err(ContentError::value(None, "spacing", "given", &expected))
+            }
+            _ => Ok(roles),
+        }
     }
-    let fields: Vec<&str> = line.split_whitespace().collect();
-    if let [x, z] = fields[..] {
-        return [field_unit(x), field_unit(z)];
+
+    fn by_names(
+        block: &Block<'_>,
+        header: &Header<'_>,
+        options: &ProfileOptions,
+        mark: Option<(usize, ThirdColumn)>,
+    ) -> Result<Self, ContentError> {
+        let [x, y, z] = [Axis::X, Axis::Y, Axis::Z].map(|axis| header.named(axis));
+        if block.columns == 1 {
+            return Ok(Self { x: None, y: None, z: 0, mark });
+        }
+        if header.names.is_empty() && header.headings.is_empty() {
+            return Self::unnamed(block, options, mark);
+        }
+        match (&x[..], &y[..], &z[..]) {
+            (&[x], [], &[z]) | (&[x], &[z], []) => Ok(Self { x: Some(x), y: None, z, mark }),
+            (&[x], &[y], &[z]) => Ok(Self { x: Some(x), y: Some(y), z, mark }),
+            ([], [], &[z]) if !options.spacing.is_empty() => Ok(Self { x: None, y: None, z, mark }),
+            _ => {
+                let names: Vec<&str> = header.names.iter().map(|name| name.trim()).collect();
+                let given = format!("`{}`", cut(&names.join(", ")));
+                let why = match (x.len(), z.len().max(y.len())) {
+                    (0, 0) => "the names do not tell x and z",
+                    (0, 1) => "no name is that of x; spacing in place of x where points are even",
+                    (1, 0) => "no name is that of z",
+                    _ => "several columns have such names",
+                };
+                Err(ContentError::value(header.line, "columns", &given, &format!("{CHOOSE}: {why}")))
+            }
+        }
     }
-    // Blanks separate too much: only what is marked as a unit is one.
-    let marked = |(i, field): (usize, &&str)| {
-        let after_slash = i > 0 && fields[i - 1].ends_with('/');
-        if after_slash || field.contains(['[', '(', '/']) { field_unit(field) } else { None }
+
+    /// Without names: x and z, and beside them what `third_column` says.
+    fn unnamed(
+        block: &Block<'_>,
+        options: &ProfileOptions,
+        mark: Option<(usize, ThirdColumn)>,
+    ) -> Result<Self, ContentError> {
+        let roles = Self { x: Some(0), y: None, z: 1, mark };
+        match (block.columns, options.third_column) {
+            (2, _) | (3, Some(ThirdColumn::Valid | ThirdColumn::Invalid)) => Ok(roles),
+            (_, Some(ThirdColumn::Ignore)) => Ok(roles),
+            (count, _) => {
+                let third = if count == 3 { "; third_column says what a third one means" } else { "" };
+                let expected = format!("{EXPECTED_COLUMNS}{third}; or {CHOOSE}");
+                Err(ContentError::value(Some(block.first), "columns", &count.to_string(), &expected))
+            }
+        }
+    }
+}
+
+fn no_spacing(block: &Block<'_>, header: &Header<'_>) -> ContentError {
+    let hint = block.above.iter().find(|(_, line)| {
+        ["spacing", "step", "increment", "interval"].iter().any(|word| line.to_lowercase().contains(word))
+    });
+    let hint = hint.map_or_else(String::new, |(line, text)| format!("; line {line} says `{}`", cut(text)));
+    let expected = format!(
+        "the distance of the points in m, spacing = 1e-5 (--spacing 1e-5), for {} holds heights without x{hint}",
+        if block.columns == 1 { "the only column".into() } else { header.name(0) },
+    );
+    ContentError::value(Some(block.first), "spacing", "not given", &expected)
+}
+
+/// A column by its name, or by its number from 1.
+fn column(name: &str, block: &Block<'_>, header: &Header<'_>) -> Result<usize, ContentError> {
+    let wanted = words(name);
+    let is_it =
+        |by: &dyn Fn(&str) -> bool| (0..header.names.len()).filter(|&i| by(header.names[i].trim())).collect::<Vec<_>>();
+    let number =
+        || name.trim().parse().ok().filter(|number| (1..=block.columns).contains(number)).map(|number| number - 1);
+    let exact = is_it(&|text| text == name.trim());
+    let similar = is_it(&|text| words(text) == wanted);
+    // Without its unit.
+    let begins = is_it(&|text| words(text).starts_with(&wanted));
+    let found = [exact, similar, begins].into_iter().find(|found| !found.is_empty()).unwrap_or_default();
+    match (&found[..], number()) {
+        (&[column], _) | ([], Some(column)) => Ok(column),
+        (found, _) => {
+            let names: Vec<String> = header.names.iter().map(|name| format!("\"{}\"", name.trim())).collect();
+            let which = if found.is_empty() { "one of" } else { "one name of its own, of" };
+            let expected = format!("{which} {} or a number from 1 to {}", names.join(", "), block.columns);
+            Err(ContentError::value(header.line, "columns", &format!("\"{}\"", cut(name)), &expected))
+        }
+    }
+}
+
+/// The column that marks points, by its name or else the third one.
+fn mark(header: &Header<'_>, options: &ProfileOptions, columns: usize) -> Option<(usize, ThirdColumn)> {
+    let meaning = |name: &str| {
+        let name = name.to_lowercase();
+        let has = |parts: &[&str]| parts.iter().any(|part| name.contains(part));
+        if has(&["invalid", "missing", "mask", "bad", "outlier"]) {
+            Some(ThirdColumn::Invalid)
+        } else if has(&["valid", "good"]) {
+            Some(ThirdColumn::Valid)
+        } else {
+            None
+        }
     };
-    let mut units = fields.iter().enumerate().filter_map(marked);
-    [units.next(), units.next()]
-}
-
-/// The unit at the end of the name of a column: `x [mm]`, `X_(microns)`, `z / µm`, `mm`.
-fn field_unit(field: &str) -> Option<LengthUnit> {
-    words(field).last().and_then(unit_of)
-}
-
-fn words(text: &str) -> impl Iterator<Item = &str> {
-    text.split(|letter: char| !letter.is_alphanumeric()).filter(|word| !word.is_empty())
-}
-
-fn unit_of(word: &str) -> Option<LengthUnit> {
-    let lower = word.to_lowercase();
-    let stem = lower.strip_suffix('s').filter(|stem| stem.len() > 2).unwrap_or(&lower);
-    Some(match stem {
-        // A single capital M is no metre.
-        "m" if word == "m" => LengthUnit::Metre,
-        "meter" | "metre" => LengthUnit::Metre,
-        "mm" | "millimeter" | "millimetre" => LengthUnit::Millimetre,
-        // Two letters look like µ: the sign of the unit and the Greek one.
-        "um" | "\u{b5}m" | "\u{3bc}m" | "micron" | "micrometer" | "micrometre" => LengthUnit::Micrometre,
-        "nm" | "nanometer" | "nanometre" => LengthUnit::Nanometre,
-        _ => return None,
-    })
-}
-
-fn third_column(row: &Columns<'_>) -> Option<ThirdColumn> {
-    if row.count < 3 {
-        return None;
+    let by_name = (0..header.names.len()).find_map(|i| Some((i, meaning(&header.names[i])?)));
+    match options.third_column {
+        Some(ThirdColumn::Ignore) => None,
+        Some(given) => by_name.map(|(i, _)| (i, given)).or((columns == 3).then_some((2, given))),
+        None => by_name,
     }
-    let name = row.fields[2].to_lowercase();
-    let has = |parts: &[&str]| parts.iter().any(|part| name.contains(part));
-    if has(&["invalid", "missing", "mask", "bad", "outlier"]) {
-        Some(ThirdColumn::Invalid)
-    } else if has(&["valid", "good"]) {
-        Some(ThirdColumn::Valid)
-    } else {
-        None
+}
+
+/// Whether the block is a matrix of heights: unnamed columns with two spacings.
+fn is_matrix(block: &Block<'_>, header: &Header<'_>, options: &ProfileOptions) -> bool {
+    options.columns.is_empty() && header.names.is_empty() && block.columns > 1 && options.spacing.len() == 2
+}
+
+/// A matrix of heights: a row is a line along x.
+fn matrix(text: &str, block: &Block<'_>, header: &Header<'_>, options: &ProfileOptions) -> Result<Areal, ContentError> {
+    let decimal_comma = block.separator.allows_decimal_comma();
+    let unit = options.z_unit.map(LengthUnit::unit).or(header.set[1]);
+    let mut heights = Vec::with_capacity(block.rows * block.columns);
+    for (line, row) in block.lines(text) {
+        let fields = block.separator.split(row);
+        for field in fields.iter().take(block.columns) {
+            let height = number(field, decimal_comma).filter(|height| height.is_nan() || ANY.holds(*height));
+            let height = height.or_else(|| is_missing(field).then_some(f64::NAN));
+            heights.push(height.ok_or_else(|| refuse_field(field, "z", line))?);
+        }
     }
+    let [dx, dy] = [options.spacing[0], options.spacing[1]];
+    let mut areal = Areal::even("a matrix of heights", [block.columns, block.rows], [dx, dy], heights);
+    areal.unit = unit;
+    areal.notes.push(note("heights", unit));
+    Ok(areal)
+}
+
+/// Collects the points, line by line.
+struct PointsReader {
+    raw: MeasuredPoints,
+    y: Vec<f64>,
+    roles: Roles,
+    columns: usize,
+    last: usize,
+    separator: Separator,
+    style: NumberStyle,
+    missing: Missing,
+    spacing: f64,
+}
+
+impl PointsReader {
+    fn new(block: &Block<'_>, roles: Roles, options: &ProfileOptions) -> Self {
+        Self {
+            raw: MeasuredPoints::with_capacity(block.rows),
+            y: Vec::new(),
+            roles,
+            columns: block.columns,
+            last: block.last,
+            separator: block.separator,
+            style: NumberStyle::default(),
+            missing: options.missing,
+            spacing: options.spacing.first().copied().unwrap_or(0.0),
+        }
+    }
+
+    /// Adds the points in the lines of `text`, the first of which has the number `first`.
+    fn add_lines(&mut self, text: &str, first: usize) -> Result<(), ContentError> {
+        let is_plain = self.columns == 2 && self.roles.x == Some(0) && self.roles.z == 1;
+        let mut rest = text;
+        for number in first.. {
+            if rest.is_empty() {
+                break;
+            }
+            if let Some(length) = is_plain.then(|| self.add_plain(number, rest)).flatten() {
+                rest = &rest[length..];
+                continue;
+            }
+            let (line, behind) = rest.split_once('\n').unwrap_or((rest, ""));
+            let line = line.trim_start_matches([' ', '\r']).trim_end_matches([' ', '\r']);
+            let is_comment = line.starts_with(['#', '%', '!']) || line.starts_with("//");
+            if !line.trim().is_empty() && !is_comment {
+                if number > self.last && !self.is_row(line) && !behind.lines().any(|line| self.is_row(line.trim())) {
+                    self.record_footer(number, rest);
+                    break;
+                }
+                self.add(number, line)?;
+            }
+            rest = behind;
+        }
+        Ok(())
+    }
+
+    /// Whether a line behind the block is meant as one of its rows: it begins with a number.
+    fn is_row(&self, line: &str) -> bool {
+        let first = self.separator.split(line).into_iter().next().unwrap_or_default();
+        number(&first, self.separator.allows_decimal_comma()).is_some()
+    }
+
+    /// The lines behind the points, which hold words and results.
+    fn record_footer(&mut self, number: usize, rest: &str) {
+        let lines = rest.lines().filter(|line| !line.trim().is_empty()).count();
+        let text = format!("{lines} lines from line {number} on, behind the points, are left out");
+        self.raw.notes.push(ReadingNote { text, assumed: false });
+    }
+
+    /// Adds the first line of `text` if it is plain and its numbers are possible, and returns its bytes.
+    fn add_plain(&mut self, number: usize, text: &str) -> Option<usize> {
+        if self.roles.mark.is_some() {
+            return None;
+        }
+        let PlainLine { x, z, length } = PlainLine::read(text).filter(|line| ANY.holds(line.x) && ANY.holds(line.z))?;
+        if !text.as_bytes()[..length].contains(&self.separator_byte()) {
+            return None;
+        }
+        let has_point = text.as_bytes()[..length].contains(&b'.');
+        if has_point && !self.style.add(".") {
+            return None;
+        }
+        self.raw.push(number, x, z);
+        Some(length)
+    }
+
+    fn separator_byte(&self) -> u8 {
+        match self.separator {
+            Separator::Letter(letter) => u8::try_from(letter).unwrap_or(b','),
+            Separator::Blanks => b' ',
+        }
+    }
+
+    fn add(&mut self, line_number: usize, line: &str) -> Result<(), ContentError> {
+        let mut fields = self.separator.split(line);
+        while fields.len() > self.columns && fields.last().is_some_and(|field| field.is_empty()) {
+            fields.pop();
+        }
+        let least = self.roles.z.max(self.roles.x.unwrap_or(0)) + 1;
+        if fields.len() > self.columns || fields.len() < least {
+            let expected = if self.columns == 2 {
+                let third = if fields.len() == 3 { "; third_column says what a third one means" } else { "" };
+                format!("{EXPECTED_COLUMNS}{third}")
+            } else {
+                format!("{}, as in the rows above", self.columns)
+            };
+            return Err(refuse_count(fields.len(), line_number, line, &expected));
+        }
+        let x = match self.roles.x {
+            Some(column) => {
+                let x = self.value(&fields[column], line_number)?.filter(|&x| ANY.holds(x));
+                x.ok_or_else(|| refuse_field(&fields[column], "x", line_number))?
+            }
+            None => self.spacing * self.raw.x.len() as f64,
+        };
+        let height = &fields[self.roles.z];
+        let invalid = self.roles.mark.filter(|&mark| is_invalid(&fields, mark));
+        let z = if invalid.is_some() { None } else { self.value(height, line_number)?.filter(|&z| ANY.holds(z)) };
+        let is_gap = invalid.is_some() || is_missing(height) || height.eq_ignore_ascii_case("nan");
+        let z = match (z, invalid) {
+            (Some(z), _) => z,
+            (None, _) if self.missing == Missing::Fill && is_gap => f64::NAN,
+            (None, Some((column, _))) => {
+                return Err(refuse_invalid(fields.get(column).map_or("", |field| field), line_number));
+            }
+            (None, None) => return Err(refuse_field(height, "z", line_number)),
+        };
+        if let Some(column) = self.roles.y {
+            let y = fields.get(column).map_or("", |field| field);
+            let y_value = self.value(y, line_number)?.filter(|&y| ANY.holds(y));
+            self.y.push(y_value.ok_or_else(|| refuse_field(y, "y", line_number))?);
+        }
+        self.raw.push(line_number, x, z);
+        Ok(())
+    }
+
+    /// The number in a field. Points and commas in one table may part thousands.
+    fn value(&mut self, field: &str, line: usize) -> Result<Option<f64>, ContentError> {
+        let value = number(field, self.separator.allows_decimal_comma());
+        if value.is_some() && !self.style.add(field) {
+            let expected = "numbers with decimal points or with decimal commas, not both in one file";
+            return Err(ContentError::value(Some(line), "number", &format!("\"{}\"", cut(field)), expected));
+        }
+        Ok(value)
+    }
+
+    /// The profile; or the map, where y takes several values.
+    fn finish(mut self, header: &Header<'_>, block: &Block<'_>) -> Result<Content, ContentError> {
+        let varies = self.y.windows(2).any(|pair| pair[0] != pair[1]);
+        if varies {
+            return Areal::of_points(self.raw, &self.y).map(Content::Map);
+        }
+        self.raw.is_spaced = self.roles.x.is_none();
+        check_index(&self.raw, header, block, self.roles.mark.is_some())?;
+        if header.names.is_empty() && self.roles.x.is_some() {
+            let text = "no names: x is the first column, z the second".to_owned();
+            self.raw.notes.push(ReadingNote { text, assumed: true });
+        }
+        Ok(Content::Profile(self.raw))
+    }
+}
+
+/// Refuses rows that are numbered, as x, where there are more columns and no name that says so.
+fn check_index(
+    raw: &MeasuredPoints,
+    header: &Header<'_>,
+    block: &Block<'_>,
+    has_mark: bool,
+) -> Result<(), ContentError> {
+    if !header.names.is_empty() || block.columns < 3 || raw.x.len() < 3 || has_mark {
+        return Ok(());
+    }
+    let counts = raw.x.windows(2).all(|pair| pair[1] - pair[0] == 1.0) && (raw.x[0] == 0.0 || raw.x[0] == 1.0);
+    if !counts {
+        return Ok(());
+    }
+    let expected = format!("{CHOOSE}: the first column counts the rows");
+    Err(ContentError::value(Some(block.first), "columns", &block.columns.to_string(), &expected))
+}
+
+/// Whether the mark of a row says that its height is not valid.
+fn is_invalid(fields: &[std::borrow::Cow<'_, str>], (column, meaning): (usize, ThirdColumn)) -> bool {
+    const UNSET: [&str; 7] = ["", "false", "no", "n", "f", "-", "off"];
+    let field = fields.get(column).map_or("", |field| field);
+    let is_unset = UNSET.iter().any(|word| field.eq_ignore_ascii_case(word)) || number(field, true) == Some(0.0);
+    match meaning {
+        ThirdColumn::Invalid => !is_unset,
+        ThirdColumn::Valid => is_unset,
+        ThirdColumn::Ignore => false,
+    }
+}
+
+fn refuse_invalid(field: &str, number: usize) -> ContentError {
+    let given = format!("\"{}\"", cut(field));
+    ContentError::value(Some(number), "third column", &given, "valid points alone, or missing = \"fill\"")
 }
