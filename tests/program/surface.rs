@@ -244,6 +244,7 @@ fn a_profile_is_made_periodic() {
         assert!(same >= 320, "{option}: {same}");
     }
 }
+
 /// Files as instruments and people write them, of this project's own making: a sine of 0.3 mm or teeth, scaled by their
 /// units, or refused by name.
 #[test]
@@ -291,14 +292,14 @@ fn scenes_choose_columns_and_spacing() {
         fs::write(&source, scene(surface)).unwrap();
         Scene::load(&source)
     };
-    let chosen = load("kind = 'file'\npath = 'road.csv'\ncolumns = ['x', 'right']").unwrap();
+    let chosen = load("kind = 'file', path = 'road.csv', columns = ['x', 'right']").unwrap();
     assert_eq!((chosen.surface.x(), chosen.surface.z()), (&[0.0, 1e-3, 2e-3][..], &[5e-3, 6e-3, 5e-3][..]));
-    let column = load("kind = 'file'\npath = 'column.txt'\nspacing = 1e-3\nunit = 'um'").unwrap();
+    let column = load("kind = 'file', path = 'column.txt', spacing = 1e-3, unit = 'um'").unwrap();
     assert_eq!((column.surface.x(), column.surface.z()[1]), (&[0.0, 1e-3, 2e-3][..], 2e-6));
-    let refused = load("kind = 'file'\npath = 'road.csv'\ncolumns = ['x', 'y', 'z']").unwrap_err().to_string();
+    let refused = load("kind = 'file', path = 'road.csv', columns = ['x', 'y', 'z']").unwrap_err().to_string();
     assert!(refused.contains("surface.columns = ['x', 'y', 'z']: expected [\"x\", \"z\"]"), "{refused}");
-    load("kind = 'file'\npath = 'road.csv'").unwrap_err();
-    load("kind = 'file'\npath = 'column.txt'\nspacing = 1e-3").unwrap();
+    load("kind = 'file', path = 'road.csv'").unwrap_err();
+    load("kind = 'file', path = 'column.txt', spacing = 1e-3").unwrap();
     let described = run(asperity().arg("describe").arg(&source));
     assert!(described.contains("column.txt: heights from column 1, which names no unit: m is assumed"), "{described}");
 }

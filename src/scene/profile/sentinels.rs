@@ -27,7 +27,8 @@ pub(super) fn take_out(raw: &mut MeasuredPoints, missing: Missing) -> Result<(),
         let is_it = |z: &f64| *z == value;
         let count = raw.z.iter().filter(|z| is_it(z)).count();
         let first = raw.z.iter().position(is_it).unwrap_or(0);
-        let what = format!("{count} times, more than {FAR} times the range of all other heights away from them");
+        let times = if count == 1 { "once".to_owned() } else { format!("{count} times") };
+        let what = format!("{times}, more than {FAR} times the range of all other heights away from them");
         if missing == Missing::Refuse {
             let expected = "a height, or missing = \"fill\" where it stands for one that was not measured";
             return Err(raw.refuse(first, "z", &format!("{value:?} ({what})"), expected));

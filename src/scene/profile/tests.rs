@@ -177,9 +177,8 @@ fn heights_that_are_missing_are_refused_or_filled() {
         assert_eq!(refusal(text.as_bytes(), false).0, 1, "{gap:?}");
     }
     assert_eq!(points_of(b"0\t1\n1\t\n2\t2\n", &filled()), [(0.0, 1.0), (1.0, 1.5), (2.0, 2.0)]);
-    for wrong in ["0;1\n1;high\n2;1", "0;1\n1;1e99\n2;1"] {
-        assert_eq!(refused(wrong.as_bytes(), &filled()).0, 2, "{wrong:?}");
-    }
+    assert_eq!(points_of(b"0;1\n1;1e38\n2;2", &filled()), [(0.0, 1.0), (1.0, 1.5), (2.0, 2.0)]);
+    assert_eq!(refused(b"0;1\n1;high\n2;1", &filled()).0, 2);
     let (_, message) = refused(b"0;***\n1;\n", &filled());
     assert_eq!(message, "points = 0: expected at least 2 points for a profile");
 }
@@ -197,7 +196,7 @@ fn a_third_column_marks_points() {
     for (text, options) in cases {
         assert_eq!(points_of(text.as_bytes(), &options), [(0.0, 1.0), (1.0, 1.5), (2.0, 2.0)], "{text:?}");
     }
-    assert_eq!(points_of(b"0 1 7 7\n1 9 7 7\n", &third(ThirdColumn::Ignore)), [(0.0, 1.0), (1.0, 9.0)]);
+    assert_eq!(points_of(b"x z invalid\n0 1 1\n1 9 0\n", &third(ThirdColumn::Ignore)), [(0.0, 1.0), (1.0, 9.0)]);
     let (line, message) = refusal(b"x,z,invalid\n0,1,0\n1,2,1\n", false);
     let expected = "third column = \"1\": expected valid points alone, or missing = \"fill\"";
     assert_eq!((line, message.as_str()), (3, expected));
@@ -284,7 +283,9 @@ fn names_and_numbers_that_do_not_tell_are_refused() {
             "unit = \"parsec\" of column 1 (x [parsec]): expected a unit of length: m, mm, µm",
         ),
         ("x [Hz],z [m]\n0,1\n1,2\n", 1, "unit = \"Hz\" of column 1"),
-        ("Distance travelled mm Height um\n0 1\n1 2\n", 1, "units = `Distance travelled mm Height um`: expected names"),
+        ("Distance travelled mm Height um\n0 1\n1 2\n", 1, "units = `Distance travelled mm Height um`: expected the"),
+        ("# all in mm\nx,z\n0,1\n1,2\n", 1, "units = `all in mm`: expected the units beside the names, as in x [mm]"),
+        ("log x [mm],z [mm]\n0,1\n1,2\n", 1, "columns = column 1 (log x [mm]): expected numbers, not their logarithms"),
         ("1 0 5\n2 1 6\n3 3 5\n", 1, "columns = 3: expected two, x and z"),
         ("x,z\n0,1.5\n1,-9999\n2,1.4\n3,-9999\n", 3, "z = -9999.0 (2 times, more than 10 times the range"),
         ("x,z\n0,0\n1e-200,1\n2e-200,0\n", 2, "points = steps along x down to 1e-200 m: expected"),
@@ -295,8 +296,10 @@ fn names_and_numbers_that_do_not_tell_are_refused() {
         assert!(found == line && error.starts_with(message), "{text:?}: {found} {error}");
     }
     let ignoring = ProfileOptions { third_column: Some(ThirdColumn::Ignore), ..options() };
-    let (_, message) = refused(b"1 0 5\n2 1 6\n3 3 5\n", &ignoring);
-    assert!(message.ends_with("the first column counts the rows"), "{message}");
+    for numbered in [&b"1 0 5\n2 1 6\n3 3 5\n"[..], b"0 0 5\n1 0 6\n3 0 5\n"] {
+        let (_, message) = refused(numbered, &ignoring);
+        assert!(message.starts_with("columns = 3: expected two, x and z"), "{message}");
+    }
     let filled = points_of(b"x,z\n0,1.5\n1,-9999\n2,1\n3,-9999\n4,1.25\n", &filled());
     assert_eq!(filled, [(0.0, 1.5), (1.0, 1.25), (2.0, 1.0), (3.0, 1.125), (4.0, 1.25)]);
 }

@@ -8,7 +8,7 @@ use super::options::{LengthUnit, MeasuredPoints, Missing, ProfileOptions, Readin
 use super::plain::PlainLine;
 use crate::scene::error::ContentError;
 use crate::scene::text_table::{
-    Block, Dimension, Head, Heading, HeadingUnit, NumberStyle, Separator, Unit, Words, is_missing, number, words,
+    Block, Dimension, Head, Heading, HeadingUnit, Line, NumberStyle, Separator, Unit, Words, is_missing, number, words,
 };
 use crate::scene::values::ANY;
 
@@ -39,7 +39,7 @@ pub(super) fn read(text: &str, options: &ProfileOptions) -> Result<Content, Cont
     let mut reader = PointsReader::new(block, roles, options);
     reader.raw.units = header.units(&roles, options, &mut reader.raw)?;
     reader.add_lines(&text[block.start..], block.first)?;
-    reader.finish(&header, block)
+    reader.finish(&header)
 }
 
 /// One column of numbers with decimal commas, which look like two columns: below a single name that is known.
@@ -224,8 +224,8 @@ struct Header<'a> {
     headings: Vec<Option<Heading<Axis>>>,
     /// The units of x and z that lines such as `X-Unit: mm` set.
     set: [Option<Unit>; 2],
-    /// A line that cannot be parted into names, though it names units.
-    unparted: Option<(usize, &'a str)>,
+    /// A line that speaks of a unit, though it is none of names.
+    stated: Option<(Line<'a>, Unit)>,
 }
 
 impl<'a> Header<'a> {
@@ -251,8 +251,8 @@ impl<'a> Header<'a> {
         for (axes, unit) in block.above.iter().filter_map(|(_, line)| setting(line)) {
             axes.iter().for_each(|&axis| set[axis] = Some(unit));
         }
-        let unparted = named.above.last().copied().filter(|(_, line)| names.is_empty() && names_units(line));
-        Self { names, line, headings, set, unparted }
+        let stated = named.stated_unit(Dimension::Length, line);
+        Self { names, line, headings, set, stated }
     }
 
     /// Which columns are called so.
@@ -270,7 +270,11 @@ impl<'a> Header<'a> {
 
     /// The unit that a column's heading names.
     fn unit(&self, column: usize, key: &str) -> Result<Option<Unit>, ContentError> {
-        match self.headings.get(column).and_then(Option::as_ref).map(|heading| &heading.unit) {
+        let heading = self.headings.get(column).and_then(Option::as_ref);
+        if heading.is_some_and(|heading| heading.logarithm.is_some()) {
+            return Err(ContentError::value(self.line, "columns", &self.name(column), "numbers, not their logarithms"));
+        }
+        match heading.map(|heading| &heading.unit) {
             Some(HeadingUnit::Known(unit)) => Ok(Some(*unit)),
             Some(HeadingUnit::Unknown(unit)) => {
                 let given = format!("\"{}\" of {}", cut(unit), self.name(column));
@@ -289,16 +293,16 @@ impl<'a> Header<'a> {
         raw: &mut MeasuredPoints,
     ) -> Result<[Option<Unit>; 2], ContentError> {
         let given = [options.x_unit, options.z_unit].map(|unit| unit.map(LengthUnit::unit));
-        if let (Some((line, text)), [None, _] | [_, None]) = (self.unparted, given) {
-            let expected = "names that can be parted into the columns; or x_unit and z_unit";
-            return Err(ContentError::value(Some(line), "units", &format!("`{}`", cut(text)), expected));
-        }
         let of_column = |axis: usize, column: Option<usize>, key: &str| match (given[axis], column) {
             (Some(unit), _) => Ok(Some(unit)),
             (None, Some(column)) => Ok(self.unit(column, key)?.or(self.set[axis])),
             (None, None) => Ok(self.set[axis]),
         };
         let (x, z) = (of_column(0, roles.x, "x_unit")?, of_column(1, Some(roles.z), "z_unit")?);
+        if let (None, None, Some(((line, text), unit))) = (x, z, self.stated) {
+            let expected = format!("the units beside the names, as in x [{unit}]; or x_unit and z_unit (--unit {unit})");
+            return Err(ContentError::value(Some(line), "units", &format!("`{}`", cut(text)), &expected));
+        }
         if roles.x.is_none() {
             raw.notes.push(note(&format!("heights from {}", self.name(roles.z)), z));
             // The spacing is in m.
@@ -343,15 +347,6 @@ fn unnamed(units: &[std::borrow::Cow<'_, str>]) -> Vec<Option<Heading<Axis>>> {
     if units.len() == 2 { [Axis::X, Axis::Z].into_iter().zip(units).map(heading).collect() } else { Vec::new() }
 }
 
-/// Whether a line has units among its words, as `Distance travelled mm Height um`.
-fn names_units(line: &str) -> bool {
-    let is_unit = |word: &str| {
-        let bare = word.trim_matches(['[', ']', '(', ')', '/', ',', ';']);
-        bare.len() > 1 && bare != "in" && Unit::parse(bare).is_some_and(|unit| unit.dimension == Dimension::Length)
-    };
-    line.split_whitespace().any(is_unit) && !line.contains(char::is_numeric)
-}
-
 /// Of a line such as `X-Unit: mm` or `unit;um`: the axes, 0 for x and 1 for z, and their unit.
 fn setting(line: &str) -> Option<(&'static [usize], Unit)> {
     let words: Vec<&str> =
@@ -370,7 +365,7 @@ fn setting(line: &str) -> Option<(&'static [usize], Unit)> {
         };
         words[..=name].iter().any(of_axis)
     };
-    Some(match (names(&["x"]), names(&["z", "y", "height"])) {
+    Some(match (names(&["x", "horizontal", "lateral"]), names(&["z", "y", "height", "vertical"])) {
         (true, false) => (&[0], unit),
         (false, true) => (&[1], unit),
         _ => (&[0, 1], unit),
@@ -452,13 +447,12 @@ impl Roles {
         options: &ProfileOptions,
         mark: Option<(usize, ThirdColumn)>,
     ) -> Result<Self, ContentError> {
-        let roles = Self { x: Some(0), y: None, z: 1, mark };
         match (block.columns, options.third_column) {
-            (2, _) | (3, Some(ThirdColumn::Valid | ThirdColumn::Invalid)) => Ok(roles),
-            (_, Some(ThirdColumn::Ignore)) => Ok(roles),
-            (count, _) => {
-                let third = if count == 3 { "; third_column says what a third one means" } else { "" };
-                let expected = format!("{EXPECTED_COLUMNS}{third}; or {CHOOSE}");
+            (2, _) | (3, Some(ThirdColumn::Valid | ThirdColumn::Invalid)) => Ok(Self { x: Some(0), y: None, z: 1, mark }),
+            // One of them may count the rows, or be y.
+            (count, third) => {
+                let marks = if count == 3 && third.is_none() { "; third_column if the third one marks points" } else { "" };
+                let expected = format!("{EXPECTED_COLUMNS}{marks}; or {CHOOSE}");
                 Err(ContentError::value(Some(block.first), "columns", &count.to_string(), &expected))
             }
         }
@@ -528,13 +522,14 @@ fn is_matrix(block: &Block<'_>, header: &Header<'_>, options: &ProfileOptions) -
 
 /// A matrix of heights: a row is a line along x.
 fn matrix(text: &str, block: &Block<'_>, header: &Header<'_>, options: &ProfileOptions) -> Result<Areal, ContentError> {
-    let decimal_comma = block.separator.allows_decimal_comma();
+    let mut style = NumberStyle::of(block);
     let unit = options.z_unit.map(LengthUnit::unit).or(header.set[1]);
     let mut heights = Vec::with_capacity(block.rows * block.columns);
     for (line, row) in block.lines(text) {
         let fields = block.separator.split(row);
         for field in fields.iter().take(block.columns) {
-            let height = number(field, decimal_comma).filter(|height| height.is_nan() || ANY.holds(*height));
+            let written = style.read(field).map_err(|_| refuse_field(field, "z", line))?;
+            let height = written.filter(|height| height.is_nan() || ANY.holds(*height));
             let height = height.or_else(|| is_missing(field).then_some(f64::NAN));
             heights.push(height.ok_or_else(|| refuse_field(field, "z", line))?);
         }
@@ -568,7 +563,7 @@ impl PointsReader {
             columns: block.columns,
             last: block.last,
             separator: block.separator,
-            style: NumberStyle::default(),
+            style: NumberStyle::of(block),
             missing: options.missing,
             spacing: options.spacing.first().copied().unwrap_or(0.0),
         }
@@ -610,7 +605,10 @@ impl PointsReader {
     /// The lines behind the points, which hold words and results.
     fn record_footer(&mut self, number: usize, rest: &str) {
         let lines = rest.lines().filter(|line| !line.trim().is_empty()).count();
-        let text = format!("{lines} lines from line {number} on, behind the points, are left out");
+        let text = match lines {
+            1 => format!("line {number}, behind the points, is left out"),
+            _ => format!("{lines} lines from line {number} on, behind the points, are left out"),
+        };
         self.raw.notes.push(ReadingNote { text, assumed: false });
     }
 
@@ -624,7 +622,7 @@ impl PointsReader {
             return None;
         }
         let has_point = text.as_bytes()[..length].contains(&b'.');
-        if has_point && !self.style.add(".") {
+        if has_point && self.style.add(".").is_err() {
             return None;
         }
         self.raw.push(number, x, z);
@@ -662,8 +660,10 @@ impl PointsReader {
         };
         let height = &fields[self.roles.z];
         let invalid = self.roles.mark.filter(|&mark| is_invalid(&fields, mark));
-        let z = if invalid.is_some() { None } else { self.value(height, line_number)?.filter(|&z| ANY.holds(z)) };
-        let is_gap = invalid.is_some() || is_missing(height) || height.eq_ignore_ascii_case("nan");
+        let written = if invalid.is_some() { None } else { self.value(height, line_number)? };
+        let z = written.filter(|&z| ANY.holds(z));
+        // A number that no height can have, 1e38, is one of those that stand for none.
+        let is_gap = invalid.is_some() || is_missing(height) || written.is_some();
         let z = match (z, invalid) {
             (Some(z), _) => z,
             (None, _) if self.missing == Missing::Fill && is_gap => f64::NAN,
@@ -681,48 +681,25 @@ impl PointsReader {
         Ok(())
     }
 
-    /// The number in a field. Points and commas in one table may part thousands.
+    /// The number in a field.
     fn value(&mut self, field: &str, line: usize) -> Result<Option<f64>, ContentError> {
-        let value = number(field, self.separator.allows_decimal_comma());
-        if value.is_some() && !self.style.add(field) {
-            let expected = "numbers with decimal points or with decimal commas, not both in one file";
-            return Err(ContentError::value(Some(line), "number", &format!("\"{}\"", cut(field)), expected));
-        }
-        Ok(value)
+        let given = || format!("\"{}\"", cut(field));
+        self.style.read(field).map_err(|_| ContentError::value(Some(line), "number", &given(), NumberStyle::EXPECTED))
     }
 
     /// The profile; or the map, where y takes several values.
-    fn finish(mut self, header: &Header<'_>, block: &Block<'_>) -> Result<Content, ContentError> {
+    fn finish(mut self, header: &Header<'_>) -> Result<Content, ContentError> {
         let varies = self.y.windows(2).any(|pair| pair[0] != pair[1]);
         if varies {
             return Areal::of_points(self.raw, &self.y).map(Content::Map);
         }
         self.raw.is_spaced = self.roles.x.is_none();
-        check_index(&self.raw, header, block, self.roles.mark.is_some())?;
         if header.names.is_empty() && self.roles.x.is_some() {
             let text = "no names: x is the first column, z the second".to_owned();
             self.raw.notes.push(ReadingNote { text, assumed: true });
         }
         Ok(Content::Profile(self.raw))
     }
-}
-
-/// Refuses rows that are numbered, as x, where there are more columns and no name that says so.
-fn check_index(
-    raw: &MeasuredPoints,
-    header: &Header<'_>,
-    block: &Block<'_>,
-    has_mark: bool,
-) -> Result<(), ContentError> {
-    if !header.names.is_empty() || block.columns < 3 || raw.x.len() < 3 || has_mark {
-        return Ok(());
-    }
-    let counts = raw.x.windows(2).all(|pair| pair[1] - pair[0] == 1.0) && (raw.x[0] == 0.0 || raw.x[0] == 1.0);
-    if !counts {
-        return Ok(());
-    }
-    let expected = format!("{CHOOSE}: the first column counts the rows");
-    Err(ContentError::value(Some(block.first), "columns", &block.columns.to_string(), &expected))
 }
 
 /// Whether the mark of a row says that its height is not valid.

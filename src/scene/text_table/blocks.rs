@@ -2,7 +2,8 @@
 
 use std::borrow::Cow;
 
-use super::{Unit, fields, unquoted};
+use super::units::{Dimension, Unit};
+use super::{fields, unquoted};
 
 /// What parts the fields of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,19 +31,46 @@ impl Separator {
     }
 }
 
-/// Which signs stand before the decimals of the numbers of a table. A table with both may have commas between thousands.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// Reads the numbers of a table: with decimal points or with decimal commas, but not with both, for commas may then stand
+/// between thousands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NumberStyle {
+    decimal_comma: bool,
     points: bool,
     commas: bool,
 }
 
+/// A table has numbers with points and others with commas.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("expected {}", NumberStyle::EXPECTED)]
+pub struct MixedDecimals;
+
 impl NumberStyle {
-    /// Notes the signs in a number; `false` where points and commas are now mixed.
-    pub fn add(&mut self, field: &str) -> bool {
+    /// What a table must have.
+    pub const EXPECTED: &str = "numbers with decimal points or with decimal commas, not both in one file";
+
+    /// That of a block whose numbers are still to be read.
+    pub fn of(block: &Block<'_>) -> Self {
+        Self { decimal_comma: block.separator.allows_decimal_comma(), points: false, commas: false }
+    }
+
+    /// The number in a field, if it is one; it may be NaN.
+    ///
+    /// # Errors
+    /// [`MixedDecimals`] where numbers before had the other sign.
+    pub fn read(&mut self, field: &str) -> Result<Option<f64>, MixedDecimals> {
+        let value = number(field, self.decimal_comma);
+        if value.is_some() { self.add(field).map(|()| value) } else { Ok(None) }
+    }
+
+    /// Notes the sign in a number.
+    ///
+    /// # Errors
+    /// As [`NumberStyle::read`].
+    pub fn add(&mut self, field: &str) -> Result<(), MixedDecimals> {
         self.points |= field.contains('.');
         self.commas |= field.contains(',');
-        !(self.points && self.commas && field.contains(['.', ',']))
+        if self.points && self.commas && field.contains(['.', ',']) { Err(MixedDecimals) } else { Ok(()) }
     }
 }
 
@@ -243,6 +271,27 @@ impl<'a> Block<'a> {
     }
 }
 
+impl<'a> Block<'a> {
+    /// A line above, other than that of the `names`, that speaks of a unit of a dimension: `all heights in mm`. A unit behind
+    /// a number belongs to that: `stylus tip 2 µm`.
+    pub fn stated_unit(&self, dimension: Dimension, names: Option<usize>) -> Option<(Line<'a>, Unit)> {
+        // One letter, and these, may be something else.
+        let is_clear = |word: &str| word.chars().count() > 1 && !["in", "min", "bar"].contains(&word);
+        let stated = |text: &str| {
+            let mut before = "";
+            text.split(|letter: char| letter.is_whitespace() || ",;:=()[]<>|\"".contains(letter))
+                .filter(|word| !word.is_empty())
+                .filter_map(|word| {
+                    let of_number = number(std::mem::replace(&mut before, word), true).is_some();
+                    Unit::parse(word).filter(|unit| unit.is_of(dimension) && is_clear(word) && !of_number)
+                })
+                .next()
+        };
+        let others = self.above.iter().filter(|(line, _)| Some(*line) != names);
+        others.into_iter().find_map(|line| Some((*line, stated(line.1)?)))
+    }
+}
+
 impl Block<'_> {
     /// Whether a line above is a comment parted by blanks alone.
     fn is_prose(&self, line: usize) -> bool {
@@ -437,7 +486,8 @@ mod tests {
         for text in ["1.234,5", "1,234,5", "x", "", "E", "d5", "12:30"] {
             assert_eq!(number(text, true), None, "{text}");
         }
-        let mut style = NumberStyle::default();
-        assert!(style.add("1.5") && style.add("2") && !style.add("1,234"));
+        let mut style = NumberStyle { decimal_comma: true, points: false, commas: false };
+        let read = ["1.5", "2", "x", "1,234"].map(|field| style.read(field));
+        assert_eq!(read, [Ok(Some(1.5)), Ok(Some(2.0)), Ok(None), Err(MixedDecimals)]);
     }
 }

@@ -11,7 +11,7 @@ mod units;
 use std::borrow::Cow;
 use std::iter;
 
-pub use blocks::{Block, Head, Line, MISSING, NumberStyle, Separator, is_missing, number};
+pub use blocks::{Block, Head, Line, MISSING, MixedDecimals, NumberStyle, Separator, is_missing, number};
 pub use headings::{Heading, HeadingUnit, Words, plain, words};
 pub use units::{Dimension, Unit};
 
