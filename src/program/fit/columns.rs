@@ -3,9 +3,10 @@
 use std::borrow::Cow;
 use std::f64::consts::TAU;
 
-use asperity::scene::text_table::{Block, Dimension, Heading, HeadingUnit, Unit, Words, number, plain, words};
+use asperity::scene::text_table::{Block, Dimension, Heading, HeadingUnit, Unit, Words, words};
 
-use super::measured::ModuliError;
+use super::moduli_error::ModuliError;
+use super::stated_temperature::without_temperature;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
@@ -186,6 +187,8 @@ pub(super) struct Column {
     /// What was multiplied already: a_T ω.
     pub(super) reduced: bool,
     unit: Unit,
+    /// Whether the file or the command line names it; SI is assumed else.
+    pub(super) names_unit: bool,
     /// A frequency in 1/s that its name does not call angular.
     cycles: bool,
     logarithm: Option<f64>,
@@ -200,6 +203,29 @@ impl Column {
         self.unit.to_si(plain) * if self.cycles { TAU } else { 1.0 }
     }
 
+    /// The unit that is assumed, where none is named.
+    pub(super) fn assumed_unit(&self) -> Option<&'static str> {
+        let assumed = if self.cycles { "Hz" } else { self.unit.name };
+        (!self.names_unit && self.unit.dimension != Dimension::Number).then_some(assumed)
+    }
+
+    /// Refuses to assume a unit where the header speaks of another one, and for angles.
+    pub(super) fn check_unit(&self, block: &Block<'_>, line: usize) -> Result<(), ModuliError> {
+        let Some(assumed) = self.assumed_unit() else { return Ok(()) };
+        let dimension = self.unit.dimension;
+        let stated = block.stated_unit(dimension, Some(line)).filter(|(_, unit)| unit.name != assumed);
+        if let Some(((line, text), unit)) = stated {
+            return Err(ModuliError::in_line(line, text, self.with_unit(unit.name)));
+        }
+        let is_phase = dimension == Dimension::Angle;
+        if is_phase { Err(ModuliError::of(self, line, &self.text, self.with_unit("°"))) } else { Ok(()) }
+    }
+
+    /// What to write, in a file or on the command line, for a unit to be known.
+    pub(super) fn with_unit(&self, unit: &str) -> String {
+        format!("the unit beside the name, as in {0} [{unit}]; or --unit '{0}={unit}'", self.text)
+    }
+
     /// Whether a frequency is in Hz or another number of cycles.
     pub(super) fn counts_cycles(&self) -> bool {
         self.cycles || !(self.unit.is_si() || self.unit.dimension == Dimension::Rate)
@@ -209,12 +235,11 @@ impl Column {
 /// Units given on the command line, by the names of columns.
 pub(super) type GivenUnits = [(String, Unit)];
 
-/// What a block has: its columns in use, notes on units, and those left out.
+/// What a block has: the columns that are known, and those left out.
 #[derive(Debug)]
 pub(super) struct Columns {
     pub(super) line: usize,
     pub(super) used: Vec<Column>,
-    pub(super) notes: Vec<String>,
     pub(super) left_out: Vec<String>,
 }
 
@@ -226,7 +251,7 @@ impl Columns {
             Heading::parse(&name, &VOCABULARY).is_some()
         });
         let Some(line) = head.line else { return Ok(None) };
-        let mut columns = Self { line, used: Vec::new(), notes: Vec::new(), left_out: Vec::new() };
+        let mut columns = Self { line, used: Vec::new(), left_out: Vec::new() };
         let parsed: Vec<(Option<Heading<Quantity>>, Option<f64>)> = (0..head.names.len())
             .map(|i| {
                 let (name, temperature) = without_temperature(&head.names[i]);
@@ -286,13 +311,13 @@ impl Columns {
             return Err(ModuliError::in_column(self.line, index, text, text, expected));
         }
         let quantity = if angular { Quantity::Frequency } else { quantity };
-        self.record_unit(index, text, quantity, heading.dimension, unit, cycles)?;
         self.used.push(Column {
             index,
             text: text.trim().to_owned(),
             quantity,
             reduced,
             unit: unit.unwrap_or(Unit::si(heading.dimension)),
+            names_unit: unit.is_some(),
             cycles,
             logarithm: heading.logarithm,
             temperature,
@@ -300,83 +325,15 @@ impl Columns {
         Ok(())
     }
 
-    /// Says which unit was found or assumed; a temperature must have one.
-    fn record_unit(
-        &mut self,
-        index: usize,
-        text: &str,
-        quantity: Quantity,
-        dimension: Dimension,
-        unit: Option<Unit>,
-        cycles: bool,
-    ) -> Result<(), ModuliError> {
-        let text = text.trim();
-        match (unit, dimension) {
-            (Some(_), _) | (None, Dimension::Number) | (None, Dimension::Time) => Ok(()),
-            // It may not be used; where it is, the numbers tell.
-            (None, Dimension::Temperature) => Ok(()),
-            (None, Dimension::Angle) => {
-                let expected = format!("a unit, as in {text} [°]; or --unit '{text}=°'");
-                Err(ModuliError::in_column(self.line, index, text, text, expected))
-            }
-            (None, _) => {
-                let assumed = match (quantity, cycles) {
-                    (Quantity::Frequency, true) => "Hz".to_owned(),
-                    _ => Unit::si(dimension).to_string(),
-                };
-                self.notes.push(format!("column {} ({text}) names no unit: {assumed} is assumed", index + 1));
-                Ok(())
-            }
-        }
-    }
-
     pub(super) fn all(&self, quantities: &[Quantity]) -> Vec<&Column> {
         self.used.iter().filter(|column| quantities.contains(&column.quantity)).collect()
     }
-}
 
-impl Column {
-    /// Whether its heading names a unit of temperature.
-    pub(super) fn names_no_temperature_unit(&self) -> bool {
-        self.unit.is_si() && !words(&self.text).iter().any(|word| word == "k" || word == "kelvin")
+    /// The columns of the first kind of quantity that there is.
+    pub(super) fn first(&self, kinds: &[&[Quantity]]) -> Vec<Column> {
+        let found = kinds.iter().map(|quantities| self.all(quantities)).find(|found| !found.is_empty());
+        found.unwrap_or_default().into_iter().cloned().collect()
     }
-}
-
-/// A heading without the temperature that it names, as in `E' (MPa) @ 20 °C`, and the temperature in K.
-fn without_temperature(text: &str) -> (Cow<'_, str>, Option<f64>) {
-    let Some((start, end, kelvin)) = find_temperature(text) else { return (Cow::Borrowed(text), None) };
-    let rest = format!("{} {}", &text[..start], &text[end..]);
-    let rest = rest.replace("()", "").replace("[]", "");
-    let rest = rest.trim().trim_end_matches(['@', ',', ';', '_', '-', '(', ' ']).trim_end_matches(" at").trim();
-    let rest = rest.trim_start_matches(['@', ',', ';', '_', ':', ' ']);
-    (Cow::Owned(rest.to_owned()), Some(kelvin))
-}
-
-/// The bytes from the number to the end of its unit of temperature, and the temperature in K.
-pub(super) fn find_temperature(text: &str) -> Option<(usize, usize, f64)> {
-    let is_digit = |letter: char| letter.is_ascii_digit() || "+-.,\u{2212}".contains(letter);
-    let mut from = 0;
-    while let Some(offset) = text[from..].find(|letter: char| letter.is_ascii_digit()) {
-        let mut start = from + offset;
-        while let Some(before) = text[..start].chars().next_back().filter(|letter| "+-\u{2212}".contains(*letter)) {
-            start -= before.len_utf8();
-        }
-        let end =
-            text[from + offset..].find(|letter: char| !is_digit(letter)).map_or(text.len(), |end| from + offset + end);
-        let behind = text[end..].trim_start();
-        let stop =
-            behind.find(|letter: char| letter.is_whitespace() || ")],;:_@".contains(letter)).unwrap_or(behind.len());
-        let spaced = plain(&behind[..stop]);
-        // One word of a unit, or the sign of degrees and its letter.
-        let unit = Unit::parse(&spaced).filter(|unit| unit.dimension == Dimension::Temperature);
-        let number = number(text[start..end].trim_matches(','), true);
-        if let (Some(unit), Some(number)) = (unit, number) {
-            let end = text.len() - behind.len() + stop;
-            return Some((start, end, unit.to_si(number)));
-        }
-        from = end.max(from + offset + 1);
-    }
-    None
 }
 
 #[cfg(test)]
@@ -459,19 +416,5 @@ mod tests {
         for header in ["E'' [mPa]", "omega [V]", "f [mhz]"] {
             assert_eq!(read(header).and_then(|(_, unit)| unit), Some("?"), "{header}");
         }
-    }
-
-    #[test]
-    fn headings_may_name_a_temperature() {
-        let read = |text: &'static str| {
-            let (name, kelvin) = without_temperature(text);
-            (name.into_owned(), kelvin)
-        };
-        assert_eq!(read("E' (MPa) @ 20 °C"), ("E' (MPa)".into(), Some(293.15)));
-        assert_eq!(read("E' at -10°C [MPa]").1, Some(263.15));
-        assert_eq!(read("E'' 313.15 K"), ("E''".into(), Some(313.15)));
-        assert_eq!(read("40C E' (MPa)"), ("E' (MPa)".into(), Some(313.15)));
-        assert_eq!(read("E' (MPa)"), ("E' (MPa)".into(), None));
-        assert_eq!(read("N/mm2"), ("N/mm2".into(), None));
     }
 }

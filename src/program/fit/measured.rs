@@ -1,13 +1,12 @@
 //! Tables of measured moduli, as people and instruments write them: what each row says, in SI units.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
-use std::fmt;
-
 use asperity::scene::Wlf;
-use asperity::scene::text_table::{self, Block, NumberStyle, Unit, is_missing, number};
+use asperity::scene::text_table::{self, Block};
 
-use super::columns::{Column, Columns, EXPECTED, GivenUnits, Quantity, find_temperature};
+use super::columns::{EXPECTED, GivenUnits};
+use super::moduli_error::ModuliError;
 use super::search::{Sample, Test};
+use super::table::Table;
 
 /// Measured moduli of tension, in SI units.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,55 +47,6 @@ pub(super) struct Reading<'a> {
     pub(super) shear: bool,
 }
 
-/// A table cannot be used: where, what was found and what was expected.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub(crate) struct ModuliError {
-    line: usize,
-    /// Its number from 1, and its heading.
-    column: Option<(usize, String)>,
-    /// As written in the file; empty where something is missing.
-    found: String,
-    expected: String,
-}
-
-impl fmt::Display for ModuliError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let found: String = self.found.chars().take(60).collect();
-        write!(f, "{}: ", self.line)?;
-        match &self.column {
-            Some((number, header)) if header.is_empty() || *header == self.found => write!(f, "column {number}")?,
-            Some((number, header)) => write!(f, "column {number} ({header})")?,
-            None => {}
-        }
-        match (&self.column, found.as_str()) {
-            (Some(_), "") => write!(f, ": ")?,
-            (Some(_), found) => write!(f, " = \"{found}\": ")?,
-            (None, "") => {}
-            (None, found) => write!(f, "{found}: ")?,
-        }
-        write!(f, "expected {}", self.expected)
-    }
-}
-
-impl ModuliError {
-    pub(super) fn in_line(line: usize, found: impl Into<String>, expected: impl Into<String>) -> Self {
-        Self { line, column: None, found: found.into(), expected: expected.into() }
-    }
-
-    /// Of a column, counted from 0, by its heading.
-    pub(super) fn in_column(line: usize, index: usize, text: &str, found: &str, expected: impl Into<String>) -> Self {
-        let column = Some((index + 1, text.trim().to_owned()));
-        Self { line, column, found: found.into(), expected: expected.into() }
-    }
-
-    fn of(column: &Column, line: usize, found: &str, expected: impl Into<String>) -> Self {
-        Self::in_column(line, column.index, &column.text, found, expected)
-    }
-}
-
-/// The size that a number in SI units may have in a scene.
-const POSITIVE: &str = "a number above 0 (from 1e-30 to 1e30 in SI units)";
-
 impl MeasuredModuli {
     /// Reads all tables of moduli in the bytes of a file.
     pub(super) fn parse(bytes: &[u8], reading: &Reading<'_>) -> Result<Self, ModuliError> {
@@ -111,25 +61,22 @@ impl MeasuredModuli {
         let mut tables: Vec<Table<'_>> = Vec::new();
         let (mut notes, mut errors) = (Vec::new(), Vec::new());
         for block in &blocks {
-            // A block without a header of its own has that of the one before it.
-            let read = Table::read(block, reading).and_then(|table| match inherited(block, &tables) {
-                Some(block) if table.is_none() => Table::read(&block, reading),
-                _ => Ok(table),
-            });
-            match read {
+            match Table::read(block, tables.last(), reading) {
                 Ok(Some(table)) => tables.push(table),
                 Ok(None) if block.rows > 1 => notes.push(format!(
                     "lines {} to {}: numbers without names of moduli above them are left out",
                     block.first, block.last
                 )),
                 Ok(None) => (),
-                Err(error) => errors.push((block.rows, error)),
+                Err(error) => errors.push((block, error)),
             }
         }
-        // A line or two with a name in a preamble are no table that is missed.
-        let is_preamble = |rows: usize| rows <= 2 && !tables.is_empty();
-        if let Some((_, error)) = errors.into_iter().find(|(rows, _)| !is_preamble(*rows)) {
-            return Err(error);
+        for (block, error) in errors {
+            // A line or two with a name in a preamble are no table that is missed.
+            if block.rows > 2 || tables.is_empty() {
+                return Err(error);
+            }
+            notes.push(format!("lines {} to {} are left out: {error}", block.first, block.last));
         }
         let Some(first) = tables.first() else { return Err(no_table(text, &blocks)) };
         if let Some(name) = reading.ignored.iter().find(|name| !first.has(name, text)) {
@@ -142,9 +89,13 @@ impl MeasuredModuli {
                 let expected = "tables of one kind in a file: all of oscillation, or all of relaxation";
                 return Err(ModuliError::in_line(table.line, "another kind of table", expected));
             }
-            let zeros = table.add_points(text, reading, &mut points)?;
-            if zeros > 0 {
-                notes.push(format!("{zeros} rows whose loss is 0, below what was measured, are left out"));
+            if tables.len() > 1 {
+                table.check_temperature()?;
+            }
+            match table.add_points(text, reading, &mut points)? {
+                0 => (),
+                1 => notes.push("a row whose loss is 0, below what was measured, is left out".into()),
+                zeros => notes.push(format!("{zeros} rows whose loss is 0, below what was measured, are left out")),
             }
         }
         notes.splice(0..0, first.notes(reading, tables.len()));
@@ -190,7 +141,13 @@ impl MeasuredModuli {
 fn no_table(text: &str, blocks: &[Block<'_>]) -> ModuliError {
     match blocks.iter().max_by_key(|block| block.rows) {
         None if text.trim().is_empty() => ModuliError::in_line(1, "", "a header line, then rows"),
-        None => ModuliError::in_line(text.lines().count() + 1, "", "a row of numbers"),
+        None => {
+            let begins_with_digit =
+                |(_, line): &(usize, &str)| line.trim_start().starts_with(|c: char| c.is_ascii_digit());
+            let (line, found) =
+                (1..).zip(text.lines()).find(begins_with_digit).unwrap_or((text.lines().count() + 1, ""));
+            ModuliError::in_line(line, found, "a row of numbers")
+        }
         Some(block) => {
             let (line, header) = block.above.last().copied().unwrap_or((block.first, ""));
             ModuliError::in_line(line, header, EXPECTED)
@@ -198,505 +155,12 @@ fn no_table(text: &str, blocks: &[Block<'_>]) -> ModuliError {
     }
 }
 
-/// The block with the header of the table before it, if that has as many columns.
-fn inherited<'a>(block: &Block<'a>, tables: &[Table<'a>]) -> Option<Block<'a>> {
-    let alike = |table: &&Table<'a>| (table.block.separator, table.block.columns) == (block.separator, block.columns);
-    let before = tables.last().filter(alike)?;
-    Some(block.below(&before.head_lines))
-}
-
-/// One curve of a table: its columns. A table has one, or one for each temperature.
-#[derive(Clone, Debug)]
-struct Curve {
-    /// Frequency or time; `None` where it is given on the command line.
-    at: Option<Column>,
-    modulus: Column,
-    loss: Option<Column>,
-    temperature: Option<f64>,
-}
-
-#[derive(Debug)]
-struct Table<'a> {
-    block: Block<'a>,
-    /// The lines above its first row.
-    head_lines: Vec<text_table::Line<'a>>,
-    line: usize,
-    curves: Vec<Curve>,
-    temperature: Option<Column>,
-    shift: Option<Column>,
-    set: Option<Column>,
-    /// A second column of frequencies, to compare.
-    other_frequency: Option<Column>,
-    /// tan δ beside E'', to compare.
-    tangent: Option<Column>,
-    columns: Columns,
-}
-
-impl<'a> Table<'a> {
-    /// The columns of a block; `None` where they are none of moduli.
-    fn read(block: &Block<'a>, reading: &Reading<'_>) -> Result<Option<Self>, ModuliError> {
-        use Quantity::{
-            Complex, Frequency, Loss, LossTangent, Phase, Relaxation, Set, SetTemperature, ShearComplex, ShearLoss,
-            ShearRelaxation, ShearStorage, ShiftFactor, Storage, Temperature, Time,
-        };
-        let Some(columns) = Columns::read(block, reading.ignored, reading.units)? else { return Ok(None) };
-        let missing = |expected: &str| ModuliError::in_line(columns.line, "", expected);
-        let first = |quantities: &[&[Quantity]]| -> Vec<Column> {
-            let found = quantities.iter().map(|quantities| columns.all(quantities)).find(|found| !found.is_empty());
-            found.unwrap_or_default().into_iter().cloned().collect()
-        };
-        let times = columns.all(&[Time]);
-        let mut rates = first(&[&[Frequency]]);
-        let relaxed = first(&[&[Relaxation], &[ShearRelaxation]]);
-        let is_relaxation = rates.is_empty() && !times.is_empty() && !relaxed.is_empty();
-        let (at, moduli, losses) = if is_relaxation {
-            (times.into_iter().cloned().collect(), relaxed, Vec::new())
-        } else {
-            let moduli = first(&[&[Storage], &[ShearStorage], &[Complex], &[ShearComplex]]);
-            let has_complex = moduli.iter().any(|column| matches!(column.quantity, Complex | ShearComplex));
-            let losses = match moduli.first().map(|column| column.quantity) {
-                Some(Storage) => first(&[&[Loss], &[LossTangent], &[Phase]]),
-                Some(ShearStorage) => first(&[&[ShearLoss], &[Loss], &[LossTangent], &[Phase]]),
-                Some(_) => first(&[&[Phase], &[LossTangent]]),
-                None => first(&[&[Loss], &[ShearLoss], &[LossTangent], &[Phase]]),
-            };
-            if moduli.is_empty() && losses.is_empty() {
-                return Ok(None);
-            }
-            if moduli.is_empty() {
-                return Err(missing("a column of the storage modulus: E' [MPa]"));
-            }
-            if losses.is_empty() {
-                return Err(missing(if has_complex {
-                    "a column of the phase beside |E*|: delta [°] or tan delta"
-                } else {
-                    "a column of the loss: E'' [MPa] or tan delta"
-                }));
-            }
-            if rates.is_empty() && reading.frequency.is_none() {
-                return Err(missing("a frequency column, f [Hz] or omega [rad/s]; or --frequency 10Hz for all rows"));
-            }
-            (rates.clone(), moduli, losses)
-        };
-        let other_frequency = if at.len() == 2 && moduli.len() == 1 && !is_relaxation { rates.pop() } else { None };
-        let at = if other_frequency.is_some() { vec![at[0].clone()] } else { at };
-        let curves = curves(block, &columns, &at, &moduli, &losses, reading)?;
-        let one = |quantities: &[&[Quantity]]| first(quantities).into_iter().next();
-        let temperature = one(&[&[Temperature], &[SetTemperature]]);
-        let tangent = if losses.iter().any(|loss| matches!(loss.quantity, Loss | ShearLoss)) {
-            columns.all(&[LossTangent]).first().map(|column| (*column).clone())
-        } else {
-            None
-        };
-        let mut table = Self {
-            block: block.clone(),
-            head_lines: block.above.iter().copied().filter(|(line, _)| *line >= columns.line).collect(),
-            line: columns.line,
-            curves,
-            temperature,
-            shift: one(&[&[ShiftFactor]]),
-            set: one(&[&[Set]]),
-            other_frequency,
-            tangent,
-            columns,
-        };
-        table.check_twins(&[Temperature])?;
-        table.read_temperature_above(reading)?;
-        Ok(Some(table))
-    }
-
-    /// Two columns of one kind, where one is used, are one too many.
-    fn check_twins(&self, quantities: &[Quantity]) -> Result<(), ModuliError> {
-        for quantity in quantities {
-            if let [first, second, ..] = self.columns.all(&[*quantity])[..] {
-                let expected =
-                    format!("one column of a kind: {} is there already; ignore one by --ignore NAME", first.text);
-                return Err(ModuliError::of(second, self.line, &second.text, expected));
-            }
-        }
-        Ok(())
-    }
-
-    /// The temperature of a table whose rows have none: in its heading lines, `Temperature: 20 °C`.
-    fn read_temperature_above(&mut self, reading: &Reading<'_>) -> Result<(), ModuliError> {
-        if self.temperature.is_some() || self.curves.iter().any(|curve| curve.temperature.is_some()) {
-            return Ok(());
-        }
-        let found = self.block.above.iter().rev().find_map(|(line, text)| Some((*line, setting(text, reading)?)));
-        let Some((line, setting)) = found else { return Ok(()) };
-        match setting {
-            Ok(kelvin) => self.curves.iter_mut().for_each(|curve| curve.temperature = Some(kelvin)),
-            Err(text) => {
-                let note = format!("line {line} ({text}) names no unit of temperature and is left out");
-                self.columns.notes.push(note);
-            }
-        }
-        Ok(())
-    }
-
-    fn has(&self, name: &str, text: &str) -> bool {
-        let line = text.lines().nth(self.line.saturating_sub(1)).unwrap_or_default();
-        let line = line.trim_start_matches(['#', '%', '!', ' ']);
-        self.block.fields(line).is_some_and(|fields| fields.iter().any(|field| field.trim() == name.trim()))
-    }
-
-    fn test(&self) -> Test {
-        let is_relaxation = self
-            .curves
-            .iter()
-            .any(|curve| matches!(curve.modulus.quantity, Quantity::Relaxation | Quantity::ShearRelaxation));
-        if is_relaxation { Test::Relaxation } else { Test::Oscillation }
-    }
-
-    fn in_hertz(&self) -> bool {
-        self.curves[0].at.as_ref().is_none_or(Column::counts_cycles)
-    }
-
-    fn is_reduced(&self) -> bool {
-        self.curves[0].at.as_ref().is_some_and(|column| column.reduced)
-    }
-
-    /// What was found and assumed.
-    fn notes(&self, reading: &Reading<'_>, tables: usize) -> Vec<String> {
-        let curve = &self.curves[0];
-        let name = |column: &Column| format!("column {} ({})", column.index + 1, column.text);
-        let columns = [curve.at.as_ref(), Some(&curve.modulus), curve.loss.as_ref(), self.temperature.as_ref()];
-        let read: Vec<String> = columns.into_iter().flatten().map(name).collect();
-        let many = if tables > 1 { format!("{tables} tables, the first with ") } else { String::new() };
-        let temperatures = if self.curves.len() > 1 {
-            format!(", and so on for {} temperatures", self.curves.len())
-        } else {
-            String::new()
-        };
-        let mut notes = vec![format!("read {many}{}{temperatures}", read.join(", "))];
-        notes.extend(self.columns.notes.iter().cloned());
-        let shear = self.is_shear(&curve.modulus, reading);
-        if shear {
-            let nu = reading.poisson_ratio;
-            let text = format!("moduli of shear: E = 2(1 + ν) G, with ν = {nu} (--poisson-ratio)");
-            notes.push(text);
-        } else if !names_letter(&curve.modulus.text) {
-            let text = format!(
-                "{} does not say whether of tension or shear: E is assumed, --shear says G",
-                name(&curve.modulus)
-            );
-            notes.push(text);
-        }
-        if self.tangent.is_some() {
-            notes.push("both E'' and tan delta are given: E'' is used".into());
-        }
-        if self.is_reduced() {
-            notes.push("the frequencies are multiplied by a_T already: no row is shifted".into());
-        }
-        let left_out = &self.columns.left_out;
-        if !left_out.is_empty() {
-            let names: Vec<&str> = left_out.iter().take(4).map(String::as_str).collect();
-            let more = if left_out.len() > 4 { format!(" and {} more", left_out.len() - 4) } else { String::new() };
-            notes.push(format!("columns left out: {}{more}", names.join(", ")));
-        }
-        notes
-    }
-
-    fn is_shear(&self, modulus: &Column, reading: &Reading<'_>) -> bool {
-        use Quantity::{ShearComplex, ShearRelaxation, ShearStorage};
-        let named = matches!(modulus.quantity, ShearStorage | ShearComplex | ShearRelaxation);
-        named || (reading.shear && !names_letter(&modulus.text))
-    }
-
-    /// Adds the points of all rows; how many are left out because their loss is 0.
-    fn add_points(
-        &self,
-        text: &str,
-        reading: &Reading<'_>,
-        points: &mut Vec<MeasuredPoint>,
-    ) -> Result<usize, ModuliError> {
-        let mut zeros = 0;
-        let mut row = Row {
-            fields: Vec::new(),
-            line: 0,
-            decimal_comma: self.block.separator.allows_decimal_comma(),
-            style: NumberStyle::default(),
-        };
-        for (line, content) in self.block.lines(text) {
-            row.line = line;
-            row.fields = self.block.separator.split(content).into_iter().map(|field| field.into_owned()).collect();
-            for curve in &self.curves {
-                match self.point(curve, &mut row, reading)? {
-                    Some(point) => points.push(point),
-                    None if row.is_empty(&curve.modulus) => (),
-                    None => zeros += 1,
-                }
-            }
-        }
-        Ok(zeros)
-    }
-
-    /// The point of a curve in a row; `None` where the curve has none there, or no loss.
-    fn point(&self, curve: &Curve, row: &mut Row, reading: &Reading<'_>) -> Result<Option<MeasuredPoint>, ModuliError> {
-        let has_many = self.curves.len() > 1;
-        if has_many && row.is_empty(&curve.modulus) && curve.loss.as_ref().is_none_or(|loss| row.is_empty(loss)) {
-            return Ok(None);
-        }
-        let at = match &curve.at {
-            Some(column) => row.positive(column)?,
-            None => reading.frequency.unwrap_or(TAU),
-        };
-        self.check_other_frequency(at, row)?;
-        let modulus = row.positive(&curve.modulus)?;
-        let Some((storage, loss)) = response(modulus, curve, row)? else { return Ok(None) };
-        self.check_tangent(storage, loss, curve, row)?;
-        let to_tension = if self.is_shear(&curve.modulus, reading) { 2.0 * (1.0 + reading.poisson_ratio) } else { 1.0 };
-        let sample = Sample { at, storage: to_tension * storage, loss: to_tension * loss };
-        let temperature = match (&self.temperature, curve.temperature) {
-            (Some(column), _) => Some(row.temperature(column)?),
-            (None, temperature) => temperature,
-        };
-        let shift = self.shift.as_ref().map(|column| row.positive(column)).transpose()?;
-        let set = self.set.as_ref().map(|column| row.number(column)).transpose()?.flatten();
-        Ok(Some(MeasuredPoint { line: row.line, sample, temperature, shift, set }))
-    }
-
-    /// A frequency in Hz and an angular one must be the same.
-    fn check_other_frequency(&self, at: f64, row: &mut Row) -> Result<(), ModuliError> {
-        let Some(column) = &self.other_frequency else { return Ok(()) };
-        /// Share by which rounded columns may differ.
-        const ROUNDING: f64 = 0.02;
-        match row.number(column)? {
-            Some(other) if (other / at - 1.0).abs() > ROUNDING => {
-                let expected =
-                    format!("the same as the other column of frequencies, {at:.4e} rad/s; --ignore leaves one out");
-                Err(ModuliError::of(column, row.line, &format!("{other:.4e} rad/s"), expected))
-            }
-            _ => Ok(()),
-        }
-    }
-
-    /// tan δ must be E''/E': if not, a unit is wrong or columns are mixed up.
-    fn check_tangent(&self, storage: f64, loss: f64, curve: &Curve, row: &mut Row) -> Result<(), ModuliError> {
-        let Some(column) = self.tangent.as_ref().filter(|_| self.curves.len() == 1) else { return Ok(()) };
-        let Some(tangent) = row.number(column)?.filter(|tangent| *tangent > 0.0) else { return Ok(()) };
-        let ratio = loss / storage / tangent;
-        // Rows may be rounded to a few digits; wrong units differ by a thousand.
-        if (0.1..=10.0).contains(&ratio) {
-            return Ok(());
-        }
-        let names = (curve.loss.as_ref().map_or("", |loss| loss.text.as_str()), curve.modulus.text.as_str());
-        let expected = format!(
-            "{:.4}, which {} over {} are: are their units right? --ignore leaves a column out",
-            loss / storage,
-            names.0,
-            names.1
-        );
-        Err(ModuliError::of(column, row.line, &tangent.to_string(), expected))
-    }
-}
-
-/// Whether a heading says E or G.
-fn names_letter(text: &str) -> bool {
-    let words = text_table::words(text);
-    let marks = [
-        "e", "e'", "e''", "estar", "g", "g'", "g''", "gstar", "tensile", "young's", "shear", "estor", "eloss",
-        "erelax", "gstor", "gloss",
-    ];
-    words.iter().any(|word| marks.contains(&word.as_str()))
-}
-
-/// Storage and loss modulus of a row; `None` where the loss is 0.
-fn response(modulus: f64, curve: &Curve, row: &mut Row) -> Result<Option<(f64, f64)>, ModuliError> {
-    let Some(column) = &curve.loss else { return Ok(Some((modulus, 0.0))) };
-    if row.number(column)? == Some(0.0) {
-        return Ok(None);
-    }
-    let loss = row.positive(column)?;
-    let is_complex = matches!(curve.modulus.quantity, Quantity::Complex | Quantity::ShearComplex);
-    let angle = match column.quantity {
-        Quantity::Phase => loss,
-        Quantity::LossTangent => loss.atan(),
-        _ => return Ok(Some((modulus, loss))),
-    };
-    if angle >= FRAC_PI_2 {
-        return Err(ModuliError::of(column, row.line, &angle.to_degrees().to_string(), "a phase below 90°"));
-    }
-    Ok(Some(if is_complex {
-        (modulus * angle.cos(), modulus * angle.sin())
-    } else if column.quantity == Quantity::LossTangent {
-        (modulus, modulus * loss)
-    } else {
-        (modulus, modulus * angle.tan())
-    }))
-}
-
-/// The fields of a row.
-struct Row {
-    line: usize,
-    fields: Vec<String>,
-    decimal_comma: bool,
-    style: NumberStyle,
-}
-
-impl Row {
-    fn field(&self, column: &Column) -> &str {
-        self.fields.get(column.index).map_or("", String::as_str)
-    }
-
-    fn is_empty(&self, column: &Column) -> bool {
-        let field = self.field(column);
-        field.is_empty() || is_missing(field)
-    }
-
-    /// The number in SI units, if the field is one.
-    fn number(&mut self, column: &Column) -> Result<Option<f64>, ModuliError> {
-        let field = self.fields.get(column.index).map_or("", String::as_str);
-        let written = number(field, self.decimal_comma);
-        if written.is_some() && !self.style.add(field) {
-            let expected = "numbers with decimal points or with decimal commas, not both in one file";
-            return Err(ModuliError::of(column, self.line, field, expected));
-        }
-        Ok(written.map(|written| column.to_si(written)).filter(|value| value.is_finite()))
-    }
-
-    fn positive(&mut self, column: &Column) -> Result<f64, ModuliError> {
-        let value = self.number(column)?.filter(|value| (1e-30..=1e30).contains(value));
-        value.ok_or_else(|| ModuliError::of(column, self.line, self.field(column), POSITIVE))
-    }
-
-    fn temperature(&mut self, column: &Column) -> Result<f64, ModuliError> {
-        let value = self.number(column)?;
-        if column.names_no_temperature_unit() && value.is_some_and(|value| value < Wlf::COLDEST) {
-            let expected = format!(
-                "a unit: without one it is taken in K, which is too cold for rubber; {} [°C] in the header, or --unit '{}=°C'",
-                column.text, column.text
-            );
-            return Err(ModuliError::of(column, self.line, self.field(column), expected));
-        }
-        let value = value.filter(|value| *value > 0.0);
-        value.ok_or_else(|| ModuliError::of(column, self.line, self.field(column), "a temperature above 0 K"))
-    }
-}
-
-/// The curves of a table: one, or a pair of columns for each temperature.
-fn curves(
-    block: &Block<'_>,
-    columns: &Columns,
-    at: &[Column],
-    moduli: &[Column],
-    losses: &[Column],
-    reading: &Reading<'_>,
-) -> Result<Vec<Curve>, ModuliError> {
-    let twin = |columns_of: &[Column]| {
-        let [first, second, ..] = columns_of else { return None };
-        let expected = format!("one column of a kind: {} is there already; ignore one by --ignore NAME", first.text);
-        Some(ModuliError::of(second, columns.line, &second.text, expected))
-    };
-    if moduli.len() == 1 {
-        return match twin(at).or_else(|| twin(losses)) {
-            Some(error) => Err(error),
-            None => Ok(vec![Curve {
-                at: at.first().cloned(),
-                modulus: moduli[0].clone(),
-                loss: losses.first().cloned(),
-                temperature: moduli[0].temperature,
-            }]),
-        };
-    }
-    let fits = |count: usize| count == moduli.len();
-    if !(losses.is_empty() || fits(losses.len())) || !(at.len() <= 1 || fits(at.len())) {
-        let given =
-            format!("{} columns of moduli, {} of losses, {} of frequencies", moduli.len(), losses.len(), at.len());
-        return Err(ModuliError::in_line(
-            columns.line,
-            given,
-            "a pair of moduli a temperature, and one frequency or one for each",
-        ));
-    }
-    let above = temperatures_above(block, columns.line, reading)?;
-    let curve = |(i, modulus): (usize, &Column)| {
-        let temperature = modulus.temperature.or_else(|| above.get(modulus.index).copied().flatten());
-        let temperature = temperature.ok_or_else(|| {
-            let expected = "its temperature, in its name (E' [MPa] 20 °C) or in the line above; or one column of a kind: \
-                            --ignore NAME";
-            ModuliError::of(modulus, columns.line, &modulus.text, expected)
-        })?;
-        let at = if at.len() > 1 { at.get(i) } else { at.first() };
-        Ok(Curve {
-            at: at.cloned(),
-            modulus: modulus.clone(),
-            loss: losses.get(i).cloned(),
-            temperature: Some(temperature),
-        })
-    };
-    moduli.iter().enumerate().map(curve).collect()
-}
-
-/// The temperatures in the line above the names: each holds to the next one.
-fn temperatures_above(block: &Block<'_>, names: usize, reading: &Reading<'_>) -> Result<Vec<Option<f64>>, ModuliError> {
-    let Some(&(line, text)) = block.above.iter().rev().find(|(line, _)| *line < names) else { return Ok(Vec::new()) };
-    let Some(fields) = block.fields(text) else { return Ok(Vec::new()) };
-    let is_kelvin = |unit: &Unit| unit.dimension == text_table::Dimension::Temperature;
-    let given = reading.units.iter().map(|(_, unit)| *unit).find(is_kelvin);
-    let of_line = given.or_else(|| Heading::unit_of(text));
-    let (mut found, mut last) = (Vec::new(), None);
-    for (index, field) in fields.iter().enumerate() {
-        let named = find_temperature(field).map(|(_, _, kelvin)| kelvin);
-        let bare = number(field, block.separator.allows_decimal_comma());
-        match (named, bare, of_line) {
-            (Some(kelvin), _, _) => last = Some(kelvin),
-            (None, Some(value), Some(unit)) => last = Some(unit.to_si(value)),
-            (None, Some(value), None) if value >= Wlf::COLDEST => last = Some(value),
-            (None, Some(_), None) => {
-                let expected =
-                    "a unit of temperature, as in 20 °C, above each pair of columns; or --unit temperature=°C";
-                return Err(ModuliError::in_column(line, index, "", field, expected));
-            }
-            (None, None, _) if field.is_empty() => (),
-            (None, None, _) => last = None,
-        }
-        found.push(last);
-    }
-    Ok(found)
-}
-
-/// A line above a table.
-struct Heading;
-
-impl Heading {
-    /// The unit of temperature that a line names by itself, as in `T [°C],20,,40,`.
-    fn unit_of(line: &str) -> Option<Unit> {
-        let parts = line.split(|letter: char| letter.is_whitespace() || "[](),;:=/\t".contains(letter));
-        let mut units = parts.filter_map(Unit::parse);
-        units.find(|unit| unit.dimension == text_table::Dimension::Temperature)
-    }
-}
-
-/// Of a line such as `Temperature: 20 °C` or `T=20;Mw=90`: the temperature in K, or the text where it names no unit.
-fn setting(line: &str, reading: &Reading<'_>) -> Option<Result<f64, String>> {
-    line.split([';', '\t', ',']).find_map(|part| {
-        let (name, value) = part.split_once(['=', ':']).or_else(|| part.split_once(char::is_whitespace))?;
-        let words = text_table::words(name);
-        let is_temperature =
-            words.iter().any(|word| ["T", "temp", "temperature", "temperatur"].contains(&word.as_str()));
-        let digits = value.trim();
-        if !is_temperature
-            || words.len() > 2
-            || !digits.starts_with(|letter: char| letter.is_ascii_digit() || letter == '-')
-        {
-            return None;
-        }
-        if let Some((_, _, kelvin)) = find_temperature(digits) {
-            return Some(Ok(kelvin));
-        }
-        let given = reading.units.iter().find(|(name, _)| text_table::words(name) == words).map(|(_, unit)| *unit);
-        let unit = given.or_else(|| Heading::unit_of(name));
-        let number = number(digits, true);
-        Some(match (unit, number) {
-            (Some(unit), Some(number)) => Ok(unit.to_si(number)),
-            _ => Err(part.trim().to_owned()),
-        })
-    })
-}
-
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
+    use asperity::scene::text_table::Unit;
+
     use super::*;
 
     const READING: Reading<'_> =
@@ -733,6 +197,7 @@ mod tests {
              2\t0.43511321319\t87.022642638\t20\n",
             ",20 °C,,30 °C,\nf [Hz],E' [MPa],E'' [MPa],E' [MPa],E'' [MPa]\n2,3,0.6,2,0.2\n",
             "f [Hz],E' [MPa] 20 °C,E'' [MPa] 20 °C,E' [MPa] 30 °C,E'' [MPa] 30 °C\n2,3,0.6,2,0.2\n",
+            "f [Hz],E' [MPa] 20 °C,E' [MPa] 30 °C,E'' [MPa] 30 °C,E'' [MPa] 20 °C\n2,3,2,0.2,0.6\n",
             "[Step]\nNumber of points\t1\nVariables\tTemperature\tFrequency\tStorage modulus\tLoss modulus\n\
              Units\t°C\tHz\tMPa\tMPa\nData point\t20\t2\t3\t0.6\n[Step]\nNumber of points\t1\n\
              Variables\tTemperature\tFrequency\tStorage modulus\tLoss modulus\nUnits\t°C\tHz\tMPa\tMPa\n\
@@ -746,7 +211,7 @@ mod tests {
             assert!(close(at, 2.0 * TAU) && close(storage, 3e6) && close(loss, 6e5), "{text}: {row:?}");
             assert!(close(row.temperature.unwrap(), 293.15), "{text}: {row:?}");
         }
-        let last = texts[texts.len() - 3..].iter().map(|text| read(text).points);
+        let last = texts[texts.len() - 4..].iter().map(|text| read(text).points);
         assert!(
             last.map(|points| points[1]).all(|point| point.temperature == Some(303.15) && point.sample.storage == 2e6)
         );
@@ -790,12 +255,12 @@ mod tests {
         assert!(notes(named).contains("does not say whether of tension or shear: E is assumed"));
         assert_eq!(read_with(named, &Reading { shear: true, ..READING }).points[0].sample.loss, 9e6);
         assert!(notes("f,E' [MPa],E'' [MPa]\n1,2,3").contains("column 1 (f) names no unit: Hz is assumed"));
-        assert!(notes("omega,E',tan(d)\n1,2,3").contains("column 1 (omega) names no unit: rad/s is assumed"));
-        assert!(notes("omega,E',tan(d)\n1,2,3").contains("column 2 (E') names no unit: Pa is assumed"));
+        assert!(notes("omega,E',tan(d)\n1,2e6,3").contains("column 1 (omega) names no unit: rad/s is assumed"));
+        assert!(notes("omega,E',tan(d)\n1,2e6,3").contains("column 2 (E') names no unit: Pa is assumed"));
         let both = "f [Hz],E' [Pa],E'' [Pa],tan(d)\n1,2,3,1.5";
         assert!(notes(both).contains("both E'' and tan delta are given: E'' is used"));
         assert!(notes("Point,f [Hz],E' [Pa],E'' [Pa],F [N]\n1,1,2,3,9").contains("columns left out: Point, F [N]"));
-        assert!(notes("f [Hz],E' [Pa],E'' [Pa]\n1,2,3\n2,2,0\n").contains("1 rows whose loss is 0"));
+        assert!(notes("f [Hz],E' [Pa],E'' [Pa]\n1,2,3\n2,2,0\n").contains("a row whose loss is 0"));
     }
 
     #[test]
@@ -842,7 +307,7 @@ mod tests {
             ),
             (
                 "f [Hz],E' [Pa],E'' [Pa],temperature\n1,2,3,4".into(),
-                "2: column 4 (temperature) = \"4\": expected a unit: without one it is taken in K",
+                "2: column 4 (temperature) = \"4\": expected the unit beside the name, as in temperature [°C]; or --unit",
             ),
             (
                 "f [Hz],E' [Pa],E'' [Pa],T [°C]\n1,2,3,-300".into(),
@@ -866,6 +331,24 @@ mod tests {
                 ",20,,40,\nf [Hz],E' [Pa],E'' [Pa],E' [Pa],E'' [Pa]\n1,2,3,4,5\n".into(),
                 "1: column 2 = \"20\": expected a unit of temperature",
             ),
+            (
+                "f,E',E''\n1,20,3".into(),
+                "2: column 2 (E') = \"20\": expected the unit beside the name, as in E' [MPa]; or --unit 'E'=MPa': in Pa it",
+            ),
+            (
+                "# moduli in MPa\nf [Hz],E',E''\n1,2e6,3".into(),
+                "1: moduli in MPa: expected the unit beside the name, as in E'",
+            ),
+            ("f [Hz],|E*| [Pa],delta\n1,2,3".into(), "1: column 3 = \"delta\": expected the unit beside the name"),
+            (
+                "f [Hz],E' [Pa] 20 °C,E' [Pa] 30 °C,E'' [Pa] 20 °C,E'' [Pa] 40 °C\n1,2,3,4,5\n".into(),
+                "1: column 5 = \"E'' [Pa] 40 °C\": expected one column of its kind at 303.15 K",
+            ),
+            (
+                "T=20;\nf [Hz] E' [Pa] E'' [Pa]\n1 2 3\n2 3 4\n\nT=30;\nf [Hz] E' [Pa] E'' [Pa]\n1 2 3\n2 3 4\n".into(),
+                "1: T=20: expected a unit of temperature, as in 20 °C; or --unit 'T=°C'",
+            ),
+            ("f,E'\n\n0.1,\"2,000.0\"\n".into(), "3: 0.1,\"2,000.0\": expected a row of numbers"),
             ("a\0".into(), "1: bytes that are zero: expected text in UTF-8, UTF-16 or Latin-1"),
         ];
         for (text, message) in cases {

@@ -2,9 +2,12 @@
 
 mod columns;
 mod measured;
+mod moduli_error;
 mod nnls;
 mod search;
 mod shift;
+mod stated_temperature;
+mod table;
 mod temperatures;
 mod workbook;
 
@@ -18,7 +21,8 @@ use super::cli::Fit;
 use super::figure::{Curve, Figure as _, Panel, Stacked, Stroke};
 use super::files::{self, FileError, check_outputs, name_of, named, picture_beside, print_beside};
 use super::terminal::{decimal, lines, note, rounded, warn};
-use measured::{MeasuredModuli, ModuliError, Reading};
+use measured::{MeasuredModuli, Reading};
+use moduli_error::ModuliError;
 use search::{Compound, FitErrors, RelativeError, Sample, Target, Test, search};
 use temperatures::{Shift, ShiftError};
 

@@ -3,10 +3,11 @@
 use std::f64::consts::LN_10;
 use std::path::Path;
 
-use asperity::scene::text_table::{Block, decode, number};
+use asperity::scene::text_table::{Block, NumberStyle, decode};
 
-use super::columns::{Columns, Quantity};
-use super::measured::{MeasuredModuli, MeasuredPoint, ModuliError};
+use super::columns::{Column, Columns, Quantity};
+use super::measured::{MeasuredModuli, MeasuredPoint};
+use super::moduli_error::ModuliError;
 use super::search::{Compound, FitErrors, Sample};
 use super::shift::{Factor, Isotherm, Superposition, law_of, rms_with, superpose};
 use super::{FitError, percent, short, written};
@@ -343,16 +344,15 @@ fn shift_table(bytes: &[u8], command: &Fit) -> Result<Vec<(f64, f64)>, ModuliErr
     let columns = Columns::read(block, &[], &command.unit)?.ok_or_else(missing)?;
     let [temperature] = columns.all(&[Quantity::Temperature])[..] else { return Err(missing()) };
     let [factor] = columns.all(&[Quantity::ShiftFactor])[..] else { return Err(missing()) };
-    let mut rows = Vec::new();
+    let (mut rows, mut style) = (Vec::new(), NumberStyle::of(block));
     for (line, row) in block.lines(&text) {
         let fields = block.separator.split(row);
-        let value = |column: &super::columns::Column| {
+        let mut value = |column: &Column| {
             let field = fields.get(column.index).map_or("", |field| field);
-            let written = number(field, block.separator.allows_decimal_comma());
+            let refuse = |expected: &str| ModuliError::in_column(line, column.index, &column.text, field, expected);
+            let written = style.read(field).map_err(|_| refuse(NumberStyle::EXPECTED))?;
             let value = written.map(|written| column.to_si(written)).filter(|value| *value > 0.0 && value.is_finite());
-            value.ok_or_else(|| {
-                ModuliError::in_column(line, column.index, &column.text, field, "a number above 0 in SI units")
-            })
+            value.ok_or_else(|| refuse("a number above 0 in SI units"))
         };
         rows.push((value(temperature)?, value(factor)?));
     }

@@ -300,7 +300,8 @@ impl<'a> Header<'a> {
         };
         let (x, z) = (of_column(0, roles.x, "x_unit")?, of_column(1, Some(roles.z), "z_unit")?);
         if let (None, None, Some(((line, text), unit))) = (x, z, self.stated) {
-            let expected = format!("the units beside the names, as in x [{unit}]; or x_unit and z_unit (--unit {unit})");
+            let expected =
+                format!("the units beside the names, as in x [{unit}]; or x_unit and z_unit (--unit {unit})");
             return Err(ContentError::value(Some(line), "units", &format!("`{}`", cut(text)), &expected));
         }
         if roles.x.is_none() {
@@ -448,10 +449,13 @@ impl Roles {
         mark: Option<(usize, ThirdColumn)>,
     ) -> Result<Self, ContentError> {
         match (block.columns, options.third_column) {
-            (2, _) | (3, Some(ThirdColumn::Valid | ThirdColumn::Invalid)) => Ok(Self { x: Some(0), y: None, z: 1, mark }),
+            (2, _) | (3, Some(ThirdColumn::Valid | ThirdColumn::Invalid)) => {
+                Ok(Self { x: Some(0), y: None, z: 1, mark })
+            }
             // One of them may count the rows, or be y.
             (count, third) => {
-                let marks = if count == 3 && third.is_none() { "; third_column if the third one marks points" } else { "" };
+                let marks =
+                    if count == 3 && third.is_none() { "; third_column if the third one marks points" } else { "" };
                 let expected = format!("{EXPECTED_COLUMNS}{marks}; or {CHOOSE}");
                 Err(ContentError::value(Some(block.first), "columns", &count.to_string(), &expected))
             }

@@ -140,7 +140,9 @@ impl WrittenSeries<'_> {
         let Some(setting) = self.header.iter().find_map(|&line| Setting::read(line)) else {
             let follows = if sum < 1.0 {
                 let modulus = relaxed / (1.0 - sum);
-                format!("; equilibrium_modulus/(1 - Σ) would be {modulus:.3e} Pa, as exact as the digits of 1 - {sum:.6}")
+                format!(
+                    "; equilibrium_modulus/(1 - Σ) would be {modulus:.3e} Pa, as exact as the digits of 1 - {sum:.6}"
+                )
             } else {
                 String::new()
             };
@@ -269,8 +271,16 @@ mod tests {
             assert_eq!(found, expected, "{text:?}");
         }
         let refused = [
-            ("*Viscoelastic, time=PRONY\n0.2,0,1\n", 1, "E0 = not given: expected E_0, to which relative moduli refer, in a"),
-            ("*Viscoelastic, time=CREEP TEST DATA\n0.2,0,1\n", 1, "card = `*Viscoelastic, time=CREEP TEST DATA`: expected"),
+            (
+                "*Viscoelastic, time=PRONY\n0.2,0,1\n",
+                1,
+                "E0 = not given: expected E_0, to which relative moduli refer, in a",
+            ),
+            (
+                "*Viscoelastic, time=CREEP TEST DATA\n0.2,0,1\n",
+                1,
+                "card = `*Viscoelastic, time=CREEP TEST DATA`: expected",
+            ),
             ("**E0=1MPa\n*Viscoelastic, time=PRONY\n0.2,1\n", 3, "columns = 2: expected three: g, k, tau"),
             ("**E0=1MPa\n*Viscoelastic, time=PRONY\n2,0,1\n", 3, "modulus = \"2\": expected a share of E_0"),
             ("!E0=1MPa\nTB,PRONY,1,1,2,SHEAR\nTBDATA,1,0.2\n", 3, "constants = 1: expected shares and times by turns"),

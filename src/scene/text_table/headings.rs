@@ -189,7 +189,8 @@ fn without_logarithm(text: &str) -> (&str, Option<f64>) {
 /// The words of a name, in lower case but for a single T, which is a temperature where t is a time. Primes belong to the
 /// letter before them, and E* is `estar`.
 pub fn words(name: &str) -> Vec<String> {
-    let lower = plain(name).replace('_', " ").replace("double prime", "''").replace("doubleprime", "''").replace("prime", "'");
+    let lower =
+        plain(name).replace('_', " ").replace("double prime", "''").replace("doubleprime", "''").replace("prime", "'");
     let marked = lower.split(' ').map(|word| if word == "T" { word.to_owned() } else { word.to_lowercase() });
     let lower = marked.collect::<Vec<_>>().join(" ").replace("e*", "estar").replace("g*", "gstar");
     let lower = ["e", "g"].iter().fold(lower, |text, letter| {
