@@ -63,6 +63,7 @@ fn read(command: &Surface) -> Result<(scene::Surface, Vec<PathBuf>), SurfaceErro
             return Err(SurfaceError::SceneHasOptions { path: path.clone() });
         }
         let scene = load_without_excitation(path, &[])?;
+        scene.notes.iter().filter(|read| !read.assumed).for_each(|read| note(&read.text));
         let files = sources(path, &scene);
         return Ok((scene.surface, files));
     }

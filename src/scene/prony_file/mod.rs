@@ -147,8 +147,9 @@ impl WrittenSeries<'_> {
                 String::new()
             };
             let comment = self.comment;
-            let expected =
-                format!("E_0, to which relative moduli refer, in a line above: {comment} E0 = 64 MPa{follows}");
+            let expected = format!(
+                "E_0 with its unit, to which relative moduli refer, in a comment: {comment} E0 = 64 MPa{follows}"
+            );
             return Err(ContentError::value(self.line, "E0", "not given", &expected));
         };
         let Setting { line, name, value, .. } = &setting;
@@ -271,11 +272,7 @@ mod tests {
             assert_eq!(found, expected, "{text:?}");
         }
         let refused = [
-            (
-                "*Viscoelastic, time=PRONY\n0.2,0,1\n",
-                1,
-                "E0 = not given: expected E_0, to which relative moduli refer, in a",
-            ),
+            ("*Viscoelastic, time=PRONY\n0.2,0,1\n", 1, "E0 = not given: expected E_0 with its unit"),
             (
                 "*Viscoelastic, time=CREEP TEST DATA\n0.2,0,1\n",
                 1,
@@ -307,7 +304,11 @@ mod tests {
             ),
             ("tau [s],E [mPa]\n1,2\n", 1, "unit = \"mPa\" of column 2 (E [mPa]): expected one of Pa, kPa"),
             ("a,b\n1,2\n", 1, "columns = `a, b`: expected a relaxation time and a modulus"),
-            ("g_i,k_i,tau_i\n0.5,0,1\n", 1, "E0 = not given: expected E_0, to which relative moduli refer"),
+            (
+                "g_i,k_i,tau_i\n0.5,0,1\n",
+                1,
+                "E0 = not given: expected E_0 with its unit, to which relative moduli refer",
+            ),
             ("# E0 = 64\n# rel_mod, rel_time\n0.5,1\n", 1, "E0 = 64: expected a unit: one of Pa"),
             ("g,tau\n0.5,1\n0.6,2\n", 1, "relative moduli = a sum of 1.1: expected relative moduli"),
             ("1e-3,0.4\n1,0.5\n", 1, "modulus = at most 0.9 in all, without a unit: expected moduli in Pa"),
