@@ -228,7 +228,7 @@ impl Shift {
             let errors = FitErrors::of(compound, &own, measured.test);
             let uncertain = if factor.error > 0.0 { format!(" ± {:.4}", factor.error / LN_10) } else { String::new() };
             // Without the sign of -0.
-            let log = format!("{:.4}{uncertain}", factor.ln / LN_10 + 0.0);
+            let log = format!("{:.4}{uncertain}", (factor.ln / LN_10 * 1e4).round() / 1e4 + 0.0);
             let text = format!("{:<11.2}{:<8}{log:<20}{}", isotherm.temperature, own.len(), percent(errors.both.rms));
             rows.push(("", text));
         }

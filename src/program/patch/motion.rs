@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use asperity::patch::{COORDINATES, Patch, PatchMotion, PatchStart, Pose};
-use asperity::scene::text_table::{Dimension, Heading, HeadingUnit, Unit, Words};
+use asperity::scene::text_table::{Dimension, Heading, Unit, Words};
 
 use crate::program::result_file::{CsvFile, Record, ResultFileError};
 
@@ -68,16 +68,14 @@ impl MotionFile {
             .iter()
             .map(|name| place(name).map_or_else(|| file.column(name), Ok))
             .collect::<Result<Vec<_>, _>>()?;
-        let mut columns = Vec::new();
-        for (i, name) in file.names().iter().enumerate() {
-            if !indices.contains(&i) {
-                return Err(file.header_error(format!("column {name}: expected {} alone", wanted.join(", "))));
-            }
+        if let Some((_, name)) = file.names().iter().enumerate().find(|(i, _)| !indices.contains(i)) {
+            return Err(file.header_error(format!("column {name}: expected {} alone", wanted.join(", "))));
         }
-        for i in indices {
+        let with_unit = |i: usize| {
             let unit = headings[i].as_ref().map_or(Ok(Unit::ONE), unit_of);
-            columns.push((i, unit.map_err(|message| file.header_error(message))?));
-        }
+            Ok((i, unit.map_err(|message| file.header_error(message))?))
+        };
+        let columns = indices.into_iter().map(with_unit).collect::<Result<Vec<_>, ResultFileError>>()?;
         let motion = Self { rows: rows(&file, &columns, patch, has_transport)?, has_transport, has_temperature };
         if motion.rows.is_empty() { Err(ResultFileError::NoRows { path: path.to_owned() }) } else { Ok(motion) }
     }
@@ -144,13 +142,9 @@ impl MotionRow {
 
 /// The unit of a column; in SI units where none is named.
 fn unit_of(heading: &Heading<&str>) -> Result<Unit, String> {
-    match &heading.unit {
-        HeadingUnit::Known(unit) => Ok(*unit),
-        HeadingUnit::None => Ok(Unit::ONE),
-        HeadingUnit::Unknown(unit) => {
-            Err(format!("column {} in \"{unit}\": expected one of {}", heading.quantity, heading.dimension.units()))
-        }
-    }
+    let unknown =
+        |unit| format!("column {} in \"{unit}\": expected one of {}", heading.quantity, heading.dimension.units());
+    heading.unit.known().map(|unit| unit.unwrap_or(Unit::ONE)).map_err(unknown)
 }
 
 fn rows(

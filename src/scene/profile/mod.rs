@@ -4,10 +4,12 @@
 //! are in [`instruments`]. An FMU carries text in place of all that is no text of x and z.
 
 mod areal;
+mod header;
 #[cfg(feature = "instruments")]
 mod instruments;
 mod options;
 mod plain;
+mod roles;
 mod sentinels;
 mod text;
 #[cfg(feature = "instruments")]

@@ -25,11 +25,11 @@ pub(super) fn read(text: &str) -> Option<Result<WrittenSeries<'_>, ContentError>
     Some(terms.map(|terms| WrittenSeries {
         terms,
         kind: ModulusKind::Relative,
-        is_unit_assumed: false,
+        modulus_note: note(format!("a card of {name}"), false),
         line: Some(line),
         header: lines().map(|(number, line)| (number, line.trim_start_matches(['*', '!', '#', '/', ' ']))).collect(),
         comment,
-        notes: vec![note(format!("a card of {name}: relaxation times in s are assumed"), true)],
+        notes: vec![note("relaxation times in s are assumed", true)],
     }))
 }
 

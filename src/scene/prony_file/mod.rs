@@ -64,8 +64,8 @@ struct WrittenTerm {
 struct WrittenSeries<'a> {
     terms: Vec<WrittenTerm>,
     kind: ModulusKind,
-    /// Whether the file does not say that moduli are in Pa.
-    is_unit_assumed: bool,
+    /// How the moduli were read; assumed where the file does not say that they are in Pa.
+    modulus_note: ReadingNote,
     /// The line of its names.
     line: Option<usize>,
     /// Lines that may hold E_0, without the signs of comments.
@@ -83,9 +83,10 @@ impl WrittenSeries<'_> {
     /// The terms: moduli of tension in Pa.
     fn convert(mut self, elastic: ElasticConstants) -> Result<PronySeries, ContentError> {
         let sum: f64 = self.terms.iter().map(|term| term.modulus).sum();
-        if self.kind != ModulusKind::Relative && self.is_unit_assumed {
+        if self.kind != ModulusKind::Relative && self.modulus_note.assumed {
             self.check_assumed_unit(sum, elastic)?;
         }
+        self.notes.push(self.modulus_note.clone());
         let factor = match self.kind {
             ModulusKind::Relative => self.instantaneous_modulus(sum, elastic)?,
             ModulusKind::Shear => {
@@ -117,7 +118,7 @@ impl WrittenSeries<'_> {
         let is_relative = sum > 0.0 && sum <= 1.0;
         if is_relative && self.header.iter().any(|&line| Setting::read(line).is_some()) {
             self.kind = ModulusKind::Relative;
-            self.notes.push(note("moduli without a unit are taken as relative, for an E_0 is given", true));
+            self.modulus_note = note("moduli without a unit are taken as relative, for an E_0 is given", true);
             return Ok(());
         }
         if !is_relative && sum >= LEAST * elastic.equilibrium_modulus {
@@ -253,7 +254,7 @@ mod tests {
                 assert!(close(term.relaxation_time, time) && close(term.modulus, modulus), "{text:?}: {found:?}");
             }
         }
-        assert_eq!(texts.map(assumptions), [1, 2, 0, 2, 0, 0, 0, 0, 1, 1, 2, 1, 2]);
+        assert_eq!(texts.map(assumptions), [2, 2, 0, 2, 0, 0, 0, 0, 2, 2, 3, 2, 3]);
     }
 
     /// A compound of E_0 = 10 MPa, as Abaqus' and Ansys' cards have it.

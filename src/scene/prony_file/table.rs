@@ -87,11 +87,11 @@ pub(super) fn read(text: &str) -> Result<WrittenSeries<'_>, ContentError> {
     Ok(WrittenSeries {
         terms,
         kind,
-        is_unit_assumed: columns.is_unit_assumed,
+        modulus_note: columns.modulus_note,
         line: columns.line,
         header: block.above.clone(),
         comment: "#",
-        notes: columns.notes,
+        notes: vec![columns.time_note],
     })
 }
 
@@ -101,10 +101,10 @@ struct Columns {
     time: (usize, Unit),
     modulus: (usize, Unit),
     kind: Quantity,
-    is_unit_assumed: bool,
     bulk: Option<usize>,
     line: Option<usize>,
-    notes: Vec<ReadingNote>,
+    time_note: ReadingNote,
+    modulus_note: ReadingNote,
 }
 
 impl Columns {
@@ -113,12 +113,8 @@ impl Columns {
         if head.names.is_empty() {
             return Self::unnamed(block);
         }
-        let headings: Vec<(usize, Heading<Quantity>)> = (0..head.names.len())
-            .filter_map(|i| {
-                let unit_below = head.units.get(i).map_or("", |unit| unit);
-                Some((i, Heading::with_unit(&head.names[i], unit_below, &VOCABULARY)?))
-            })
-            .collect();
+        let headings: Vec<(usize, Heading<Quantity>)> =
+            head.headings(&VOCABULARY).into_iter().enumerate().filter_map(|(i, heading)| Some((i, heading?))).collect();
         let all = |wanted: &[Quantity]| -> Vec<&(usize, Heading<Quantity>)> {
             headings.iter().filter(|(_, heading)| wanted.contains(&heading.quantity)).collect()
         };
@@ -129,8 +125,7 @@ impl Columns {
         if time.1.logarithm.or(modulus.1.logarithm).is_some() {
             return Err(refuse("numbers, not their logarithms"));
         }
-        let mut notes = Vec::new();
-        let mut unit = |(i, heading): &(usize, Heading<Quantity>), what: &str| {
+        let unit = |(i, heading): &(usize, Heading<Quantity>), what: &str| {
             let name = format!("column {} ({})", i + 1, head.names[*i].trim());
             let (unit, said) = match &heading.unit {
                 HeadingUnit::Known(unit) => (*unit, format!(" in {unit}")),
@@ -146,17 +141,19 @@ impl Columns {
                 }
             };
             let assumed = heading.unit == HeadingUnit::None && heading.dimension != Dimension::Number;
-            notes.push(note(format!("{what} from {name}{said}"), assumed));
-            Ok((*i, unit))
+            Ok(((*i, unit), note(format!("{what} from {name}{said}"), assumed)))
         };
+        let kind = modulus.1.quantity;
+        let (time, time_note) = unit(time, "relaxation times")?;
+        let (modulus, modulus_note) = unit(modulus, "moduli")?;
         Ok(Self {
-            time: unit(time, "relaxation times")?,
-            modulus: unit(modulus, "moduli")?,
-            kind: modulus.1.quantity,
-            is_unit_assumed: modulus.1.unit == HeadingUnit::None,
+            time,
+            modulus,
+            kind,
             bulk: all(&[Quantity::Bulk]).first().map(|(i, _)| *i),
             line: head.line,
-            notes,
+            time_note,
+            modulus_note,
         })
     }
 
@@ -172,10 +169,10 @@ impl Columns {
             time: (0, Unit::si(Dimension::Time)),
             modulus: (1, Unit::si(Dimension::Pressure)),
             kind: Quantity::Modulus,
-            is_unit_assumed: true,
             bulk: None,
             line: None,
-            notes: vec![note("no names: relaxation times in s and moduli in Pa are assumed", true)],
+            time_note: note("no names: relaxation times in s, from the first column, are assumed", true),
+            modulus_note: note("no names: moduli in Pa, from the second column, are assumed", true),
         })
     }
 }

@@ -8,7 +8,7 @@ use super::{read_input, read_name, surface};
 use crate::scene::error::ContentError;
 use crate::scene::keys::{AREA, COORDINATE, Form, Key, PATCH_ROOT, ShapeKind};
 use crate::scene::patch_file::{FaceShape, Grid, MAX_ELEMENTS, PatchFile, PatchGroup, TableExtrapolation};
-use crate::scene::text_table::{self, Dimension, Heading, HeadingUnit, Row, Unit, Words, decode};
+use crate::scene::text_table::{self, Dimension, Heading, Row, Unit, Words, decode};
 use crate::scene::{FmuOptions, SceneError, read_file, read_text};
 
 /// The columns of a file of points.
@@ -158,12 +158,7 @@ fn columns(header: &Row<'_>) -> Option<[(usize, Unit); 4]> {
     let mut found = [(0, Unit::ONE); 4];
     for (place, entry) in found.iter_mut().enumerate() {
         let index = headings.iter().position(|heading| heading.quantity == place)?;
-        let unit = match headings[index].unit {
-            HeadingUnit::Known(unit) => unit,
-            HeadingUnit::None => Unit::ONE,
-            HeadingUnit::Unknown(_) => return None,
-        };
-        *entry = (index, unit);
+        *entry = (index, headings[index].unit.known().ok()?.unwrap_or(Unit::ONE));
     }
     Some(found)
 }

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use super::headings::{Heading, Words};
 use super::units::{Dimension, Unit};
 use super::{fields, unquoted};
 
@@ -232,6 +233,14 @@ pub struct Head<'a> {
     pub line: Option<usize>,
     /// The units below the names; none where there is no such line.
     pub units: Vec<Cow<'a, str>>,
+}
+
+impl Head<'_> {
+    /// What the columns hold, as far as their names are in the vocabulary.
+    pub fn headings<Q: Copy + PartialEq>(&self, vocabulary: &[Words<Q>]) -> Vec<Option<Heading<Q>>> {
+        let unit = |i: usize| self.units.get(i).map_or("", |unit| unit);
+        self.names.iter().enumerate().map(|(i, name)| Heading::with_unit(name, unit(i), vocabulary)).collect()
+    }
 }
 
 /// How many lines of a header may stand between the names of columns and the first row.

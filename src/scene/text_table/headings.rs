@@ -42,6 +42,20 @@ pub enum HeadingUnit {
     Unknown(String),
 }
 
+impl HeadingUnit {
+    /// The unit, where one is named.
+    ///
+    /// # Errors
+    /// The text of one that is not known.
+    pub fn known(&self) -> Result<Option<Unit>, &str> {
+        match self {
+            Self::None => Ok(None),
+            Self::Known(unit) => Ok(Some(*unit)),
+            Self::Unknown(text) => Err(text),
+        }
+    }
+}
+
 impl<Q: Copy + PartialEq> Heading<Q> {
     /// What `text` names, if that is in the vocabulary.
     pub fn parse(text: &str, vocabulary: &[Words<Q>]) -> Option<Self> {

@@ -1,10 +1,10 @@
 //! ERD files of the University of Michigan, in which road profiles are kept: lines of a header, then channels sampled at an
 //! even step.
 
-use super::{MeasuredPoints, ProfileOptions, refuse};
+use super::{MeasuredPoints, ProfileOptions, length_unit, refuse};
 use crate::scene::error::ContentError;
 use crate::scene::profile::options::ReadingNote;
-use crate::scene::text_table::{Dimension, Unit, decode, is_missing, number};
+use crate::scene::text_table::{Unit, decode, is_missing, number};
 
 const KIND: &str = "an ERD file";
 /// The form of numbers that is text.
@@ -115,17 +115,11 @@ impl Header<'_> {
     }
 
     fn unit(&self, channel: usize) -> Result<Option<Unit>, ContentError> {
-        self.part("UNITSNAM", channel, NAME).map(|text| length(&text)).transpose()
+        self.part("UNITSNAM", channel, NAME).map(|text| length_unit("UNITSNAM", &text)).transpose()
     }
 
     fn x_unit(&self) -> Result<Option<Unit>, ContentError> {
         let text = self.value("XUNITS").map(str::trim).filter(|text| !text.is_empty());
-        text.map(length).transpose()
+        text.map(|text| length_unit("XUNITS", text)).transpose()
     }
-}
-
-fn length(text: &str) -> Result<Unit, ContentError> {
-    let unit = Unit::parse(text).filter(|unit| unit.dimension == Dimension::Length);
-    let expected = format!("a unit of length: {}", Dimension::Length.units());
-    unit.ok_or_else(|| ContentError::value(None, "unit", &format!("\"{text}\" of an ERD file"), &expected))
 }

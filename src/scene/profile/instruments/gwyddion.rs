@@ -1,8 +1,8 @@
 //! The text of a Gwyddion field: a matrix of heights below comments with its size.
 
-use super::{Areal, check_size, check_step};
+use super::{Areal, check_size, check_step, length_unit};
 use crate::scene::error::ContentError;
-use crate::scene::text_table::{Dimension, Unit, decode, is_missing, number};
+use crate::scene::text_table::{decode, is_missing, number};
 
 const KIND: &str = "a Gwyddion text file";
 
@@ -21,20 +21,15 @@ fn setting<'a>(text: &'a str, name: &str) -> Option<&'a str> {
 
 pub(super) fn read(bytes: &[u8]) -> Result<Areal, ContentError> {
     let text = decode(bytes).map_err(|error| ContentError::new(Some(1), "", error))?;
-    let unit_of = |key: &str, unit: &str| {
-        let found = Unit::parse(unit).filter(|unit| unit.dimension == Dimension::Length);
-        let expected = format!("a unit of length: {}", Dimension::Length.units());
-        found.ok_or_else(|| ContentError::value(None, key, &format!("\"{unit}\""), &expected))
-    };
     let length = |key: &str| {
         let value = setting(&text, key).unwrap_or_default();
         let parted = value.split_once(char::is_whitespace).unwrap_or((value, "m"));
         let number = number(parted.0, true).filter(|number| *number > 0.0);
         let number =
             number.ok_or_else(|| ContentError::value(None, key, &format!("\"{value}\""), "a length and its unit"))?;
-        Ok::<f64, ContentError>(unit_of(key, parted.1)?.to_si(number))
+        Ok::<f64, ContentError>(length_unit(key, parted.1)?.to_si(number))
     };
-    let unit = unit_of("Value units", setting(&text, "Value units").unwrap_or_default())?;
+    let unit = length_unit("Value units", setting(&text, "Value units").unwrap_or_default())?;
     let (mut heights, mut columns, mut rows) = (Vec::new(), 0, 0);
     for (line, row) in (1..).zip(text.lines()).filter(|(_, row)| !row.starts_with('#') && !row.trim().is_empty()) {
         let before = heights.len();

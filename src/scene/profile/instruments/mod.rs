@@ -15,6 +15,7 @@ mod tests;
 use super::areal::Areal;
 use super::options::{MeasuredPoints, ProfileOptions};
 use crate::scene::error::ContentError;
+use crate::scene::text_table::{Dimension, Unit};
 
 /// The points of a file that is one of these; `None` of any other.
 pub(super) fn read(bytes: &[u8], options: &ProfileOptions) -> Option<Result<MeasuredPoints, ContentError>> {
@@ -67,6 +68,13 @@ fn check_step(kind: &str, step: f64) -> Result<f64, ContentError> {
     } else {
         Err(ContentError::value(None, "spacing", &format!("{step:?}"), &expected))
     }
+}
+
+/// The unit of length that a file names at `key`.
+fn length_unit(key: &str, text: &str) -> Result<Unit, ContentError> {
+    let unit = Unit::parse(text).filter(|unit| unit.dimension == Dimension::Length);
+    let expected = format!("a unit of length: {}", Dimension::Length.units());
+    unit.ok_or_else(|| ContentError::value(None, key, &format!("\"{text}\""), &expected))
 }
 
 /// The error of a file that is known but cannot be read.

@@ -1,9 +1,8 @@
 //! SUR and PRO of Digital Surf (MountainsMap): a header of 512 bytes, a comment, whole numbers of 16 or 32 bits.
 
 use super::binary::Binary;
-use super::{Areal, check_size, check_step, refuse};
+use super::{Areal, check_size, check_step, length_unit, refuse};
 use crate::scene::error::ContentError;
-use crate::scene::text_table::{Dimension, Unit};
 
 const KIND: &str = "a SUR file";
 const HEADER: usize = 512;
@@ -25,12 +24,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Areal, ContentError> {
     let size = [file.u32(108)?, file.u32(112)?];
     check_size(KIND, size)?;
     let steps = [file.f32(120)?, file.f32(124)?, file.f32(128)?];
-    let unit = |at: usize, what: &str| {
-        let text = file.text(at, 16)?;
-        let unit = Unit::parse(&text).filter(|unit| unit.dimension == Dimension::Length);
-        let expected = format!("a unit of length: {}", Dimension::Length.units());
-        unit.ok_or_else(|| ContentError::value(None, what, &format!("\"{text}\""), &expected))
-    };
+    let unit = |at: usize, what: &str| length_unit(what, &file.text(at, 16)?);
     let [x_unit, z_unit] = [unit(180, "unit of x")?, unit(212, "unit of z")?];
     let y_unit = if size[1] > 1 { unit(196, "unit of y")? } else { x_unit };
     // The height of the number 0; in the unit of the axis.
