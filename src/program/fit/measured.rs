@@ -348,7 +348,10 @@ mod tests {
                 "T=20;\nf [Hz] E' [Pa] E'' [Pa]\n1 2 3\n2 3 4\n\nT=30;\nf [Hz] E' [Pa] E'' [Pa]\n1 2 3\n2 3 4\n".into(),
                 "1: T=20: expected a unit of temperature, as in 20 °C; or --unit 'T=°C'",
             ),
-            ("f,E'\n\n0.1,\"2,000.0\"\n".into(), "3: 0.1,\"2,000.0\": expected a row of numbers"),
+            (
+                "f,E',E''\n\n1,\"2,000.0\",\"3,000.0\"\n".into(),
+                "3: 1,\"2,000.0\",\"3,000.0\": expected a row of numbers",
+            ),
             ("a\0".into(), "1: bytes that are zero: expected text in UTF-8, UTF-16 or Latin-1"),
         ];
         for (text, message) in cases {

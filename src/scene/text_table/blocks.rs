@@ -125,6 +125,40 @@ pub struct Block<'a> {
     comments: Vec<usize>,
 }
 
+/// The blocks of a text so far.
+struct Blocks<'a> {
+    text: &'a str,
+    blocks: Vec<Block<'a>>,
+    /// The lines since the last row, and the numbers of those that are comments.
+    above: Vec<Line<'a>>,
+    comments: Vec<usize>,
+    /// Whether a row may belong to the last block.
+    is_open: bool,
+}
+
+impl<'a> Blocks<'a> {
+    /// Adds a row to the last block or to a new one: its line, where that begins, its separator and columns.
+    fn add_row(&mut self, (line, start): (usize, usize), form: (Separator, usize), gaps: bool) {
+        let is_open = self.is_open;
+        let goes_on = |block: &&mut Block<'_>| is_open && (block.separator, block.columns) == form;
+        if let Some(block) = self.blocks.last_mut().filter(goes_on) {
+            (block.last, block.rows) = (line, block.rows + 1);
+            self.above.clear();
+            return;
+        }
+        let mut above = std::mem::take(&mut self.above);
+        // A row of numbers with gaps, and words below it: they are a header of the columns.
+        if let Some(row) = self.blocks.pop_if(|block| block.gaps && block.rows == 1 && !above.is_empty()) {
+            let text = trimmed(self.text[row.start..].lines().next().unwrap_or_default());
+            above = row.above.into_iter().chain([(row.first, text)]).chain(above).collect();
+        }
+        let (separator, columns) = form;
+        let comments = std::mem::take(&mut self.comments);
+        self.blocks.push(Block { separator, columns, above, first: line, last: line, rows: 1, start, gaps, comments });
+        self.is_open = true;
+    }
+}
+
 /// What a line is.
 enum Kind {
     Blank,
@@ -141,48 +175,26 @@ enum Kind {
 impl<'a> Block<'a> {
     /// The blocks of a text. Comments (`#`, `%`, `!`, `//`) end one where `comments_part`.
     pub fn all(text: &'a str, comments_part: bool) -> Vec<Self> {
-        let mut blocks: Vec<Self> = Vec::new();
-        let mut above: Vec<Line<'a>> = Vec::new();
-        let mut comments = Vec::new();
-        let (mut start, mut open) = (0, false);
+        let mut found = Blocks { text, blocks: Vec::new(), above: Vec::new(), comments: Vec::new(), is_open: false };
+        let mut start = 0;
         for (number, line) in (1..).zip(text.split_inclusive('\n')) {
             let bare = trimmed(line);
-            match kind(bare, blocks.last().filter(|_| open)) {
+            match kind(bare, found.blocks.last().filter(|_| found.is_open)) {
                 Kind::Blank => (),
                 Kind::Comment => {
-                    open &= !comments_part;
-                    comments.push(number);
-                    above.push((number, without_sign(bare)));
+                    found.is_open &= !comments_part;
+                    found.comments.push(number);
+                    found.above.push((number, without_sign(bare)));
                 }
-                Kind::Data { separator, columns, gaps } => {
-                    let goes_on = |block: &&mut Self| open && (block.separator, block.columns) == (separator, columns);
-                    if let Some(block) = blocks.last_mut().filter(goes_on) {
-                        (block.last, block.rows) = (number, block.rows + 1);
-                        above.clear();
-                    } else {
-                        let mut above = std::mem::take(&mut above);
-                        // A row of numbers with gaps, and words below it: they are a header of the columns.
-                        if let Some(heading) = blocks.pop_if(|block| block.gaps && block.rows == 1 && !above.is_empty())
-                        {
-                            let line =
-                                (heading.first, trimmed(text[heading.start..].lines().next().unwrap_or_default()));
-                            above = heading.above.into_iter().chain([line]).chain(above).collect();
-                        }
-                        let (first, comments) = (number, std::mem::take(&mut comments));
-                        let block =
-                            Self { separator, columns, above, first, last: first, rows: 1, start, gaps, comments };
-                        blocks.push(block);
-                        open = true;
-                    }
-                }
+                Kind::Data { separator, columns, gaps } => found.add_row((number, start), (separator, columns), gaps),
                 Kind::Other => {
-                    open = false;
-                    above.push((number, bare));
+                    found.is_open = false;
+                    found.above.push((number, bare));
                 }
             }
             start += line.len();
         }
-        blocks
+        found.blocks
     }
 
     /// The block with more lines above it: the header of another one.
