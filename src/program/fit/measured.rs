@@ -110,6 +110,20 @@ impl MeasuredModuli {
         self.points.iter().map(|point| point.sample).collect()
     }
 
+    /// The lines of two rows at one frequency or time whose moduli differ by far more than scatter.
+    pub(super) fn contradiction(&self) -> Option<[usize; 2]> {
+        /// Ratio of the moduli.
+        const FAR: f64 = 1.5;
+        let mut sorted: Vec<&MeasuredPoint> = self.points.iter().collect();
+        sorted.sort_by(|a, b| a.sample.at.total_cmp(&b.sample.at));
+        let differ = |a: &Sample, b: &Sample| {
+            let ratio = (a.storage / b.storage).ln().abs();
+            (a.at / b.at - 1.0).abs() < 1e-9 && ratio > FAR.ln()
+        };
+        let found = sorted.windows(2).find(|pair| differ(&pair[0].sample, &pair[1].sample))?;
+        Some([found[0].line.min(found[1].line), found[0].line.max(found[1].line)])
+    }
+
     /// The samples at a_T ω, or t/a_T, for the factor of each point.
     pub(super) fn shifted(&self, factor: impl Fn(&MeasuredPoint) -> f64) -> Vec<Sample> {
         self.points.iter().map(|point| point.sample.shifted(factor(point), self.test)).collect()
@@ -357,6 +371,14 @@ mod tests {
         for (text, message) in cases {
             assert!(refusal(&text).starts_with(message), "{text}\n{}\n{message}", refusal(&text));
         }
+    }
+
+    #[test]
+    fn rows_of_several_temperatures_contradict_each_other() {
+        let lines = |text: &str| read(text).contradiction();
+        let head = "f [Hz],E' [MPa],E'' [MPa]\n";
+        assert_eq!(lines(&format!("{head}1,2,1\n2,2.1,1\n1,9,1\n")), Some([2, 4]));
+        assert_eq!(lines(&format!("{head}1,2,1\n2,9,1\n1,2.2,1\n")), None);
     }
 
     fn at(temperature: f64) -> MeasuredModuli {

@@ -173,8 +173,16 @@ impl Shift {
         warnings
     }
 
-    /// Whether the known constants are to blame for what is left: with factors of their own the curves fit.
+    /// What is to blame for what is left, other than scatter: temperatures that are not given, or known constants, where with
+    /// factors of their own the curves fit.
     pub(super) fn blame(&self, measured: &MeasuredModuli) -> Option<String> {
+        if matches!(self, Self::None) && !measured.reduced {
+            let [first, second] = measured.contradiction()?;
+            return Some(format!(
+                "lines {first} and {second} have other moduli at the same place, as those of several temperatures have, and \
+                 no temperatures are given"
+            ));
+        }
         let Self::Known(wlf, isotherms) = self else { return None };
         let [first, .., last] = &isotherms[..] else { return None };
         check(measured, isotherms, (first.temperature, last.temperature)).ok()?;

@@ -3,21 +3,11 @@
 use super::options::{MeasuredPoints, Missing, ReadingNote};
 use crate::scene::error::ContentError;
 
-/// Numbers that instruments are known to write so; others are told by standing there more than once.
-const KNOWN: [f64; 12] = [
-    9999.0,
-    99_999.0,
-    999.0,
-    9999.99,
-    999_999.0,
-    32_767.0,
-    32_768.0,
-    2_147_483_647.0,
-    2_147_483_648.0,
-    1_000_001.0,
-    1e30,
-    1e38,
-];
+/// Numbers that instruments are known to write so, beside those of nines and the largest; others are told by standing there
+/// more than once.
+const KNOWN: [f64; 5] = [32_767.0, 32_768.0, 2_147_483_647.0, 2_147_483_648.0, 1_000_001.0];
+/// No height is as large.
+const LARGEST: f64 = 1e29;
 /// They lie as many times the range of the rest away from it.
 const FAR: f64 = 10.0;
 
@@ -55,11 +45,17 @@ fn sentinel(heights: &[f64]) -> Option<f64> {
         let Some((low, high)) = others else { return false };
         let range = high - low;
         let distance = (end - low).abs().min((end - high).abs());
-        let is_known = KNOWN.contains(&end.abs()) || end.abs() >= 1e29;
+        let is_known = KNOWN.contains(&end.abs()) || end.abs() >= LARGEST || is_of_nines(end);
         let count = known().filter(|z| *z == end).count();
         // Of two levels each is far from the other.
         distance > FAR * range && (is_known || (count > 1 && range > 0.0))
     })
+}
+
+/// -9999, 999.9 and the like.
+fn is_of_nines(value: f64) -> bool {
+    let digits = value.abs().to_string().replace('.', "");
+    digits.len() > 2 && digits.chars().all(|digit| digit == '9')
 }
 
 #[cfg(test)]
@@ -68,7 +64,9 @@ mod tests {
 
     #[test]
     fn what_is_far_from_all_others_is_no_height() {
-        let cases: [(&[f64], Option<f64>); 9] = [
+        let cases: [(&[f64], Option<f64>); 11] = [
+            (&[0.0, 1.0, -99.9, 2.0], Some(-99.9)),
+            (&[0.0, 1.0, 99.0, 2.0], None),
             (&[0.0, 1.0, -9999.0, 2.0], Some(-9999.0)),
             (&[0.0, 1.0, -5000.0, 2.0, -5000.0], Some(-5000.0)),
             (&[0.0, 1e-6, 2e-6, 1e29], Some(1e29)),

@@ -75,7 +75,7 @@ fn ansys_terms<'a>(lines: impl Iterator<Item = Line<'a>>) -> Result<Vec<WrittenT
             constants.extend(fields.iter().skip(2).filter(|field| !field.is_empty()).map(|field| (number, *field)));
         }
     }
-    if constants.is_empty() || constants.len() % 2 != 0 {
+    if constants.is_empty() || !constants.len().is_multiple_of(2) {
         let given = constants.len().to_string();
         let expected = "shares and times by turns, in TBDATA below TB,PRONY,…,SHEAR";
         return Err(ContentError::value(constants.last().map(|(line, _)| *line), "constants", &given, expected));
