@@ -163,8 +163,8 @@ fn temperatures_make_one_curve() {
     assert!(message.contains("the WLF constants do not put the temperatures together"), "{message}");
 }
 
-/// Six temperatures 15 K apart, three decades of frequency each, without constants: the law that made them comes back, and
-/// so does the compound.
+/// Six temperatures 15 K apart, three decades of frequency each, without constants: the law that made them comes back,
+/// and so does the compound.
 #[test]
 fn constants_are_found_where_curves_overlap() {
     let folder = scratch("fit-superposition");
@@ -188,8 +188,8 @@ fn constants_are_found_where_curves_overlap() {
     };
     // The reduced frequencies of the rows, Hz.
     let range = frequencies(-2, 6);
-    // A factor is known as well as moduli that rise by a fifth a decade of frequency tell it: of one per cent of scatter in
-    // 32 figures a temperature, five steps from the coldest to the hottest, some per cent are left.
+    // A factor is known as well as moduli that rise by a fifth a decade of frequency tell it: of one per cent of
+    // scatter in 32 figures a temperature, five steps from the coldest to the hottest, some per cent are left.
     for (scatter, error, most) in [(0.01, "0.0105", 0.08), (0.0, "1e-3", 0.03)] {
         write(scatter);
         let (_, result) = fit(&data, &["--error", error]);
@@ -216,7 +216,8 @@ fn constants_are_found_where_curves_overlap() {
     assert!(printed.contains("wlf = { c1 = 7.52, c2 = 119.75, reference_temperature = 293.15"), "{printed}");
 }
 
-/// Files as instruments write them, of this project's own making: what is read is on the picture, what is missing is said.
+/// Files as instruments write them, of this project's own making: what is read is on the picture, what is missing is
+/// said.
 #[test]
 fn files_of_instruments_are_read_or_refused_with_what_is_missing() {
     let folder = root().join("tests/program/data/fit");

@@ -203,7 +203,8 @@ fn lines_of_an_areal_measurement_go_into_the_archive_as_text() {
     );
 }
 
-/// Half of the wave of the cut-off is left, 2^-16 of one of a quarter of it: what was taken away has the rest of the slopes.
+/// Half of the wave of the cut-off is left, 2^-16 of one of a quarter of it: what was taken away has the rest of the
+/// slopes.
 #[test]
 fn a_profile_is_smoothed() {
     let folder = scratch("surface-smoothed");
@@ -222,8 +223,8 @@ fn a_profile_is_smoothed() {
     assert!(failure(&["surface", source.to_str().unwrap(), "--smooth", "0"]).contains("--smooth"));
 }
 
-/// A profile that ends, made periodic: by its mirror image, of twice the length, or by a taper, of nine tenths. A scene takes
-/// what is written.
+/// A profile that ends, made periodic: by its mirror image, of twice the length, or by a taper, of nine tenths. A scene
+/// takes what is written.
 #[test]
 fn a_profile_is_made_periodic() {
     let folder = scratch("surface-periodic");
@@ -237,7 +238,8 @@ fn a_profile_is_made_periodic() {
         assert_eq!((&found["points"], &found["periodic"]), (&points.into(), &true.into()), "{option}");
         near(&found["length"], length, 1e-9);
         assert!(Scene::load(&source).unwrap().surface.is_periodic());
-        // The heights of before: the taper mixes a tenth of them, of which none is changed by more than the ramp of 3.6 µm.
+        // The heights of before: the taper mixes a tenth of them, of which none is changed by more than the ramp of 3.6
+        // µm.
         let (z, before) =
             (crate::common::Table::read(&written).column("z [m]"), crate::common::Table::read(&road).column("z [m]"));
         let same = (0..=360).filter(|&i| z[i] == before[i]).count();

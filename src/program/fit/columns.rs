@@ -45,8 +45,8 @@ impl Quantity {
 }
 
 /// What the file should hold, for messages.
-pub(super) const EXPECTED: &str = "columns by their names with units: f [Hz] or omega [rad/s]; E' [MPa] and E'' [MPa] or tan \
-     delta, or G' and G'', or |E*| and delta [°]; temperature [°C] if it varies; or time [s] and E(t) [MPa]";
+pub(super) const EXPECTED: &str = "columns by their names with units: f [Hz] or omega [rad/s]; E' [MPa] and E'' [MPa] \
+     or tan delta, or G' and G'', or |E*| and delta [°]; temperature [°C] if it varies; or time [s] and E(t) [MPa]";
 
 const fn quantity(
     quantity: Quantity,

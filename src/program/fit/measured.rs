@@ -321,7 +321,8 @@ mod tests {
             ),
             (
                 "f [Hz],E' [Pa],E'' [Pa],temperature\n1,2,3,4".into(),
-                "2: column 4 (temperature) = \"4\": expected the unit beside the name, as in temperature [°C]; or --unit",
+                "2: column 4 (temperature) = \"4\": expected the unit beside the name, as in temperature [°C]; or \
+                --unit",
             ),
             (
                 "f [Hz],E' [Pa],E'' [Pa],T [°C]\n1,2,3,-300".into(),
@@ -347,7 +348,8 @@ mod tests {
             ),
             (
                 "f,E',E''\n1,20,3".into(),
-                "2: column 2 (E') = \"20\": expected the unit beside the name, as in E' [MPa]; or --unit 'E'=MPa': in Pa it",
+                "2: column 2 (E') = \"20\": expected the unit beside the name, as in E' [MPa]; or --unit 'E'=MPa': in \
+                Pa it",
             ),
             (
                 "# moduli in MPa\nf [Hz],E',E''\n1,2e6,3".into(),

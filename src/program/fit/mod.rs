@@ -51,8 +51,9 @@ const POINTS_PER_DECADE: f64 = 20.0;
 /// The exit status of a fit that is written but worse than asked for: it is to be looked at.
 const WORSE: u8 = 3;
 
-/// Reads the moduli, puts those of several temperatures together, fits, writes the terms and the plot, and prints a summary.
-/// Where the requested error cannot be reached, the best fit is written, with a warning and an exit status of its own.
+/// Reads the moduli, puts those of several temperatures together, fits, writes the terms and the plot, and prints a
+/// summary. Where the requested error cannot be reached, the best fit is written, with a warning and an exit status of
+/// its own.
 pub(crate) fn fit(command: &Fit) -> Result<ExitCode, FitError> {
     let picture = picture_beside(&command.output, command.plot.as_ref());
     let read: Vec<PathBuf> = std::iter::once(&command.data).chain(&command.shifts).cloned().collect();
@@ -144,8 +145,8 @@ impl<'a> FitResult<'a> {
             .blame(self.measured)
             .unwrap_or_else(|| "the data scatter too much for less, and --error sets what is enough".to_owned());
         format!(
-            "the error asked for, {wanted}, cannot be reached: {reached} is about the smallest of any series with moduli of \
-             0 or more, and {} has such a series; {why}",
+            "the error asked for, {wanted}, cannot be reached: {reached} is about the smallest of any series with \
+             moduli of 0 or more, and {} has such a series; {why}",
             self.command.output.display()
         )
     }

@@ -1,4 +1,5 @@
-//! A compound as a Prony series, its error at measured points, and the search for the fewest terms within an error bound.
+//! A compound as a Prony series, its error at measured points, and the search for the fewest terms within an error
+//! bound.
 //!
 //! The error of a series is the root mean square of the relative errors of both moduli at all N points,
 //!
@@ -469,7 +470,8 @@ mod tests {
         }
     }
 
-    /// Data that end within the spectrum: terms outside act as springs and dampers, which terms near the ends represent.
+    /// Data that end within the spectrum: terms outside act as springs and dampers, which terms near the ends
+    /// represent.
     #[test]
     fn a_part_of_a_spectrum_is_fitted_within_what_is_asked() {
         let samples = samples(&sixteen(), -2, 6);

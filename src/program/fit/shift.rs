@@ -1,10 +1,11 @@
-//! Time-temperature superposition without known constants: the factors a_T by which the curves of all temperatures become
-//! one, and the constants of Williams, Landel and Ferry that have these factors.
+//! Time-temperature superposition without known constants: the factors a_T by which the curves of all temperatures
+//! become one, and the constants of Williams, Landel and Ferry that have these factors.
 //!
-//! The factors are those of the least squares over all rows of both moduli: against a generalised Maxwell model with a dense
-//! series of relaxation times, whose moduli (not negative) follow the factors. It represents whatever one curve can be, so
-//! what is left is what the factors leave. Where curves share no range of moduli it has nothing to hold them by, and the
-//! errors of the factors say so. Gauss-Newton steps in ln a_T start from neighbours laid over each other one by one.
+//! The factors are those of the least squares over all rows of both moduli: against a generalised Maxwell model with a
+//! dense series of relaxation times, whose moduli (not negative) follow the factors. It represents whatever one curve
+//! can be, so what is left is what the factors leave. Where curves share no range of moduli it has nothing to hold them
+//! by, and the errors of the factors say so. Gauss-Newton steps in ln a_T start from neighbours laid over each other
+//! one by one.
 
 use std::f64::consts::LN_10;
 

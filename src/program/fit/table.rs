@@ -47,8 +47,8 @@ pub(super) struct Table<'a> {
 }
 
 impl<'a> Table<'a> {
-    /// The table in a block, with the header of the one before it where it has none of its own; `None` where its columns are
-    /// none of moduli.
+    /// The table in a block, with the header of the one before it where it has none of its own; `None` where its
+    /// columns are none of moduli.
     pub(super) fn read(
         block: &Block<'a>,
         before: Option<&Self>,
@@ -458,7 +458,8 @@ impl Pairs<'_> {
         column.temperature.or_else(|| self.above.get(column.index).copied().flatten())
     }
 
-    /// The column for place `i`, where its temperature is that one or none is named; else the only one of that temperature.
+    /// The column for place `i`, where its temperature is that one or none is named; else the only one of that
+    /// temperature.
     fn partner(&self, columns: &[Column], i: usize, temperature: f64) -> Result<Option<Column>, ModuliError> {
         let Some(own) = columns.get(i) else { return Ok(None) };
         if self.temperature(own).is_none_or(|other| other == temperature) {

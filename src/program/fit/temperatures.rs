@@ -32,8 +32,8 @@ pub(super) enum Shift {
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum ShiftError {
     #[error(
-        "the temperatures run through from {from:.2} to {to:.2} K: rows of one temperature each have no range in common; \
-         expected --wlf C1,C2,TREF or --shifts SHIFTS.csv, or rows at a few temperatures"
+        "the temperatures run through from {from:.2} to {to:.2} K: rows of one temperature each have no range in \
+         common; expected --wlf C1,C2,TREF or --shifts SHIFTS.csv, or rows at a few temperatures"
     )]
     Ramp { from: f64, to: f64 },
     #[error(
@@ -163,8 +163,8 @@ impl Shift {
         match found.law {
             None => warnings.push("fewer than three temperatures: no constants for other ones follow from them".into()),
             Some((_, rms)) if !found.law_holds() => warnings.push(format!(
-                "no WLF constants have these shift factors: with the nearest {} are left of one curve, {} with the factors, by \
-                 which rows are shifted; do not use the constants far from the reference temperature",
+                "no WLF constants have these shift factors: with the nearest {} are left of one curve, {} with the \
+                 factors, by which rows are shifted; do not use the constants far from the reference temperature",
                 percent(rms),
                 percent(found.rms)
             )),
@@ -173,14 +173,14 @@ impl Shift {
         warnings
     }
 
-    /// What is to blame for what is left, other than scatter: temperatures that are not given, or known constants, where with
-    /// factors of their own the curves fit.
+    /// What is to blame for what is left, other than scatter: temperatures that are not given, or known constants,
+    /// where with factors of their own the curves fit.
     pub(super) fn blame(&self, measured: &MeasuredModuli) -> Option<String> {
         if matches!(self, Self::None) && !measured.reduced {
             let [first, second] = measured.contradiction()?;
             return Some(format!(
-                "lines {first} and {second} have other moduli at the same place, as those of several temperatures have, and \
-                 no temperatures are given"
+                "lines {first} and {second} have other moduli at the same place, as those of several temperatures \
+                 have, and no temperatures are given"
             ));
         }
         let Self::Known(wlf, isotherms) = self else { return None };
@@ -197,8 +197,8 @@ impl Shift {
             format!(": --wlf {},{},{}", short(law.c1), short(law.c2), written(rounded(law.reference_temperature, 6)))
         });
         Some(format!(
-            "the WLF constants do not put the temperatures together: they leave {} of one curve, factors of their own {} \
-             (leave --wlf out){constants}",
+            "the WLF constants do not put the temperatures together: they leave {} of one curve, factors of their own \
+             {} (leave --wlf out){constants}",
             percent(with),
             percent(found.rms)
         ))
@@ -249,7 +249,8 @@ fn known(wlf: &WlfConstants, isotherm: &Isotherm) -> Factor {
     Factor { temperature: isotherm.temperature, ln, error: 0.0 }
 }
 
-/// The curves of the temperatures, from cold to hot: by the numbers of their measurements, or rows whose temperatures are near.
+/// The curves of the temperatures, from cold to hot: by the numbers of their measurements, or rows whose temperatures
+/// are near.
 fn isotherms(measured: &MeasuredModuli) -> Vec<Isotherm> {
     let points = &measured.points;
     let by_set = points.iter().all(|point| point.set.is_some());

@@ -1,7 +1,7 @@
 //! Measured profiles: files as they come from instruments, and what is done to them before they are a surface.
 //!
-//! Text holds columns x and z, see [`text`]; an X3P file holds an image of heights, see [`x3p`]; other files of instruments
-//! are in [`instruments`]. An FMU carries text in place of all that is no text of x and z.
+//! Text holds columns x and z, see [`text`]; an X3P file holds an image of heights, see [`x3p`]; other files of
+//! instruments are in [`instruments`]. An FMU carries text in place of all that is no text of x and z.
 
 mod areal;
 mod header;
@@ -100,7 +100,8 @@ pub(super) fn read(folder: &Path, path: &Path, options: &ProfileOptions) -> Resu
     Ok(Profile { surface, warnings, notes, file, extract })
 }
 
-/// `road.x3p.line-3.csv` of the third line of `road.x3p`; `road.x3p.line.csv` of the one that is taken if none is chosen.
+/// `road.x3p.line-3.csv` of the third line of `road.x3p`; `road.x3p.line.csv` of the one that is taken if none is
+/// chosen.
 fn extract_name(path: &Path, options: &ProfileOptions) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(options.line.map_or_else(|| ".line.csv".into(), |line| format!(".line-{line}.csv")));

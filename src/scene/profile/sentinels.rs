@@ -3,8 +3,8 @@
 use super::options::{MeasuredPoints, Missing, ReadingNote};
 use crate::scene::error::ContentError;
 
-/// Numbers that instruments are known to write so, beside those of nines and the largest; others are told by standing there
-/// more than once.
+/// Numbers that instruments are known to write so, beside those of nines and the largest; others are told by standing
+/// there more than once.
 const KNOWN: [f64; 5] = [32_767.0, 32_768.0, 2_147_483_647.0, 2_147_483_648.0, 1_000_001.0];
 /// No height is as large.
 const LARGEST: f64 = 1e29;

@@ -1,5 +1,5 @@
-//! Profiles as text: columns of x and z, found by their names, below a header of any length; a column of heights alone; and
-//! areal measurements, as columns x, y, z or as a matrix of heights.
+//! Profiles as text: columns of x and z, found by their names, below a header of any length; a column of heights alone;
+//! and areal measurements, as columns x, y, z or as a matrix of heights.
 
 use std::fmt::Write as _;
 

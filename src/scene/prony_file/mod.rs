@@ -1,5 +1,5 @@
-//! The file of a Prony series: relaxation times and moduli, absolute or relative to E_0, of tension or of shear; as a table,
-//! or as cards of Abaqus and Ansys.
+//! The file of a Prony series: relaxation times and moduli, absolute or relative to E_0, of tension or of shear; as a
+//! table, or as cards of Abaqus and Ansys.
 
 mod cards;
 mod table;

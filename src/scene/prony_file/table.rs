@@ -62,8 +62,8 @@ const VOCABULARY: [Words<Quantity>; 6] = [
     quantity(Quantity::Modulus, Dimension::Pressure, &["e1", "e_i"], &[]),
 ];
 
-const EXPECTED: &str = "a relaxation time and a modulus: relaxation_time [s], modulus [Pa]; tau_i, E_i, G_i, or relative to \
-                        E_0: g_i, rel_mod";
+const EXPECTED: &str = "a relaxation time and a modulus: relaxation_time [s], modulus [Pa]; tau_i, E_i, G_i, or \
+                        relative to E_0: g_i, rel_mod";
 
 /// Reads the only table of a text.
 pub(super) fn read(text: &str) -> Result<WrittenSeries<'_>, ContentError> {

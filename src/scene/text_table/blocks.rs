@@ -32,8 +32,8 @@ impl Separator {
     }
 }
 
-/// Reads the numbers of a table: with decimal points or with decimal commas, but not with both, for commas may then stand
-/// between thousands.
+/// Reads the numbers of a table: with decimal points or with decimal commas, but not with both, for commas may then
+/// stand between thousands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NumberStyle {
     decimal_comma: bool,
@@ -293,8 +293,8 @@ impl<'a> Block<'a> {
 }
 
 impl<'a> Block<'a> {
-    /// A line above, other than that of the `names`, that speaks of a unit of a dimension: `all heights in mm`. A unit behind
-    /// a number belongs to that: `stylus tip 2 µm`.
+    /// A line above, other than that of the `names`, that speaks of a unit of a dimension: `all heights in mm`. A unit
+    /// behind a number belongs to that: `stylus tip 2 µm`.
     pub fn stated_unit(&self, dimension: Dimension, names: Option<usize>) -> Option<(Line<'a>, Unit)> {
         // One letter, and these, may be something else.
         let is_clear = |word: &str| word.chars().count() > 1 && !["in", "min", "bar"].contains(&word);

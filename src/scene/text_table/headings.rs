@@ -1,7 +1,7 @@
 //! Headings of columns: from `Storage Modulus (E') [MPa]` to a quantity and its unit.
 //!
-//! What a table may hold is a vocabulary: the words by which each quantity is known. A heading names a quantity if it has
-//! one of its key words and no word beside its key and other words.
+//! What a table may hold is a vocabulary: the words by which each quantity is known. A heading names a quantity if it
+//! has one of its key words and no word beside its key and other words.
 
 use super::units::{Dimension, Unit};
 
@@ -200,8 +200,8 @@ fn without_logarithm(text: &str) -> (&str, Option<f64>) {
     (inner, Some(base))
 }
 
-/// The words of a name, in lower case but for a single T, which is a temperature where t is a time. Primes belong to the
-/// letter before them, and E* is `estar`.
+/// The words of a name, in lower case but for a single T, which is a temperature where t is a time. Primes belong to
+/// the letter before them, and E* is `estar`.
 pub fn words(name: &str) -> Vec<String> {
     let lower =
         plain(name).replace('_', " ").replace("double prime", "''").replace("doubleprime", "''").replace("prime", "'");

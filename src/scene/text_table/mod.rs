@@ -92,8 +92,8 @@ fn numbered_lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty())
 }
 
-/// The fields of a line, without blanks around them. A field in quotation marks may hold separators, and quotation marks
-/// doubled.
+/// The fields of a line, without blanks around them. A field in quotation marks may hold separators, and quotation
+/// marks doubled.
 pub fn fields(line: &str, separator: char) -> impl Iterator<Item = Cow<'_, str>> {
     let mut rest = Some(line);
     iter::from_fn(move || {

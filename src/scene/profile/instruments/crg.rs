@@ -1,5 +1,5 @@
-//! OpenCRG (ASAM, formerly Daimler): a road as long sections beside each other, heights along a reference line, as text or
-//! binary. A long section is read as a line along x; a slope or a bank of the reference line is left out, and said.
+//! OpenCRG (ASAM, formerly Daimler): a road as long sections beside each other, heights along a reference line, as text
+//! or binary. A long section is read as a line along x; a slope or a bank of the reference line is left out, and said.
 
 use super::{Areal, check_size, check_step, refuse};
 use crate::scene::error::ContentError;
@@ -18,8 +18,8 @@ pub(super) fn is_crg(bytes: &[u8]) -> bool {
     has(b"$ROAD_CRG") || has(b"$KD_Definition")
 }
 
-/// How numbers are written: `LRFI`, `LDFI` as text of 10 or 20 letters, `KRBI`, `KDBI` binary, big endian; L begins each
-/// record anew.
+/// How numbers are written: `LRFI`, `LDFI` as text of 10 or 20 letters, `KRBI`, `KDBI` binary, big endian; L begins
+/// each record anew.
 #[derive(Clone, Copy, Debug)]
 struct Format {
     long: bool,

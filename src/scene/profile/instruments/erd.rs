@@ -1,5 +1,5 @@
-//! ERD files of the University of Michigan, in which road profiles are kept: lines of a header, then channels sampled at an
-//! even step.
+//! ERD files of the University of Michigan, in which road profiles are kept: lines of a header, then channels sampled
+//! at an even step.
 
 use super::{MeasuredPoints, ProfileOptions, length_unit, refuse};
 use crate::scene::error::ContentError;

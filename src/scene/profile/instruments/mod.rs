@@ -120,8 +120,8 @@ const PICTURES: [(&[u8], &str); 8] = [
 ];
 
 fn foreign(bytes: &[u8]) -> Option<ContentError> {
-    const EXPORT: &str = "a file that is read: export x and z as text or CSV, or the surface as X3P, SDF or SUR, with the \
-                          software of the instrument or with Gwyddion";
+    const EXPORT: &str = "a file that is read: export x and z as text or CSV, or the surface as X3P, SDF or SUR, with \
+                          the software of the instrument or with Gwyddion";
     let begins = |table: &'static [(&[u8], &str)]| {
         table.iter().find(|(magic, _)| bytes.starts_with(magic)).map(|(_, name)| *name)
     };

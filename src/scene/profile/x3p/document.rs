@@ -1,5 +1,5 @@
-//! The container of an X3P file: the zip archive, its document `main.xml` and what that says of the points. What is read
-//! is bounded: a few bytes may unpack into all memory.
+//! The container of an X3P file: the zip archive, its document `main.xml` and what that says of the points. What is
+//! read is bounded: a few bytes may unpack into all memory.
 
 use std::collections::BTreeMap;
 use std::io::{Cursor, Read};

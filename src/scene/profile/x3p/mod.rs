@@ -126,7 +126,8 @@ impl Axes {
         (x, z)
     }
 
-    /// The coordinates of a point written as text, `x;y;z`, or the absolute coordinates alone. An empty text is a missing height.
+    /// The coordinates of a point written as text, `x;y;z`, or the absolute coordinates alone. An empty text is a
+    /// missing height.
     fn written(&self, i: usize, point: &str) -> Result<(f64, f64), ContentError> {
         let wrong = || {
             ContentError::value(None, &format!("DataList[{}]", i + 1), point, "coordinates, separated by semicolons")
