@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use super::cli::Describe;
 use super::figure::Figure as _;
-use super::files::{FileError, check_outputs, load, print, sources};
+use super::files::{FileError, check_outputs, load, print, sources, table_lines};
 use super::foundation;
 use super::persson::Theory;
 use super::runner::start;
@@ -52,7 +52,7 @@ fn text(scene: &Scene) -> Result<String, DescribeError> {
     let simulation = Simulation::new(scene, &start(scene, 0.0))?;
     let title = scene.description.as_ref().map_or_else(|| scene.name.clone(), |text| format!("{}: {text}", scene.name));
     let memory = ("Memory", format!("{} bytes a run", simulation.bytes()));
-    Ok(lines(&[vec![("Scene", title)], rows(scene), vec![memory]].concat()))
+    Ok(lines(&[vec![("Scene", title)], rows(scene), table_lines(scene), vec![memory]].concat()))
 }
 
 /// The summary without the scene's name.

@@ -8,7 +8,7 @@ use asperity::scene::{Scene, SceneError, read_file, read_text};
 
 use super::draft::Draft;
 use super::overrides::{self, OverrideError, Refusal, Setting};
-use super::terminal::warn;
+use super::terminal::{LabelledLine, labelled, note, warn};
 
 /// A file cannot be read or written, or its scene is invalid.
 #[derive(Debug, thiserror::Error)]
@@ -73,10 +73,11 @@ pub(crate) fn picture_beside(table: &Path, named: Option<&PathBuf>) -> Option<Pa
     named.cloned().or_else(|| (!is_standard_output(table)).then(|| table.with_extension("svg")))
 }
 
-/// Reads a scene, its keys overridden by `--set`, and prints its warnings.
+/// Reads a scene, its keys overridden by `--set`, and prints its warnings and what was assumed in reading its tables.
 pub(crate) fn load(path: &Path, set: &[Setting]) -> Result<Scene, FileError> {
     let scene = read_scene(path, set)?;
     scene.warnings.iter().for_each(|warning| warn(warning));
+    print_assumptions(&scene);
     Ok(scene)
 }
 
@@ -85,7 +86,17 @@ pub(crate) fn load_without_excitation(path: &Path, set: &[Setting]) -> Result<Sc
     let scene = read_scene(path, set)?;
     let of_excitation = scene.short_profile();
     scene.warnings.iter().filter(|warning| Some(*warning) != of_excitation.as_ref()).for_each(|text| warn(text));
+    print_assumptions(&scene);
     Ok(scene)
+}
+
+fn print_assumptions(scene: &Scene) {
+    scene.notes.iter().filter(|read| read.assumed).for_each(|read| note(&read.text));
+}
+
+/// How the tables of a scene were read, as lines of a summary.
+pub(crate) fn table_lines(scene: &Scene) -> Vec<LabelledLine> {
+    labelled("Tables", scene.notes.iter().map(|read| read.text.clone()))
 }
 
 fn read_scene(path: &Path, set: &[Setting]) -> Result<Scene, FileError> {

@@ -200,6 +200,7 @@ impl<'a> Responses<'a> {
         let mut rows: Vec<LabelledLine> = vec![("Scene", self.scene.name.clone())];
         rows.extend(self.temperature().map(|text| ("Temperature", text)));
         rows.extend(self.responses.iter().map(|response| (kind, self.figures(response))));
+        rows.extend(files::table_lines(self.scene));
         format!("{}\n{}\n", lines(&rows), self.table())
     }
 

@@ -38,7 +38,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
         Command::Plot(command) => figure::plot_files(&command)?,
         Command::Describe(command) => run_describe(&command)?,
         Command::Pack(command) => pack::pack(&command)?,
-        Command::Fit(command) => fit::fit(&command)?,
+        Command::Fit(command) => return Ok(fit::fit(&command)?),
         Command::Material(command) => material::material(&command)?,
         Command::Report(command) => report::report(&command)?,
         Command::Surface(command) => surface::surface(&command)?,

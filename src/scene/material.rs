@@ -1,11 +1,9 @@
-//! The material form of a scene: moduli, density and the layer's thickness instead of the constants of links; and the
-//! file of a Prony series.
+//! The material form of a scene: moduli, density and the layer's thickness instead of the constants of links.
 
 use serde::Serialize;
 
-use super::error::{ContentError, ParameterError, Problem};
+use super::error::{ParameterError, Problem};
 use super::keys;
-use super::text_table::{Columns, decode};
 use super::{ByLink, Layer, Link, LinkKind, MaxwellElement, RateShear, Scene};
 
 /// A linear viscoelastic solid: a spring, a dashpot and Maxwell elements in parallel, as moduli.
@@ -301,103 +299,4 @@ fn in_range(what: &str, value: f64, key: &str) -> Result<(), ParameterError> {
     let range = keys::range_of(key);
     let error = || ParameterError::new(what, Problem::value(format_args!("{value:?}"), range));
     if range.holds(value) { Ok(()) } else { Err(error()) }
-}
-
-const COLUMNS: [&str; 2] = ["relaxation_time", "modulus"];
-const EXPECTED_COLUMNS: &str = "two, relaxation_time and modulus, separated by comma, semicolon, tab or blanks";
-
-impl PronyTerm {
-    /// Reads a Prony series from the bytes of a file: two columns, relaxation time in s and modulus in Pa, separated by
-    /// comma, semicolon, tab or blanks, with or without a header line.
-    pub(super) fn parse(bytes: &[u8]) -> Result<Vec<Self>, ContentError> {
-        let text = decode(bytes).map_err(|error| ContentError::new(Some(1), "", error))?;
-        if let Some((line, header)) = swapped_header(&text) {
-            let given = format!("`{header}`");
-            return Err(ContentError::value(Some(line), "columns", &given, "relaxation_time before modulus"));
-        }
-        let terms: Vec<Self> = lines(&text).map(|(line, row)| Self::from_row(line, &row)).collect::<Result<_, _>>()?;
-        if terms.is_empty() {
-            let last = text.lines().count().max(1);
-            return Err(ContentError::value(Some(last), "terms", "0", "at least one term"));
-        }
-        Ok(terms)
-    }
-
-    fn from_row(line: usize, row: &Columns<'_>) -> Result<Self, ContentError> {
-        if row.count != COLUMNS.len() {
-            return Err(ContentError::value(Some(line), "columns", &row.count.to_string(), EXPECTED_COLUMNS));
-        }
-        let number = |column: usize| {
-            let name = COLUMNS[column];
-            let range = keys::range_of(&format!("material.prony.{name}"));
-            let given = || format!("\"{}\"", row.fields[column].chars().take(60).collect::<String>());
-            let number = row.number(column).filter(|&number| range.holds(number));
-            number.ok_or_else(|| ContentError::value(Some(line), name, &given(), &range.to_string()))
-        };
-        Ok(Self { relaxation_time: number(0)?, modulus: number(1)? })
-    }
-}
-
-/// A header that names the columns in the other order: the numbers would be mixed up.
-fn swapped_header(text: &str) -> Option<(usize, &str)> {
-    let header = filled_lines(text).next()?;
-    let names = header.1.to_lowercase();
-    (names.find("modulus")? < names.find("relaxation")?).then_some(header)
-}
-
-/// The columns of the lines that hold data, without comments and a header, and the lines' numbers from 1.
-fn lines(text: &str) -> impl Iterator<Item = (usize, Columns<'_>)> {
-    let rows = filled_lines(text).map(|(number, line)| (number, Columns::split(line, false))).enumerate();
-    rows.filter(|(count, (_, row))| *count > 0 || !row.is_header()).map(|(_, row)| row)
-}
-
-fn filled_lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    let numbered = (1..).zip(text.lines().map(str::trim));
-    numbered.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn reads_every_separator_with_and_without_a_header() {
-        let texts = [
-            "1e-3,2e6\n10,5e5\n",
-            "relaxation_time,modulus\n1e-3,2e6\n10,5e5\n",
-            "relaxation_time [s]; modulus [Pa]\r\n0,001;2000000\r\n1e1;5e5\r\n",
-            "# a compound\n\ntau E\n1e-3 2e6\n# long\n10\t5e5",
-        ];
-        let expected =
-            [(1e-3, 2e6), (10.0, 5e5)].map(|(relaxation_time, modulus)| PronyTerm { relaxation_time, modulus });
-        for text in texts {
-            assert_eq!(PronyTerm::parse(text.as_bytes()).as_deref(), Ok(&expected[..]), "{text:?}");
-        }
-    }
-
-    #[test]
-    fn refuses_what_is_no_series() {
-        let cases = [
-            ("", 1, "terms = 0: expected at least one term"),
-            ("tau,E\n", 1, "terms = 0: expected at least one term"),
-            ("tau,E\n1,2\n0,3\n", 3, "relaxation_time = \"0\": expected a number from 1e-30 to 1e30"),
-            ("1,2\n2,-3\n", 2, "modulus = \"-3\": expected 0 or a number from 1e-30 to 1e30"),
-            ("1,2\n2,soft\n", 2, "modulus = \"soft\": expected 0 or a number from 1e-30 to 1e30"),
-            (
-                "1,2,3\n",
-                1,
-                "columns = 3: expected two, relaxation_time and modulus, separated by comma, semicolon, tab or blanks",
-            ),
-            (
-                "# a compound\nModulus (Pa); Relaxation time (s)\n1e6;1\n",
-                2,
-                "columns = `Modulus (Pa); Relaxation time (s)`: expected relaxation_time before modulus",
-            ),
-            ("1\0,2\n", 1, "bytes that are zero: expected text in UTF-8, UTF-16 or Latin-1"),
-        ];
-        for (text, line, message) in cases {
-            let error = PronyTerm::parse(text.as_bytes()).unwrap_err();
-            assert_eq!((error.line, error.problem.about(&error.key)), (Some(line), message.to_owned()), "{text:?}");
-        }
-    }
 }

@@ -19,6 +19,7 @@ mod material;
 mod parameters;
 mod patch_file;
 mod profile;
+mod prony_file;
 mod reader;
 mod regular_file;
 mod spectrum;
@@ -49,7 +50,9 @@ pub use link_kind::{ByLink, LinkKind};
 pub use material::{Material, PronyTerm, Wlf, complex_stiffness};
 pub use parameters::{Parameter, Value};
 pub use patch_file::{FaceShape, Grid, NotDoubled, PatchFile, PatchGroup, TableExtrapolation};
-pub use profile::{Extract, LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt, UnknownWord};
+pub use profile::{
+    Extract, LengthUnit, LoadedProfile, Missing, ProfileOptions, ReadingNote, ThirdColumn, Tilt, UnknownWord,
+};
 pub use regular_file::{read_file, read_text};
 pub use spectrum::{Band, PowerLaw, Spectrum};
 pub use surface::{MeanLine, SelfAffine, Surface};
@@ -97,6 +100,9 @@ pub struct Scene {
     /// Warnings: what is probably not meant though the scene is valid.
     #[serde(skip)]
     pub warnings: Vec<String>,
+    /// How the tables were read that the scene names: columns and units, found or assumed.
+    #[serde(skip)]
+    pub notes: Vec<ReadingNote>,
 }
 
 /// The elastic layer: k point masses and their links.

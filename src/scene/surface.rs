@@ -7,7 +7,12 @@ use std::sync::Arc;
 use nalgebra::Complex;
 use serde::Serialize;
 
+use super::values::{LARGEST, SMALLEST};
 use crate::math::{Direction, Spline, SplitMix64, fourier};
+
+/// The largest slope of a profile: a step of a metre from one atom to the next has less, and its square times that of
+/// the largest speed does not overflow.
+const STEEPEST: f64 = 1e12;
 
 /// Periodic ends may differ by rounding: by this part of the peak-to-valley height.
 const ROUNDING: f64 = 1.0e-12;
@@ -71,6 +76,22 @@ impl Surface {
     /// The cubic spline through the data points.
     pub fn spline(&self) -> &Arc<Spline> {
         &self.spline
+    }
+
+    /// Checks that slopes and curvatures of the spline are numbers that can be worked with, or says what they must be.
+    pub(super) fn check_slopes(&self) -> Result<(), String> {
+        let bounds = self.spline.bounds();
+        let closest = self.x.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+        let possible = bounds.slope_max_abs <= STEEPEST && bounds.curvature_max_abs <= LARGEST;
+        if !(self.spline.is_finite() && possible) {
+            return Err(format!(
+                "points with a spline of slopes up to {STEEPEST:e} and curvatures up to {LARGEST:e} 1/m"
+            ));
+        }
+        if closest < SMALLEST {
+            return Err(format!("points at least {SMALLEST:e} m apart along x, not {closest:e} m"));
+        }
+        Ok(())
     }
 
     /// The least squares line through the profile's data points.

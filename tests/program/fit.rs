@@ -115,12 +115,13 @@ fn noise_is_reported_and_its_mean_is_met() {
     let (data, frequencies) = (folder.join("dma.csv"), frequencies(-5, 15));
     write_moduli(&data, &sixteen(), &frequencies, noise(0.05));
     let (output, result) = fit(&data, &["--error", "0.02"]);
-    assert_eq!(result.status.code(), Some(1));
+    assert_eq!(result.status.code(), Some(3), "written, but to be looked at");
     let message = String::from_utf8(result.stderr).unwrap();
     assert!(
         message.contains("the error asked for, 2 %, cannot be reached") && message.contains("fitted.csv"),
         "{message}"
     );
+    assert!(message.contains("the data scatter too much"), "{message}");
     assert!(output.exists() && output.with_extension("svg").exists(), "what was found is there all the same");
     let scene = scene_of(&folder, &String::from_utf8(result.stdout).unwrap());
     let best = Scene::load(&scene).unwrap().material.unwrap();
@@ -148,10 +149,6 @@ fn temperatures_make_one_curve() {
     }
     let latin: Vec<u8> = text.chars().map(|letter| u8::try_from(u32::from(letter)).unwrap()).collect();
     fs::write(&data, latin).unwrap();
-    let (_, refused) = fit(&data, &[]);
-    let message = String::from_utf8(refused.stderr).unwrap();
-    assert_eq!(refused.status.code(), Some(1));
-    assert!(message.contains("dma.csv:1: column 4 = \"Temperature [°C]\": expected the constants"), "{message}");
     let (_, printed) = fitted(&data, &["--wlf", "7.52,119.75,293.15", "--error", "1e-4"]);
     assert!(printed.contains("233.15 to 353.15 K, shifted to 293.15 K"), "{printed}");
     let scene = Scene::load(&scene_of(&folder, &printed)).unwrap();
@@ -159,6 +156,93 @@ fn temperatures_make_one_curve() {
     assert_eq!(found.wlf.unwrap().temperature, WLF[2]);
     let difference = largest(&found, &sixteen(), &frequencies(-3, 8));
     assert!(difference < 1e-3, "{difference:e}");
+    // Wrong constants are told from scatter.
+    let (_, wrong) = fit(&data, &["--wlf", "12,119.75,293.15"]);
+    let message = String::from_utf8(wrong.stderr).unwrap();
+    assert_eq!(wrong.status.code(), Some(3));
+    assert!(message.contains("the WLF constants do not put the temperatures together"), "{message}");
+}
+
+/// Six temperatures 15 K apart, three decades of frequency each, without constants: the law that made them comes back,
+/// and so does the compound.
+#[test]
+fn constants_are_found_where_curves_overlap() {
+    let folder = scratch("fit-superposition");
+    let data = folder.join("dma.csv");
+    const CELSIUS: [i32; 6] = [-25, -10, 5, 20, 35, 50];
+    let log_factor = |celsius: i32| {
+        let above = f64::from(celsius) + 273.15 - WLF[2];
+        -WLF[0] * above / (WLF[1] + above)
+    };
+    let write = |scatter: f64| {
+        let (mut factor, mut text) =
+            (noise(scatter), String::from("Temperature (°C),Frequency (Hz),E' (MPa),E'' (MPa)\n"));
+        for celsius in CELSIUS {
+            for frequency in frequencies(-1, 2) {
+                let (storage, loss) = sixteen().complex_modulus(TAU * 10.0_f64.powf(log_factor(celsius)) * frequency);
+                let [storage, loss] = [storage, loss].map(|modulus| 1e-6 * factor() * modulus);
+                text += &format!("{celsius},{frequency:e},{storage:e},{loss:e}\n");
+            }
+        }
+        fs::write(&data, text).unwrap();
+    };
+    // The reduced frequencies of the rows, Hz.
+    let range = frequencies(-2, 6);
+    // A factor is known as well as moduli that rise by a fifth a decade of frequency tell it: of one per cent of
+    // scatter in 32 figures a temperature, five steps from the coldest to the hottest, some per cent are left.
+    for (scatter, error, most) in [(0.01, "0.0105", 0.08), (0.0, "1e-3", 0.03)] {
+        write(scatter);
+        let (_, result) = fit(&data, &["--error", error]);
+        let printed = String::from_utf8(result.stdout).unwrap();
+        let found = Scene::load(&scene_of(&folder, &printed)).unwrap().material.unwrap();
+        let wlf = found.wlf.unwrap();
+        assert_eq!(wlf.reference_temperature, 293.15);
+        for celsius in CELSIUS {
+            let known = 10.0_f64.powf(log_factor(celsius));
+            let temperature = f64::from(celsius) + 273.15;
+            let factor = asperity::scene::Wlf { temperature, ..wlf }.shift_factor();
+            assert!((factor / known - 1.0).abs() < most, "{scatter}, {celsius} °C: {factor} for {known}");
+        }
+        let difference = largest(&found, &sixteen(), &range);
+        assert!(difference < 0.03, "{scatter}: {difference:e}");
+    }
+    let picture = fs::read_to_string(data.with_extension("fitted.svg")).unwrap();
+    assert!(picture.contains("shifted to 293.15 K"));
+    // The same by a table of factors.
+    let shifts = folder.join("shifts.csv");
+    let table = CELSIUS.map(|celsius| format!("{celsius};{}\n", log_factor(celsius))).concat();
+    fs::write(&shifts, format!("T [°C];log a_T\n{table}")).unwrap();
+    let (_, printed) = fitted(&data, &["--shifts", shifts.to_str().unwrap(), "--error", "1e-3"]);
+    assert!(printed.contains("wlf = { c1 = 7.52, c2 = 119.75, reference_temperature = 293.15"), "{printed}");
+}
+
+/// Files as instruments write them, of this project's own making: what is read is on the picture, what is missing is
+/// said.
+#[test]
+fn files_of_instruments_are_read_or_refused_with_what_is_missing() {
+    let folder = root().join("tests/program/data/fit");
+    let output = scratch("fit-instruments").join("out.csv");
+    let run = |file: &str, options: &[&str]| {
+        asperity().arg("fit").arg(folder.join(file)).arg("-o").arg(&output).args(options).output().unwrap()
+    };
+    let read = [
+        ("comment-header.txt", &[][..], "3 rows, 0.1 Hz to 10 Hz"),
+        ("extra-columns.csv", &[], "4 rows, 0.1 Hz to 100 Hz"),
+        ("pyvisco-style.csv", &[], "6 rows, 0.1 Hz to 10 Hz, 293.15 to 313.25 K"),
+        ("relaxation.csv", &[], "4 rows, 0.01 s to 10 s"),
+        ("reptate-style.tts", &[], "3 rows, 0.1 rad/s to 10 rad/s"),
+        ("rheocompass-style.csv", &[], "3 rows, 1 rad/s to 100 rad/s"),
+        ("trios-lims-style.txt", &[], "6 rows, 1 rad/s to 100 rad/s, 293.15 to 313.15 K"),
+        ("wide.csv", &["--unit", "temperature=°C"], "6 rows, 0.1 Hz to 10 Hz, 293.15 to 313.15 K"),
+        ("workbook.xlsx", &[], "3 rows, 0.1 Hz to 10 Hz"),
+    ];
+    for (file, options, expected) in read {
+        let result = run(file, options);
+        let printed = String::from_utf8_lossy(&result.stdout).into_owned();
+        assert!(printed.contains(expected), "{file}: {printed}{}", String::from_utf8_lossy(&result.stderr));
+    }
+    let message = String::from_utf8(run("wide.csv", &[]).stderr).unwrap();
+    assert!(message.contains("expected a unit of temperature"), "{message}");
 }
 
 #[test]
@@ -196,7 +280,7 @@ fn the_file_says_what_it_was_fitted_to() {
         assert!(text.contains(line), "{line}: {text}");
     }
     assert!(text.contains("# options = --error 0.01 --viscosity\n"), "{text}");
-    assert_eq!(text.lines().find(|line| !line.starts_with('#')), Some("relaxation_time,modulus"));
+    assert_eq!(text.lines().find(|line| !line.starts_with('#')), Some("relaxation_time [s],modulus [Pa]"));
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::io::{Cursor, Read as _, Write as _};
 use std::path::Path;
 
 use crate::common::scenes::SceneText;
-use crate::common::{asperity, run, scratch};
+use crate::common::{asperity, root, run, scratch};
 use asperity::fmi::{Definition, Sources, guid};
 use asperity::scene::Scene;
 use serde_json::Value;
@@ -143,7 +143,7 @@ fn what_cannot_be_analysed_is_refused() {
     assert!(failure(&["surface", source, "--unit", "mm"]).contains("a scene defines how its surface is read"));
     assert!(failure(&["surface", source, "--write", profile]).contains("will not write"));
     assert!(failure(&["surface", source, "-o", profile]).contains("expected a name that ends in .svg or .png"));
-    assert!(failure(&["surface", profile, "--unit", "km"]).contains(r#"expected one of "m", "mm", "um", "nm""#));
+    assert!(failure(&["surface", profile, "--unit", "km"]).contains(r#"expected one of "m", "mm", "um", "µm", "nm""#));
     assert!(failure(&["surface", profile, "--wavelengths", "2..1"]).contains("SHORTEST..LONGEST"));
     assert!(failure(&["surface", "none.csv"]).contains("none.csv: cannot be read"));
 }
@@ -185,7 +185,8 @@ fn lines_of_an_areal_measurement_go_into_the_archive_as_text() {
     archive.extract(&unpacked).unwrap();
     assert!(!unpacked.join("resources/road.x3p").exists());
     let carried = Scene::load(&unpacked.join("resources/scene.toml")).unwrap();
-    let expected = Scene { extracts: Vec::new(), ..scene.clone() };
+    // What is said of the reading differs: it is text now.
+    let expected = Scene { extracts: Vec::new(), notes: carried.notes.clone(), ..scene.clone() };
     assert_eq!(carried, expected);
     let mut description = String::new();
     archive.by_name("modelDescription.xml").unwrap().read_to_string(&mut description).unwrap();
@@ -193,15 +194,17 @@ fn lines_of_an_areal_measurement_go_into_the_archive_as_text() {
     let sources = Sources::of(&unpacked.join("resources/scene.toml"), &*carried).unwrap();
     assert!(description.contains(&guid(&sources, &carried.variables())));
 
-    let without_line = failure(&["surface", folder.join("road.x3p").to_str().unwrap()]);
-    assert!(without_line.contains("line = not given: expected a whole number from 1 to 3"), "{without_line}");
+    let middle = asperity().arg("surface").arg(folder.join("road.x3p")).output().unwrap();
+    let said = String::from_utf8(middle.stderr).unwrap();
+    assert!(said.contains("an X3P file: line 2 of 3 along x, the middle one"), "{said}");
     assert!(
         failure(&["surface", source.to_str().unwrap(), "--write", folder.join("road.x3p").to_str().unwrap()])
             .contains("will not write")
     );
 }
 
-/// Half of the wave of the cut-off is left, 2^-16 of one of a quarter of it: what was taken away has the rest of the slopes.
+/// Half of the wave of the cut-off is left, 2^-16 of one of a quarter of it: what was taken away has the rest of the
+/// slopes.
 #[test]
 fn a_profile_is_smoothed() {
     let folder = scratch("surface-smoothed");
@@ -220,8 +223,8 @@ fn a_profile_is_smoothed() {
     assert!(failure(&["surface", source.to_str().unwrap(), "--smooth", "0"]).contains("--smooth"));
 }
 
-/// A profile that ends, made periodic: by its mirror image, of twice the length, or by a taper, of nine tenths. A scene takes
-/// what is written.
+/// A profile that ends, made periodic: by its mirror image, of twice the length, or by a taper, of nine tenths. A scene
+/// takes what is written.
 #[test]
 fn a_profile_is_made_periodic() {
     let folder = scratch("surface-periodic");
@@ -235,10 +238,70 @@ fn a_profile_is_made_periodic() {
         assert_eq!((&found["points"], &found["periodic"]), (&points.into(), &true.into()), "{option}");
         near(&found["length"], length, 1e-9);
         assert!(Scene::load(&source).unwrap().surface.is_periodic());
-        // The heights of before: the taper mixes a tenth of them, of which none is changed by more than the ramp of 3.6 µm.
+        // The heights of before: the taper mixes a tenth of them, of which none is changed by more than the ramp of 3.6
+        // µm.
         let (z, before) =
             (crate::common::Table::read(&written).column("z [m]"), crate::common::Table::read(&road).column("z [m]"));
         let same = (0..=360).filter(|&i| z[i] == before[i]).count();
         assert!(same >= 320, "{option}: {same}");
     }
+}
+
+/// Files as instruments and people write them, of this project's own making: a sine of 0.3 mm or teeth, scaled by their
+/// units, or refused by name.
+#[test]
+fn files_of_instruments_are_read_or_refused() {
+    let folder = root().join("tests/program/data/surface");
+    let heights = [
+        ("inches.csv", &[][..], 7.0 * 254e-6, 5.08e-6),
+        ("feet.csv", &[], 7.0 * 0.3048, 0.2 * 0.0254),
+        ("centimetres.csv", &[], 0.07, 2e-3),
+        ("two-row.csv", &[], 0.15e-3, 1.361971e-4),
+        ("index-first.csv", &[], 0.15e-3, 1.362e-4),
+        ("x-y-z.txt", &[], 0.15e-3, 1.362e-4),
+        ("footer.csv", &[], 0.15e-3, 1.362e-4),
+        ("single.txt", &["--spacing", "0.05mm"], 0.15e-3, 0.1362),
+        ("straight.crg", &[], 0.03, 1.362e-3),
+        ("road.erd", &["--columns", "RElev."], 0.15, 1.362e-3),
+        ("gwy-matrix.txt", &[], 0.15e-3, 1.362e-4),
+        ("ascii.sdf", &[], 0.15e-3, 1.361971e-4),
+    ];
+    for (file, options, length, height) in heights {
+        let found = findings(&folder.join(file), options);
+        // Written with four digits.
+        near(&found["length"], length, 1e-3);
+        near(&found["peak_to_valley"], height, 1e-3);
+    }
+    let refused = [
+        ("road.erd", "columns = 2 channels: expected one of LElev., RElev."),
+        ("single.txt", "spacing = not given: expected the distance of the points in m"),
+        ("tiny-x.csv", "points = steps along x down to"),
+    ];
+    for (file, message) in refused {
+        let error = failure(&["surface", folder.join(file).to_str().unwrap()]);
+        assert!(error.contains(message), "{file}: {error}");
+    }
+}
+
+/// A scene takes columns by name, a line of a map and a column with a spacing; an FMU carries text of x and z.
+#[test]
+fn scenes_choose_columns_and_spacing() {
+    let folder = scratch("surface-columns");
+    let source = folder.join("scene.toml");
+    fs::write(folder.join("road.csv"), "left [mm];x [mm];right [mm]\n1;0;5\n2;1;6\n1;2;5\n").unwrap();
+    fs::write(folder.join("column.txt"), "1\n2\n1\n").unwrap();
+    let load = |surface: &str| {
+        fs::write(&source, scene(surface)).unwrap();
+        Scene::load(&source)
+    };
+    let chosen = load("kind = 'file', path = 'road.csv', columns = ['x', 'right']").unwrap();
+    assert_eq!((chosen.surface.x(), chosen.surface.z()), (&[0.0, 1e-3, 2e-3][..], &[5e-3, 6e-3, 5e-3][..]));
+    let column = load("kind = 'file', path = 'column.txt', spacing = 1e-3, unit = 'um'").unwrap();
+    assert_eq!((column.surface.x(), column.surface.z()[1]), (&[0.0, 1e-3, 2e-3][..], 2e-6));
+    let refused = load("kind = 'file', path = 'road.csv', columns = ['x', 'y', 'z']").unwrap_err().to_string();
+    assert!(refused.contains("surface.columns = ['x', 'y', 'z']: expected [\"x\", \"z\"]"), "{refused}");
+    load("kind = 'file', path = 'road.csv'").unwrap_err();
+    load("kind = 'file', path = 'column.txt', spacing = 1e-3").unwrap();
+    let described = run(asperity().arg("describe").arg(&source));
+    assert!(described.contains("column.txt: heights from column 1, which names no unit: m is assumed"), "{described}");
 }

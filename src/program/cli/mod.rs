@@ -13,8 +13,8 @@ use super::overrides::Setting;
 use super::sweep::values::{Shard, Values};
 pub(crate) use values::{Condition, PlotAxis, WlfConstants, tenth};
 use values::{
-    Frequencies, Tolerances, count, fit_error, key_and_value, picture, picture_or_table, positive, powers, seconds,
-    seeds, share, temperature, wavelengths,
+    Frequencies, Tolerances, column_unit, count, fit_error, frequency, key_and_value, length, picture,
+    picture_or_table, poisson_ratio, positive, powers, seconds, seeds, share, temperature, wavelengths,
 };
 
 /// Simulates rubber on a rough surface and packs the simulation as an FMU.
@@ -185,8 +185,9 @@ pub(crate) struct Pack {
 
 #[derive(Debug, Args)]
 pub(crate) struct Fit {
-    /// The measured moduli: columns for frequency, E', E'' or tan delta, and temperature if it varies. The header
-    /// names quantities and units; the separator is comma, semicolon or tab.
+    /// The measured moduli, as text or a workbook (xlsx, xls, ods): columns, by their names and units, of frequency, E' and
+    /// E'' or tan delta (or G', G''; or |E*| and delta), and temperature if it varies; or of time and E(t). Other columns
+    /// are left out.
     #[arg(value_name = "DMA.csv")]
     pub(crate) data: PathBuf,
     /// The file of Prony terms to write, in the format that a scene reads; - for standard output.
@@ -196,12 +197,34 @@ pub(crate) struct Fit {
     #[arg(long, value_name = "E", default_value_t = 0.02, value_parser = fit_error)]
     pub(crate) error: f64,
     /// Constants of the Williams-Landel-Ferry equation, which shifts rows at other temperatures to TREF: C1 (1), C2 (K),
-    /// TREF (K).
+    /// TREF (K). Default: shift factors are found where the curves overlap, and constants for them.
     #[arg(long, value_name = "C1,C2,TREF", value_parser = WlfConstants::parse)]
     pub(crate) wlf: Option<WlfConstants>,
     /// Also fits a Kelvin-Voigt viscosity in parallel to the terms.
     #[arg(long)]
     pub(crate) viscosity: bool,
+    /// A table of shift factors in place of constants: columns temperature and a_T (or log a_T).
+    #[arg(long, value_name = "SHIFTS.csv", conflicts_with = "wlf")]
+    pub(crate) shifts: Option<PathBuf>,
+    /// The temperature in K at which the master curve is made where no constants are given; the measured one that is
+    /// nearest. Default: 293.15.
+    #[arg(long, value_name = "T", value_parser = temperature, conflicts_with = "wlf")]
+    pub(crate) reference: Option<f64>,
+    /// The frequency of all rows, in rad/s or with its unit, where the table has no column of it.
+    #[arg(long, value_name = "F", value_parser = frequency)]
+    pub(crate) frequency: Option<f64>,
+    /// Poisson's ratio, by which moduli of shear become moduli of tension.
+    #[arg(long, value_name = "NU", default_value_t = 0.5, value_parser = poisson_ratio)]
+    pub(crate) poisson_ratio: f64,
+    /// Storage and loss moduli whose headings have no letter are of shear, G' and G''.
+    #[arg(long)]
+    pub(crate) shear: bool,
+    /// The unit of a column, where its heading names none or another one, as in 'Temperature=°C'. May be repeated.
+    #[arg(long, value_name = "COLUMN=UNIT", value_parser = column_unit)]
+    pub(crate) unit: Vec<(String, asperity::scene::text_table::Unit)>,
+    /// The sheet of a workbook. Default: the only one with moduli.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) sheet: Option<String>,
     /// Ignores the column with this header, written exactly as in the file. May be repeated.
     #[arg(long, value_name = "COLUMN")]
     pub(crate) ignore: Vec<String>,
@@ -264,7 +287,8 @@ pub(crate) struct Report {
 
 #[derive(Debug, Args)]
 pub(crate) struct Surface {
-    /// The profile: text with columns x and z, or X3P (ISO 5436-2); or a scene, whose surface is analysed.
+    /// The profile: text with columns x and z; an areal file, X3P, SDF, SUR, PLU, OpenCRG, ERD or text of Gwyddion; or a
+    /// scene, whose surface is analysed.
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
     /// Plots the profile and its spectrum, as SVG or PNG according to the file name.
@@ -299,7 +323,7 @@ pub(crate) struct Surface {
 // How a profile is read: the keys of a surface of kind "file". Not a doc comment: that would be the description of the command.
 #[derive(Debug, PartialEq, Default, Args)]
 pub(crate) struct Reading {
-    /// Unit of x and z: m, mm, um or nm. Default: the unit named in the file, otherwise m.
+    /// Unit of x and z: m, mm, um, nm, cm, Å, in, mil or ft. Default: the unit named in the file, otherwise m.
     #[arg(long, value_name = "UNIT")]
     pub(crate) unit: Option<LengthUnit>,
     /// Unit of x only.
@@ -317,7 +341,14 @@ pub(crate) struct Reading {
     /// What the third column marks: invalid points, valid points, or nothing (ignore). Default: taken from its header.
     #[arg(long, value_name = "invalid|valid|ignore")]
     pub(crate) third_column: Option<ThirdColumn>,
-    /// The line of an areal measurement, counted from 1.
+    /// The columns of x and z, by their names or numbers, as in x,z; one alone holds heights. Default: by their names.
+    #[arg(long, value_name = "X,Z", value_delimiter = ',', num_args = 1..=2)]
+    pub(crate) columns: Vec<String>,
+    /// The distance of points of a file without x, in m, and of the lines of a matrix of heights; a unit may follow, as in
+    /// 0.05mm.
+    #[arg(long, value_name = "DX[,DY]", value_delimiter = ',', num_args = 1..=2, value_parser = length)]
+    pub(crate) spacing: Vec<f64>,
+    /// The line of an areal measurement, counted from 1. Default: the middle one.
     #[arg(long, value_name = "N", value_parser = count)]
     pub(crate) line: Option<u32>,
     /// Treats the profile as periodic; its spectrum then needs no window.
@@ -333,6 +364,8 @@ impl Reading {
             missing: self.missing.unwrap_or_default(),
             tilt: self.tilt.unwrap_or_default(),
             third_column: self.third_column,
+            columns: self.columns.clone(),
+            spacing: self.spacing.clone(),
             line: self.line.map(|line| line as usize),
             periodic: self.periodic,
         }

@@ -6,6 +6,7 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use asperity::scene::Wlf;
+use asperity::scene::text_table::{Dimension, Unit};
 use clap::builder::{PathBufValueParser, TypedValueParser};
 
 use crate::program::files::{ends_in, is_standard_output};
@@ -82,6 +83,43 @@ fn number(text: &str, allowed: impl Fn(&f64) -> bool, expected: &str) -> Result<
 
 pub(super) fn positive(text: &str) -> Result<f64, String> {
     number(text, |number| *number > 0.0 && number.is_finite(), "a number above 0")
+}
+
+/// A length above 0, in m or in the unit behind it.
+pub(super) fn length(text: &str) -> Result<f64, String> {
+    quantity(text, Dimension::Length)
+        .filter(|length| *length > 0.0)
+        .ok_or_else(|| "expected a length above 0, such as 5e-5 (in m) or 0.05mm".into())
+}
+
+/// A frequency above 0 in rad/s, or in the unit behind it.
+pub(super) fn frequency(text: &str) -> Result<f64, String> {
+    let found = quantity(text, Dimension::Frequency).filter(|frequency| (1e-30..=1e30).contains(frequency));
+    found.ok_or_else(|| "expected a frequency above 0, such as 10Hz, or 62.8 in rad/s".into())
+}
+
+pub(super) fn poisson_ratio(text: &str) -> Result<f64, String> {
+    number(text, |ratio| (0.0..=0.5).contains(ratio), "a number from 0 to 0.5")
+}
+
+/// The name of a column and its unit.
+pub(super) fn column_unit(text: &str) -> Result<(String, Unit), String> {
+    let parted = text.rsplit_once('=').and_then(|(name, unit)| Some((name.trim().to_owned(), Unit::parse(unit)?)));
+    parted
+        .filter(|(name, _)| !name.is_empty())
+        .ok_or_else(|| "expected COLUMN=UNIT with a known unit, such as 'Temperature=°C'".into())
+}
+
+/// A number with or without a unit, in SI units.
+fn quantity(text: &str, dimension: Dimension) -> Option<f64> {
+    let text = text.trim();
+    let is_digit = |letter: char| letter.is_ascii_digit() || "+-.".contains(letter);
+    let end = text.rfind(is_digit).map_or(0, |end| end + 1);
+    let unit = match text[end..].trim() {
+        "" => Unit::si(dimension),
+        unit => Unit::parse(unit).filter(|unit| unit.is_of(dimension))?,
+    };
+    Some(unit.to_si(text[..end].parse().ok()?)).filter(|value| value.is_finite())
 }
 
 pub(super) fn share(text: &str) -> Result<f64, String> {

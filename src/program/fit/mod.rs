@@ -1,21 +1,30 @@
 //! `asperity fit`: fits Prony terms to measured moduli.
 
-mod header;
+mod columns;
 mod measured;
+mod moduli_error;
 mod nnls;
 mod search;
+mod shift;
+mod stated_temperature;
+mod table;
+mod temperatures;
+mod workbook;
 
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 use asperity::scene::PronyTerm;
 
-use super::cli::{Fit, WlfConstants};
+use super::cli::Fit;
 use super::figure::{Curve, Figure as _, Panel, Stacked, Stroke};
 use super::files::{self, FileError, check_outputs, name_of, named, picture_beside, print_beside};
-use super::terminal::{decimal, lines, note, rounded};
-use measured::{MeasuredModuli, ModuliError};
-use search::{Compound, FitErrors, RelativeError, Sample, Target, search};
+use super::terminal::{decimal, lines, note, rounded, warn};
+use measured::{MeasuredModuli, Reading};
+use moduli_error::ModuliError;
+use search::{Compound, FitErrors, RelativeError, Sample, Target, Test, search};
+use temperatures::{Shift, ShiftError};
 
 /// `asperity fit` failed.
 #[derive(Debug, thiserror::Error)]
@@ -24,45 +33,95 @@ pub(crate) enum FitError {
     File(#[from] FileError),
     #[error("{}:{error}", .path.display())]
     Moduli { path: PathBuf, error: ModuliError },
-    #[error(
-        "the error asked for, {wanted}, cannot be reached: {reached} is about the smallest of any series with moduli of 0 or \
-         more, and {} has such a series; the data scatter too much for less, and --error sets what is enough",
-        .output.display()
-    )]
-    NotReached { wanted: String, reached: String, output: PathBuf },
+    #[error("{}: {error}", .path.display())]
+    Shift { path: PathBuf, error: ShiftError },
+    #[error("{}: the workbook cannot be read: {error}", .path.display())]
+    Workbook { path: PathBuf, error: Box<calamine::Error> },
+    #[error("{}: {}", .path.display(), sheets(.found, .expected))]
+    Sheets { path: PathBuf, found: Vec<String>, expected: &'static str },
+}
+
+fn sheets(found: &[String], expected: &str) -> String {
+    format!("sheets {}: expected {expected}", found.join(", "))
 }
 
 /// Points per decade of a plotted curve.
 const POINTS_PER_DECADE: f64 = 20.0;
 
-/// Reads the moduli, fits, writes the terms and the plot, and prints a summary. Where the requested error cannot be
-/// reached, the best fit is written, but the command fails: a script must not take it for the requested one.
-pub(crate) fn fit(command: &Fit) -> Result<(), FitError> {
+/// The exit status of a fit that is written but worse than asked for: it is to be looked at.
+const WORSE: u8 = 3;
+
+/// Reads the moduli, puts those of several temperatures together, fits, writes the terms and the plot, and prints a
+/// summary. Where the requested error cannot be reached, the best fit is written, with a warning and an exit status of
+/// its own.
+pub(crate) fn fit(command: &Fit) -> Result<ExitCode, FitError> {
     let picture = picture_beside(&command.output, command.plot.as_ref());
-    check_outputs([&command.output].into_iter().chain(&picture), vec![command.data.clone()])?;
-    let bytes = files::read(&command.data)?;
-    let in_file = |error: ModuliError| FitError::Moduli { path: command.data.clone(), error };
-    let measured = MeasuredModuli::parse(&bytes, &command.ignore).map_err(in_file)?;
+    let read: Vec<PathBuf> = std::iter::once(&command.data).chain(&command.shifts).cloned().collect();
+    check_outputs([&command.output].into_iter().chain(&picture), read)?;
+    let measured = read_moduli(command)?;
     measured.notes.iter().for_each(|text| note(text));
-    let samples = measured.at_reference(command.wlf).map_err(in_file)?;
-    let result = FitResult::new(command, &measured, samples);
+    let shift = Shift::of(command, &measured)?;
+    shift.warnings().iter().for_each(|text| warn(text));
+    let samples = shift.samples(&measured).map_err(|error| in_data(command, error))?;
+    let result = FitResult::new(command, &measured, &shift, samples);
     files::write(&command.output, result.file())?;
     if let Some(picture) = &picture {
         result.picture().write(picture)?;
     }
     print_beside([&command.output], &result.text(picture.as_deref()))?;
-    let reached = result.errors.both.rms;
-    if reached > command.error {
-        let (wanted, reached) = (percent(command.error), percent(reached));
-        return Err(FitError::NotReached { wanted, reached, output: command.output.clone() });
+    if result.errors.both.rms <= command.error {
+        return Ok(ExitCode::SUCCESS);
     }
-    Ok(())
+    warn(&result.not_reached());
+    Ok(ExitCode::from(WORSE))
+}
+
+fn in_data(command: &Fit, error: ModuliError) -> FitError {
+    FitError::Moduli { path: command.data.clone(), error }
+}
+
+/// The moduli in a text or in a sheet of a workbook.
+fn read_moduli(command: &Fit) -> Result<MeasuredModuli, FitError> {
+    let bytes = files::read(&command.data)?;
+    let reading = Reading {
+        ignored: &command.ignore,
+        units: &command.unit,
+        frequency: command.frequency,
+        poisson_ratio: command.poisson_ratio,
+        shear: command.shear,
+    };
+    if !workbook::is_workbook(&bytes, &command.data) {
+        return MeasuredModuli::parse(&bytes, &reading).map_err(|error| in_data(command, error));
+    }
+    let in_workbook = |error| FitError::Workbook { path: command.data.clone(), error: Box::new(error) };
+    let sheets = workbook::sheets(&bytes).map_err(in_workbook)?;
+    let names: Vec<String> = sheets.iter().map(|(name, _)| name.clone()).collect();
+    let wanted = |(name, _): &&(String, String)| command.sheet.as_ref().is_none_or(|wanted| wanted == name);
+    let chosen: Vec<&(String, String)> = sheets.iter().filter(wanted).collect();
+    let refuse = |expected| FitError::Sheets { path: command.data.clone(), found: names.clone(), expected };
+    let mut read: Vec<(&str, Result<MeasuredModuli, ModuliError>)> =
+        chosen.iter().map(|(name, text)| (name.as_str(), MeasuredModuli::parse_text(text, &reading))).collect();
+    if read.len() > 1 {
+        read.retain(|(_, measured)| measured.is_ok());
+    }
+    match read.len() {
+        0 if chosen.is_empty() => Err(refuse("one of them for --sheet")),
+        0 => Err(refuse("moduli in one of them; --sheet NAME says what one lacks")),
+        1 => {
+            let (name, measured) = read.remove(0);
+            let mut measured = measured.map_err(|error| in_data(command, error))?;
+            measured.notes.insert(0, format!("sheet {name} of {}", name_of(&command.data)));
+            Ok(measured)
+        }
+        _ => Err(refuse("moduli in one of them alone, or --sheet NAME")),
+    }
 }
 
 #[derive(Debug)]
 struct FitResult<'a> {
     command: &'a Fit,
     measured: &'a MeasuredModuli,
+    shift: &'a Shift,
     /// At the reference temperature.
     samples: Vec<Sample>,
     compound: Compound,
@@ -70,11 +129,26 @@ struct FitResult<'a> {
 }
 
 impl<'a> FitResult<'a> {
-    fn new(command: &'a Fit, measured: &'a MeasuredModuli, samples: Vec<Sample>) -> Self {
-        let exact = search(&samples, &Target { error: command.error, viscosity: command.viscosity });
-        let compound = exact.rounded(FitErrors::of(&exact, &samples).both.rms);
-        let errors = FitErrors::of(&compound, &samples);
-        Self { command, measured, samples, compound, errors }
+    fn new(command: &'a Fit, measured: &'a MeasuredModuli, shift: &'a Shift, samples: Vec<Sample>) -> Self {
+        let test = measured.test;
+        let exact = search(&samples, &Target { error: command.error, viscosity: command.viscosity, test });
+        let compound = exact.rounded(FitErrors::of(&exact, &samples, test).both.rms);
+        let errors = FitErrors::of(&compound, &samples, test);
+        Self { command, measured, shift, samples, compound, errors }
+    }
+
+    /// Why the error asked for was not reached: the data scatter, or known constants do not put them together.
+    fn not_reached(&self) -> String {
+        let (wanted, reached) = (percent(self.command.error), percent(self.errors.both.rms));
+        let why = self
+            .shift
+            .blame(self.measured)
+            .unwrap_or_else(|| "the data scatter too much for less, and --error sets what is enough".to_owned());
+        format!(
+            "the error asked for, {wanted}, cannot be reached: {reached} is about the smallest of any series with \
+             moduli of 0 or more, and {} has such a series; {why}",
+            self.command.output.display()
+        )
     }
 
     /// The file of Prony terms, with the fit's figures as comments.
@@ -84,7 +158,7 @@ impl<'a> FitResult<'a> {
         for (name, value) in self.facts() {
             text += &format!("# {name} = {value}\n");
         }
-        text += "relaxation_time,modulus\n";
+        text += "relaxation_time [s],modulus [Pa]\n";
         let row = |term: &PronyTerm| format!("{},{}\n", written(term.relaxation_time), written(term.modulus));
         text + &self.compound.terms.iter().map(row).collect::<String>()
     }
@@ -98,8 +172,8 @@ impl<'a> FitResult<'a> {
             ("source", name_of(&self.command.data)),
             ("data", self.data()),
             ("options", self.options()),
-            ("error", format!("{rms} (root mean square of the relative errors of E' and E'' at all rows)")),
-            ("largest_error", format!("{largest} at {}", self.frequency(both.at))),
+            ("error", format!("{rms} (root mean square of the relative errors of {} at all rows)", self.quantities())),
+            ("largest_error", format!("{largest} at {}", self.place(both.at))),
         ];
         if self.command.viscosity {
             facts.insert(1, ("viscosity", format!("{} Pa s", written(self.compound.viscosity))));
@@ -107,23 +181,22 @@ impl<'a> FitResult<'a> {
         facts
     }
 
-    fn data(&self) -> String {
-        let (low, high) = range(self.measured.points.iter().map(|point| point.sample.omega));
-        let rows = format!("{} rows, {} to {}", self.samples.len(), self.frequency(low), self.frequency(high));
-        let Some(wlf) = self.shift() else { return rows };
-        let (cold, hot) = range(self.measured.points.iter().filter_map(|point| point.temperature));
-        let (low, high) = range(self.samples.iter().map(|sample| sample.omega));
-        format!(
-            "{rows}, {cold:.2} to {hot:.2} K, shifted to {} K: {} to {}",
-            wlf.reference_temperature,
-            self.frequency(low),
-            self.frequency(high)
-        )
+    fn quantities(&self) -> &'static str {
+        if self.measured.test == Test::Oscillation { "E' and E''" } else { "E(t)" }
     }
 
-    /// The constants by which the data were shifted, if they were.
-    fn shift(&self) -> Option<WlfConstants> {
-        self.command.wlf.filter(|_| self.measured.temperature.is_some())
+    fn data(&self) -> String {
+        let (low, high) = range(self.measured.points.iter().map(|point| point.sample.at));
+        let rows = format!("{} rows, {} to {}", self.samples.len(), self.place(low), self.place(high));
+        let Some(reference) = self.shift.reference() else { return rows };
+        let (cold, hot) = range(self.measured.points.iter().filter_map(|point| point.temperature));
+        let (low, high) = range(self.samples.iter().map(|sample| sample.at));
+        format!(
+            "{rows}, {cold:.2} to {hot:.2} K, shifted to {} K: {} to {}",
+            written(rounded(reference, 6)),
+            self.place(low),
+            self.place(high)
+        )
     }
 
     fn options(&self) -> String {
@@ -133,6 +206,15 @@ impl<'a> FitResult<'a> {
         }
         if self.command.viscosity {
             text += " --viscosity";
+        }
+        if let Some(shifts) = &self.command.shifts {
+            text += &format!(" --shifts {}", name_of(shifts));
+        }
+        if let Some(frequency) = self.command.frequency {
+            text += &format!(" --frequency {}Hz", written(frequency / TAU));
+        }
+        if self.command.shear {
+            text += " --shear";
         }
         text + &self.command.ignore.iter().map(|name| format!(" --ignore '{name}'")).collect::<String>()
     }
@@ -148,13 +230,21 @@ impl<'a> FitResult<'a> {
         rows.push(("Glassy", format!("{} Pa, the sum of all moduli", short(glassy))));
         rows.push(("Terms", self.terms()));
         let (rms, requested) = (percent(errors.both.rms), percent(self.command.error));
-        rows.push(("Error", format!("{rms} rms of E' and E'' together; {requested} requested")));
+        let together = if self.measured.test == Test::Oscillation { "E' and E'' together" } else { "E(t)" };
+        rows.push(("Error", format!("{rms} rms of {together}; {requested} requested")));
         rows.push(("", format!("{:<11}{:<11}{:<11}at", "", "rms", "largest")));
         let row = |name: &str, error: &RelativeError| {
             let (rms, largest) = (percent(error.rms), percent(error.largest));
-            ("", format!("{name:<11}{rms:<11}{largest:<11}{}", self.frequency(error.at)))
+            ("", format!("{name:<11}{rms:<11}{largest:<11}{}", self.place(error.at)))
         };
-        rows.extend([row("E'", &errors.storage), row("E''", &errors.loss), row("tan delta", &errors.loss_tangent)]);
+        match self.measured.test {
+            Test::Oscillation => {
+                let tangent = row("tan delta", &errors.loss_tangent);
+                rows.extend([row("E'", &errors.storage), row("E''", &errors.loss), tangent]);
+            }
+            Test::Relaxation => rows.push(row("E(t)", &errors.storage)),
+        }
+        rows.extend(self.shift.rows(self.measured, &self.samples, &self.compound));
         let written = [Some(self.command.output.as_path()), picture].into_iter().flatten().map(named);
         rows.push(("Written", written.collect::<Vec<_>>().join(", ")));
         let figures = lines(&rows);
@@ -185,7 +275,7 @@ impl<'a> FitResult<'a> {
             [] => "prony = []".into(),
             _ => format!("prony = {:?}", name_of(&self.command.output)),
         });
-        if let Some(wlf) = self.command.wlf {
+        if let Some(wlf) = self.shift.constants().or(self.command.wlf) {
             let reference = written(wlf.reference_temperature);
             let (c1, c2) = (written(wlf.c1), written(wlf.c2));
             lines.push(format!(
@@ -195,22 +285,29 @@ impl<'a> FitResult<'a> {
         lines.iter().map(|line| format!("{line}\n")).collect()
     }
 
-    /// The plot: data as rings, the fit as lines.
+    /// The plot: data as rings, the fit as lines; of several temperatures the master curve.
     fn picture(&self) -> Stacked {
-        let unit = if self.measured.in_hertz { TAU } else { 1.0 };
-        let omegas = between(&self.samples);
+        let test = self.measured.test;
+        let unit = if self.counts_cycles() { TAU } else { 1.0 };
+        let places = between(&self.samples);
         let curves = |name: &str, look: usize, measured: fn(&Sample) -> f64, fitted: fn((f64, f64)) -> f64| {
-            let points = self.samples.iter().map(|sample| (sample.omega / unit, measured(sample))).collect();
-            let line =
-                omegas.iter().map(|&omega| (omega / unit, fitted(self.compound.complex_modulus(omega)))).collect();
+            let points = self.samples.iter().map(|sample| (sample.at / unit, measured(sample))).collect();
+            let line = places.iter().map(|&at| (at / unit, fitted(self.compound.response(test, at)))).collect();
             [
                 Curve { name: format!("{name} measured"), look, stroke: Stroke::Rings, points },
                 Curve { name: format!("{name} fitted"), look, stroke: Stroke::Line, points: line },
             ]
         };
-        let storage = curves("E'", 0, |sample| sample.storage, |(storage, _)| storage);
-        let loss = curves("E''", 1, |sample| sample.loss, |(_, loss)| loss);
-        let tangent = curves("tan δ", 2, |sample| sample.loss / sample.storage, |(storage, loss)| loss / storage);
+        let panel = |title: &str, curves: Vec<Curve>| Panel { title: title.into(), curves };
+        let panels = if test == Test::Oscillation {
+            let storage = curves("E'", 0, |sample| sample.storage, |(storage, _)| storage);
+            let loss = curves("E''", 1, |sample| sample.loss, |(_, loss)| loss);
+            let tangent = curves("tan δ", 2, |sample| sample.loss / sample.storage, |(storage, loss)| loss / storage);
+            vec![panel("modulus in Pa", [storage, loss].concat()), panel("tan δ", tangent.to_vec())]
+        } else {
+            let relaxed = curves("E(t)", 0, |sample| sample.storage, |(storage, _)| storage);
+            vec![panel("modulus in Pa", relaxed.to_vec())]
+        };
         Stacked {
             title: format!(
                 "{}: {} terms, {} rms",
@@ -219,28 +316,37 @@ impl<'a> FitResult<'a> {
                 percent(self.errors.both.rms)
             ),
             x_title: self.x_title(),
-            panels: vec![
-                Panel { title: "modulus in Pa".into(), curves: [storage, loss].concat() },
-                Panel { title: "tan δ".into(), curves: tangent.to_vec() },
-            ],
+            panels,
         }
     }
 
     fn x_title(&self) -> String {
-        let quantity = if self.measured.in_hertz { "frequency in Hz" } else { "angular frequency in rad/s" };
-        let shifted = |wlf: WlfConstants| format!("{quantity}, shifted to {} K", wlf.reference_temperature);
-        self.shift().map_or_else(|| quantity.into(), shifted)
+        let quantity = match (self.measured.test, self.measured.in_hertz) {
+            (Test::Relaxation, _) => "time in s",
+            (Test::Oscillation, true) => "frequency in Hz",
+            (Test::Oscillation, false) => "angular frequency in rad/s",
+        };
+        let shifted = |reference: f64| format!("{quantity}, shifted to {} K", written(rounded(reference, 6)));
+        self.shift.reference().map_or_else(|| quantity.into(), shifted)
     }
 
-    /// A frequency in the unit of the data.
-    fn frequency(&self, omega: f64) -> String {
-        if self.measured.in_hertz { format!("{} Hz", short(omega / TAU)) } else { format!("{} rad/s", short(omega)) }
+    fn counts_cycles(&self) -> bool {
+        self.measured.in_hertz && self.measured.test == Test::Oscillation
+    }
+
+    /// A frequency or a time in the unit of the data.
+    fn place(&self, at: f64) -> String {
+        match self.measured.test {
+            Test::Relaxation => format!("{} s", short(at)),
+            Test::Oscillation if self.measured.in_hertz => format!("{} Hz", short(at / TAU)),
+            Test::Oscillation => format!("{} rad/s", short(at)),
+        }
     }
 }
 
-/// Angular frequencies over the range of `samples`, evenly spaced in the logarithm.
+/// Angular frequencies or times over the range of `samples`, evenly spaced in the logarithm.
 fn between(samples: &[Sample]) -> Vec<f64> {
-    let (low, high) = range(samples.iter().map(|sample| sample.omega.log10()));
+    let (low, high) = range(samples.iter().map(|sample| sample.at.log10()));
     let intervals = ((high - low) * POINTS_PER_DECADE).ceil().max(1.0);
     (0..=intervals as usize).map(|i| 10.0_f64.powf(low + (high - low) * i as f64 / intervals)).collect()
 }

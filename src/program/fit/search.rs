@@ -1,4 +1,5 @@
-//! A compound as a Prony series, its error at measured points, and the search for the fewest terms within an error bound.
+//! A compound as a Prony series, its error at measured points, and the search for the fewest terms within an error
+//! bound.
 //!
 //! The error of a series is the root mean square of the relative errors of both moduli at all N points,
 //!
@@ -16,15 +17,32 @@ use nalgebra::{DMatrix, DVector};
 
 use super::nnls::non_negative_least_squares;
 
-/// Measured moduli at one frequency, at the reference temperature.
+/// What was measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Test {
+    /// E' and E'' over ω.
+    Oscillation,
+    /// E(t) after a step of strain.
+    Relaxation,
+}
+
+/// Measured moduli at one frequency or time, at the reference temperature.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sample {
-    /// Angular frequency ω, rad/s.
-    pub(super) omega: f64,
-    /// Storage modulus E', Pa.
+    /// Angular frequency ω, rad/s; or the time t, s.
+    pub(super) at: f64,
+    /// Storage modulus E', or relaxation modulus E(t), Pa.
     pub(super) storage: f64,
-    /// Loss modulus E'', Pa.
+    /// Loss modulus E'', Pa; 0 of relaxation.
     pub(super) loss: f64,
+}
+
+impl Sample {
+    /// At a_T ω, or t/a_T: what it is at the reference temperature.
+    pub(super) fn shifted(&self, factor: f64, test: Test) -> Self {
+        let at = if test == Test::Oscillation { self.at * factor } else { self.at / factor };
+        Self { at, ..*self }
+    }
 }
 
 /// A spring, a dashpot and Maxwell elements in parallel, as moduli.
@@ -43,7 +61,37 @@ fn relaxation(x: f64) -> (f64, f64) {
     complex_stiffness(0.0, 0.0, [MaxwellElement { stiffness: 1.0, relaxation_time: 1.0 }], x)
 }
 
+/// What a term of modulus 1 has: at ω r + i s = iωτ/(1 + iωτ), at t e^(-t/τ) and 0.
+fn term(test: Test, at: f64, tau: f64) -> (f64, f64) {
+    match test {
+        Test::Oscillation => relaxation(at * tau),
+        Test::Relaxation => ((-at / tau).exp(), 0.0),
+    }
+}
+
+/// The slope of that in ln τ: 2r(1 - r) and s(1 - 2r), or (t/τ) e^(-t/τ).
+fn term_slope(test: Test, at: f64, tau: f64) -> (f64, f64) {
+    match test {
+        Test::Oscillation => {
+            let (r, s) = relaxation(at * tau);
+            (2.0 * r * (1.0 - r), s * (1.0 - 2.0 * r))
+        }
+        Test::Relaxation => (at / tau * (-at / tau).exp(), 0.0),
+    }
+}
+
 impl Compound {
+    /// E' and E'' at ω, or E(t) and 0, Pa.
+    pub(super) fn response(&self, test: Test, at: f64) -> (f64, f64) {
+        match test {
+            Test::Oscillation => self.complex_modulus(at),
+            Test::Relaxation => {
+                let terms = self.terms.iter().map(|term| term.modulus * (-at / term.relaxation_time).exp());
+                (self.equilibrium_modulus + terms.sum::<f64>(), 0.0)
+            }
+        }
+    }
+
     /// E' and E'' at ω, Pa (2).
     pub(super) fn complex_modulus(&self, omega: f64) -> (f64, f64) {
         let elements = self.terms.iter().map(PronyTerm::element);
@@ -76,7 +124,7 @@ pub(super) struct RelativeError {
 }
 
 /// Errors of a compound at measured points.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct FitErrors {
     pub(super) storage: RelativeError,
     pub(super) loss: RelativeError,
@@ -86,14 +134,18 @@ pub(super) struct FitErrors {
 }
 
 impl FitErrors {
-    pub(super) fn of(compound: &Compound, samples: &[Sample]) -> Self {
+    /// The errors at samples of a test; of relaxation those of E(t) alone.
+    pub(super) fn of(compound: &Compound, samples: &[Sample], test: Test) -> Self {
         let of = |error: fn(&Sample, f64, f64) -> f64| {
             RelativeError::of(samples.iter().map(|sample| {
-                let (storage, loss) = compound.complex_modulus(sample.omega);
-                (sample.omega, error(sample, storage, loss))
+                let (storage, loss) = compound.response(test, sample.at);
+                (sample.at, error(sample, storage, loss))
             }))
         };
         let storage = of(|sample, storage, _| storage / sample.storage - 1.0);
+        if test == Test::Relaxation {
+            return Self { storage, both: storage, ..Self::default() };
+        }
         let loss = of(|sample, _, loss| loss / sample.loss - 1.0);
         let loss_tangent = of(|sample, storage, loss| loss / storage * sample.storage / sample.loss - 1.0);
         let worse = if storage.largest > loss.largest { storage } else { loss };
@@ -105,11 +157,11 @@ impl FitErrors {
 impl RelativeError {
     fn of(errors: impl Iterator<Item = (f64, f64)>) -> Self {
         let (mut squares, mut count, mut found) = (0.0, 0.0, Self::default());
-        for (omega, error) in errors {
+        for (at, error) in errors {
             squares += error * error;
             count += 1.0;
             if error.abs() >= found.largest {
-                found = Self { largest: error.abs(), at: omega, ..found };
+                found = Self { largest: error.abs(), at, ..found };
             }
         }
         Self { rms: (squares / count).sqrt(), ..found }
@@ -133,13 +185,15 @@ pub(super) struct Target {
     pub(super) error: f64,
     /// Whether a Kelvin-Voigt viscosity is among the unknowns.
     pub(super) viscosity: bool,
+    /// What the samples are.
+    pub(super) test: Test,
 }
 
 /// The series with the fewest terms found within the target's error or, if it cannot be reached, within [`NEAR`] of the
 /// smallest error.
 pub(super) fn search(samples: &[Sample], target: &Target) -> Compound {
-    let problem = Problem::new(samples, target.viscosity);
-    let fine = problem.solve(&problem.grid());
+    let problem = Problem::new(samples, target.test, target.viscosity);
+    let fine = problem.solve(&problem.grid(PER_DECADE));
     let mut best = problem.refine(problem.solve(&fine.merged()));
     if best.error > target.error {
         let unmerged = problem.refine(fine);
@@ -154,14 +208,14 @@ pub(super) fn search(samples: &[Sample], target: &Target) -> Compound {
 
 /// The moduli of smallest error for given relaxation times; terms with modulus 0 are omitted.
 #[derive(Clone, Debug)]
-struct Solution {
+pub(super) struct Solution {
     /// E_∞ and η.
     constants: [f64; 2],
     /// ln τ_j.
     times: Vec<f64>,
     /// E_j.
     moduli: Vec<f64>,
-    error: f64,
+    pub(super) error: f64,
 }
 
 impl Solution {
@@ -185,8 +239,9 @@ impl Solution {
 }
 
 /// The measured moduli as a least squares problem: a row is a modulus at one point over the measured one.
-struct Problem<'a> {
+pub(super) struct Problem<'a> {
     samples: &'a [Sample],
+    test: Test,
     viscosity: bool,
     /// Bounds of ln τ.
     low: f64,
@@ -194,26 +249,37 @@ struct Problem<'a> {
 }
 
 impl<'a> Problem<'a> {
-    fn new(samples: &'a [Sample], viscosity: bool) -> Self {
-        let omegas = || samples.iter().map(|sample| sample.omega);
-        let (slow, fast) = (omegas().fold(f64::MAX, f64::min), omegas().fold(0.0, f64::max));
-        Self { samples, viscosity, low: -fast.ln() - MARGIN * LN_10, high: -slow.ln() + MARGIN * LN_10 }
+    pub(super) fn new(samples: &'a [Sample], test: Test, viscosity: bool) -> Self {
+        let places = || samples.iter().map(|sample| sample.at);
+        let (least, most) = (places().fold(f64::MAX, f64::min), places().fold(0.0, f64::max));
+        let (low, high) = match test {
+            Test::Oscillation => (-most.ln(), -least.ln()),
+            Test::Relaxation => (least.ln(), most.ln()),
+        };
+        Self { samples, test, viscosity, low: low - MARGIN * LN_10, high: high + MARGIN * LN_10 }
     }
 
-    /// ln τ of the fine grid.
-    fn grid(&self) -> Vec<f64> {
-        let intervals = ((self.high - self.low) / LN_10 * PER_DECADE).ceil();
+    /// ln τ of a grid with some points a decade.
+    pub(super) fn grid(&self, per_decade: f64) -> Vec<f64> {
+        let intervals = ((self.high - self.low) / LN_10 * per_decade).ceil();
         (0..=intervals as usize).map(|i| self.low + (self.high - self.low) * i as f64 / intervals).collect()
     }
 
-    /// The column of an unknown whose storage and loss part at ω are `parts`.
+    /// Values to be met: two of each sample, or one of relaxation.
+    fn rows(&self) -> usize {
+        if self.test == Test::Oscillation { 2 * self.samples.len() } else { self.samples.len() }
+    }
+
+    /// The column of an unknown whose storage and loss part at ω (or value at t) are `parts`.
     fn column(&self, parts: impl Fn(f64) -> (f64, f64)) -> DVector<f64> {
         let count = self.samples.len();
-        let mut column = DVector::zeros(2 * count);
+        let mut column = DVector::zeros(self.rows());
         for (i, sample) in self.samples.iter().enumerate() {
-            let (storage, loss) = parts(sample.omega);
+            let (storage, loss) = parts(sample.at);
             column[i] = storage / sample.storage;
-            column[count + i] = loss / sample.loss;
+            if self.test == Test::Oscillation {
+                column[count + i] = loss / sample.loss;
+            }
         }
         column
     }
@@ -222,16 +288,16 @@ impl<'a> Problem<'a> {
     fn matrix(&self, times: &[f64]) -> DMatrix<f64> {
         let viscous = if self.viscosity { 1.0 } else { 0.0 };
         let constants = [self.column(|_| (1.0, 0.0)), self.column(|omega| (0.0, viscous * omega))];
-        let terms = times.iter().map(|time| self.column(|omega| relaxation(omega * time.exp())));
+        let terms = times.iter().map(|time| self.column(|at| term(self.test, at, time.exp())));
         DMatrix::from_columns(&constants.into_iter().chain(terms).collect::<Vec<_>>())
     }
 
     fn ones(&self) -> DVector<f64> {
-        DVector::from_element(2 * self.samples.len(), 1.0)
+        DVector::from_element(self.rows(), 1.0)
     }
 
     /// The moduli for the relaxation times `times` (ln τ).
-    fn solve(&self, times: &[f64]) -> Solution {
+    pub(super) fn solve(&self, times: &[f64]) -> Solution {
         let (a, ones) = (self.matrix(times), self.ones());
         let x = non_negative_least_squares(&a, &ones);
         let error = (&a * &x - &ones).norm() / (ones.len() as f64).sqrt();
@@ -284,12 +350,35 @@ impl<'a> Problem<'a> {
         Some(&step / step.amax().max(1.0))
     }
 
-    /// d/d ln τ of a term: with r + i s = iωτ/(1 + iωτ), those of r and s are 2r(1 - r) and s(1 - 2r).
+    /// d/d ln τ of a term.
     fn slope(&self, tau: f64, modulus: f64) -> DVector<f64> {
-        self.column(|omega| {
-            let (r, s) = relaxation(omega * tau);
-            (modulus * 2.0 * r * (1.0 - r), modulus * s * (1.0 - 2.0 * r))
+        self.column(|at| {
+            let (storage, loss) = term_slope(self.test, at, tau);
+            (modulus * storage, modulus * loss)
         })
+    }
+
+    /// What is left of the data, and its slopes in the ln a_T of groups of samples, without what the moduli can follow
+    /// (variable projection). A function of ωτ or t/τ rises with ln a_T as with ln τ.
+    pub(super) fn shift_slopes(
+        &self,
+        solution: &Solution,
+        group: &[usize],
+        groups: usize,
+    ) -> (DMatrix<f64>, DVector<f64>) {
+        let (a, x) = self.positive(solution);
+        let residual = self.ones() - &a * x;
+        let terms = solution.times.iter().zip(&solution.moduli);
+        let whole =
+            terms.fold(DVector::zeros(self.rows()), |sum, (time, modulus)| sum + self.slope(time.exp(), *modulus));
+        let count = self.samples.len();
+        let of_group = |wanted: usize| {
+            DVector::from_fn(self.rows(), |i, _| if group[i % count] == wanted { whole[i] } else { 0.0 })
+        };
+        let mut slopes = DMatrix::from_columns(&(0..groups).map(of_group).collect::<Vec<_>>());
+        let q = a.qr().q();
+        slopes -= &q * q.tr_mul(&slopes);
+        (slopes, residual)
     }
 
     /// Columns and values of the unknowns above 0.
@@ -326,7 +415,7 @@ mod tests {
         let at = |i: i32| {
             let omega = 10.0_f64.powf(f64::from(i) / 5.0);
             let (storage, loss) = compound.complex_modulus(omega);
-            Sample { omega, storage, loss }
+            Sample { at: omega, storage, loss }
         };
         (5 * low..=5 * high).map(at).collect()
     }
@@ -350,8 +439,8 @@ mod tests {
     }
 
     fn find(samples: &[Sample], error: f64) -> (Compound, FitErrors) {
-        let compound = search(samples, &Target { error, viscosity: false });
-        let errors = FitErrors::of(&compound, samples);
+        let compound = search(samples, &Target { error, viscosity: false, test: Test::Oscillation });
+        let errors = FitErrors::of(&compound, samples, Test::Oscillation);
         (compound, errors)
     }
 
@@ -381,7 +470,8 @@ mod tests {
         }
     }
 
-    /// Data that end within the spectrum: terms outside act as springs and dampers, which terms near the ends represent.
+    /// Data that end within the spectrum: terms outside act as springs and dampers, which terms near the ends
+    /// represent.
     #[test]
     fn a_part_of_a_spectrum_is_fitted_within_what_is_asked() {
         let samples = samples(&sixteen(), -2, 6);
@@ -408,7 +498,7 @@ mod tests {
             let (found, errors) = find(&measured, 0.02);
             // Some 35 unknowns for 202 values absorb part of it; the deviate itself has 5 % ± 0.25 %.
             assert!((0.04..0.055).contains(&errors.both.rms), "{errors:?}");
-            let truth = FitErrors::of(&found, &samples(&known, low, high));
+            let truth = FitErrors::of(&found, &samples(&known, low, high), Test::Oscillation);
             assert!(truth.both.rms < 0.025, "{truth:?}");
             assert!(found.terms.len() < known.terms.len() + 3, "{}", found.terms.len());
         }
@@ -417,7 +507,7 @@ mod tests {
     #[test]
     fn viscosity_is_found_where_it_is_allowed() {
         let known = Compound { viscosity: 200.0, ..series(2e6, &[(1e-2, 3e6)]) };
-        let target = Target { error: 1e-3, viscosity: true };
+        let target = Target { error: 1e-3, viscosity: true, test: Test::Oscillation };
         let found = search(&samples(&known, -1, 5), &target);
         assert_eq!(found.terms.len(), 1);
         assert!((found.viscosity / 200.0 - 1.0).abs() < 1e-9, "{found:?}");
@@ -425,7 +515,7 @@ mod tests {
 
     #[test]
     fn one_point_is_met_by_one_term() {
-        let (found, errors) = find(&[Sample { omega: 10.0, storage: 2e6, loss: 3e5 }], 1e-3);
+        let (found, errors) = find(&[Sample { at: 10.0, storage: 2e6, loss: 3e5 }], 1e-3);
         assert!(found.terms.len() == 1 && errors.both.largest < 1e-12, "{found:?}");
     }
 }

@@ -3,12 +3,30 @@
 use std::path::Path;
 
 use asperity::patch::{COORDINATES, Patch, PatchMotion, PatchStart, Pose};
+use asperity::scene::text_table::{Dimension, Heading, Unit, Words};
 
 use crate::program::result_file::{CsvFile, Record, ResultFileError};
 
 const TIME: &str = "time";
 const TRANSPORT: &str = "transport.speed";
 const TEMPERATURE: &str = "temperature";
+
+const fn column(name: &'static str, dimension: Dimension, words: &'static [&'static str]) -> Words<&'static str> {
+    Words { quantity: name, dimension, key_words: words, other_words: words }
+}
+
+/// The names of columns; a unit may stand behind them.
+const COLUMNS: [Words<&str>; 9] = [
+    column(TIME, Dimension::Time, &["time"]),
+    column("x", Dimension::Length, &["x"]),
+    column("y", Dimension::Length, &["y"]),
+    column("z", Dimension::Length, &["z"]),
+    column("roll", Dimension::Angle, &["roll"]),
+    column("pitch", Dimension::Angle, &["pitch"]),
+    column("yaw", Dimension::Angle, &["yaw"]),
+    column(TRANSPORT, Dimension::Speed, &["transport", "speed"]),
+    column(TEMPERATURE, Dimension::Temperature, &["temperature"]),
+];
 
 /// A motion, row by row.
 #[derive(Debug)]
@@ -34,19 +52,31 @@ impl MotionFile {
     /// `temperature` where it is an input and is to change.
     pub(crate) fn read(path: &Path, patch: &Patch) -> Result<Self, ResultFileError> {
         let file = CsvFile::read(path)?;
-        let names = file.names();
-        let has = |name: &str| names.iter().any(|other| other == name);
+        let headings: Vec<Option<Heading<&str>>> =
+            file.names().iter().map(|name| Heading::parse(name, &COLUMNS)).collect();
+        let place = |name: &str| {
+            headings.iter().position(|heading| heading.as_ref().is_some_and(|heading| heading.quantity == name))
+        };
+        let has = |name: &str| place(name).is_some();
         let (has_transport, has_temperature) = (patch.has_tread(), patch.has_temperatures() && has(TEMPERATURE));
         let optional = [(TRANSPORT, has_transport), (TEMPERATURE, has_temperature)];
         let wanted: Vec<&str> = std::iter::once(TIME)
             .chain(COORDINATES)
             .chain(optional.iter().filter(|(_, is_there)| *is_there).map(|(name, _)| *name))
             .collect();
-        let indices = wanted.iter().map(|name| file.column(name)).collect::<Result<Vec<_>, _>>()?;
-        if let Some(name) = names.iter().find(|name| !wanted.contains(&name.as_str())) {
+        let indices = wanted
+            .iter()
+            .map(|name| place(name).map_or_else(|| file.column(name), Ok))
+            .collect::<Result<Vec<_>, _>>()?;
+        if let Some((_, name)) = file.names().iter().enumerate().find(|(i, _)| !indices.contains(i)) {
             return Err(file.header_error(format!("column {name}: expected {} alone", wanted.join(", "))));
         }
-        let motion = Self { rows: rows(&file, &indices, patch, has_transport)?, has_transport, has_temperature };
+        let with_unit = |i: usize| {
+            let unit = headings[i].as_ref().map_or(Ok(Unit::ONE), unit_of);
+            Ok((i, unit.map_err(|message| file.header_error(message))?))
+        };
+        let columns = indices.into_iter().map(with_unit).collect::<Result<Vec<_>, ResultFileError>>()?;
+        let motion = Self { rows: rows(&file, &columns, patch, has_transport)?, has_transport, has_temperature };
         if motion.rows.is_empty() { Err(ResultFileError::NoRows { path: path.to_owned() }) } else { Ok(motion) }
     }
 
@@ -110,15 +140,23 @@ impl MotionRow {
     }
 }
 
+/// The unit of a column; in SI units where none is named.
+fn unit_of(heading: &Heading<&str>) -> Result<Unit, String> {
+    let unknown =
+        |unit| format!("column {} in \"{unit}\": expected one of {}", heading.quantity, heading.dimension.units());
+    heading.unit.known().map(|unit| unit.unwrap_or(Unit::ONE)).map_err(unknown)
+}
+
 fn rows(
     file: &CsvFile,
-    indices: &[usize],
+    columns: &[(usize, Unit)],
     patch: &Patch,
     has_transport: bool,
 ) -> Result<Vec<MotionRow>, ResultFileError> {
     let mut rows: Vec<MotionRow> = Vec::new();
     for record in file.records() {
-        let values = indices.iter().map(|&i| number(file, record, i)).collect::<Result<Vec<_>, _>>()?;
+        let value = |&(i, unit): &(usize, Unit)| number(file, record, i).map(|written| unit.to_si(written));
+        let values = columns.iter().map(value).collect::<Result<Vec<_>, _>>()?;
         let mut optional = values.iter().skip(1 + COORDINATES.len()).copied();
         let row = MotionRow {
             time: values[0],

@@ -63,12 +63,14 @@ fn read(command: &Surface) -> Result<(scene::Surface, Vec<PathBuf>), SurfaceErro
             return Err(SurfaceError::SceneHasOptions { path: path.clone() });
         }
         let scene = load_without_excitation(path, &[])?;
+        scene.notes.iter().filter(|read| !read.assumed).for_each(|read| note(&read.text));
         let files = sources(path, &scene);
         return Ok((scene.surface, files));
     }
-    let (surface, warnings) = scene::Surface::load(path, &command.reading.options()).map_err(FileError::from)?;
-    warnings.iter().for_each(|warning| warn(warning));
-    Ok((surface, vec![path.clone()]))
+    let loaded = scene::Surface::load(path, &command.reading.options()).map_err(FileError::from)?;
+    loaded.warnings.iter().for_each(|warning| warn(warning));
+    loaded.notes.iter().for_each(|read| note(&read.text));
+    Ok((loaded.surface, vec![path.clone()]))
 }
 
 /// Heights and slopes of a profile, in SI units.

@@ -251,8 +251,13 @@ const FILE: &[Key] = &[
     word::<Missing>("missing", "What becomes of points without a height"),
     word::<Tilt>("tilt", "What becomes of the profile's tilt"),
     word::<ThirdColumn>("third_column", "What a third column means"),
+    key("columns", Allowed::Text(COLUMNS), "Columns of x and z, by their names or numbers"),
+    key("spacing", Allowed::Numbers(POSITIVE), "Distance of points of a file without x, m"),
     whole("line", 1, 1_000_000_000, "Line of an areal measurement"),
 ];
+
+/// What `columns` holds.
+const COLUMNS: &str = "[\"x\", \"z\"], the names or the numbers of the columns as texts, or [\"z\"] beside spacing";
 
 /// The path of a file that can go into the FMU with the scene.
 pub(super) const PATH: &str = "a relative path of a file beside or below the scene file, without `..` and backslashes";

@@ -1,11 +1,18 @@
 //! Measured profiles: files as they come from instruments, and what is done to them before they are a surface.
 //!
-//! Text holds two columns x, z, see [`text`]; an X3P file holds an image of heights, see [`x3p`].
+//! Text holds columns x and z, see [`text`]; an X3P file holds an image of heights, see [`x3p`]; other files of
+//! instruments are in [`instruments`]. An FMU carries text in place of all that is no text of x and z.
 
+mod areal;
+mod header;
+#[cfg(feature = "instruments")]
+mod instruments;
 mod options;
 mod plain;
+mod roles;
+mod sentinels;
 mod text;
-#[cfg(feature = "x3p")]
+#[cfg(feature = "instruments")]
 mod x3p;
 
 #[cfg(test)]
@@ -14,13 +21,14 @@ mod tests;
 use std::io;
 use std::path::{Path, PathBuf};
 
-pub use options::{LengthUnit, Missing, ProfileOptions, ThirdColumn, Tilt, UnknownWord};
+pub use options::{LengthUnit, Missing, ProfileOptions, ReadingNote, ThirdColumn, Tilt, UnknownWord};
 
 use super::error::{ContentError, SceneError};
 use super::regular_file::read_file;
 use super::surface::{Coordinate, Surface, check_points, remove_tilt};
-use super::text_table::decode;
+use super::text_table::{Unit, decode};
 use options::MeasuredPoints;
+use text::Content;
 
 /// A line of an areal measurement, as an FMU carries it: text in place of the file that it was taken from.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,6 +46,7 @@ pub struct Extract {
 pub(super) struct Profile {
     pub(super) surface: Surface,
     pub(super) warnings: Vec<String>,
+    pub(super) notes: Vec<ReadingNote>,
     /// The file that was read, or that of the extract in its place.
     pub(super) file: PathBuf,
     /// The text that an FMU carries in place of the file, if it was an areal measurement.
@@ -51,15 +60,26 @@ pub(super) enum ReadFailure {
 }
 
 impl Surface {
-    /// Reads the profile in the file at `path`, and returns warnings on what may not be meant in it.
+    /// Reads the profile in the file at `path`.
     ///
     /// # Errors
     /// [`SceneError`] with the file, the line, the column, what was given and what is allowed.
-    pub fn load(path: &Path, options: &ProfileOptions) -> Result<(Self, Vec<String>), SceneError> {
+    pub fn load(path: &Path, options: &ProfileOptions) -> Result<LoadedProfile, SceneError> {
         let bytes = read_file(path).map_err(|error| SceneError::unreadable(path, &error))?;
         let parsed = parse(&bytes, options, false).map_err(|error| error.in_file(path.to_owned()))?;
-        Ok((parsed.surface, parsed.warnings))
+        Ok(LoadedProfile { surface: parsed.surface, warnings: parsed.warnings, notes: parsed.notes })
     }
+}
+
+/// A profile that was read by itself.
+#[derive(Debug)]
+pub struct LoadedProfile {
+    /// Its points.
+    pub surface: Surface,
+    /// What may not be meant in it.
+    pub warnings: Vec<String>,
+    /// How it was read: columns and units, found or assumed.
+    pub notes: Vec<ReadingNote>,
 }
 
 /// Reads the profile at `path`, which is relative to `folder`. Where that file is not there, its extract may be.
@@ -74,16 +94,17 @@ pub(super) fn read(folder: &Path, path: &Path, options: &ProfileOptions) -> Resu
     };
     let is_extract = file != path;
     let parsed = parse(&bytes, options, is_extract);
-    let Parsed { surface, warnings, extract } =
+    let Parsed { surface, warnings, notes, extract } =
         parsed.map_err(|error| ReadFailure::Refused(error.in_file(folder.join(&file))))?;
     let file = if extract.is_some() { extract_name(path, options) } else { file };
-    Ok(Profile { surface, warnings, file, extract })
+    Ok(Profile { surface, warnings, notes, file, extract })
 }
 
-/// `road.x3p.line-3.csv` of the third line of `road.x3p`.
+/// `road.x3p.line-3.csv` of the third line of `road.x3p`; `road.x3p.line.csv` of the one that is taken if none is
+/// chosen.
 fn extract_name(path: &Path, options: &ProfileOptions) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
-    name.push(format!(".line-{}.csv", options.line.unwrap_or(1)));
+    name.push(options.line.map_or_else(|| ".line.csv".into(), |line| format!(".line-{line}.csv")));
     name.into()
 }
 
@@ -91,40 +112,70 @@ fn extract_name(path: &Path, options: &ProfileOptions) -> PathBuf {
 struct Parsed {
     surface: Surface,
     warnings: Vec<String>,
-    /// The line as text where the file is an areal measurement.
+    notes: Vec<ReadingNote>,
+    /// The line as text where the file is no text of x and z.
     extract: Option<String>,
 }
 
 fn parse(bytes: &[u8], options: &ProfileOptions, is_extract: bool) -> Result<Parsed, ContentError> {
-    if bytes.starts_with(b"PK\x03\x04") {
-        let raw = read_x3p(bytes, options)?;
-        let text = text::write(&raw.x, &raw.z);
-        return Ok(Parsed { extract: Some(text), ..finish(raw, options)? });
+    if is_extract {
+        // It has x and z in m, whatever the file had that it stands for.
+        let of_text =
+            ProfileOptions { columns: Vec::new(), spacing: Vec::new(), third_column: None, ..options.clone() };
+        let Content::Profile(raw) = read_text(bytes, &of_text)? else { return Err(no_profile()) };
+        return finish(MeasuredPoints { is_spaced: !options.spacing.is_empty(), ..raw }, options);
     }
-    if let Some(line) = options.line.filter(|_| !is_extract) {
-        let expected = "no such number for a profile: it chooses the line of an areal measurement (X3P)";
-        return Err(ContentError::value(None, "line", &line.to_string(), expected));
-    }
+    let raw = match read_instrument(bytes, options) {
+        Some(raw) => raw?,
+        None => match read_text(bytes, options)? {
+            Content::Map(areal) => areal.line(options)?,
+            Content::Profile(raw) => {
+                check_line(options)?;
+                return finish(raw, options);
+            }
+        },
+    };
+    let text = text::write(&raw.x, &raw.z);
+    Ok(Parsed { extract: Some(text), ..finish(raw, options)? })
+}
+
+fn read_text(bytes: &[u8], options: &ProfileOptions) -> Result<Content, ContentError> {
     let text = decode(bytes).map_err(|error| ContentError::new(Some(1), "", error))?;
-    finish(text::read(&text, options)?, options)
+    text::read(&text, options)
 }
 
-#[cfg(feature = "x3p")]
-fn read_x3p(bytes: &[u8], options: &ProfileOptions) -> Result<MeasuredPoints, ContentError> {
-    x3p::read(bytes, options)
+fn no_profile() -> ContentError {
+    ContentError::value(None, "columns", "x, y and z", "x and z")
 }
 
-#[cfg(not(feature = "x3p"))]
-fn read_x3p(_: &[u8], _: &ProfileOptions) -> Result<MeasuredPoints, ContentError> {
-    let expected = "text: this library was built without the reader of X3P files (feature x3p)";
-    Err(ContentError::value(None, "", "a zip archive", expected))
+/// A profile has one line.
+fn check_line(options: &ProfileOptions) -> Result<(), ContentError> {
+    let Some(line) = options.line else { return Ok(()) };
+    let expected = "no such number for a profile: it chooses the line of an areal measurement";
+    Err(ContentError::value(None, "line", &line.to_string(), expected))
+}
+
+/// The points of a file that is no text of columns; `None` of text.
+#[cfg(feature = "instruments")]
+fn read_instrument(bytes: &[u8], options: &ProfileOptions) -> Option<Result<MeasuredPoints, ContentError>> {
+    if bytes.starts_with(b"PK\x03\x04") { Some(x3p::read(bytes, options)) } else { instruments::read(bytes, options) }
+}
+
+#[cfg(not(feature = "instruments"))]
+fn read_instrument(bytes: &[u8], _: &ProfileOptions) -> Option<Result<MeasuredPoints, ContentError>> {
+    let expected = "text: this library was built without the reader of X3P files (feature instruments)";
+    let is_archive = bytes.starts_with(b"PK\x03\x04");
+    is_archive.then(|| Err(ContentError::value(None, "", "a zip archive", expected)))
 }
 
 /// Converts to metres, fills gaps, removes the tilt and checks the points.
 fn finish(mut raw: MeasuredPoints, options: &ProfileOptions) -> Result<Parsed, ContentError> {
+    sentinels::take_out(&mut raw, options.missing)?;
     let [x_unit, z_unit] = raw.units;
-    to_metres(&mut raw.x, options.x_unit.or(x_unit));
-    to_metres(&mut raw.z, options.z_unit.or(z_unit));
+    if !raw.is_spaced {
+        to_metres(&mut raw.x, options.x_unit.map(LengthUnit::unit).or(x_unit));
+    }
+    to_metres(&mut raw.z, options.z_unit.map(LengthUnit::unit).or(z_unit));
     let fill = options.missing == Missing::Fill && raw.z.iter().any(|z| z.is_nan());
     if fill || options.tilt == Tilt::Remove {
         check(&mut raw, false)?;
@@ -137,13 +188,21 @@ fn finish(mut raw: MeasuredPoints, options: &ProfileOptions) -> Result<Parsed, C
     }
     check(&mut raw, options.periodic)?;
     let surface = Surface::new(raw.x, raw.z, options.periodic);
-    Ok(Parsed { surface, warnings: raw.warnings, extract: None })
+    if let Err(expected) = surface.check_slopes() {
+        return Err(ContentError::value(raw.lines.first().copied(), "points", &closest(&surface), &expected));
+    }
+    Ok(Parsed { surface, warnings: raw.warnings, notes: raw.notes, extract: None })
 }
 
-fn to_metres(values: &mut [f64], unit: Option<LengthUnit>) {
-    if let Some(unit) = unit.filter(|unit| *unit != LengthUnit::Metre) {
-        // Divided, as 2.5 mm are then exactly the number 0.0025.
-        values.iter_mut().for_each(|value| *value /= unit.per_metre());
+/// The shortest step along x, for a message.
+fn closest(surface: &Surface) -> String {
+    let steps = surface.x().windows(2).map(|pair| pair[1] - pair[0]);
+    format!("steps along x down to {:e} m", steps.fold(f64::INFINITY, f64::min))
+}
+
+fn to_metres(values: &mut [f64], unit: Option<Unit>) {
+    if let Some(unit) = unit.filter(|unit| !unit.is_si()) {
+        values.iter_mut().for_each(|value| *value = unit.to_si(*value));
     }
 }
 

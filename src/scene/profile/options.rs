@@ -3,6 +3,7 @@
 use std::str::FromStr;
 
 use crate::scene::error::ContentError;
+use crate::scene::text_table::Unit;
 use crate::scene::values::{Word, words};
 
 /// How a file is to be read. What is not given is as the file says, or else as the defaults are.
@@ -18,7 +19,11 @@ pub struct ProfileOptions {
     pub tilt: Tilt,
     /// What a third column means; `None`: what its name in the header says.
     pub third_column: Option<ThirdColumn>,
-    /// The line of an areal measurement, from 1; `None` where there is but one.
+    /// The columns of x and z, by their names or numbers from 1, or of z alone; none: by their names in the file.
+    pub columns: Vec<String>,
+    /// The distance of points along x, and of lines along y, m, of a file without them; none where the file has them.
+    pub spacing: Vec<f64>,
+    /// The line of an areal measurement, from 1; `None`: the middle one.
     pub line: Option<usize>,
     /// Whether the profile is repeated without end.
     pub periodic: bool,
@@ -35,6 +40,16 @@ pub enum LengthUnit {
     Micrometre,
     /// nm
     Nanometre,
+    /// cm
+    Centimetre,
+    /// Å, 1e-10 m
+    Angstrom,
+    /// in, 25.4 mm
+    Inch,
+    /// mil, a thousandth of an inch
+    Mil,
+    /// ft, 12 in
+    Foot,
 }
 
 /// What becomes of points without a height.
@@ -92,21 +107,25 @@ macro_rules! option_words {
     };
 }
 
-option_words!(LengthUnit: "m" Metre, "mm" Millimetre, "um" Micrometre, "nm" Nanometre);
+option_words!(LengthUnit: "m" Metre, "mm" Millimetre, "um" Micrometre, "µm" Micrometre, "nm" Nanometre, "cm" Centimetre,
+    "Å" Angstrom, "in" Inch, "mil" Mil, "ft" Foot);
 option_words!(Missing: "refuse" Refuse, "fill" Fill);
 option_words!(Tilt: "keep" Keep, "remove" Remove);
 option_words!(ThirdColumn: "invalid" Invalid, "valid" Valid, "ignore" Ignore);
 
 impl LengthUnit {
-    /// How many of it are a metre.
-    pub(super) fn per_metre(self) -> f64 {
-        match self {
-            Self::Metre => 1.0,
-            Self::Millimetre => 1e3,
-            Self::Micrometre => 1e6,
-            Self::Nanometre => 1e9,
-        }
+    pub(super) fn unit(self) -> Unit {
+        Unit::parse(self.as_word()).unwrap_or(Unit::ONE)
     }
+}
+
+/// How a table was read, for those who use what it holds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ReadingNote {
+    /// What was found or assumed: columns, units.
+    pub text: String,
+    /// Whether something was assumed that the file does not say.
+    pub assumed: bool,
 }
 
 /// Points as they stand in a file.
@@ -118,8 +137,11 @@ pub(super) struct MeasuredPoints {
     /// The lines of the points in the file; none where it has no lines.
     pub(super) lines: Vec<usize>,
     /// The units of x and z that the file names.
-    pub(super) units: [Option<LengthUnit>; 2],
+    pub(super) units: [Option<Unit>; 2],
+    /// Whether x follows from a spacing, which is in m whatever the units are.
+    pub(super) is_spaced: bool,
     pub(super) warnings: Vec<String>,
+    pub(super) notes: Vec<ReadingNote>,
 }
 
 impl MeasuredPoints {

@@ -92,8 +92,9 @@ impl Digits {
         end
     }
 
-    /// The number times ten to the `exponent`, where one division or product of exact numbers gives it, which rounds as the
-    /// standard library does (W. D. Clinger, How to read floating point numbers accurately, 1990); `None` elsewhere.
+    /// The number times ten to the `exponent`, where one division or product of exact numbers gives it, which rounds as
+    /// the standard library does (W. D. Clinger, How to read floating point numbers accurately, 1990); `None`
+    /// elsewhere.
     fn exact(self, exponent: i32) -> Option<f64> {
         const MOST: u64 = 1 << f64::MANTISSA_DIGITS;
         let exponent = exponent - self.behind;

@@ -1,36 +1,48 @@
-//! Profiles as text: two columns x and z, maybe a third that marks points, below a header of any length that may name
-//! the units and the third column.
+//! Profiles as text: columns of x and z, found by their names, below a header of any length; a column of heights alone;
+//! and areal measurements, as columns x, y, z or as a matrix of heights.
 
 use std::fmt::Write as _;
 
-use super::options::{LengthUnit, MeasuredPoints, Missing, ProfileOptions, ThirdColumn};
+use super::areal::Areal;
+use super::header::{Header, VOCABULARY, cut, note};
+use super::options::{LengthUnit, MeasuredPoints, Missing, ProfileOptions, ReadingNote, ThirdColumn};
 use super::plain::PlainLine;
+use super::roles::{EXPECTED_COLUMNS, Roles};
 use crate::scene::error::ContentError;
-use crate::scene::text_table::Columns;
+use crate::scene::text_table::{Block, Heading, NumberStyle, Separator, is_missing, number};
 use crate::scene::values::ANY;
 
-const EXPECTED_COLUMNS: &str = "two, x and z, separated by comma, semicolon, tab or blanks";
-const ONE_UNIT: &str = "the header names a unit for one of the two columns alone; it is taken for both: x_unit and z_unit \
-                        say otherwise";
+/// What a text holds.
+#[derive(Debug)]
+pub(super) enum Content {
+    Profile(MeasuredPoints),
+    Map(Areal),
+}
 
 /// Reads the points and what the header says of them.
-pub(super) fn read(text: &str, options: &ProfileOptions) -> Result<MeasuredPoints, ContentError> {
-    let numbered =
-        || text.lines().zip(1..).map(|(line, number)| (number, trim(line))).filter(|(_, line)| !line.is_empty());
-    let Some(first) = first_point(numbered()) else { return Err(refuse_all(text, numbered())) };
-    let above: Vec<(usize, &str)> = numbered().take_while(|(number, _)| *number < first).collect();
-    check_header(&above)?;
-    let lines: Vec<&str> = above.iter().map(|(_, line)| *line).collect();
-    let header = Header::read(&lines);
-    let most = text.bytes().filter(|&byte| byte == b'\n').count() + 1;
-    let mut reader = PointsReader::new(header.third_column, options, most);
-    reader.raw.units = header.units;
-    if header.is_one_sided && (options.x_unit.is_none() || options.z_unit.is_none()) {
-        reader.raw.warnings.push(ONE_UNIT.into());
+pub(super) fn read(text: &str, options: &ProfileOptions) -> Result<Content, ContentError> {
+    let blocks = Block::all(text, false);
+    let Some(block) = largest(&blocks)? else { return Err(refuse_all(text)) };
+    check_above(block)?;
+    let column = decimal_column(block);
+    let block = column.as_ref().unwrap_or(block);
+    let header = Header::read(block);
+    if is_matrix(block, &header, options) {
+        return matrix(text, block, &header, options).map(Content::Map);
     }
-    let start = text.split_inclusive('\n').take(first - 1).map(str::len).sum::<usize>();
-    reader.add_lines(&text[start..], first)?;
-    Ok(reader.raw)
+    let roles = Roles::choose(block, &header, options)?;
+    let mut reader = PointsReader::new(block, roles, options);
+    reader.raw.units = header.units((roles.x, roles.z), options, &mut reader.raw)?;
+    reader.add_lines(&text[block.start..], block.first)?;
+    reader.finish(&header)
+}
+
+/// One column of numbers with decimal commas, which look like two columns: below a single name that is known.
+fn decimal_column<'a>(block: &Block<'a>) -> Option<Block<'a>> {
+    let (_, name) = block.above.last()?;
+    let is_name = !name.contains(',') && Heading::parse(name, &VOCABULARY).is_some();
+    let two = block.separator == Separator::Letter(',') && block.columns == 2;
+    (is_name && two).then(|| block.as_column())
 }
 
 /// Two columns, x and z in m, that are read again as the same numbers.
@@ -43,110 +55,126 @@ pub(super) fn write(x: &[f64], z: &[f64]) -> String {
     text
 }
 
-/// Without blanks; but a tab at the end may stand before an empty column.
-fn trim(line: &str) -> &str {
-    line.trim_start().trim_end_matches([' ', '\r'])
-}
-
-fn is_comment(line: &str) -> bool {
-    line.starts_with('#')
-}
-
-/// The line of the first point: the next line has numbers too, or there is none.
-fn first_point<'a>(lines: impl Iterator<Item = (usize, &'a str)>) -> Option<usize> {
-    let mut lines = lines.filter(|(_, line)| !is_comment(line)).peekable();
-    while let Some((number, line)) = lines.next() {
-        if !Columns::split(line, false).is_point() {
-            continue;
+/// The block with most rows: what stands above it is a header, however many numbers that has. Of two long ones neither
+/// is a header.
+fn largest<'b, 'a>(blocks: &'b [Block<'a>]) -> Result<Option<&'b Block<'a>>, ContentError> {
+    /// Rows of numbers that a header may have.
+    const HEADER: usize = 20;
+    let most = blocks.iter().map(|block| block.rows).max().unwrap_or(0);
+    let Some(largest) = blocks.iter().find(|block| block.rows == most) else { return Ok(None) };
+    let long = |block: &&Block<'_>| block.rows > HEADER && block.first != largest.first;
+    match blocks.iter().find(long) {
+        Some(other) => {
+            let given = format!("from line {} and from line {}", largest.first, other.first);
+            Err(ContentError::value(Some(other.first), "tables", &given, "one profile: a file for each"))
         }
-        let goes_on = lines.peek().is_none_or(|(_, line)| {
-            let next = Columns::split(line, false);
-            next.count > 1 && next.number(0).is_some()
-        });
-        if goes_on {
-            return Some(number);
-        }
+        None => Ok(Some(largest)),
     }
-    None
 }
 
 /// A single line above the data holds names; a word among numbers there is a mistake. Longer headers may hold
 /// anything.
-fn check_header(above: &[(usize, &str)]) -> Result<(), ContentError> {
-    let mut lines = above.iter().filter(|(_, line)| !is_comment(line));
-    let (Some((number, line)), None) = (lines.next(), lines.next()) else { return Ok(()) };
-    let row = Columns::split(line, false);
-    if row.is_header() { Ok(()) } else { Err(refuse_row(&row, *number, line)) }
+fn check_above(block: &Block<'_>) -> Result<(), ContentError> {
+    let [(number_of_line, line)] = block.above[..] else { return Ok(()) };
+    let fields = block.separator.split(line);
+    let is_number = |field: &str| number(field, block.separator.allows_decimal_comma()).is_some();
+    let mixed = fields.len() == block.columns && block.columns > 1 && fields.iter().any(|field| is_number(field));
+    if !mixed {
+        return Ok(());
+    }
+    let column = fields.iter().position(|field| !is_number(field)).unwrap_or(0);
+    Err(refuse_field(&fields[column], if column == 0 { "x" } else { "z" }, number_of_line))
 }
 
 /// No line of the text is a point.
-fn refuse_all<'a>(text: &str, lines: impl Iterator<Item = (usize, &'a str)>) -> ContentError {
-    let mut lines = lines.filter(|(_, line)| !is_comment(line));
-    match lines.next() {
-        Some((number, line)) if !Columns::split(line, false).is_header() => {
-            refuse_row(&Columns::split(line, false), number, line)
+fn refuse_all(text: &str) -> ContentError {
+    ContentError::value(Some(text.lines().count().max(1)), "points", "0", "at least 2 points for a profile")
+}
+
+fn refuse_count(count: usize, number: usize, line: &str, expected: &str) -> ContentError {
+    ContentError::value(Some(number), "columns", &format!("{count} in `{}`", cut(line)), expected)
+}
+
+fn refuse_field(field: &str, axis: &str, number: usize) -> ContentError {
+    let given = format!("\"{}\"", cut(field));
+    let missing = if axis == "z" { ", or missing = \"fill\" where heights are missing" } else { "" };
+    ContentError::value(Some(number), axis, &given, &format!("{ANY}{missing}"))
+}
+
+/// Whether the block is a matrix of heights: unnamed columns with two spacings.
+fn is_matrix(block: &Block<'_>, header: &Header<'_>, options: &ProfileOptions) -> bool {
+    options.columns.is_empty() && header.names.is_empty() && block.columns > 1 && options.spacing.len() == 2
+}
+
+/// A matrix of heights: a row is a line along x.
+fn matrix(text: &str, block: &Block<'_>, header: &Header<'_>, options: &ProfileOptions) -> Result<Areal, ContentError> {
+    let mut style = NumberStyle::of(block);
+    let unit = options.z_unit.map(LengthUnit::unit).or(header.set[1]);
+    let mut heights = Vec::with_capacity(block.rows * block.columns);
+    for (line, row) in block.lines(text) {
+        let fields = block.separator.split(row);
+        for field in fields.iter().take(block.columns) {
+            let written = style.read(field).map_err(|_| refuse_field(field, "z", line))?;
+            let height = written.filter(|height| height.is_nan() || ANY.holds(*height));
+            let height = height.or_else(|| is_missing(field).then_some(f64::NAN));
+            heights.push(height.ok_or_else(|| refuse_field(field, "z", line))?);
         }
-        _ => ContentError::value(Some(text.lines().count().max(1)), "points", "0", "at least 2 points for a profile"),
     }
-}
-
-fn refuse_row(row: &Columns<'_>, number: usize, line: &str) -> ContentError {
-    match row.count {
-        2 if row.number(0).is_none_or(|x| !ANY.holds(x)) => refuse_field(row, 0, number),
-        2 => refuse_field(row, 1, number),
-        _ => refuse_count(row, number, line),
-    }
-}
-
-fn refuse_count(row: &Columns<'_>, number: usize, line: &str) -> ContentError {
-    let given = format!("{} in `{}`", row.count, cut(line));
-    let third = "; third_column says what a third one means";
-    ContentError::value(
-        Some(number),
-        "columns",
-        &given,
-        &format!("{EXPECTED_COLUMNS}{}", if row.count == 3 { third } else { "" }),
-    )
-}
-
-fn refuse_field(row: &Columns<'_>, column: usize, number: usize) -> ContentError {
-    let given = format!("\"{}\"", cut(row.fields[column]));
-    let missing = if column == 1 { ", or missing = \"fill\" where heights are missing" } else { "" };
-    ContentError::value(Some(number), ["x", "z"][column], &given, &format!("{ANY}{missing}"))
-}
-
-fn cut(text: &str) -> String {
-    text.chars().take(60).collect()
+    let [dx, dy] = [options.spacing[0], options.spacing[1]];
+    let mut areal = Areal::even("a matrix of heights", [block.columns, block.rows], [dx, dy], heights);
+    areal.unit = unit;
+    areal.notes.push(note("heights", unit));
+    Ok(areal)
 }
 
 /// Collects the points, line by line.
 struct PointsReader {
     raw: MeasuredPoints,
-    third_column: Option<ThirdColumn>,
+    y: Vec<f64>,
+    roles: Roles,
+    columns: usize,
+    last: usize,
+    separator: Separator,
+    style: NumberStyle,
     missing: Missing,
+    spacing: f64,
 }
 
 impl PointsReader {
-    /// A reader of up to `most` points, with the third column as the header has `named` it.
-    fn new(named: Option<ThirdColumn>, options: &ProfileOptions, most: usize) -> Self {
-        let raw = MeasuredPoints::with_capacity(most);
-        Self { raw, third_column: options.third_column.or(named), missing: options.missing }
+    fn new(block: &Block<'_>, roles: Roles, options: &ProfileOptions) -> Self {
+        Self {
+            raw: MeasuredPoints::with_capacity(block.rows),
+            y: Vec::new(),
+            roles,
+            columns: block.columns,
+            last: block.last,
+            separator: block.separator,
+            style: NumberStyle::of(block),
+            missing: options.missing,
+            spacing: options.spacing.first().copied().unwrap_or(0.0),
+        }
     }
 
     /// Adds the points in the lines of `text`, the first of which has the number `first`.
     fn add_lines(&mut self, text: &str, first: usize) -> Result<(), ContentError> {
+        let is_plain = self.columns == 2 && self.roles.x == Some(0) && self.roles.z == 1;
         let mut rest = text;
         for number in first.. {
             if rest.is_empty() {
                 break;
             }
-            if let Some(length) = self.add_plain(number, rest) {
+            if let Some(length) = is_plain.then(|| self.add_plain(number, rest)).flatten() {
                 rest = &rest[length..];
                 continue;
             }
             let (line, behind) = rest.split_once('\n').unwrap_or((rest, ""));
-            let line = trim(line);
-            if !line.is_empty() && !is_comment(line) {
+            let line = line.trim_start_matches([' ', '\r']).trim_end_matches([' ', '\r']);
+            let is_comment = line.starts_with(['#', '%', '!']) || line.starts_with("//");
+            if !line.trim().is_empty() && !is_comment {
+                if number > self.last && !self.is_row(line) && !behind.lines().any(|line| self.is_row(line.trim())) {
+                    self.record_footer(number, rest);
+                    break;
+                }
                 self.add(number, line)?;
             }
             rest = behind;
@@ -154,159 +182,125 @@ impl PointsReader {
         Ok(())
     }
 
+    /// Whether a line behind the block is meant as one of its rows: it begins with a number.
+    fn is_row(&self, line: &str) -> bool {
+        let first = self.separator.split(line).into_iter().next().unwrap_or_default();
+        number(&first, self.separator.allows_decimal_comma()).is_some()
+    }
+
+    /// The lines behind the points, which hold words and results.
+    fn record_footer(&mut self, number: usize, rest: &str) {
+        let lines = rest.lines().filter(|line| !line.trim().is_empty()).count();
+        let text = match lines {
+            1 => format!("line {number}, behind the points, is left out"),
+            _ => format!("{lines} lines from line {number} on, behind the points, are left out"),
+        };
+        self.raw.notes.push(ReadingNote { text, assumed: false });
+    }
+
     /// Adds the first line of `text` if it is plain and its numbers are possible, and returns its bytes.
     fn add_plain(&mut self, number: usize, text: &str) -> Option<usize> {
-        if self.third_column.is_some() {
+        if self.roles.mark.is_some() {
             return None;
         }
         let PlainLine { x, z, length } = PlainLine::read(text).filter(|line| ANY.holds(line.x) && ANY.holds(line.z))?;
+        if !text.as_bytes()[..length].contains(&self.separator_byte()) {
+            return None;
+        }
+        let has_point = text.as_bytes()[..length].contains(&b'.');
+        if has_point && self.style.add(".").is_err() {
+            return None;
+        }
         self.raw.push(number, x, z);
         Some(length)
     }
 
-    fn add(&mut self, number: usize, line: &str) -> Result<(), ContentError> {
-        let row = Columns::split(line, self.third_column.is_some());
-        let is_table = match self.third_column {
-            None => row.count == 2,
-            Some(ThirdColumn::Ignore) => row.count >= 2,
-            Some(_) => row.count == 2 || row.count == 3,
-        };
-        if !is_table {
-            return Err(refuse_count(&row, number, line));
+    fn separator_byte(&self) -> u8 {
+        match self.separator {
+            Separator::Letter(letter) => u8::try_from(letter).unwrap_or(b','),
+            Separator::Blanks => b' ',
         }
-        let in_range = |column: usize| row.number(column).filter(|&value| ANY.holds(value));
-        let x = in_range(0).ok_or_else(|| refuse_field(&row, 0, number))?;
-        let z = if self.is_invalid(&row) { None } else { in_range(1) };
-        let z = match z {
-            Some(z) => z,
-            None if self.missing == Missing::Fill && self.is_gap(&row) => f64::NAN,
-            None if self.is_invalid(&row) => return Err(refuse_invalid(&row, number)),
-            None => return Err(refuse_field(&row, 1, number)),
+    }
+
+    fn add(&mut self, line_number: usize, line: &str) -> Result<(), ContentError> {
+        let mut fields = self.separator.split(line);
+        while fields.len() > self.columns && fields.last().is_some_and(|field| field.is_empty()) {
+            fields.pop();
+        }
+        let least = self.roles.z.max(self.roles.x.unwrap_or(0)) + 1;
+        if fields.len() > self.columns || fields.len() < least {
+            let expected = if self.columns == 2 {
+                let third = if fields.len() == 3 { "; third_column says what a third one means" } else { "" };
+                format!("{EXPECTED_COLUMNS}{third}")
+            } else {
+                format!("{}, as in the rows above", self.columns)
+            };
+            return Err(refuse_count(fields.len(), line_number, line, &expected));
+        }
+        let x = match self.roles.x {
+            Some(column) => {
+                let x = self.value(&fields[column], line_number)?.filter(|&x| ANY.holds(x));
+                x.ok_or_else(|| refuse_field(&fields[column], "x", line_number))?
+            }
+            None => self.spacing * self.raw.x.len() as f64,
         };
-        self.raw.push(number, x, z);
+        let height = &fields[self.roles.z];
+        let invalid = self.roles.mark.filter(|&mark| is_invalid(&fields, mark));
+        let written = if invalid.is_some() { None } else { self.value(height, line_number)? };
+        let z = written.filter(|&z| ANY.holds(z));
+        // A number that no height can have, 1e38, is one of those that stand for none.
+        let is_gap = invalid.is_some() || is_missing(height) || written.is_some();
+        let z = match (z, invalid) {
+            (Some(z), _) => z,
+            (None, _) if self.missing == Missing::Fill && is_gap => f64::NAN,
+            (None, Some((column, _))) => {
+                return Err(refuse_invalid(fields.get(column).map_or("", |field| field), line_number));
+            }
+            (None, None) => return Err(refuse_field(height, "z", line_number)),
+        };
+        if let Some(column) = self.roles.y {
+            let y = fields.get(column).map_or("", |field| field);
+            let y_value = self.value(y, line_number)?.filter(|&y| ANY.holds(y));
+            self.y.push(y_value.ok_or_else(|| refuse_field(y, "y", line_number))?);
+        }
+        self.raw.push(line_number, x, z);
         Ok(())
     }
 
-    /// Whether the third column marks the height as not valid.
-    fn is_invalid(&self, row: &Columns<'_>) -> bool {
-        match self.third_column {
-            Some(ThirdColumn::Invalid) => row.is_marked(2),
-            Some(ThirdColumn::Valid) => !row.is_marked(2),
-            Some(ThirdColumn::Ignore) | None => false,
-        }
+    /// The number in a field.
+    fn value(&mut self, field: &str, line: usize) -> Result<Option<f64>, ContentError> {
+        let given = || format!("\"{}\"", cut(field));
+        self.style.read(field).map_err(|_| ContentError::value(Some(line), "number", &given(), NumberStyle::EXPECTED))
     }
 
-    fn is_gap(&self, row: &Columns<'_>) -> bool {
-        self.is_invalid(row) || row.is_missing(1) || row.number(1).is_some_and(f64::is_nan)
+    /// The profile; or the map, where y takes several values.
+    fn finish(mut self, header: &Header<'_>) -> Result<Content, ContentError> {
+        let varies = self.y.windows(2).any(|pair| pair[0] != pair[1]);
+        if varies {
+            return Areal::of_points(self.raw, &self.y).map(Content::Map);
+        }
+        self.raw.is_spaced = self.roles.x.is_none();
+        if header.names.is_empty() && self.roles.x.is_some() {
+            let text = "no names: x is the first column, z the second".to_owned();
+            self.raw.notes.push(ReadingNote { text, assumed: true });
+        }
+        Ok(Content::Profile(self.raw))
     }
 }
 
-fn refuse_invalid(row: &Columns<'_>, number: usize) -> ContentError {
-    let given = format!("\"{}\"", cut(row.fields[2]));
+/// Whether the mark of a row says that its height is not valid.
+fn is_invalid(fields: &[std::borrow::Cow<'_, str>], (column, meaning): (usize, ThirdColumn)) -> bool {
+    const UNSET: [&str; 7] = ["", "false", "no", "n", "f", "-", "off"];
+    let field = fields.get(column).map_or("", |field| field);
+    let is_unset = UNSET.iter().any(|word| field.eq_ignore_ascii_case(word)) || number(field, true) == Some(0.0);
+    match meaning {
+        ThirdColumn::Invalid => !is_unset,
+        ThirdColumn::Valid => is_unset,
+        ThirdColumn::Ignore => false,
+    }
+}
+
+fn refuse_invalid(field: &str, number: usize) -> ContentError {
+    let given = format!("\"{}\"", cut(field));
     ContentError::value(Some(number), "third column", &given, "valid points alone, or missing = \"fill\"")
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Header {
-    units: [Option<LengthUnit>; 2],
-    /// Whether a unit stands beside one of the two columns alone: it is taken for both, which may be wrong.
-    is_one_sided: bool,
-    third_column: Option<ThirdColumn>,
-}
-
-/// Lines above the data that may hold the names of the columns and their units.
-const NEAR: usize = 2;
-
-impl Header {
-    /// Reads the header's `lines`, comments included. Units are looked for in the last two lines, beside or below the names
-    /// of columns, as in `x [mm]; z (µm)`, `X_(microns),y1`, `z / µm`; and in lines of their own, as in `X-Unit: mm`.
-    fn read(lines: &[&str]) -> Self {
-        let lines: Vec<&str> = lines.iter().map(|line| line.trim_start_matches(['#', '%', '!', ' '])).collect();
-        let mut set = [None; 2];
-        let settings = lines.iter().filter_map(|line| setting(line));
-        settings.for_each(|(axes, unit)| axes.iter().for_each(|&axis| set[axis] = Some(unit)));
-        let near = || lines.iter().rev().filter(|line| setting(line).is_none()).take(NEAR);
-        let beside = near().map(|line| column_units(line)).find(|units| *units != [None, None]).unwrap_or_default();
-        let (x, z) = (beside[0].or(set[0]), beside[1].or(set[1]));
-        Self {
-            units: [x.or(z), z.or(x)],
-            is_one_sided: x.is_none() != z.is_none(),
-            third_column: near().find_map(|line| third_column(&Columns::split(line, true))),
-        }
-    }
-}
-
-/// Of a line such as `X-Unit: mm` or `unit;um`: the axes, 0 for x and 1 for z, and their unit.
-fn setting(line: &str) -> Option<(&'static [usize], LengthUnit)> {
-    let words: Vec<String> = words(line).map(str::to_lowercase).collect();
-    let mut units = words.iter().filter_map(|word| unit_of(word));
-    let (unit, None) = (units.next()?, units.next()) else { return None };
-    let name = words.iter().position(|word| word.ends_with("unit") || word.ends_with("units"))?;
-    let names = |axis: &[&str]| {
-        let of_axis = |word: &String| axis.iter().any(|name| word == name || *word == format!("{name}unit"));
-        words[..=name].iter().any(of_axis)
-    };
-    Some(match (names(&["x"]), names(&["z", "y", "height"])) {
-        (true, false) => (&[0], unit),
-        (false, true) => (&[1], unit),
-        _ => (&[0, 1], unit),
-    })
-}
-
-/// The units beside the names of two columns, or below them.
-fn column_units(line: &str) -> [Option<LengthUnit>; 2] {
-    if line.contains([';', '\t', ',']) {
-        let row = Columns::split(line, true);
-        return [field_unit(row.fields[0]), field_unit(row.fields[1])];
-    }
-    let fields: Vec<&str> = line.split_whitespace().collect();
-    if let [x, z] = fields[..] {
-        return [field_unit(x), field_unit(z)];
-    }
-    // Blanks separate too much: only what is marked as a unit is one.
-    let marked = |(i, field): (usize, &&str)| {
-        let after_slash = i > 0 && fields[i - 1].ends_with('/');
-        if after_slash || field.contains(['[', '(', '/']) { field_unit(field) } else { None }
-    };
-    let mut units = fields.iter().enumerate().filter_map(marked);
-    [units.next(), units.next()]
-}
-
-/// The unit at the end of the name of a column: `x [mm]`, `X_(microns)`, `z / µm`, `mm`.
-fn field_unit(field: &str) -> Option<LengthUnit> {
-    words(field).last().and_then(unit_of)
-}
-
-fn words(text: &str) -> impl Iterator<Item = &str> {
-    text.split(|letter: char| !letter.is_alphanumeric()).filter(|word| !word.is_empty())
-}
-
-fn unit_of(word: &str) -> Option<LengthUnit> {
-    let lower = word.to_lowercase();
-    let stem = lower.strip_suffix('s').filter(|stem| stem.len() > 2).unwrap_or(&lower);
-    Some(match stem {
-        // A single capital M is no metre.
-        "m" if word == "m" => LengthUnit::Metre,
-        "meter" | "metre" => LengthUnit::Metre,
-        "mm" | "millimeter" | "millimetre" => LengthUnit::Millimetre,
-        // Two letters look like µ: the sign of the unit and the Greek one.
-        "um" | "\u{b5}m" | "\u{3bc}m" | "micron" | "micrometer" | "micrometre" => LengthUnit::Micrometre,
-        "nm" | "nanometer" | "nanometre" => LengthUnit::Nanometre,
-        _ => return None,
-    })
-}
-
-fn third_column(row: &Columns<'_>) -> Option<ThirdColumn> {
-    if row.count < 3 {
-        return None;
-    }
-    let name = row.fields[2].to_lowercase();
-    let has = |parts: &[&str]| parts.iter().any(|part| name.contains(part));
-    if has(&["invalid", "missing", "mask", "bad", "outlier"]) {
-        Some(ThirdColumn::Invalid)
-    } else if has(&["valid", "good"]) {
-        Some(ThirdColumn::Valid)
-    } else {
-        None
-    }
 }

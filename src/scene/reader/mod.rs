@@ -8,6 +8,7 @@ mod table;
 use std::path::Path as FilePath;
 
 use super::keys::Form;
+use super::prony_file::{ElasticConstants, PronySeries};
 use super::values::Word;
 use super::{
     ByLink, CarrierBodies, Extrapolation, FmuOptions, Foundation, FoundationKind, Friction, Initial, Layer, Link,
@@ -70,7 +71,7 @@ fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
     let excitation =
         root.tables("excitation", |table| carrier::read_phase(table, &carrier, wlf.filter(|_| temperature_input)))?;
     root.finish()?;
-    let Found { files, extracts, warnings } = found;
+    let Found { files, extracts, warnings, notes } = found;
     let foundation = material.as_ref().and_then(|material| Foundation::new(&layer, material, &surface));
     let mut scene = Scene {
         name,
@@ -90,6 +91,7 @@ fn read_scene(mut root: TableReader<'_>) -> Result<Scene> {
         files,
         extracts,
         warnings,
+        notes,
     };
     let cold = scene.material.as_ref().and_then(warnings::cold_temperatures);
     let warnings: Vec<String> =
@@ -170,18 +172,21 @@ fn read_link(table: &mut TableReader<'_>) -> Result<Link> {
 }
 
 fn read_material(table: &mut TableReader<'_>, found: &mut Found) -> Result<Material> {
+    let density = table.number("density")?;
+    let (poisson_ratio, equilibrium_modulus) = (table.number("poisson_ratio")?, table.number("equilibrium_modulus")?);
+    let elastic = ElasticConstants { poisson_ratio, equilibrium_modulus };
     Ok(Material {
-        density: table.number("density")?,
-        poisson_ratio: table.number("poisson_ratio")?,
-        equilibrium_modulus: table.number("equilibrium_modulus")?,
+        density,
+        poisson_ratio,
+        equilibrium_modulus,
         viscosity: table.optional_number("viscosity")?,
-        prony: read_prony(&table.required("prony")?, found)?,
+        prony: read_prony(&table.required("prony")?, elastic, found)?,
         wlf: table.optional_table("wlf", read_wlf)?,
     })
 }
 
 /// The Prony series, in the scene or in a file.
-fn read_prony(entry: &Entry<'_>, found: &mut Found) -> Result<Vec<PronyTerm>> {
+fn read_prony(entry: &Entry<'_>, elastic: ElasticConstants, found: &mut Found) -> Result<Vec<PronyTerm>> {
     if !entry.is_text() {
         return entry.tables(|table| {
             Ok(PronyTerm { modulus: table.number("modulus")?, relaxation_time: table.number("relaxation_time")? })
@@ -190,10 +195,11 @@ fn read_prony(entry: &Entry<'_>, found: &mut Found) -> Result<Vec<PronyTerm>> {
     let path = surface::read_path(entry)?;
     let file = entry.source().folder().join(&path);
     let bytes = read_file(&file).map_err(|error| entry.unreadable(&error))?;
-    let terms =
-        PronyTerm::parse(&bytes).map_err(|error| error.in_file(file).named_by(entry.location(), entry.path()))?;
+    let series = PronySeries::parse(&bytes, elastic)
+        .map_err(|error| error.in_file(file).named_by(entry.location(), entry.path()))?;
+    found.add_notes(&path, series.notes);
     found.add_file(path);
-    Ok(terms)
+    Ok(series.terms)
 }
 
 fn read_wlf(table: &mut TableReader<'_>) -> Result<Wlf> {

@@ -8,11 +8,20 @@ use super::{read_input, read_name, surface};
 use crate::scene::error::ContentError;
 use crate::scene::keys::{AREA, COORDINATE, Form, Key, PATCH_ROOT, ShapeKind};
 use crate::scene::patch_file::{FaceShape, Grid, MAX_ELEMENTS, PatchFile, PatchGroup, TableExtrapolation};
-use crate::scene::text_table::{self, Row, decode};
+use crate::scene::text_table::{self, Dimension, Heading, Row, Unit, Words, decode};
 use crate::scene::{FmuOptions, SceneError, read_file, read_text};
 
 /// The columns of a file of points.
-const COLUMNS: [&str; 4] = ["x", "y", "z", "area"];
+const COLUMNS: [Words<usize>; 4] = [
+    column(0, Dimension::Length, &["x"]),
+    column(1, Dimension::Length, &["y"]),
+    column(2, Dimension::Length, &["z"]),
+    column(3, Dimension::Area, &["area"]),
+];
+
+const fn column(place: usize, dimension: Dimension, name: &'static [&'static str]) -> Words<usize> {
+    Words { quantity: place, dimension, key_words: name, other_words: &[] }
+}
 
 impl PatchFile {
     /// Reads the patch file at `path` and the file of points that it names; the table is not read.
@@ -126,11 +135,12 @@ fn parse_points(bytes: &[u8]) -> std::result::Result<Vec<[f64; 4]>, ContentError
     let mut rows = text_table::rows(&text, Some(','));
     let header = rows.next();
     let line = header.as_ref().map(|row| row.line);
-    if header.as_ref().is_none_or(|row| row.fields != COLUMNS) {
+    let columns = header.as_ref().and_then(|row| columns(row));
+    let Some(columns) = columns else {
         let given = header.map_or_else(String::new, |row| row.fields.join(","));
         return Err(ContentError::value(line, "columns", &given, "x,y,z,area"));
-    }
-    let points: Vec<[f64; 4]> = rows.map(|row| point(&row)).collect::<std::result::Result<_, _>>()?;
+    };
+    let points: Vec<[f64; 4]> = rows.map(|row| point(&row, &columns)).collect::<std::result::Result<_, _>>()?;
     if points.is_empty() || points.len() as i64 > MAX_ELEMENTS {
         let expected = format!("1 to {MAX_ELEMENTS}, one an element");
         return Err(ContentError::value(line, "rows", &points.len().to_string(), &expected));
@@ -138,19 +148,36 @@ fn parse_points(bytes: &[u8]) -> std::result::Result<Vec<[f64; 4]>, ContentError
     Ok(points)
 }
 
-fn point(row: &Row<'_>) -> std::result::Result<[f64; 4], ContentError> {
+/// The places of x, y, z and the area in a row, and their units; each column once, and no others.
+fn columns(header: &Row<'_>) -> Option<[(usize, Unit); 4]> {
+    let headings: Vec<Heading<usize>> =
+        header.fields.iter().map(|name| Heading::parse(name, &COLUMNS)).collect::<Option<_>>()?;
+    if headings.len() != COLUMNS.len() {
+        return None;
+    }
+    let mut found = [(0, Unit::ONE); 4];
+    for (place, entry) in found.iter_mut().enumerate() {
+        let index = headings.iter().position(|heading| heading.quantity == place)?;
+        *entry = (index, headings[index].unit.known().ok()?.unwrap_or(Unit::ONE));
+    }
+    Some(found)
+}
+
+fn point(row: &Row<'_>, columns: &[(usize, Unit); 4]) -> std::result::Result<[f64; 4], ContentError> {
     if row.fields.len() != COLUMNS.len() {
         let given = row.fields.len().to_string();
         return Err(ContentError::value(Some(row.line), "columns", &given, "four numbers"));
     }
     let mut numbers = [0.0; 4];
-    for (i, (number, field)) in numbers.iter_mut().zip(&row.fields).enumerate() {
+    for (i, (number, (index, unit))) in numbers.iter_mut().zip(columns).enumerate() {
         let key: &Key = if i == 3 { &AREA } else { &COORDINATE };
-        let range = key.range();
-        let read = field.parse().ok().filter(|&value| range.is_some_and(|range| range.holds(value)));
+        let (range, field) = (key.range(), &row.fields[*index]);
+        let read = field.parse().ok().map(|written| unit.to_si(written));
+        let read = read.filter(|&value| range.is_some_and(|range| range.holds(value)));
         let expected = || range.map_or_else(String::new, |range| range.to_string());
         let given = || format!("\"{}\"", field.chars().take(60).collect::<String>());
-        *number = read.ok_or_else(|| ContentError::value(Some(row.line), COLUMNS[i], &given(), &expected()))?;
+        let name = COLUMNS[i].key_words[0];
+        *number = read.ok_or_else(|| ContentError::value(Some(row.line), name, &given(), &expected()))?;
     }
     Ok(numbers)
 }

@@ -4,14 +4,9 @@ use std::path::{Component, Path as FilePath, PathBuf};
 
 use super::table::{Entry, Result, TableReader};
 use crate::scene::keys::{PATH, SurfaceKind};
-use crate::scene::profile::{self, Extract, ProfileOptions, ReadFailure, Tilt};
+use crate::scene::profile::{self, Extract, ProfileOptions, ReadFailure, ReadingNote, Tilt};
 use crate::scene::surface::{Coordinate, SelfAffine, check_points};
-use crate::scene::values::LARGEST;
 use crate::scene::{Layer, Surface, warnings};
-
-/// The largest slope of a profile: a step of a metre from one atom to the next has less, and its square times that of
-/// the largest speed does not overflow.
-const STEEPEST: f64 = 1e12;
 
 /// A number of points that is whole but for rounding is that number.
 const ROUNDING: f64 = 1.0e-9;
@@ -22,9 +17,20 @@ pub(super) struct Found {
     pub(super) files: Vec<PathBuf>,
     pub(super) extracts: Vec<Extract>,
     pub(super) warnings: Vec<String>,
+    pub(super) notes: Vec<ReadingNote>,
 }
 
 impl Found {
+    /// Adds how the file at `path` was read.
+    pub(super) fn add_notes(&mut self, path: &FilePath, notes: Vec<ReadingNote>) {
+        let named = |note: ReadingNote| ReadingNote { text: format!("{}: {}", path.display(), note.text), ..note };
+        for note in notes.into_iter().map(named) {
+            if !self.notes.contains(&note) {
+                self.notes.push(note);
+            }
+        }
+    }
+
     /// Adds a file that the scene reads, each once.
     pub(super) fn add_file(&mut self, path: PathBuf) {
         if !self.files.contains(&path) {
@@ -46,13 +52,8 @@ pub(super) fn read(entry: &Entry<'_>, found: &mut Found) -> Result<Surface> {
         SurfaceKind::File => read_file(&mut table, found)?,
     };
     table.finish()?;
-    let spline = surface.spline();
-    let bounds = spline.bounds();
-    if spline.is_finite() && bounds.slope_max_abs <= STEEPEST && bounds.curvature_max_abs <= LARGEST {
-        return Ok(surface);
-    }
-    let limits = format!("slopes up to {STEEPEST:e} and curvatures up to {LARGEST:e} 1/m");
-    Err(entry.refuse(format_args!("points with a spline of {limits}")))
+    surface.check_slopes().map_err(|expected| entry.refuse(expected))?;
+    Ok(surface)
 }
 
 fn read_sinusoid(table: &mut TableReader<'_>) -> Result<Surface> {
@@ -113,6 +114,7 @@ fn read_file(table: &mut TableReader<'_>, found: &mut Found) -> Result<Surface> 
     })?;
     let warnings = profile.warnings.iter().map(|warning| format!("{}: {warning}", path.display()));
     found.warnings.extend(warnings);
+    found.add_notes(&path, profile.notes);
     if !found.files.contains(&profile.file) {
         let name = profile.file.clone();
         found.extracts.extend(profile.extract.map(|text| Extract { source: path, name, text }));
@@ -129,6 +131,8 @@ fn read_options(table: &mut TableReader<'_>) -> Result<ProfileOptions> {
         missing: table.optional_choice("missing")?.unwrap_or_default(),
         tilt: table.optional_choice("tilt")?.unwrap_or_default(),
         third_column: table.optional_choice("third_column")?,
+        columns: read_columns(table)?,
+        spacing: read_spacing(table)?,
         line: table.optional_whole("line")?.and_then(|line| usize::try_from(line).ok()),
         periodic: table.flag("periodic")?,
     };
@@ -136,6 +140,25 @@ fn read_options(table: &mut TableReader<'_>) -> Result<ProfileOptions> {
         Some(entry) => Err(entry.refuse("\"keep\" for a periodic profile, whose ends meet as they are")),
         None => Ok(options),
     }
+}
+
+/// The names of columns: x and z, or z alone.
+fn read_columns(table: &mut TableReader<'_>) -> Result<Vec<String>> {
+    let Some(entry) = table.entry("columns") else { return Ok(Vec::new()) };
+    let elements = entry.elements()?;
+    let names = elements.iter().map(|element| element.text().map(str::to_owned)).collect::<Result<Vec<_>>>();
+    match names.unwrap_or_default() {
+        names if (1..=2).contains(&names.len()) => Ok(names),
+        _ => Err(entry.refuse_type()),
+    }
+}
+
+/// One distance, or two of a matrix.
+fn read_spacing(table: &mut TableReader<'_>) -> Result<Vec<f64>> {
+    let Some(entry) = table.entry("spacing") else { return Ok(Vec::new()) };
+    let numbers = entry.number_or_numbers()?;
+    let expected = "a number, of a column of heights, or two along x and y, of a matrix of heights";
+    if (1..=2).contains(&numbers.len()) { Ok(numbers) } else { Err(entry.refuse_count(numbers.len(), expected)) }
 }
 
 /// Only files beside or below the scene can go into the FMU with it.

@@ -146,6 +146,16 @@ impl<'a> Entry<'a> {
         numbers.map_err(|i| self.element(i).unwrap_or_else(|| self.clone()).refuse(range))
     }
 
+    /// The numbers of an array, or a single number without one.
+    pub(super) fn number_or_numbers(&self) -> Result<Vec<f64>> {
+        let Allowed::Numbers(range) = self.key.allowed else { return Err(self.refuse_type()) };
+        match number(self.value) {
+            Some(number) if range.holds(number) => Ok(vec![number]),
+            Some(_) => Err(self.refuse(range)),
+            None => self.numbers(),
+        }
+    }
+
     /// The elements of an array, their keys counted from 1.
     pub(super) fn elements(&self) -> Result<Vec<Self>> {
         let count = self.value.as_array().ok_or_else(|| self.refuse_type())?.len();

@@ -53,7 +53,8 @@ fn keys(first: u8, second: u8) -> String {
     let line = choice(second, 0, &["line=1", "line=2", "line=3"]);
     let third = choice(second, 2, &["third_column='invalid'", "third_column='valid'", "third_column='ignore'"]);
     let unit = choice(second, 4, &["unit='um'", "x_unit='mm'", "z_unit='nm'"]);
-    let keys = [missing, tilt, line, third, unit].into_iter().flatten();
+    let columns = choice(second, 6, &["columns=['1','2']", "spacing=1e-5", "spacing=[1e-5,1e-5]"]);
+    let keys = [missing, tilt, line, third, unit, columns].into_iter().flatten();
     keys.map(|key| format!(",{key}")).collect()
 }
 

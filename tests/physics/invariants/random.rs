@@ -137,6 +137,7 @@ fn cases_of(scales: Scales, method: Method) -> impl Strategy<Value = Case> {
                 files: Vec::new(),
                 extracts: Vec::new(),
                 warnings: Vec::new(),
+                notes: Vec::new(),
             };
             Case { scene, start, motions }
         },

@@ -123,7 +123,7 @@ fn self_affine_surfaces_that_cannot_be() {
 fn options_of_files_that_cannot_be() {
     let folder = Folder::new("file-options");
     folder.write("profile.csv", "0 1\n1 2\n2 1\n");
-    let units = r#"expected one of "m", "mm", "um", "nm""#;
+    let units = r#"expected one of "m", "mm", "um", "µm", "nm", "cm", "Å", "in", "mil", "ft""#;
     let cases = [
         ("unit = 'km'", format!("surface.unit = 'km': {units}")),
         ("x_unit = 1", format!("surface.x_unit = 1: {units}")),
@@ -141,6 +141,6 @@ fn options_of_files_that_cannot_be() {
         assert_eq!(refusal, format!("scene.toml:17: {message}"));
     }
     let refusal = folder.refusal(&with_line(15, "kind = 'file'\npath = 'profile.csv'\nline = 1"));
-    let expected = "line = 1: expected no such number for a profile: it chooses the line of an areal measurement (X3P)";
+    let expected = "line = 1: expected no such number for a profile: it chooses the line of an areal measurement";
     assert_eq!(refusal, format!("profile.csv: {expected} (file named by surface.path, scene.toml:16)"));
 }

@@ -1,5 +1,5 @@
-//! The container of an X3P file: the zip archive, its document `main.xml` and what that says of the points. What is read
-//! is bounded: a few bytes may unpack into all memory.
+//! The container of an X3P file: the zip archive, its document `main.xml` and what that says of the points. What is
+//! read is bounded: a few bytes may unpack into all memory.
 
 use std::collections::BTreeMap;
 use std::io::{Cursor, Read};
@@ -245,17 +245,11 @@ impl MatrixSize {
         self.columns * self.rows
     }
 
-    /// The line, from 0, that was asked for by a number from 1; none is needed where there is but one.
+    /// The line, from 0, that was asked for by a number from 1; the middle one where none was.
     pub(super) fn choose(&self, line: Option<usize>) -> Result<usize, ContentError> {
         let rows = self.rows;
         match line {
-            None if rows == 1 => Ok(0),
-            None => Err(ContentError::value(
-                None,
-                "line",
-                "not given",
-                &format!("a whole number from 1 to {rows}: there are {rows} lines"),
-            )),
+            None => Ok(rows.div_ceil(2) - 1),
             Some(line) if line <= rows => Ok(line - 1),
             Some(line) => Err(ContentError::value(
                 None,

@@ -15,6 +15,7 @@ use std::ops::Range;
 
 use md5::{Digest, Md5};
 
+use super::areal::line_note;
 use super::options::{MeasuredPoints, Missing, ProfileOptions};
 use crate::scene::error::ContentError;
 use crate::scene::values::ANY;
@@ -33,7 +34,8 @@ pub(super) fn read(bytes: &[u8], options: &ProfileOptions) -> Result<MeasuredPoi
     } else {
         binary(&document, &size, line, &mut archive)?
     };
-    let raw = MeasuredPoints { x, z, ..MeasuredPoints::default() };
+    let notes = vec![line_note("an X3P file", line + 1, size.rows, options.line.is_some())];
+    let raw = MeasuredPoints { x, z, notes, ..MeasuredPoints::default() };
     match raw.z.iter().position(|z| z.is_nan()).filter(|_| options.missing == Missing::Refuse) {
         Some(i) => Err(raw.refuse(i, "z", "missing", "a height, or missing = \"fill\" where heights are missing")),
         None => Ok(raw),
@@ -124,7 +126,8 @@ impl Axes {
         (x, z)
     }
 
-    /// The coordinates of a point written as text, `x;y;z`, or the absolute coordinates alone. An empty text is a missing height.
+    /// The coordinates of a point written as text, `x;y;z`, or the absolute coordinates alone. An empty text is a
+    /// missing height.
     fn written(&self, i: usize, point: &str) -> Result<(f64, f64), ContentError> {
         let wrong = || {
             ContentError::value(None, &format!("DataList[{}]", i + 1), point, "coordinates, separated by semicolons")

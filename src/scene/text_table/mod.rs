@@ -1,11 +1,19 @@
 //! Tables of text as people, instruments and spreadsheets write them: from bytes to text, from text to rows of fields.
 //!
 //! The one reader of text tables: profiles, Prony series, measured moduli, sweep tables and result files go through it.
-//! Files with the same separator on all lines are read by [`rows`]; the output of instruments, whose headers may hold
-//! anything, line by line, each with the separator that it shows.
+//! Files of this program are read by [`rows`]. In the output of instruments and people, which may begin with anything,
+//! [`Block`] finds the tables; [`Heading`] reads what a column holds, and [`Unit`] in which unit.
+
+mod blocks;
+mod headings;
+mod units;
 
 use std::borrow::Cow;
 use std::iter;
+
+pub use blocks::{Block, Head, Line, MISSING, MixedDecimals, NumberStyle, Separator, is_missing, number};
+pub use headings::{Heading, HeadingUnit, Words, plain, words};
+pub use units::{Dimension, Unit};
 
 use super::Problem;
 
@@ -84,8 +92,8 @@ fn numbered_lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty())
 }
 
-/// The fields of a line, without blanks around them. A field in quotation marks may hold separators, and quotation marks
-/// doubled.
+/// The fields of a line, without blanks around them. A field in quotation marks may hold separators, and quotation
+/// marks doubled.
 pub fn fields(line: &str, separator: char) -> impl Iterator<Item = Cow<'_, str>> {
     let mut rest = Some(line);
     iter::from_fn(move || {
@@ -128,102 +136,6 @@ fn unquoted(field: &str) -> Cow<'_, str> {
 pub fn quoted(text: &str) -> String {
     let text = text.replace(['\n', '\r'], " ");
     if text.contains([',', '"']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text }
-}
-
-/// The first columns of a line whose separator shows in the line itself.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Columns<'a> {
-    /// Up to three columns, without blanks around them; empty where there are fewer.
-    pub(super) fields: [&'a str; 3],
-    /// The last column that is not empty.
-    last: &'a str,
-    /// How many columns there are: empty ones at the end count up to the second.
-    pub(super) count: usize,
-    /// Whether a comma in a number stands before its decimals: where it separates no columns.
-    decimal_comma: bool,
-}
-
-impl<'a> Columns<'a> {
-    /// Splits a line at semicolons, tabs or blanks, or else at commas. Any number of tabs and blanks separates, unless
-    /// `tabs_count`: an empty column between two tabs is then one.
-    pub(super) fn split(line: &'a str, tabs_count: bool) -> Self {
-        if line.contains(';') {
-            Self::of(line.split(';'), true)
-        } else if line.contains('\t') {
-            let blanks = Self::of(line.split_whitespace(), true);
-            if tabs_count || blanks.count < 2 { Self::of(line.split('\t'), true) } else { blanks }
-        } else if line.contains(',') {
-            let commas = Self::of(line.split(','), false);
-            // `0,5 1,5` are two numbers with decimal commas, for `5 1` is none.
-            let is_blank = |field: &&str| field.contains(' ');
-            if !line.contains(' ') || !commas.fields.iter().any(is_blank) {
-                return commas;
-            }
-            Some(Self::of(line.split_whitespace(), true)).filter(Self::starts_with_numbers).unwrap_or(commas)
-        } else {
-            Self::of(line.split_whitespace(), false)
-        }
-    }
-
-    fn of(fields: impl Iterator<Item = &'a str>, decimal_comma: bool) -> Self {
-        let mut columns = Self { decimal_comma, ..Self::default() };
-        for (i, field) in fields.enumerate() {
-            let field = field.trim();
-            if let Some(column) = columns.fields.get_mut(i) {
-                *column = field;
-            }
-            if !field.is_empty() {
-                columns.last = field;
-            }
-            if !field.is_empty() || i < 2 {
-                columns.count = i + 1;
-            }
-        }
-        columns
-    }
-
-    /// The number in column `i`; it may be NaN.
-    pub(super) fn number(&self, i: usize) -> Option<f64> {
-        self.parse(self.fields[i])
-    }
-
-    fn parse(&self, field: &str) -> Option<f64> {
-        field.parse().ok().or_else(|| self.parse_quoted_or_with_comma(field))
-    }
-
-    fn parse_quoted_or_with_comma(&self, field: &str) -> Option<f64> {
-        let bare = field.trim_matches('"').trim();
-        if self.decimal_comma && bare.contains(',') { bare.replace(',', ".").parse().ok() } else { bare.parse().ok() }
-    }
-
-    fn starts_with_numbers(&self) -> bool {
-        self.count >= 2 && self.number(0).is_some() && (self.number(1).is_some() || self.is_missing(1))
-    }
-
-    /// Whether this can be a point: x, and a height or none.
-    pub(super) fn is_point(&self) -> bool {
-        self.starts_with_numbers() && self.number(0).is_some_and(f64::is_finite)
-    }
-
-    /// Whether there are words alone, as the names of columns; one word among numbers is a mistake.
-    pub(super) fn is_header(&self) -> bool {
-        self.number(0).is_none() && self.parse(self.last).is_none()
-    }
-
-    /// Whether column `i` says in one of the usual ways that there is no value.
-    pub(super) fn is_missing(&self, i: usize) -> bool {
-        const WORDS: [&str; 8] = ["nan", "n/a", "na", "#n/a", "null", "none", "bad", "missing"];
-        let field = self.fields[i].trim_matches('"');
-        let signs = field.chars().all(|sign| "*-".contains(sign));
-        signs || WORDS.iter().any(|word| field.eq_ignore_ascii_case(word))
-    }
-
-    /// Whether column `i` is a mark that is set: neither empty nor 0, nor a word such as `no`.
-    pub(super) fn is_marked(&self, i: usize) -> bool {
-        const UNSET: [&str; 7] = ["", "false", "no", "n", "f", "-", "off"];
-        let field = self.fields[i].trim_matches('"');
-        !UNSET.iter().any(|word| field.eq_ignore_ascii_case(word)) && self.number(i) != Some(0.0)
-    }
 }
 
 #[cfg(test)]

@@ -1,0 +1,101 @@
+//! Cards of programs of finite elements: g, k and τ of Abaqus, shares and times of Ansys.
+//!
+//! Their numbers have no units: times are taken in s, and E_0 stands in a comment, with its unit.
+
+use super::{ModulusKind, WrittenSeries, WrittenTerm, note};
+use crate::scene::error::ContentError;
+use crate::scene::keys;
+use crate::scene::text_table::{Line, number};
+
+/// The series in the cards of a text; `None` where there are none.
+pub(super) fn read(text: &str) -> Option<Result<WrittenSeries<'_>, ContentError>> {
+    let lines = || (1..).zip(text.lines().map(str::trim)).filter(|(_, line)| !line.is_empty());
+    let begins = |(number, line): &Line<'_>, words: &[&str]| {
+        let found = line.to_uppercase().replace(' ', "");
+        words.iter().all(|word| found.contains(word)).then_some(*number)
+    };
+    let abaqus = lines().find_map(|line| begins(&line, &["*VISCOELASTIC"]));
+    let ansys = lines().find_map(|line| begins(&line, &["TB,PRONY"]));
+    let (line, comment, terms) = match (abaqus, ansys) {
+        (Some(line), _) => (line, "**", abaqus_terms(lines().skip_while(move |(number, _)| *number < line))),
+        (None, Some(line)) => (line, "!", ansys_terms(lines())),
+        (None, None) => return None,
+    };
+    let name = if abaqus.is_some() { "Abaqus" } else { "Ansys" };
+    Some(terms.map(|terms| WrittenSeries {
+        terms,
+        kind: ModulusKind::Relative,
+        modulus_note: note(format!("a card of {name}"), false),
+        line: Some(line),
+        header: lines().map(|(number, line)| (number, line.trim_start_matches(['*', '!', '#', '/', ' ']))).collect(),
+        comment,
+        notes: vec![note("relaxation times in s are assumed", true)],
+    }))
+}
+
+/// The rows g, k, τ below `*VISCOELASTIC, TIME=PRONY`.
+fn abaqus_terms<'a>(mut lines: impl Iterator<Item = Line<'a>>) -> Result<Vec<WrittenTerm>, ContentError> {
+    let (number, keyword) = lines.next().unwrap_or_default();
+    if !keyword.to_uppercase().replace(' ', "").contains("TIME=PRONY") {
+        let given = format!("`{keyword}`");
+        return Err(ContentError::value(
+            Some(number),
+            "card",
+            &given,
+            "*VISCOELASTIC, TIME=PRONY, with rows of g, k, tau",
+        ));
+    }
+    let data = lines.filter(|(_, line)| !line.starts_with("**")).take_while(|(_, line)| !line.starts_with('*'));
+    data.map(|(line, row)| {
+        let fields: Vec<&str> = row.trim_end_matches(',').split(',').map(str::trim).collect();
+        let &[shear, bulk, time] = &fields[..] else {
+            return Err(ContentError::value(Some(line), "columns", &fields.len().to_string(), "three: g, k, tau"));
+        };
+        let bulk = if bulk.is_empty() { Some(0.0) } else { Some(share(line, bulk)?) };
+        Ok(WrittenTerm { line, time: seconds(line, time)?, modulus: share(line, shear)?, bulk })
+    })
+    .collect()
+}
+
+/// The constants of `TBDATA` below `TB,PRONY,…,SHEAR`: share and time by turns.
+fn ansys_terms<'a>(lines: impl Iterator<Item = Line<'a>>) -> Result<Vec<WrittenTerm>, ContentError> {
+    let mut constants: Vec<(usize, &str)> = Vec::new();
+    let mut is_shear = false;
+    for (number, line) in lines {
+        let fields: Vec<&str> = line.split('!').next().unwrap_or_default().split(',').map(str::trim).collect();
+        let is = |place: usize, word: &str| fields.get(place).is_some_and(|field| field.eq_ignore_ascii_case(word));
+        if is(0, "TB") {
+            is_shear = is(1, "PRONY") && is(5, "SHEAR");
+        } else if is(0, "TBDATA") && is_shear {
+            let next = (constants.len() + 1).to_string();
+            if !(is(1, &next) || is(1, "")) {
+                let given = fields.get(1).copied().unwrap_or_default();
+                return Err(ContentError::value(Some(number), "TBDATA", given, &format!("constants from {next} on")));
+            }
+            constants.extend(fields.iter().skip(2).filter(|field| !field.is_empty()).map(|field| (number, *field)));
+        }
+    }
+    if constants.is_empty() || !constants.len().is_multiple_of(2) {
+        let given = constants.len().to_string();
+        let expected = "shares and times by turns, in TBDATA below TB,PRONY,…,SHEAR";
+        return Err(ContentError::value(constants.last().map(|(line, _)| *line), "constants", &given, expected));
+    }
+    let term = |pair: &[(usize, &str)]| {
+        let (line, time) = pair[1];
+        Ok(WrittenTerm { line, time: seconds(line, time)?, modulus: share(pair[0].0, pair[0].1)?, bulk: None })
+    };
+    constants.chunks_exact(2).map(term).collect()
+}
+
+fn share(line: usize, field: &str) -> Result<f64, ContentError> {
+    let found = number(field, false).filter(|share| (0.0..=1.0).contains(share));
+    found.ok_or_else(|| {
+        ContentError::value(Some(line), "modulus", &format!("\"{field}\""), "a share of E_0, from 0 to 1")
+    })
+}
+
+fn seconds(line: usize, field: &str) -> Result<f64, ContentError> {
+    let range = keys::range_of("material.prony.relaxation_time");
+    let error = || ContentError::value(Some(line), "relaxation_time", &format!("\"{field}\""), &range.to_string());
+    number(field, false).filter(|time| range.holds(*time)).ok_or_else(error)
+}

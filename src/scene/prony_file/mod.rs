@@ -1,0 +1,327 @@
+//! The file of a Prony series: relaxation times and moduli, absolute or relative to E_0, of tension or of shear; as a
+//! table, or as cards of Abaqus and Ansys.
+
+mod cards;
+mod table;
+
+use super::PronyTerm;
+use super::error::ContentError;
+use super::keys;
+use super::profile::ReadingNote;
+use super::text_table::{Dimension, Line, Unit, decode, number, plain, words};
+
+/// What relates the moduli of a file to those of the scene.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ElasticConstants {
+    pub(super) poisson_ratio: f64,
+    /// E_∞, Pa.
+    pub(super) equilibrium_modulus: f64,
+}
+
+/// A series, and how it was read.
+#[derive(Debug)]
+pub(super) struct PronySeries {
+    pub(super) terms: Vec<PronyTerm>,
+    pub(super) notes: Vec<ReadingNote>,
+}
+
+impl PronySeries {
+    /// Reads a series from the bytes of a file: cards, or columns found by their names, with units; without names a
+    /// relaxation time in s and a modulus in Pa.
+    pub(super) fn parse(bytes: &[u8], elastic: ElasticConstants) -> Result<Self, ContentError> {
+        let text = decode(bytes).map_err(|error| ContentError::new(Some(1), "", error))?;
+        let written = match cards::read(&text) {
+            Some(written) => written?,
+            None => table::read(&text)?,
+        };
+        written.convert(elastic)
+    }
+}
+
+/// What the moduli of a file are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum ModulusKind {
+    /// E_j, Pa.
+    Tension,
+    /// G_j, Pa.
+    Shear,
+    /// e_j = E_j/E_0 or g_j = G_j/G_0.
+    Relative,
+}
+
+/// A term as it stands in the file, in SI units.
+#[derive(Clone, Copy, Debug)]
+struct WrittenTerm {
+    line: usize,
+    time: f64,
+    modulus: f64,
+    /// k_j = K_j/K_0.
+    bulk: Option<f64>,
+}
+
+/// A series as it stands in the file.
+#[derive(Debug)]
+struct WrittenSeries<'a> {
+    terms: Vec<WrittenTerm>,
+    kind: ModulusKind,
+    /// How the moduli were read; assumed where the file does not say that they are in Pa.
+    modulus_note: ReadingNote,
+    /// The line of its names.
+    line: Option<usize>,
+    /// Lines that may hold E_0, without the signs of comments.
+    header: Vec<Line<'a>>,
+    /// Begins a comment.
+    comment: &'static str,
+    notes: Vec<ReadingNote>,
+}
+
+fn note(text: impl Into<String>, assumed: bool) -> ReadingNote {
+    ReadingNote { text: text.into(), assumed }
+}
+
+impl WrittenSeries<'_> {
+    /// The terms: moduli of tension in Pa.
+    fn convert(mut self, elastic: ElasticConstants) -> Result<PronySeries, ContentError> {
+        let sum: f64 = self.terms.iter().map(|term| term.modulus).sum();
+        if self.kind != ModulusKind::Relative && self.modulus_note.assumed {
+            self.check_assumed_unit(sum, elastic)?;
+        }
+        self.notes.push(self.modulus_note.clone());
+        let factor = match self.kind {
+            ModulusKind::Relative => self.instantaneous_modulus(sum, elastic)?,
+            ModulusKind::Shear => {
+                let text = format!("moduli of shear: E = 2(1 + ν) G with the scene's ν = {}", elastic.poisson_ratio);
+                self.notes.push(note(text, false));
+                2.0 * (1.0 + elastic.poisson_ratio)
+            }
+            ModulusKind::Tension => 1.0,
+        };
+        if self.terms.iter().any(|term| term.bulk.is_some_and(|bulk| bulk != term.modulus)) {
+            let text = "bulk moduli (k_i) are not used: the model's Poisson's ratio does not relax";
+            self.notes.push(note(text, true));
+        }
+        let range = keys::range_of("material.prony.modulus");
+        let term = |term: &WrittenTerm| {
+            let modulus = term.modulus * factor;
+            let given = format!("{modulus:?} Pa");
+            let error = || ContentError::value(Some(term.line), "modulus", &given, &range.to_string());
+            if range.holds(modulus) { Ok(PronyTerm { relaxation_time: term.time, modulus }) } else { Err(error()) }
+        };
+        Ok(PronySeries { terms: self.terms.iter().map(term).collect::<Result<_, _>>()?, notes: self.notes })
+    }
+
+    /// Moduli without a unit may be relative to an E_0 of the header. Others that look relative, or are no share of the
+    /// scene's modulus, are not in Pa.
+    fn check_assumed_unit(&mut self, sum: f64, elastic: ElasticConstants) -> Result<(), ContentError> {
+        /// Of E_∞: terms of less in all would hardly relax it.
+        const LEAST: f64 = 1e-3;
+        let is_relative = sum > 0.0 && sum <= 1.0;
+        if is_relative && self.header.iter().any(|&line| Setting::read(line).is_some()) {
+            self.kind = ModulusKind::Relative;
+            self.modulus_note = note("moduli without a unit are taken as relative, for an E_0 is given", true);
+            return Ok(());
+        }
+        if !is_relative && sum >= LEAST * elastic.equilibrium_modulus {
+            return Ok(());
+        }
+        let expected = "moduli in Pa with a header that says so, modulus [Pa] or [MPa]; relative ones beside \
+                        # E0 = … MPa";
+        let line = self.line.or(self.terms.first().map(|term| term.line));
+        let given = format!("at most {sum} in all, without a unit");
+        Err(ContentError::value(line, "modulus", &given, expected))
+    }
+
+    /// E_0 of relative moduli, from the header: nothing else says it well enough.
+    fn instantaneous_modulus(&mut self, sum: f64, elastic: ElasticConstants) -> Result<f64, ContentError> {
+        let relaxed = elastic.equilibrium_modulus;
+        if !(0.0..=1.0).contains(&sum) {
+            let expected = "relative moduli whose sum is at most 1: what relaxes of E_0";
+            return Err(ContentError::value(self.line, "relative moduli", &format!("a sum of {sum}"), expected));
+        }
+        let Some(setting) = self.header.iter().find_map(|&line| Setting::read(line)) else {
+            let follows = if sum < 1.0 {
+                let modulus = relaxed / (1.0 - sum);
+                format!(
+                    "; equilibrium_modulus/(1 - Σ) would be {modulus:.3e} Pa, as exact as the digits of 1 - {sum:.6}"
+                )
+            } else {
+                String::new()
+            };
+            let comment = self.comment;
+            let expected = format!(
+                "E_0 with its unit, to which relative moduli refer, in a comment: {comment} E0 = 64 MPa{follows}"
+            );
+            return Err(ContentError::value(self.line, "E0", "not given", &expected));
+        };
+        let Setting { line, name, value, .. } = &setting;
+        let Some(unit) = setting.unit else {
+            let expected = format!("a unit: one of {}", Dimension::Pressure.units());
+            return Err(ContentError::value(Some(*line), name, &value.to_string(), &expected));
+        };
+        let modulus = unit.to_si(*value) * if setting.is_shear { 2.0 * (1.0 + elastic.poisson_ratio) } else { 1.0 };
+        self.notes.push(note(format!("moduli are relative to {name} = {value} {unit} of line {line}"), false));
+        /// Share of E_0 that rounded relative moduli leave open.
+        const ROUNDING: f64 = 0.01;
+        let left = modulus * (1.0 - sum);
+        if (left - relaxed).abs() > ROUNDING * modulus {
+            let text =
+                format!("{name} and the relative moduli leave E_inf = {left:.4e} Pa, the scene has {relaxed:.4e} Pa");
+            self.notes.push(note(text, true));
+        }
+        Ok(modulus)
+    }
+}
+
+/// A line such as `E0 = 64 MPa`, `E_0: 64 MPa`, `G0 [MPa] = 21`.
+#[derive(Debug)]
+struct Setting {
+    line: usize,
+    name: String,
+    is_shear: bool,
+    value: f64,
+    unit: Option<Unit>,
+}
+
+impl Setting {
+    fn read((line, text): Line<'_>) -> Option<Self> {
+        const TENSION: [&str; 7] =
+            ["e0", "e 0", "instantaneous modulus", "glassy modulus", "einst", "e inst", "e glassy"];
+        const SHEAR: [&str; 3] = ["g0", "g 0", "instantaneous shear modulus"];
+        let text = plain(text);
+        let (name, value) = text.split_once(['=', ':', ';', ',', '\t'])?;
+        let (bare, bracketed) = match name.rsplit_once(['[', '(']) {
+            Some((bare, unit)) => (bare, Unit::parse(unit)),
+            None => (name, None),
+        };
+        let bare = words(bare).join(" ");
+        let is_shear = SHEAR.contains(&bare.as_str());
+        if !is_shear && !TENSION.contains(&bare.as_str()) {
+            return None;
+        }
+        let value = value.trim();
+        let is_end = |letter: char| letter.is_whitespace() || letter.is_alphabetic() && !"eE".contains(letter);
+        let (digits, rest) = value.split_at(value.find(is_end).unwrap_or(value.len()));
+        let unit = rest.split([',', ';', '(']).next().and_then(|unit| Unit::parse(unit.trim())).or(bracketed);
+        Some(Self {
+            line,
+            name: name.trim().to_owned(),
+            is_shear,
+            value: number(digits.trim(), true)?,
+            unit: unit.filter(|unit| unit.dimension == Dimension::Pressure),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ELASTIC: ElasticConstants = ElasticConstants { poisson_ratio: 0.5, equilibrium_modulus: 4e6 };
+
+    fn read(text: &str) -> Result<Vec<PronyTerm>, (Option<usize>, String)> {
+        let series = PronySeries::parse(text.as_bytes(), ELASTIC);
+        series.map(|series| series.terms).map_err(|error| (error.line, error.problem.about(&error.key)))
+    }
+
+    fn assumptions(text: &str) -> usize {
+        let series = PronySeries::parse(text.as_bytes(), ELASTIC);
+        series.map_or(99, |series| series.notes.iter().filter(|note| note.assumed).count())
+    }
+
+    #[test]
+    fn columns_and_units_are_those_of_the_header() {
+        let texts = [
+            "1e-3,2e6\n10,5e5\n",
+            "relaxation_time,modulus\n1e-3,2e6\n10,5e5\n",
+            "relaxation_time [s]; modulus [Pa]\r\n0,001;2000000\r\n1e1;5e5\r\n",
+            "# a compound\n\ntau E\n1e-3 2e6\n# long\n10\t5e5",
+            "relaxation_time (ms), modulus (MPa)\n1,2\n10000,0.5\n",
+            "E_i (Pa),tau_i (s)\n2e6,1e-3\n5e5,10\n",
+            "i;τ_i [s];E_i [MPa]\n1;0,001;2\n2;10;0,5\n",
+            "tau,G_i\ns,MPa\n1e-3,0.66666666666666666667\n10,0.16666666666666666667\n",
+            "# E0 = 10 MPa\n# rel_mod, rel_time\n0.2,1e-3\n0.05,10\n",
+            "# E0 = 10 MPa, relative\ntau_i [ms];e_i\n1;0,2\n10000;0,05\n",
+            "# E0 = 10 MPa\n1e-3 0.2\n10 0.05\n",
+            "# E0 = 10 MPa\ntau,E/E0\n1e-3,0.2\n10,0.05\n",
+            "E_0 [MPa]: 10\ng_i,k_i,tau_i\n0.2,0,1e-3\n0.05,0,10\n",
+        ];
+        for text in texts {
+            let found = read(text).unwrap_or_else(|error| unreachable!("{text:?}: {error:?}"));
+            assert_eq!(found.len(), 2, "{text:?}");
+            for (term, (time, modulus)) in found.iter().zip([(1e-3, 2e6), (10.0, 5e5)]) {
+                // Rounding of the conversions.
+                let close = |value: f64, wanted: f64| (value / wanted - 1.0).abs() < 1e-15;
+                assert!(close(term.relaxation_time, time) && close(term.modulus, modulus), "{text:?}: {found:?}");
+            }
+        }
+        assert_eq!(texts.map(assumptions), [2, 2, 0, 2, 0, 0, 0, 0, 2, 2, 3, 2, 3]);
+    }
+
+    /// A compound of E_0 = 10 MPa, as Abaqus' and Ansys' cards have it.
+    #[test]
+    fn cards_are_converted() {
+        let texts = [
+            "** E0 = 10 MPa\n*ELASTIC, MODULI=INSTANTANEOUS\n 10., 0.5\n*VISCOELASTIC, TIME=PRONY\n 0.2, 0., 0.001\n\
+             0.05,, 10.\n*DENSITY\n1.1e-9,\n",
+            "! E0 = 10 MPa\nMP,EX,1,10\nTB,PRONY,1,1,2,SHEAR\nTBDATA,1,0.2,1e-3\nTBDATA,3,0.05,10 ! slow\n",
+            "! E0: 10 MPa\nTB,PRONY,1,,2,SHEAR\nTBDATA,,0.2,1e-3,0.05,10\nTB,PRONY,1,,1,BULK\nTBDATA,1,0.1,1\n",
+        ];
+        for text in texts {
+            let found = read(text).unwrap_or_else(|error| unreachable!("{text:?}: {error:?}"));
+            let expected =
+                [(1e-3, 2e6), (10.0, 5e5)].map(|(relaxation_time, modulus)| PronyTerm { relaxation_time, modulus });
+            assert_eq!(found, expected, "{text:?}");
+        }
+        let refused = [
+            ("*Viscoelastic, time=PRONY\n0.2,0,1\n", 1, "E0 = not given: expected E_0 with its unit"),
+            (
+                "*Viscoelastic, time=CREEP TEST DATA\n0.2,0,1\n",
+                1,
+                "card = `*Viscoelastic, time=CREEP TEST DATA`: expected",
+            ),
+            ("**E0=1MPa\n*Viscoelastic, time=PRONY\n0.2,1\n", 3, "columns = 2: expected three: g, k, tau"),
+            ("**E0=1MPa\n*Viscoelastic, time=PRONY\n2,0,1\n", 3, "modulus = \"2\": expected a share of E_0"),
+            ("!E0=1MPa\nTB,PRONY,1,1,2,SHEAR\nTBDATA,1,0.2\n", 3, "constants = 1: expected shares and times by turns"),
+            ("!E0=1MPa\nTB,PRONY,1,1,2,SHEAR\nTBDATA,3,0.2,1\n", 3, "TBDATA = 3: expected constants from 1 on"),
+        ];
+        for (text, line, message) in refused {
+            let (found, error) = read(text).err().unwrap_or_default();
+            assert!(found == Some(line) && error.starts_with(message), "{text:?}: {found:?} {error}");
+        }
+    }
+
+    #[test]
+    fn refuses_what_is_no_series() {
+        let cases = [
+            ("", 1, "terms = 0: expected at least one term"),
+            ("tau,E\n", 1, "terms = 0: expected at least one term"),
+            ("tau,E\n1,2\n0,3\n", 3, "relaxation_time = \"0\": expected a number from 1e-30 to 1e30"),
+            ("1,2\n2,-3\n", 2, "modulus = \"-3\": expected 0 or a number from 1e-30 to 1e30"),
+            ("1,2,3\n", 1, "columns = 3: expected a relaxation time and a modulus"),
+            (
+                "tau [fortnights],E [Pa]\n1,2\n",
+                1,
+                "unit = \"fortnights\" of column 1 (tau [fortnights]): expected one of s, ms",
+            ),
+            ("tau [s],E [mPa]\n1,2\n", 1, "unit = \"mPa\" of column 2 (E [mPa]): expected one of Pa, kPa"),
+            ("a,b\n1,2\n", 1, "columns = `a, b`: expected a relaxation time and a modulus"),
+            (
+                "g_i,k_i,tau_i\n0.5,0,1\n",
+                1,
+                "E0 = not given: expected E_0 with its unit, to which relative moduli refer",
+            ),
+            ("# E0 = 64\n# rel_mod, rel_time\n0.5,1\n", 1, "E0 = 64: expected a unit: one of Pa"),
+            ("g,tau\n0.5,1\n0.6,2\n", 1, "relative moduli = a sum of 1.1: expected relative moduli"),
+            ("1e-3,0.4\n1,0.5\n", 1, "modulus = at most 0.9 in all, without a unit: expected moduli in Pa"),
+            ("tau,E\n1e-3,30\n1,20\n", 1, "modulus = at most 50 in all, without a unit: expected moduli in Pa"),
+            ("# times in ms\ntau,E [MPa]\n1,2\n", 1, "unit = `times in ms`: expected the unit beside the name"),
+            ("# units: ms, MPa\n1,2\n", 1, "unit = `units: ms, MPa`: expected the unit beside the name"),
+            ("tau;E\n1,5;2e6\n2.5;1e6\n", 3, "relaxation_time = \"2.5\": expected numbers with decimal points or"),
+            ("1\0,2\n", 1, "bytes that are zero: expected text in UTF-8, UTF-16 or Latin-1"),
+        ];
+        for (text, line, message) in cases {
+            let (found, error) = read(text).err().unwrap_or_default();
+            assert!(found == Some(line) && error.starts_with(message), "{text:?}: {found:?} {error}");
+        }
+    }
+}

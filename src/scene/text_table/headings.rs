@@ -1,0 +1,290 @@
+//! Headings of columns: from `Storage Modulus (E') [MPa]` to a quantity and its unit.
+//!
+//! What a table may hold is a vocabulary: the words by which each quantity is known. A heading names a quantity if it
+//! has one of its key words and no word beside its key and other words.
+
+use super::units::{Dimension, Unit};
+
+/// The words of a quantity's names, in lower case.
+#[derive(Clone, Copy, Debug)]
+pub struct Words<Q: 'static> {
+    /// What they name.
+    pub quantity: Q,
+    /// What its unit measures.
+    pub dimension: Dimension,
+    /// One of these must be there.
+    pub key_words: &'static [&'static str],
+    /// These may stand beside it.
+    pub other_words: &'static [&'static str],
+}
+
+/// A heading whose quantity is known.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Heading<Q> {
+    /// What the column holds.
+    pub quantity: Q,
+    /// What its unit measures.
+    pub dimension: Dimension,
+    /// The unit beside the name.
+    pub unit: HeadingUnit,
+    /// The column holds the logarithm to this base of its numbers.
+    pub logarithm: Option<f64>,
+}
+
+/// The unit in a heading.
+#[derive(Clone, Debug, PartialEq)]
+pub enum HeadingUnit {
+    /// None is named.
+    None,
+    /// One that is known.
+    Known(Unit),
+    /// Something stands where a unit would.
+    Unknown(String),
+}
+
+impl HeadingUnit {
+    /// The unit, where one is named.
+    ///
+    /// # Errors
+    /// The text of one that is not known.
+    pub fn known(&self) -> Result<Option<Unit>, &str> {
+        match self {
+            Self::None => Ok(None),
+            Self::Known(unit) => Ok(Some(*unit)),
+            Self::Unknown(text) => Err(text),
+        }
+    }
+}
+
+impl<Q: Copy + PartialEq> Heading<Q> {
+    /// What `text` names, if that is in the vocabulary.
+    pub fn parse(text: &str, vocabulary: &[Words<Q>]) -> Option<Self> {
+        let text = plain(text);
+        let (text, logarithm) = without_logarithm(&text);
+        let all = || splits(text).flat_map(|(name, place)| readings(name, place, vocabulary));
+        // A symbol in parentheses is part of the name: tan(d), Storage modulus (E'). And one letter may name several
+        // quantities: t [s], t [°C].
+        let is_known = |(_, unit): &(&Words<Q>, HeadingUnit)| !matches!(unit, HeadingUnit::Unknown(_));
+        let (words, unit) = all().find(is_known).or_else(|| all().next())?;
+        Some(Self { quantity: words.quantity, dimension: words.dimension, unit, logarithm })
+    }
+
+    /// The heading with a unit from a line below it.
+    pub fn with_unit(text: &str, unit: &str, vocabulary: &[Words<Q>]) -> Option<Self> {
+        let bare = unit.trim().trim_start_matches(['[', '(', '<']).trim_end_matches([']', ')', '>']);
+        if bare.is_empty() {
+            Self::parse(text, vocabulary)
+        } else {
+            Self::parse(&format!("{text} [{bare}]"), vocabulary)
+        }
+    }
+}
+
+/// What a name and the text at the place of its unit may mean.
+fn readings<'v, Q: Copy>(
+    name: &str,
+    place: Place<'_>,
+    vocabulary: &'v [Words<Q>],
+) -> impl Iterator<Item = (&'v Words<Q>, HeadingUnit)> {
+    let found = words(name);
+    vocabulary.iter().filter_map(move |words| {
+        let is_key = |word: &String| words.key_words.contains(&word.as_str());
+        let is_known = |word: &String| is_key(word) || words.other_words.contains(&word.as_str());
+        let is_named = found.iter().any(is_key) && found.iter().all(is_known);
+        if is_named { unit_of(place, words.dimension).map(|unit| (words, unit)) } else { None }
+    })
+}
+
+/// Where a unit stands in a heading.
+#[derive(Clone, Copy, Debug)]
+enum Place<'a> {
+    /// There is none.
+    Nowhere,
+    /// In brackets: it is a unit whatever it says.
+    Brackets(&'a str),
+    /// Behind a sign or the last word: a unit if it is known.
+    Behind(&'a str),
+}
+
+/// The ways to part a heading into name and unit, the likeliest first.
+fn splits(heading: &str) -> impl Iterator<Item = (&str, Place<'_>)> {
+    let bracketed = [('[', ']'), ('(', ')'), ('<', '>')].into_iter().filter_map(move |(open, close)| {
+        let (name, unit) = heading.strip_suffix(close)?.rsplit_once(open)?;
+        Some((name, Place::Brackets(unit)))
+    });
+    // A unit in the middle: E' (MPa) 20 °C.
+    let within = [('[', ']'), ('(', ')')].into_iter().filter_map(move |(open, close)| {
+        let (name, rest) = heading.split_once(open)?;
+        let (unit, rest) = rest.split_once(close)?;
+        if rest.trim().is_empty() || Unit::parse(unit).is_none() { None } else { Some((name, Place::Behind(unit))) }
+    });
+    let parted = [" in ", ",", "/", ":"].into_iter().filter_map(move |sign| {
+        let (name, unit) = heading.split_once(sign)?;
+        Some((name, Place::Behind(unit)))
+    });
+    let last_word = heading.rsplit_once([' ', '_']).map(|(name, unit)| (name, Place::Behind(unit)));
+    bracketed.chain(within).chain(parted).chain(last_word).chain([(heading, Place::Nowhere)])
+}
+
+/// The unit at a place, `None` where the heading must be parted in another way.
+fn unit_of(place: Place<'_>, dimension: Dimension) -> Option<HeadingUnit> {
+    match place {
+        Place::Nowhere => Some(HeadingUnit::None),
+        Place::Behind(text) => {
+            let unit = Unit::parse(text).filter(|unit| unit.is_of(dimension))?;
+            Some(HeadingUnit::Known(unit))
+        }
+        Place::Brackets(text) if text.trim().is_empty() => Some(HeadingUnit::None),
+        Place::Brackets(text) => Some(match Unit::parse(text).filter(|unit| unit.is_of(dimension)) {
+            Some(unit) => HeadingUnit::Known(unit),
+            None => HeadingUnit::Unknown(text.trim().to_owned()),
+        }),
+    }
+}
+
+impl Unit {
+    /// Whether it is one of a quantity; a frequency may be in 1/s.
+    pub fn is_of(&self, dimension: Dimension) -> bool {
+        self.dimension == dimension || (dimension == Dimension::Frequency && self.dimension == Dimension::Rate)
+    }
+}
+
+/// The text with one spelling of primes, degrees and powers.
+pub fn plain(text: &str) -> String {
+    const SIGNS: [(&str, &str); 23] = [
+        ("″", "''"),
+        ("”", "''"),
+        ("\"", "''"),
+        ("\u{94}", "''"),
+        ("ʺ", "''"),
+        ("′", "'"),
+        ("’", "'"),
+        ("´", "'"),
+        ("`", "'"),
+        ("\u{92}", "'"),
+        ("ʹ", "'"),
+        ("º", "°"),
+        ("˚", "°"),
+        ("⁻¹", "-1"),
+        ("−1", "-1"),
+        ("²", "2"),
+        ("^", ""),
+        ("·", " "),
+        ("⋅", " "),
+        ("\u{a0}", " "),
+        ("deg ", "deg"),
+        ("° ", "°"),
+        ("−", "-"),
+    ];
+    SIGNS.iter().fold(text.trim().to_owned(), |text, (sign, plain)| text.replace(sign, plain))
+}
+
+/// Of `log10(f / Hz)` and `lg f [Hz]` the inner part, and the base.
+fn without_logarithm(text: &str) -> (&str, Option<f64>) {
+    const BASES: [(&str, f64); 6] = [
+        ("log10", 10.0),
+        ("log_10", 10.0),
+        ("log", 10.0),
+        ("lg", 10.0),
+        ("ln", std::f64::consts::E),
+        ("loge", std::f64::consts::E),
+    ];
+    let found = BASES.iter().find_map(|(name, base)| {
+        let head = text.get(..name.len())?;
+        let rest = &text[name.len()..];
+        let parts = rest.starts_with([' ', '(', '_', '[', '|']);
+        (parts && head.eq_ignore_ascii_case(name)).then_some((rest.trim_start_matches([' ', '_']), *base))
+    });
+    let Some((rest, base)) = found else { return (text, None) };
+    let inner = rest.strip_prefix('(').and_then(|inner| inner.strip_suffix(')')).unwrap_or(rest);
+    (inner, Some(base))
+}
+
+/// The words of a name, in lower case but for a single T, which is a temperature where t is a time. Primes belong to
+/// the letter before them, and E* is `estar`.
+pub fn words(name: &str) -> Vec<String> {
+    let lower =
+        plain(name).replace('_', " ").replace("double prime", "''").replace("doubleprime", "''").replace("prime", "'");
+    let marked = lower.split(' ').map(|word| if word == "T" { word.to_owned() } else { word.to_lowercase() });
+    let lower = marked.collect::<Vec<_>>().join(" ").replace("e*", "estar").replace("g*", "gstar");
+    let lower = ["e", "g"].iter().fold(lower, |text, letter| {
+        let text = text.replace(&format!("{letter} ''"), &format!("{letter}''"));
+        text.replace(&format!("{letter} '"), &format!("{letter}'"))
+    });
+    let ends = |letter: char| letter.is_whitespace() || "-.()[]{}<>:;,|\\/=#*×@".contains(letter);
+    lower.split(ends).filter(|word| !word.is_empty()).map(str::to_owned).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    enum Found {
+        X,
+        Storage,
+        Tangent,
+        Frequency,
+    }
+
+    const VOCABULARY: [Words<Found>; 4] = [
+        Words { quantity: Found::X, dimension: Dimension::Length, key_words: &["x"], other_words: &["axis"] },
+        Words {
+            quantity: Found::Storage,
+            dimension: Dimension::Pressure,
+            key_words: &["e'", "storage"],
+            other_words: &["modulus"],
+        },
+        Words {
+            quantity: Found::Tangent,
+            dimension: Dimension::Number,
+            key_words: &["tan"],
+            other_words: &["d", "delta"],
+        },
+        Words {
+            quantity: Found::Frequency,
+            dimension: Dimension::Frequency,
+            key_words: &["f", "frequency"],
+            other_words: &[],
+        },
+    ];
+
+    fn read(text: &str) -> Option<(Found, Option<&'static str>, bool)> {
+        let heading = Heading::parse(text, &VOCABULARY)?;
+        let unit = match heading.unit {
+            HeadingUnit::None => None,
+            HeadingUnit::Known(unit) => Some(unit.name),
+            HeadingUnit::Unknown(_) => Some("?"),
+        };
+        Some((heading.quantity, unit, heading.logarithm.is_some()))
+    }
+
+    #[test]
+    fn headings_are_parted_into_name_and_unit() {
+        let cases = [
+            ("x [mm]", Found::X, Some("mm"), false),
+            ("x", Found::X, None, false),
+            ("X_mm", Found::X, Some("mm"), false),
+            ("x in in", Found::X, Some("in"), false),
+            ("x / µm", Found::X, Some("µm"), false),
+            ("X-axis (inches)", Found::X, Some("in"), false),
+            ("X (pixels)", Found::X, Some("?"), false),
+            ("x [Hz]", Found::X, Some("?"), false),
+            ("Storage modulus (E') [MPa]", Found::Storage, Some("MPa"), false),
+            ("Storage modulus (E')", Found::Storage, None, false),
+            ("E' (MPa) @ 20 °C", Found::Storage, Some("MPa"), false),
+            ("E' [psi]", Found::Storage, Some("psi"), false),
+            ("tan(d)", Found::Tangent, None, false),
+            ("Tan(Delta) (-)", Found::Tangent, Some("1"), false),
+            ("log10(f / Hz)", Found::Frequency, Some("Hz"), true),
+            ("log f [Hz]", Found::Frequency, Some("Hz"), true),
+            ("lg(frequency)", Found::Frequency, None, true),
+        ];
+        for (text, quantity, unit, logarithm) in cases {
+            assert_eq!(read(text), Some((quantity, unit, logarithm)), "{text}");
+        }
+        for text in ["y [mm]", "", "[mm]", "loss [MPa]", "x y"] {
+            assert_eq!(read(text), None, "{text}");
+        }
+    }
+}
