@@ -64,8 +64,9 @@ pub fn free_unloaded(model: &Model, state: &mut State, at: CarrierPosition, forc
 /// Applies the impacts due: every free mass within `reach` (m) of the profile that moves into it has an impact. Each
 /// impact depends on the velocity of its own mass alone, so their order does not matter. Returns the energy lost, J.
 ///
-/// A mass that has gone below the profile is lifted onto it, which raises the energy of its springs. It has lost as much on its
-/// way down to its velocity, which the impact takes, and to the dampers, from whose part of `energies` the rest is taken back.
+/// A mass that has gone below the profile is lifted onto it, which raises the energy of its springs. It has lost as
+/// much on its way down to its velocity, which the impact takes, and to the dampers, from whose part of `energies` the
+/// rest is taken back.
 pub fn impacts_due(
     model: &Model,
     state: &mut State,

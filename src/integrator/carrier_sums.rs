@@ -1,26 +1,26 @@
 //! F_x and F_z within a step, from sums over the layer that are taken once a step.
 //!
-//! All that the forces on the carrier consist of is linear in the values at the stages and at both ends of the step. So is
-//! the height of a mass in contact, as far as the step's dense output goes; where a tolerance asks for more these masses are
-//! put on the profile one by one, see [`ContactHeights`].
+//! All that the forces on the carrier consist of is linear in the values at the stages and at both ends of the step. So
+//! is the height of a mass in contact, as far as the step's dense output goes; where a tolerance asks for more these
+//! masses are put on the profile one by one, see [`ContactHeights`].
 
 use std::ops::Range;
 
 use super::maxwell::ElementWeights;
-use super::rates::Rates;
 use super::scheme::ContactHeights;
+use super::stage_values::StageValues;
 use super::tableau::Weights;
 use crate::math::{BLOCK, dot, sum};
 use crate::model::{Carrier, CarrierPoint, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint};
 
 /// Elongations of links to the carrier (m) and velocities of masses (m/s), along x and z: of one mass, or summed.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Motion {
+pub(super) struct LinkState {
     pub elongation: (f64, f64),
     pub velocity: (f64, f64),
 }
 
-impl Motion {
+impl LinkState {
     #[inline(always)]
     pub(super) fn add(&mut self, other: &Self) {
         self.elongation = (self.elongation.0 + other.elongation.0, self.elongation.1 + other.elongation.1);
@@ -49,7 +49,7 @@ impl Motion {
 /// Where the carrier is at one instant, as masses that slip are put on the profile.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placement {
-    /// u as a position on the profile at the start of the carrier's piece, m.
+    /// u as a position on the profile at the start of the carrier's segment, m.
     profile_position: f64,
     /// Its displacement along x since then, m.
     du: f64,
@@ -109,7 +109,7 @@ impl CarrierSums {
     }
 
     /// A new step is attempted.
-    pub(super) fn forget(&mut self) {
+    pub(super) fn invalidate(&mut self) {
         self.known = false;
     }
 
@@ -118,14 +118,14 @@ impl CarrierSums {
         self.summed == self.is_summed.len() as f64
     }
 
-    /// Takes the sums over `masses` of a layer of `model`, of its step from `start` to `end` with these `stages`, unless they
-    /// are known.
+    /// Takes the sums over `masses` of a layer of `model`, of its step from `start` to `end` with these `stages`,
+    /// unless they are known.
     pub(super) fn collect(
         &mut self,
         model: &Model,
         masses: &Range<usize>,
         (start, end): (&State, &State),
-        stages: &[Rates],
+        stages: &[StageValues],
         heights: ContactHeights,
     ) {
         if self.known {
@@ -150,12 +150,12 @@ impl CarrierSums {
         self.z.collect_links(model, masses, [start, end], stages);
     }
 
-    /// F_x and F_z (N) where the masses, of `model`, together move as `motion` says, under the `carrier`, with these weights of
-    /// the Maxwell elements.
+    /// F_x and F_z (N) where the masses, of `model`, together move as `motion` says, under the `carrier`, with these
+    /// weights of the Maxwell elements.
     pub(super) fn forces(
         &self,
         model: &Model,
-        motion: &Motion,
+        motion: &LinkState,
         carrier: &CarrierPoint,
         weights: impl Fn(&MaxwellRow) -> ElementWeights,
     ) -> (f64, f64) {
@@ -179,7 +179,7 @@ impl AxisSums {
         Self { kind, elongation: [0.0; 2], velocity: none, rate: none, elements }
     }
 
-    fn collect_links(&mut self, model: &Model, masses: &Range<usize>, ends: [&State; 2], stages: &[Rates]) {
+    fn collect_links(&mut self, model: &Model, masses: &Range<usize>, ends: [&State; 2], stages: &[StageValues]) {
         for (row, sums) in model.rows_of(self.kind).zip(&mut self.elements) {
             *sums = ends.map(|state| sum(&state.maxwell[row.range.clone()][masses.clone()]));
         }

@@ -8,13 +8,13 @@
 
 use std::ops::Range;
 
-use super::carrier_sums::{AxisSums, CarrierSums, Motion, Placement};
+use super::carrier_sums::{AxisSums, CarrierSums, LinkState, Placement};
 use super::interpolation::{Interpolation, Velocities, parabola};
 use super::maxwell::{ElementWeights, by_rate};
-use super::method::{RungeKutta, Stages, StepSpan};
+use super::method::{RungeKutta, Stages, TimeSpan};
 use super::parabolas::Parabolas;
-use super::rates::Rates;
 use super::scheme::Scheme;
+use super::stage_values::StageValues;
 use super::tableau::{GAMMA, Weights};
 use super::tolerance::Tolerance;
 use crate::math::{BLOCK, Relaxation, dot, weighted_sum, with_widest_vectors};
@@ -33,7 +33,7 @@ pub struct DenseOutput<'a> {
     /// The carrier's motion.
     pub carrier: &'a Carrier,
     /// The step.
-    pub span: StepSpan,
+    pub span: TimeSpan,
     /// The state at its start.
     pub start: &'a State,
     pub(super) method: &'a RungeKutta,
@@ -43,17 +43,17 @@ pub struct DenseOutput<'a> {
 impl<'a> DenseOutput<'a> {
     /// Of these masses alone.
     #[must_use]
-    pub fn of(&self, masses: Range<usize>) -> Self {
+    pub fn restricted_to(&self, masses: Range<usize>) -> Self {
         Self { masses, ..*self }
     }
 
-    /// The fraction of the step at the time `s` after the start of the carrier's piece.
+    /// The fraction of the step at the time `s` after the start of the carrier's segment.
     pub fn theta(&self, s: f64) -> f64 {
         (s - self.span.start) / self.span.length
     }
 
     /// The rates at its stages.
-    pub fn stages(&self) -> &'a [Rates] {
+    pub fn stages(&self) -> &'a [StageValues] {
         &self.values.rates[..self.method.coefficients.tableau.stages]
     }
 
@@ -95,7 +95,7 @@ impl<'a> DenseOutput<'a> {
         for row in &self.model.rows {
             let (of_row, further) = elements.split_at_mut(row.kind.count(self.masses.len()));
             elements = further;
-            let weights = workspace.of_elements(row);
+            let weights = workspace.element_weights(row);
             let first = row.range.start + self.masses.start;
             let ends = weights.ends.into_iter().zip([self.start, self.end()]).filter(|(weight, _)| *weight != 0.0);
             let terms = ends.map(|(weight, state)| (weight, &state.maxwell[first..]));
@@ -125,7 +125,7 @@ impl<'a> DenseOutput<'a> {
 
     /// Writes the masses, all of the layer, on parabolas, with velocities on broken lines.
     fn write_parabolas(&self, theta: f64, workspace: &DenseWorkspace, state: &mut State) {
-        let StepSpan { start: s, length: h } = self.span;
+        let TimeSpan { start: s, length: h } = self.span;
         let (from, first, to) = (self.start, &self.stages()[1], self.end());
         let (moved, in_step) = (self.carrier.moved(s, theta * h), self.carrier.moved(s, h));
         // One that stops or breaks loose on the way moves.
@@ -161,7 +161,7 @@ impl<'a> DenseOutput<'a> {
         out: &mut [f64],
         weights: &Weights,
         from: Option<&[f64]>,
-        value: fn(&Rates) -> &[f64],
+        value: fn(&StageValues) -> &[f64],
         shift: f64,
     ) {
         let stages = weights.iter().zip(self.stages()).map(|(&weight, stage)| (weight, value(stage)));
@@ -174,8 +174,8 @@ impl<'a> DenseOutput<'a> {
 
     /// The defect of the dense output in the equations of motion at the fraction `theta`, in the tolerance's norm: the
     /// difference between the accelerations of the interpolant and those that the `forces` in its `state` give, as the
-    /// correction of the velocities, and with them of the positions, that Newton's first iteration of a stage as long as
-    /// the step so far would make. The workspace is that with which [`state_at`](Self::state_at) wrote the state.
+    /// correction of the velocities, and with them of the positions, that Newton's first iteration of a stage as long
+    /// as the step so far would make. The workspace is that with which [`state_at`](Self::state_at) wrote the state.
     pub fn defect(
         &self,
         theta: f64,
@@ -233,7 +233,7 @@ impl<'a> DenseOutput<'a> {
     /// Mass `i` at the fraction of the step for which the weights of `workspace` are set.
     fn mass_at(&self, i: usize, carrier: &CarrierMotion, workspace: &DenseWorkspace) -> MassPoint {
         let start = self.start;
-        let sum = |weights: &Weights, value: fn(&Rates) -> &[f64]| -> f64 {
+        let sum = |weights: &Weights, value: fn(&StageValues) -> &[f64]| -> f64 {
             weights.iter().zip(self.stages()).map(|(weight, stage)| weight * value(stage)[i]).sum()
         };
         let along_x = |weights| sum(weights, |stage| &stage.velocity_x);
@@ -250,8 +250,9 @@ impl<'a> DenseOutput<'a> {
         }
     }
 
-    /// The sums of the elongations and of the velocities of all masses at the fraction `theta`, from the `sums` of the step.
-    pub(super) fn summed_motion(&self, theta: f64, sums: &CarrierSums, workspace: &mut DenseWorkspace) -> Motion {
+    /// The sums of the elongations and of the velocities of all masses at the fraction `theta`, from the `sums` of the
+    /// step.
+    pub(super) fn summed_motion(&self, theta: f64, sums: &CarrierSums, workspace: &mut DenseWorkspace) -> LinkState {
         workspace.set_weights(self, theta);
         match self.interpolation().velocities() {
             Velocities::Polynomial => self.summed_polynomials(theta, sums, workspace),
@@ -259,31 +260,31 @@ impl<'a> DenseOutput<'a> {
         }
     }
 
-    fn summed_parabolas(&self, theta: f64, sums: &CarrierSums, workspace: &DenseWorkspace) -> Motion {
-        let (n, StepSpan { start: s, length: h }) = (sums.summed, self.span);
+    fn summed_parabolas(&self, theta: f64, sums: &CarrierSums, workspace: &DenseWorkspace) -> LinkState {
+        let (n, TimeSpan { start: s, length: h }) = (sums.summed, self.span);
         let (moved, in_step) = (self.carrier.moved(s, theta * h), self.carrier.moved(s, h));
         let elongation = |axis: &AxisSums, moved: f64, in_step: f64| {
             let ([start, end], middle) = (axis.elongation, GAMMA * h * axis.velocity[1]);
             start + (parabola(theta, middle, n * in_step + (end - start)) - n * moved)
         };
         let weights = &workspace.values[..self.stages().len()];
-        Motion {
+        LinkState {
             elongation: (elongation(&sums.x, moved.x, in_step.x), elongation(&sums.z, moved.z, in_step.z)),
             velocity: (dot(weights, &sums.x.velocity), dot(weights, &sums.z.velocity)),
         }
     }
 
-    fn summed_polynomials(&self, theta: f64, sums: &CarrierSums, workspace: &mut DenseWorkspace) -> Motion {
+    fn summed_polynomials(&self, theta: f64, sums: &CarrierSums, workspace: &mut DenseWorkspace) -> LinkState {
         let carrier = self.carrier_at(theta, workspace);
-        // Elongations are integrated as differences from the carrier's motion at the stages. But sticks along x and contacts along
-        // z are where the surface has them, and the carrier moves away from there on its own path.
+        // Elongations are integrated as differences from the carrier's motion at the stages. But sticks along x and
+        // contacts along z are where the surface has them, and the carrier moves away from there on its own path.
         let elongation = |axis: &AxisSums, moving: f64, (integrated, moved): (f64, f64)| {
             let of_masses = axis.elongation[0] + dot(&workspace.integral, &axis.velocity);
             of_masses - moving * integrated - (sums.summed - moving) * moved
         };
         let velocity =
             |axis: &AxisSums, moving: f64, missing: f64| dot(&workspace.values, &axis.velocity) + moving * missing;
-        let mut all = Motion {
+        let mut all = LinkState {
             elongation: (
                 elongation(&sums.x, sums.moving, (carrier.integrated.0, carrier.moved.x)),
                 elongation(&sums.z, sums.free, (carrier.integrated.1, carrier.moved.z)),
@@ -311,7 +312,7 @@ impl<'a> DenseOutput<'a> {
 
     /// Adds the masses in contact, of which those that slip have the elongations `x` (m) and velocities `v_x` (m/s).
     #[inline(always)]
-    fn add_contacts(&self, all: &mut Motion, (x, v_x): (&[f64], &[f64]), carrier: &CarrierMotion) {
+    fn add_contacts(&self, all: &mut LinkState, (x, v_x): (&[f64], &[f64]), carrier: &CarrierMotion) {
         let modes = &self.start.mode[self.masses.clone()];
         let (placement, of_layer) = (Placement::new(self.carrier, &carrier.now), self.masses.start);
         let mut first = 0;
@@ -361,8 +362,8 @@ impl<'a> DenseOutput<'a> {
         relative.sum::<f64>() + self.carrier.at(self.span.at(theta)).x.speed
     }
 
-    /// The contact forces of mass `i`, in contact, at the fraction `theta`: the same as in the state there, for this mass
-    /// alone.
+    /// The contact forces of mass `i`, in contact, at the fraction `theta`: the same as in the state there, for this
+    /// mass alone.
     pub fn contact(&self, i: usize, theta: f64, workspace: &mut DenseWorkspace) -> ContactForces {
         workspace.set_weights(self, theta);
         let carrier = self.carrier_at(theta, workspace);
@@ -414,7 +415,7 @@ impl<'a> DenseOutput<'a> {
         }
         for row in rows {
             let (start, end) = (self.start.maxwell[row.range.start + link], self.end().maxwell[row.range.start + link]);
-            let [of_start, of_end] = workspace.of_elements(row).ends;
+            let [of_start, of_end] = workspace.element_weights(row).ends;
             force += row.stiffness * (of_start * start + of_end * end);
         }
         let rates = self.stages().iter().map(|stage| stage.elongation_rate[kind][link]);
@@ -447,8 +448,8 @@ impl MassPoint {
         state.surface[i] = self.surface;
     }
 
-    fn motion(&self) -> Motion {
-        Motion { elongation: self.elongation, velocity: self.velocity }
+    fn motion(&self) -> LinkState {
+        LinkState { elongation: self.elongation, velocity: self.velocity }
     }
 }
 
@@ -469,8 +470,8 @@ impl LinkPoint {
     }
 }
 
-/// How much of a force on a mass becomes velocity in a time β, along x and z: (m/β)/(m/β + βc + d + Σ_j c_j βτ_j/(τ_j + β))
-/// of the links to the carrier and to neighbours at rest. The rest goes into them: motion that is faster settles.
+/// How much of a force on a mass becomes velocity in a time β, along x and z: (m/β)/(m/β + βc + d + Σ_j c_j βτ_j/(τ_j +
+/// β)) of the links to the carrier and to neighbours at rest. The rest goes into them: motion that is faster settles.
 struct InertialFraction {
     x: f64,
     z: f64,
@@ -539,7 +540,7 @@ impl DenseWorkspace {
     }
 
     /// The weights of the elements of one row at the fraction for which the weights are set.
-    pub(super) fn of_elements(&self, row: &MaxwellRow) -> &ElementWeights {
+    pub(super) fn element_weights(&self, row: &MaxwellRow) -> &ElementWeights {
         &self.elements[row.time_index]
     }
 
@@ -592,8 +593,8 @@ impl DenseWorkspace {
         }
     }
 
-    /// Computes the accelerations of the interpolant along x and z (m/s²) at the fraction `theta` of `step`, with the carrier
-    /// there.
+    /// Computes the accelerations of the interpolant along x and z (m/s²) at the fraction `theta` of `step`, with the
+    /// carrier there.
     fn set_accelerations(&mut self, step: &DenseOutput<'_>, theta: f64, carrier: &CarrierPoint) {
         let slope = step.interpolation().slope(theta).map(|weight| weight / step.span.length);
         let missing = |of_carrier: f64, rate: fn(&CarrierPoint) -> f64| {

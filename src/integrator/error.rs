@@ -2,9 +2,9 @@
 
 use std::hint::select_unpredictable;
 
-use super::largest::Largest;
 use super::maxwell::Maxwell;
-use super::rates::Rates;
+use super::running_maxima::RunningMaxima;
+use super::stage_values::StageValues;
 use super::tableau::Tableau;
 use super::tolerance::{Rod, Tolerance, square};
 use crate::math::{Jet, dot, sum_of, sum_of_pairs, sum_of_triples, weighted_sum, with_widest_vectors};
@@ -17,18 +17,21 @@ const SHORTEST_RESOLVED: f64 = 1e-9;
 
 /// The weight of the error that the method would make of the carrier's displacement under masses in contact.
 ///
-/// Recommended 0.1 to 0.5. It is to keep the steps from passing over motion of the carrier that changes modes, and no error of
-/// the forces: 1 costs a tenth of the steps of a slide with a changing speed, whose forces err far less than the tolerance.
+/// Recommended 0.1 to 0.5. It is to keep the steps from passing over motion of the carrier that changes modes, and no
+/// error of the forces: 1 costs a tenth of the steps of a slide with a changing speed, whose forces err far less than
+/// the tolerance.
 const CARRIER_WEIGHT: f64 = 0.3;
 
 /// Errors of F_x count this many times as much as those of F_z.
 ///
-/// Recommended 2 to 8. The profile holds the masses in contact along z. Along x they swing together where a slide starts, and
-/// the steps through that swing add up their errors: with 1 those of F_x were three to ten times those of F_z.
+/// Recommended 2 to 8. The profile holds the masses in contact along z. Along x they swing together where a slide
+/// starts, and the steps through that swing add up their errors: with 1 those of F_x were three to ten times those of
+/// F_z.
 const WEIGHT_OF_FORCE_X: f64 = 4.0;
 
-/// That weight for `model`. Where friction depends on the speed F_x follows the speeds of creeping masses, which are far below
-/// the tolerance of velocities: there the weight would triple the steps of a creep and make it no more accurate.
+/// That weight for `model`. Where friction depends on the speed F_x follows the speeds of creeping masses, which are
+/// far below the tolerance of velocities: there the weight would triple the steps of a creep and make it no more
+/// accurate.
 fn weight_of_force_x(model: &Model) -> f64 {
     if model.friction.depends_on_speed() { 1.0 } else { WEIGHT_OF_FORCE_X }
 }
@@ -68,7 +71,7 @@ impl ErrorWorkspace {
 pub(super) struct ErrorTest<'a> {
     pub tableau: &'static Tableau,
     pub maxwell: &'a Maxwell,
-    pub stages: &'a [Rates],
+    pub stages: &'a [StageValues],
     /// The carrier at the stages.
     pub carrier: &'a [CarrierPoint],
     /// The state at the end.
@@ -80,14 +83,14 @@ pub(super) struct ErrorTest<'a> {
     /// The powers through the surface and the carrier at the stages, where energies are computed.
     pub exchange: Option<&'a [BoundaryPowers]>,
     /// What the errors of forces and energies are measured by.
-    pub largest: Largest,
+    pub largest: RunningMaxima,
 }
 
 impl ErrorTest<'_> {
     /// The embedded error estimate of the step, of length `h` (s), in the tolerance's norm.
     ///
-    /// The carrier's displacement is known, not integrated. Yet where masses are in contact the steps must resolve it: the
-    /// events between the stages depend on it. So the error that the method would make of it counts too, by
+    /// The carrier's displacement is known, not integrated. Yet where masses are in contact the steps must resolve it:
+    /// the events between the stages depend on it. So the error that the method would make of it counts too, by
     /// [`CARRIER_WEIGHT`]; where every mass sticks there is no other.
     pub(super) fn run(
         &self,
@@ -140,8 +143,8 @@ impl ErrorTest<'_> {
         ErrorEstimate { error, motion_error, carrier_error: mean(free) }
     }
 
-    /// The sum of squares of the errors of the bodies' displacements and speeds over their tolerances, relative to the way
-    /// since the start of the piece.
+    /// The sum of squares of the errors of the bodies' displacements and speeds over their tolerances, relative to the
+    /// way since the start of the piece.
     fn body_squares(&self, model: &Model, error: &CarrierError, tolerance: &Tolerance) -> f64 {
         let of = |axis: Axis| {
             let Jet { position: way, speed: rate, .. } = self.carrier[self.tableau.last()][axis];
@@ -155,13 +158,13 @@ impl ErrorTest<'_> {
         Axis::ALL.into_iter().filter(|&axis| model.bodies[axis].is_some()).map(of).sum()
     }
 
-    /// The square of the error of the energies through the dampers, those to drives included, the surface and the carrier over
-    /// its tolerance.
+    /// The square of the error of the energies through the dampers, those to drives included, the surface and the
+    /// carrier over its tolerance.
     ///
     /// Just after a kink the dampers' power falls within times far shorter than the step, which the motion forgets: the
     /// energies alone show that.
     fn energy_square(&self, model: &Model, exchange: &[BoundaryPowers], h: f64, tolerance: &Tolerance) -> f64 {
-        let damper = |stage: &Rates| -> f64 {
+        let damper = |stage: &StageValues| -> f64 {
             let links = LinkKind::ALL.into_iter().zip(&model.links).filter(|(_, law)| law.damping > 0.0);
             let of = |kind: LinkKind| &stage.elongation_rate[kind][..];
             links.map(|(kind, law)| law.damping * dot(of(kind), of(kind))).sum()
@@ -180,8 +183,8 @@ impl ErrorTest<'_> {
     }
 
     /// The square of the error of F_x or F_z, which the links of `kind` make, over its tolerance: of the sum of their
-    /// errors, and of what the sum would be if these were independent, since some of them cancel by chance. Those of the
-    /// Maxwell elements are in the workspace.
+    /// errors, and of what the sum would be if these were independent, since some of them cancel by chance. Those of
+    /// the Maxwell elements are in the workspace.
     fn carrier_force_squares(
         &self,
         model: &Model,
@@ -200,7 +203,8 @@ impl ErrorTest<'_> {
         (sum * sum + squares) / square(tolerance.relative * scale)
     }
 
-    /// The sums of squares of the error of the carrier's displacement, over the masses in contact and over the free ones.
+    /// The sums of squares of the error of the carrier's displacement, over the masses in contact and over the free
+    /// ones.
     fn carrier_squares(&self, error: &CarrierError, tolerance: &Tolerance) -> (f64, f64) {
         let (position, end) = (error.position, self.end);
         if position.0 == 0.0 && position.1 == 0.0 {
@@ -218,12 +222,12 @@ impl ErrorTest<'_> {
         (in_contact, (all - in_contact).max(0.0))
     }
 
-    /// Collects the errors of positions and velocities relative to the carrier. A mass that sticks through the step has none
-    /// along x, and along z those of a contact follow its slope.
+    /// Collects the errors of positions and velocities relative to the carrier. A mass that sticks through the step has
+    /// none along x, and along z those of a contact follow its slope.
     fn collect(&self, h: f64, carrier_error: &CarrierError, workspace: &mut ErrorWorkspace) {
         let CarrierError { position, velocity } = carrier_error;
         let weights = &self.tableau.error;
-        let sum = |errors: &mut [f64], rate: fn(&Rates) -> &[f64], of_carrier: f64| {
+        let sum = |errors: &mut [f64], rate: fn(&StageValues) -> &[f64], of_carrier: f64| {
             let counting = self.stages.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
             weighted_sum(errors, counting.map(|(stage, weight)| (h * weight, rate(stage))));
             errors.iter_mut().for_each(|error| *error -= of_carrier);
@@ -260,9 +264,9 @@ impl ErrorTest<'_> {
         }
     }
 
-    /// The sum of squares of the errors `error` (N) of the vertical Maxwell elements' forces where these are far stiffer
-    /// than the link in the long term. On a mass in contact the error counts relative to the elements' force itself, not
-    /// to the elongation, which the surface imposes.
+    /// The sum of squares of the errors `error` (N) of the vertical Maxwell elements' forces where these are far
+    /// stiffer than the link in the long term. On a mass in contact the error counts relative to the elements' force
+    /// itself, not to the elongation, which the surface imposes.
     fn contact_force_squares(&self, model: &Model, per_force: f64, tolerance: &Tolerance, error: &[f64]) -> f64 {
         let kind = LinkKind::Vertical;
         let (a, e, per_elongation) = (&self.end.maxwell, &self.end.elongation_z, tolerance.per_force(kind));

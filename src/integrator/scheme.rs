@@ -102,8 +102,8 @@ impl Scheme {
 
     pub(super) fn coefficients(self) -> &'static Coefficients {
         static ALL: [LazyLock<Coefficients>; 3] = [
-            LazyLock::new(|| Coefficients::of_stage_order_two(&ESDIRK3)),
-            LazyLock::new(|| Coefficients::of_stage_order_two(&ESDIRK5)),
+            LazyLock::new(|| Coefficients::with_stage_order_two(&ESDIRK3)),
+            LazyLock::new(|| Coefficients::with_stage_order_two(&ESDIRK5)),
             LazyLock::new(|| Coefficients {
                 tableau: &SDIRK2,
                 continuous_weights: ContinuousWeights::sdirk2(),
@@ -116,7 +116,7 @@ impl Scheme {
 }
 
 impl Coefficients {
-    fn of_stage_order_two(tableau: &'static Tableau) -> Self {
+    fn with_stage_order_two(tableau: &'static Tableau) -> Self {
         Self {
             tableau,
             continuous_weights: ContinuousWeights::new(tableau),

@@ -1,13 +1,15 @@
-//! Forward sensitivities of the run to the carrier's targets, along the stages of the steps (docs/theory.md, section 8).
+//! Forward sensitivities of the run to the carrier's targets, along the stages of the steps (docs/theory.md, section
+//! 8).
 //!
-//! Over a motion of the carrier of duration T, let one of its displacements, or of the forces on it, end at û + ε instead
-//! of û. On the way it differs by ε s/T, and its rate by ε/T. All quantities here are derivatives with respect to ε at ε = 0, with
-//! the contact modes held. At a stage they solve the same linear system as Newton's corrections, with another right side.
+//! Over a motion of the carrier of duration T, let one of its displacements, or of the forces on it, end at û + ε
+//! instead of û. On the way it differs by ε s/T, and its rate by ε/T. All quantities here are derivatives with respect
+//! to ε at ε = 0, with the contact modes held. At a stage they solve the same linear system as Newton's corrections,
+//! with another right side.
 
 use nalgebra::Vector2;
 
-use super::rates::Rates;
 use super::stage::{SlippingMass, StagePoint, StageSolver};
+use super::stage_values::StageValues;
 use crate::model::{Axis, Body, ByAxis, Forces, Input, LinkKind, LinkMotion, Mode, Model, State, TangentsOf};
 
 /// The variation of the layer's state: dimensionless for positions, 1/s for velocities. Or its rate of change, each
@@ -49,7 +51,7 @@ impl CarrierVariation {
 
 /// The derivative of a run with respect to the target of one input.
 #[derive(Clone, Debug)]
-pub(super) struct Tangent {
+pub(super) struct Sensitivity {
     input: Input,
     /// Duration of the carrier's motion, s.
     duration: f64,
@@ -91,7 +93,7 @@ impl Variation {
     }
 }
 
-impl Tangent {
+impl Sensitivity {
     pub(super) fn new(model: &Model, input: Input, stages: usize) -> Self {
         Self {
             input,
@@ -170,8 +172,8 @@ impl Tangent {
         }
     }
 
-    /// Puts the constraints of the contact modes into the variation at the start of a step, `s` seconds after the start of
-    /// the motion, and computes its rates there.
+    /// Puts the constraints of the contact modes into the variation at the start of a step, `s` seconds after the start
+    /// of the motion, and computes its rates there.
     pub(super) fn evaluate_rates(
         &mut self,
         model: &Model,
@@ -250,9 +252,9 @@ impl Tangent {
         std::mem::swap(&mut self.start, &mut self.end);
         self.stages.swap(0, last);
     }
-    /// Solves stage `i` of a step of length `h` (s) for the tangent: into `end` and the rates of the stage. The `solver`
-    /// has solved the stage itself, which lies `s` seconds after the start of the motion and has these `rates`, and has
-    /// factored its matrix there; `weights` are those of the earlier stages.
+    /// Solves stage `i` of a step of length `h` (s) for the tangent: into `end` and the rates of the stage. The
+    /// `solver` has solved the stage itself, which lies `s` seconds after the start of the motion and has these
+    /// `rates`, and has factored its matrix there; `weights` are those of the earlier stages.
     pub(super) fn solve_stage(&mut self, model: &Model, solver: &mut StageSolver, stage: &Solved<'_>) {
         let &Solved { i, s, h, weights, rates, point } = stage;
         self.collect_history(h, &weights[..i]);
@@ -374,7 +376,7 @@ pub(super) struct Solved<'a> {
     pub h: f64,
     /// The row a_ij of the tableau.
     pub weights: &'a [f64],
-    pub rates: &'a Rates,
+    pub rates: &'a StageValues,
     pub point: &'a StagePoint,
 }
 

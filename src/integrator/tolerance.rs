@@ -20,8 +20,8 @@ pub struct Tolerance {
     long_term_stiffness: Option<f64>,
     /// Number of masses of the layer, over which their errors are averaged.
     pub(super) masses: usize,
-    /// Absolute tolerance of the speed of a body along x and z, m/s: that of positions times its natural frequency on the
-    /// layer and the drive.
+    /// Absolute tolerance of the speed of a body along x and z, m/s: that of positions times its natural frequency on
+    /// the layer and the drive.
     pub(super) body_velocity: ByAxis<f64>,
 }
 

@@ -4,8 +4,8 @@ use nalgebra::{Matrix2, Vector2};
 
 /// Lower_i δ_{i-1} + Diagonal_i δ_i + Upper_i δ_{i+1} = Right_i, i = 0 … n-1, with the workspace to solve it.
 ///
-/// Blocks are eliminated from both ends towards the middle, and back: two chains of operations that do not wait for each
-/// other. All that does not need the right sides is done once, by [`factor`](Self::factor).
+/// Blocks are eliminated from both ends towards the middle, and back: two chains of operations that do not wait for
+/// each other. All that does not need the right sides is done once, by [`factor`](Self::factor).
 #[derive(Clone, Debug, Default)]
 pub struct BlockTridiagonal {
     /// Blocks left of the diagonal; the first is not read.

@@ -31,8 +31,8 @@ impl LinkLaw {
     }
 }
 
-/// The laws of the links of a scene, and the part of their stiffness that belongs to replaced Maxwell elements whose dashpots
-/// are frozen at the elongation of the start, N/m.
+/// The laws of the links of a scene, and the part of their stiffness that belongs to replaced Maxwell elements whose
+/// dashpots are frozen at the elongation of the start, N/m.
 pub(super) fn link_laws(scene: &Scene, reduction: Option<&Reduction>) -> (ByLink<LinkLaw>, ByLink<f64>) {
     let mut frozen = ByLink::default();
     let mut laws = ByLink::from_fn(|kind| {
@@ -72,7 +72,8 @@ pub struct MaxwellRow {
 }
 
 impl MaxwellRow {
-    /// What is left in the spring of an element of a `way` (m) that its dashpot has `time` (s) to follow: τ/(τ + `time`) of it, m.
+    /// What is left in the spring of an element of a `way` (m) that its dashpot has `time` (s) to follow: τ/(τ +
+    /// `time`) of it, m.
     pub fn left_of(&self, way: f64, time: f64) -> f64 {
         way * self.relaxation_time / (self.relaxation_time + time)
     }
@@ -160,8 +161,8 @@ impl Forces {
         }
     }
 
-    /// Evaluates the forces of all links by these `laws`, with the forces `known` added, and their sums on the masses, but
-    /// not ė. Only links that the scene does not have are without `known` forces (N).
+    /// Evaluates the forces of all links by these `laws`, with the forces `known` added, and their sums on the masses,
+    /// but not ė. Only links that the scene does not have are without `known` forces (N).
     #[inline(always)]
     pub fn evaluate_with(&mut self, laws: &ByLink<LinkLaw>, motion: &LinkMotion<'_>, known: &ByLink<Vec<f64>>) {
         let [vertical, horizontal, lateral_x, lateral_z] = &mut self.link.0;
@@ -233,8 +234,8 @@ impl Forces {
         self.link[kind][link] = model.links[kind].force(e, rate) + elements - model.frozen_force(kind, link);
     }
 
-    /// F_x or F_z of the layer on the carrier, N. F_z is positive when the layer is compressed (e > 0, the masses are nearer
-    /// to the carrier than at rest).
+    /// F_x or F_z of the layer on the carrier, N. F_z is positive when the layer is compressed (e > 0, the masses are
+    /// nearer to the carrier than at rest).
     pub fn on_carrier(&self, axis: Axis) -> f64 {
         sum(&self.link[axis.link()])
     }
@@ -439,7 +440,8 @@ mod tests {
         }
     }
 
-    /// Layers of one mass to four, with the forces of the Maxwell elements and of the frozen dashpots as the known ones.
+    /// Layers of one mass to four, with the forces of the Maxwell elements and of the frozen dashpots as the known
+    /// ones.
     #[test]
     fn forces_with_given_laws_are_those_evaluated() {
         let horizontal = SCENE.replace("lateral_x =", "horizontal = { stiffness = 4.0, damping = 0.2 },\n lateral_x =");

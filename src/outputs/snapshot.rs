@@ -245,7 +245,8 @@ impl<'a> Snapshot<'a> {
         if self.model.friction.present { contact.friction(self.model, mode, v) } else { 0.0 }
     }
 
-    /// The part of the `friction` in a `contact` (N) that is shear force, N: of a sticking mass, as the two limits share it.
+    /// The part of the `friction` in a `contact` (N) that is shear force, N: of a sticking mass, as the two limits
+    /// share it.
     fn shear(&self, mode: Mode, contact: &ContactForces, friction: f64) -> f64 {
         match mode {
             Mode::Stick => self.model.friction.shear_share(contact.normal) * friction,

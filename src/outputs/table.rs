@@ -5,9 +5,9 @@
 //! # Direct dependencies
 //!
 //! Which outputs depend directly on the inputs, with the states frozen? The states are the positions and velocities of
-//! the masses, the dashpots' y_j and the contact modes, all in the inertial frame. The inputs u and w then enter through
-//! the elongations ξ_i - u of the horizontal and ζ_i - w of the vertical links alone; rates of the inputs are no inputs.
-//! So:
+//! the masses, the dashpots' y_j and the contact modes, all in the inertial frame. The inputs u and w then enter
+//! through the elongations ξ_i - u of the horizontal and ζ_i - w of the vertical links alone; rates of the inputs are
+//! no inputs. So:
 //!
 //! - F = c e + d ė + Σ c_j (e - y_j) of a carrier link, and with it F_x or F_z, depends on its input where the link has
 //!   a spring or Maxwell elements. A damper alone gives no dependency: ė is a rate.
@@ -23,7 +23,7 @@
 use std::mem::discriminant;
 
 use super::snapshot::{CarrierShift, ContactChange, Evaluation};
-use super::{Dependencies, Kind, Output, Tangent};
+use super::{Dependencies, Output, OutputType, Tangent};
 use crate::model::Mode;
 use crate::scene::{Axis, CarrierBody, Input, Link, LinkKind, OutputGroup, Scene, Unit};
 
@@ -32,7 +32,7 @@ pub(super) struct OutputRow {
     pub group: OutputGroup,
     /// Of the variable; of a quantity of single masses the part behind `element[i].`.
     pub name: &'static str,
-    pub kind: Kind,
+    pub kind: OutputType,
     pub unit: Unit,
     pub description: &'static str,
     /// Whether a scene has it: a channel of dissipation, say, that the scene cannot have is no variable.
@@ -146,7 +146,7 @@ const fn layer(
     output: Output,
     group: OutputGroup,
     name: &'static str,
-    kind: Kind,
+    kind: OutputType,
     unit: Unit,
     description: &'static str,
     value: fn(&Evaluation<'_, '_>) -> f64,
@@ -159,7 +159,7 @@ const fn layer(
 const fn mass(
     output: fn(usize) -> Output,
     name: &'static str,
-    kind: Kind,
+    kind: OutputType,
     unit: Unit,
     description: &'static str,
     value: fn(&Evaluation<'_, '_>, usize) -> f64,
@@ -172,7 +172,7 @@ const fn mass(
 /// All outputs, in the order of the result files within their groups.
 #[rustfmt::skip]
 pub(super) static TABLE: [OutputRow; 70] = {
-    use Kind::{Integer, Real};
+    use OutputType::{Integer, Real};
     use OutputGroup::{Carrier, Contact, Dissipation, Energy, Forces, Friction, Solver, Tangent as Tangents};
     use Unit::{
         Joule, Meter, MeterPerNewton, MeterPerNewtonSecond, MeterPerSecond, Newton, NewtonPerMeter, One, PerSecond, Second,
@@ -439,8 +439,8 @@ fn dissipated_power(scene: &Scene) -> Dependencies {
     carrier_links(scene, |link| !link.maxwell.is_empty()).or(elastic(scene).only_if(coulomb))
 }
 
-/// The inputs whose links to the carrier pass `test`: u elongates the horizontal ones, w the vertical ones. A body's u and w
-/// are states.
+/// The inputs whose links to the carrier pass `test`: u elongates the horizontal ones, w the vertical ones. A body's u
+/// and w are states.
 fn carrier_links(scene: &Scene, test: fn(&Link) -> bool) -> Dependencies {
     let along =
         |axis: Axis| scene.carrier[axis].as_ref().is_none() && scene.link(axis.link()).as_ref().is_some_and(test);

@@ -3,7 +3,7 @@
 use super::definition::Patch;
 use super::element_sums::ElementSums;
 use super::run::PatchRun;
-use crate::outputs::Kind;
+use crate::outputs::OutputType;
 use crate::scene::{PatchGroup, Unit};
 
 /// The quantity behind a variable of a patch.
@@ -63,7 +63,7 @@ pub struct PatchVariable {
     /// The unit of its values.
     pub unit: Unit,
     /// Real or Integer.
-    pub kind: Kind,
+    pub kind: OutputType,
     /// What it is, in a few words.
     pub description: String,
 }
@@ -74,11 +74,11 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 
 impl PatchVariable {
     fn real(group: PatchGroup, output: PatchOutput, name: &str, unit: Unit, description: &str) -> Self {
-        Self { output, group, name: name.into(), unit, kind: Kind::Real, description: description.into() }
+        Self { output, group, name: name.into(), unit, kind: OutputType::Real, description: description.into() }
     }
 
     fn count(group: PatchGroup, output: PatchOutput, name: &str, description: &str) -> Self {
-        Self { kind: Kind::Integer, ..Self::real(group, output, name, Unit::One, description) }
+        Self { kind: OutputType::Integer, ..Self::real(group, output, name, Unit::One, description) }
     }
 
     /// Whether it is an output of the FMU; the fields of the elements are local variables.

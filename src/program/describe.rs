@@ -1,6 +1,6 @@
 //! `asperity describe`: summarises a scene.
 
-use asperity::model::{Model, RealArea, Reduction, Replaced, Replacement};
+use asperity::model::{Model, RealAreaLaw, Reduction, Replaced, Replacement};
 use asperity::outputs::variables;
 use asperity::scene::{
     Axis, CarrierBody, CarrierInitial, Extrapolation, Force, Friction, Initial, Input, Layer, Link, LinkKind, Material,
@@ -229,7 +229,8 @@ fn friction(scene: &Scene) -> Vec<LabelledLine> {
 
 /// The roughness below the profile's, the part of a contact that touches on it, and the hysteresis that it adds.
 fn real_area_texts(scene: &Scene) -> Vec<String> {
-    let (Some(roughness), Some(law), Some(material)) = (scene.fine_roughness(), RealArea::new(scene), &scene.material)
+    let (Some(roughness), Some(law), Some(material)) =
+        (scene.fine_roughness(), RealAreaLaw::new(scene), &scene.material)
     else {
         return Vec::new();
     };

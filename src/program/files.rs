@@ -121,8 +121,8 @@ fn place(path: &Path) -> Option<PathBuf> {
     Some(folder.canonicalize().ok()?.join(path.file_name()?))
 }
 
-/// Refuses outputs that would overwrite one of `taken` or one another, and those that cannot be written: before anything is
-/// computed.
+/// Refuses outputs that would overwrite one of `taken` or one another, and those that cannot be written: before
+/// anything is computed.
 pub(crate) fn check_outputs<'a>(
     outputs: impl IntoIterator<Item = &'a PathBuf>,
     mut taken: Vec<PathBuf>,

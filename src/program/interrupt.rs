@@ -1,4 +1,5 @@
-//! What is left to do where the program is stopped: by Ctrl-C, by a signal to end, or from where nothing else can end it.
+//! What is left to do where the program is stopped: by Ctrl-C, by a signal to end, or from where nothing else can end
+//! it.
 
 use std::fmt::Display;
 use std::fs;

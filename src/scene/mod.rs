@@ -179,7 +179,8 @@ pub struct Friction {
     pub shear_strength: Option<f64>,
     /// Rate-dependent shear strength.
     pub rate_shear: Option<RateShear>,
-    /// Roughness below the profile's, by which contacts touch on a part of their area alone; in the material form alone.
+    /// Roughness below the profile's, by which contacts touch on a part of their area alone; in the material form
+    /// alone.
     pub real_area: Option<RealArea>,
 }
 

@@ -17,8 +17,8 @@ use crate::scene::{Axis, ByAxis};
 /// stages seeing the same and the error estimate nothing.
 const OF_PERIOD: f64 = 0.25;
 
-/// What the steps of a run work on, of the whole layer or of a local region: the model, the settings, the state, and the
-/// workspace that both methods share. Everything but `state` can be made anew from the model and the settings.
+/// What the steps of a run work on, of the whole layer or of a local region: the model, the settings, the state, and
+/// the workspace that both methods share. Everything but `state` can be made anew from the model and the settings.
 #[derive(Clone, Debug)]
 pub(super) struct Context {
     pub model: Arc<Model>,
@@ -89,8 +89,8 @@ impl Context {
             + self.dense.bytes()
     }
 
-    /// Takes over another temperature (K) and the settings for the model there, which is set. The dampers' forces jump, so the
-    /// next motion decides all modes anew.
+    /// Takes over another temperature (K) and the settings for the model there, which is set. The dampers' forces jump,
+    /// so the next motion decides all modes anew.
     pub(super) fn set_temperature(&mut self, temperature: f64, settings: Settings) {
         self.settings = settings;
         (self.state.temperature, self.state.rates_valid) = (temperature, false);
@@ -119,7 +119,8 @@ impl Context {
         }
     }
 
-    /// Computes the bodies' accelerations anew from the forces, of which one from outside has jumped. No force on a mass has.
+    /// Computes the bodies' accelerations anew from the forces, of which one from outside has jumped. No force on a
+    /// mass has.
     fn accelerate_bodies(&mut self) {
         self.evaluate_forces();
         self.state.carrier.accelerate(&self.model, self.state.s, &self.forces);
@@ -130,7 +131,7 @@ impl Context {
         let Self { state, integrator, .. } = self;
         for axis in Axis::ALL {
             if state.carrier.is_body(axis) {
-                state.carrier.set_step(axis, integrator.body_step(axis, h));
+                state.carrier.set_interpolant(axis, integrator.body_interpolant(axis, h));
             }
         }
     }
@@ -264,8 +265,8 @@ impl Context {
         self.integrator.dense(&self.model, &state.carrier, &state.layer.state, state.span(h))
     }
 
-    /// The layer at the fraction `theta` of the step of length `h` (s) tried last, with some masses replaced, and the run at
-    /// the step's start.
+    /// The layer at the fraction `theta` of the step of length `h` (s) tried last, with some masses replaced, and the
+    /// run at the step's start.
     pub(super) fn within<'a>(
         &'a mut self,
         (h, theta): (f64, f64),

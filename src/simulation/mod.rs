@@ -208,7 +208,8 @@ impl Simulation {
     /// the motion (s) and the run at that instant. Returns when the force was reached, s after the start of the motion:
     /// 0 if F_z is there already, `None` without a force or if it is not reached within the motion.
     ///
-    /// A snapshot within a step is interpolated: it can be looked at, but neither cloned into a simulation nor advanced.
+    /// A snapshot within a step is interpolated: it can be looked at, but neither cloned into a simulation nor
+    /// advanced.
     ///
     /// ```compile_fail,E0308
     /// # use asperity::simulation::{Motion, Simulation};
@@ -326,8 +327,8 @@ impl Simulation {
         self.run.context.force_rates()
     }
 
-    /// The first derivative of F_x, F_z or a variable of the carrier's motion, in its unit over s, from the left; at the
-    /// start, from the right. 0 for other outputs.
+    /// The first derivative of F_x, F_z or a variable of the carrier's motion, in its unit over s, from the left; at
+    /// the start, from the right. 0 for other outputs.
     pub fn output_rate(&mut self, output: Output) -> f64 {
         let (force_x, force_z) = self.run.context.force_rates();
         let (carrier, s) = (&self.run.context.state.carrier, self.run.context.state.s);
@@ -370,8 +371,8 @@ impl Simulation {
         self.run.context.relax_dashpots(means, time)
     }
 
-    /// Moves a carrier that is a body along z down by `way`, m, its speed kept and the masses where they are: the vertical
-    /// springs in contact bear so much more.
+    /// Moves a carrier that is a body along z down by `way`, m, its speed kept and the masses where they are: the
+    /// vertical springs in contact bear so much more.
     ///
     /// The energies since the start no longer balance.
     pub fn lower_carrier(&mut self, way: f64) {
@@ -388,8 +389,8 @@ impl Simulation {
         self.run_time = time;
     }
 
-    /// Why the run so far does not converge; `None` where nothing shows that, or without the group `solver`. Judged best at
-    /// the end of a run: early in it the largest forces, which errors are measured by, are still to come.
+    /// Why the run so far does not converge; `None` where nothing shows that, or without the group `solver`. Judged
+    /// best at the end of a run: early in it the largest forces, which errors are measured by, are still to come.
     pub fn divergence(&self) -> Option<Divergence> {
         self.reference_run.as_ref().and_then(|reference| reference.divergence(&self.run))
     }

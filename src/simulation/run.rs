@@ -26,7 +26,8 @@ const MEMORY: f64 = 8.0;
 
 /// A run of a layer.
 ///
-/// A motion of the carrier ([`Simulation::advance`](super::Simulation::advance)) is a sequence of steps, of either method:
+/// A motion of the carrier ([`Simulation::advance`](super::Simulation::advance)) is a sequence of steps, of either
+/// method:
 ///
 /// ```text
 /// begin(motion)                     decide the modes anew where the carrier's velocity jumps
@@ -45,10 +46,10 @@ const MEMORY: f64 = 8.0;
 ///     show the rows due at its end
 /// ```
 ///
-/// Method *auto* goes from events to time-stepping where mode changes come fast, and back where they are few again. What
-/// decides is the number of mode changes per time step, in the mean over the last [`MEMORY`] of them. An event costs the
-/// event-driven method a step of three or six stages, which is cut there, or of a local region; a time step costs two and
-/// takes any number of changes. So time-stepping is cheaper from a third of a change per step on.
+/// Method *auto* goes from events to time-stepping where mode changes come fast, and back where they are few again.
+/// What decides is the number of mode changes per time step, in the mean over the last [`MEMORY`] of them. An event
+/// costs the event-driven method a step of three or six stages, which is cut there, or of a local region; a time step
+/// costs two and takes any number of changes. So time-stepping is cheaper from a third of a change per step on.
 #[derive(Clone, Debug)]
 pub(super) struct Run {
     pub(super) context: Context,
@@ -65,7 +66,8 @@ pub(super) struct Run {
 }
 
 impl Run {
-    /// A run with the layer placed under the carrier at `start`; on the heap, since threads of hosts may have small stacks.
+    /// A run with the layer placed under the carrier at `start`; on the heap, since threads of hosts may have small
+    /// stacks.
     pub(super) fn new(
         model: Arc<Model>,
         settings: Settings,
@@ -174,8 +176,8 @@ impl Run {
         stepper.cut_step_at(context, (s, duration), work)
     }
 
-    /// Where F_z reaches the force `until` (N) in `step`, a step that ends there in its place, and whether it does; `None`
-    /// where it ends below.
+    /// Where F_z reaches the force `until` (N) in `step`, a step that ends there in its place, and whether it does;
+    /// `None` where it ends below.
     pub(super) fn cut_at_force(
         &mut self,
         step: &TrialStep,
@@ -192,8 +194,8 @@ impl Run {
         Ok(Some((cut, cut.h == theta * h)))
     }
 
-    /// Lets local regions follow `step`, which ends at the second of two times, up to the first, s. Returns its end: where they
-    /// cannot, it is cut short.
+    /// Lets local regions follow `step`, which ends at the second of two times, up to the first, s. Returns its end:
+    /// where they cannot, it is cut short.
     pub(super) fn advance_regions(
         &mut self,
         step: &mut TrialStep,
@@ -296,16 +298,16 @@ impl Run {
         Some((power + of_regions).max(0.0))
     }
 
-    /// Whether the dense output of `step`, tried last, is good enough to be shown at the time `s` after the start of the
-    /// carrier's piece.
+    /// Whether the dense output of `step`, tried last, is good enough to be shown at the time `s` after the start of
+    /// the carrier's segment.
     pub(super) fn can_show_within(&mut self, step: &TrialStep, s: f64) -> bool {
         let (stepper, context) = self.stepper();
         stepper.can_show(context, step.h, context.state.fraction_at(s, step.h))
     }
 }
 
-/// A run of a model in a state of its own, at the time `s` after the start of the carrier's piece: with the `layer` then, and
-/// the forces F_x and F_z, N.
+/// A run of a model in a state of its own, at the time `s` after the start of the carrier's segment: with the `layer`
+/// then, and the forces F_x and F_z, N.
 fn snapshot_of<'a>(
     (model, state): (&'a Model, &'a RunState),
     s: f64,

@@ -32,8 +32,8 @@ pub(super) trait Stepper {
         work: &mut WorkLimit,
     ) -> Result<TrialStep, SimulationError>;
 
-    /// Tries a step of length `h` in place of a longer, good one. Returns whether it is good, too: where it is rejected, the
-    /// controller's step size is a better length.
+    /// Tries a step of length `h` in place of a longer, good one. Returns whether it is good, too: where it is
+    /// rejected, the controller's step size is a better length.
     fn try_shorter(&mut self, context: &mut Context, h: f64, test: ErrorTest) -> bool;
 
     /// F_x and F_z at the fraction `theta` of the step, N.

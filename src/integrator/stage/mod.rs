@@ -1,7 +1,7 @@
 //! One implicit stage (docs/theory.md, sections 1 to 4).
 //!
-//! A stage at t_i with β = γh looks for v_i, and so for e_i = e* + β ė_i and v_i = v* + β v̇_i, where the starred values
-//! hold the contributions of the earlier stages. The Maxwell elements add H + h Q_ii ė_i to a link's force (see
+//! A stage at t_i with β = γh looks for v_i, and so for e_i = e* + β ė_i and v_i = v* + β v̇_i, where the starred
+//! values hold the contributions of the earlier stages. The Maxwell elements add H + h Q_ii ė_i to a link's force (see
 //! `maxwell`), so its force is
 //!
 //!   F = H + c e + D ė,   D = d + h Q_ii.
@@ -19,8 +19,8 @@ use std::ops::Range;
 
 use nalgebra::Vector2;
 
-use super::rates::{NO_LIMIT, Rates};
 use super::scheme::ContactModes;
+use super::stage_values::{NO_LIMIT, StageValues};
 use super::tolerance::{NEWTON_SHARE, Tolerance};
 use crate::math::{BLOCK, BlockTridiagonal, Spline, weighted_sum, with_widest_vectors};
 use crate::model::{
@@ -38,7 +38,7 @@ pub struct NoConvergence;
 
 /// Contributions of the earlier stages to a stage: the starred values and the known forces of the Maxwell elements.
 #[derive(Clone, Debug)]
-pub(super) struct History {
+pub(super) struct MassHistory {
     /// e*_x, m: as if the carrier stood where it was at the start of the step.
     pub elongation_x: Vec<f64>,
     /// e*_z, m.
@@ -51,7 +51,7 @@ pub(super) struct History {
     pub force: ByLink<Vec<f64>>,
 }
 
-impl History {
+impl MassHistory {
     fn new(model: &Model) -> Self {
         let zero = vec![0.0; model.masses()];
         Self {
@@ -85,7 +85,7 @@ pub(super) struct StagePoint {
     pub integrated: (f64, f64),
     /// Its exact displacement along x, m, by which a sticking mass falls behind.
     pub moved: f64,
-    /// u as a position on the profile and w at the start of the carrier's piece, m.
+    /// u as a position on the profile and w at the start of the carrier's segment, m.
     pub piece: (f64, f64),
 }
 
@@ -118,8 +118,8 @@ impl ConvergenceTest {
     }
 }
 
-/// Which slipping stages the factors of the Jacobian serve. It changes little through a step, so that those of one stage
-/// nearly always do for the others.
+/// Which slipping stages the factors of the Jacobian serve. It changes little through a step, so that those of one
+/// stage nearly always do for the others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Factors {
     /// None: they are of another step.
@@ -134,7 +134,7 @@ enum Factors {
 #[derive(Clone, Debug)]
 pub(super) struct StageSolver {
     /// To be set before a stage is solved.
-    pub history: History,
+    pub history: MassHistory,
     /// The state at the stage without its Maxwell elements. Its velocities are the initial guess before the solution.
     pub state: State,
     /// The forces at the stage.
@@ -178,15 +178,15 @@ const MAX_ITERATIONS: usize = 10;
 /// shorter step decides, in which the momentum of the masses does.
 const MAX_WITH_CHANGES: usize = 30;
 
-/// With the factors of another stage the error falls by a constant ratio, so that the next correction bounds it only where
-/// that is small.
+/// With the factors of another stage the error falls by a constant ratio, so that the next correction bounds it only
+/// where that is small.
 const HELD_FALL: f64 = 0.25;
 
 impl StageSolver {
     pub(super) fn new(model: &Model) -> Self {
         let k = model.masses();
         Self {
-            history: History::new(model),
+            history: MassHistory::new(model),
             state: State::new(k, model.maxwell_variables()),
             forces: Forces::new(model),
             friction_power: FrictionPower::default(),
@@ -269,9 +269,9 @@ impl StageSolver {
         &self.sticks
     }
 
-    /// Guesses the velocities: of the slipping masses the starred ones and the sum of the accelerations at `earlier` stages, with
-    /// their weights, s; of the others those of `start`.
-    pub(super) fn guess<'a>(&mut self, start: &State, earlier: impl Iterator<Item = (f64, &'a Rates)>) {
+    /// Guesses the velocities: of the slipping masses the starred ones and the sum of the accelerations at `earlier`
+    /// stages, with their weights, s; of the others those of `start`.
+    pub(super) fn guess<'a>(&mut self, start: &State, earlier: impl Iterator<Item = (f64, &'a StageValues)>) {
         let (guess, star) = (&mut self.state, &self.history.velocity_x);
         guess.velocity_z.copy_from_slice(&start.velocity_z);
         if self.slips.is_empty() {
@@ -308,7 +308,7 @@ impl StageSolver {
         model: &Model,
         point: &mut StagePoint,
         test: ConvergenceTest,
-        rates: &mut Rates,
+        rates: &mut StageValues,
     ) -> Result<(), NoConvergence> {
         self.history.subtract_frozen(model);
         self.move_bodies(Vector2::zeros(), point);
@@ -382,8 +382,8 @@ impl StageSolver {
         Err(NoConvergence)
     }
 
-    /// Factors the Jacobian at the velocities of the last residuals. Friction that is not linear changes it too much for
-    /// another stage.
+    /// Factors the Jacobian at the velocities of the last residuals. Friction that is not linear changes it too much
+    /// for another stage.
     fn factor_slips(&mut self, model: &Model, beta: f64) {
         self.assemble_slips(model, beta);
         self.system.factor();
@@ -445,13 +445,13 @@ impl StageSolver {
     }
 
     /// Writes the rates of the solved stage.
-    fn write_rates(&mut self, model: &Model, point: &StagePoint, rates: &mut Rates) {
+    fn write_rates(&mut self, model: &Model, point: &StagePoint, rates: &mut StageValues) {
         with_widest_vectors(
             #[inline(always)]
             || {
                 self.set_rates(point, rates);
                 if model.friction.is_linear() {
-                    let Rates { acceleration_x, acceleration_z, normal, margin, .. } = rates;
+                    let StageValues { acceleration_x, acceleration_z, normal, margin, .. } = rates;
                     set_contact_motion(acceleration_z, normal, acceleration_x, model, &self.state, &self.forces);
                     set_slips(&mut self.slip_speed, margin, model, &self.state);
                 }
@@ -466,7 +466,7 @@ impl StageSolver {
     }
 
     #[inline(always)]
-    fn set_rates(&self, point: &StagePoint, rates: &mut Rates) {
+    fn set_rates(&self, point: &StagePoint, rates: &mut StageValues) {
         let per_beta = 1.0 / point.beta;
         let (state, history) = (&self.state, &self.history);
         rates.velocity_x.copy_from_slice(&state.velocity_x);
@@ -480,7 +480,7 @@ impl StageSolver {
     }
 
     /// Sets what differs of sticking masses from slipping ones.
-    fn set_stick_rates(&self, model: &Model, rates: &mut Rates) {
+    fn set_stick_rates(&self, model: &Model, rates: &mut StageValues) {
         for &i in &self.sticks {
             let surface = &self.state.surface[i];
             let contact = self.forces.contact(model, i, 0.0, surface);
@@ -490,7 +490,7 @@ impl StageSolver {
     }
 
     /// Sets the rates of the masses in contact, and the power of friction.
-    fn set_contact_rates(&mut self, model: &Model, rates: &mut Rates) {
+    fn set_contact_rates(&mut self, model: &Model, rates: &mut StageValues) {
         let mut friction_power = FrictionPower::default();
         rates.clear_contacts();
         let state = &self.state;
@@ -598,7 +598,8 @@ fn set_contact_motion(
     }
 }
 
-/// Sets the speeds of slip, and the margins of the slipping masses as those of the others, under a linear law of friction.
+/// Sets the speeds of slip, and the margins of the slipping masses as those of the others, under a linear law of
+/// friction.
 #[inline(always)]
 fn set_slips(slip_speed: &mut [f64], margin: &mut [f64], model: &Model, state: &State) {
     // Slices of one length, so that an index into one of them is one into all.

@@ -22,11 +22,11 @@ use super::draft::TablePlace;
 use super::figure::Figure as _;
 use super::files::{FileError, check_outputs, picture_beside, print_beside, sources};
 use super::interrupt::Farewell;
-use super::sweep::{Bounds, ProfileEnds, check_profile, relevant, steady_sliding, table_fingerprint};
+use super::sweep::{ProfileEnds, StopBounds, check_profile, relevant, steady_sliding, table_fingerprint};
 use super::terminal::{self, warn};
 use crate::program::persson::{Dimension, Theory};
 use plan::{Next, Plan};
-use table::{Header, Measured, Run, Table};
+use table::{Measured, RunRow, Table, TableHeader};
 use variants::{Template, Variant};
 use verdict::{Pair, Study, Verdict};
 
@@ -90,9 +90,9 @@ pub(crate) fn converge(command: &Converge) -> Result<ExitCode, ConvergeError> {
     let (study, mut runs) = Work { command, template: &template, plan, table: &table, output: &output }.finish(runs)?;
     runs.sort_by_key(|run| run.variant.place());
     let verdict = Verdict::new(&study, command.error);
-    let rows: Vec<(&Run, Option<Pair>)> = runs.iter().map(|run| (run, change(run, &runs))).collect();
+    let rows: Vec<(&RunRow, Option<Pair>)> = runs.iter().map(|run| (run, change(run, &runs))).collect();
     table.finish(&summary::sentence(&verdict, command.error), &rows)?;
-    let ladder: Vec<&Run> = runs.iter().filter(|run| run.variant.is_of_ladder()).take(study.ladder.len()).collect();
+    let ladder: Vec<&RunRow> = runs.iter().filter(|run| run.variant.is_of_ladder()).take(study.ladder.len()).collect();
     let judgement = summary::judgement(&ladder, &verdict, command.error, plan.seeds);
     print_beside([&output], &format!("{}\n{judgement}", summary::table(&rows)))?;
     drop(table);
@@ -124,15 +124,15 @@ fn plan(command: &Converge, template: &Template) -> Result<Plan, ConvergeError> 
     Ok(Plan { error: command.error, most_halvings, seeds })
 }
 
-fn header(command: &Converge, scene: &Scene) -> Result<Header, ConvergeError> {
+fn header(command: &Converge, scene: &Scene) -> Result<TableHeader, ConvergeError> {
     let Converge { pressure, speed, error, distance, .. } = *command;
     let settings = format!("converge {pressure:?} {speed:?} {error:?} {distance:?}");
     let fingerprint = table_fingerprint(&relevant(scene.clone()), &settings)?;
-    Ok(Header { scene: scene.name.clone(), fingerprint, pressure, speed, error })
+    Ok(TableHeader { scene: scene.name.clone(), fingerprint, pressure, speed, error })
 }
 
 /// The change of a run's values from those of the run that it is compared with.
-fn change(run: &Run, runs: &[Run]) -> Option<Pair> {
+fn change(run: &RunRow, runs: &[RunRow]) -> Option<Pair> {
     let reference = run.variant.reference()?;
     let before = runs.iter().find(|run| run.variant == reference)?;
     Some(run.mean()?.change_from(&before.mean()?))
@@ -150,7 +150,7 @@ struct Work<'a> {
 
 impl Work<'_> {
     /// Makes what is missing beside `runs`; those that do not depend on each other on all cores.
-    fn finish(&self, mut runs: Vec<Run>) -> Result<(Study, Vec<Run>), FileError> {
+    fn finish(&self, mut runs: Vec<RunRow>) -> Result<(Study, Vec<RunRow>), FileError> {
         let bar = terminal::bar(0);
         bar.enable_steady_tick(Duration::from_secs(1));
         let done = bar.clone();
@@ -160,7 +160,7 @@ impl Work<'_> {
             format!("{runs} runs are done")
         });
         loop {
-            let outcome = |variant| runs.iter().find(|run| run.variant == variant).map(Run::mean);
+            let outcome = |variant| runs.iter().find(|run| run.variant == variant).map(RunRow::mean);
             let missing = match self.plan.next(outcome) {
                 Next::Done(study) => {
                     bar.finish_and_clear();
@@ -169,7 +169,7 @@ impl Work<'_> {
                 Next::Runs(missing) => missing,
             };
             self.show(&bar, runs.len(), &missing);
-            let made: Result<Vec<Run>, FileError> =
+            let made: Result<Vec<RunRow>, FileError> =
                 missing.par_iter().with_max_len(1).map(|&variant| self.make(variant, &bar)).collect();
             runs.extend(made?);
         }
@@ -183,7 +183,7 @@ impl Work<'_> {
         bar.set_message(format!("now with {} masses", masses.collect::<Vec<_>>().join(", ")));
     }
 
-    fn make(&self, variant: Variant, bar: &ProgressBar) -> Result<Run, FileError> {
+    fn make(&self, variant: Variant, bar: &ProgressBar) -> Result<RunRow, FileError> {
         let scene = self.template.scene(variant)?;
         let clock = ThreadTime::now();
         let outcome = self.measure(&scene);
@@ -193,7 +193,7 @@ impl Work<'_> {
             .map(|dimension| Theory::new(&scene, pressure, speed, dimension).unwrap_or_default());
         let fit_rms = scene.quality(LinkKind::Vertical).map_or(0.0, |quality| quality.rms);
         let dimensions = self.template.dimensions(variant);
-        let run = Run { variant, dimensions, fit_rms, outcome, theories, run_time };
+        let run = RunRow { variant, dimensions, fit_rms, outcome, theories, run_time };
         self.table.add(&run)?;
         bar.inc(1);
         Ok(run)
@@ -204,7 +204,7 @@ impl Work<'_> {
         let Converge { pressure, speed, error, distance, .. } = *self.command;
         let area = scene.layer.area().ok_or("the layer has no width")?;
         let point = OperatingPoint { speed, load: pressure, temperature: None };
-        let bounds = Bounds { error: RUN_ERROR * error, distance };
+        let bounds = StopBounds { error: RUN_ERROR * error, distance };
         let sliding = steady_sliding(scene, &point, Load::Pressure { area }, bounds)?;
         Ok(Measured {
             mean: Pair { friction: sliding.friction(), area: sliding.contact_ratio },

@@ -104,13 +104,13 @@ mod tests {
     const PLAN: Plan = Plan { error: 0.05, most_halvings: 6, seeds: Some(3) };
 
     /// 0.1 (1 + 0.4 2^-i): the fourth halving changes by less than 5 %.
-    fn of_first_order(variant: Variant) -> Outcome {
+    fn first_order(variant: Variant) -> Outcome {
         Some(Pair { friction: 0.5, area: 0.1 * (1.0 + 0.4 * 0.5_f64.powi(variant.halvings as i32)) })
     }
 
     #[test]
     fn the_spacing_is_halved_until_little_changes_then_length_and_seeds_follow() {
-        let (rounds, study) = made(PLAN, of_first_order);
+        let (rounds, study) = made(PLAN, first_order);
         let doubled = Variant { doubled: true, ..Variant::halved(3) };
         let seeds = [1, 2].map(|seed_shift| Variant { seed_shift, ..Variant::halved(3) });
         assert_eq!(rounds[0], [Variant::halved(0), Variant::halved(1)]);
@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn most_masses_end_the_halvings() {
-        let (rounds, study) = made(Plan { most_halvings: 1, seeds: None, ..PLAN }, of_first_order);
+        let (rounds, study) = made(Plan { most_halvings: 1, seeds: None, ..PLAN }, first_order);
         assert_eq!(
             rounds,
             [vec![Variant::halved(0), Variant::halved(1)], vec![Variant { doubled: true, ..Variant::halved(1) }]]
@@ -132,7 +132,7 @@ mod tests {
     #[test]
     fn a_run_that_is_not_steady_ends_the_halvings() {
         let unsteady_from =
-            |first: u32| move |variant: Variant| of_first_order(variant).filter(|_| variant.halvings < first);
+            |first: u32| move |variant: Variant| first_order(variant).filter(|_| variant.halvings < first);
         let (rounds, study) = made(PLAN, unsteady_from(2));
         assert_eq!((rounds.len(), study.ladder.len()), (3, 2));
         assert!(study.length.is_some());
@@ -143,7 +143,7 @@ mod tests {
     #[test]
     fn runs_that_are_there_are_not_made_again() {
         let there = [Variant::halved(0), Variant::halved(2), Variant { doubled: true, ..Variant::halved(3) }];
-        let outcome = |variant| there.contains(&variant).then(|| of_first_order(variant));
+        let outcome = |variant| there.contains(&variant).then(|| first_order(variant));
         assert_eq!(PLAN.next(outcome), Next::Runs(vec![Variant::halved(1)]));
     }
 }

@@ -15,8 +15,8 @@ use crate::program::files::FileError;
 use crate::program::result_file::{CsvFile, CsvWriter, ResultFileError};
 use crate::program::terminal::real;
 
-/// The columns of errors and run times: errors over the largest value, processor time in s. Tables of other programs have these
-/// columns.
+/// The columns of errors and run times: errors over the largest value, processor time in s. Tables of other programs
+/// have these columns.
 const MEASURED: [&str; 10] = [
     "scene",
     "program",

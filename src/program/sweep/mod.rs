@@ -23,8 +23,8 @@ use super::files::{FileError, check_outputs, load_without_excitation, named, pic
 use super::interrupt::Farewell;
 use super::terminal::{self, lines, warn};
 use load_search::{heights, rest_separation};
-pub(crate) use point::{Bounds, SMALL as SMALL_FRICTION, SteadySliding};
 use point::{MIN_BLOCKS, PointResult};
+pub(crate) use point::{SMALL as SMALL_FRICTION, SteadySliding, StopBounds};
 use slide::Blocks;
 pub(crate) use table_file::fingerprint as table_fingerprint;
 use table_file::{SweepTable, TableFile, TableFileError};
@@ -159,7 +159,7 @@ fn run(command: &Sweep, scene: &Scene, header: &TableHeader, file: &TableFile, o
     bar.reset_eta();
     bar.set_message(format!("of {} points", points.len()));
     bar.enable_steady_tick(std::time::Duration::from_secs(1));
-    let bounds = Bounds { error: command.error, distance: command.distance };
+    let bounds = StopBounds { error: command.error, distance: command.distance };
     let done = bar.clone();
     let _farewell = Farewell::new(output, move || {
         let (points, all) = (done.position(), done.length().unwrap_or_default());
@@ -284,7 +284,7 @@ pub(crate) fn steady_sliding(
     scene: &Scene,
     point: &OperatingPoint,
     load: Load,
-    bounds: Bounds,
+    bounds: StopBounds,
 ) -> Result<SteadySliding, String> {
     let scene = scene_at(&relevant(scene.clone()), point);
     steady(point::sliding(&scene, point.speed, load.force(point.load), bounds))
@@ -296,7 +296,7 @@ pub(crate) fn steady_sliding_at(
     point: &OperatingPoint,
     w: f64,
     load: Load,
-    bounds: Bounds,
+    bounds: StopBounds,
 ) -> Result<SteadySliding, String> {
     let scene = scene_at(&relevant(scene.clone()), point);
     steady(point::sliding_at(&scene, point.speed, w, load.force(point.load), bounds))

@@ -1,13 +1,14 @@
-//! Local regions: steps of the masses near a mode change alone, within a step of the whole layer (multirate time stepping).
+//! Local regions: steps of the masses near a mode change alone, within a step of the whole layer (multirate time
+//! stepping).
 //!
-//! A mode change is felt by the masses near it alone: the carrier holds every mass, so the effect of a change falls by a
-//! constant ratio from mass to mass. So the step of the whole layer is not cut there. The masses near it form a
-//! [`LocalRegion`], which goes on from the change in steps of its own, under the forces that the whole layer's step has in the
-//! links to the others. What these others then miss is far below the tolerance; where it is not, a wider region takes the
-//! place of the first (docs/theory.md, section 13).
+//! A mode change is felt by the masses near it alone: the carrier holds every mass, so the effect of a change falls by
+//! a constant ratio from mass to mass. So the step of the whole layer is not cut there. The masses near it form a
+//! [`LocalRegion`], which goes on from the change in steps of its own, under the forces that the whole layer's step has
+//! in the links to the others. What these others then miss is far below the tolerance; where it is not, a wider region
+//! takes the place of the first (docs/theory.md, section 13).
 //!
-//! All regions of a step move on together, in the order of time: so a wider one can be opened, or the step cut short, at any
-//! time. At the end of the step their masses take the places of those in it.
+//! All regions of a step move on together, in the order of time: so a wider one can be opened, or the step cut short,
+//! at any time. At the end of the step their masses take the places of those in it.
 
 mod layer_part;
 mod region;
@@ -22,13 +23,14 @@ use super::event_driven::{EventDriven, MAX_CUTS, MAX_DEFECT, accept_motion, can_
 use super::motion::{ModeChange, SimulationError};
 use super::settings::Settings;
 use super::stepper::Stepper;
-use crate::integrator::{DenseWorkspace, LayerStep, Overlay, Scheme, StepSpan};
+use crate::integrator::{DenseWorkspace, LayerStep, Overlay, Scheme, TimeSpan};
 use crate::model::{LinkKind, Model, State};
 use crate::outputs::Energies;
 use crate::scene::Method;
 use region::LocalRegion;
 
-/// How far off a mass is by the end of a step that knows nothing of its mode change, as a fraction of the scene's height.
+/// How far off a mass is by the end of a step that knows nothing of its mode change, as a fraction of the scene's
+/// height.
 ///
 /// Recommended 0.03 to 1. More makes regions wider than need be, less has them widened more often.
 const DISTURBANCE: f64 = 0.3;
@@ -36,14 +38,16 @@ const DISTURBANCE: f64 = 0.3;
 const MIN_REGIONS: usize = 4;
 /// Regions may hold at most the layer's masses divided by this: beyond that it is better to cut the step.
 const OF_MASSES: usize = 2;
-/// The most regions of the least width, of twice this width half as many, and so on: more are seldom open at once, and each
-/// takes memory.
+/// The most regions of the least width, of twice this width half as many, and so on: more are seldom open at once, and
+/// each takes memory.
 const MAX_REGIONS: usize = 16;
 /// There are regions of the two least widths where so many of them would have room.
 const ROOM: [usize; 2] = [2, 2];
-/// The same of wider ones: the steps of the few widest cost about as much as to cut that of the layer, and they take memory.
+/// The same of wider ones: the steps of the few widest cost about as much as to cut that of the layer, and they take
+/// memory.
 const ROOM_FOR_WIDE: usize = 4;
-/// The force by which the links at a region's ends may be off, as a fraction of the error allowed in the force of one mass.
+/// The force by which the links at a region's ends may be off, as a fraction of the error allowed in the force of one
+/// mass.
 ///
 /// Recommended 0.1 to 1.
 const MISMATCH: f64 = 0.5;
@@ -62,14 +66,14 @@ pub(super) struct LocalRegions {
     /// What regions that others have absorbed have gained beyond the whole layer's step.
     gained: Energies,
     /// The step of the whole layer that they follow.
-    span: StepSpan,
+    span: TimeSpan,
     /// Workspace for that step.
     workspace: DenseWorkspace,
     /// The same for each of its stages.
     nodes: Vec<DenseWorkspace>,
 }
 
-/// Why and when, s after the start of the carrier's piece, a step has to end.
+/// Why and when, s after the start of the carrier's segment, a step has to end.
 #[derive(Clone, Copy, Debug)]
 enum Cut {
     /// Too many masses feel the mode changes.
@@ -79,9 +83,9 @@ enum Cut {
 }
 
 impl LocalRegions {
-    /// The regions for a layer of `model`. There are none where they would not be much smaller than the layer, under a carrier
-    /// that is a body, through which every mass feels every other, and where tangents are asked for, which regions do not
-    /// have.
+    /// The regions for a layer of `model`. There are none where they would not be much smaller than the layer, under a
+    /// carrier that is a body, through which every mass feels every other, and where tangents are asked for, which
+    /// regions do not have.
     pub(super) fn new(model: &Model, settings: &Settings) -> Self {
         let Settings { method, tolerance, accounts, .. } = settings;
         let have_none = *method == Method::Step || accounts.tangents || model.has_bodies();
@@ -102,7 +106,7 @@ impl LocalRegions {
             most_masses,
             counted: 0,
             gained: Energies::default(),
-            span: StepSpan { start: 0.0, length: 0.0 },
+            span: TimeSpan { start: 0.0, length: 0.0 },
             nodes: vec![DenseWorkspace::for_single_masses(model); stages],
         }
     }
@@ -164,8 +168,8 @@ impl LocalRegions {
         self.close();
     }
 
-    /// Lets the regions of `step`, which `stepper` has tried and which ends at `end`, follow it up to the time `s`; both s after
-    /// the start of the carrier's piece. Where they cannot, it is cut short. Returns its end.
+    /// Lets the regions of `step`, which `stepper` has tried and which ends at `end`, follow it up to the time `s`;
+    /// both s after the start of the carrier's segment. Where they cannot, it is cut short. Returns its end.
     pub(super) fn advance(
         &mut self,
         (context, stepper): (&mut Context, &mut EventDriven),
@@ -241,8 +245,8 @@ impl LocalRegions {
         changed.start.saturating_sub(self.reach)..(changed.end + self.reach).min(masses)
     }
 
-    /// Opens a region over `masses`, and over those of open regions among them, at the time `s` of the step of `context`, which
-    /// has its `end`. Says how the step has to be cut where that cannot be.
+    /// Opens a region over `masses`, and over those of open regions among them, at the time `s` of the step of
+    /// `context`, which has its `end`. Says how the step has to be cut where that cannot be.
     fn open_over(
         &mut self,
         masses: Range<usize>,
@@ -277,8 +281,8 @@ impl LocalRegions {
         Ok(None)
     }
 
-    /// A region that is not open and can have `masses`, of `k`, and with them those of all open regions that it overlaps; and
-    /// the masses that it has then.
+    /// A region that is not open and can have `masses`, of `k`, and with them those of all open regions that it
+    /// overlaps; and the masses that it has then.
     fn fitting(&self, masses: Range<usize>, k: usize) -> Option<(usize, Range<usize>)> {
         let mut range = masses;
         loop {
@@ -296,8 +300,8 @@ impl LocalRegions {
         }
     }
 
-    /// Accepts the step that a region has tried, and lets it try the next one: wider where its ends are off. Returns where the
-    /// step of the whole layer, which has its `end`, has to be cut if that cannot be.
+    /// Accepts the step that a region has tried, and lets it try the next one: wider where its ends are off. Returns
+    /// where the step of the whole layer, which has its `end`, has to be cut if that cannot be.
     fn accept_in(
         &mut self,
         index: usize,
@@ -360,7 +364,8 @@ impl LocalRegions {
         forces.fold((0.0, 0.0), |sum, force| (sum.0 + force.0, sum.1 + force.1))
     }
 
-    /// P_diss of the regions at the time `s` beyond that in the whole layer's step, W, where the powers at the stages say it.
+    /// P_diss of the regions at the time `s` beyond that in the whole layer's step, W, where the powers at the stages
+    /// say it.
     pub(super) fn dissipated_power(&mut self, context: &Context, s: f64) -> f64 {
         let (open, step) = self.open_in_step(context);
         open.fold(0.0, |sum, region| sum + region.dissipated_power(&step.dense, s))
@@ -379,7 +384,7 @@ fn workspace(model: &Model, is_empty: bool) -> DenseWorkspace {
 }
 
 /// The step of `context` over `span` that was tried last.
-fn whole_layer<'a>(context: &'a Context, span: StepSpan, workspace: &'a mut DenseWorkspace) -> LayerStep<'a> {
+fn whole_layer<'a>(context: &'a Context, span: TimeSpan, workspace: &'a mut DenseWorkspace) -> LayerStep<'a> {
     let Context { model, state, integrator, .. } = context;
     LayerStep { dense: integrator.dense(model, &state.carrier, &state.layer.state, span), workspace }
 }
@@ -394,11 +399,11 @@ fn levels(least: usize, most_masses: usize) -> impl Iterator<Item = (usize, usiz
         .map(move |((width, most), _)| (width, most.min(most_masses / width)))
 }
 
-/// The number of masses over which the effect of a mode change falls below the tolerance; `None` where it does not within the
-/// layer of `model`.
+/// The number of masses over which the effect of a mode change falls below the tolerance; `None` where it does not
+/// within the layer of `model`.
 ///
-/// A chain of links of stiffness c_l between masses on links of stiffness c to the carrier bends by the ratio r from mass to
-/// mass, r + 1/r = 2 + c/c_l.
+/// A chain of links of stiffness c_l between masses on links of stiffness c to the carrier bends by the ratio r from
+/// mass to mass, r + 1/r = 2 + c/c_l.
 fn reach(model: &Model, relative: f64) -> Option<usize> {
     let ratio = |own: LinkKind, lateral: LinkKind| {
         let of = |own: f64, lateral: f64| {

@@ -1,6 +1,6 @@
 //! The dense output of the method of seven stages, against exact solutions.
 
-use asperity::integrator::{DenseWorkspace, LayerStep, LayerSums, Motions, StepSpan};
+use asperity::integrator::{DenseWorkspace, LayerStep, LayerSums, Polynomials, TimeSpan};
 use asperity::model::{Forces, State};
 use nalgebra::Vector2;
 
@@ -51,7 +51,8 @@ fn the_inside_of_a_free_step_of_four_stages_has_its_order() {
 }
 
 /// The same for a slipping mass, against steps so short that their error does not count: its height follows the profile
-/// at its position, its z velocity the slope there. What depends on the motion, as its Maxwell elements do, misses O(h⁵).
+/// at its position, its z velocity the slope there. What depends on the motion, as its Maxwell elements do, misses
+/// O(h⁵).
 #[test]
 fn the_inside_of_a_slipping_step_has_its_order() {
     let layer = slider();
@@ -138,8 +139,8 @@ fn one_contact_within_a_step_is_that_of_the_whole_state() {
     }
 }
 
-/// F_x and F_z by sums are those of the whole state within the step: F_x for all methods, F_z where masses in contact are put
-/// on the profile one by one.
+/// F_x and F_z by sums are those of the whole state within the step: F_x for all methods, F_z where masses in contact
+/// are put on the profile one by one.
 #[test]
 fn forces_on_the_carrier_by_sums_are_those_of_the_whole_state() {
     let mut random = Random::new(8);
@@ -160,8 +161,8 @@ fn forces_on_the_carrier_by_sums_are_those_of_the_whole_state() {
     }
 }
 
-/// In four and in two stages F_z by sums has the masses in contact not on the profile, but where ż at the stages has brought them: it
-/// misses that of the whole state by the order of velocities within the step.
+/// In four and in two stages F_z by sums has the masses in contact not on the profile, but where ż at the stages has
+/// brought them: it misses that of the whole state by the order of velocities within the step.
 #[test]
 fn the_interpolated_heights_of_contacts_have_the_order_of_the_method() {
     let layer = slider();
@@ -198,7 +199,7 @@ fn parts_of_a_step_make_the_whole() {
         stepper.attempt(h);
         let (state, on_carrier) = (stepper.within(h, theta), stepper.on_carrier(h, theta)[0]);
         let Stepper { model, carrier, start, integrator, .. } = &mut stepper;
-        let (start, span) = (&start.state, StepSpan { start: 0.0, length: h });
+        let (start, span) = (&start.state, TimeSpan { start: 0.0, length: h });
         let energies = integrator.energies((model, carrier, start), span, theta);
         let power = integrator.dissipated_power((model, carrier, start), span, 1.0);
 
@@ -213,7 +214,7 @@ fn parts_of_a_step_make_the_whole() {
             let mut of_part = LayerSums::new(&part, 0);
             of_part.begin_part(&mut step, &part, masses.start);
             let mut state = State::new(part.masses(), part.maxwell_variables());
-            let (dense, workspace) = step.of(&masses);
+            let (dense, workspace) = step.restricted_to(&masses);
             dense.state_at(theta, workspace, &mut state);
             state.write_part((&part, model), &mut joined, masses.start);
             let (f_x, f_z) = of_part.on_carrier(&mut step, &part, theta);
@@ -229,7 +230,8 @@ fn parts_of_a_step_make_the_whole() {
             // Sums of some hundred forces up to 1e3 N, and of their powers over 1e-3 s, in another order.
             assert!((sum - whole).abs() < 1e-10, "case {case}, {i}: {sum} {whole}");
         }
-        // Friction in a direction against the modes, as random states have it, may make a power below 0, which is cut off.
+        // Friction in a direction against the modes, as random states have it, may make a power below 0, which is cut
+        // off.
         if power > 0.0 && powers.iter().all(|power| *power > 0.0) {
             let sum: f64 = powers.iter().sum();
             assert!((sum - power).abs() < 1e-10 * power, "case {case}: {sum} {power}");
@@ -248,7 +250,7 @@ fn motions_are_those_of_the_state_within_the_step() {
     let h = 1e-3;
     stepper.attempt(h);
     let (dense, rest) = (stepper.dense(h), (&stepper.model.rest_x, &stepper.model.rest_z));
-    let motions = Motions::new(&dense);
+    let motions = Polynomials::new(&dense);
     for theta in THETAS {
         let (within, at) = (stepper.within(h, theta), stepper.carrier.at(theta * h));
         for i in 0..within.mode.len() {

@@ -39,7 +39,7 @@ pub(in crate::program::report) fn tolerances(
         ("patience", PATIENCE.to_string()),
         ("choices", choices(rows)?),
         ("table", runs(reference, rows)?),
-        ("reference", of_reference(reference)),
+        ("reference", reference_text(reference)),
         ("sensitivity", sensitivity(reference)),
     ];
     Ok(fill(TOLERANCES, &fields))
@@ -178,7 +178,7 @@ fn figure_cells(figures: &RunFigures, reference: &Reference) -> Vec<Cell> {
     cells.chain([short(figures.residual)]).collect()
 }
 
-fn of_reference(reference: &Reference) -> String {
+fn reference_text(reference: &Reference) -> String {
     let reduced = if reference.scene.solver.reduce > 0.0 { ", with all Maxwell elements" } else { "" };
     let run =
         format!("A run by the method <code>event</code> at the relative tolerance {:e}{reduced}.", reference.tolerance);

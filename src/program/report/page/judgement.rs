@@ -33,12 +33,12 @@ pub(in crate::program::report) fn judgements(scenes: &[SceneJudgements<'_>], pic
         ("summary", summary(scenes)?),
         ("runs", runs),
         ("kept", KEPT.to_string()),
-        ("perturbed", if perturbed { of_perturbed() } else { String::new() }),
+        ("perturbed", if perturbed { perturbed_text() } else { String::new() }),
     ];
     Ok(fill(TEMPLATE, &fields))
 }
 
-fn of_perturbed() -> String {
+fn perturbed_text() -> String {
     format!(
         " Scaled runs are those of the section on robustness, at the scene's own tolerance, against runs at a tolerance {TIGHTER} times lower."
     )

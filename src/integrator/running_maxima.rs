@@ -5,15 +5,15 @@ use serde::{Deserialize, Serialize};
 use super::tolerance::Tolerance;
 use crate::model::{Axis, Forces, LinkKind, Model};
 
-/// The least scale of the errors of one force, as a share of the other, and as one of the force that the scene's height makes
-/// on a mass.
+/// The least scale of the errors of one force, as a share of the other, and as one of the force that the scene's height
+/// makes on a mass.
 const MIN_FORCE: f64 = 1e-3;
-/// The same as a share of the force that it makes on all masses in the long term: the first touches are not resolved down to
-/// forces that do not matter later.
+/// The same as a share of the force that it makes on all masses in the long term: the first touches are not resolved
+/// down to forces that do not matter later.
 const MIN_OF_LAYER: f64 = 1e-3;
-/// The share of the scene's height by which the layer is compressed in the least scale of the errors of energies; the least scale
-/// is lower where the masses have less energy at the carrier's speed. A light layer moves with energies far below those of its
-/// springs.
+/// The share of the scene's height by which the layer is compressed in the least scale of the errors of energies; the
+/// least scale is lower where the masses have less energy at the carrier's speed. A light layer moves with energies far
+/// below those of its springs.
 const MIN_COMPRESSION: f64 = 0.01;
 /// The elongation of one mass's links whose energy is the least scale in any case, as a share of the scene's height.
 const MIN_ELONGATION: f64 = 1e-9;
@@ -22,7 +22,7 @@ const EXPECTED_FRICTION: f64 = 0.5;
 
 /// The largest forces of the layer on the carrier and energies so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Largest {
+pub struct RunningMaxima {
     /// |F_x|, N.
     pub force_x: f64,
     /// |F_z|, N.
@@ -31,7 +31,7 @@ pub struct Largest {
     pub energy: f64,
 }
 
-impl Largest {
+impl RunningMaxima {
     /// Includes the forces of `forces`.
     #[must_use]
     pub fn with(self, forces: &Forces) -> Self {
@@ -90,14 +90,14 @@ mod tests {
     #[test]
     fn nothing_yet_is_measured_by_the_layer_or_by_its_motion() {
         let model = Model::from_text(SCENE);
-        let (tolerance, nothing) = (Tolerance::new(&model, 1e-3, 1e-8), Largest::default());
+        let (tolerance, nothing) = (Tolerance::new(&model, 1e-3, 1e-8), RunningMaxima::default());
         for (speed, expected) in [(1.0, 8e-10), (1e-3, 4e-12), (0.0, 2e-25)] {
             let found = nothing.energy_scale(&model, &tolerance, speed);
             assert!((found / expected - 1.0).abs() < 1e-12, "{speed} m/s: {found:e} J");
         }
         let (x, z) = nothing.force_scales(&model, &tolerance);
         assert!((x / 8e-4 - 1.0).abs() < 1e-12 && x == z, "{x:e} and {z:e} N");
-        let known = Largest { force_z: 2.0, energy: 1e-3, ..nothing };
+        let known = RunningMaxima { force_z: 2.0, energy: 1e-3, ..nothing };
         assert_eq!(
             (known.force_scales(&model, &tolerance).1, known.energy_scale(&model, &tolerance, 1.0)),
             (2.0, 1e-3)

@@ -1,14 +1,14 @@
 //! The motions of masses through an event-driven step as polynomials.
 
 use super::dense::DenseOutput;
-use super::rates::Rates;
+use super::stage_values::StageValues;
 use super::tableau::MAX_STAGES;
 use crate::math::Quintic;
 use crate::model::Axis;
 
 /// The motions of the masses by the [`DenseOutput`] of one step.
 #[derive(Clone, Debug)]
-pub struct Motions<'a> {
+pub struct Polynomials<'a> {
     step: &'a DenseOutput<'a>,
     /// By stage: the Bernstein coefficients of a position by the rate there, s.
     weights: [[f64; 6]; MAX_STAGES],
@@ -22,7 +22,7 @@ pub struct Motions<'a> {
     bounds: (f64, f64, f64),
 }
 
-impl<'a> Motions<'a> {
+impl<'a> Polynomials<'a> {
     /// The motions through `step`.
     pub fn new(step: &'a DenseOutput<'a>) -> Self {
         let weights =
@@ -58,7 +58,7 @@ impl<'a> Motions<'a> {
     }
 
     #[inline]
-    fn distance(&self, rate: impl Fn(&Rates) -> f64) -> f64 {
+    fn distance(&self, rate: impl Fn(&StageValues) -> f64) -> f64 {
         let speeds = self.step.stages().iter().map(|stage| rate(stage).abs());
         self.reach * speeds.fold(0.0, |most, speed| if speed > most { speed } else { most })
     }
@@ -76,7 +76,7 @@ impl<'a> Motions<'a> {
     }
 
     #[inline]
-    fn motion(&self, carrier: &Quintic, start: f64, rate: impl Fn(&Rates) -> f64) -> Quintic {
+    fn motion(&self, carrier: &Quintic, start: f64, rate: impl Fn(&StageValues) -> f64) -> Quintic {
         carrier.plus(start, self.step.stages().iter().map(rate).zip(&self.weights))
     }
 }
