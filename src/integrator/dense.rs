@@ -534,11 +534,6 @@ impl DenseWorkspace {
         self.at = None;
     }
 
-    /// Bytes that this holds.
-    pub fn bytes(&self) -> usize {
-        self.of_masses.iter().map(|array| array.len() * size_of::<f64>()).sum()
-    }
-
     /// The weights of the elements of one row at the fraction for which the weights are set.
     pub(super) fn element_weights(&self, row: &MaxwellRow) -> &ElementWeights {
         &self.elements[row.time_index]

@@ -136,10 +136,6 @@ impl Maxwell {
         }
         ElementWeights { ends, rates }
     }
-
-    pub(super) fn floats(&self) -> usize {
-        self.kinds.iter().map(|sums| self.tableau.stages * sums.error_start.len()).sum()
-    }
 }
 
 /// The elongation rates of the links of `kind` at the stages, with their weights; stages of weight 0 are left out.

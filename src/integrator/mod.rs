@@ -44,7 +44,6 @@ use crate::model::{Axis, Tangents};
 use crate::model::{BodyInterpolant, BoundaryPowers, Carrier, CarrierPoint, ChannelEnergies, Forces, Model, State};
 use error::ErrorWorkspace;
 use method::{Attempt, RungeKutta, Stages};
-use sensitivity::Sensitivity;
 use stage::{ConvergenceTest, StageSolver};
 use tableau::{GAMMA, SDIRK2_ESTIMATE};
 
@@ -356,20 +355,5 @@ impl Integrator {
             self.stages.link_forces =
                 std::iter::repeat_with(links).take(self.event_driven().tableau().stages - 2).collect();
         }
-    }
-
-    /// Bytes that the stages hold, those of a copy to go back to included.
-    pub fn bytes(&self) -> usize {
-        let rates = &self.stages.rates[0];
-        let masses = rates.velocity_x.len();
-        let links: usize = rates.elongation_rate.iter().map(Vec::len).sum();
-        // With those at the start of the next step, in the state and in the one to go back to.
-        let stages = self.stages.rates.len() + 2;
-        // Per mass: rates and starred values; six blocks and a right side; row shares and neighbour weights; errors;
-        // whether it is free; the speed of its slip.
-        let by_mass = stages * 6 + 4 + (6 * 4 + 2) + (3 + 3) + 5 + 1 + 1;
-        let elements = 2 * self.methods.iter().map(|method| method.maxwell.floats()).sum::<usize>();
-        let tangents: usize = self.stages.tangents.iter().map(Sensitivity::floats).sum();
-        (by_mass * masses + stages * links + elements + tangents) * size_of::<f64>()
     }
 }

@@ -106,12 +106,6 @@ impl Sensitivity {
         }
     }
 
-    pub(super) fn floats(&self) -> usize {
-        let (masses, maxwell) = (self.start.x.len(), self.start.maxwell.len());
-        // Start, end and stages; forces; the known motion of the links.
-        (2 + self.stages.len()) * (4 * masses + maxwell) + self.forces.bytes() / size_of::<f64>() + 4 * masses
-    }
-
     /// Begins a motion of the carrier of `duration` (s). The present state does not depend on its target.
     pub(super) fn begin(&mut self, duration: f64) {
         self.duration = duration;

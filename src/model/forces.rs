@@ -239,12 +239,6 @@ impl Forces {
     pub fn on_carrier(&self, axis: Axis) -> f64 {
         sum(&self.link[axis.link()])
     }
-
-    /// Bytes that the vectors hold.
-    pub fn bytes(&self) -> usize {
-        let by_link: usize = self.link.iter().chain(&self.rate).map(Vec::len).sum();
-        (by_link + self.on_mass_x.len() + self.on_mass_z.len()) * size_of::<f64>()
-    }
 }
 
 /// Elongations of the carrier links and velocities, from which the elongations of all links and their rates follow.

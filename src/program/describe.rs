@@ -1,5 +1,8 @@
 //! `asperity describe`: summarises a scene.
 
+use std::sync::Arc;
+
+use asperity::fmi::FmuModel;
 use asperity::model::{Model, RealAreaLaw, Reduction, Replaced, Replacement};
 use asperity::outputs::variables;
 use asperity::scene::{
@@ -49,9 +52,11 @@ fn json(scene: &Scene) -> Result<String, DescribeError> {
 }
 
 fn text(scene: &Scene) -> Result<String, DescribeError> {
-    let simulation = Simulation::new(scene, &start(scene, 0.0))?;
+    // A scene that no run can start with is refused.
+    Simulation::new(scene, &start(scene, 0.0))?;
     let title = scene.description.as_ref().map_or_else(|| scene.name.clone(), |text| format!("{}: {text}", scene.name));
-    let memory = ("Memory", format!("{} bytes a run", simulation.bytes()));
+    let bytes = FmuModel::memory(&Arc::new(scene.clone()));
+    let memory = ("Memory", format!("at most {} MiB an instance of the FMU", bytes.div_ceil(1 << 20)));
     Ok(lines(&[vec![("Scene", title)], rows(scene), vec![memory]].concat()))
 }
 

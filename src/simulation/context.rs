@@ -76,19 +76,6 @@ impl Context {
         self.state.energies.initial = of_layer + self.state.carrier.energy(model, 0.0).total();
     }
 
-    /// Memory in bytes, without some hundreds that do not grow with the layer: with `copies` of the state beside it.
-    pub(super) fn bytes(&self, copies: usize) -> usize {
-        let layer = &self.state.layer.state;
-        let (masses, maxwell) = (layer.mode.len(), layer.maxwell.len());
-        // The state, the one within a step and the stage's.
-        let states = 3 + copies;
-        let by_mass = 4 * size_of::<f64>() + size_of_val(&layer.surface[0]) + 1;
-        states * (masses * by_mass + maxwell * size_of::<f64>())
-            + self.integrator.bytes()
-            + 2 * self.forces.bytes()
-            + self.dense.bytes()
-    }
-
     /// Takes over another temperature (K) and the settings for the model there, which is set. The dampers' forces jump,
     /// so the next motion decides all modes anew.
     pub(super) fn set_temperature(&mut self, temperature: f64, settings: Settings) {

@@ -189,11 +189,6 @@ impl Simulation {
         (carrier.drive(Axis::X, s).unwrap_or(u), carrier.drive(Axis::Z, s).unwrap_or(w))
     }
 
-    /// Memory of the simulation in bytes, without some hundreds that do not grow with the layer.
-    pub fn bytes(&self) -> usize {
-        self.runs().map(Run::bytes).sum()
-    }
-
     /// Follows `motion` to its end.
     ///
     /// # Errors

@@ -93,11 +93,6 @@ impl Run {
         run
     }
 
-    /// Memory in bytes, without some hundreds that do not grow with the layer.
-    pub(super) fn bytes(&self) -> usize {
-        self.context.bytes(1) + self.local_regions.bytes()
-    }
-
     pub(super) fn newton_iterations(&self) -> u64 {
         self.context.integrator.iterations() + self.local_regions.newton_iterations()
     }

@@ -82,9 +82,6 @@ fn few_of_sixteen_elements_stay() {
     let [before, after] = [&whole, &reduced].map(|scene| Model::new(scene).rows.len());
     assert_eq!(before, 64);
     assert!(after <= 32, "{after} of {before} rows stay");
-    let bytes = [&whole, &reduced].map(|scene| Simulation::new(scene, &SLIDE_START).unwrap().bytes());
-    // Ten of sixteen elements less in each of four states; the rest does not depend on their number.
-    assert!(4 * bytes[1] < 3 * bytes[0], "{bytes:?}");
     // The long ones become springs, the short ones dampers; those on the run's time scales stay.
     for one in Reduction::new(&reduced).unwrap().replaced {
         let tau = one.element.relaxation_time;

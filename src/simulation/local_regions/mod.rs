@@ -122,11 +122,6 @@ impl LocalRegions {
         self.nodes.fill(DenseWorkspace::for_single_masses(model));
     }
 
-    /// Memory in bytes, without what each region takes whatever its masses: some thousand.
-    pub(super) fn bytes(&self) -> usize {
-        self.regions.iter().map(LocalRegion::bytes).sum::<usize>() + self.workspace.bytes()
-    }
-
     pub(super) fn newton_iterations(&self) -> u64 {
         self.regions.iter().map(|region| region.context.integrator.iterations()).sum()
     }

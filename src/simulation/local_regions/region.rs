@@ -59,11 +59,6 @@ impl LocalRegion {
         self.context.dense.invalidate();
     }
 
-    /// Memory in bytes that grows with its masses.
-    pub(super) fn bytes(&self) -> usize {
-        self.context.bytes(0)
-    }
-
     /// Number of its masses.
     pub(super) fn len(&self) -> usize {
         self.context.model.masses()
