@@ -106,7 +106,7 @@ pub(crate) fn command_line() -> String {
 }
 
 /// The command line without `--force`, which would begin anew what is to be continued.
-pub(crate) fn command_to_continue() -> String {
+fn command_to_continue() -> String {
     command_without(|word| word == "--force")
 }
 

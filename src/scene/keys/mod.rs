@@ -165,7 +165,7 @@ const MATERIAL: &[Key] = &[
     table("wlf", WLF),
 ];
 
-pub(super) const PRONY_TERM: &[Key] = &[
+const PRONY_TERM: &[Key] = &[
     number("modulus", NOT_NEGATIVE, Unit::Pascal, "Modulus"),
     number("relaxation_time", POSITIVE, Unit::Second, "Relaxation time"),
 ];
