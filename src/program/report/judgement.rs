@@ -76,9 +76,10 @@ impl Judgement {
         let tolerance = robustness.tolerance;
         let perturbed = robustness.trials().filter(|(perturbation, _)| **perturbation != Perturbation::default());
         perturbed.filter_map(move |(&perturbation, trial)| {
-            let error = force_error(trial.errors()?)?;
-            let sensitive = trial.accuracy()?.moved().is_some();
-            let judgement = Self::new(error, trial.estimate()?, tolerance / TIGHTER, tolerance, sensitive);
+            let ended = trial.ended()?;
+            let error = force_error(ended.errors.as_ref()?)?;
+            let sensitive = ended.accuracy.moved().is_some();
+            let judgement = Self::new(error, ended.estimate, tolerance / TIGHTER, tolerance, sensitive);
             Some(Self { perturbation: Some(perturbation), method: method.into(), ..judgement })
         })
     }

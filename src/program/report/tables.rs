@@ -111,7 +111,7 @@ pub(super) fn write_robustness(path: &Path, scene: &str, robustness: &Robustness
         let mut fields = vec![scene.to_owned()];
         fields.extend(factors(*perturbation));
         fields.extend([robustness.verdict(trial).name().to_owned(), robustness.reason(trial)]);
-        let (accuracy, counts) = (trial.accuracy(), trial.counts());
+        let (accuracy, counts) = (trial.ended().map(|ended| &ended.accuracy), trial.counts());
         let error = accuracy.and_then(|accuracy| Some(accuracy.error()?.share));
         let moved = accuracy.and_then(|accuracy| accuracy.moved());
         fields.extend([error, moved, counts.map(|counts| counts.residual)].map(optional));
