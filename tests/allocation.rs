@@ -186,8 +186,8 @@ fn bodies_allocate_nothing() {
     }
 }
 
-/// What an instance of an FMU reckons before it allocates is no less than it takes, and within a factor: some scenes need
-/// less than the worst, whose figures are used.
+/// What an instance of an FMU reckons before it allocates is no less than it takes, and within a factor: some scenes
+/// need less than the worst, whose figures are used.
 #[test]
 fn memory_reckoned_is_memory_taken() {
     const FACTOR: usize = 8;

@@ -183,7 +183,7 @@ mod tests {
         assert_eq!(first_touch(&flat, (straight(0.0, 0.5), dip(depth + 1e-9, depth)), 1e-12, 1.0), None);
     }
 
-    /// The same by the profile: a spike a thousandth of the way wide that reaches 1e-9 m into the mass's straight path.
+    /// The profile as the dip: a spike a thousandth of the way wide that reaches 1e-9 m into the mass's straight path.
     #[test]
     fn finds_a_spike_a_thousandth_of_the_way_wide() {
         // Level but for the spike: the points beside it keep the spline from swinging.

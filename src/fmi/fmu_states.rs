@@ -77,7 +77,7 @@ struct WrittenState {
     run: Option<RunState>,
 }
 
-/// The same as it is written: a patch may be large.
+/// A state as it is written, borrowed: that of a patch may be large.
 #[derive(Serialize)]
 struct BorrowedState<'a> {
     lifecycle: LifecycleState,

@@ -428,7 +428,7 @@ struct CarrierMotion {
     now: CarrierPoint,
     /// Its displacement along x and z since the start of the step, m.
     moved: ByAxis<f64>,
-    /// The same as the stages' rates give it, m.
+    /// Its displacement along x and z as the stages' rates give it, m.
     integrated: (f64, f64),
     /// What the stages' rates miss of u̇ and ẇ, m/s.
     missing_rate: (f64, f64),

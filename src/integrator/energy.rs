@@ -109,7 +109,7 @@ impl EnergySums {
         }
     }
 
-    /// The same for `N` stages: products of so many arrays are summed at once.
+    /// [Collects](Self::collect) the sums at `N` stages: products of so many arrays are summed at once.
     fn collect_stages<const N: usize>(&mut self, step: &DenseOutput<'_>) {
         let (model, h) = (step.model, step.span.length);
         // The dampers' powers are squares of the rates; the elements' also take their products.

@@ -41,7 +41,7 @@ fn weight_of_force_x(model: &Model) -> f64 {
 pub struct ErrorEstimate {
     /// The error estimate over the tolerance.
     pub error: f64,
-    /// The same without the energies.
+    /// The error estimate without the energies, over the tolerance.
     pub motion_error: f64,
     /// The error estimate of the carrier's displacement over the tolerance, taken over the free masses. It counts only
     /// where one of them may touch.

@@ -160,7 +160,7 @@ impl ElementCoefficients {
         }
     }
 
-    /// The same for `N` stages: the compiler unrolls the loops.
+    /// [Sets](Self::set) the coefficients for `N` stages: the compiler unrolls the loops.
     fn set_stages<const N: usize>(&mut self, tableau: &Tableau, z: f64, h: f64) {
         let gamma = tableau.gamma();
         let g = 1.0 / (1.0 + gamma * z);

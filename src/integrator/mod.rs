@@ -50,8 +50,8 @@ use tableau::{GAMMA, SDIRK2_ESTIMATE};
 /// The error tolerance of Newton's iterations in a step of two stages, as a multiple of the one in an event-driven
 /// step. Iterations are the cost of such a step, and the error that they leave is known to be smaller than this.
 const NEWTON_SLACK: f64 = 2.0;
-/// The same where friction depends on the speed. Corrections fall slowly there, and the estimate of the step's error
-/// multiplies what they leave by [`SDIRK2_ESTIMATE`] over γ: the step length would follow it and not the motion.
+/// [`NEWTON_SLACK`] where friction depends on the speed. Corrections fall slowly there, and the estimate of the step's
+/// error multiplies what they leave by [`SDIRK2_ESTIMATE`] over γ: the step length would follow it and not the motion.
 const STEEP_SLACK: f64 = 0.1;
 
 /// Attempts and accepts steps: the values at the stages of the last attempted step, and workspace.
@@ -243,7 +243,7 @@ impl Integrator {
         DenseOutput { model, masses, carrier, span, start, method: self.method(), values: &self.stages }
     }
 
-    /// The same, and sums over the layer in that step.
+    /// The dense output of the last attempted step, and the sums over the layer in it.
     fn dense_and_sums<'a>(
         &'a mut self,
         (model, carrier, start): (&'a Model, &'a Carrier, &'a State),

@@ -16,7 +16,7 @@ pub struct Polynomials<'a> {
     reach: f64,
     /// The carrier's position on the profile, less its displacement since the start by the stages' rates, m.
     x: Quintic,
-    /// The same of its height.
+    /// The carrier's height, less its displacement since the start by the stages' rates, m.
     z: Quintic,
     /// The least and the largest x, and the least z, m.
     bounds: (f64, f64, f64),

@@ -8,8 +8,8 @@ use crate::model::{Axis, Forces, LinkKind, Model};
 /// The least scale of the errors of one force, as a share of the other, and as one of the force that the scene's height
 /// makes on a mass.
 const MIN_FORCE: f64 = 1e-3;
-/// The same as a share of the force that it makes on all masses in the long term: the first touches are not resolved
-/// down to forces that do not matter later.
+/// The least scale of the errors of one force as a share of the force that the height makes on all masses in the long
+/// term: the first touches are not resolved down to forces that do not matter later.
 const MIN_OF_LAYER: f64 = 1e-3;
 /// The share of the scene's height by which the layer is compressed in the least scale of the errors of energies; the
 /// least scale is lower where the masses have less energy at the carrier's speed. A light layer moves with energies far

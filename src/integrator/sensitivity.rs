@@ -40,7 +40,7 @@ struct CarrierVariation {
 }
 
 impl CarrierVariation {
-    /// The same with a displacement and a speed of a body along an axis.
+    /// Sets the displacement and the speed along an axis to those of a body.
     fn set_along(&mut self, axis: Axis, [displacement, rate]: [f64; 2]) {
         match axis {
             Axis::X => (self.u, self.u_rate) = (displacement, rate),

@@ -27,7 +27,7 @@ pub struct Tableau {
     /// Weight of the error of F_z in the error test; that of F_x is a multiple of it. It makes the errors of whole runs
     /// about the relative tolerance and, among such weights, a given error cheap.
     pub force_weight: f64,
-    /// The same of the energies.
+    /// Weight of the errors of energies in the error test, as that of F_z.
     pub energy_weight: f64,
 }
 

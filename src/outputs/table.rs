@@ -169,9 +169,9 @@ const fn mass(
     OutputRow { group, name, kind, unit, description, exists: always, dependencies: none, scope }
 }
 
-/// The row of the derivative of a quantity by an input, both at the end of a communication step: the quantity and its name
-/// in the variable, the input and its name, the unit, the quantity in words, where its value is, and the axis of the body
-/// that has it.
+/// The row of the derivative of a quantity by an input, both at the end of a communication step: the quantity and its
+/// name in the variable, the input and its name, the unit, the quantity in words, where its value is, and the axis of
+/// the body that has it.
 #[rustfmt::skip]
 macro_rules! tangent {
     ($tangent:ident, $name:literal, $input:ident, $by:literal, $unit:ident, $words:literal,

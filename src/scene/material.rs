@@ -214,7 +214,7 @@ impl Scene {
         })
     }
 
-    /// The same scene by the constants of its links; itself where it is given so.
+    /// This scene by the constants of its links; itself where it is given so.
     pub fn direct_form(&self) -> Self {
         let mut scene = self.clone();
         if scene.material.take().is_some() {

@@ -50,8 +50,8 @@ fn reduced(scene: &SceneText, share: f64) -> Scene {
     scene.clone().set("solver.reduce", share).scene()
 }
 
-/// The outputs after each of `parts` even parts of a motion; at the start itself the damper of a replaced element meets the
-/// jump of the speed, which the element does not.
+/// The outputs after each of `parts` even parts of a motion; at the start itself the damper of a replaced element meets
+/// the jump of the speed, which the element does not.
 fn along(scene: &Scene, start: &Start, motion: Motion, parts: u32) -> Table {
     runs::along(scene, start, &[motion], parts).skip(1)
 }
@@ -139,8 +139,8 @@ fn the_frequency_is_the_largest_of_three() {
     close(frequency(1e-2, "duration = 1.0, u_rate = -0.5"), TAU * 0.5 / 1e-3, 2e-3);
 }
 
-/// Every mass sticks on a flat profile from the start on, so that the links' motion is the carrier's, and the bound is one
-/// of the force itself. The layer is pressed from the start, so that relaxed dashpots are elongated.
+/// Every mass sticks on a flat profile from the start on, so that the links' motion is the carrier's, and the bound is
+/// one of the force itself. The layer is pressed from the start, so that relaxed dashpots are elongated.
 #[test]
 fn the_force_of_a_known_motion_is_within_the_bound() {
     const DURATION: f64 = 4e-3;

@@ -174,8 +174,8 @@ pub(super) struct StageSolver {
 
 /// Iterations after which Newton's method has failed; one or two are usual.
 const MAX_ITERATIONS: usize = 10;
-/// The same where modes change between the iterations, some masses at a time. They may also change to and fro: then a
-/// shorter step decides, in which the momentum of the masses does.
+/// [`MAX_ITERATIONS`] where modes change between the iterations, some masses at a time. They may also change to and
+/// fro: then a shorter step decides, in which the momentum of the masses does.
 const MAX_WITH_CHANGES: usize = 30;
 
 /// With the factors of another stage the error falls by a constant ratio, so that the next correction bounds it only

@@ -213,7 +213,7 @@ impl Evaluated<'_> {
         SlippingMass::from_state(self.model, self.state, self.forces, i, self.acceleration(i))
     }
 
-    /// The same under this law of friction.
+    /// The equation of mass `i`, which slips under this law of friction.
     #[inline(always)]
     fn slipping_mass_under(&self, law: LinearFriction, i: usize) -> SlippingMass {
         let (sigma, surface) = (self.state.mode[i].direction(), &self.state.surface[i]);

@@ -142,9 +142,9 @@ pub(super) struct TableHeader {
     pub(super) scene: String,
     /// What tells this study from others.
     pub(super) fingerprint: String,
-    /// Pa
+    /// The mean pressure of the runs, Pa.
     pub(super) pressure: f64,
-    /// m/s
+    /// The speed of the runs, m/s.
     pub(super) speed: f64,
     pub(super) error: f64,
 }

@@ -23,7 +23,7 @@ pub(super) struct Tile {
     pub(super) high: [f64; 2],
     /// The middle of their area, m.
     pub(super) place: [f64; 2],
-    /// m².
+    /// The sum of their areas, m².
     pub(super) area: f64,
     /// Their mean, Pa.
     pub(super) pressure: f64,
@@ -35,7 +35,7 @@ pub(super) struct Tile {
 /// What a face bears at a moment.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Moment {
-    /// s.
+    /// The time, s.
     pub(super) time: f64,
     /// Of the force on the body, N.
     pub(super) force: f64,

@@ -243,7 +243,7 @@ pub(crate) struct ProfilePicture {
     pub(crate) heights: Vec<(f64, f64)>,
     /// Wave numbers (rad/m) and densities (m³).
     pub(crate) spectrum: Vec<(f64, f64)>,
-    /// The same of the fitted power law; empty for none.
+    /// Wave numbers (rad/m) and densities (m³) of the fitted power law; empty for none.
     pub(crate) law: Vec<(f64, f64)>,
 }
 

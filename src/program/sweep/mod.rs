@@ -67,9 +67,9 @@ pub(crate) enum SweepError {
      periodic, as `asperity surface --mirror --write` does, or --taper, and give periodic = true in [surface]"
 )]
 pub(crate) struct ProfileEnds {
-    /// m
+    /// How far the profile reaches from where the layer starts, m.
     longest: f64,
-    /// m
+    /// The shortest way of a point, m.
     needed: f64,
 }
 

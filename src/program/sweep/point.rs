@@ -116,7 +116,7 @@ pub(super) struct PointResult {
     pub(super) status: String,
     /// `None` where a run failed or there was no room for a window.
     pub(super) sliding: Option<SteadySliding>,
-    /// N/m.
+    /// Stiffness of all springs along x, N/m.
     tangential_stiffness: Option<f64>,
 }
 

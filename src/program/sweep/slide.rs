@@ -212,8 +212,8 @@ impl Slide {
         self.simulation.relax_dashpots(&self.elongations, self.blocks.length / self.blocks.speed)
     }
 
-    /// The same under a carrier whose load is held: it moves to where springs of this `stiffness` (N/m) bear that force
-    /// in their place.
+    /// [Relaxes](Self::relax) the dashpots under a carrier whose load is held: it moves to where springs of this
+    /// `stiffness` (N/m) bear that force in their place.
     pub(super) fn relax_under_load(&mut self, stiffness: f64) -> f64 {
         let borne = self.relax();
         if stiffness > 0.0 {

@@ -43,8 +43,8 @@ const OF_MASSES: usize = 2;
 const MAX_REGIONS: usize = 16;
 /// There are regions of the two least widths where so many of them would have room.
 const ROOM: [usize; 2] = [2, 2];
-/// The same of wider ones: the steps of the few widest cost about as much as to cut that of the layer, and they take
-/// memory.
+/// There are wider ones where so many have room: the steps of the few widest cost about as much as to cut that of the
+/// layer, and they take memory.
 const ROOM_FOR_WIDE: usize = 4;
 /// The force by which the links at a region's ends may be off, as a fraction of the error allowed in the force of one
 /// mass.
@@ -69,7 +69,7 @@ pub(super) struct LocalRegions {
     span: TimeSpan,
     /// Workspace for that step.
     workspace: DenseWorkspace,
-    /// The same for each of its stages.
+    /// Workspace for each of its stages.
     nodes: Vec<DenseWorkspace>,
 }
 

@@ -1,5 +1,5 @@
-//! A feature that a scene does not have costs nothing and changes nothing: pairs of scenes, one without the feature, one
-//! with it at zero. `cargo bench --bench leaving_out` compares their times.
+//! A feature that a scene does not have costs nothing and changes nothing: pairs of scenes, one without the feature,
+//! one with it at zero. `cargo bench --bench leaving_out` compares their times.
 #[allow(dead_code, unreachable_pub, reason = "shared with the benchmark and with tests/allocation.rs")]
 mod pairs;
 
