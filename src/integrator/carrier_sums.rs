@@ -132,6 +132,7 @@ impl CarrierSums {
             return;
         }
         self.known = true;
+        // Which masses are summed: of others the dense output has each one's motion.
         (self.summed, self.moving, self.free) = (0.0, 0.0, 0.0);
         for (is_summed, mode) in self.is_summed.iter_mut().zip(&start.mode[masses.clone()]) {
             let is_free = !mode.in_contact();
@@ -140,6 +141,7 @@ impl CarrierSums {
             self.moving += one_if(*mode != Mode::Stick) * *is_summed;
             self.free += one_if(is_free);
         }
+        // Their elongations at the ends of the step and velocities at the stages, then what the links need.
         let of_summed = |values: &[f64]| dot(&self.is_summed, &values[masses.start..]);
         self.x.elongation = [of_summed(&start.elongation_x), of_summed(&end.elongation_x)];
         self.z.elongation = [of_summed(&start.elongation_z), of_summed(&end.elongation_z)];

@@ -186,6 +186,7 @@ impl<'a> DenseOutput<'a> {
     ) -> f64 {
         let (carrier, h) = (self.carrier.at(self.span.at(theta)), self.span.length);
         workspace.set_accelerations(self, theta, &carrier);
+        // What Newton's first correction would make of a difference of accelerations, over the tolerances.
         let settled = InertialFraction::new(self.model, theta * h);
         let missed = |of_forces: f64, of_interpolant: f64, velocity: f64, settled: f64| {
             let gained = settled * theta * h * (of_forces - of_interpolant);
@@ -193,6 +194,7 @@ impl<'a> DenseOutput<'a> {
             (gained * gained / tolerance.velocity_tolerance_sq(velocity))
                 .max(moved * moved / tolerance.position_tolerance_sq(0.0))
         };
+        // The largest of all masses; a sticking one has no equation.
         let mut largest = 0.0_f64;
         for i in 0..self.masses.len() {
             let (a_x, a_z) = (workspace.of_masses[0][i], workspace.of_masses[1][i]);

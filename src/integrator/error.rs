@@ -99,6 +99,7 @@ impl ErrorTest<'_> {
         tolerance: &Tolerance,
         workspace: &mut ErrorWorkspace,
     ) -> ErrorEstimate {
+        // The differences from the embedded method: of the carrier, and of positions and velocities of the masses.
         let carrier_error = CarrierError::new(self.carrier, &self.tableau.error, h);
         self.collect(h, &carrier_error, workspace);
         let (end, rates) = (self.end, &self.carrier[self.tableau.last()]);
@@ -108,12 +109,14 @@ impl ErrorTest<'_> {
         let of_velocities = |error: &[f64], velocity: &[f64], carrier_rate: f64| {
             sum_of_pairs(error, velocity, |error, v| error * error / tolerance.velocity_tolerance_sq(v - carrier_rate))
         };
+        // Their squares over the tolerances.
         let (in_contact, free) = self.carrier_squares(&carrier_error, tolerance);
         let mut sum = of_positions(&workspace.x, &end.elongation_x)
             + of_positions(&workspace.z, &end.elongation_z)
             + of_velocities(&workspace.v_x, &end.velocity_x, rates.x.speed)
             + of_velocities(&workspace.v_z, &end.velocity_z, rates.z.speed)
             + square(CARRIER_WEIGHT) * in_contact;
+        // Those of the links: stiff ones as rods, Maxwell elements, and the force on the carrier.
         let mut of_forces = 0.0;
         for kind in LinkKind::ALL {
             let rod = tolerance.rod(kind);
@@ -134,8 +137,10 @@ impl ErrorTest<'_> {
                 of_forces += square(weight) * self.carrier_force_squares(model, kind, tolerance, workspace);
             }
         }
+        // Those of the energies, where steps resolve the stiffest oscillation.
         let resolvable = self.exchange.filter(|_| h * model.stiffest_frequency() > SHORTEST_RESOLVED);
         let of_energies = resolvable.map_or(0.0, |exchange| self.energy_square(model, exchange, h, tolerance));
+        // Means over the masses; bodies, forces and energies stand beside them.
         let mean = |sum: f64| (sum / tolerance.masses as f64).sqrt();
         let of_bodies = if model.has_bodies() { self.body_squares(model, &carrier_error, tolerance) } else { 0.0 };
         let motion_error = mean(sum).hypot(of_bodies.sqrt()).hypot(self.tableau.force_weight * of_forces.sqrt());

@@ -177,12 +177,14 @@ impl Sensitivity {
         s: f64,
     ) {
         let carrier = self.carrier(model, s, &self.start.bodies);
+        // Masses in contact stay on the profile, sticking ones where they are.
         for i in 0..model.masses() {
             if let Some(mass) = Constrained::new(state, i, self.start.x[i], self.start.v_x[i]) {
                 (self.start.z[i], self.start.v_x[i], self.start.v_z[i]) = (mass.z, mass.v_x, mass.v_z);
             }
         }
         self.forces_at_start(model, &carrier);
+        // The rates of the masses.
         for i in 0..model.masses() {
             let on_mass = (self.forces.on_mass_x[i], self.forces.on_mass_z[i]);
             let rates = &mut self.stages[0];
@@ -199,12 +201,14 @@ impl Sensitivity {
             };
             rates.v_z[i] = on_mass.1 / model.mass;
         }
+        // Of the bodies.
         for axis in Axis::ALL {
             let Some(body) = &model.bodies[axis] else { continue };
             let motion = self.start.bodies[axis];
             let acceleration = (self.forces.on_carrier(axis) + self.on_body(body, axis, s, motion)) / body.mass;
             self.stages[0].bodies[axis] = [motion[1], acceleration];
         }
+        // Of the Maxwell elements.
         for row in &model.rows {
             let start = self.start.maxwell[row.range.clone()].iter().zip(&self.forces.rate[row.kind]);
             for (rate, (a, elongation_rate)) in self.stages[0].maxwell[row.range.clone()].iter_mut().zip(start) {

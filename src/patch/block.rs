@@ -410,11 +410,13 @@ impl<T: Number> Block<T> {
         if self.begin.is_free && self.end.is_free && self.stiffness.iter().all(|k| k.value() == 0.0) {
             return;
         }
+        // All elements as if their pressures changed in one segment.
         let displacement = self.displacements(step, (now, next), length);
         let Self { force, stiffness, slips, slip, release, begin, end, count, .. } = self;
         apply_jumps(force, stiffness, release, begin);
         let before = *force;
         advance_all(force, slips, (slip, release), (begin, end), &displacement);
+        // Those whose pressure changes by too large a factor once more, in segments.
         for i in 0..*count {
             if needs_segments(begin.pressure[i].value(), end.pressure[i].value()) {
                 let displacement = [displacement[0][i], displacement[1][i]];
@@ -497,6 +499,7 @@ impl<T: Number> Block<T> {
             self.mode.fill(ElementMode::Free as u8);
             return;
         }
+        // Forces on the body, their moments about the pose's point, and the force along the tread.
         let mut loads = [[T::constant(0.0); BLOCK]; 7];
         for i in 0..BLOCK {
             let (f_x, f_y) = (-self.force[0][i], -self.force[1][i]);

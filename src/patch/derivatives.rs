@@ -90,6 +90,7 @@ impl PatchRun {
         let (pressure, speed) = (self.law.largest_pressure(), self.law.largest_speed());
         let mut changes = Changes::zero();
         for i in 0..self.patch.count() {
+            // The element's law at the approach as it changes.
             let here = self.element_contact(i, &totals, &now);
             let element = self.moving_element(i, shift, &shifted);
             let approach = -(shifted.height + element.arm[2]);
@@ -98,6 +99,7 @@ impl PatchRun {
             if normal.value <= 0.0 {
                 continue;
             }
+            // Its spring, and what both add to the sums.
             let (limit, stiffness) = (normal * point.friction, point.stiffness * element.area);
             let force = self.force(i, limit, stiffness, element.displacement);
             let (hysteresis, ratio) = self.shares(i, &totals, &now, approach);

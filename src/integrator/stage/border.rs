@@ -149,6 +149,7 @@ impl StageSolver {
             Axis::X => (LinkKind::Horizontal, LinkKind::LateralX, 0),
             Axis::Z => (LinkKind::Vertical, LinkKind::LateralZ, 1),
         };
+        // The body by itself.
         let inertia = model.mass / beta;
         let modes = &self.state.mode;
         side.column.fill(Vector2::zeros());
@@ -156,6 +157,7 @@ impl StageSolver {
         side.inertia = side.body.mass;
         side.diagonal = side.body.mass / beta + beta * side.body.stiffness + side.body.damping;
         for (i, mode) in modes.iter().enumerate() {
+            // Lateral links between a free mass and a contact.
             let beside = [i.checked_sub(1), Some(i + 1)].into_iter().flatten().filter_map(|j| modes.get(j));
             let other = beside.filter(|other| other.in_contact() != mode.in_contact()).count() as f64;
             let across = other * self.weights[lateral];
@@ -166,6 +168,7 @@ impl StageSolver {
                 side.row[i][component] = inertia + across;
                 continue;
             }
+            // A contact: its link to the carrier, and if it slips its equation.
             side.diagonal += self.weights[own];
             if mode.slips() {
                 let (share, climb) = self.slip_border(model, i, beta, side.axis);

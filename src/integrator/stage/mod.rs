@@ -347,6 +347,7 @@ impl StageSolver {
             ContactModes::SetValued => MAX_WITH_CHANGES,
         };
         for _ in 0..most_iterations {
+            // The correction, by the factors of this stage or of another.
             let held = self.factors == Factors::Held;
             if !held {
                 self.factor_slips(model, point.beta);
@@ -360,6 +361,7 @@ impl StageSolver {
             let change = self.correct().max(steep).max(of_bodies.amax());
             self.move_bodies(of_bodies, point);
             self.evaluate(model, point);
+            // The error that is left.
             let left = self.residuals(model, point.beta);
             let next = change * (left / residual);
             let falls = !held || left <= HELD_FALL * residual;
@@ -369,6 +371,7 @@ impl StageSolver {
             if !(change.is_finite() && left.is_finite()) {
                 return Err(NoConvergence);
             }
+            // Other modes are other equations: the iterations begin anew.
             if self.change_modes(model, point) {
                 (last, residual) = (f64::INFINITY, self.residuals(model, point.beta));
                 continue;
