@@ -209,9 +209,9 @@ impl EndCorrection {
 
     /// What the touches that [`detect`](Self::detect) found before the fraction `theta` of `step` add to F_x and F_z
     /// there, N: the forces of the links to the carrier of masses that have had their impacts and lie on the profile.
-    pub fn forces_of_touches(&self, step: &Parabolas<'_>, theta: f64) -> (f64, f64) {
+    pub fn forces_of_touches(&self, step: &Parabolas<'_>, theta: f64) -> ByAxis<f64> {
         let forces = self.touches.iter().map(|&i| forces_of_touch(step, i, theta));
-        forces.fold((0.0, 0.0), |sum, force| (sum.0 + force.0, sum.1 + force.1))
+        forces.fold(ByAxis::default(), |sum, force| sum + force)
     }
 
     /// Corrects the masses that [`detect`](Self::detect) found; `None` where there are none.
@@ -512,11 +512,11 @@ fn neighbours(i: usize) -> [usize; 2] {
 /// What the links of free mass `i` would exert on the carrier along x and z beyond what they do, N, if the mass did not
 /// pass below the profile but had its impact and went on along it: at the fraction `theta` of the step (docs/theory.md,
 /// \[12a\]).
-fn forces_of_touch(step: &Parabolas<'_>, i: usize, theta: f64) -> (f64, f64) {
+fn forces_of_touch(step: &Parabolas<'_>, i: usize, theta: f64) -> ByAxis<f64> {
     let surface = step.model.surface_at(step.position(i, theta));
     let depth = surface.height - step.height(i, theta);
     if depth <= 0.0 {
-        return (0.0, 0.0);
+        return ByAxis::default();
     }
     let (slope, velocity) = (surface.slope, step.velocity(i, theta));
     let (closing, since_start) = (slope * velocity.x - velocity.z, theta * step.span.length);
@@ -533,7 +533,10 @@ fn forces_of_touch(step: &Parabolas<'_>, i: usize, theta: f64) -> (f64, f64) {
         let elements = step.model.element_force(kind, |row| row.left_of(displacement, time));
         link.stiffness * displacement + elements + link.damping * gain
     };
-    (force(LinkKind::Horizontal, moved, gain.0), force(LinkKind::Vertical, depth + slope * moved, gain.1))
+    ByAxis {
+        x: force(LinkKind::Horizontal, moved, gain.0),
+        z: force(LinkKind::Vertical, depth + slope * moved, gain.1),
+    }
 }
 
 /// The fraction of the step at which free mass `i`, below the profile at the end, touched it.

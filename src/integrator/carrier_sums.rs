@@ -11,7 +11,7 @@ use super::scheme::ContactHeights;
 use super::stage_values::StageValues;
 use super::tableau::Weights;
 use crate::math::{BLOCK, dot, sum};
-use crate::model::{Carrier, CarrierPoint, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint};
+use crate::model::{ByAxis, Carrier, CarrierPoint, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint};
 
 /// Elongations of links to the carrier (m) and velocities of masses (m/s), along x and z: of one mass, or summed.
 #[derive(Clone, Copy, Debug, Default)]
@@ -160,13 +160,13 @@ impl CarrierSums {
         motion: &LinkState,
         carrier: &CarrierPoint,
         weights: impl Fn(&MaxwellRow) -> ElementWeights,
-    ) -> (f64, f64) {
+    ) -> ByAxis<f64> {
         let masses = model.masses() as f64;
         let rate = (motion.velocity.0 - masses * carrier.x.speed, motion.velocity.1 - masses * carrier.z.speed);
-        (
-            self.x.force(model, (motion.elongation.0, rate.0), &weights),
-            self.z.force(model, (motion.elongation.1, rate.1), &weights),
-        )
+        ByAxis {
+            x: self.x.force(model, (motion.elongation.0, rate.0), &weights),
+            z: self.z.force(model, (motion.elongation.1, rate.1), &weights),
+        }
     }
 }
 

@@ -198,9 +198,9 @@ impl ErrorTest<'_> {
         workspace: &ErrorWorkspace,
     ) -> f64 {
         let law = &model.links[kind];
-        let (scale_x, scale_z) = self.largest.force_scales(model, tolerance);
+        let scale = self.largest.force_scales(model, tolerance);
         let ErrorWorkspace { x, z, v_x, v_z, force } = workspace;
-        let (position, velocity, scale) = if kind.is_along_x() { (x, v_x, scale_x) } else { (z, v_z, scale_z) };
+        let (position, velocity, scale) = if kind.is_along_x() { (x, v_x, scale.x) } else { (z, v_z, scale.z) };
         let error =
             |force: f64, position: f64, velocity: f64| force + law.stiffness * position + law.damping * velocity;
         let sum = sum_of_triples(force, position, velocity, error);

@@ -41,7 +41,9 @@ pub use tableau::{ContinuousWeights, ESDIRK3, ESDIRK5, MAX_STAGES, SDIRK2, Table
 pub use tolerance::Tolerance;
 
 use crate::model::{Axis, Tangents};
-use crate::model::{BodyInterpolant, BoundaryPowers, Carrier, CarrierPoint, ChannelEnergies, Forces, Model, State};
+use crate::model::{
+    BodyInterpolant, BoundaryPowers, ByAxis, Carrier, CarrierPoint, ChannelEnergies, Forces, Model, State,
+};
 use error::ErrorWorkspace;
 use method::{Attempt, RungeKutta, Stages};
 use stage::{ConvergenceTest, StageSolver};
@@ -260,7 +262,7 @@ impl Integrator {
         span: TimeSpan,
         theta: f64,
         workspace: &mut DenseWorkspace,
-    ) -> (f64, f64) {
+    ) -> ByAxis<f64> {
         let (dense, sums) = self.dense_and_sums((model, carrier, start), span);
         sums.on_carrier(&mut LayerStep { dense, workspace }, model, theta)
     }

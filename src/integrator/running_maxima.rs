@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::tolerance::Tolerance;
-use crate::model::{Axis, Forces, LinkKind, Model};
+use crate::model::{Axis, ByAxis, Forces, LinkKind, Model};
 
 /// The least scale of the errors of one force, as a share of the other, and as one of the force that the scene's height
 /// makes on a mass.
@@ -45,18 +45,21 @@ impl RunningMaxima {
     /// By how much the force of one mass of a layer of `model` may err, N: the errors of all masses, if they are
     /// independent, make one of F_x or F_z within the relative tolerance.
     pub fn allowed_of_mass(self, model: &Model, tolerance: &Tolerance) -> f64 {
-        let (x, z) = self.force_scales(model, tolerance);
-        tolerance.relative * x.min(z) / (tolerance.masses as f64).sqrt()
+        let scale = self.force_scales(model, tolerance);
+        tolerance.relative * scale.x.min(scale.z) / (tolerance.masses as f64).sqrt()
     }
 
     /// What the errors of F_x and F_z are measured by in a layer of `model`, N. Forces that are still to come, or that
     /// symmetry makes nothing, are not resolved down to their rounding.
-    pub(super) fn force_scales(self, model: &Model, tolerance: &Tolerance) -> (f64, f64) {
+    pub(super) fn force_scales(self, model: &Model, tolerance: &Tolerance) -> ByAxis<f64> {
         let expected = MIN_FORCE.max(EXPECTED_FRICTION * model.friction.coulomb);
         let of_mass = MIN_FORCE * height(tolerance) * model.effective_stiffness();
         let of_layer = MIN_OF_LAYER * height(tolerance) * layer_stiffness(model, tolerance);
         let least = of_mass.max(of_layer);
-        (self.force_x.max(expected * self.force_z).max(least), self.force_z.max(MIN_FORCE * self.force_x).max(least))
+        ByAxis {
+            x: self.force_x.max(expected * self.force_z).max(least),
+            z: self.force_z.max(MIN_FORCE * self.force_x).max(least),
+        }
     }
 
     /// What the errors of energies are measured by, J, under a carrier that moves at `speed` (m/s).
@@ -95,11 +98,11 @@ mod tests {
             let found = nothing.energy_scale(&model, &tolerance, speed);
             assert!((found / expected - 1.0).abs() < 1e-12, "{speed} m/s: {found:e} J");
         }
-        let (x, z) = nothing.force_scales(&model, &tolerance);
+        let ByAxis { x, z } = nothing.force_scales(&model, &tolerance);
         assert!((x / 8e-4 - 1.0).abs() < 1e-12 && x == z, "{x:e} and {z:e} N");
         let known = RunningMaxima { force_z: 2.0, energy: 1e-3, ..nothing };
         assert_eq!(
-            (known.force_scales(&model, &tolerance).1, known.energy_scale(&model, &tolerance, 1.0)),
+            (known.force_scales(&model, &tolerance).z, known.energy_scale(&model, &tolerance, 1.0)),
             (2.0, 1e-3)
         );
     }

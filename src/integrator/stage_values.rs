@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::running_maxima::RunningMaxima;
 use crate::model::{
-    BoundaryPowers, ByLink, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, SlipCurve, State,
-    SurfacePoint,
+    BoundaryPowers, ByAxis, ByLink, CarrierPoint, ContactForces, Forces, LinkKind, MaxwellRow, Mode, Model, SlipCurve,
+    State, SurfacePoint,
 };
 
 /// The share of an explicit acceleration that friction may take away within the step without the implicit one in its
@@ -171,7 +171,7 @@ impl StageValues {
 
     /// Ḟ_x and Ḟ_z of the layer on the carrier, N/s, for the Maxwell elongations `maxwell` (m):
     /// Ḟ = Σ c ė + d ë + Σ_j c_j (ė - a_j/τ_j) over the links to the carrier.
-    pub fn on_carrier(&self, model: &Model, maxwell: &[f64], carrier: &CarrierPoint) -> (f64, f64) {
+    pub fn on_carrier(&self, model: &Model, maxwell: &[f64], carrier: &CarrierPoint) -> ByAxis<f64> {
         let of = |kind: LinkKind, acceleration: &[f64], rate_change: f64| {
             let law = &model.links[kind];
             let rate: f64 = self.elongation_rate[kind].iter().sum();
@@ -181,10 +181,10 @@ impl StageValues {
             let elements = model.element_force(kind, relaxing);
             law.stiffness * rate + damper + elements
         };
-        (
-            of(LinkKind::Horizontal, &self.acceleration_x, carrier.x.acceleration),
-            of(LinkKind::Vertical, &self.acceleration_z, carrier.z.acceleration),
-        )
+        ByAxis {
+            x: of(LinkKind::Horizontal, &self.acceleration_x, carrier.x.acceleration),
+            z: of(LinkKind::Vertical, &self.acceleration_z, carrier.z.acceleration),
+        }
     }
 }
 

@@ -51,8 +51,7 @@ impl LayerSums {
     }
 
     fn set_exchange(&mut self, step: &mut LayerStep<'_>, part: &Model) {
-        let (x, z) = self.on_carrier(step, part, 0.0);
-        let at_start = ByAxis { x, z };
+        let at_start = self.on_carrier(step, part, 0.0);
         let (values, masses) = (step.dense.values, self.masses.clone());
         let [vertical, horizontal, ..] = &step.dense.end_forces().link.0;
         let sum = |links: &[f64]| links.get(masses.clone()).map_or(0.0, |part| part.iter().sum());
@@ -69,7 +68,7 @@ impl LayerSums {
     }
 
     /// F_x and F_z of the masses, of `part`, at the fraction `theta` of `step`, N.
-    pub fn on_carrier(&mut self, step: &mut LayerStep<'_>, part: &Model, theta: f64) -> (f64, f64) {
+    pub fn on_carrier(&mut self, step: &mut LayerStep<'_>, part: &Model, theta: f64) -> ByAxis<f64> {
         let (dense, workspace) = step.restricted_to(&self.masses);
         let (ends, heights) = ((dense.start, dense.end()), dense.method.scheme.contact_heights());
         self.carrier.collect(dense.model, &dense.masses, ends, dense.stages(), heights);

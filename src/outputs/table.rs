@@ -194,11 +194,11 @@ pub(super) static TABLE: [OutputRow; 70] = {
     };
     [
         layer(Output::ForceX, Forces, "F_x", Real, Newton, "Force of the layer on the carrier along x",
-            |now| now.at.on_carrier.0)
-            .depending(elastic_x, |now, shift| now.at.force_changes(shift).0),
+            |now| now.at.on_carrier.x)
+            .depending(elastic_x, |now, shift| now.at.force_changes(shift).x),
         layer(Output::ForceZ, Forces, "F_z", Real, Newton, "Force of the layer on the carrier along z, positive when compressed",
-            |now| now.at.on_carrier.1)
-            .depending(elastic_z, |now, shift| now.at.force_changes(shift).1),
+            |now| now.at.on_carrier.z)
+            .depending(elastic_z, |now, shift| now.at.force_changes(shift).z),
         layer(Output::CarrierU, Carrier, "carrier.u", Real, Meter, "Displacement of the carrier along x",
             |now| now.at.displacement.x)
             .only_where(|scene| scene.carrier.x.is_some()),

@@ -175,7 +175,7 @@ impl Context {
     }
 
     /// Ḟ_x and Ḟ_z, N/s, from the left; at the start, from the right.
-    pub(super) fn force_rates(&mut self) -> (f64, f64) {
+    pub(super) fn force_rates(&mut self) -> ByAxis<f64> {
         if !self.state.rates_valid {
             self.accelerate_bodies();
             self.start_from_forces();
@@ -191,7 +191,7 @@ impl Context {
     }
 
     /// F_x and F_z at the fraction `theta` of the step of length `h` (s) tried last, N.
-    pub(super) fn on_carrier_within(&mut self, h: f64, theta: f64) -> (f64, f64) {
+    pub(super) fn on_carrier_within(&mut self, h: f64, theta: f64) -> ByAxis<f64> {
         let Self { model, state, integrator, dense, .. } = self;
         integrator.on_carrier((&**model, &state.carrier, &state.layer.state), state.span(h), theta, dense)
     }

@@ -7,7 +7,7 @@ use super::motion::SimulationError;
 use super::stepper::{ErrorTest, Stepper};
 use crate::contact::{first_event, is_due, longest_unstable, mode_changes};
 use crate::integrator::{ContactModes, Integrator, Overlay, Polynomials};
-use crate::model::Model;
+use crate::model::{ByAxis, Model};
 
 /// A new step is this fraction of what the error estimate allows, so that few are rejected.
 const SAFETY: f64 = 0.9;
@@ -226,7 +226,7 @@ impl Stepper for EventDriven {
         is_good
     }
 
-    fn on_carrier(&mut self, context: &mut Context, h: f64, theta: f64) -> (f64, f64) {
+    fn on_carrier(&mut self, context: &mut Context, h: f64, theta: f64) -> ByAxis<f64> {
         context.on_carrier_within(h, theta)
     }
 

@@ -318,14 +318,14 @@ impl Simulation {
     }
 
     /// Ḟ_x and Ḟ_z, N/s, from the left; at the start, from the right.
-    pub fn force_rates(&mut self) -> (f64, f64) {
+    pub fn force_rates(&mut self) -> ByAxis<f64> {
         self.run.context.force_rates()
     }
 
     /// The first derivative of F_x, F_z or a variable of the carrier's motion, in its unit over s, from the left; at
     /// the start, from the right. 0 for other outputs.
     pub fn output_rate(&mut self, output: Output) -> f64 {
-        let (force_x, force_z) = self.run.context.force_rates();
+        let force_rates = self.run.context.force_rates();
         let (carrier, s) = (&self.run.context.state.carrier, self.run.context.state.s);
         let point = carrier.at(s);
         let drive = |axis| {
@@ -333,8 +333,8 @@ impl Simulation {
             carrier.outside(model, axis, s).map_or(0.0, |(body, outside)| outside.drive_force_rate(body))
         };
         match output {
-            Output::ForceX => force_x,
-            Output::ForceZ => force_z,
+            Output::ForceX => force_rates.x,
+            Output::ForceZ => force_rates.z,
             Output::CarrierU => point.x.speed,
             Output::CarrierW => point.z.speed,
             Output::CarrierURate => point.x.acceleration,

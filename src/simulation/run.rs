@@ -14,7 +14,7 @@ use super::time_stepping::TimeStepping;
 use crate::math::bracketed_root;
 use crate::model::{BodyStart, ByAxis, Model};
 use crate::outputs::{Energies, LayerView, Snapshot};
-use crate::scene::{Axis, Method};
+use crate::scene::Method;
 
 /// Mean number of mode changes per time step above which the run switches to time-stepping: 1.5 times the break-even of
 /// 1/3, so that a few changes are still located.
@@ -180,10 +180,10 @@ impl Run {
         work: &mut WorkLimit,
     ) -> Result<Option<(TrialStep, bool)>, SimulationError> {
         let TrialStep { h, fraction } = *step;
-        let Some(force) = until.filter(|&force| self.on_carrier_within(h, fraction).1 >= force) else {
+        let Some(force) = until.filter(|&force| self.on_carrier_within(h, fraction).z >= force) else {
             return Ok(None);
         };
-        let theta = bracketed_root(|theta| self.on_carrier_within(h, theta).1 - force, (0.0, fraction), 1e-14);
+        let theta = bracketed_root(|theta| self.on_carrier_within(h, theta).z - force, (0.0, fraction), 1e-14);
         let (stepper, context) = self.stepper();
         let cut = stepper.cut_step(context, theta * h, work)?;
         Ok(Some((cut, cut.h == theta * h)))
@@ -247,14 +247,14 @@ impl Run {
 
     /// Whether F_z has reached the force `until`, N.
     pub(super) fn has_reached(&mut self, until: Option<f64>) -> bool {
-        until.is_some_and(|force| self.snapshot().on_carrier.1 >= force)
+        until.is_some_and(|force| self.snapshot().on_carrier.z >= force)
     }
 
     /// The run as it stands.
     pub(super) fn snapshot(&mut self) -> Snapshot<'_> {
         self.context.evaluate_forces();
         let Context { model, state, forces, .. } = &self.context;
-        let on_carrier = (forces.on_carrier(Axis::X), forces.on_carrier(Axis::Z));
+        let on_carrier = ByAxis::from_fn(|axis| forces.on_carrier(axis));
         snapshot_of((model, state), state.s, LayerView::at(&state.layer.state, forces), on_carrier)
     }
 
@@ -278,11 +278,10 @@ impl Run {
     }
 
     /// F_x and F_z at the fraction `theta` of the step of length `h` tried last, N.
-    fn on_carrier_within(&mut self, h: f64, theta: f64) -> (f64, f64) {
+    fn on_carrier_within(&mut self, h: f64, theta: f64) -> ByAxis<f64> {
         let (stepper, context) = self.stepper();
-        let (x, z) = stepper.on_carrier(context, h, theta);
-        let of_regions = self.local_regions.forces(&self.context, self.context.state.s + theta * h);
-        (x + of_regions.0, z + of_regions.1)
+        let without_regions = stepper.on_carrier(context, h, theta);
+        without_regions + self.local_regions.forces(&self.context, self.context.state.s + theta * h)
     }
 
     /// P_diss at the fraction `theta` of the step of length `h` tried last, W, where the powers at its stages say it.
@@ -307,7 +306,7 @@ fn snapshot_of<'a>(
     (model, state): (&'a Model, &'a RunState),
     s: f64,
     layer: LayerView<'a>,
-    on_carrier: (f64, f64),
+    on_carrier: ByAxis<f64>,
 ) -> Snapshot<'a> {
     Snapshot {
         model,

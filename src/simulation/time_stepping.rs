@@ -7,7 +7,7 @@ use super::motion::SimulationError;
 use super::stepper::{ErrorTest, Stepper};
 use crate::contact::{EndCorrection, FixedModeStep, longest_weakening};
 use crate::integrator::{ContactModes, ErrorEstimate, Parabolas};
-use crate::model::{ChannelEnergies, Model};
+use crate::model::{ByAxis, ChannelEnergies, Model};
 use crate::scene::Axis;
 
 /// A new step is this fraction of what the error allows. Mode changes come unforeseen, so it is less than in smooth
@@ -129,10 +129,9 @@ impl Stepper for TimeStepping {
         self.try_step(context, h, test).is_some()
     }
 
-    fn on_carrier(&mut self, context: &mut Context, h: f64, theta: f64) -> (f64, f64) {
-        let (x, z) = context.on_carrier_within(h, theta);
-        let of_touches = self.end_correction.forces_of_touches(&parabolas(context, h), theta);
-        (x + of_touches.0, z + of_touches.1)
+    fn on_carrier(&mut self, context: &mut Context, h: f64, theta: f64) -> ByAxis<f64> {
+        let without_touches = context.on_carrier_within(h, theta);
+        without_touches + self.end_correction.forces_of_touches(&parabolas(context, h), theta)
     }
 
     fn dissipated_power(&mut self, context: &mut Context, h: f64, theta: f64) -> Option<f64> {

@@ -24,7 +24,7 @@ use super::motion::{ModeChange, SimulationError};
 use super::settings::Settings;
 use super::stepper::Stepper;
 use crate::integrator::{DenseWorkspace, LayerStep, Overlay, Scheme, TimeSpan};
-use crate::model::{LinkKind, Model, State};
+use crate::model::{ByAxis, LinkKind, Model, State};
 use crate::outputs::Energies;
 use crate::scene::Method;
 use region::LocalRegion;
@@ -353,10 +353,10 @@ impl LocalRegions {
     }
 
     /// F_x and F_z of the regions at the time `s` beyond those in the whole layer's step, N.
-    pub(super) fn forces(&mut self, context: &Context, s: f64) -> (f64, f64) {
+    pub(super) fn forces(&mut self, context: &Context, s: f64) -> ByAxis<f64> {
         let (open, mut step) = self.open_in_step(context);
         let forces = open.map(|region| region.forces(&mut step, s));
-        forces.fold((0.0, 0.0), |sum, force| (sum.0 + force.0, sum.1 + force.1))
+        forces.fold(ByAxis::default(), |sum, force| sum + force)
     }
 
     /// P_diss of the regions at the time `s` beyond that in the whole layer's step, W, where the powers at the stages

@@ -236,11 +236,10 @@ impl LocalRegion {
     }
 
     /// F_x and F_z of its masses at the time `s`, less those in the whole layer's `step`, N.
-    pub(super) fn forces(&mut self, step: &mut LayerStep<'_>, s: f64) -> (f64, f64) {
+    pub(super) fn forces(&mut self, step: &mut LayerStep<'_>, s: f64) -> ByAxis<f64> {
         let theta = self.theta(s).unwrap_or(0.0);
         let mine = self.stepper.on_carrier(&mut self.context, self.trial.h, theta);
-        let theirs = self.whole.on_carrier(step, &self.context.model, step.dense.theta(s));
-        (mine.0 - theirs.0, mine.1 - theirs.1)
+        mine - self.whole.on_carrier(step, &self.context.model, step.dense.theta(s))
     }
 
     /// Writes its masses at the time `s` into `state`, that of the layer of `model`, or of a part of it from mass

@@ -53,7 +53,7 @@ impl Rows {
         simulation.record_mode_changes(true);
         let times: Vec<f64> = (0..rows).map(|i| f64::from(i) * SWING.duration / f64::from(rows)).collect();
         let mut forces = Vec::new();
-        let observe = |_: f64, now: &Snapshot<'_>| forces.push([now.on_carrier.0, now.on_carrier.1]);
+        let observe = |_: f64, now: &Snapshot<'_>| forces.push([now.on_carrier.x, now.on_carrier.z]);
         simulation.advance_observed(&SWING, until_force, &times, observe).unwrap();
         let changes = simulation.take_mode_changes();
         Self { forces, end: variables_of(scene, &mut simulation), changes, simulation }

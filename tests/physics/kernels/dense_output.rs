@@ -1,7 +1,7 @@
 //! The dense output of the method of seven stages, against exact solutions.
 
 use asperity::integrator::{DenseWorkspace, LayerStep, LayerSums, Polynomials, TimeSpan};
-use asperity::model::{Forces, State};
+use asperity::model::{ByAxis, Forces, State};
 use nalgebra::Vector2;
 
 use crate::common::random::Random;
@@ -154,8 +154,8 @@ fn forces_on_the_carrier_by_sums_are_those_of_the_whole_state() {
         for theta in [0.0, random.between(0.0, 1.0), 1.0] {
             let [found, expected] = stepper.on_carrier(1e-3, theta);
             // Sums of some hundred forces up to 1e3 N in another order.
-            let along_z = if case % 3 == 0 || theta == 0.0 { (found.1 - expected.1).abs() } else { 0.0 };
-            let error = (found.0 - expected.0).abs().max(along_z);
+            let along_z = if case % 3 == 0 || theta == 0.0 { (found.z - expected.z).abs() } else { 0.0 };
+            let error = (found.x - expected.x).abs().max(along_z);
             assert!(error < 1e-10, "case {case}, {theta}: {found:?} {expected:?}");
         }
     }
@@ -175,7 +175,7 @@ fn the_interpolated_heights_of_contacts_have_the_order_of_the_method() {
             stepper.attempt(h);
             let missed = |theta: f64| {
                 let [by_sums, of_state] = stepper.on_carrier(h, theta);
-                (by_sums.1 - of_state.1).abs()
+                (by_sums.z - of_state.z).abs()
             };
             THETAS.map(missed).into_iter().fold(0.0, f64::max)
         });
@@ -217,7 +217,7 @@ fn parts_of_a_step_make_the_whole() {
             let (dense, workspace) = step.restricted_to(&masses);
             dense.state_at(theta, workspace, &mut state);
             state.write_part((&part, model), &mut joined, masses.start);
-            let (f_x, f_z) = of_part.on_carrier(&mut step, &part, theta);
+            let ByAxis { x: f_x, z: f_z } = of_part.on_carrier(&mut step, &part, theta);
             let e = of_part.energies(&step.dense, theta);
             let values = [f_x, f_z, e.damper, e.maxwell, e.friction, e.shear, e.input];
             sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
@@ -225,7 +225,7 @@ fn parts_of_a_step_make_the_whole() {
         }
         assert_eq!(joined, state, "case {case}");
         let e = energies;
-        let whole = [on_carrier.0, on_carrier.1, e.damper, e.maxwell, e.friction, e.shear, e.input];
+        let whole = [on_carrier.x, on_carrier.z, e.damper, e.maxwell, e.friction, e.shear, e.input];
         for (i, (sum, whole)) in sums.into_iter().zip(whole).enumerate() {
             // Sums of some hundred forces up to 1e3 N, and of their powers over 1e-3 s, in another order.
             assert!((sum - whole).abs() < 1e-10, "case {case}, {i}: {sum} {whole}");

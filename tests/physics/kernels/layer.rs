@@ -4,7 +4,7 @@ use asperity::integrator::{
     ContactModes, DenseOutput, DenseWorkspace, ErrorEstimate, Integrator, LayerState, Scheme, TimeSpan, Tolerance,
     Tracked,
 };
-use asperity::model::{Axis, ByAxis, Carrier, Forces, LinkKind, Model, State};
+use asperity::model::{ByAxis, Carrier, Forces, LinkKind, Model, State};
 use asperity::scene::{Path, RateShear, Scene};
 
 use crate::common::scenes::{Law, SceneText};
@@ -169,7 +169,7 @@ impl Stepper {
 
     /// F_x and F_z at the fraction `theta` of the last attempted step, of length `h`: from sums, and from its state
     /// there.
-    pub fn on_carrier(&mut self, h: f64, theta: f64) -> [(f64, f64); 2] {
+    pub fn on_carrier(&mut self, h: f64, theta: f64) -> [ByAxis<f64>; 2] {
         let state = self.within(h, theta);
         let span = TimeSpan { start: self.s, length: h };
         let mut forces = Forces::new(&self.model);
@@ -177,7 +177,7 @@ impl Stepper {
         let Self { model, carrier, start, integrator, .. } = self;
         let mut workspace = DenseWorkspace::new(model);
         let summed = integrator.on_carrier((model, carrier, &start.state), span, theta, &mut workspace);
-        [summed, (forces.on_carrier(Axis::X), forces.on_carrier(Axis::Z))]
+        [summed, ByAxis::from_fn(|axis| forces.on_carrier(axis))]
     }
 }
 
