@@ -46,7 +46,7 @@ fn place_dashpots(model: &Model, state: &mut State) {
     for row in &model.rows {
         let e = if row.kind.is_along_x() { &state.elongation_x } else { &state.elongation_z };
         for (i, a) in state.maxwell[row.range.clone()].iter_mut().enumerate() {
-            *a = if row.kind.is_lateral() { e[i + 1] - e[i] } else { e[i] };
+            *a = row.kind.difference(e, 0.0, i);
         }
     }
 }

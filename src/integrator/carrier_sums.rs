@@ -13,18 +13,27 @@ use super::tableau::Weights;
 use crate::math::{BLOCK, dot, sum};
 use crate::model::{ByAxis, Carrier, CarrierPoint, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint};
 
-/// Elongations of links to the carrier (m) and velocities of masses (m/s), along x and z: of one mass, or summed.
+/// Elongations of links (m) and velocities of masses (m/s), along x and z: of one mass, of one relative to another or to
+/// the carrier, or summed.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct LinkState {
-    pub elongation: (f64, f64),
-    pub velocity: (f64, f64),
+    pub elongation: ByAxis<f64>,
+    pub velocity: ByAxis<f64>,
 }
 
 impl LinkState {
     #[inline(always)]
     pub(super) fn add(&mut self, other: &Self) {
-        self.elongation = (self.elongation.0 + other.elongation.0, self.elongation.1 + other.elongation.1);
-        self.velocity = (self.velocity.0 + other.velocity.0, self.velocity.1 + other.velocity.1);
+        (self.elongation, self.velocity) = (self.elongation + other.elongation, self.velocity + other.velocity);
+    }
+
+    /// The links to a neighbour, as seen from here: at the right with the `sign` 1, at the left with -1.
+    pub(super) fn to_neighbour(&self, neighbour: &Self, sign: f64) -> Self {
+        let signed = |difference: ByAxis<f64>| difference.map(|difference| sign * difference);
+        Self {
+            elongation: signed(neighbour.elongation - self.elongation),
+            velocity: signed(neighbour.velocity - self.velocity),
+        }
     }
 
     /// Adds up to [`BLOCK`] masses, one after another from mass `first` on, that slip with the elongations `x` (m) and
@@ -40,8 +49,8 @@ impl LinkState {
         }
         model.profile.evaluate_block(places, surface);
         for ((x, v_x), (rest_z, surface)) in x.iter().zip(v_x).zip(rest_z.iter().zip(surface)) {
-            let (elongation, velocity) = ((*x, surface.height - rest_z - placement.w), (*v_x, surface.slope * v_x));
-            self.add(&Self { elongation, velocity });
+            let elongation = ByAxis { x: *x, z: surface.height - rest_z - placement.w };
+            self.add(&Self { elongation, velocity: ByAxis { x: *v_x, z: surface.slope * v_x } });
         }
     }
 }
@@ -162,10 +171,10 @@ impl CarrierSums {
         weights: impl Fn(&MaxwellRow) -> ElementWeights,
     ) -> ByAxis<f64> {
         let masses = model.masses() as f64;
-        let rate = (motion.velocity.0 - masses * carrier.x.speed, motion.velocity.1 - masses * carrier.z.speed);
+        let rate = motion.velocity - carrier.rates().map(|rate| masses * rate);
         ByAxis {
-            x: self.x.force(model, (motion.elongation.0, rate.0), &weights),
-            z: self.z.force(model, (motion.elongation.1, rate.1), &weights),
+            x: self.x.force(model, (motion.elongation.x, rate.x), &weights),
+            z: self.z.force(model, (motion.elongation.z, rate.z), &weights),
         }
     }
 }

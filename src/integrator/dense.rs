@@ -110,11 +110,11 @@ impl<'a> DenseOutput<'a> {
         state.mode.copy_from_slice(&start.mode[masses.clone()]);
         let carrier = self.carrier_at(theta, workspace);
         let DenseWorkspace { values, integral, .. } = workspace;
-        self.combine(&mut state.velocity_x, values, None, |stage| &stage.velocity_x, carrier.missing_rate.0);
-        self.combine(&mut state.velocity_z, values, None, |stage| &stage.velocity_z, carrier.missing_rate.1);
+        self.combine(&mut state.velocity_x, values, None, |stage| &stage.velocity_x, carrier.missing_rate.x);
+        self.combine(&mut state.velocity_z, values, None, |stage| &stage.velocity_z, carrier.missing_rate.z);
         let (from_x, from_z) = (Some(&start.elongation_x[..]), Some(&start.elongation_z[..]));
-        self.combine(&mut state.elongation_x, integral, from_x, |stage| &stage.velocity_x, -carrier.integrated.0);
-        self.combine(&mut state.elongation_z, integral, from_z, |stage| &stage.velocity_z, -carrier.integrated.1);
+        self.combine(&mut state.elongation_x, integral, from_x, |stage| &stage.velocity_x, -carrier.integrated.x);
+        self.combine(&mut state.elongation_z, integral, from_z, |stage| &stage.velocity_z, -carrier.integrated.z);
         for i in 0..masses.len() {
             if state.mode[i].in_contact() {
                 let along_x = (state.elongation_x[i], state.velocity_x[i]);
@@ -187,9 +187,9 @@ impl<'a> DenseOutput<'a> {
         let (carrier, h) = (self.carrier.at(self.span.at(theta)), self.span.length);
         workspace.set_accelerations(self, theta, &carrier);
         // What Newton's first correction would make of a difference of accelerations, over the tolerances.
-        let settled = InertialFraction::new(self.model, theta * h);
-        let missed = |of_forces: f64, of_interpolant: f64, velocity: f64, settled: f64| {
-            let gained = settled * theta * h * (of_forces - of_interpolant);
+        let inertial = inertial_fraction(self.model, theta * h);
+        let missed = |of_forces: f64, of_interpolant: f64, velocity: f64, inertial: f64| {
+            let gained = inertial * theta * h * (of_forces - of_interpolant);
             let moved = theta * h * gained;
             (gained * gained / tolerance.velocity_tolerance_sq(velocity))
                 .max(moved * moved / tolerance.position_tolerance_sq(0.0))
@@ -203,12 +203,12 @@ impl<'a> DenseOutput<'a> {
                 Mode::Stick => 0.0,
                 Mode::Free => {
                     let (f_x, f_z) = (forces.on_mass_x[i] / self.model.mass, forces.on_mass_z[i] / self.model.mass);
-                    missed(f_x, a_x, v_x, settled.x).max(missed(f_z, a_z, v_z, settled.z))
+                    missed(f_x, a_x, v_x, inertial.x).max(missed(f_z, a_z, v_z, inertial.z))
                 }
                 mode => {
                     let (v, surface) = (state.velocity_x[i], &state.surface[i]);
                     let contact = forces.contact(self.model, i, v, surface);
-                    missed(contact.acceleration(self.model, mode, v, surface), a_x, v_x, settled.x)
+                    missed(contact.acceleration(self.model, mode, v, surface), a_x, v_x, inertial.x)
                 }
             };
             largest = largest.max(here);
@@ -222,12 +222,11 @@ impl<'a> DenseOutput<'a> {
         let sum = |weights: &Weights, rate: fn(&CarrierPoint) -> f64| -> f64 {
             weights.iter().zip(self.carriers()).map(|(weight, at)| weight * rate(at)).sum()
         };
-        let both = |weights| (sum(weights, |at| at.x.speed), sum(weights, |at| at.z.speed));
-        let rate = both(&workspace.values);
+        let both = |weights| ByAxis { x: sum(weights, |at| at.x.speed), z: sum(weights, |at| at.z.speed) };
         CarrierMotion {
             moved: self.carrier.moved(self.span.start, theta * self.span.length),
             integrated: both(&workspace.integral),
-            missing_rate: (now.x.speed - rate.0, now.z.speed - rate.1),
+            missing_rate: now.rates() - both(&workspace.values),
             now,
         }
     }
@@ -239,17 +238,15 @@ impl<'a> DenseOutput<'a> {
             weights.iter().zip(self.stages()).map(|(weight, stage)| weight * value(stage)[i]).sum()
         };
         let along_x = |weights| sum(weights, |stage| &stage.velocity_x);
-        let x = start.elongation_x[i] + along_x(&workspace.integral) - carrier.integrated.0;
-        let v_x = along_x(&workspace.values) + carrier.missing_rate.0;
+        let x = start.elongation_x[i] + along_x(&workspace.integral) - carrier.integrated.x;
+        let v_x = along_x(&workspace.values) + carrier.missing_rate.x;
         if start.mode[i].in_contact() {
             return self.in_contact(i, (x, v_x), carrier);
         }
         let along_z = |weights| sum(weights, |stage| &stage.velocity_z);
-        MassPoint {
-            elongation: (x, start.elongation_z[i] + along_z(&workspace.integral) - carrier.integrated.1),
-            velocity: (v_x, along_z(&workspace.values) + carrier.missing_rate.1),
-            surface: start.surface[i],
-        }
+        let z = start.elongation_z[i] + along_z(&workspace.integral) - carrier.integrated.z;
+        let velocity = ByAxis { x: v_x, z: along_z(&workspace.values) + carrier.missing_rate.z };
+        MassPoint { links: LinkState { elongation: ByAxis { x, z }, velocity }, surface: start.surface[i] }
     }
 
     /// The sums of the elongations and of the velocities of all masses at the fraction `theta`, from the `sums` of the
@@ -271,8 +268,11 @@ impl<'a> DenseOutput<'a> {
         };
         let weights = &workspace.values[..self.stages().len()];
         LinkState {
-            elongation: (elongation(&sums.x, moved.x, in_step.x), elongation(&sums.z, moved.z, in_step.z)),
-            velocity: (dot(weights, &sums.x.velocity), dot(weights, &sums.z.velocity)),
+            elongation: ByAxis {
+                x: elongation(&sums.x, moved.x, in_step.x),
+                z: elongation(&sums.z, moved.z, in_step.z),
+            },
+            velocity: ByAxis { x: dot(weights, &sums.x.velocity), z: dot(weights, &sums.z.velocity) },
         }
     }
 
@@ -287,14 +287,14 @@ impl<'a> DenseOutput<'a> {
         let velocity =
             |axis: &AxisSums, moving: f64, missing: f64| dot(&workspace.values, &axis.velocity) + moving * missing;
         let mut all = LinkState {
-            elongation: (
-                elongation(&sums.x, sums.moving, (carrier.integrated.0, carrier.moved.x)),
-                elongation(&sums.z, sums.free, (carrier.integrated.1, carrier.moved.z)),
-            ),
-            velocity: (
-                velocity(&sums.x, sums.moving, carrier.missing_rate.0),
-                velocity(&sums.z, sums.free, carrier.missing_rate.1),
-            ),
+            elongation: ByAxis {
+                x: elongation(&sums.x, sums.moving, (carrier.integrated.x, carrier.moved.x)),
+                z: elongation(&sums.z, sums.free, (carrier.integrated.z, carrier.moved.z)),
+            },
+            velocity: ByAxis {
+                x: velocity(&sums.x, sums.moving, carrier.missing_rate.x),
+                z: velocity(&sums.z, sums.free, carrier.missing_rate.z),
+            },
         };
         if sums.has_all() {
             return all;
@@ -302,8 +302,8 @@ impl<'a> DenseOutput<'a> {
         let DenseWorkspace { values, integral, of_masses: [x, v_x], .. } = workspace;
         let (x, v_x, start) = (&mut x[..self.masses.len()], &mut v_x[..self.masses.len()], self.start);
         if start.mode[self.masses.clone()].iter().any(|mode| mode.slips()) {
-            self.combine(x, integral, Some(&start.elongation_x), |stage| &stage.velocity_x, -carrier.integrated.0);
-            self.combine(v_x, values, None, |stage| &stage.velocity_x, carrier.missing_rate.0);
+            self.combine(x, integral, Some(&start.elongation_x), |stage| &stage.velocity_x, -carrier.integrated.x);
+            self.combine(v_x, values, None, |stage| &stage.velocity_x, carrier.missing_rate.x);
         }
         with_widest_vectors(
             #[inline(always)]
@@ -328,7 +328,7 @@ impl<'a> DenseOutput<'a> {
                 }
             } else {
                 for i in masses.filter(|&i| modes[i].in_contact()) {
-                    all.add(&self.in_contact(of_layer + i, (x[i], v_x[i]), carrier).motion());
+                    all.add(&self.in_contact(of_layer + i, (x[i], v_x[i]), carrier).links);
                 }
             }
         }
@@ -353,7 +353,8 @@ impl<'a> DenseOutput<'a> {
             self.start.surface[i]
         };
         let z = surface.height - self.model.rest_z[i] - placement.w;
-        MassPoint { elongation: (x, z), velocity: (v_x, surface.slope * v_x), surface }
+        let velocity = ByAxis { x: v_x, z: surface.slope * v_x };
+        MassPoint { links: LinkState { elongation: ByAxis { x, z }, velocity }, surface }
     }
 
     /// ẋ of mass `i` at the fraction `theta`, m/s.
@@ -370,21 +371,20 @@ impl<'a> DenseOutput<'a> {
         workspace.set_weights(self, theta);
         let carrier = self.carrier_at(theta, workspace);
         let here = self.mass_at(i, &carrier, workspace);
-        let rate = (here.velocity.0 - carrier.now.x.speed, here.velocity.1 - carrier.now.z.speed);
-        let to_carrier = LinkPoint { elongation: here.elongation, rate };
+        let to_carrier = LinkState { velocity: here.links.velocity - carrier.now.rates(), ..here.links };
         let mut force_x = -self.link_force(LinkKind::Horizontal, i, &to_carrier, workspace);
         let mut force_z = -self.link_force(LinkKind::Vertical, i, &to_carrier, workspace);
         for (j, link, sign) in [(i.wrapping_sub(1), i.wrapping_sub(1), -1.0), (i + 1, i, 1.0)] {
             if j >= self.model.masses() {
                 continue;
             }
-            let between = LinkPoint::between(&here, &self.mass_at(j, &carrier, workspace), sign);
+            let between = here.links.to_neighbour(&self.mass_at(j, &carrier, workspace).links, sign);
             force_x += sign * self.link_force(LinkKind::LateralX, link, &between, workspace);
             force_z += sign * self.link_force(LinkKind::LateralZ, link, &between, workspace);
         }
         let of_end = carrier.now.on_end(i, self.model.masses());
         (force_x, force_z) = (force_x + of_end.x, force_z + of_end.z);
-        ContactForces::new(self.model, (force_x, force_z), here.velocity.0, &here.surface)
+        ContactForces::new(self.model, (force_x, force_z), here.links.velocity.x, &here.surface)
     }
 
     /// The forces along x and z of the lateral links between mass `i` and the next at the fraction `theta`, N.
@@ -392,24 +392,24 @@ impl<'a> DenseOutput<'a> {
         workspace.set_weights(self, theta);
         let carrier = self.carrier_at(theta, workspace);
         let (here, there) = (self.mass_at(i, &carrier, workspace), self.mass_at(i + 1, &carrier, workspace));
-        let between = LinkPoint::between(&here, &there, 1.0);
+        let between = here.links.to_neighbour(&there.links, 1.0);
         [LinkKind::LateralX, LinkKind::LateralZ]
             .map(|kind| if self.model.has_link[kind] { self.link_force(kind, i, &between, workspace) } else { 0.0 })
     }
 
     /// Elongations of the links of mass `i` to the carrier (m) and its velocities (m/s), along x and z, at the fraction
     /// `theta`.
-    pub fn motion(&self, i: usize, theta: f64, workspace: &mut DenseWorkspace) -> [(f64, f64); 2] {
+    pub fn motion(&self, i: usize, theta: f64, workspace: &mut DenseWorkspace) -> [ByAxis<f64>; 2] {
         workspace.set_weights(self, theta);
         let carrier = self.carrier_at(theta, workspace);
-        let MassPoint { elongation, velocity, .. } = self.mass_at(i, &carrier, workspace);
+        let LinkState { elongation, velocity } = self.mass_at(i, &carrier, workspace).links;
         [elongation, velocity]
     }
 
     /// The force of one link at the fraction for which the weights of `workspace` are set, N.
-    fn link_force(&self, kind: LinkKind, link: usize, point: &LinkPoint, workspace: &DenseWorkspace) -> f64 {
-        let of = |(x, z): (f64, f64)| if kind.is_along_x() { x } else { z };
-        let mut force = self.model.links[kind].force(of(point.elongation), of(point.rate));
+    fn link_force(&self, kind: LinkKind, link: usize, links: &LinkState, workspace: &DenseWorkspace) -> f64 {
+        let (e, rate) = (links.elongation[kind.axis()], links.velocity[kind.axis()]);
+        let mut force = self.model.links[kind].force(e, rate);
         force -= self.model.frozen_force(kind, link);
         let mut rows = self.model.rows_of(kind).peekable();
         if rows.peek().is_none() {
@@ -431,66 +431,35 @@ struct CarrierMotion {
     /// Its displacement along x and z since the start of the step, m.
     moved: ByAxis<f64>,
     /// Its displacement along x and z as the stages' rates give it, m.
-    integrated: (f64, f64),
+    integrated: ByAxis<f64>,
     /// What the stages' rates miss of u̇ and ẇ, m/s.
-    missing_rate: (f64, f64),
+    missing_rate: ByAxis<f64>,
 }
 
-/// A mass at one instant within a step; along x and z.
+/// A mass at one instant within a step, with its links to the carrier.
 struct MassPoint {
-    elongation: (f64, f64),
-    velocity: (f64, f64),
+    links: LinkState,
     surface: SurfacePoint,
 }
 
 impl MassPoint {
     fn write(self, state: &mut State, i: usize) {
-        (state.elongation_x[i], state.elongation_z[i]) = self.elongation;
-        (state.velocity_x[i], state.velocity_z[i]) = self.velocity;
+        let LinkState { elongation, velocity } = self.links;
+        (state.elongation_x[i], state.elongation_z[i]) = (elongation.x, elongation.z);
+        (state.velocity_x[i], state.velocity_z[i]) = (velocity.x, velocity.z);
         state.surface[i] = self.surface;
-    }
-
-    fn motion(&self) -> LinkState {
-        LinkState { elongation: self.elongation, velocity: self.velocity }
-    }
-}
-
-/// The links at one mass, or between two, at one instant within a step; along x and z.
-struct LinkPoint {
-    elongation: (f64, f64),
-    rate: (f64, f64),
-}
-
-impl LinkPoint {
-    /// The links from a mass to its neighbour at the right (`sign` 1) or at the left (-1).
-    fn between(here: &MassPoint, there: &MassPoint, sign: f64) -> Self {
-        let difference = |there: (f64, f64), here: (f64, f64)| (sign * (there.0 - here.0), sign * (there.1 - here.1));
-        Self {
-            elongation: difference(there.elongation, here.elongation),
-            rate: difference(there.velocity, here.velocity),
-        }
     }
 }
 
 /// How much of a force on a mass becomes velocity in a time β, along x and z: (m/β)/(m/β + βc + d + Σ_j c_j βτ_j/(τ_j +
 /// β)) of the links to the carrier and to neighbours at rest. The rest goes into them: motion that is faster settles.
-struct InertialFraction {
-    x: f64,
-    z: f64,
-}
-
-impl InertialFraction {
-    fn new(model: &Model, beta: f64) -> Self {
-        let weight = |kind: LinkKind| {
-            let relaxing = |row: &MaxwellRow| row.stiffness * beta * row.relaxation_time / (row.relaxation_time + beta);
-            model.links[kind].by_velocity(beta) + model.rows_of(kind).map(relaxing).sum::<f64>()
-        };
-        let share = |own: LinkKind, lateral: LinkKind| {
-            let inertia = model.mass / beta;
-            inertia / (inertia + weight(own) + 2.0 * weight(lateral))
-        };
-        Self { x: share(LinkKind::Horizontal, LinkKind::LateralX), z: share(LinkKind::Vertical, LinkKind::LateralZ) }
-    }
+fn inertial_fraction(model: &Model, beta: f64) -> ByAxis<f64> {
+    let weight = |kind: LinkKind| {
+        let relaxing = |row: &MaxwellRow| row.stiffness * beta * row.relaxation_time / (row.relaxation_time + beta);
+        model.links[kind].by_velocity(beta) + model.rows_of(kind).map(relaxing).sum::<f64>()
+    };
+    let inertia = model.mass / beta;
+    ByAxis::from_fn(|axis| inertia / (inertia + weight(axis.link()) + 2.0 * weight(axis.lateral())))
 }
 
 /// Workspace of [`DenseOutput`]: the weights of the stages at one fraction of a step.

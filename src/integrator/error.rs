@@ -293,11 +293,7 @@ impl ErrorTest<'_> {
             ((&workspace.z, &workspace.v_z), &end.elongation_z, &end.velocity_z, carrier.z.speed)
         };
         let force = |elongation: &[f64], velocity: &[f64], carrier_rate: f64, i: usize| {
-            if kind.is_lateral() {
-                rod.law.force(elongation[i + 1] - elongation[i], velocity[i + 1] - velocity[i])
-            } else {
-                rod.law.force(elongation[i], velocity[i] - carrier_rate)
-            }
+            rod.law.force(kind.difference(elongation, 0.0, i), kind.difference(velocity, carrier_rate, i))
         };
         let (per_force, relative) = (tolerance.per_force(kind), tolerance.relative + rod.transient(h));
         sum_of(kind.count(e.len()), |i| {

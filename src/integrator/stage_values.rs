@@ -140,10 +140,9 @@ impl StageValues {
                 (&state.velocity_z, carrier.z.speed)
             };
             let rate = &mut self.elongation_rate[kind];
-            for link in if kind.is_lateral() { i.saturating_sub(1)..i + 1 } else { i..i + 1 } {
+            for link in kind.links_on(i, velocity.len()) {
                 if let Some(rate) = rate.get_mut(link) {
-                    *rate = if kind.is_lateral() { velocity[link + 1] } else { velocity[link] };
-                    *rate -= if kind.is_lateral() { velocity[link] } else { carrier_rate };
+                    *rate = kind.difference(velocity, carrier_rate, link);
                 }
             }
         }

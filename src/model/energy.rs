@@ -201,13 +201,9 @@ pub fn vertical_spring_energy_at(model: &Model, state: &State, i: usize) -> f64 
 }
 
 fn spring_energy(model: &Model, state: &State, kind: LinkKind) -> f64 {
+    // ζ is counted from rest, so roughness does not stretch the links between the masses.
     let e = state.elongation(kind.axis());
-    if kind.is_lateral() {
-        // ζ is counted from rest, so roughness does not stretch the links between the masses.
-        springs_energy(model, kind, e.windows(2).map(|e| e[1] - e[0]))
-    } else {
-        springs_energy(model, kind, e.iter().copied())
-    }
+    springs_energy(model, kind, (0..kind.count(e.len())).map(|link| kind.difference(e, 0.0, link)))
 }
 
 /// Σ ½ c e², and ½ c_j (e - y_j)² of the part with frozen dashpots.

@@ -188,8 +188,7 @@ impl Forces {
         let k = model.masses();
         let motion = LinkMotion::new(state, carrier);
         for kind in LinkKind::ALL {
-            let links = if kind.is_lateral() { i.saturating_sub(1)..(i + 1).min(k - 1) } else { i..i + 1 };
-            for link in links.filter(|_| model.has_link[kind]) {
+            for link in kind.links_on(i, k).filter(|_| model.has_link[kind]) {
                 self.refresh_link(model, state, &motion, kind, link);
             }
         }
@@ -225,11 +224,7 @@ impl Forces {
 
     fn refresh_link(&mut self, model: &Model, state: &State, motion: &LinkMotion<'_>, kind: LinkKind, link: usize) {
         let (elongation, velocity, carrier_rate) = motion.along(kind);
-        let (e, rate) = if kind.is_lateral() {
-            (elongation[link + 1] - elongation[link], velocity[link + 1] - velocity[link])
-        } else {
-            (elongation[link], velocity[link] - carrier_rate)
-        };
+        let (e, rate) = (kind.difference(elongation, 0.0, link), kind.difference(velocity, carrier_rate, link));
         let elements = model.element_force(kind, |row| state.maxwell[row.range.start + link]);
         self.link[kind][link] = model.links[kind].force(e, rate) + elements - model.frozen_force(kind, link);
     }

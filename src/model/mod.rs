@@ -175,7 +175,7 @@ impl Model {
 
     /// y of the frozen dashpots of one link of a kind that has some, m.
     pub fn frozen_dashpot(&self, kind: LinkKind, link: usize) -> f64 {
-        if kind.is_lateral() { self.frozen[link + 1] - self.frozen[link] } else { self.frozen[link] }
+        kind.difference(&self.frozen, 0.0, link)
     }
 
     /// c_j y_j of the frozen dashpots of one link of a kind, N; 0 where it has none.

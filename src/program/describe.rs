@@ -7,7 +7,7 @@ use asperity::model::{Model, RealAreaLaw, Reduction, Replaced, Replacement};
 use asperity::outputs::variables;
 use asperity::scene::{
     Axis, CarrierBody, CarrierInitial, Extrapolation, Force, Friction, Initial, Input, Layer, Link, LinkKind, Material,
-    OutputGroup, Parameter, Path, Phase, RateShear, Scene, Surface, Value, Wlf,
+    OutputGroup, Parameter, Path, Phase, RateShear, Scene, Surface, Value, Wlf, peak_to_valley,
 };
 use asperity::simulation::{Simulation, SimulationError};
 use serde::Serialize;
@@ -203,11 +203,6 @@ fn profile(surface: &Surface) -> String {
         peak_to_valley(surface.z()),
         steepest_slope(surface)
     )
-}
-
-fn peak_to_valley(heights: &[f64]) -> f64 {
-    let highest = heights.iter().copied().fold(f64::MIN, f64::max);
-    highest - heights.iter().copied().fold(f64::MAX, f64::min)
 }
 
 fn steepest_slope(surface: &Surface) -> f64 {

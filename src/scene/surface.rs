@@ -149,7 +149,7 @@ pub(super) fn remove_tilt(x: &[f64], z: &mut [f64]) {
 }
 
 /// Highest minus lowest, m; 0 for no heights.
-pub(super) fn peak_to_valley(heights: &[f64]) -> f64 {
+pub fn peak_to_valley(heights: &[f64]) -> f64 {
     let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);
     (highest - lowest).max(0.0)

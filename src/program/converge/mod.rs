@@ -20,7 +20,7 @@ use rayon::prelude::*;
 use super::cli::Converge;
 use super::draft::TablePlace;
 use super::figure::Figure as _;
-use super::files::{FileError, check_outputs, picture_beside, print_beside, sources};
+use super::files::{FileError, check_outputs, default_output, picture_beside, print_beside, sources};
 use super::interrupt::Farewell;
 use super::sweep::{ProfileEnds, StopBounds, check_profile, relevant, steady_sliding, table_fingerprint};
 use super::terminal::{self, warn};
@@ -81,7 +81,7 @@ pub(crate) fn converge(command: &Converge) -> Result<ExitCode, ConvergeError> {
     if let Some(warning) = scene.hard_pressure("--pressure", command.pressure) {
         warn(&warning);
     }
-    let output = command.output.clone().unwrap_or_else(|| default_output(&command.scene));
+    let output = command.output.clone().unwrap_or_else(|| default_output(&command.scene, "converge.csv"));
     let picture = picture_beside(&output, command.plot.as_ref());
     check_outputs([&output].into_iter().chain(&picture), sources(&command.scene, &scene))?;
     check_profile(&scene)?;
@@ -101,11 +101,6 @@ pub(crate) fn converge(command: &Converge) -> Result<ExitCode, ConvergeError> {
         plot::picture(&scene.name, &runs).write(picture)?;
     }
     Ok(if verdict.is_converged() { ExitCode::SUCCESS } else { ExitCode::from(OPEN) })
-}
-
-fn default_output(scene: &Path) -> PathBuf {
-    let stem = scene.file_stem().unwrap_or(scene.as_os_str());
-    PathBuf::from(stem).with_extension("converge.csv")
 }
 
 /// Seeds where none are asked for.

@@ -19,7 +19,9 @@ use rayon::prelude::*;
 
 use super::cli::Sweep;
 use super::draft::TablePlace;
-use super::files::{FileError, check_outputs, load_without_excitation, named, picture_beside, print_beside, sources};
+use super::files::{
+    FileError, check_outputs, default_output, load_without_excitation, named, picture_beside, print_beside, sources,
+};
 use super::interrupt::Farewell;
 use super::terminal::{self, lines, warn};
 use load_search::{heights, rest_separation};
@@ -111,7 +113,7 @@ fn compute(command: &Sweep, path: &Path, speeds: &Values) -> Result<(), SweepErr
         warn(&warning);
     }
     let grid = SweepGrid { speeds: speeds.0.clone(), loads, temperatures: temperatures(command, &scene)? };
-    let output = command.output.clone().unwrap_or_else(|| default_output(path));
+    let output = command.output.clone().unwrap_or_else(|| default_output(path, "sweep.csv"));
     let picture = picture(command, &output);
     let study = convergence::file(command.converged.as_ref(), path);
     let taken = sources(path, &scene).into_iter().chain(study.clone()).collect();
@@ -191,11 +193,6 @@ fn finish(output: &PathBuf, picture: Option<&Path>, table: &SweepTable) -> Resul
     }
     let (failed, total) = (table.rows.iter().filter(|stored| !stored.row.is_steady()).count(), table.rows.len());
     if failed == 0 { Ok(()) } else { Err(SweepError::NotSteady { failed, total, path: output.to_owned() }) }
-}
-
-fn default_output(scene: &Path) -> PathBuf {
-    let stem = scene.file_stem().unwrap_or(scene.as_os_str());
-    PathBuf::from(stem).with_extension("sweep.csv")
 }
 
 fn loads(command: &Sweep, scene: &Scene) -> Result<(Load, Vec<f64>), SweepError> {

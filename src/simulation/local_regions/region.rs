@@ -204,7 +204,7 @@ impl LocalRegion {
         let (dense, weights) = step.restricted_to(&masses);
         let layer = &state.layer.state;
         ends.fold(0.0, |largest: f64, end| {
-            let [(x, z), (v_x, v_z)] = dense.motion(masses.start + end, theta, weights);
+            let [ByAxis { x, z }, ByAxis { x: v_x, z: v_z }] = dense.motion(masses.start + end, theta, weights);
             let force = |kind: LinkKind, off: f64, rate_off: f64| {
                 model.glassy[kind] * off.abs() + model.links[kind].damping * rate_off.abs()
             };
