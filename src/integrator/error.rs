@@ -8,8 +8,7 @@ use super::stage_values::StageValues;
 use super::tableau::Tableau;
 use super::tolerance::{Rod, Tolerance, square};
 use crate::math::{Jet, dot, sum_of, sum_of_pairs, sum_of_triples, weighted_sum, with_widest_vectors};
-use crate::model::Axis;
-use crate::model::{BoundaryPowers, CarrierPoint, LinkKind, Model, State};
+use crate::model::{Axis, BoundaryPowers, ByAxis, CarrierPoint, LinkKind, Model, State};
 
 /// The shortest step over the stiffest period/2π in which energies are resolved. An enormous friction stops a mass in
 /// less, down to below the resolution of time; what it loses there is its kinetic energy.
@@ -100,7 +99,7 @@ impl ErrorTest<'_> {
         workspace: &mut ErrorWorkspace,
     ) -> ErrorEstimate {
         // The differences from the embedded method: of the carrier, and of positions and velocities of the masses.
-        let carrier_error = CarrierError::new(self.carrier, &self.tableau.error, h);
+        let carrier_error = CarrierQuadrature::new(self.carrier, &self.tableau.error, h);
         self.collect(h, &carrier_error, workspace);
         let (end, rates) = (self.end, &self.carrier[self.tableau.last()]);
         let of_positions = |error: &[f64], elongation: &[f64]| {
@@ -149,14 +148,11 @@ impl ErrorTest<'_> {
     }
 
     /// The sum of squares of the errors of the bodies' displacements and speeds over their tolerances, relative to the
-    /// way since the start of the piece.
-    fn body_squares(&self, model: &Model, error: &CarrierError, tolerance: &Tolerance) -> f64 {
+    /// way since the start of the segment.
+    fn body_squares(&self, model: &Model, error: &CarrierQuadrature, tolerance: &Tolerance) -> f64 {
         let of = |axis: Axis| {
             let Jet { position: way, speed: rate, .. } = self.carrier[self.tableau.last()][axis];
-            let (position, velocity) = match axis {
-                Axis::X => (error.position.0, error.velocity.0),
-                Axis::Z => (error.position.1, error.velocity.1),
-            };
+            let (position, velocity) = (error.moved[axis], error.gained[axis]);
             let allowed = tolerance.body_velocity[axis] + tolerance.relative * rate.abs();
             position * position / tolerance.position_tolerance_sq(way) + square(velocity / allowed)
         };
@@ -210,14 +206,14 @@ impl ErrorTest<'_> {
 
     /// The sums of squares of the error of the carrier's displacement, over the masses in contact and over the free
     /// ones.
-    fn carrier_squares(&self, error: &CarrierError, tolerance: &Tolerance) -> (f64, f64) {
-        let (position, end) = (error.position, self.end);
-        if position.0 == 0.0 && position.1 == 0.0 {
+    fn carrier_squares(&self, error: &CarrierQuadrature, tolerance: &Tolerance) -> (f64, f64) {
+        let (position, end) = (error.moved, self.end);
+        if position.x == 0.0 && position.z == 0.0 {
             return (0.0, 0.0);
         }
         let of_mass = |x, z| {
-            square(position.0) / tolerance.position_tolerance_sq(x)
-                + square(position.1) / tolerance.position_tolerance_sq(z)
+            square(position.x) / tolerance.position_tolerance_sq(x)
+                + square(position.z) / tolerance.position_tolerance_sq(z)
         };
         let all = sum_of_pairs(&end.elongation_x, &end.elongation_z, of_mass);
         if self.contacts.len() == end.mode.len() {
@@ -229,18 +225,18 @@ impl ErrorTest<'_> {
 
     /// Collects the errors of positions and velocities relative to the carrier. A mass that sticks through the step has
     /// none along x, and along z those of a contact follow its slope.
-    fn collect(&self, h: f64, carrier_error: &CarrierError, workspace: &mut ErrorWorkspace) {
-        let CarrierError { position, velocity } = carrier_error;
+    fn collect(&self, h: f64, carrier_error: &CarrierQuadrature, workspace: &mut ErrorWorkspace) {
+        let CarrierQuadrature { moved, gained } = carrier_error;
         let weights = &self.tableau.error;
         let sum = |errors: &mut [f64], rate: fn(&StageValues) -> &[f64], of_carrier: f64| {
             let counting = self.stages.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
             weighted_sum(errors, counting.map(|(stage, weight)| (h * weight, rate(stage))));
             errors.iter_mut().for_each(|error| *error -= of_carrier);
         };
-        sum(&mut workspace.x, |stage| &stage.velocity_x, position.0);
-        sum(&mut workspace.z, |stage| &stage.velocity_z, position.1);
-        sum(&mut workspace.v_x, |stage| &stage.acceleration_x, velocity.0);
-        sum(&mut workspace.v_z, |stage| &stage.acceleration_z, velocity.1);
+        sum(&mut workspace.x, |stage| &stage.velocity_x, moved.x);
+        sum(&mut workspace.z, |stage| &stage.velocity_z, moved.z);
+        sum(&mut workspace.v_x, |stage| &stage.acceleration_x, gained.x);
+        sum(&mut workspace.v_z, |stage| &stage.acceleration_z, gained.z);
         for &i in self.sticks.iter().filter(|&&i| self.stages[1].velocity_x[i] == 0.0) {
             (workspace.x[i], workspace.v_x[i]) = (0.0, 0.0);
         }
@@ -315,23 +311,24 @@ fn follow_slopes(z: &mut [f64], x: &[f64], end: &State) {
     }
 }
 
-/// The embedded error estimate of the carrier's motion along x and z, as if it were integrated.
-struct CarrierError {
-    /// Of u and w, m.
-    position: (f64, f64),
-    /// Of u̇ and ẇ, m/s.
-    velocity: (f64, f64),
+/// The carrier's motion through a step by the weights of a quadrature of its rates at the stages; by the weights
+/// b_i - b̂_i it is the embedded error estimate of that motion, as if it were integrated.
+pub(super) struct CarrierQuadrature {
+    /// By which u and w change, m.
+    pub moved: ByAxis<f64>,
+    /// By which u̇ and ẇ change, m/s.
+    pub gained: ByAxis<f64>,
 }
 
-impl CarrierError {
-    /// For a step of length `h` (s) with the carrier at its stages and the weights b_i - b̂_i.
-    fn new(carrier: &[CarrierPoint], weights: &[f64], h: f64) -> Self {
-        let (mut position, mut velocity) = ((0.0, 0.0), (0.0, 0.0));
+impl CarrierQuadrature {
+    /// For a step of length `h` (s) with the carrier at its stages.
+    pub(super) fn new(carrier: &[CarrierPoint], weights: &[f64], h: f64) -> Self {
+        let (mut moved, mut gained) = (ByAxis::default(), ByAxis::default());
         for (at, weight) in carrier.iter().zip(weights) {
             let step = h * weight;
-            position = (position.0 + step * at.x.speed, position.1 + step * at.z.speed);
-            velocity = (velocity.0 + step * at.x.acceleration, velocity.1 + step * at.z.acceleration);
+            moved = moved + ByAxis { x: step * at.x.speed, z: step * at.z.speed };
+            gained = gained + ByAxis { x: step * at.x.acceleration, z: step * at.z.acceleration };
         }
-        Self { position, velocity }
+        Self { moved, gained }
     }
 }

@@ -1,6 +1,6 @@
 //! One Runge-Kutta step: the stages of an attempted step, from their history to their error test.
 
-use super::error::{ErrorEstimate, ErrorTest, ErrorWorkspace};
+use super::error::{CarrierQuadrature, ErrorEstimate, ErrorTest, ErrorWorkspace};
 use super::maxwell::Maxwell;
 use super::scheme::{Coefficients, InitialGuess, Scheme};
 use super::sensitivity::{Sensitivity, Solved};
@@ -9,8 +9,7 @@ use super::stage_values::{LayerState, StageValues};
 use super::tableau::MAX_STAGES;
 use super::tolerance::Tolerance;
 use crate::math::{Jet, weighted_sum, with_widest_vectors};
-use crate::model::Axis;
-use crate::model::{BoundaryPowers, Carrier, CarrierPoint, Input, Mode, Model, State};
+use crate::model::{Axis, BoundaryPowers, ByAxis, Carrier, CarrierPoint, Input, Mode, Model, State};
 
 /// Where a step lies in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -162,7 +161,7 @@ impl Stages {
             carrier: at,
             integrated: self.integrate_carrier(carrier, h, weights, i),
             moved,
-            piece: (carrier.profile_position, carrier.start.z),
+            segment_start: ByAxis { x: carrier.profile_position, z: carrier.start.z },
         }
     }
 
@@ -207,22 +206,14 @@ impl Stages {
     /// So the elongations are integrated as the differences that they are, ė = ẋ - u̇, and the velocities relative to
     /// the carrier's, with -ü as a load: a carrier that oscillates widely causes no error in a layer that moves with
     /// it. The starred velocities take up the error of the quadrature of ü for u̇.
-    fn integrate_carrier(&mut self, carrier: &Carrier, h: f64, weights: &[f64], i: usize) -> (f64, f64) {
-        let (mut moved, mut gained) = ((0.0, 0.0), (0.0, 0.0));
-        for (at, weight) in self.carrier[..=i].iter().zip(weights) {
-            let step = h * weight;
-            moved = (moved.0 + step * at.x.speed, moved.1 + step * at.z.speed);
-            gained = (gained.0 + step * at.x.acceleration, gained.1 + step * at.z.acceleration);
-        }
-        let (start, here) = (&self.carrier[0], &self.carrier[i]);
+    fn integrate_carrier(&mut self, carrier: &Carrier, h: f64, weights: &[f64], i: usize) -> ByAxis<f64> {
+        let CarrierQuadrature { moved, gained } = CarrierQuadrature::new(&self.carrier[..=i], weights, h);
+        let error = self.carrier[i].rates() - self.carrier[0].rates() - gained;
         let history = &mut self.solver.history;
-        let error_x = here.x.speed - start.x.speed - gained.0;
-        let error_z = here.z.speed - start.z.speed - gained.1;
         // On straight paths the quadrature is exact, and so it is of a body, which is integrated.
-        let errors = [(Axis::X, &mut history.velocity_x, error_x), (Axis::Z, &mut history.velocity_z, error_z)];
-        for (axis, star, error) in errors {
-            if error != 0.0 && !carrier.is_body(axis) {
-                star.iter_mut().for_each(|star| *star += error);
+        for (axis, star) in [(Axis::X, &mut history.velocity_x), (Axis::Z, &mut history.velocity_z)] {
+            if error[axis] != 0.0 && !carrier.is_body(axis) {
+                star.iter_mut().for_each(|star| *star += error[axis]);
             }
         }
         moved

@@ -41,7 +41,7 @@ struct Side {
     inertia: f64,
 }
 
-/// Contributions of the earlier stages to the motion of a body at a stage, and the start of the piece.
+/// Contributions of the earlier stages to the motion of a body at a stage, and the start of the segment.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::integrator) struct BodyHistory {
     /// Speed u̇*, m/s.
@@ -209,9 +209,9 @@ impl StageSolver {
             let position = side.outside.body.position + (displacement - before);
             side.outside.body = Jet { position, speed: rate, acceleration };
             point.carrier[side.axis] = Jet { position: displacement, speed: rate, acceleration };
-            match side.axis {
-                Axis::X => (point.integrated.0, point.moved) = (moved, moved),
-                Axis::Z => point.integrated.1 = moved,
+            point.integrated[side.axis] = moved;
+            if side.axis == Axis::X {
+                point.moved = moved;
             }
         }
     }

@@ -24,8 +24,8 @@ use super::stage_values::{NO_LIMIT, StageValues};
 use super::tolerance::{NEWTON_SHARE, Tolerance};
 use crate::math::{BLOCK, BlockTridiagonal, Spline, weighted_sum, with_widest_vectors};
 use crate::model::{
-    ByLink, CarrierPoint, ContactForces, Forces, FrictionPower, LinkKind, LinkLaw, LinkMotion, Mode, Model, State,
-    SurfacePoint,
+    ByAxis, ByLink, CarrierPoint, ContactForces, Forces, FrictionPower, LinkKind, LinkLaw, LinkMotion, Mode, Model,
+    State, SurfacePoint,
 };
 use newton::{NeighbourWeights, RateFriction, RowShares, largest_of};
 
@@ -82,22 +82,22 @@ pub(super) struct StagePoint {
     pub beta: f64,
     pub carrier: CarrierPoint,
     /// Displacement of the carrier since the start of the step along x and z by the method's quadrature of its rate, m.
-    pub integrated: (f64, f64),
+    pub integrated: ByAxis<f64>,
     /// Its exact displacement along x, m, by which a sticking mass falls behind.
     pub moved: f64,
     /// u as a position on the profile and w at the start of the carrier's segment, m.
-    pub piece: (f64, f64),
+    pub segment_start: ByAxis<f64>,
 }
 
 impl StagePoint {
     /// u at the stage as a position on the profile, m.
     fn profile_position(&self) -> f64 {
-        self.piece.0 + self.carrier.x.position
+        self.segment_start.x + self.carrier.x.position
     }
 
     /// w at the stage, m.
     fn w(&self) -> f64 {
-        self.piece.1 + self.carrier.z.position
+        self.segment_start.z + self.carrier.z.position
     }
 }
 
@@ -412,8 +412,8 @@ impl StageSolver {
     fn set_positions(&mut self, model: &Model, point: &StagePoint) {
         let (beta, profile_position, w) = (point.beta, point.profile_position(), point.w());
         let (state, history) = (&mut self.state, &self.history);
-        set_elongations(&mut state.elongation_x, &history.elongation_x, beta, &state.velocity_x, point.integrated.0);
-        set_elongations(&mut state.elongation_z, &history.elongation_z, beta, &state.velocity_z, point.integrated.1);
+        set_elongations(&mut state.elongation_x, &history.elongation_x, beta, &state.velocity_x, point.integrated.x);
+        set_elongations(&mut state.elongation_z, &history.elongation_z, beta, &state.velocity_z, point.integrated.z);
         for &i in &self.sticks {
             state.elongation_x[i] = history.elongation_x[i] - point.moved;
             state.elongation_z[i] = state.surface[i].height - model.rest_z[i] - w;
