@@ -57,9 +57,9 @@ impl EventTolerance {
         let link = LinkKind::Horizontal;
         let impedance = model.links[link].damping + (model.glassy[link] * model.mass).sqrt();
         let share_of_dips = (SHARE_OF_DIPS * tolerance.relative).clamp(MIN_SHARE_OF_DIPS, 1.0);
-        let least_gap = (MIN_DIP * height).max(rounding_of_gap(model, height));
+        let min_gap = (MIN_DIP * height).max(rounding_of_gap(model, height));
         Self {
-            gap: (share_of_dips * tolerance.position).max(least_gap.min(tolerance.position)),
+            gap: (share_of_dips * tolerance.position).max(min_gap.min(tolerance.position)),
             velocity: OF_STOPS * tolerance.velocity,
             force: (tolerance.position * stiffness).max(rounding),
             rounding,
@@ -121,7 +121,7 @@ pub fn mode_changes(
 
 /// Whether mass `i` may come below -`tolerance` (m) above the profile. Bounds that are nearly free are enough for most.
 fn may_touch(motions: &Polynomials<'_>, i: usize, profile: &Spline, tolerance: f64) -> bool {
-    let least = motions.least_height(i);
+    let least = motions.min_height(i);
     let clear = |top: f64| least - top > -tolerance;
     let clear_near = || {
         let (low, high) = motions.position_bounds(i);
@@ -177,7 +177,7 @@ impl Contacts<'_> {
         let overshoot = if self.carrier_swings() { self.step.interpolation().overshoot() } else { 0.0 };
         let least = |function: EventFunction| {
             let stages = self.step.stages().iter().map(|stage| &function.values(stage)[first..]);
-            least_within(stages, overshoot)
+            min_within(stages, overshoot)
         };
         let (normal, margin) = (least(EventFunction::Normal), least(EventFunction::Margin));
         let mut falls = [false; BLOCK];
@@ -326,7 +326,7 @@ fn vertex(before: (f64, f64), here: (f64, f64), after: (f64, f64)) -> Option<(f6
 }
 
 /// The least value of each mass at the `stages`, less the share `overshoot` of the range of its values there.
-fn least_within<'a>(stages: impl Iterator<Item = &'a [f64]>, overshoot: f64) -> [f64; BLOCK] {
+fn min_within<'a>(stages: impl Iterator<Item = &'a [f64]>, overshoot: f64) -> [f64; BLOCK] {
     with_widest_vectors(
         #[inline(always)]
         || {

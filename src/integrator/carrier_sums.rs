@@ -13,8 +13,8 @@ use super::tableau::Weights;
 use crate::math::{BLOCK, dot, sum};
 use crate::model::{ByAxis, Carrier, CarrierPoint, LinkKind, MaxwellRow, Mode, Model, State, SurfacePoint};
 
-/// Elongations of links (m) and velocities of masses (m/s), along x and z: of one mass, of one relative to another or to
-/// the carrier, or summed.
+/// Elongations of links (m) and velocities of masses (m/s), along x and z: of one mass, of one relative to another or
+/// to the carrier, or summed.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct LinkState {
     pub elongation: ByAxis<f64>,

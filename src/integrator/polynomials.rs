@@ -52,7 +52,7 @@ impl<'a> Polynomials<'a> {
     }
 
     /// A bound of the least height of mass `i` above the profile's datum, m, by its speeds at the stages.
-    pub fn least_height(&self, i: usize) -> f64 {
+    pub fn min_height(&self, i: usize) -> f64 {
         let start = self.step.model.rest_z[i] + self.step.start.elongation_z[i];
         self.bounds.2 + start - self.distance(|stage| stage.velocity_z[i])
     }

@@ -59,7 +59,7 @@ pub struct Snapshot<'a> {
     pub layer: LayerView<'a>,
     /// The carrier's rates.
     pub carrier: CarrierPoint,
-    /// The carrier's motion, and the time since the start of its piece, s.
+    /// The carrier's motion, and the time since the start of its segment, s.
     pub motion: (&'a Carrier, f64),
     /// Displacement of the carrier: u and w, m.
     pub displacement: ByAxis<f64>,

@@ -1,11 +1,12 @@
 //! A simulation: joins the integrator and the contact laws into a run that follows the carrier's motion.
 //!
-//! - [`Simulation`] is the public face: a `run` and, where the group `solver` asks for its error, a reference run. It shows
-//!   the rows of a motion by a `sampler`.
+//! - [`Simulation`] is the public face: a `run` and, where the group `solver` asks for its error, a reference run. It
+//!   shows the rows of a motion by a `sampler`.
 //! - `run` joins what a run is made of; the comment on its type has the course of a step.
-//! - `context` is what the steps work on: all that changes in a run (`state`), and the workspace that the methods share.
-//! - `stepper` is what the steps of both methods have in common; `event_driven` and `time_stepping` are the two. A `controller`
-//!   chooses their lengths.
+//! - `context` is what the steps work on: all that changes in a run (`state`), and the workspace that the methods
+//!   share.
+//! - `stepper` is what the steps of both methods have in common; `event_driven` and `time_stepping` are the two. A
+//!   `controller` chooses their lengths.
 //! - `local_regions` take the mode changes of an event-driven step in steps of the masses near them alone.
 //! - `reference_run` estimates the run's error.
 

@@ -139,7 +139,7 @@ impl Run {
         self.event_driven.may_plan = allowed && !self.local_regions.is_empty();
     }
 
-    /// Begins a smooth piece of the carrier's motion.
+    /// Begins a smooth segment of the carrier's motion.
     pub(super) fn begin(&mut self, motion: &Motion) {
         self.event_driven.begin();
         self.local_regions.close();
@@ -200,7 +200,7 @@ impl Run {
         self.local_regions.advance((&mut self.context, &mut self.event_driven), step, times, work)
     }
 
-    /// Accepts a step, which ends at the time `end` of the piece, and makes the mode changes due there.
+    /// Accepts a step, which ends at the time `end` of the segment, and makes the mode changes due there.
     pub(super) fn take_step(&mut self, step: &TrialStep, end: f64) {
         let Self { context, event_driven, time_stepping, local_regions, .. } = self;
         let auto = context.settings.method == Method::Auto;

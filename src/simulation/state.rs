@@ -38,9 +38,9 @@ impl SimulationState {
 /// All that changes in a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct RunState {
-    /// The smooth piece of motion that the carrier is on.
+    /// The smooth segment of motion that the carrier is on.
     pub carrier: Carrier,
-    /// Time since the start of that piece, s.
+    /// Time since the start of that segment, s.
     pub s: f64,
     /// The layer, with the rates at the start of the next step.
     pub layer: LayerState,

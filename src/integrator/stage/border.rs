@@ -48,7 +48,7 @@ pub(in crate::integrator) struct BodyHistory {
     pub rate: f64,
     /// Displacement since the start of the step, m.
     pub moved: f64,
-    /// Displacement at the start of the step since the start of the piece, m.
+    /// Displacement at the start of the step since the start of the segment, m.
     pub start: f64,
 }
 

@@ -342,11 +342,11 @@ impl StageSolver {
     fn iterate(&mut self, model: &Model, point: &mut StagePoint, test: ConvergenceTest) -> Result<(), NoConvergence> {
         let mut residual = self.residuals(model, point.beta);
         let mut last = f64::INFINITY;
-        let most_iterations = match self.modes {
+        let max_iterations = match self.modes {
             ContactModes::Held => MAX_ITERATIONS,
             ContactModes::SetValued => MAX_WITH_CHANGES,
         };
-        for _ in 0..most_iterations {
+        for _ in 0..max_iterations {
             // The correction, by the factors of this stage or of another.
             let held = self.factors == Factors::Held;
             if !held {

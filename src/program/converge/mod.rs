@@ -108,15 +108,15 @@ const SEEDS: u32 = 4;
 
 fn plan(command: &Converge, template: &Template) -> Result<Plan, ConvergeError> {
     let (masses, most) = (template.masses(), u64::from(command.most_masses));
-    let most_halvings = (most / masses).checked_ilog2().unwrap_or_default();
-    if most_halvings == 0 {
+    let max_halvings = (most / masses).checked_ilog2().unwrap_or_default();
+    if max_halvings == 0 {
         return Err(ConvergeError::FewMasses { masses, least: 2 * masses });
     }
     if command.seeds.is_some() && !template.has_seed() {
         return Err(ConvergeError::NoSeed);
     }
     let seeds = template.has_seed().then_some(command.seeds.unwrap_or(SEEDS));
-    Ok(Plan { error: command.error, most_halvings, seeds })
+    Ok(Plan { error: command.error, max_halvings, seeds })
 }
 
 fn header(command: &Converge, scene: &Scene) -> Result<TableHeader, ConvergeError> {

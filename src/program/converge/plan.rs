@@ -10,7 +10,7 @@ pub(super) struct Plan {
     /// Change of friction and of area from one halving to the next that is small enough.
     pub(super) error: f64,
     /// Most halvings, at least one.
-    pub(super) most_halvings: u32,
+    pub(super) max_halvings: u32,
     /// Number of seeds, the scene's own included; `None` where it has none.
     pub(super) seeds: Option<u32>,
 }
@@ -59,7 +59,7 @@ impl Plan {
         while let Some(Some(pair)) = outcome(Variant::halved(ladder.len() as u32)) {
             let settled = ladder.last().is_some_and(|before| pair.change_from(before).is_within(self.error));
             ladder.push(pair);
-            if settled || ladder.len() as u32 > self.most_halvings {
+            if settled || ladder.len() as u32 > self.max_halvings {
                 return (ladder, true);
             }
         }
@@ -101,7 +101,7 @@ mod tests {
         unreachable!("the plan has an end")
     }
 
-    const PLAN: Plan = Plan { error: 0.05, most_halvings: 6, seeds: Some(3) };
+    const PLAN: Plan = Plan { error: 0.05, max_halvings: 6, seeds: Some(3) };
 
     /// 0.1 (1 + 0.4 2^-i): the fourth halving changes by less than 5 %.
     fn first_order(variant: Variant) -> Outcome {
@@ -120,8 +120,8 @@ mod tests {
     }
 
     #[test]
-    fn most_masses_end_the_halvings() {
-        let (rounds, study) = made(Plan { most_halvings: 1, seeds: None, ..PLAN }, first_order);
+    fn max_masses_end_the_halvings() {
+        let (rounds, study) = made(Plan { max_halvings: 1, seeds: None, ..PLAN }, first_order);
         assert_eq!(
             rounds,
             [vec![Variant::halved(0), Variant::halved(1)], vec![Variant { doubled: true, ..Variant::halved(1) }]]

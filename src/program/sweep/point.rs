@@ -23,7 +23,7 @@ use asperity::simulation::SimulationError;
 
 use super::load_search::LoadSearch;
 use super::slide::{BlockMeans, Blocks, Slide, tangential_stiffness};
-use super::steady::{FEWEST, Window, window};
+use super::steady::{MIN_WINDOW, Window, window};
 
 /// The mean of F_z over the window is the load within this share of it.
 const LOAD: f64 = 1e-3;
@@ -38,7 +38,7 @@ const SEARCHES: usize = 12;
 const RAMP: f64 = 0.125;
 const CALM: f64 = 0.125;
 /// Blocks of the shortest slide on which means can be judged: pressed, then averaged.
-pub(super) const MIN_BLOCKS: f64 = RAMP + CALM + FEWEST as f64;
+pub(super) const MIN_BLOCKS: f64 = RAMP + CALM + MIN_WINDOW as f64;
 /// A window of so many blocks whose load has a trend is abandoned: the dashpots are not yet at rest.
 const ABANDONED: usize = 6;
 /// The relative error of a friction coefficient smaller than this is taken relative to this.
@@ -293,7 +293,7 @@ impl<'a> Search<'a> {
             let Some(average) = self.average(first.take())? else {
                 let Blocks { length, .. } = self.blocks;
                 let status =
-                    format!("not steady: no room for {FEWEST} blocks of {length} m within {} m", self.distance);
+                    format!("not steady: no room for {MIN_WINDOW} blocks of {length} m within {} m", self.distance);
                 return Ok(PointResult::failed(status));
             };
             let pressed = average.steady && self.deviation(&average.means).abs() <= LOAD;
@@ -368,20 +368,20 @@ impl<'a> Search<'a> {
     /// there is no room for a window.
     fn average(&mut self, first: Option<BlockMeans>) -> Result<Option<Average>, SimulationError> {
         let mut blocks: Vec<BlockMeans> = first.into_iter().collect();
-        if !self.slide.has_room(FEWEST as f64) {
+        if !self.slide.has_room(MIN_WINDOW as f64) {
             blocks.clear();
             self.restart()?;
         }
         while self.has_room(1.0) && self.slide.has_room(1.0) {
             blocks.push(self.slide.block()?);
-            if blocks.len() >= FEWEST {
+            if blocks.len() >= MIN_WINDOW {
                 let average = self.judge(&blocks);
                 if average.steady || (blocks.len().is_multiple_of(ABANDONED) && average.drifts) {
                     return Ok(Some(average));
                 }
             }
         }
-        Ok((blocks.len() >= FEWEST).then(|| self.judge(&blocks)))
+        Ok((blocks.len() >= MIN_WINDOW).then(|| self.judge(&blocks)))
     }
 
     fn judge(&self, blocks: &[BlockMeans]) -> Average {

@@ -60,7 +60,7 @@ pub(super) struct LocalRegions {
     /// Number of masses to each side of one that changes its mode that feel it.
     reach: usize,
     /// The most masses that open regions may have.
-    most_masses: usize,
+    max_masses: usize,
     /// Number of mode changes in regions so far in this step.
     counted: u64,
     /// What regions that others have absorbed have gained beyond the whole layer's step.
@@ -91,8 +91,8 @@ impl LocalRegions {
         let have_none = *method == Method::Step || accounts.tangents || model.has_bodies();
         let reach = if have_none { None } else { reach(model, tolerance.relative) };
         let least = reach.map(|reach| 2 * reach + 1).filter(|width| MIN_REGIONS * width <= model.masses());
-        let most_masses = model.masses() / OF_MASSES;
-        let levels = least.into_iter().flat_map(|least| levels(least, most_masses));
+        let max_masses = model.masses() / OF_MASSES;
+        let levels = least.into_iter().flat_map(|least| levels(least, max_masses));
         let regions: Vec<_> = levels
             // Each has a model of its own: one that they share would be copied when they first open.
             .flat_map(|(width, count)| (0..count).map(move |_| LocalRegion::new(model, width, settings)))
@@ -103,7 +103,7 @@ impl LocalRegions {
             workspace: workspace(model, regions.is_empty()),
             regions,
             reach: reach.unwrap_or(0),
-            most_masses,
+            max_masses,
             counted: 0,
             gained: Energies::default(),
             span: TimeSpan { start: 0.0, length: 0.0 },
@@ -256,7 +256,7 @@ impl LocalRegions {
         let is_absorbed =
             |region: &LocalRegion| range.start <= region.masses().start && region.masses().end <= range.end;
         let kept: usize = self.open().filter(|region| !is_absorbed(region)).map(LocalRegion::len).sum();
-        if kept + range.len() > self.most_masses {
+        if kept + range.len() > self.max_masses {
             return Ok(Some(Cut::Crowded(s)));
         }
         // It starts from the layer's step. One that absorbs others does not go on from that alone.
@@ -385,13 +385,13 @@ fn whole_layer<'a>(context: &'a Context, span: TimeSpan, workspace: &'a mut Dens
 }
 
 /// The widths of regions, from the `least` one on, and the number of regions of each: all of one width have at most
-/// `most_masses`, and there is [`ROOM`] for some.
-fn levels(least: usize, most_masses: usize) -> impl Iterator<Item = (usize, usize)> {
+/// `max_masses`, and there is [`ROOM`] for some.
+fn levels(least: usize, max_masses: usize) -> impl Iterator<Item = (usize, usize)> {
     let wider = |&(width, most): &(usize, usize)| Some((2 * width, (most / 2).max(1)));
     std::iter::successors(Some((least, MAX_REGIONS)), wider)
         .zip(ROOM.into_iter().chain(std::iter::repeat(ROOM_FOR_WIDE)))
-        .take_while(move |((width, _), room)| room * width <= most_masses)
-        .map(move |((width, most), _)| (width, most.min(most_masses / width)))
+        .take_while(move |((width, _), room)| room * width <= max_masses)
+        .map(move |((width, most), _)| (width, most.min(max_masses / width)))
 }
 
 /// The number of masses over which the effect of a mode change falls below the tolerance; `None` where it does not

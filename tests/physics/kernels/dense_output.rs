@@ -260,7 +260,7 @@ fn motions_are_those_of_the_state_within_the_step() {
             // Some roundings of positions of the size of 1 m.
             assert!((found.0 - x).abs() < 1e-14 && (found.1 - z).abs() < 1e-14, "{theta}, mass {i}: {found:?} {x} {z}");
             let (low, high) = motions.position_bounds(i);
-            assert!(low <= x && x <= high && motions.least_height(i) <= z, "{theta}, mass {i}: {low} {high} {x} {z}");
+            assert!(low <= x && x <= high && motions.min_height(i) <= z, "{theta}, mass {i}: {low} {high} {x} {z}");
         }
     }
 }
