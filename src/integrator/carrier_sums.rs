@@ -27,12 +27,12 @@ impl LinkState {
         (self.elongation, self.velocity) = (self.elongation + other.elongation, self.velocity + other.velocity);
     }
 
-    /// The links to a neighbour, as seen from here: at the right with the `sign` 1, at the left with -1.
-    pub(super) fn to_neighbour(&self, neighbour: &Self, sign: f64) -> Self {
+    /// The links from a mass to its neighbour at the right (`sign` 1) or at the left (-1).
+    pub(super) fn between(here: &Self, there: &Self, sign: f64) -> Self {
         let signed = |difference: ByAxis<f64>| difference.map(|difference| sign * difference);
         Self {
-            elongation: signed(neighbour.elongation - self.elongation),
-            velocity: signed(neighbour.velocity - self.velocity),
+            elongation: signed(there.elongation - here.elongation),
+            velocity: signed(there.velocity - here.velocity),
         }
     }
 

@@ -378,7 +378,7 @@ impl<'a> DenseOutput<'a> {
             if j >= self.model.masses() {
                 continue;
             }
-            let between = here.links.to_neighbour(&self.mass_at(j, &carrier, workspace).links, sign);
+            let between = LinkState::between(&here.links, &self.mass_at(j, &carrier, workspace).links, sign);
             force_x += sign * self.link_force(LinkKind::LateralX, link, &between, workspace);
             force_z += sign * self.link_force(LinkKind::LateralZ, link, &between, workspace);
         }
@@ -392,7 +392,7 @@ impl<'a> DenseOutput<'a> {
         workspace.set_weights(self, theta);
         let carrier = self.carrier_at(theta, workspace);
         let (here, there) = (self.mass_at(i, &carrier, workspace), self.mass_at(i + 1, &carrier, workspace));
-        let between = here.links.to_neighbour(&there.links, 1.0);
+        let between = LinkState::between(&here.links, &there.links, 1.0);
         [LinkKind::LateralX, LinkKind::LateralZ]
             .map(|kind| if self.model.has_link[kind] { self.link_force(kind, i, &between, workspace) } else { 0.0 })
     }
