@@ -27,27 +27,11 @@ struct Variation {
     /// Of the elongations a_j of the Maxwell elements.
     maxwell: Vec<f64>,
     /// Of the displacements and speeds of the bodies along x and z.
-    bodies: ByAxis<[f64; 2]>,
+    bodies: CarrierVariation,
 }
 
-/// The variation of the carrier at one instant.
-#[derive(Clone, Copy, Debug, Default)]
-struct CarrierVariation {
-    u: f64,
-    w: f64,
-    u_rate: f64,
-    w_rate: f64,
-}
-
-impl CarrierVariation {
-    /// Sets the displacement and the speed along an axis to those of a body.
-    fn set_along(&mut self, axis: Axis, [displacement, rate]: [f64; 2]) {
-        match axis {
-            Axis::X => (self.u, self.u_rate) = (displacement, rate),
-            Axis::Z => (self.w, self.w_rate) = (displacement, rate),
-        }
-    }
-}
+/// The variation of the carrier at one instant: of its displacements and speeds along x and z.
+type CarrierVariation = ByAxis<[f64; 2]>;
 
 /// The derivative of a run with respect to the target of one input.
 #[derive(Clone, Debug)]
@@ -87,7 +71,7 @@ impl Variation {
         LinkMotion {
             elongation: ByAxis { x: &self.x, z: &self.z },
             velocity: ByAxis { x: &self.v_x, z: &self.v_z },
-            carrier_rate: ByAxis { x: carrier.u_rate, z: carrier.w_rate },
+            carrier_rate: carrier.map(|[_, rate]| rate),
             ends: Default::default(),
         }
     }
@@ -117,17 +101,13 @@ impl Sensitivity {
 
     /// The carrier's variation `s` seconds after the start of its motion, with `bodies` the displacements and speeds of
     /// bodies.
-    fn carrier(&self, model: &Model, s: f64, bodies: &ByAxis<[f64; 2]>) -> CarrierVariation {
-        let mut carrier = CarrierVariation::default();
-        for axis in Axis::ALL {
-            let driven = self.input.is_displacement() && self.input.axis() == Some(axis);
-            if model.bodies[axis].is_some() {
-                carrier.set_along(axis, bodies[axis]);
-            } else if driven {
-                carrier.set_along(axis, self.ramp(s));
-            }
-        }
-        carrier
+    fn carrier(&self, model: &Model, s: f64, bodies: &CarrierVariation) -> CarrierVariation {
+        let driven = self.input.axis().filter(|_| self.input.is_displacement());
+        ByAxis::from_fn(|axis| match model.bodies[axis] {
+            Some(_) => bodies[axis],
+            None if driven == Some(axis) => self.ramp(s),
+            None => [0.0; 2],
+        })
     }
 
     /// The variation of the input `s` seconds after the start of the motion, and its rate, 1/s.
@@ -232,8 +212,8 @@ impl Sensitivity {
     fn forces_at_start(&mut self, model: &Model, carrier: &CarrierVariation) {
         let start = &self.start;
         for i in 0..model.masses() {
-            self.known.x[i] = start.x[i] - carrier.u;
-            self.known.z[i] = start.z[i] - carrier.w;
+            self.known.x[i] = start.x[i] - carrier.x[0];
+            self.known.z[i] = start.z[i] - carrier.z[0];
         }
         let motion = LinkMotion { velocity: ByAxis { x: &start.v_x, z: &start.v_z }, ..self.known.links(carrier) };
         for kind in LinkKind::ALL {
@@ -292,8 +272,8 @@ impl Sensitivity {
                 Some(mass) => (mass.z, mass.v_z),
                 None => (self.end.z[i], 0.0),
             };
-            known.x[i] = self.end.x[i] - carrier.u;
-            known.z[i] = z - carrier.w;
+            known.x[i] = self.end.x[i] - carrier.x[0];
+            known.z[i] = z - carrier.z[0];
             known.v_z[i] = v_z;
         }
         let motion = known.links(carrier);

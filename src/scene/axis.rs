@@ -27,6 +27,14 @@ impl Axis {
         }
     }
 
+    /// The name of the force of the layer on the carrier.
+    pub fn force_name(self) -> &'static str {
+        match self {
+            Self::X => "F_x",
+            Self::Z => "F_z",
+        }
+    }
+
     /// The lateral links along the axis.
     pub fn lateral(self) -> LinkKind {
         match self {

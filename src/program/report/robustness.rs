@@ -170,7 +170,7 @@ impl Robustness {
     fn error(&self, error: &Difference) -> String {
         let Difference { share, of, time } = error;
         let times = two_digits(share / self.tolerance);
-        format!("error {share:.1e} of {} at t = {time:.3e} s, {times} times the tolerance", of.name())
+        format!("error {share:.1e} of {} at t = {time:.3e} s, {times} times the tolerance", of.force_name())
     }
 
     /// The powers of ten, every so many.
