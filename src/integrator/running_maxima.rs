@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::tolerance::Tolerance;
-use crate::model::{Axis, ByAxis, Forces, LinkKind, Model};
+use crate::model::{ByAxis, Forces, LinkKind, Model};
 
 /// The least scale of the errors of one force, as a share of the other, and as one of the force that the scene's height
 /// makes on a mass.
@@ -23,10 +23,8 @@ const EXPECTED_FRICTION: f64 = 0.5;
 /// The largest forces of the layer on the carrier and energies so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RunningMaxima {
-    /// |F_x|, N.
-    pub force_x: f64,
-    /// |F_z|, N.
-    pub force_z: f64,
+    /// |F_x| and |F_z|, N.
+    pub force: ByAxis<f64>,
     /// Of the energies through the channels and in impacts, J; 0 where energies are not computed.
     pub energy: f64,
 }
@@ -35,11 +33,7 @@ impl RunningMaxima {
     /// Includes the forces of `forces`.
     #[must_use]
     pub fn with(self, forces: &Forces) -> Self {
-        Self {
-            force_x: self.force_x.max(forces.on_carrier(Axis::X).abs()),
-            force_z: self.force_z.max(forces.on_carrier(Axis::Z).abs()),
-            ..self
-        }
+        Self { force: ByAxis::from_fn(|axis| self.force[axis].max(forces.on_carrier(axis).abs())), ..self }
     }
 
     /// By how much the force of one mass of a layer of `model` may err, N: the errors of all masses, if they are
@@ -57,8 +51,8 @@ impl RunningMaxima {
         let of_layer = MIN_OF_LAYER * height(tolerance) * layer_stiffness(model, tolerance);
         let least = of_mass.max(of_layer);
         ByAxis {
-            x: self.force_x.max(expected * self.force_z).max(least),
-            z: self.force_z.max(MIN_FORCE * self.force_x).max(least),
+            x: self.force.x.max(expected * self.force.z).max(least),
+            z: self.force.z.max(MIN_FORCE * self.force.x).max(least),
         }
     }
 
@@ -100,7 +94,7 @@ mod tests {
         }
         let ByAxis { x, z } = nothing.force_scales(&model, &tolerance);
         assert!((x / 8e-4 - 1.0).abs() < 1e-12 && x == z, "{x:e} and {z:e} N");
-        let known = RunningMaxima { force_z: 2.0, energy: 1e-3, ..nothing };
+        let known = RunningMaxima { force: ByAxis { x: 0.0, z: 2.0 }, energy: 1e-3 };
         assert_eq!(
             (known.force_scales(&model, &tolerance).z, known.energy_scale(&model, &tolerance, 1.0)),
             (2.0, 1e-3)
