@@ -26,7 +26,7 @@ use super::sweep::{ProfileEnds, StopBounds, check_profile, relevant, steady_slid
 use super::terminal::{self, warn};
 use crate::program::persson::{Dimension, Theory};
 use plan::{Next, Plan};
-use table::{Measured, RunRow, Table, TableHeader};
+use table::{Measured, RunRow, StudyHeader, Table};
 use variants::{Template, Variant};
 use verdict::{Pair, Study, Verdict};
 
@@ -119,11 +119,11 @@ fn plan(command: &Converge, template: &Template) -> Result<Plan, ConvergeError> 
     Ok(Plan { error: command.error, max_halvings, seeds })
 }
 
-fn header(command: &Converge, scene: &Scene) -> Result<TableHeader, ConvergeError> {
+fn header(command: &Converge, scene: &Scene) -> Result<StudyHeader, ConvergeError> {
     let Converge { pressure, speed, error, distance, .. } = *command;
     let settings = format!("converge {pressure:?} {speed:?} {error:?} {distance:?}");
     let fingerprint = table_fingerprint(&relevant(scene.clone()), &settings)?;
-    Ok(TableHeader { scene: scene.name.clone(), fingerprint, pressure, speed, error })
+    Ok(StudyHeader { scene: scene.name.clone(), fingerprint, pressure, speed, error })
 }
 
 /// The change of a run's values from those of the run that it is compared with.

@@ -137,7 +137,7 @@ impl RunRow {
 
 /// What a table says before its rows.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct TableHeader {
+pub(super) struct StudyHeader {
     /// The name of the scene.
     pub(super) scene: String,
     /// What tells this study from others.
@@ -149,7 +149,7 @@ pub(super) struct TableHeader {
     pub(super) error: f64,
 }
 
-impl TableHeader {
+impl StudyHeader {
     /// The lines of the header, the names of the columns included; once there is one, the verdict.
     fn text(&self, verdict: Option<&str>) -> String {
         let mut lines = vec![
@@ -170,14 +170,14 @@ impl TableHeader {
 #[derive(Debug)]
 pub(super) struct Table {
     path: PathBuf,
-    header: TableHeader,
+    header: StudyHeader,
     file: LineFile,
     _lock: TableLock,
 }
 
 impl Table {
     /// Begins a table or, unless it is to be replaced, continues the one that is there. Returns the runs that it has.
-    pub(super) fn open(path: &Path, header: TableHeader, force: bool) -> Result<(Self, Vec<RunRow>), ConvergeError> {
+    pub(super) fn open(path: &Path, header: StudyHeader, force: bool) -> Result<(Self, Vec<RunRow>), ConvergeError> {
         let lock = TableLock::take(path)?;
         let runs = if force { Vec::new() } else { runs_done(path, &header)? };
         let rows = runs.iter().map(|run| run.line(None));
@@ -199,7 +199,7 @@ impl Table {
 
 /// The runs of the table at `path`, without the corrupt rows, which are named; none where there is no file, or only the
 /// beginning of a header.
-fn runs_done(path: &Path, header: &TableHeader) -> Result<Vec<RunRow>, ConvergeError> {
+fn runs_done(path: &Path, header: &StudyHeader) -> Result<Vec<RunRow>, ConvergeError> {
     let text = match read_file(path) {
         Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
